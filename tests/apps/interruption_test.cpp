@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -141,7 +142,7 @@ void expect_clean_end(const Folder& folder, const std::vector<std::string>& argu
   const Mark mark;
   const std::vector<std::string> before = folder.names();
   Running running(program(arguments));
-  ASSERT_TRUE(test::await([&] { return when(mark) || !running.runs(); }));
+  ASSERT_TRUE(test::await([&] { return when(mark) || !running.runs(); }, std::chrono::milliseconds(10)));
   ASSERT_TRUE(running.runs()) << running.wait().err;
   ASSERT_EQ(::kill(running.process(), signal), 0);
   const Outcome outcome = running.wait();

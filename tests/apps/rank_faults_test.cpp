@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -128,7 +129,9 @@ TEST_F(RankFaults, LongFilmsTakeNoMoreMemoryThanShortOnes) {
   for (const std::string& input : inputs_)
     for (const int ranks : {0, 2}) {
       if (ranks > 0 && !has_mpirun()) continue;
-      Running running(command(ranks, film(input, {"--size", "16x16"})));
+      Words words = film(input);
+      *(std::find(words.begin(), words.end(), "--size") + 1) = "16x16";
+      Running running(command(ranks, words));
       ASSERT_TRUE(wait_for_pictures(running, 300)) << running.wait().err;
       const pid_t process = ranks > 0 ? ranks_with(pictures_).at(0) : running.process();
       const long early = own_memory(process);

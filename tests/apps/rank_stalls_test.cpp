@@ -96,7 +96,8 @@ TEST_F(RankStalls, ARankThatComputesForLongIsNotStopped) {
                    "--timing", folder_ / "trace.json"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(outcome.err.find("silent"), std::string::npos) << outcome.err;
-    for (const auto& event : nlohmann::json::parse(contents(folder_ / "trace.json")).at("traceEvents"))
+    const auto trace = nlohmann::json::parse(contents(folder_ / "trace.json"));
+    for (const auto& event : trace.at("traceEvents"))
       if (event.at("name") == "verify") verified = event.at("dur").get<double>() / 1e6;
     ASSERT_GT(verified, 0);
   }
