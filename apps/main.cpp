@@ -159,8 +159,7 @@ int main(int argc, char** argv) {
   try {
     constexpr auto remedy = "finished pictures stay, and the same command with --resume goes on from there";
     const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
-    job.emplace(tessera::JobVoice{"tessera", remedy, [](const Error& error) { fail(error); }, arguments,
-                                  tessera::apps::stalls_at_start(arguments)});
+    job.emplace(tessera::JobVoice{"tessera", remedy, [](const Error& error) { fail(error); }, arguments});
   } catch (...) {
     return fail(as_error());
   }

@@ -47,22 +47,4 @@ std::optional<StallSettings> stall_settings(const StallWords& words, bool quiet)
   return settings;
 }
 
-std::optional<StallSettings> stalls_at_start(std::span<const std::string> arguments) {
-  StallWords words;
-  const auto take = [&](std::size_t at, const std::string& name, std::string& value) {
-    if (arguments[at].starts_with(name + "=")) value = arguments[at].substr(name.size() + 1);
-    if (arguments[at] == name && at + 1 < arguments.size()) value = arguments[at + 1];
-  };
-  for (std::size_t at = 0; at < arguments.size(); ++at) {
-    take(at, "--stall-timeout", words.timeout);
-    take(at, "--on-stall", words.on_stall);
-  }
-  try {
-    auto settings = stall_settings(words, true);
-    if (settings && settings->ends_run) return settings;
-  } catch (const Error&) {  // of which the command line's reader tells
-  }
-  return std::nullopt;
-}
-
 }  // namespace tessera::apps

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 
 #include "apps/cli_fwd.hpp"
@@ -20,8 +19,5 @@ void add_stall_options(CLI::App& command, StallWords& words);
 /// What they say; nothing if no rank is to be looked after. Notices go to stderr, one line each, unless `quiet`. Throws
 /// Error(bad_input).
 std::optional<StallSettings> stall_settings(const StallWords& words, bool quiet);
-
-/// The same where --on-stall abort is given, for JobVoice: before the command line is read.
-std::optional<StallSettings> stalls_at_start(std::span<const std::string> arguments);
 
 }  // namespace tessera::apps

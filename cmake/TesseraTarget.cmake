@@ -81,11 +81,12 @@ function(tessera_shaders name)
   target_include_directories(tessera_${name} PRIVATE ${PROJECT_BINARY_DIR}/include/${name}-shaders)
 endfunction()
 
-# tessera_test(NAME [UNITY] [SLOW] [ALONE PATTERN] SOURCES ... LINK ...): a GoogleTest program, registered test by test. UNITY: its sources
+# tessera_test(NAME [UNITY] [SLOW] [PROCESSES PATTERN] SOURCES ... LINK ...): a GoogleTest program, registered test by test. UNITY: its sources
 # name their helpers differently, so that a unity build (the preset sanitize) may compile several at once. All but SLOW
-# ones are labelled fast, and built by the target fast_tests.
+# ones are labelled fast, and built by the target fast_tests. Tests of the GoogleTest pattern PROCESSES, which start
+# processes, are labelled so too: `ctest -L processes --repeat until-fail:20` shows whether their outcome is a fact.
 function(tessera_test name)
-  cmake_parse_arguments(ARG "UNITY;SLOW" "ALONE" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "UNITY;SLOW" "PROCESSES" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   if(NOT ARG_UNITY)
     set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
@@ -108,12 +109,21 @@ function(tessera_test name)
     set(label fast)
     add_dependencies(fast_tests ${name})
   endif()
-  # Tests of which processes die when, run alone and labelled so: beside others they would measure the machine's load.
-  if(ARG_ALONE)
-    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST TEST_FILTER "-${ARG_ALONE}" PROPERTIES TIMEOUT 600 LABELS ${label})
-    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST TEST_FILTER "${ARG_ALONE}" TEST_LIST ${name}_alone
-                         PROPERTIES TIMEOUT 600 LABELS alone RUN_SERIAL ON)
-  else()
-    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600 LABELS ${label})
+  # Limits of time are for hangs alone.
+  set(others "*")
+  if(ARG_PROCESSES)
+    set(others "-${ARG_PROCESSES}")
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST TEST_FILTER "${others}" PROPERTIES TIMEOUT 1200 LABELS ${label})
+  if(ARG_PROCESSES)
+    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST TEST_FILTER "${ARG_PROCESSES}" TEST_LIST ${name}_processes
+                         PROPERTIES TIMEOUT 1200)
+    # gtest_discover_tests() takes no list of labels.
+    set(labels ${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake)
+    file(WRITE ${labels} "if(${name}_processes)
+  set_tests_properties(\${${name}_processes} PROPERTIES LABELS \"${label};processes\")
+endif()
+")
+    set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${labels})
   endif()
 endfunction()

@@ -43,9 +43,6 @@ constexpr microseconds longest_nap_with_bells(20'000);
 
 /// For the others to hear of the error that a stalled rank is; at most the transport's patience.
 constexpr auto stall_grace = std::chrono::seconds(1);
-/// What MPI's end may take beyond a stall's timeout: on a busy machine one of many ranks takes more than a second.
-constexpr std::chrono::milliseconds end_grace(5000);
-
 }  // namespace
 
 /// The thread that speaks MPI, and what it shares with the others.
@@ -59,10 +56,7 @@ class MpiTransport::Engine {
         port_(borrowed),
         thread_(scene::start_thread([this] { run(); })) {
     std::unique_lock lock(mutex_);
-    if (const auto most = hooks_.start_patience; most.count() == 0)
-      changed_.wait(lock, [&] { return started_; });
-    else if (!changed_.wait_for(lock, most, [&] { return started_; }))
-      miss_start(most);
+    changed_.wait(lock, [&] { return started_; });
     if (start_error_) {
       lock.unlock();
       thread_.join();
@@ -102,7 +96,6 @@ class MpiTransport::Engine {
       finishing_ = true;
     }
     wake();
-    watch_end();
     if (thread_.joinable()) thread_.join();
     return mailboxes.error();
   }
@@ -227,41 +220,12 @@ class MpiTransport::Engine {
           soon ? naps.shortest : std::clamp(2 * length, naps.shortest, moving ? naps.longest_moving : naps.longest);
       woken = nap(listens_to, heard, length);
     }
-    {
-      const std::lock_guard lock(mutex_);
-      ending_mpi_ = true;
-    }
-    changed_.notify_all();
     given_up_ ? port_.abandon() : port_.finish();
     {
       const std::lock_guard lock(mutex_);
       ended_ = true;  // what is queued stays there
     }
     changed_.notify_all();
-  }
-
-  /// MPI ends when all ranks are there, and no heartbeats come any more: who must not wait for ever looks at the time.
-  void watch_end() {
-    std::unique_lock lock(mutex_);
-    if (end_patience_ && hooks_.on_end) hooks_.on_end(*end_patience_ - end_grace / 2);
-    changed_.wait(lock, [&] { return ending_mpi_ || ended_; });
-    if (!end_patience_) return;
-    // Rank 0 first, then the lowest that runs, as heartbeats have it.
-    const auto most = *end_patience_ + rank * std::chrono::milliseconds(250);
-    if (changed_.wait_for(lock, most, [&] { return ended_; })) return;
-    if (mailboxes.failed()) end_process(*mailboxes.error());
-    end_process(missing_rank("end", most, "all pictures are complete"));
-  }
-
-  [[noreturn]] void miss_start(std::chrono::milliseconds time) const {
-    const scene::Error error = missing_rank("start", time, "run the same command again");
-    if (hooks_.on_start_missed) hooks_.on_start_missed(error);
-    std::_Exit(static_cast<int>(error.code()));
-  }
-
-  [[noreturn]] void end_process(const scene::Error& error) const {
-    if (hooks_.speak) hooks_.speak(error);
-    std::_Exit(static_cast<int>(error.code()));
   }
 
   /// Hands queued messages to MPI.
@@ -361,10 +325,7 @@ class MpiTransport::Engine {
   void look_for_stalls() {
     {
       const std::lock_guard lock(mutex_);
-      if (stalls_ && size > 1) {
-        heartbeats_.emplace(rank, size, *stalls_, process_name(), Clock::now());
-        if (stalls_->ends_run && !borrowed_) end_patience_ = stalls_->timeout + end_grace;
-      }
+      if (stalls_ && size > 1) heartbeats_.emplace(rank, size, *stalls_, process_name(), Clock::now());
       stalls_.reset();
     }
     if (heartbeats_)
@@ -407,7 +368,8 @@ class MpiTransport::Engine {
       given_up_ = all_clear_ = true;
       return;
     }
-    end_process(error);
+    if (hooks_.speak) hooks_.speak(error);
+    std::_Exit(static_cast<int>(error.code()));
   }
 
   /// Done is said once, when all this rank has sent has left; rank 0 gives the all-clear.
@@ -447,9 +409,8 @@ class MpiTransport::Engine {
   scene::Trace *projecting_ = nullptr, *compositing_ = nullptr;  // changed while nothing is being posted
   std::deque<Outgoing> queue_;
   std::optional<scene::Error> own_fault_, start_error_;
-  std::optional<StallSettings> stalls_;                    ///< until the engine has begun to watch
-  std::optional<std::chrono::milliseconds> end_patience_;  ///< for how long MPI may end; none: for ever
-  bool started_ = false, ending_mpi_ = false, ended_ = false, finishing_ = false, fault_told_ = false;
+  std::optional<StallSettings> stalls_;  ///< until the engine has begun to watch
+  bool started_ = false, ended_ = false, finishing_ = false, fault_told_ = false;
   std::atomic<bool> working_ = false;
   std::shared_ptr<Bells> bells_;
 

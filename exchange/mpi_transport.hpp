@@ -32,8 +32,8 @@ MpiShape mpi_shape(int fortran_handle);
 /// Faults: a rank that fails tells rank 0, which decides on the first one it hears of and tells all. A rank that cannot
 /// end in an orderly way within `patience` after that (it hangs in a read, or its peers are gone) speaks and
 /// ends the process. The death of a process is the launcher's to notice: it ends the other ranks by SIGTERM. A process
-/// that stands still is noticed by heartbeats (watch_stalls(), heartbeats.hpp). While MPI starts and ends there are
-/// none, and it waits for all ranks, so there a rank that should not wait for ever looks at the time alone.
+/// that stands still is noticed by heartbeats (watch_stalls(), heartbeats.hpp); there are none while MPI starts and
+/// ends.
 class MpiTransport final : public Transport {
  public:
   using Speak = std::function<void(const scene::Error& error)>;
@@ -47,12 +47,6 @@ class MpiTransport final : public Transport {
     std::function<void()> on_fault;
     /// The error, if somebody wants this rank, of so many, to end. Looked at every few milliseconds; may be empty.
     std::function<std::optional<scene::Error>(int rank, int size)> asked_to_end;
-    /// For how long MPI may start before this process ends, having called `on_start_missed`; 0: for ever.
-    std::chrono::milliseconds start_patience{0};
-    std::function<void(const scene::Error& error)> on_start_missed{};
-    /// Called at the end of a run that silence ends: to be ended in any case, and looked at again and again so often,
-    /// should somebody stop it. May be empty.
-    std::function<void(std::chrono::milliseconds every)> on_end{};
   };
 
   /// Starts MPI. Throws Error(system_failure) if that fails.

@@ -3,15 +3,11 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
-#include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <atomic>
-#include <cstddef>
-#include <ctime>
+#include <cstdint>
 #include <random>
 
 #include "exchange/collectives.hpp"
@@ -35,10 +31,6 @@ struct Neighbour {
 
 Spoken own_spoken;
 Spoken* spoken = &own_spoken;
-
-/// An abstract socket's name, which one process at a time may hold. Length 0: none.
-sockaddr_un name{};
-socklen_t name_length = 0;
 
 Spoken* map_spoken(int memory) {
   if (memory < 0) return nullptr;
@@ -68,26 +60,7 @@ Spoken* open_spoken(const Neighbour& of) {
 
 }  // namespace
 
-bool may_speak() {
-  if (spoken->done.exchange(true)) return false;
-  if (name_length == 0) return true;
-  const int holder = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);  // for as long as this process lives
-  return holder < 0 || bind(holder, reinterpret_cast<const sockaddr*>(&name), name_length) == 0;
-}
-
-void name_one_line() {
-  // The first byte of an abstract name is 0.
-  const std::string text = fmt::format("tessera {} of {}", getuid(), getppid());
-  name.sun_family = AF_UNIX;
-  std::copy(text.begin(), text.end(), name.sun_path + 1);
-  name_length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + text.size());
-}
-
-void hold_one_line() {
-  if (name_length == 0) return;
-  const timespec moment{2, 0};
-  nanosleep(&moment, nullptr);
-}
+bool may_speak() { return !spoken->done.exchange(true); }
 
 bool share_one_line(Transport& transport) {
   Neighbour self;
@@ -104,10 +77,7 @@ bool share_one_line(Transport& transport) {
     if (others != nullptr) shared = others;
     break;  // the lowest rank's serves all
   }
-  if (shared != nullptr) {
-    spoken = shared;
-    name_length = 0;
-  }
+  if (shared != nullptr) spoken = shared;
   return with_first;
 }
 

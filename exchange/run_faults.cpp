@@ -25,10 +25,4 @@ scene::Error take_error(MessageReader& reader) {
   return {code, reader.take_text()};
 }
 
-scene::Error missing_rank(const char* what, std::chrono::milliseconds time, const char* remedy) {
-  return {scene::ErrorCode::system_failure,
-          fmt::format("MPI: its {} has taken {:.3g} s: a rank's process is stopped or its machine hangs; {}", what,
-                      std::chrono::duration<double>(time).count(), remedy)};
-}
-
 }  // namespace tessera::exchange

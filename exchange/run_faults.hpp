@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <string>
 
 #include "exchange/message.hpp"
@@ -12,9 +11,6 @@ namespace tessera::exchange {
 /// A message of kind `fault` or `verdict`, and what it says.
 Bytes error_message(MessageKind kind, const scene::Error& error);
 scene::Error take_error(MessageReader& reader);
-
-/// A rank has not come to MPI's start or end, whichever `what` is, in this time.
-scene::Error missing_rank(const char* what, std::chrono::milliseconds time, const char* remedy);
 
 /// This process for people: machine and number.
 std::string process_name();

@@ -9,7 +9,6 @@
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
-#include <ctime>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -41,17 +40,9 @@ extern "C" void on_termination(int signal, siginfo_t* from, void* /*context*/) {
   if (!is_ending && speaks_for_the_lost && may_speak()) {
     const ssize_t ignored = write(STDERR_FILENO, line_of_run.data(), line_of_run.size());
     static_cast<void>(ignored);
-    hold_one_line();
   }
   if (before_end_of_run != nullptr) before_end_of_run();
   _exit(static_cast<int>(scene::ErrorCode::system_failure));
-}
-
-extern "C" void on_early_termination(int signal, siginfo_t* from, void* /*context*/) {
-  const bool from_launcher = from->si_pid == launchers[0] || from->si_pid == launchers[1];
-  if (!from_launcher && !asked_to_end.exchange(true)) return;
-  std::signal(signal, SIG_DFL);
-  raise(signal);
 }
 
 pid_t parent_of(pid_t process) {
@@ -90,34 +81,11 @@ void answer_termination(Transport& transport, const std::string& program, const 
   prctl(PR_SET_PDEATHSIG, SIGTERM);
 }
 
-TerminationWhileStarting::TerminationWhileStarting(const std::string& remedy) {
-  remedy_of_run = remedy;
-  launchers = find_launchers();
-  struct sigaction action {};
-  action.sa_sigaction = on_early_termination;
-  action.sa_flags = SA_SIGINFO | SA_RESTART;  // MPI's system calls go on
-  sigaction(SIGTERM, &action, &before_);
-}
-
-TerminationWhileStarting::~TerminationWhileStarting() { sigaction(SIGTERM, &before_, nullptr); }
-
 std::optional<scene::Error> ended_from_outside(int rank, int size) {
   if (!asked_to_end) return std::nullopt;
   return scene::Error(
       scene::ErrorCode::system_failure,
       fmt::format("the run was ended from outside (rank {} of {} got SIGTERM); {}", rank, size, remedy_of_run));
-}
-
-void go_on_if_stopped(std::chrono::milliseconds every) {
-  struct sigevent event {};
-  event.sigev_notify = SIGEV_SIGNAL;
-  event.sigev_signo = SIGCONT;  // does nothing to a process that runs
-  timer_t timer{};
-  if (timer_create(CLOCK_MONOTONIC, &event, &timer) != 0) return;
-  const auto count = every.count();
-  const timespec time{count / 1000, count % 1000 * 1'000'000};
-  const itimerspec times{time, time};
-  timer_settime(timer, 0, &times, nullptr);
 }
 
 void expect_end() { is_ending = true; }

@@ -1,14 +1,10 @@
 #include "tessera/job.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
-#include <string_view>
 #include <utility>
 
 #include "exchange/attempt.hpp"
@@ -19,28 +15,11 @@
 #include "exchange/loopback_transport.hpp"
 #include "exchange/mpi_transport.hpp"
 #include "exchange/one_line.hpp"
-#include "exchange/start_witness.hpp"
 #include "exchange/termination.hpp"
 #include "frame/communicator.hpp"
 #include "io/unfinished.hpp"
 
 namespace tessera {
-
-namespace {
-
-/// A library that gives up: Open MPI's reader of its own words, where memory has run out, which leaves nobody a line.
-extern "C" void on_abort(int /*signal*/) {
-  if (exchange::may_speak()) {
-    constexpr std::string_view line =
-        "tessera: a library gave up, most likely because memory ran out; use a larger machine, fewer ranks or threads, "
-        "or a part of the data\n";
-    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line.data(), line.size());
-    exchange::hold_one_line();
-  }
-  std::_Exit(static_cast<int>(ErrorCode::system_failure));
-}
-
-}  // namespace
 
 struct Job::State {
   JobVoice voice;
@@ -63,21 +42,10 @@ struct Job::State {
 
 Job::Job(JobVoice voice) : state_(std::make_unique<State>(State{std::move(voice), nullptr, nullptr, false})) {
   if (exchange::launched_by_mpi()) {
-    // A launcher that goes while MPI starts closes its sockets: an error of a write, not the death of a rank by a
-    // signal of which nobody says a word.
+    // The launcher closes its sockets when it dies: then a write fails, and no rank dies by a signal.
     std::signal(SIGPIPE, SIG_IGN);
-    std::signal(SIGABRT, on_abort);  // which Open MPI leaves in place
-    exchange::name_one_line();
-    const exchange::StartWitness witness(state_->voice.program);
-    const exchange::TerminationWhileStarting remembered(state_->voice.remedy);
-    const auto& stalls = state_->voice.stalls;
-    const std::chrono::milliseconds patience =
-        stalls && stalls->ends_run ? stalls->timeout + std::chrono::seconds(5) : std::chrono::seconds(0);
-    state_->mpi = std::make_unique<exchange::MpiTransport>(exchange::MpiTransport::Hooks{
-        state_->voice.speak, exchange::expect_end, exchange::ended_from_outside, patience,
-        [&](const Error& error) { witness.leave_words(fmt::format("{}: {}\n", state_->voice.program, error.what())); },
-        exchange::go_on_if_stopped});
-    if (stalls) state_->mpi->watch_stalls(*stalls);
+    state_->mpi = std::make_unique<exchange::MpiTransport>(
+        exchange::MpiTransport::Hooks{state_->voice.speak, exchange::expect_end, exchange::ended_from_outside});
   } else {
     state_->alone = std::make_unique<exchange::LoopbackNetwork>(1);
   }
@@ -142,7 +110,6 @@ void Job::say_once(const std::string& line) {
   if (!exchange::may_speak()) return;
   fmt::print(stderr, "{}\n", line);
   std::fflush(stderr);
-  exchange::hold_one_line();
 }
 
 }  // namespace tessera

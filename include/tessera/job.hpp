@@ -31,9 +31,6 @@ struct JobVoice {
   /// All ranks must have been started with the same: compared as they first meet, in answer_termination() or
   /// agree_instruction_sets(), which throw Error(bad_input) on all ranks if they differ.
   std::vector<std::string> arguments{};
-  /// Looks for ranks that have stopped from MPI's start on, as watch_stalls() does. Where silence ends the run, MPI's
-  /// start may take five seconds longer than it: MPI waits for a rank that is stopped meanwhile, and cannot name it.
-  std::optional<StallSettings> stalls{};
 };
 
 /// The ranks that a launcher (mpirun, srun) started this program as, or this process alone, without MPI. For programs
@@ -42,13 +39,11 @@ struct JobVoice {
 ///
 /// One thread of the job's own speaks MPI. The first error of a rank is the run's: every rank throws it, and one tells
 /// the user. A rank that cannot end in an orderly way within five seconds after that speaks and ends its process. What
-/// a job does to its process: under a launcher SIGPIPE is ignored from the beginning, and SIGABRT, by which libraries
-/// give up, ends it with a line.
+/// a job does to its process: under a launcher SIGPIPE is ignored from the beginning.
 class TESSERA_EXPORT Job {
  public:
-  /// Starts MPI under a launcher. A rank that gets SIGTERM meanwhile from somebody else ends the run, by an error, once
-  /// MPI has started; a second one ends it at once. Should MPI end the process as it starts, a child of it says so in a
-  /// line on stderr. Throws Error(system_failure) if MPI cannot start.
+  /// Starts MPI under a launcher. Throws Error(system_failure) if MPI cannot start; a rank that MPI ends as it starts
+  /// is reported by MPI and the launcher alone.
   explicit Job(JobVoice voice);
   ~Job();
   Job(const Job&) = delete;
@@ -65,9 +60,8 @@ class TESSERA_EXPORT Job {
   /// first that is ended on rank 0's machine speaks. A rank that anybody else ends ends the run for all, by an error. A
   /// launcher that dies takes its ranks with it. Collective; does nothing for one process (Linux).
   void answer_termination();
-  /// Looks for ranks that have stopped from now on. Every rank calls this, with the same settings but for `say`. Where
-  /// silence ends the run, so does an end of MPI that takes five seconds longer than it: then nobody can say which rank
-  /// is missing.
+  /// Looks for ranks that have stopped, from now on until MPI ends. Every rank calls this, with the same settings but
+  /// for `say`.
   void watch_stalls(const StallSettings& settings);
   /// Restricts every rank's kernels to the instruction sets that all ranks have, as bits differ between sets and a
   /// picture must not depend on which machine made a tile. Collective, before the first kernel runs; of the process.
@@ -87,8 +81,8 @@ class TESSERA_EXPORT Job {
   /// run's error, the same on all ranks, if there is one; one rank has spoken.
   std::optional<Error> finish();
 
-  /// Writes a line to stderr, unless another process of the run has said its line: of all ranks on this machine from
-  /// answer_termination() on; before that those that still run. Without a job, of this process. From any thread.
+  /// Writes a line to stderr, unless one was written before: by any rank on this machine from answer_termination() on,
+  /// before that by this process. From any thread.
   static void say_once(const std::string& line);
 
  private:

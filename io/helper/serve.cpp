@@ -139,7 +139,7 @@ bool answer(std::span<const Reader> readers, Holdings& holdings, Window& window,
 
 void report_progress(double done) {
   using Clock = std::chrono::steady_clock;
-  static Clock::time_point last = Clock::now();  // the start of the first file
+  static Clock::time_point last{};  // the first report goes at once
   if (const Clock::time_point now = Clock::now(); now - last >= std::chrono::milliseconds(100)) {
     last = now;
     static_cast<void>(

@@ -145,6 +145,11 @@ export class FunctionPanel {
     this.refresh();
   }
 
+  /** Whether what is shown is the server's answer to the present state. */
+  get is_answered() {
+    return this.taken_key === this.#key(function_words) && this.histogram_key === this.#key(histogram_words) && !this.histogram_question.running;
+  }
+
   /** @param {string[]} words */
   #key(words) {
     return JSON.stringify(words.map((word) => this.page.history.state[word] ?? null));

@@ -100,8 +100,21 @@ def copy_of(tessera, folder: Path):
     return str(copy)
 
 
+def no_terminal():
+    """Why a command cannot be given a terminal; empty if it can."""
+    try:
+        for each in os.openpty():
+            os.close(each)
+    except OSError as error:
+        return f"this machine has no pseudo-terminals ({error})"
+    return ""
+
+
 def follow(tessera, data: Path, folder: Path, row):
-    """Runs a row: what is wrong with it, and all that its first command said; None if this build cannot run it."""
+    """Runs a row: what is wrong with it, and all that its first command said; None if this build or machine cannot."""
+    if row.terminal in ("stdin", "stdout") and (reason := no_terminal()):
+        print(f"{row.line}: skipped: {reason}", flush=True)
+        return [], None
     folder.mkdir()
     for file in data.iterdir():
         os.link(file, folder / file.name)
@@ -122,7 +135,7 @@ def follow(tessera, data: Path, folder: Path, row):
         words = [alone or tessera, *shlex.split(command)]
         if limits:
             words = ["/bin/sh", "-c", f'{limits}; exec "$0" "$@"', *words]
-        done = subprocess.run(words, cwd=folder, timeout=300, env=environment, stderr=subprocess.PIPE, **streams)
+        done = subprocess.run(words, cwd=folder, timeout=1200, env=environment, stderr=subprocess.PIPE, **streams)
         for each in opened:
             os.close(each)
         return done

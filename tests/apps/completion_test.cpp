@@ -130,17 +130,18 @@ TEST(Completion, WorksInZsh) {
   const std::string script = folder.file("tessera.zsh", tessera({"completion", "zsh"}).out);
   // A shell at a terminal of its own, in which lines are typed; Ctrl-X keeps what stands there.
   std::string driver = "zmodload zsh/zpty || exit 77\nexport PATH=" + path_with_tessera(folder) + "\ncd " +
-                       (folder / ".") + "\nzpty -b shell 'TERM=dumb zsh -f -i'\nzpty -w shell \"PS1=; autoload -Uz " +
+                       (folder / ".") +
+                       "\nzpty -b shell 'TERM=dumb zsh -f -i' || exit 77\nzpty -w shell \"PS1=; autoload -Uz " +
                        "compinit && compinit -D -u; source " + script + "; keep() { print -r -- \\\"\\$BUFFER\\\" >> " +
                        "kept; BUFFER=; }; zle -N keep; bindkey '^X' keep; print ready > ready\"\n" +
-                       "for i in {1..600}; do [[ -e ready ]] && break; sleep 0.1; done\nn=0\n" +
+                       "for i in {1..3000}; do [[ -e ready ]] && break; sleep 0.1; done\nn=0\n" +
                        "ask() { zpty -n -w shell \"$1\"$'\\t\\x18'; (( n++ ))\n" +
-                       "for i in {1..600}; do [[ -e kept ]] && (( $(wc -l < kept) >= n )) && return; sleep 0.1; " +
+                       "for i in {1..3000}; do [[ -e kept ]] && (( $(wc -l < kept) >= n )) && return; sleep 0.1; " +
                        "zpty -r -t shell > /dev/null; done }\n";
   for (const auto& [line, whole] : typed) driver += "ask '" + line + "'\n";
   driver += "zpty -d shell\n";
   const Outcome outcome = Running({"zsh", "-f", folder.file("ask.zsh", driver)}).wait();
-  if (outcome.status == 77) GTEST_SKIP() << "zsh has no module zsh/zpty";
+  if (outcome.status == 77) GTEST_SKIP() << "zsh has no module zsh/zpty, or the machine no pseudo-terminals";
   std::istringstream kept(contents(folder / "kept"));
   for (const auto& [line, whole] : typed) {
     std::string found;

@@ -128,6 +128,27 @@ TEST_F(Mpirun, BadInputIsOneLineInAllAndStatusTwo) {
   EXPECT_EQ(folder.names(), (std::vector<std::string>{"cube.vtu", "cut.tets", "view.txt"}));
 }
 
+TEST_F(Mpirun, RanksWithDifferentArgumentsEndInOneLine) {
+  using Words = std::vector<std::string>;
+  const Folder folder;
+  const std::string mesh = folder.cube(), a = folder / "a.pfm", b = folder / "b.pfm";
+  const Words first{"render", mesh, "-o", a, "--quiet"};
+  for (const auto& [other, message] : std::vector<std::pair<Words, std::string>>{
+           {{"render", mesh, "-o", b, "--quiet"}, "argument 4: rank 2 of 3 was given '" + b},
+           {{"render", mesh, "-o", a}, "argument 5: rank 2 of 3 was given nothing where the first was given '--qui"},
+           {{"info", mesh, "-o", a, "--quiet"}, "argument 1: rank 2 of 3 was given 'info'"},
+           {{"render", mesh, "-o", a, "--quiet", "--size", "9x9"}, "'--size' where the first was given nothing"}}) {
+    Words command = mpirun_command(2, first);
+    command.insert(command.end(), {":", "-n", "1", TESSERA_PROGRAM});
+    command.insert(command.end(), other.begin(), other.end());
+    const Outcome outcome = Running(command).wait();
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    ASSERT_EQ(own_lines(outcome).size(), 1u) << outcome.err;
+    EXPECT_NE(own_lines(outcome)[0].find(message), std::string::npos) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(a) || std::filesystem::exists(b));
+  }
+}
+
 TEST_F(Mpirun, ResumeMakesOnlyWhatIsMissing) {
   const Folder folder;
   const std::string mesh = folder.cube();

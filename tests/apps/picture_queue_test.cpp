@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <memory>
 #include <stdexcept>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "apps/spare_images.hpp"
+#include "support/await.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -36,7 +35,7 @@ TEST(PictureQueue, SeveralWritersWriteAtOnceAndEachPictureOnce) {
       const int now = ++at_once;
       for (int seen = most; seen < now && !most.compare_exchange_weak(seen, now);) {
       }
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      EXPECT_TRUE(test::await([&] { return most > 1; }));
       ++count;
       --at_once;
     });
@@ -48,6 +47,7 @@ TEST(PictureQueue, SeveralWritersWriteAtOnceAndEachPictureOnce) {
 
 TEST(PictureQueue, HoldsOneBeingWrittenAndOneThatWaits) {
   std::atomic<int> held = 0, most = 0;
+  constexpr int left = 8;  ///< pictures from this one on are not followed by two others
   struct Picture {
     explicit Picture(std::atomic<int>& count) : held(count) { ++held; }
     ~Picture() { --held; }
@@ -56,7 +56,8 @@ TEST(PictureQueue, HoldsOneBeingWrittenAndOneThatWaits) {
   PictureQueue queue(1);
   for (int i = 0; i < 10; ++i) {
     const auto picture = std::make_shared<Picture>(held);
-    queue.add([picture] { std::this_thread::sleep_for(std::chrono::milliseconds(5)); });
+    // Each is written until the one after the next is handed over.
+    queue.add([picture, i, &held] { EXPECT_TRUE(test::await([&] { return held == 3 || i >= left; })); });
     most = std::max(most.load(), held.load());
   }
   queue.finish();
@@ -81,14 +82,17 @@ TEST(PictureQueue, AnErrorEndsTheWritingAndReachesWhoMadeThePictures) {
 TEST(PictureQueue, WhatWaitsIsWrittenAtAnEarlyEnd) {
   std::atomic<int> written = 0;
   {
+    std::atomic<bool> at_end = false;
     PictureQueue queue(1);
-    for (int i = 0; i < 4; ++i)
-      queue.add([&written] {
-        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    for (int i = 0; i < 2; ++i)
+      queue.add([&written, &at_end] {
+        EXPECT_TRUE(test::await([&] { return at_end.load(); }));
         ++written;
       });
+    EXPECT_EQ(written, 0);
+    at_end = true;
   }
-  EXPECT_EQ(written, 4);
+  EXPECT_EQ(written, 2);
 }
 
 TEST(SpareImages, GiveAnImageOfTheSizeOnceAndKeepFew) {

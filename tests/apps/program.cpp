@@ -14,6 +14,8 @@
 #include <thread>
 #include <utility>
 
+#include "support/await.hpp"
+
 namespace tessera::apps {
 namespace {
 
@@ -31,6 +33,14 @@ std::size_t Outcome::error_lines() const {
   // hwloc, which is MPI's, complains in every process where there is no /sys, as in a bare chroot.
   for (std::string line; std::getline(text, line) && !text.eof();)
     lines += line.starts_with("[hwloc/") || line.starts_with("  ") ? 0 : 1;
+  return lines;
+}
+
+std::vector<std::string> Outcome::own_lines() const {
+  std::vector<std::string> lines;
+  std::istringstream text(err);
+  for (std::string line; std::getline(text, line);)
+    if (line.find("tessera: ") != std::string::npos) lines.push_back(line);
   return lines;
 }
 
@@ -93,20 +103,19 @@ Running::~Running() {
 }
 
 Outcome Running::wait() {
+  EXPECT_TRUE(test::await([&] { return !runs(); })) << "it hangs";
+  return wait_or_kill();
+}
+
+Outcome Running::wait_or_kill() {
+  constexpr int launcher_seconds = 30;
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(launcher_seconds);
+  while (runs() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  if (runs()) kill(process_, SIGKILL);
   Outcome outcome;
   outcome.status = status_of(std::exchange(process_, -1));
   outcome.out = contents(folder_ / "out");
   outcome.err = contents(folder_ / "err");
-  return outcome;
-}
-
-std::optional<Outcome> Running::wait_for(int seconds) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
-  while (runs() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  const bool over = !runs();
-  if (!over) kill(process_, SIGTERM);
-  Outcome outcome = wait();
-  if (!over) return std::nullopt;
   return outcome;
 }
 
@@ -116,6 +125,17 @@ bool Running::runs() const {
          state.si_pid == 0;
 }
 
+ProcessState state_of(pid_t process) {
+  ProcessState state;
+  const std::string text = contents("/proc/" + std::to_string(process) + "/stat");
+  std::istringstream words(text.substr(std::min(text.size(), text.rfind(')') + 1)));
+  std::string skipped;
+  words >> state.letter >> state.parent;
+  for (int k = 0; k < 9; ++k) words >> skipped;
+  words >> state.ticks;
+  return state;
+}
+
 std::map<int, pid_t> ranks_with(const std::string& word) {
   std::map<int, pid_t> ranks;
   std::error_code gone;
@@ -123,14 +143,12 @@ std::map<int, pid_t> ranks_with(const std::string& word) {
     const std::string name = entry.path().filename();
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
     const auto command = words_of(entry.path() / "cmdline");
-    if (command.empty() || command.front() != TESSERA_PROGRAM ||
-        std::none_of(command.begin(), command.end(), [&](const auto& w) { return w.find(word) != std::string::npos; }))
+    // Or a shell that becomes the program.
+    if (std::none_of(command.begin(), command.end(), [&](const auto& w) { return w.find(word) != std::string::npos; }))
       continue;
     for (const std::string& variable : words_of(entry.path() / "environ"))
       for (const std::string known : {"OMPI_COMM_WORLD_RANK=", "PMI_RANK="})
-        if (variable.starts_with(known))
-          // The first: a rank has a child while MPI starts.
-          ranks.emplace(std::stoi(variable.substr(known.size())), std::stoi(name));
+        if (variable.starts_with(known)) ranks.emplace(std::stoi(variable.substr(known.size())), std::stoi(name));
   }
   return ranks;
 }

@@ -4,11 +4,12 @@
 
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace tessera::apps {
+
+std::string contents(const std::string& file);
 
 /// What a run of the program left behind.
 struct Outcome {
@@ -16,6 +17,8 @@ struct Outcome {
   std::string out, err;
   [[nodiscard]] std::size_t error_lines()
       const;  ///< of `err`; not those that go on with the one before, nor MPI's remarks on the machine
+  /// Of `err`, those of the program's own; a launcher may put words before them and lines of its own between them.
+  [[nodiscard]] std::vector<std::string> own_lines() const;
 };
 
 /// Runs the built `tessera` with these arguments, no shell in between, standard input empty.
@@ -30,6 +33,15 @@ Outcome mpirun(int ranks, const std::vector<std::string>& arguments);
 std::vector<std::string> mpirun_command(int ranks, const std::vector<std::string>& arguments);
 /// Processes of the ranks that now run with `word` in their arguments, by rank.
 std::map<int, pid_t> ranks_with(const std::string& word);
+
+/// What /proc says of a process.
+struct ProcessState {
+  char letter = 'X';  ///< of proc(5): Z a zombie, X gone
+  pid_t parent = 0;
+  long ticks = 0;  ///< of the processor, in user mode
+  [[nodiscard]] bool is_alive() const { return letter != 'X' && letter != 'Z'; }
+};
+ProcessState state_of(pid_t process);
 
 /// A folder of one test's own, removed at its end.
 class Folder {
@@ -53,8 +65,6 @@ class Folder {
   std::filesystem::path path_;
 };
 
-std::string contents(const std::string& file);
-
 /// A command that runs while a test does something to it. Killed at the end unless it has been waited for.
 class Running {
  public:
@@ -65,10 +75,12 @@ class Running {
 
   [[nodiscard]] pid_t process() const { return process_; }
   [[nodiscard]] bool runs() const;
-  /// Its end.
+  /// What it has written to standard error so far.
+  [[nodiscard]] std::string errors() const { return contents(folder_ / "err"); }
+  /// Its end. One that does not come is a failure, and the command is killed.
   Outcome wait();
-  /// Its end, if that comes within `seconds`; else it is told to end.
-  std::optional<Outcome> wait_for(int seconds);
+  /// The same of a launcher that may hang, which is no failure.
+  Outcome wait_or_kill();
 
  private:
   const Folder folder_;

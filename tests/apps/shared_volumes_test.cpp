@@ -8,17 +8,16 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <thread>
 
 #include "apps/program.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/reader_programs.hpp"
+#include "support/await.hpp"
 
 extern char** environ;
 
@@ -167,13 +166,12 @@ TEST_F(SharedVolumes, WithoutRoomEndTheRunInOneLineWithARemedyThatWorks) {
   const Words words = render(volume, folder_ / "a.pfm", {"--quiet"});
   for (const int ranks : {2, 3})
     for (const auto& [folder, limit] : {std::pair{missing, ":"}, {scratch_, "ulimit -f 40000"}}) {
-      const auto outcome = Running(on_ranks(ranks, folder, words, limit)).wait_for(60);
-      ASSERT_TRUE(outcome) << "it hangs";
-      EXPECT_EQ(outcome->status, 2) << outcome->err;
-      EXPECT_EQ(count_of(outcome->err, "tessera: "), 1u) << outcome->err;
+      const Outcome outcome = Running(on_ranks(ranks, folder, words, limit)).wait();
+      EXPECT_EQ(outcome.status, 2) << outcome.err;
+      EXPECT_EQ(count_of(outcome.err, "tessera: "), 1u) << outcome.err;
       for (const std::string& part : {volume, folder, std::string("27 MB"), std::string("set TMPDIR"),
                                       std::string("convert it to .bricks once and render that")})
-        EXPECT_NE(outcome->err.find(part), std::string::npos) << outcome->err;
+        EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
       EXPECT_TRUE(nothing_left());
     }
   EXPECT_EQ(Running(on_ranks(2, scratch_, words)).wait().status, 0);
@@ -199,19 +197,17 @@ TEST_F(SharedVolumes, LeaveNothingWhenARankIsEnded) {
       for (const int ended : {0, 1}) {
         // Of its own: a rank of the run before may still be ending.
         const std::string pictures = folder_ / ("f" + std::to_string(++number) + "_");
-        Running running(on_ranks(3, scratch_, render(volume, pictures + "%03d.pfm", {"--orbit", "600", "--quiet"})));
+        Running running(on_ranks(3, scratch_, render(volume, pictures + "%03d.pfm", {"--orbit", "9999", "--quiet"})));
         std::map<int, pid_t> ranks;
-        // Looked up each time: what a rank starts is for a moment like the rank.
-        while (running.runs() && !(ranks.size() == 3 && has_open_in(scratch_, ranks.at(opened)))) {
-          std::this_thread::sleep_for(std::chrono::milliseconds(1));
-          ranks = ranks_with(pictures);
-        }
+        ASSERT_TRUE(test::await([&] {
+          ranks = ranks_with(pictures);  // each time: what a rank starts is for a moment like the rank
+          return !running.runs() || (ranks.size() == 3 && has_open_in(scratch_, ranks.at(opened)));
+        }));
         ASSERT_TRUE(running.runs()) << running.wait().err;
         EXPECT_TRUE(nothing_left()) << "it has a name";
         kill(ranks.at(ended), signal);
-        const auto outcome = running.wait_for(60);
-        ASSERT_TRUE(outcome) << "it hangs when rank " << ended << " gets " << signal << " and " << opened << " reads";
-        EXPECT_NE(outcome->status, 0);
+        SCOPED_TRACE(testing::Message() << "rank " << ended << " gets " << signal << " and " << opened << " reads");
+        EXPECT_NE(running.wait().status, 0);
         EXPECT_TRUE(nothing_left());
       }
 }
@@ -228,10 +224,9 @@ TEST_F(SharedVolumes, AreWholeInTheMemoryOfNoRank) {
   if (is_sanitized) GTEST_SKIP() << "sanitizers take memory of their own";
   const std::string volume = zipped(400);
   constexpr long budget = 64l << 10;  // KiB, of 62,500 that all samples are
-  Words words = of_size("256x256", render(volume, folder_ / "g_%03d.pfm", {"--orbit", "200", "--memory", "64M"}));
+  Words words = of_size("256x256", render(volume, folder_ / "g_%03d.pfm", {"--orbit", "9999", "--memory", "64M"}));
   Running running(on_ranks(3, scratch_, words));
-  while (running.runs() && !std::filesystem::exists(folder_ / "g_002.pfm"))
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  ASSERT_TRUE(test::await([&] { return !running.runs() || std::filesystem::exists(folder_ / "g_002.pfm"); }));
   const std::map<int, pid_t> ranks = ranks_with(folder_ / "g_");
   ASSERT_EQ(ranks.size(), 3u);
   for (const auto& [rank, process] : ranks) {
@@ -240,7 +235,7 @@ TEST_F(SharedVolumes, AreWholeInTheMemoryOfNoRank) {
     EXPECT_LT(peak_of(process), budget) << rank;
   }
   kill(running.process(), SIGTERM);
-  EXPECT_TRUE(running.wait_for(60)) << "it hangs";
+  running.wait();
 }
 
 /// Status, and the largest peak of all processes that it has waited for, KiB.

@@ -15,22 +15,57 @@
 
 #include "exchange/loopback_transport.hpp"
 #include "scene/error.hpp"
+#include "support/await.hpp"
 
 namespace tessera::exchange {
 namespace {
 
 using std::chrono::milliseconds;
 
+/// How long nothing is awaited that must not come.
+constexpr milliseconds moment(50);
+
+/// A projector's transport, which shows whether a thread of it waits for credit.
+class Watched final : public Transport {
+ public:
+  explicit Watched(Transport& beneath) : beneath_(beneath) {}
+  using Transport::receive;
+  using Transport::send;
+  [[nodiscard]] int rank() const override { return beneath_.rank(); }
+  [[nodiscard]] int size() const override { return beneath_.size(); }
+  void send(int to, Channel channel, Bytes bytes, std::int32_t frame) override {
+    beneath_.send(to, channel, std::move(bytes), frame);
+  }
+  std::optional<Message> receive(Channel channel, milliseconds timeout) override {
+    return beneath_.receive(channel, timeout);
+  }
+  void fail(const scene::Error& error) override { beneath_.fail(error); }
+  void check() const override { beneath_.check(); }
+  void set_working(bool working) override { waits_ = !working; }
+  void trace_to(scene::Trace* projecting, scene::Trace* compositing) override {
+    beneath_.trace_to(projecting, compositing);
+  }
+  [[nodiscard]] Traffic sent(Channel channel) const override { return beneath_.sent(channel); }
+
+  [[nodiscard]] bool comes_to_wait() const {
+    return test::await([this] { return waits_.load(); });
+  }
+
+ private:
+  Transport& beneath_;
+  std::atomic<bool> waits_ = false;
+};
+
 /// Rank 0 projects, the others composite.
 struct Job {
   explicit Job(int compositors, std::uint64_t window, std::uint64_t backlog)
-      : network(1 + compositors), settings{{}, window, backlog} {
+      : network(1 + compositors), projector(network.rank(0)), settings{{}, window, backlog} {
     for (int c = 0; c < compositors; ++c) settings.compositor_ranks.push_back(1 + c);
     received.resize(static_cast<std::size_t>(compositors));
   }
 
   /// What has come to a compositor by now, in a message or none; `pays`: its bytes are given back.
-  bool take(int compositor, bool pays, milliseconds patience) {
+  bool take(int compositor, bool pays, milliseconds patience = test::hang) {
     Transport& transport = network.rank(1 + compositor);
     const auto message = transport.receive(Channel::fragments, patience);
     if (!message) return false;
@@ -43,6 +78,7 @@ struct Job {
   }
 
   LoopbackNetwork network;
+  Watched projector;
   Outbox::Settings settings;
   std::vector<std::vector<Bytes>> received;  ///< by compositor
 };
@@ -131,7 +167,7 @@ TEST(Outbox, EveryPartArrivesOnceInTileOrderWhateverTheThreadsDo) {
         if (MessageReader(mine.back(), 0).kind() == MessageKind::end) ++ended;
       });
     {
-      Outbox outbox(job.network.rank(0), job.settings);
+      Outbox outbox(job.projector, job.settings);
       outbox.begin_frame(frame, map, has_parts, {.longest_ray = 2.5, .tiles = 0, .longest_edge = 0.5f});
       std::atomic<std::uint32_t> next = 0;  // tiles begin in order, on three threads
       std::vector<std::thread> projectors;
@@ -196,7 +232,7 @@ TEST(Outbox, SendsNoMoreThanTheWindowAheadAndGoesOnWithCredit) {
   constexpr std::uint64_t window = 600 << 10, part_bytes = 64 << 10, message_bytes = 256 << 10;
   Job job(1, window, 100 << 10);
   const TileMap map(2, 1, 1);
-  Outbox outbox(job.network.rank(0), job.settings);
+  Outbox outbox(job.projector, job.settings);
   outbox.begin_frame(0, map, {true, true}, {});
   constexpr std::size_t parts = 60;
   std::atomic<std::size_t> put = 0;
@@ -204,7 +240,7 @@ TEST(Outbox, SendsNoMoreThanTheWindowAheadAndGoesOnWithCredit) {
     for (; put < parts; ++put) outbox.put(part_of(0, put, part_bytes, false));
   });
   // Nothing comes back: it stops, and what it has sent is the window and at most a message.
-  ASSERT_EQ(projector.wait_for(milliseconds(300)), std::future_status::timeout);
+  ASSERT_TRUE(job.projector.comes_to_wait());
   const std::size_t stuck_at = put;
   EXPECT_LT(stuck_at, parts);
   std::uint64_t sent = 0;
@@ -213,8 +249,8 @@ TEST(Outbox, SendsNoMoreThanTheWindowAheadAndGoesOnWithCredit) {
   EXPECT_LE(sent, window + message_bytes + part_bytes + 1024);
   // Credit for one message lets about one more leave.
   job.give_back(0, job.received[0].back().size());
-  ASSERT_TRUE(job.take(0, false, milliseconds(2000)));
-  EXPECT_FALSE(job.take(0, false, milliseconds(100)));
+  ASSERT_TRUE(job.take(0, false));
+  EXPECT_FALSE(job.take(0, false, moment));
   EXPECT_EQ(projector.wait_for(milliseconds(0)), std::future_status::timeout);
   job.give_back(0, 1 << 30);
   std::thread receiver([&] {
@@ -232,16 +268,16 @@ TEST(Outbox, SendsNoMoreThanTheWindowAheadAndGoesOnWithCredit) {
 TEST(Outbox, ALaterTileWaitsButTheFirstUnfinishedOneIsNotHeldUp) {
   Job job(1, 100 << 10, 50 << 10);
   const TileMap map(3, 1, 1);
-  Outbox outbox(job.network.rank(0), job.settings);
+  Outbox outbox(job.projector, job.settings);
   outbox.begin_frame(0, map, {true, true, true}, {});
   auto later = std::async(std::launch::async, [&] { outbox.put(part_of(2, 0, 200 << 10, true)); });
-  ASSERT_EQ(later.wait_for(milliseconds(200)), std::future_status::timeout);  // it may not run ahead
+  ASSERT_TRUE(job.projector.comes_to_wait());  // it may not run ahead
   // Though the backlog is full, tiles 0 and 1 get through on their compositor's credit alone.
   auto first = std::async(std::launch::async, [&] {
     outbox.put(part_of(0, 0, 32, true));
     outbox.put(part_of(1, 0, 32, true));
   });
-  EXPECT_EQ(first.wait_for(milliseconds(2000)), std::future_status::ready);
+  EXPECT_EQ(first.wait_for(test::hang), std::future_status::ready);
   std::thread receiver([&] {
     while (job.received[0].empty() || MessageReader(job.received[0].back(), 0).kind() != MessageKind::end)
       job.take(0, true, milliseconds(100));
@@ -257,19 +293,18 @@ TEST(Outbox, ALaterTileWaitsButTheFirstUnfinishedOneIsNotHeldUp) {
 TEST(Outbox, TilesThatArePassedEndWithoutRecordsInTheirOrder) {
   Job job(1, 100 << 10, 50 << 10);
   const TileMap map(4, 1, 1);
-  Outbox outbox(job.network.rank(0), job.settings);
+  Outbox outbox(job.projector, job.settings);
   outbox.begin_frame(0, map, {true, true, true, true}, {});
   outbox.pass(1);
   outbox.put(part_of(2, 0, 64, true));
   outbox.put(part_of(0, 0, 32, false));
   outbox.flush();  // not full, but it leaves
-  ASSERT_TRUE(job.take(0, true, milliseconds(2000)));
-  ASSERT_TRUE(job.take(0, true, milliseconds(2000)));
+  ASSERT_TRUE(job.take(0, true));
+  ASSERT_TRUE(job.take(0, true));
   outbox.put(part_of(0, 1, 32, true));
   outbox.pass(3);
   outbox.end_frame({});
-  while (MessageReader(job.received[0].back(), 0).kind() != MessageKind::end)
-    ASSERT_TRUE(job.take(0, true, milliseconds(2000)));
+  while (MessageReader(job.received[0].back(), 0).kind() != MessageKind::end) ASSERT_TRUE(job.take(0, true));
   const Heard heard = heard_of(job.received[0], 0);
   std::vector<std::tuple<std::uint32_t, std::uint64_t, bool>> parts;
   for (const PartHeader& part : heard.parts) parts.emplace_back(part.tile, part.bytes, part.last != 0);
@@ -280,17 +315,17 @@ TEST(Outbox, TilesThatArePassedEndWithoutRecordsInTheirOrder) {
 TEST(Outbox, AThreadThatWaitsKeepsNothingBackThatOthersAwait) {
   Job job(2, 100 << 10, 50 << 10);
   const TileMap map(2, 2, 1);
-  Outbox outbox(job.network.rank(0), job.settings);
+  Outbox outbox(job.projector, job.settings);
   outbox.begin_frame(0, map, {true, true}, {});
   outbox.put(part_of(0, 0, 320, false));  // much less than a message
   const int compositor = map.owner(0);
-  ASSERT_TRUE(job.take(compositor, false, milliseconds(2000)));  // the begin
-  EXPECT_FALSE(job.take(compositor, false, milliseconds(50)));
+  ASSERT_TRUE(job.take(compositor, false));  // the begin
+  EXPECT_FALSE(job.take(compositor, false, moment));
   auto later = std::async(std::launch::async, [&] {
     for (std::size_t part = 0; part < 2; ++part)
       outbox.put(part_of(1, part, 400 << 10, false));  // more than the window
   });
-  EXPECT_TRUE(job.take(compositor, false, milliseconds(2000)));
+  EXPECT_TRUE(job.take(compositor, false));
   job.network.rank(1).fail(scene::Error(scene::ErrorCode::system_failure, "over"));
   EXPECT_THROW(later.get(), scene::Error);
 }
@@ -301,7 +336,7 @@ TEST(Outbox, AStoppedFrameEndsEveryTileThatHasNotEndedAndSaysSo) {
   std::vector<bool> has_parts(8, true);
   has_parts[5] = false;
   {
-    Outbox outbox(job.network.rank(0), job.settings);
+    Outbox outbox(job.projector, job.settings);
     outbox.begin_frame(4, map, has_parts, {});
     outbox.put(part_of(0, 0, 64, true));
     outbox.put(part_of(3, 0, 64, false));  // begun, and not ended
@@ -323,10 +358,10 @@ TEST(Outbox, AStoppedFrameEndsEveryTileThatHasNotEndedAndSaysSo) {
 TEST(Outbox, TheRunsErrorFreesAThreadThatWaits) {
   Job job(1, 1, 1);
   const TileMap map(2, 1, 1);
-  Outbox outbox(job.network.rank(0), job.settings);
+  Outbox outbox(job.projector, job.settings);
   outbox.begin_frame(0, map, {true, true}, {});
   auto projector = std::async(std::launch::async, [&] { outbox.put(part_of(1, 0, 1 << 20, true)); });
-  ASSERT_EQ(projector.wait_for(milliseconds(100)), std::future_status::timeout);
+  ASSERT_TRUE(job.projector.comes_to_wait());
   job.network.rank(1).fail(scene::Error(scene::ErrorCode::system_failure, "rank 1 of 2: is gone; start again"));
   try {
     projector.get();

@@ -4,15 +4,17 @@
     fault_trials.py --tessera PROGRAM [--trials N] [--seed S] [--ranks R] [--volume [--sort-last|--mixed]] [--only KIND,...]
 
 Each trial renders a short film on R ranks and breaks it: a rank is killed or told to end at a random time, mpirun is
-told to end or is killed itself, a rank is stopped and goes on or does not, the folder of the pictures is moved away, the
-disk is full (a small tmpfs, where this user may mount one), or one rank's piece of the mesh is damaged. Checked after
-each: the run is over within 10 s of the fault; no process of it is left; one line of ours says what happened; the status
-is what it should be; the folder holds whole pictures only, each with the bytes of an undisturbed run. Every fourth trial
-then runs the same command with --resume, which must complete the film. --volume films a volume, by --sort-last in parts
-of it, by --mixed in parts of it and of the picture in turn. A launcher that hangs or crashes alone after a rank was
-killed or stopped as MPI started is Open MPI's fault (4.1.4, as it ends PMIx's server), and counted beside the others.
+told to end or is killed itself, a rank is stopped and goes on or (once a random number of pictures is there) does not,
+the folder of the pictures is moved away, the disk is full (a small tmpfs, where this user may mount one), or one rank's
+piece of the mesh is damaged. Checked after each, whatever the time of the fault and the load of the machine: the run
+ends; no process of it is left; one line of ours says what happened; the status is what it should be; the folder holds
+whole pictures only, each with the bytes of an undisturbed run. Every fourth trial then runs the same command with
+--resume, which must complete the film. --volume films a volume, by --sort-last in parts of it, by --mixed in parts of it
+and of the picture in turn. A launcher that hangs or crashes alone after a rank died as MPI started is Open MPI's fault
+(4.1.4, as it ends PMIx's server), and counted separately.
 
-Prints a line a trial and a table of the stages that were reached. Exit status 1 if any check failed.
+Prints a line a trial, with the seconds from the fault to the end, and a table of the stages that were reached. Exit
+status 1 if any check failed.
 """
 import argparse
 import collections
@@ -24,10 +26,12 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from pathlib import Path
 
-PATIENCE = 10.0  # seconds from the fault to the end of the last process
+HANG = 300.0  # seconds that only a hang takes
+ALONE = 30.0  # after which a launcher whose ranks have ended is given up, which is no failure
 
 
 def processes_of(token):
@@ -46,17 +50,8 @@ def processes_of(token):
     return found
 
 
-def parent_of(pid):
-    try:
-        return int(Path("/proc", str(pid), "stat").read_text().rsplit(")", 1)[1].split()[1])
-    except OSError:
-        return 0
-
-
 def ranks_of(film, token):
-    """Not the child that each has while MPI starts."""
-    found = [pid for pid, words in processes_of(token) if words[0] == film.tessera.encode()]
-    return [pid for pid in found if parent_of(pid) not in found]
+    return [pid for pid, words in processes_of(token) if words[0] == film.tessera.encode()]
 
 
 class Film:
@@ -80,7 +75,7 @@ class Film:
         trace = root / "trace.json"
         start = time.monotonic()
         done = subprocess.run(self.command(self.reference, self.mesh) + ["--timing", str(trace)], env=environment(),
-                              capture_output=True, text=True, timeout=300)
+                              capture_output=True, text=True, timeout=HANG)
         if done.returncode != 0:
             sys.exit(f"fault_trials: the undisturbed run failed: {done.stderr}")
         self.seconds = time.monotonic() - start
@@ -138,11 +133,49 @@ def check_folder(film, folder, problems):
             problems.append(f"{path.name} is not the undisturbed run's")
 
 
+def stop_in_midst(film, run, token, folder, random_source):
+    """Stops a rank once some pictures are there; whether so many were left that every rank had a part in them."""
+    wanted = random_source.randrange(1, film.frames // 2)
+    while len(pictures_of(folder)) < wanted and run.poll() is None:
+        time.sleep(0.002)
+    ranks = ranks_of(film, token)
+    if not ranks:
+        return True  # a rank of a busy machine has been taken for a stopped one
+    victim = random_source.choice(ranks)
+    send(victim, signal.SIGSTOP)
+    if len(pictures_of(folder)) <= film.frames - 8:
+        return True
+    send(victim, signal.SIGCONT)
+    return False
+
+
+def end_of(film, run, token, folder, kind):
+    """What the run has said, and whether its launcher was left alone and given up."""
+    until, alone_since = time.monotonic() + HANG, None
+    errors = []
+    reader = threading.Thread(target=lambda: errors.append(run.communicate()[1]))
+    reader.start()
+    while reader.is_alive() and time.monotonic() < until:
+        reader.join(0.05)
+        if kind not in ("kill", "term") or pictures_of(folder) or ranks_of(film, token):
+            alone_since = None
+        elif alone_since is None:
+            alone_since = time.monotonic()
+        elif time.monotonic() - alone_since > ALONE:
+            break
+    hangs = reader.is_alive()
+    if hangs:
+        for pid, _ in processes_of(token):
+            send(pid, signal.SIGKILL)
+    reader.join()
+    return errors[0], hangs, hangs and alone_since is not None
+
+
 def trial(film, kind, random_source, number):
     folder = film.root / f"trial_{number}"
     folder.mkdir()
     token = str(folder)
-    mesh, mounted, launcher_hangs, problems = film.mesh, False, False, []
+    mesh, mounted, problems = film.mesh, False, []
     if kind == "disk":
         megabytes_for = random_source.randrange(1, film.frames)
         size = megabytes_for * len(next(iter(film.pictures.values()))) + 4096
@@ -150,7 +183,7 @@ def trial(film, kind, random_source, number):
                                  capture_output=True).returncode == 0
         if not mounted:
             folder.rmdir()
-            return kind, set(), ["skipped"]
+            return kind, set(), ["skipped"], 0
     if kind == "piece":
         pieces = film.root / f"damaged_{number}"
         shutil.copytree(film.root, pieces, ignore=shutil.ignore_patterns("trial*", "damaged*", "reference", "*.json"))
@@ -163,15 +196,15 @@ def trial(film, kind, random_source, number):
     if kind == "pause":
         command.remove("--quiet")
     run = subprocess.Popen(command, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    timed = kind in ("kill", "end", "launcher", "term", "pause", "stall", "folder")
+    timed = kind in ("kill", "end", "launcher", "term", "pause", "folder")
     delay = film.random_time(random_source) if timed else 0
     moved = film.root / f"moved_{number}"
-    victim = paused_for = None
+    in_time = kind != "stall" or stop_in_midst(film, run, token, folder, random_source)
     fault_at = time.monotonic()
     if delay:
         time.sleep(delay)
         fault_at = time.monotonic()
-        if kind in ("kill", "term", "pause", "stall"):
+        if kind in ("kill", "term", "pause"):
             ranks = ranks_of(film, token)
             if ranks:
                 victim = random_source.choice(ranks)
@@ -184,48 +217,42 @@ def trial(film, kind, random_source, number):
             folder.rename(moved)
         elif run.poll() is None:
             run.send_signal(signal.SIGTERM if kind == "end" else signal.SIGKILL)
-    # A fault from the beginning, or a run that goes on after it: the run itself counts.
-    limit = PATIENCE + (0 if delay and kind != "pause" else 3 * film.seconds)
-    try:
-        _, errors = run.communicate(timeout=limit)
-    except subprocess.TimeoutExpired:
-        if kind in ("kill", "stall") and not ranks_of(film, token) and not pictures_of(folder):
-            launcher_hangs = True
-        else:
-            problems.append(f"still runs {limit:.0f} s after the fault")
-        for pid, _ in processes_of(token):
-            os.kill(pid, signal.SIGKILL)
-        _, errors = run.communicate()
-    while processes_of(token) and time.monotonic() < fault_at + limit:
+    errors, hangs, launcher_hangs = end_of(film, run, token, folder, kind)
+    if hangs and not launcher_hangs:
+        problems.append("it hangs")
+    while processes_of(token) and time.monotonic() < fault_at + HANG:
         time.sleep(0.05)
+    took = time.monotonic() - fault_at
     if moved.exists():
         moved.rename(folder)
     if left := processes_of(token):
         problems.append(f"{len(left)} processes left")
         for pid, _ in left:
-            os.kill(pid, signal.SIGKILL)
+            send(pid, signal.SIGKILL)
 
     lines = [line for line in errors.splitlines() if line.startswith("tessera: ")]
     finished = run.returncode == 0 and len(list(folder.iterdir())) == film.frames
     began = bool(pictures_of(folder))  # else MPI may not have started when it broke
-    launcher_crashes = kind in ("kill", "stall") and not began and run.returncode == -signal.SIGSEGV
+    launcher_crashes = kind in ("kill", "term") and not began and run.returncode == -signal.SIGSEGV
     if not finished and not launcher_hangs:
-        # A rank that dies before it could say anything leaves that to mpirun.
-        speaks = kind in ("disk", "piece") or (kind in ("term", "stall", "folder") and began)
-        if len(lines) > 1 or (speaks and len(lines) != 1):
+        # A rank that dies before MPI has started leaves that to mpirun, and one that is told to end as it ends is quiet.
+        midst = began and len(pictures_of(folder)) < film.frames
+        speaks = kind in ("disk", "piece") or (kind in ("term", "stall", "folder") and midst)
+        if len(lines) > (1 if began else film.ranks) or (speaks and len(lines) != 1):
             problems.append(f"{len(lines)} lines of ours: {lines}")
-        wanted = {"kill": {137, 3}, "end": {143, 3, 1}, "launcher": {-9}, "disk": {3}, "piece": {2}, "pause": {0},
-                  "term": {3} if began else {3, 143, 1}, "stall": {3},
-                  "folder": {3} if began else {3, 2}}[kind]
-        if run.returncode not in wanted and not launcher_crashes:
-            problems.append(f"status {run.returncode}, not {sorted(wanted)}")
-    elif kind in ("disk", "piece"):
+        wanted = {"launcher": {-9}, "disk": {3}, "piece": {2}, "pause": {0}, "folder": {3} if began else {3, 2}}
+        if began:  # else MPI has statuses of its own
+            wanted |= {"kill": {137, 3}, "term": {3}, "stall": {3}}
+        failed = run.returncode not in wanted[kind] if kind in wanted else run.returncode == 0
+        if failed and not launcher_crashes:
+            problems.append(f"status {run.returncode}, not {sorted(wanted.get(kind, {'an error'}))}")
+    elif kind in ("disk", "piece") or (kind == "stall" and in_time):
         problems.append("succeeded")
     check_folder(film, folder, problems)
 
     if kind != "piece" and not mounted and number % 4 == 0:
         again = subprocess.run(film.command(folder, film.mesh) + ["--resume"], env=environment(), capture_output=True,
-                               text=True, timeout=300)
+                               text=True, timeout=HANG)
         if again.returncode != 0 or len(list(folder.iterdir())) != film.frames:
             problems.append(f"--resume ended with {again.returncode}: {again.stderr}")
         check_folder(film, folder, problems)
@@ -234,7 +261,7 @@ def trial(film, kind, random_source, number):
     shutil.rmtree(folder)
     if (launcher_hangs or launcher_crashes) and not problems:
         kind += " that the launcher does not survive"
-    return kind, film.stages_at(delay) if delay else set(), problems
+    return kind, film.stages_at(delay) if delay else set(), problems, took
 
 
 def main():
@@ -266,7 +293,7 @@ def main():
             if options.volume and kind == "piece":
                 kind = "term"
             film = films[(number + number // len(kinds_of)) % len(films)]
-            kind, reached, problems = trial(film, kind, source, number)
+            kind, reached, problems, took = trial(film, kind, source, number)
             if problems == ["skipped"]:
                 print(f"trial {number}: {kind} skipped")
                 continue
@@ -274,7 +301,7 @@ def main():
             stages.update(reached)
             failures += bool(problems)
             way = " sort-last" if "sort-last" in film.how else ""
-            print(f"trial {number}:{way} {kind} {'; '.join(problems) or 'ok'}", flush=True)
+            print(f"trial {number}:{way} {kind} {took:.1f} s {'; '.join(problems) or 'ok'}", flush=True)
     finally:
         shutil.rmtree(root)
     print("kinds: " + ", ".join(f"{kind} {count}" for kind, count in kinds.items()))

@@ -102,7 +102,6 @@ TEST(Helper, ItsDeathIsOneLineAboutTheFileAndStaysSo) {
 }
 
 TEST(Helper, TellsHowFarItIs) {
-  // Text of a hundred thousand points takes longer than the tenth of a second between reports.
   const test::TemporaryFolder folder;
   const auto file = folder.write("m.vtu", testing::vtu_text(testing::mixed_mesh(60, 1, false)));
   std::vector<ReadProgress> heard;

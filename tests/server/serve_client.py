@@ -14,6 +14,9 @@ import time
 import urllib.parse
 
 
+HANG = 300  # seconds that only a hang takes
+
+
 class Server:
     """`tessera serve`, from here on until stop(). `launcher`: what it is started by, like mpirun. `trusted`: the
     certificate that it shows, over https then."""
@@ -30,7 +33,7 @@ class Server:
         self.host, self.port = address.hostname, address.port
         self.token = urllib.parse.parse_qs(address.query)["token"][0]
 
-    def ask(self, method, path, body=None, headers=None, token=True, timeout=120):
+    def ask(self, method, path, body=None, headers=None, token=True, timeout=HANG):
         """(status, headers, bytes) of a request."""
         if self.context:
             connection = http.client.HTTPSConnection(self.host, self.port, timeout=timeout, context=self.context)
@@ -52,7 +55,7 @@ class Server:
         assert status == expect, f"{method} {path}: {status} {text[:300]}"
         return json.loads(text)
 
-    def data(self, seconds=60):
+    def data(self, seconds=HANG):
         """api/data once it is read."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
@@ -66,7 +69,7 @@ class Server:
     def socket(self, **words):
         return WebSocket(self, **words)
 
-    def stop(self, how=signal.SIGTERM, seconds=20):
+    def stop(self, how=signal.SIGTERM, seconds=HANG):
         """(exit status, stderr)."""
         if self.process.poll() is None:
             self.process.send_signal(how)
@@ -92,7 +95,7 @@ class Server:
 
 
 class WebSocket:
-    def __init__(self, server, token=True, headers=None, timeout=60):
+    def __init__(self, server, token=True, headers=None, timeout=HANG):
         self.stream = socket.create_connection((server.host, server.port), timeout=timeout)
         self.stream.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         if server.context:
@@ -164,6 +167,8 @@ class WebSocket:
                 raise ConnectionError("the server has closed the connection")
             if opcode == 9:
                 self.send_bytes(payload, 10)
+            if opcode == 10:
+                return {"type": "pong"}
 
     def frame(self, acknowledge=True):
         """The next frame; messages that are none are passed over, errors raised."""
@@ -175,6 +180,23 @@ class WebSocket:
                 return message
             if message["type"] in ("error", "ended"):
                 raise RuntimeError(message["error"])
+
+    def begin_long_frame(self, number, state):
+        """Asks for frames, larger and larger ones, until the server says how far it is with one: that state's number."""
+        for size in ("3000x3000", "5000x5000", "8000x8000"):
+            self.state(number, dict(state, size=size))
+            while True:
+                message = self.receive()
+                if isinstance(message, tuple):
+                    self.send({"type": "ack", "frame": message[0]["frame"]})
+                    if message[0]["number"] == number and message[0]["final"]:
+                        break
+                elif message["type"] == "progress" and message["number"] == number:
+                    return number
+                elif message["type"] in ("error", "ended"):
+                    raise RuntimeError(message["error"])
+            number += 1
+        raise RuntimeError("every frame is there before the server says how far it is")
 
     def last_frame(self, number):
         """The exact frame of a state."""

@@ -27,7 +27,7 @@ import urllib.parse
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
-from serve_client import Server, WebSocket  # noqa: E402
+from serve_client import HANG, Server  # noqa: E402
 
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 MPIRUN = ["mpirun", "--oversubscribe", "-n", "2"]
@@ -175,15 +175,16 @@ def stand_in_of(file, launcher=()):
     with Server(options.tessera, file, "--latency", "1", launcher=launcher, environment=MPI if launcher else None) as server:
         state = dict(server.data()["defaults"], size="200x150")
         client = server.socket()
-        number, given_up = 1, time.monotonic() + 60  # it is made beside the frames, of which a busy machine makes many
-        client.state(number, dict(state, azimuth="1"), moving=True)
-        header, image = client.frame()
-        check(not header["stand_in"], f"{file.name}: a stand-in where nothing was measured yet")
-        while not header["stand_in"]:
+        number, given_up = 0, time.monotonic() + HANG
+        header = None
+        while header is None or not header["stand_in"]:
             check(time.monotonic() < given_up, f"{file.name}: no stand-in in {number} frames")
             number += 1
             client.state(number, dict(state, azimuth=str(number % 360)), moving=True)
-            header, image = client.frame()
+            header, image = client.frame(acknowledge=False)
+            check(number > 1 or not header["stand_in"], f"{file.name}: a stand-in where nothing was measured yet")
+            time.sleep(0.01)  # with what it takes a client to paint it, no frame is there in a millisecond
+            client.send({"type": "ack", "frame": header["frame"]})
         check(image.startswith(b"\xff\xd8"), "a stand-in that is no JPEG")
         number += 1
         client.state(number, state)
@@ -199,7 +200,7 @@ def part_pictures():
         answers(file)
         if not options.without_mpi and file.name != "cells.vtu":
             pictures_of(file, MPIRUN)
-    tessera("generate", "cube", "many_cells.vtu", "n=24", "cell_data=2")  # of which no frame takes less than a millisecond
+    tessera("generate", "cube", "many_cells.vtu", "n=24", "cell_data=2")
     stand_in_of(folder / "many_cells.vtu")
     (folder / "s.pvd").write_text("<VTKFile type='Collection'><Collection><DataSet timestep='1' file='ball.vtu'/>"
                                   "<DataSet timestep='2' file='ball.vtu'/></Collection></VTKFile>")
@@ -281,7 +282,7 @@ def part_tls():
         _, headers, _ = server.ask("GET", f"/?token={server.token}", token=False)
         check("Secure" in headers["Set-Cookie"], headers["Set-Cookie"])
         # Nothing is answered in the clear, nor by an old protocol, nor to who does not trust it; and it goes on.
-        with socket.create_connection((server.host, server.port), timeout=20) as plain:
+        with socket.create_connection((server.host, server.port), timeout=HANG) as plain:
             plain.sendall(f"GET /?token={server.token} HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".encode())
             check(b"HTTP/" not in plain.recv(100), "an answer in the clear")
         for change in ("old", "strange"):
@@ -290,7 +291,7 @@ def part_tls():
                 context.minimum_version, context.maximum_version = ssl.TLSVersion.TLSv1, ssl.TLSVersion.TLSv1_1
                 context.set_ciphers("ALL:@SECLEVEL=0")
             try:
-                with socket.create_connection((server.host, server.port), timeout=20) as stream:
+                with socket.create_connection((server.host, server.port), timeout=HANG) as stream:
                     context.wrap_socket(stream, server_hostname="127.0.0.1")
                 raise AssertionError(f"{change}: a connection")
             except ssl.SSLError:
@@ -302,7 +303,7 @@ def part_tls():
     for bad in ((shown, certificate("other")[1]), (folder / "none.pem", key), (shown, folder / "none.pem"),
                 (folder / "missing.pem", key)):
         result = subprocess.run([options.tessera, "serve", file, "--tls-certificate", bad[0], "--tls-key", bad[1]],
-                                capture_output=True, text=True, timeout=60, check=False)
+                                capture_output=True, text=True, timeout=HANG, check=False)
         check(result.returncode == 2 and result.stderr.count("\n") == 1 and ".pem" in result.stderr and
               result.stdout == "", f"{bad}: {result.returncode} {result.stderr}")
 
@@ -325,11 +326,25 @@ def mutated(rng, text):
 
 def is_served(server, state):
     """Whether a client that behaves gets its picture."""
-    client = server.socket(timeout=60)
+    client = admitted(server)
     client.state(1, state)
     header, image = client.last_frame(1)
     client.close()
     return header["final"] and image.startswith(b"\x89PNG")
+
+
+def admitted(server):
+    """A client, once there is room for it: the server sees that others have gone in its own time."""
+    given_up = time.monotonic() + HANG
+    while True:
+        try:
+            client = server.socket()
+            if client.status == 101:
+                return client
+        except OSError:
+            pass
+        check(time.monotonic() < given_up, "no room for a client")
+        time.sleep(0.05)
 
 
 def send_mutated(server, state, count):
@@ -372,7 +387,7 @@ def send_mutated(server, state, count):
               '{"state": {} } '
     for _ in range(count // 20):
         with socket.create_connection((server.host, server.port)) as stream:
-            stream.settimeout(30)
+            stream.settimeout(HANG)
             try:
                 stream.sendall(mutated(rng, request.encode()))
                 stream.shutdown(socket.SHUT_WR)
@@ -418,33 +433,28 @@ def part_hostile():
         for client in clients:
             client.last_frame(1)
         check(is_served(server, state), "not served beside 170 clients")
-        start = time.monotonic()
         for stream in half_open:
-            stream.settimeout(30)
+            stream.settimeout(HANG)
             check(stream.recv(1) == b"", "a half-open connection was answered")
-        check(time.monotonic() - start < 15, "half-open connections stayed")
-        more = [socket.create_connection((server.host, server.port)) for _ in range(100)]
-        refused = sum(1 for stream in more if is_closed(stream))
-        check(refused >= 10, f"only {refused} connections over the limit were closed")
-        for stream in more + half_open:
             stream.close()
+        # Of a hundred more, those over the limit of 256 are closed as they come.
+        before = len(clients)
+        clients += [client for client in (socket_or_none(server) for _ in range(100)) if client]
+        check(before < len(clients) <= 256, f"{len(clients)} clients of 270 were admitted")
         for client in clients + [slow]:
             client.close()
-        time.sleep(0.5)
 
         # 500 states in a burst: one frame, and no second one before it is acknowledged.
-        client = server.socket(timeout=60)
+        client = admitted(server)
         client.receive()
         for number in range(1, 501):
             client.state(number, dict(state, opacity=1 + number / 1000), moving=number < 500)
         header, _ = client.frame(acknowledge=False)
-        client.stream.settimeout(2)
-        try:
-            while True:
-                check(not isinstance(client.receive(), tuple), "a second frame before the first was acknowledged")
-        except TimeoutError:
-            pass
-        client.stream.settimeout(60)
+        for _ in range(2):  # between two pictures for others it would have its turn
+            check(server.ask("POST", "/picture", {"state": state})[0] == 200, "no picture beside a client that waits")
+        client.send_bytes(b"", 9)
+        while (message := client.receive()) != {"type": "pong"}:
+            check(not isinstance(message, tuple), "a second frame before the first was acknowledged")
         client.send({"type": "ack", "frame": header["frame"]})
         frames = 1
         while not (header["final"] and header["number"] == 500):
@@ -459,19 +469,17 @@ def part_hostile():
         check(status == 0 and errors == "", f"ended with {status}: {errors}")
 
 
-def is_closed(stream):
-    stream.settimeout(1)
+def socket_or_none(server):
+    """A client, or nothing where the server closes its connection."""
     try:
-        return stream.recv(1) == b""
-    except TimeoutError:
-        return False
+        return server.socket()
     except OSError:
-        return True
+        return None
 
 
 def memory_stays(server, state):
     frames = int(os.environ.get("TESSERA_SERVE_FRAMES", "500"))
-    client = server.socket(timeout=60)
+    client = admitted(server)
     client.receive()
     position = list(state["camera"]["position"])
     sizes = []
@@ -494,12 +502,9 @@ def part_ends():
             server.data()
             client = server.socket()
             client.receive()
-            client.state(1, {"size": "3000x3000"})  # which it is in the midst of
-            time.sleep(0.3)
-            start = time.monotonic()
+            client.begin_long_frame(1, {})  # which it is in the midst of
             status, errors = server.stop(how)
             check(status == 0 and errors == "", f"{how}: ended with {status}: {errors}")
-            check(time.monotonic() - start < (30 if options.sanitized else 5), f"{how}: it took long to end")
             try:
                 while True:
                     message = client.receive()
@@ -512,7 +517,7 @@ def part_ends():
                             ([file, "--tls-key", "k"], "--tls-certificate"), ([file, "--integrator", "x"], "--integrator"),
                             ([file, "--tls-key", "k", "--tls-certificate", "c"], ""), ([file, "-o", "a.png"], "-o")):
         result = subprocess.run([options.tessera, "serve", *map(str, words)], capture_output=True, text=True, cwd=folder,
-                                timeout=60, check=False)
+                                timeout=HANG, check=False)
         check(result.returncode == 2 and result.stderr.count("\n") == 1 and expected in result.stderr and
               result.stdout == "", f"{words}: {result.returncode} {result.stderr}")
     (folder / "broken.vtu").write_text("<VTKFile type='UnstructuredGrid'>")
@@ -538,16 +543,23 @@ def ranks_end():
         error = server.json("POST", "/picture", {"state": dict(state, threshold="7,8")}, expect=400)["error"]
         client = server.socket()
         client.receive()
-        # Stale frames stop on all ranks.
-        client.state(1, dict(state, size="4000x4000"))
-        time.sleep(0.5)
-        client.state(2, state)
-        header, _ = client.frame()
-        check(header["number"] == 2, header)
-        client.last_frame(2)
+        # Stale frames stop on all ranks. One that is through before it is known to be stale is none: then again.
+        stale, given_up = 1, time.monotonic() + HANG
+        while True:
+            stale = client.begin_long_frame(stale, state)
+            client.state(stale + 1, state)
+            header, _ = client.frame()
+            if header["number"] != stale + 1 or not header["final"]:
+                client.last_frame(stale + 1)
+            if header["number"] == stale + 1:
+                break
+            check(time.monotonic() < given_up, "no stale frame was stopped")
+            stale += 2
         _, errors = server.stop()
         check("tessera:" not in errors, errors)
-    with Server(options.tessera, file, launcher=MPIRUN, environment=MPI) as server:
+    # Else Open MPI kills ranks a second after it has told them to end, whatever else the machine has to do.
+    patient = dict(MPI, OMPI_MCA_odls_base_sigkill_timeout="10")
+    with Server(options.tessera, file, launcher=MPIRUN, environment=patient) as server:
         server.data()
         client = server.socket()
         client.receive()
@@ -556,7 +568,7 @@ def ranks_end():
         os.kill(int(ranks[1]), signal.SIGKILL)
         message = client.receive()
         check(message["type"] == "ended" and "rank" in message["error"], message)
-        server.process.wait(30)
+        server.process.wait(HANG)
         errors = server.process.stderr.read()
         check(errors.count("tessera:") == 1, errors)
 

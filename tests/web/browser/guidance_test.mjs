@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { write_flow_with_inlet } from "./flow_series.mjs";
-import { at_rest, launch, missing, serve, shown_bytes } from "./support.mjs";
+import { at_rest, hang, launch, missing, serve, shown_bytes } from "./support.mjs";
 
 const reason = missing();
 if (reason) {
@@ -24,9 +24,10 @@ before(async () => {
   address = await server.address;
   browser = await launch();
   page = await (await browser.newContext({ viewport: { width: 1000, height: 700 } })).newPage();
+  page.setDefaultTimeout(hang);
   await page.goto(address.href);
   await at_rest(page);
-}, { timeout: 60000 });
+}, { timeout: hang });
 
 after(async () => {
   await browser?.close();
@@ -129,12 +130,14 @@ test("a probe that is answered when the data have changed is not shown", async (
     await route.continue().catch(() => {});
   });
   const asked = page.waitForRequest("**/api/probe");
+  const is_probe = (request) => request.url().endsWith("/api/probe");
+  const over = Promise.any(["requestfailed", "requestfinished"].map((event) => page.waitForEvent(event, is_probe)));
   await page.getByRole("button", { name: "Probe the middle" }).click();
   await asked;
   await change({ threshold: "0,1e9" });
   release();
+  await over;
   await at_rest(page);
-  await page.waitForTimeout(300);
   assert.equal(await section("Probe").locator("dl.facts dt").count(), 0);
   await page.unroute("**/api/probe");
   await change({ threshold: undefined });
@@ -163,9 +166,12 @@ test("on a phone the list of keys begins at its top, and what is seen stays in t
   assert.ok(await page.locator("#help").evaluate((dialog) => dialog.scrollHeight > dialog.clientHeight), "there is something to scroll");
   await page.getByRole("dialog").getByRole("button", { name: "Close" }).click();
   await page.locator("#picture").focus();
-  await page.keyboard.press("f");
-  await page.waitForTimeout(300);
-  await at_rest(page);
+  for (const key of ["+", "f"]) {
+    const before_key = JSON.stringify((await state()).camera);
+    await page.keyboard.press(key);
+    await page.waitForFunction((old) => JSON.stringify(window.tessera.state().camera) !== old, before_key);
+    await at_rest(page);
+  }
   /** Half of what is seen in the focal plane from left to right. */
   const half_width = () => page.evaluate(() => {
     const { camera } = window.tessera.state(), { width, height } = window.tessera.shown();
@@ -174,8 +180,6 @@ test("on a phone the list of keys begins at its top, and what is seen stays in t
   const height = () => page.evaluate(() => window.tessera.shown().height);
   const [fitted, low] = [await half_width(), await height()];
   await page.getByRole("button", { name: "Settings" }).click();
-  await page.waitForTimeout(400);
-  await at_rest(page);
-  assert.ok((await height()) > 1.5 * low);
+  await page.waitForFunction((low) => window.tessera.at_rest() && window.tessera.shown().height > 1.5 * low, low);
   assert.ok(Math.abs((await half_width()) / fitted - 1) < 0.01, `${await half_width()} of ${fitted}`);
 });

@@ -6,7 +6,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { write_flow_series } from "./flow_series.mjs";
-import { at_rest, launch, make_proxy, missing, run_command, serve, shown_bytes } from "./support.mjs";
+import { answered, at_rest, hang, launch, make_proxy, missing, painted, run_command, serve, shown_bytes } from "./support.mjs";
 
 const reason = missing();
 if (reason) {
@@ -23,6 +23,7 @@ const complaints = [];
 /** A page of its own context that has opened the server's address once. */
 async function open(path, options = {}) {
   const made = await browser.newContext({ viewport: window_size, acceptDownloads: true, ...options });
+  made.setDefaultTimeout(hang);
   const opened = await made.newPage();
   opened.on("pageerror", (error) => complaints.push(error.stack));
   opened.on("console", (message) => {
@@ -53,7 +54,7 @@ before(async () => {
   browser = await launch();
   page = await open(address.href, { permissions: ["clipboard-read", "clipboard-write"] });
   context = page.context();
-}, { timeout: 60000 });
+}, { timeout: hang });
 
 after(async () => {
   await browser?.close();
@@ -96,7 +97,6 @@ test("a mouse turns the view; the moving pictures are followed by the exact one"
   await page.mouse.down();
   for (let i = 1; i <= 20; ++i) {
     await page.mouse.move(box.x + box.width / 2 + 6 * i, box.y + box.height / 2 + 2 * i);
-    await page.waitForTimeout(15);
   }
   await page.waitForFunction(() => window.tessera.shown().level === "moving");
   await page.mouse.up();
@@ -128,10 +128,9 @@ test("the view is turned, moved and zoomed by keys alone", async () => {
   await page.waitForFunction(() => window.tessera.state().camera.view_angle > 0);
   const position = (await state()).camera.position;
   await page.keyboard.down("w");
-  await page.waitForTimeout(200);
+  await page.waitForFunction((old) => JSON.stringify(window.tessera.state().camera.position) !== old, JSON.stringify(position));
   await page.keyboard.up("w");
   await at_rest(page);
-  assert.notDeepEqual((await state()).camera.position, position);
   await page.keyboard.press("t");
 });
 
@@ -241,8 +240,7 @@ test("an edited function survives the way to the server and back", async () => {
   await page.locator(".opacity-handle").first().focus();
   await page.keyboard.press("ArrowUp");
   await page.keyboard.press("ArrowDown");
-  await at_rest(page);
-  await page.waitForTimeout(300);
+  await answered(page);
   const after_reply = await page.evaluate(() => window.tessera.state()["transfer-function"]);
   assert.deepEqual(after_reply.RGBPoints, before_reply.RGBPoints);
   assert.equal(after_reply.Points.length, before_reply.Points.length);
@@ -285,9 +283,9 @@ test("presets, logarithm and range", async () => {
 test("a colour map of ParaView's is imported, and exported again", async () => {
   const map = [{ Name: "two", ColorSpace: "RGB", RGBPoints: [-1, 0, 0, 1, 2, 1, 0, 0], Points: [-1, 0, 0.5, 0, 2, 0.6, 0.5, 0] }];
   await page.locator('input[type="file"]').setInputFiles({ name: "map.json", mimeType: "application/json", buffer: Buffer.from(JSON.stringify(map)) });
-  await at_rest(page);
+  await page.waitForFunction((first) => window.tessera.state()["transfer-function"]?.RGBPoints?.[0] === first, map[0].RGBPoints[0]);
   assert.deepEqual((await state())["transfer-function"].RGBPoints, map[0].RGBPoints);
-  await page.waitForTimeout(300);
+  await answered(page);
   const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Export" }).click()]);
   const exported = JSON.parse(readFileSync(await download.path(), "utf8"));
   const got = Array.isArray(exported) ? exported[0] : exported;
@@ -323,14 +321,12 @@ test("field, component and time step change the picture", async () => {
 test("time steps are played", async () => {
   await page.locator("#picture").focus();
   await page.keyboard.press("Space");
-  const steps = new Set();
-  for (let i = 0; i < 60 && steps.size < 3; ++i) {
-    steps.add((await state())["time-step"]);
-    await page.waitForTimeout(50);
-  }
+  await page.waitForFunction(() => {
+    const steps = (window.steps_played ??= new Set());
+    return steps.add(window.tessera.state()["time-step"]).size === 3;
+  });
   await page.keyboard.press("Space");
   await at_rest(page);
-  assert.equal(steps.size, 3);
 });
 
 test("threshold, box, plane and iso-surface", async () => {
@@ -431,7 +427,8 @@ test("the picture follows the window again", async () => {
       return window.tessera.at_rest() && shown.width === Math.round(box.width) && shown.height === Math.round(box.height);
     });
     const sent = await page.evaluate(() => window.tessera.sent());
-    await page.waitForTimeout(400);
+    await answered(page);
+    await painted(page);
     assert.equal(await page.evaluate(() => window.tessera.sent()), sent, "a picture at rest stays at rest");
   }
   await page.setViewportSize(window_size);
@@ -472,7 +469,7 @@ test("what was found goes when the data change, and what cannot be used is said"
 
 test("pixels are verified on request", async () => {
   await page.getByRole("button", { name: "Verify" }).click();
-  await page.locator(".verdict[data-good='true']").waitFor({ timeout: 30000 });
+  await page.locator(".verdict[data-good='true']").waitFor();
   assert.match(await page.locator(".verdict").textContent(), /1000 pixels/);
 });
 
@@ -548,7 +545,7 @@ test("all controls have names, and text can be read on its ground", async () => 
 test("nothing is wider than its place, in any window", async () => {
   for (const [width, height] of [[400, 700], [1280, 800], [4000, 2200]]) {
     await page.setViewportSize({ width, height });
-    await page.waitForTimeout(100);
+    await painted(page);
     const wide = await page.evaluate(() => {
       const right = document.querySelector("#panel").getBoundingClientRect().right;
       return [...document.querySelectorAll("header, main, #panel *, #status")].filter((c) => c.getBoundingClientRect().right > right + 1 && !c.closest("svg")).map((c) => c.outerHTML.slice(0, 100));
@@ -566,7 +563,7 @@ test("a lost connection comes back by itself to the same state", async () => {
   await page.getByRole("alert").filter({ hasText: "connection to the server is lost" }).waitFor();
   await page.evaluate(() => window.tessera.change({ outline: null }));
   proxy.mend();
-  await page.waitForFunction(() => document.body.dataset.connection === "open", null, { timeout: 15000 });
+  await page.waitForFunction(() => document.body.dataset.connection === "open");
   await page.locator("#banner").waitFor({ state: "hidden" });
   assert.ok(!(await shown_bytes(page)).equals(own));
   await page.evaluate((outline) => window.tessera.change({ outline }), kept.outline);
@@ -580,8 +577,9 @@ test("a connection that nothing comes through any more is noticed, and made anew
   await page.evaluate(() => window.tessera.change({ log: true }));
   await page.getByRole("alert").filter({ hasText: "connection to the server is lost" }).waitFor();
   proxy.mend();
-  await page.waitForFunction(() => document.body.dataset.connection === "open", null, { timeout: 15000 });
+  await page.waitForFunction(() => document.body.dataset.connection === "open");
   await at_rest(page);
+  await page.evaluate(() => Object.assign(window.tessera.connection, { silence: 20000, answer_time: 10000 }));
   await page.evaluate(() => window.tessera.change({ log: undefined }));
   await at_rest(page);
 });

@@ -9,6 +9,9 @@ export const program = process.env.TESSERA_PROGRAM ?? "";
 const packages = process.env.TESSERA_WEB_PACKAGES ?? "";
 const chromium_file = process.env.TESSERA_CHROMIUM ?? "/usr/bin/chromium";
 
+/** Milliseconds that only a hang takes. */
+export const hang = 300000;
+
 /** Why nothing can be tested here; empty if it can. */
 export function missing() {
   if (Number(process.versions.node.split(".")[0]) < 20) return `node is ${process.version}, playwright-core needs 20`;
@@ -83,8 +86,16 @@ export async function make_proxy(port) {
 
 /** A page at rest: the latest state's exact picture is painted. @param {any} page */
 export async function at_rest(page) {
-  await page.waitForFunction(() => window.tessera?.at_rest(), null, { timeout: 20000 });
+  await page.waitForFunction(() => window.tessera?.at_rest(), null, { timeout: hang });
 }
+
+/** A page at rest whose function and histogram are those of its state. @param {any} page */
+export async function answered(page) {
+  await page.waitForFunction(() => window.tessera?.at_rest() && window.tessera.is_answered());
+}
+
+/** A page that has painted twice: what follows a change of its size is done. @param {any} page */
+export const painted = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 
 /** The bytes of the frame that is shown. @param {any} page */
 export async function shown_bytes(page) {

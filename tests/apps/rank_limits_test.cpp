@@ -1,0 +1,96 @@
+// Threads and memory that there are not: the picture, or one line that says what to do.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "apps/film_runs.hpp"
+
+namespace tessera::apps {
+namespace {
+
+/// One that takes address space without end has no use for limits of it.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool is_sanitized = true;
+#else
+constexpr bool is_sanitized = false;
+#endif
+
+class RankLimits : public FilmRuns {
+ protected:
+  static Words limited(int mebibytes, const Words& command, const std::string& first = "") {
+    Words words{"sh", "-c", first + "ulimit -v " + std::to_string(mebibytes << 10) + " && exec \"$@\"", "sh"};
+    words.insert(words.end(), command.begin(), command.end());
+    return words;
+  }
+
+  /// The least limit under which the loader comes as far as our code, MiB.
+  static int least_limit() {
+    int mebibytes = 64;
+    while (mebibytes < 4096 && Running(limited(mebibytes, {TESSERA_PROGRAM, "--version"})).wait().status != 0)
+      mebibytes += 2;
+    return mebibytes;
+  }
+
+  static void expect_no_noise(const Outcome& outcome, const std::string& what) {
+    EXPECT_EQ(outcome.err.find("please report"), std::string::npos) << what << "\n" << outcome.err;
+    EXPECT_EQ(outcome.err.find("terminate called"), std::string::npos) << what << "\n" << outcome.err;
+  }
+};
+
+TEST_F(RankLimits, MoreThreadsThanCoresAreNoWarning) {
+  for (const std::string& input : inputs_)
+    for (const char* threads : {"1", "3", "64", "1024"}) {
+      const Outcome outcome = tessera({"render", input, "-o", folder_ / "a.pfm", "--size", "40x40", "--threads",
+                                       threads, "--verify", "50", "--quiet"});
+      EXPECT_EQ(outcome.status, 0) << input << " " << threads;
+      EXPECT_EQ(outcome.err, "") << input << " " << threads;
+    }
+}
+
+TEST_F(RankLimits, UnderAMemoryLimitThereIsOneLineThatSaysWhatToDo) {
+  if (is_sanitized) GTEST_SKIP() << "sanitizers take all address space";
+  const int least = least_limit();
+  for (const std::string& input : inputs_)
+    for (const int more : {0, 2, 4, 6, 8, 12, 16, 24, 40, 80, 160}) {
+      const Outcome outcome = Running(limited(least + more, {TESSERA_PROGRAM, "render", input, "-o", folder_ / "a.pfm",
+                                                             "--size", "40x40", "--threads", "64", "--quiet"}))
+                                  .wait();
+      const std::string what = input + " " + std::to_string(least + more);
+      EXPECT_TRUE(outcome.status == 0 || outcome.status == 3) << outcome.status;
+      EXPECT_EQ(outcome.own_lines().size(), outcome.status == 0 ? 0u : 1u) << what << "\n" << outcome.err;
+      expect_no_noise(outcome, what);
+    }
+}
+
+// Where MPI does not start, its report and the launcher's are all that is said, and Open MPI 4.1.4's launcher may hang
+// as it ends itself; of the ranks each prints a line at most, and all end.
+TEST_F(RankLimits, UnderAMemoryLimitRanksEndWhereverTheyDie) {
+  if (is_sanitized) GTEST_SKIP() << "sanitizers take all address space";
+  if (!has_mpirun()) GTEST_SKIP() << "there is no mpirun";
+  const int least = least_limit();
+  for (const std::string& input : inputs_)
+    for (const int more : {0, 4, 30, 60, 110, 150, 200, 250}) {
+      const std::string picture = folder_ / (std::to_string(more) + ".pfm");
+      Words words = mpirun_command(2, {"render", input, "-o", picture, "--size", "40x40", "--threads", "4", "--quiet"});
+      const std::string begun = folder_ / ("begun" + std::to_string(more) + input.substr(input.size() - 4) + "-");
+      const Words shell = limited(least + more, {}, ": > " + begun + "$OMPI_COMM_WORLD_RANK; ");
+      words.insert(std::find(words.begin(), words.end(), TESSERA_PROGRAM), shell.begin(), shell.end());
+      const std::string what = input + " " + std::to_string(least + more);
+      Running running(words);
+      const auto have_begun = [&] {
+        return std::filesystem::exists(begun + "0") && std::filesystem::exists(begun + "1");
+      };
+      ASSERT_TRUE(test::await([&] { return !running.runs() || have_begun(); })) << what << ": hangs";
+      ASSERT_TRUE(test::await([&] { return ranks_with(picture).empty(); })) << what << ": hangs";
+      const Outcome outcome = running.wait_or_kill();
+      EXPECT_LE(outcome.own_lines().size(), outcome.status == 0 ? 0u : 2u) << what << "\n" << outcome.err;
+      EXPECT_TRUE(outcome.status != 0 || std::filesystem::exists(picture)) << what << "\n" << outcome.err;
+      expect_no_noise(outcome, what);
+      std::filesystem::remove(picture);
+    }
+}
+
+}  // namespace
+}  // namespace tessera::apps

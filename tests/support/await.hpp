@@ -1,0 +1,22 @@
+#pragma once
+
+#include <chrono>
+#include <thread>
+
+namespace tessera::test {
+
+/// How long a test waits for what has to come: only a hang takes so long.
+inline constexpr std::chrono::minutes hang{5};
+
+/// Waits until `event` holds, which it asks again after each `pause`. False: it has not come, the program hangs.
+template <class Event>
+bool await(const Event& event, std::chrono::milliseconds pause = std::chrono::milliseconds(2)) {
+  const auto end = std::chrono::steady_clock::now() + hang;
+  while (!event()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    if (pause.count() > 0) std::this_thread::sleep_for(pause);
+  }
+  return true;
+}
+
+}  // namespace tessera::test
