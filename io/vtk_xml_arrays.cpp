@@ -1,0 +1,32 @@
+#include "io/vtk_xml_arrays.hpp"
+
+#include <fmt/format.h>
+
+#include "scene/error.hpp"
+
+namespace tessera::io {
+
+ForeignArray VtkXmlArrays::hold(ForeignArray array, Stream stream) {
+  const std::lock_guard lock(mutex_);
+  array.number = next_++;
+  held_.emplace(array.number, std::make_shared<const Stream>(std::move(stream)));
+  return array;
+}
+
+void VtkXmlArrays::stream(const ForeignArray& array, const std::string& subject, const ByteSink& use, Then then) {
+  std::shared_ptr<const Stream> stream;
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto held = held_.find(array.number); held != held_.end()) stream = held->second;
+  }
+  if (!stream) throw scene::bad_input(fmt::format("{}: its array '{}' was read before", subject, array.name));
+  (*stream)(use);
+  if (then == Then::dropped) drop(std::span(&array.number, 1));
+}
+
+void VtkXmlArrays::drop(std::span<const std::uint64_t> arrays) noexcept {
+  const std::lock_guard lock(mutex_);
+  for (const std::uint64_t number : arrays) held_.erase(number);
+}
+
+}  // namespace tessera::io
