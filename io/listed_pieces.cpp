@@ -15,7 +15,7 @@
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/text_file.hpp"
-#include "io/vtu_file.hpp"
+#include "io/vtk_xml_file.hpp"
 #include "io/xml_elements.hpp"
 #include "scene/error.hpp"
 
@@ -125,11 +125,11 @@ PieceList piece_list(const std::filesystem::path& file, const BlockChoice& choic
 
 namespace {
 
-/// Unstructured grids in this process, others and what it does not know of those by VTK's readers.
+/// In this process, or by VTK's readers if the file has what it does not know.
 ForeignFile open_piece(const ListedPiece& piece, const std::string& type, bool with_surfaces,
                        std::shared_ptr<HelperProcess>& helper) {
-  if (type == "UnstructuredGrid")
-    if (std::optional<ForeignFile> opened = open_vtu(piece.file)) return *std::move(opened);
+  if (!type.starts_with('P'))
+    if (std::optional<ForeignFile> opened = open_vtk_xml(piece.file)) return *std::move(opened);
   if (!helper) helper = std::make_shared<HelperProcess>();
   return open_foreign(helper, piece.file, {{"reader", "vtk_xml"}, {"type", type}, {"surfaces", with_surfaces}});
 }

@@ -12,8 +12,9 @@
 namespace tessera::io {
 namespace {
 
-/// What is read at once: several of the largest blocks that VTK writes by itself (32 KiB), and cached.
-constexpr std::size_t bytes_at_once = 1 << 20;
+/// Read at once: many of VTK's blocks (32 KiB), in the cache; of larger ones several, for as many threads, up to a
+/// limit.
+constexpr std::size_t bytes_at_once = 1 << 20, most_at_once = 16 << 20, blocks_at_once = 4;
 
 template <class T>
 void swap_all(std::span<std::byte> bytes) {
@@ -52,6 +53,13 @@ class Numbers {
   [[nodiscard]] std::uint64_t most() const {
     const auto* const text = std::get_if<VtkTextNumbers>(&from_);
     return text != nullptr ? text->left() : std::get<VtkArrayBytes>(from_).size() / size_of(type_);
+  }
+
+  [[nodiscard]] std::size_t bytes_to_read() const {
+    const auto* const bytes = std::get_if<VtkArrayBytes>(&from_);
+    const std::uint64_t block = bytes != nullptr ? bytes->block_size() : 0;
+    return block > bytes_at_once ? std::min<std::uint64_t>(block, most_at_once / blocks_at_once) * blocks_at_once
+                                 : bytes_at_once;
   }
 
   [[nodiscard]] bool read(std::byte* to, std::uint64_t count) {
@@ -93,8 +101,8 @@ void stream_numbers(const PositionalFile& file, const VtkXmlSegment& segment, st
   if (segment.numbers == 0) return;
   Numbers numbers = numbers_in(file, segment, source);
   const std::size_t each = size_of(*segment.array.type);
-  const std::uint64_t at_once =
-      std::min<std::uint64_t>(std::max<std::size_t>(bytes_at_once / (each * together), 1) * together, segment.numbers);
+  const std::uint64_t at_once = std::min<std::uint64_t>(
+      std::max<std::size_t>(numbers.bytes_to_read() / (each * together), 1) * together, segment.numbers);
   std::vector<std::byte> part(at_once * each);
   for (std::uint64_t done = 0; done < segment.numbers;) {
     const std::uint64_t now = std::min(at_once, segment.numbers - done);

@@ -1,5 +1,5 @@
-// Any bytes in a .vtu file are blocks of cells whose indices hold and whose fields can be read, or are left to VTK's
-// reader, or are refused in one line.
+// Any bytes in a VTK XML file of one data set are blocks of cells whose indices hold and whose fields can be read, or
+// are left to VTK's reader, or are refused in one line.
 #include <unistd.h>
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "fuzz_check.hpp"
-#include "io/vtu_file.hpp"
+#include "io/vtk_xml_file.hpp"
 
 namespace {
 
@@ -55,10 +55,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const FuzzFile file;
   file.write(data, size);
   test::parse_or_refuse([&] {
-    const auto opened = io::open_vtu(file.path);
+    const auto opened = io::open_vtk_xml(file.path);
     if (!opened) return;
     std::vector<std::string> notes;
-    for (const io::CellBlock& block : io::blocks_of(*opened, notes)) check(block);
+    for (const io::CellBlock& block : io::blocks_of(*opened, notes, io::GridsAre::hexahedra)) check(block);
   });
   return 0;
 }

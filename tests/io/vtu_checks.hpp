@@ -12,7 +12,7 @@
 
 #include "io/cell_block.hpp"
 #include "io/foreign_file.hpp"
-#include "io/vtu_file.hpp"
+#include "io/vtk_xml_file.hpp"
 
 namespace tessera::test {
 
@@ -73,7 +73,7 @@ inline void expect_same_blocks(const io::CellBlock& a, const io::CellBlock& b) {
 
 /// The one block of a .vtu that this process reads.
 inline io::CellBlock vtu_block(const std::filesystem::path& file) {
-  const auto opened = io::open_vtu(file);
+  const auto opened = io::open_vtk_xml(file);
   EXPECT_TRUE(opened.has_value()) << file << " is left to VTK's reader";
   if (!opened) return {};
   std::vector<std::string> notes;

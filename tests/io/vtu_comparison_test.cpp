@@ -36,7 +36,7 @@ Outcome compare(const std::filesystem::path& file, std::string& line) {
   bool known = true;
   CellBlock here, there;
   const auto of_here = test::fault_of([&] {
-    const auto opened = open_vtu(file);
+    const auto opened = open_vtk_xml(file);
     known = opened.has_value();
     std::vector<std::string> notes;
     if (opened) here = std::move(blocks_of(*opened, notes).at(0));
@@ -104,7 +104,7 @@ TEST_F(VtuComparison, NumbersAreSpelledAsVtkReadsThem) {
 
 TEST_F(VtuComparison, FilesOfOtherProgramsAreReadAsVtkReadsThem) {
   const char* const named = std::getenv("TESSERA_VTU_FILES");
-  std::vector<std::filesystem::path> folders = {std::filesystem::path(TESSERA_SOURCE_DIR) / ".." / "shared"};
+  std::vector<std::filesystem::path> folders = {std::filesystem::path(TESSERA_SOURCE_DIR) / ".." / "shared" / "data"};
   if (named != nullptr) folders.emplace_back(named);
   std::erase_if(folders, [](const auto& path) { return !std::filesystem::exists(path); });
   if (folders.empty()) GTEST_SKIP() << "no folder of such files; name one by TESSERA_VTU_FILES";

@@ -39,7 +39,7 @@ class VtuDamaged : public ::testing::Test {
     const auto file = folder.write("d.vtu", text);
     bool known = true;
     const test::Fault fault = test::fault_of([&] {
-      const auto opened = open_vtu(file);
+      const auto opened = open_vtk_xml(file);
       known = opened.has_value();
       if (!opened) return;
       std::vector<std::string> notes;

@@ -203,13 +203,13 @@ TEST_F(Vtu, PiecesOfSeveralKindsOfCellsKeepTheirOffsets) {
 TEST_F(Vtu, PiecesWithOtherArraysAreLeftToVtk) {
   VtuPiece other = one_tet(1, 2);
   other.point_data[0].name = "q";
-  EXPECT_FALSE(open_vtu(write(vtu_file_text({}, {one_tet(0, 1), other}))));
+  EXPECT_FALSE(open_vtk_xml(write(vtu_file_text({}, {one_tet(0, 1), other}))));
   other = one_tet(1, 2);
   other.cell_data[0].type = "Float32";
-  EXPECT_FALSE(open_vtu(write(vtu_file_text({}, {one_tet(0, 1), other}))));
+  EXPECT_FALSE(open_vtk_xml(write(vtu_file_text({}, {one_tet(0, 1), other}))));
   other = one_tet(1, 2);
   other.coordinates[0].type = "Float32";
-  EXPECT_FALSE(open_vtu(write(vtu_file_text({}, {one_tet(0, 1), other}))));
+  EXPECT_FALSE(open_vtk_xml(write(vtu_file_text({}, {one_tet(0, 1), other}))));
 }
 
 /// A cube and a tet on it, as polyhedra, beside a cell that is none.
@@ -261,6 +261,30 @@ TEST_F(Vtu, PolyhedraWhoseFacesDoNotFitAreRefused) {
   for (const double number : {-1.0, 6.0, 1e15}) refused(true, "polyhedron_to_faces", 2, number);
   for (const double number : {7.0, 1e15}) refused(true, "polyhedron_offsets", 1, number);
   for (const double number : {3.0, 25.0, 1e15}) refused(true, "face_offsets", 5, number);
+}
+
+TEST_F(Vtu, OldHigherOrderHexahedraComeInTheNewOrderOfNodesInEveryPiece) {
+  for (const double type : {67.0, 72.0, 79.0})
+    for (const std::size_t order : {std::size_t{1}, std::size_t{2}, std::size_t{3}}) {
+      const std::size_t nodes = (order + 1) * (order + 1) * (order + 1), inner = order - 1;
+      VtuPiece piece{.points = nodes, .cells = 1};
+      piece.coordinates = {{"Float64", "Points", 3, std::vector<double>(3 * nodes)}};
+      std::vector<double> uses(nodes);
+      for (std::size_t k = 0; k < nodes; ++k) uses[k] = static_cast<double>(k);
+      piece.topology = {{"Int64", "connectivity", 1, uses},
+                        {"Int64", "offsets", 1, {static_cast<double>(nodes)}},
+                        {"UInt8", "types", 1, {type}}};
+      for (const char* version : {"0.1", "1.0", "2.0", "2.1", "2.2"}) {
+        SCOPED_TRACE(fmt::format("order {}, version {}", order, version));
+        std::vector<std::uint32_t> expected(2 * nodes);
+        for (std::size_t k = 0; k < 2 * nodes; ++k) expected[k] = static_cast<std::uint32_t>(k);
+        // The nodes within the edges 10 and 11, of 0 to 11.
+        for (std::size_t p = 0; p < 2 && version < std::string("2.1"); ++p)
+          for (std::size_t k = 0; k < inner; ++k)
+            std::swap(expected[p * nodes + 8 + 10 * inner + k], expected[p * nodes + 8 + 11 * inner + k]);
+        EXPECT_EQ(read({.version = version}, {piece, piece}).connectivity, expected);
+      }
+    }
 }
 
 TEST_F(Vtu, GhostsAreMarkedInBothWays) {
@@ -339,7 +363,7 @@ TEST_F(Vtu, WhatIsNotKnownIsLeftToVtk) {
     std::string changed = text;
     const std::size_t at = changed.find(from);
     ASSERT_NE(at, std::string::npos) << from;
-    EXPECT_FALSE(open_vtu(write(changed.replace(at, from.size(), to)))) << to;
+    EXPECT_FALSE(open_vtk_xml(write(changed.replace(at, from.size(), to)))) << to;
   };
   left("Grid\" version=\"1.0\"", "Grid\" version=\"3.0\"");
   left("\"LittleEndian\"", "\"Middle\"");
