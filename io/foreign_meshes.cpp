@@ -65,7 +65,7 @@ MeshBlocks read_foreign(const std::filesystem::path& file, nlohmann::json reques
 
 /// One data set in this process, or by VTK's reader if it has what this one does not know.
 MeshBlocks read_data_set(const std::filesystem::path& file, const std::string& type, const MeshOptions& options) {
-  const std::optional<ForeignFile> opened = type.starts_with('P') ? std::nullopt : open_vtk_xml(file);
+  const std::optional<ForeignFile> opened = type.starts_with('P') ? std::nullopt : open_vtk_xml(file, options.progress);
   if (!opened) return read_foreign(file, {{"reader", "vtk_xml"}, {"type", type}}, options);
   MeshBlocks result;
   result.blocks = blocks_of(*opened, result.notes);

@@ -19,7 +19,7 @@ VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions&
   nlohmann::json request{{"reader", type.empty() ? "vtk_legacy" : "vtk_xml"}};
   if (!type.empty()) request["type"] = type;
   std::optional<ForeignFile> opened;
-  if (type == "ImageData" || type == "RectilinearGrid") opened = open_vtk_xml(file);
+  if (type == "ImageData" || type == "RectilinearGrid") opened = open_vtk_xml(file, options.progress);
   if (!opened) {
     HelperTask task;
     task.progress = options.progress;

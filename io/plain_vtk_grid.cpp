@@ -1,5 +1,5 @@
-// Regular and rectilinear grids whose one array is read where it lies. VTK's reader, by which all others are read
-// (foreign_vtk_grids.cpp), holds all samples in memory and gives none before it has the last.
+// Regular and rectilinear grids whose one array is read in place. open_vtk_xml() and VTK's reader, by which all others
+// are read (foreign_vtk_grids.cpp), hold all samples in memory.
 #include "io/plain_vtk_grid.hpp"
 
 #include <algorithm>

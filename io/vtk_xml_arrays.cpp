@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "scene/error.hpp"
+#include "scene/quote.hpp"
 
 namespace tessera::io {
 
@@ -19,8 +22,15 @@ void VtkXmlArrays::stream(const ForeignArray& array, const std::string& subject,
     const std::lock_guard lock(mutex_);
     if (const auto held = held_.find(array.number); held != held_.end()) stream = held->second;
   }
-  if (!stream) throw scene::bad_input(fmt::format("{}: its array '{}' was read before", subject, array.name));
-  (*stream)(use);
+  if (!stream)
+    throw scene::bad_input(fmt::format("{}: its array {} was read before", subject, scene::quote(array.name)));
+  (*stream)([&](std::span<const std::byte> tuples) {
+    use(tuples);
+    const std::uint64_t expected = expected_, before = came_.fetch_add(tuples.size());
+    if (progress_ && before < expected)
+      progress_({ReadProgress::Stage::copying,
+                 std::min(static_cast<double>(before + tuples.size()) / static_cast<double>(expected), 1.0)});
+  });
   if (then == Then::dropped) drop(std::span(&array.number, 1));
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -12,6 +13,7 @@
 
 #include "io/array_source.hpp"
 #include "io/streamed_bricks.hpp"
+#include "tessera/read_progress.hpp"
 
 namespace tessera::io {
 
@@ -19,6 +21,9 @@ namespace tessera::io {
 class VtkXmlArrays final : public ArraySource {
  public:
   using Stream = std::function<void(const ByteSink& use)>;
+
+  /// `progress` is called with how much of what was expected has been copied; may be null.
+  explicit VtkXmlArrays(ReadProgressFunction progress = {}) : progress_(std::move(progress)) {}
 
   /// Numbers the array and keeps what passes on its bytes, whole tuples at a time.
   ForeignArray hold(ForeignArray array, Stream stream);
@@ -33,12 +38,15 @@ class VtkXmlArrays final : public ArraySource {
 
   using ArraySource::stream;
   void stream(const ForeignArray& array, const std::string& subject, const ByteSink& use, Then then) override;
+  void expect(std::uint64_t bytes) override { expected_ = bytes, came_ = 0; }
   void drop(std::span<const std::uint64_t> arrays) noexcept override;
 
  private:
   std::mutex mutex_;
   std::map<std::uint64_t, std::shared_ptr<const Stream>> held_;
   std::uint64_t next_ = 0;
+  ReadProgressFunction progress_;
+  std::atomic<std::uint64_t> expected_ = 0, came_ = 0;  ///< bytes of stream(), but for fields that are read later
 };
 
 }  // namespace tessera::io

@@ -156,7 +156,7 @@ void require_end(const PositionalFile& file, const std::string& source) {
 
 }  // namespace
 
-std::optional<ForeignFile> open_vtk_xml(const std::filesystem::path& path) {
+std::optional<ForeignFile> open_vtk_xml(const std::filesystem::path& path, const ReadProgressFunction& progress) {
   constexpr std::array known = {"UnstructuredGrid", "StructuredGrid", "RectilinearGrid", "ImageData"};
   const std::string source = path.string();
   const auto file = std::make_shared<const PositionalFile>(path);
@@ -166,7 +166,7 @@ std::optional<ForeignFile> open_vtk_xml(const std::filesystem::path& path) {
   ForeignPart part;
   if (grid->element.name != "UnstructuredGrid" && !set_grid(*grid, part)) return std::nullopt;
   if (!fields_agree(*grid, fields_of_points) || !fields_agree(*grid, fields_of_cells)) return std::nullopt;
-  const VtkXmlOpened of{file, *grid, source};
+  const VtkXmlOpened of{file, *grid, source, std::make_shared<VtkXmlArrays>(progress)};
   if (!set_part(of, part)) return std::nullopt;
   part.point_fields = hold_fields(of, fields_of_points);
   part.cell_fields = hold_fields(of, fields_of_cells);

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "io/foreign_file.hpp"
+#include "tessera/read_progress.hpp"
 
 namespace tessera::io {
 
@@ -13,6 +14,6 @@ namespace tessera::io {
 /// may (read_vtk_xml_grid). Throws Error(bad_input) in one line for a file that is damaged.
 ///
 /// Memory  numbers are read where they are stored, when they are asked for; types and offsets of cells are held.
-std::optional<ForeignFile> open_vtk_xml(const std::filesystem::path& file);
+std::optional<ForeignFile> open_vtk_xml(const std::filesystem::path& file, const ReadProgressFunction& progress = {});
 
 }  // namespace tessera::io

@@ -11,6 +11,7 @@
 
 #include "io/positional_file.hpp"
 #include "scene/error.hpp"
+#include "scene/quote.hpp"
 
 namespace tessera::io {
 namespace {
@@ -33,9 +34,8 @@ std::uint64_t count_of(const VtkXmlElement& piece, const std::string& attribute,
                        const std::string& source) {
   std::int64_t count = -1;
   if (!read_whole_number(piece.word(attribute), count) || count < 0 || static_cast<std::uint64_t>(count) > most_tuples)
-    throw scene::bad_input(
-        fmt::format("{}: the {} of piece {} is '{:.40}', not a number of them; the file may be damaged", source,
-                    attribute, number, piece.word(attribute)));
+    throw scene::bad_input(fmt::format("{}: the {} of piece {} is {}, not a number of them; the file may be damaged",
+                                       source, attribute, number, scene::quote(piece.word(attribute))));
   return static_cast<std::uint64_t>(count);
 }
 
@@ -103,7 +103,7 @@ class GridElements {
     while (at < elements_.size() && !(elements_[at].depth == 1 && elements_[at].name == root.word("type"))) ++at;
     if (at == elements_.size())
       throw scene::bad_input(
-          fmt::format("{}: it has no element {}; the file may be damaged", source_, root.word("type")));
+          fmt::format("{}: it has no element {}; the file may be damaged", source_, scene::quote(root.word("type"))));
     grid_.element = elements_[at];
     if (grid_.element.has("TimeValues")) throw Unknown();
     for (++at; at < elements_.size() && elements_[at].depth > 1; ++at) {
@@ -192,9 +192,10 @@ std::optional<NumberType> vtk_xml_number_type(const std::string& name) {
 }
 
 bool read_whole_number(const std::string& text, std::int64_t& number) {
-  const std::size_t first = text.find_first_not_of(" \n\r\t"), last = text.find_last_not_of(" \n\r\t");
+  std::size_t first = text.find_first_not_of(" \n\r\t");
   if (first == std::string::npos) return false;
-  const char* const end = text.data() + last + 1;
+  if (text[first] == '+' && first + 1 < text.size() && text[first + 1] != '-') ++first;
+  const char* const end = text.data() + text.find_last_not_of(" \n\r\t") + 1;
   const auto [behind, error] = std::from_chars(text.data() + first, end, number);
   return error == std::errc() && behind == end;
 }

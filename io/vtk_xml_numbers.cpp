@@ -8,6 +8,7 @@
 #include "io/large_vector.hpp"
 #include "io/positional_file.hpp"
 #include "scene/error.hpp"
+#include "scene/quote.hpp"
 
 namespace tessera::io {
 namespace {
@@ -84,9 +85,9 @@ Numbers numbers_in(const PositionalFile& file, const VtkXmlSegment& segment, con
   auto numbers = Numbers::open(file, segment.array);
   if (!numbers || numbers->most() < segment.numbers)
     throw scene::bad_input(
-        fmt::format("{}: its array '{}' is damaged or has {}fewer numbers than the {} that it needs; the file is "
+        fmt::format("{}: its array {} is damaged or has {}fewer numbers than the {} that it needs; the file is "
                     "truncated or damaged, export it again",
-                    source, segment.array.name, numbers ? "" : "perhaps ", segment.numbers));
+                    source, scene::quote(segment.array.name), numbers ? "" : "perhaps ", segment.numbers));
   return *std::move(numbers);
 }
 
@@ -108,9 +109,9 @@ void stream_numbers(const PositionalFile& file, const VtkXmlSegment& segment, st
     const std::uint64_t now = std::min(at_once, segment.numbers - done);
     if (!numbers.read(part.data(), now))
       throw scene::bad_input(
-          fmt::format("{}: its array '{}' breaks between its numbers {} and {} of {}; the file is truncated or "
+          fmt::format("{}: its array {} breaks between its numbers {} and {} of {}; the file is truncated or "
                       "damaged, export it again",
-                      source, segment.array.name, done, done + now, segment.numbers));
+                      source, scene::quote(segment.array.name), done, done + now, segment.numbers));
     use(std::span(part).first(now * each));
     done += now;
   }
@@ -129,8 +130,8 @@ void stream_whole_numbers(const PositionalFile& file, const VtkXmlSegment& segme
         for (std::size_t k = 0; k < numbers.size(); ++k) wide[k] = static_cast<std::int64_t>(numbers[k]);
         use(wide);
       } else {
-        throw scene::bad_input(
-            fmt::format("{}: its array '{}' is not of integers; the file may be damaged", source, segment.array.name));
+        throw scene::bad_input(fmt::format("{}: its array {} is not of integers; the file may be damaged", source,
+                                           scene::quote(segment.array.name)));
       }
     });
   });

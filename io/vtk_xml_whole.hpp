@@ -24,7 +24,7 @@ struct VtkXmlOpened {
   std::shared_ptr<const PositionalFile> file;
   const VtkXmlGrid& grid;
   const std::string& source;
-  std::shared_ptr<VtkXmlArrays> arrays = std::make_shared<VtkXmlArrays>();
+  std::shared_ptr<VtkXmlArrays> arrays;
 };
 
 /// Makes a whole array readable, of the type, name and mark of `as`. Throws Error(bad_input) if the file cannot have so

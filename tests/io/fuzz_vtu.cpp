@@ -1,5 +1,6 @@
 // Any bytes in a VTK XML file of one data set are blocks of cells whose indices hold and whose fields can be read, or
 // are left to VTK's reader, or are refused in one line.
+#include <tbb/global_control.h>
 #include <unistd.h>
 
 #include <cstddef>
@@ -53,6 +54,8 @@ void check(const tessera::io::CellBlock& block) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tessera;
   static const FuzzFile file;
+  // Inputs are small: threads would only wait for each other.
+  static const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   file.write(data, size);
   test::parse_or_refuse([&] {
     const auto opened = io::open_vtk_xml(file.path);
