@@ -29,7 +29,7 @@ std::vector<double> coordinates_of(const AmrBlock& trees, std::size_t axis, cons
   if (part.coordinates.size() != 3) throw unfit(part, source);
   const ForeignArray& array = part.coordinates[axis];
   std::vector<double> at(array.tuples);
-  read_tuples(trees.file->helper->take(array, source).bytes(), array.type, array.components, 0, 0, at);
+  read_tuples(trees.file->arrays->copy(array, source), array.type, array.components, 0, 0, at);
   if (at.size() < 2 || static_cast<std::int64_t>(at.size()) != roots_along(part, axis) + 1) throw unfit(part, source);
   return at;
 }
@@ -95,9 +95,9 @@ class TreeLeaves {
   std::vector<T> numbers(const AmrBlock& trees, const std::optional<ForeignArray>& array, NumberType type,
                          int components) {
     if (!array || array->type != type || array->components != components) throw unfit(*trees.part, source_);
-    const SharedBytes bytes = trees.file->helper->take(*array, source_);
-    const auto all = bytes.as<T>();
-    return {all.begin(), all.end()};
+    const std::vector<std::byte> bytes = trees.file->arrays->copy(*array, source_);
+    const auto* const first = reinterpret_cast<const T*>(bytes.data());
+    return {first, first + bytes.size() / sizeof(T)};
   }
 
   /// No two leaves begin at one place, and no tree is in two parts.

@@ -5,7 +5,6 @@
 #include <cstring>
 #include <limits>
 #include <mutex>
-#include <nlohmann/json.hpp>
 
 #include "io/block_choice.hpp"
 #include "io/foreign_file.hpp"
@@ -17,27 +16,27 @@ namespace {
 
 using scene::Association;
 
-/// A field's numbers: with the helper until they are read, here from then on.
+/// A field's numbers: with their source until they are read, here from then on.
 class FetchedArray {
  public:
   FetchedArray(const ForeignFile& file, ForeignArray array)
-      : helper_(file.helper), source_(file.source), array_(std::move(array)) {}
+      : arrays_(file.arrays), source_(file.source), array_(std::move(array)) {}
   ~FetchedArray() {
-    if (!fetched_) helper_->drop(std::span(&array_.number, 1));
+    if (!fetched_) arrays_->drop(std::span(&array_.number, 1));
   }
   FetchedArray(const FetchedArray&) = delete;
   FetchedArray& operator=(const FetchedArray&) = delete;
 
   void read(int component, std::size_t first, std::span<double> out) {
     std::call_once(once_, [&] {
-      bytes_ = helper_->copy(array_, source_);
+      bytes_ = arrays_->copy(array_, source_);
       fetched_ = true;
     });
     read_tuples(bytes_, array_.type, array_.components, component, first, out);
   }
 
  private:
-  std::shared_ptr<HelperProcess> helper_;
+  std::shared_ptr<ArraySource> arrays_;
   std::string source_;
   ForeignArray array_;
   std::once_flag once_;
@@ -56,7 +55,7 @@ void copy_points(const ForeignFile& file, const ForeignArray& points, CellBlock&
   reserve_large(block.positions, points.tuples);
   with_number_type(points.type, [&](auto zero) {
     using Number = decltype(zero);
-    file.helper->stream(points, where, [&](std::span<const std::byte> tuples) {
+    file.arrays->stream(points, where, [&](std::span<const std::byte> tuples) {
       const auto p = numbers_in<Number>(tuples);
       for (std::size_t k = 0; k + 2 < p.size(); k += 3)
         block.positions.emplace_back(static_cast<double>(p[k]), static_cast<double>(p[k + 1]),
@@ -107,7 +106,7 @@ void check_tets(std::span<const scene::Tet> tets, std::size_t points, const std:
 template <class Stored, class T>
 void copy_numbers(const ForeignFile& file, const ForeignArray& array, std::vector<T>& to, const std::string& where) {
   reserve_large(to, array.bytes() / sizeof(Stored));
-  file.helper->stream(array, where, [&](std::span<const std::byte> tuples) {
+  file.arrays->stream(array, where, [&](std::span<const std::byte> tuples) {
     const auto numbers = numbers_in<Stored>(tuples);
     to.insert(to.end(), numbers.begin(), numbers.end());
   });
@@ -208,7 +207,7 @@ void add_rectilinear_points(const ForeignFile& file, const ForeignPart& part, Ce
   for (std::size_t a = 0; a < 3 && a < part.coordinates.size(); ++a) {
     const ForeignArray& array = part.coordinates[a];
     axis[a].resize(array.tuples);
-    read_tuples(file.helper->take(array, where).bytes(), array.type, array.components, 0, 0, axis[a]);
+    read_tuples(file.arrays->copy(array, where), array.type, array.components, 0, 0, axis[a]);
   }
   const auto n = points_along(part);
   for (std::size_t a = 0; a < 3; ++a)
@@ -291,34 +290,6 @@ CellBlock block_of(const ForeignFile& file, const ForeignPart& part, GridsAre gr
 
 }  // namespace
 
-ForeignFile open_foreign(std::shared_ptr<HelperProcess> helper, const std::filesystem::path& file,
-                         nlohmann::json request) {
-  request["do"] = "open";
-  request["version"] = helper_version;
-  request["file"] = file.string();
-  ForeignFile opened;
-  opened.helper = std::move(helper);
-  opened.source = file.string();
-  opened.with_surfaces = request.value("surfaces", false);
-  const nlohmann::json reply = opened.helper->call(request, opened.source);
-  try {
-    opened.contents = contents_of(reply.at("contents").get_binary());
-  } catch (const std::exception&) {
-    throw scene::bad_input(
-        fmt::format("{}: its reader says nothing sensible of it; it is damaged, write it anew", opened.source));
-  }
-  ForeignContents& contents = opened.contents;
-  if (!opened.with_surfaces && contents.parts.size() > 1)
-    for (const ForeignPart& part : contents.parts)
-      if (part.kind == ForeignPart::Kind::surface) contents.surface_names.push_back(part.name);
-  if (!contents.block_names.empty()) return opened;  // the reader has seen to it
-  for (const ForeignPart& part : contents.parts)
-    if (part.kind != ForeignPart::Kind::surface || opened.with_surfaces) contents.block_names.push_back(part.name);
-  const BlockChoice choice = request.value("blocks", BlockChoice());
-  std::erase_if(contents.parts, [&](const ForeignPart& part) { return !is_chosen(choice, part.name); });
-  return opened;
-}
-
 BlockField foreign_field(const ForeignFile& file, const ForeignArray& array, Association association) {
   BlockField field;
   field.name = array.name;
@@ -351,7 +322,7 @@ std::vector<std::uint8_t> ghost_bits(const ForeignFile& file, const std::vector<
         std::find_if(fields.begin(), fields.end(), [&](const ForeignArray& a) { return a.name == name; });
     if (array == fields.end() || array->components != 1 || array->tuples != n) return bits;
     std::vector<double> values(n);
-    read_tuples(file.helper->take(*array, file.source, true).bytes(), array->type, 1, 0, 0, values);
+    read_tuples(file.arrays->copy(*array, file.source, ArraySource::Then::kept), array->type, 1, 0, 0, values);
     for (const double value : values)
       bits.push_back(value >= 0 && value < 256 ? static_cast<std::uint8_t>(value) : std::uint8_t{0});
     return bits;
@@ -369,7 +340,7 @@ std::vector<CellBlock> blocks_of(const ForeignFile& file, std::vector<std::strin
   for (const ForeignPart& part : file.contents.parts)
     for (const auto* array : {&part.points, &part.types, &part.offsets, &part.connectivity})
       if (*array) bytes += (*array)->bytes();
-  file.helper->expect(bytes);
+  file.arrays->expect(bytes);
   std::vector<CellBlock> blocks;
   std::vector<std::string> surfaces;
   for (const ForeignPart& part : file.contents.parts) {

@@ -6,15 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "io/array_source.hpp"
 #include "io/cell_block.hpp"
 #include "io/foreign_data.hpp"
 #include "io/helper_process.hpp"
 
 namespace tessera::io {
 
-/// A file that the helper holds open. Copies share it.
+/// An opened file, whose arrays are read when they are asked for. Copies share them.
 struct ForeignFile {
-  std::shared_ptr<HelperProcess> helper;
+  std::shared_ptr<ArraySource> arrays;
   std::string source;  ///< for messages
   ForeignContents contents;
   bool with_surfaces = false;  ///< surfaces are blocks like others: of polygons (VTK's type 7)

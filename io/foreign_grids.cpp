@@ -26,7 +26,7 @@ AxisCoordinates coordinates_of(const ForeignFile& file, const ForeignArray& arra
     throw damaged(file.source,
                   fmt::format("it has {} coordinates along {} for {} points", array.tuples, "xyz"[axis], points));
   AxisCoordinates c{array.type, std::vector<double>(array.tuples)};
-  read_tuples(file.helper->take(array, file.source).bytes(), array.type, 1, 0, 0, c.values);
+  read_tuples(file.arrays->copy(array, file.source), array.type, 1, 0, 0, c.values);
   return c;
 }
 
@@ -86,9 +86,9 @@ void set_source(const ForeignFile& file, const ForeignPart& part, const FieldCho
     grid.type = choice.component != magnitude ? type : narrow ? SampleType::float32 : SampleType::float64;
     const scene::ComponentChoice of_tuple{field.components, choice.component == magnitude ? -1 : choice.component,
                                           type};
-    const auto tuples = [&](const ByteSink& use) { file.helper->stream(*array, file.source, use); };
+    const auto tuples = [&](const ByteSink& use) { file.arrays->stream(*array, file.source, use); };
     if (unpacked_to_scratch({grid, of_tuple, false, tuples}, options, file.source, result)) return;
-    auto owner = std::make_shared<const std::vector<std::byte>>(file.helper->copy(*array, file.source));
+    auto owner = std::make_shared<const std::vector<std::byte>>(file.arrays->copy(*array, file.source));
     const std::span<const std::byte> payload = *owner;
     result.source =
         std::make_unique<scene::MemorySource>(std::move(grid), payload, std::move(owner), file.source, of_tuple);

@@ -15,6 +15,7 @@
 #include "io/plot3d_layout.hpp"
 #include "io/plot3d_list.hpp"
 #include "io/text_file.hpp"
+#include "io/vtk_xml_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -62,6 +63,15 @@ MeshBlocks read_foreign(const std::filesystem::path& file, nlohmann::json reques
   return result;
 }
 
+/// One data set in this process, or by VTK's reader if it has what this one does not know.
+MeshBlocks read_data_set(const std::filesystem::path& file, const std::string& type, const MeshOptions& options) {
+  const std::optional<ForeignFile> opened = type.starts_with('P') ? std::nullopt : open_vtk_xml(file, options.progress);
+  if (!opened) return read_foreign(file, {{"reader", "vtk_xml"}, {"type", type}}, options);
+  MeshBlocks result;
+  result.blocks = blocks_of(*opened, result.notes);
+  return result;
+}
+
 MeshBlocks blocks_of_solver(const ForeignFile& opened) {
   MeshBlocks result;
   result.format = opened.contents.format;
@@ -92,7 +102,7 @@ MeshBlocks read_vtk_xml(const std::filesystem::path& file, const MeshOptions& op
 
   if (type.starts_with('P')) require_beside_others(file);
   MeshBlocks result = named_format(*kind, extension);
-  MeshBlocks read = read_foreign(file, {{"reader", "vtk_xml"}, {"type", type}}, options);
+  MeshBlocks read = read_data_set(file, type, options);
   add_notes(read.notes, result.notes);
   result.surface_names = std::move(read.surface_names);
   result.blocks = std::move(read.blocks);

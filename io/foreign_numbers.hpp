@@ -13,9 +13,13 @@ namespace tessera::io {
 /// All numbers of an array, whose type the caller has looked at.
 template <class T>
 std::vector<T> numbers_of(const ForeignFile& file, const ForeignArray& array) {
-  const SharedBytes shared = file.helper->take(array, file.source);
-  const auto numbers = shared.as<T>();
-  return {numbers.begin(), numbers.end()};
+  std::vector<T> numbers;
+  numbers.reserve(array.bytes() / sizeof(T));
+  file.arrays->stream(array, file.source, [&](std::span<const std::byte> tuples) {
+    const auto* const first = reinterpret_cast<const T*>(tuples.data());
+    numbers.insert(numbers.end(), first, first + tuples.size() / sizeof(T));
+  });
+  return numbers;
 }
 
 [[noreturn]] inline void refuse_surface(const std::string& source) {

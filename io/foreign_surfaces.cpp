@@ -9,20 +9,20 @@
 namespace tessera::io {
 namespace {
 
-std::vector<double> component_of(const ForeignFile& file, const ForeignArray& array, const SharedBytes& shared,
+std::vector<double> component_of(const ForeignFile& file, const ForeignArray& array, std::span<const std::byte> bytes,
                                  int component) {
   std::vector<double> values(array.tuples);
-  if (shared.bytes().size() < array.bytes()) refuse_surface(file.source);
-  read_tuples(shared.bytes(), array.type, array.components, component, 0, values);
+  if (bytes.size() < array.bytes()) refuse_surface(file.source);
+  read_tuples(bytes, array.type, array.components, component, 0, values);
   return values;
 }
 
 void add_points(const ForeignFile& file, const ForeignArray& points, Surface& surface) {
   if (points.components != 3) refuse_surface(file.source);
-  const SharedBytes shared = file.helper->take(points, file.source);
+  const std::vector<std::byte> bytes = file.arrays->copy(points, file.source);
   surface.points.resize(points.tuples);
   for (int axis = 0; axis < 3; ++axis) {
-    const std::vector<double> values = component_of(file, points, shared, axis);
+    const std::vector<double> values = component_of(file, points, bytes, axis);
     for (std::size_t v = 0; v < values.size(); ++v) surface.points[v][axis] = values[v];
   }
 }
@@ -84,7 +84,7 @@ VtkSurface read_vtk_surface(const std::string& source) {
       continue;
     }
     result.attribute_names.push_back(array.name);
-    result.surface.attributes.push_back(component_of(opened, array, opened.helper->take(array, opened.source), 0));
+    result.surface.attributes.push_back(component_of(opened, array, opened.arrays->copy(array, opened.source), 0));
   }
   left_out += part.cell_fields.size();
   if (left_out > 0)

@@ -1,7 +1,8 @@
-// Regular and rectilinear grids in VTK's formats, read by the helper.
+// Regular and rectilinear grids in VTK's formats.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "io/file_beginnings.hpp"
 #include "io/foreign_grids.hpp"
@@ -9,6 +10,7 @@
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/volume_formats.hpp"
+#include "io/vtk_xml_file.hpp"
 
 namespace tessera::io {
 
@@ -17,10 +19,14 @@ VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions&
   if (type.starts_with('P')) require_beside_others(file);
   nlohmann::json request{{"reader", type.empty() ? "vtk_legacy" : "vtk_xml"}};
   if (!type.empty()) request["type"] = type;
-  HelperTask task;
-  task.progress = options.progress;
-  VolumeFile result =
-      grid_of(open_foreign(std::make_shared<HelperProcess>(std::move(task)), file, std::move(request)), options);
+  std::optional<ForeignFile> opened;
+  if (type == "ImageData" || type == "RectilinearGrid") opened = open_vtk_xml(file, options.progress);
+  if (!opened) {
+    HelperTask task;
+    task.progress = options.progress;
+    opened = open_foreign(std::make_shared<HelperProcess>(std::move(task)), file, std::move(request));
+  }
+  VolumeFile result = grid_of(*opened, options);
   result.format = fmt::format("{} ({})", type.empty() ? "legacy VTK" : "VTK XML",
                               result.source->geometry().rectilinear() ? "rectilinear grid" : "image data");
   return result;

@@ -20,7 +20,6 @@
 #include <string_view>
 #include <utility>
 
-#include "io/large_vector.hpp"
 #include "io/spawn_plan.hpp"
 #include "io/unfinished.hpp"
 #include "scene/error.hpp"
@@ -266,9 +265,9 @@ void HelperProcess::open_window(const std::string& subject) {
 }
 
 void HelperProcess::stream(const ForeignArray& array, const std::string& subject,
-                           const std::function<void(std::span<const std::byte> tuples)>& use) {
+                           const std::function<void(std::span<const std::byte> tuples)>& use, Then then) {
   const std::size_t tuple = array.tuple_bytes();
-  if (tuple > slot_bytes) return use(take(array, subject).bytes());
+  if (tuple > slot_bytes) return use(take(array, subject, then == Then::kept).bytes());
   const std::uint64_t at_once = slot_bytes / tuple, parts = (array.tuples + at_once - 1) / at_once;
   const auto count_of = [&](std::uint64_t part) { return std::min(at_once, array.tuples - part * at_once); };
   {
@@ -306,15 +305,7 @@ void HelperProcess::stream(const ForeignArray& array, const std::string& subject
       throw;
     }
   }
-  drop(std::span(&array.number, 1));
-}
-
-std::vector<std::byte> HelperProcess::copy(const ForeignArray& array, const std::string& subject) {
-  std::vector<std::byte> all;
-  reserve_large(all, array.bytes());
-  stream(array, subject,
-         [&](std::span<const std::byte> tuples) { all.insert(all.end(), tuples.begin(), tuples.end()); });
-  return all;
+  if (then == Then::dropped) drop(std::span(&array.number, 1));
 }
 
 SharedBytes HelperProcess::take(const ForeignArray& array, const std::string& subject, bool keep) {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "io/array_source.hpp"
 #include "io/foreign_data.hpp"
 #include "io/helper_messages.hpp"
 #include "io/reader_programs.hpp"
@@ -67,11 +68,11 @@ struct HelperDeath {
 /// Limits   of memory and processor time, by the sizes of the files it opens or the surface it fills, which it sets
 ///          itself.
 /// Threads  calls wait for each other.
-class HelperProcess {
+class HelperProcess final : public ArraySource {
  public:
   /// Throws Error(system_failure) if it is installed and cannot be started.
   explicit HelperProcess(HelperTask task = {});
-  ~HelperProcess();
+  ~HelperProcess() override;
   HelperProcess(const HelperProcess&) = delete;
   HelperProcess& operator=(const HelperProcess&) = delete;
 
@@ -82,20 +83,13 @@ class HelperProcess {
   /// The helper's array, which it then has no more, unless it is to `keep` it. Throws as call().
   SharedBytes take(const ForeignArray& array, const std::string& subject, bool keep = false);
 
-  /// Gives `use` all tuples of the helper's array in turn, while the helper makes the next ones ready; then the helper
-  /// has the array no more. The bytes are the helper's to change: `use` copies them first and looks at its copy. Throws
-  /// as call().
+  /// ArraySource's, while the helper prepares the next tuples. Faster than take(), which makes a file of small pages.
+  using ArraySource::stream;
   void stream(const ForeignArray& array, const std::string& subject,
-              const std::function<void(std::span<const std::byte> tuples)>& use);
+              const std::function<void(std::span<const std::byte> tuples)>& use, Then then) override;
 
-  /// All bytes of the helper's array, by stream(): faster than take(), which makes a file of small pages.
-  std::vector<std::byte> copy(const ForeignArray& array, const std::string& subject);
-
-  /// How much will come by stream(), for the task's progress.
-  void expect(std::uint64_t bytes) { expected_ = bytes, came_ = 0; }
-
-  /// Has the helper forget arrays that nobody will ask for. Throws nothing.
-  void drop(std::span<const std::uint64_t> arrays) noexcept;
+  void expect(std::uint64_t bytes) override { expected_ = bytes, came_ = 0; }
+  void drop(std::span<const std::uint64_t> arrays) noexcept override;
 
   /// Its process, for tests; -1 once it has died.
   [[nodiscard]] int process() const { return process_; }

@@ -6,6 +6,7 @@
 #include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string_view>
 
 #include "io/block_choice.hpp"
@@ -14,6 +15,7 @@
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/text_file.hpp"
+#include "io/vtk_xml_file.hpp"
 #include "io/xml_elements.hpp"
 #include "scene/error.hpp"
 
@@ -121,6 +123,19 @@ PieceList piece_list(const std::filesystem::path& file, const BlockChoice& choic
   return list;
 }
 
+namespace {
+
+/// In this process, or by VTK's readers if the file has what it does not know.
+ForeignFile open_piece(const ListedPiece& piece, const std::string& type, bool with_surfaces,
+                       std::shared_ptr<HelperProcess>& helper) {
+  if (!type.starts_with('P'))
+    if (std::optional<ForeignFile> opened = open_vtk_xml(piece.file)) return *std::move(opened);
+  if (!helper) helper = std::make_shared<HelperProcess>();
+  return open_foreign(helper, piece.file, {{"reader", "vtk_xml"}, {"type", type}, {"surfaces", with_surfaces}});
+}
+
+}  // namespace
+
 MeshBlocks read_pieces(const PieceList& list, std::size_t first, std::size_t last,
                        const ReadProgressFunction& progress) {
   MeshBlocks result{{}, list.notes, list.format, list.block_names, list.surface_names};
@@ -130,9 +145,7 @@ MeshBlocks read_pieces(const PieceList& list, std::size_t first, std::size_t las
     const bool of_whole = piece.type.empty();
     const std::string type = of_whole ? type_of(piece.file) : piece.type;
     if (of_whole) require_piece(piece, type);
-    if (!helper) helper = std::make_shared<HelperProcess>();
-    ForeignFile opened =
-        open_foreign(helper, piece.file, {{"reader", "vtk_xml"}, {"type", type}, {"surfaces", list.with_surfaces}});
+    ForeignFile opened = open_piece(piece, type, list.with_surfaces, helper);
     add_notes(opened.contents.notes, result.notes);
     if (!of_whole)
       for (ForeignPart& part : opened.contents.parts) part.name = piece.block;

@@ -1,5 +1,5 @@
-// Regular and rectilinear grids whose one array is read where it lies. VTK's reader, by which all others are read
-// (foreign_vtk_grids.cpp), holds all samples in memory and gives none before it has the last.
+// Regular and rectilinear grids whose one array is read in place. open_vtk_xml() and VTK's reader, by which all others
+// are read (foreign_vtk_grids.cpp), hold all samples in memory.
 #include "io/plain_vtk_grid.hpp"
 
 #include <algorithm>
@@ -19,6 +19,7 @@
 #include "io/positional_file.hpp"
 #include "io/volume_formats.hpp"
 #include "io/vtk_array.hpp"
+#include "io/vtk_xml_grid.hpp"
 #include "io/xml_elements.hpp"
 
 namespace tessera::io {
@@ -100,22 +101,6 @@ bool read_numbers(const std::string& text, std::array<T, n>& numbers) {
   return (in >> std::ws).eof();
 }
 
-std::optional<NumberType> type_named(const std::string& name) {
-  constexpr std::array<std::pair<std::string_view, NumberType>, 10> types = {{{"Int8", NumberType::int8},
-                                                                              {"UInt8", NumberType::uint8},
-                                                                              {"Int16", NumberType::int16},
-                                                                              {"UInt16", NumberType::uint16},
-                                                                              {"Int32", NumberType::int32},
-                                                                              {"UInt32", NumberType::uint32},
-                                                                              {"Int64", NumberType::int64},
-                                                                              {"UInt64", NumberType::uint64},
-                                                                              {"Float32", NumberType::float32},
-                                                                              {"Float64", NumberType::float64}}};
-  for (const auto& [known, type] : types)
-    if (known == name) return type;
-  return std::nullopt;
-}
-
 /// false: anything is odd.
 bool set_extent(const GridElements& found, ForeignPart& part, scene::GridGeometry& g) {
   std::array<std::int64_t, 6> piece{};
@@ -144,7 +129,7 @@ bool set_image(const GridElements& found, ForeignPart& image, scene::GridGeometr
 
 /// What all arrays of a file have in common.
 VtkArrayPlace packing_of(const GridElements& found) {
-  return {.compressed = !word(found.file, "compressor").empty(),
+  return {.codec = vtk_codec_named(word(found.file, "compressor")).value_or(VtkCodec::none),
           .swapped = word(found.file, "byte_order") == "BigEndian",
           .number_bytes = word(found.file, "header_type") == "UInt64" ? 8u : 4u};
 }
@@ -194,7 +179,7 @@ bool read_text(std::string_view text, NumberType type, std::span<double> numbers
 /// None if anything is odd.
 std::optional<AxisCoordinates> axis_of(const PositionalFile& file, const ElementFound& array, const GridElements& found,
                                        const GridWords& words, std::int64_t points) {
-  const auto type = type_named(word(array.attributes, "type"));
+  const auto type = vtk_xml_number_type(word(array.attributes, "type"));
   if (!type || word(array.attributes, "NumberOfComponents", "1") != "1") return std::nullopt;
   AxisCoordinates axis{*type, std::vector<double>(static_cast<std::size_t>(points))};
   if (word(array.attributes, "format") == "ascii") {
@@ -245,7 +230,7 @@ bool is_plain(const GridElements& found, const std::string& kind) {
   const std::string compressor = word(found.file, "compressor"), name = word(found.samples.attributes, "Name");
   return (kind == "ImageData" || kind == "RectilinearGrid") && found.pieces == 1 && found.arrays == 1 &&
          (order == "LittleEndian" || order == "BigEndian") && (number == "UInt32" || number == "UInt64") &&
-         (compressor.empty() || compressor == "vtkZLibDataCompressor") && !name.empty() && name != "vtkGhostType";
+         vtk_codec_named(compressor) && !name.empty() && name != "vtkGhostType";
 }
 
 }  // namespace
@@ -254,7 +239,7 @@ std::optional<StoredVolume> read_plain_vtk_grid(const std::filesystem::path& pat
   GridWords words{read_beginning(path, longest_beginning)};
   GridElements found = elements_of(words.text, path.string());
   const std::string kind = word(found.file, "type");
-  const auto type = type_named(word(found.samples.attributes, "type"));
+  const auto type = vtk_xml_number_type(word(found.samples.attributes, "type"));
   const auto sample_type = type ? sample_type_of(*type) : std::nullopt;
   std::array<int, 1> components{};
   if (!sample_type || !is_plain(found, kind) ||
@@ -285,7 +270,7 @@ std::optional<StoredVolume> read_plain_vtk_grid(const std::filesystem::path& pat
   volume.active = found.active;
   volume.format = g.rectilinear() ? "VTK XML (rectilinear grid)" : "VTK XML (image data)";
   volume.payload = path;
-  if (place->base64 || place->compressed)
+  if (place->base64 || place->codec != VtkCodec::none)
     volume.vtk_array = place;
   else
     volume.offset = place->first_byte + place->number_bytes;

@@ -1,153 +1,123 @@
 #include "io/vtk_array.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cstring>
+#include <memory>
 #include <optional>
 
-#include "io/gzip.hpp"
 #include "io/positional_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
 namespace {
 
-constexpr std::size_t largest_block = 16 << 20;
+constexpr std::size_t largest_streamed_block = 16 << 20;
 
-/// Bytes of an array one after the other, out of its text if it is one.
-class ArrayBytes {
- public:
-  ArrayBytes(const PositionalFile& file, const VtkArrayPlace& place)
-      : file_(file), base64_(place.base64), at_(place.first_byte), end_(file.size()) {}
+}  // namespace
 
-  /// false: the file ends before, or what stands there is not base64.
-  [[nodiscard]] bool read(std::byte* to, std::uint64_t count) {
-    if (base64_) {
-      for (; count > 0; --count, ++to) {
-        if (next_ == three_.size() && !decode()) return false;
-        *to = three_[next_++];
-      }
-      return true;
-    }
-    if (at_ > end_ || count > end_ - at_) return false;
-    file_.read(at_, to, count);
-    at_ += count;
-    return true;
-  }
+VtkArrayBytes::VtkArrayBytes(const PositionalFile& file, const VtkArrayPlace& place)
+    : place_(place), packed_(file, place.base64, place.first_byte, place.end) {}
 
-  /// Of the file, behind what has been read.
-  [[nodiscard]] std::uint64_t position() const { return base64_ ? at_ - (text_.size() - used_) : at_; }
+std::optional<VtkArrayBytes> VtkArrayBytes::open(const PositionalFile& file, const VtkArrayPlace& place) {
+  VtkArrayBytes array(file, place);
+  if (place.codec != VtkCodec::none)
+    return array.read_table(file.size()) ? std::optional(std::move(array)) : std::nullopt;
+  if (!array.read_number(array.size_) || array.size_ > array.packed_.left()) return std::nullopt;
+  array.packed_size_ = array.size_;
+  return array;
+}
 
- private:
-  /// The next four characters to the last places of three_. A text within the text may end with padding.
-  [[nodiscard]] bool decode() {
-    std::uint32_t bits = 0;
-    std::size_t padding = 0;
-    for (int k = 0; k < 4;) {
-      if (used_ == text_.size() && !fetch()) return false;
-      const char c = text_[used_++];
-      if (c == ' ' || c == '\n' || c == '\r' || c == '\t') continue;
-      const int value = value_of(c);
-      if (c == '=' ? k < 2 : value < 0 || padding > 0) return false;
-      if (c == '=') ++padding;
-      bits = bits << 6 | static_cast<std::uint32_t>(c == '=' ? 0 : value);
-      ++k;
-    }
-    const std::array<std::byte, 3> bytes{std::byte(bits >> 16), std::byte(bits >> 8 & 255), std::byte(bits & 255)};
-    next_ = padding;
-    std::copy_n(bytes.begin(), bytes.size() - padding, three_.begin() + static_cast<std::ptrdiff_t>(padding));
-    return true;
-  }
-
-  [[nodiscard]] bool fetch() {
-    text_.resize(std::min<std::uint64_t>(64 << 10, end_ - std::min(at_, end_)));
-    used_ = 0;
-    if (text_.empty()) return false;
-    file_.read(at_, reinterpret_cast<std::byte*>(text_.data()), text_.size());
-    at_ += text_.size();
-    return true;
-  }
-
-  static int value_of(char c) {
-    if (c >= 'A' && c <= 'Z') return c - 'A';
-    if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-    if (c >= '0' && c <= '9') return c - '0' + 52;
-    return c == '+' ? 62 : c == '/' ? 63 : -1;
-  }
-
-  const PositionalFile& file_;
-  bool base64_;
-  std::uint64_t at_, end_;
-  std::string text_;
-  std::size_t used_ = 0;
-  std::array<std::byte, 3> three_{};
-  std::size_t next_ = 3;
-};
-
-bool read_number(ArrayBytes& bytes, const VtkArrayPlace& place, std::uint64_t& number) {
+bool VtkArrayBytes::read_number(std::uint64_t& number) {
   std::array<std::byte, 8> raw{};
-  const std::span<std::byte> own = std::span(raw).first(place.number_bytes);
-  if (!bytes.read(own.data(), own.size())) return false;
-  if (place.swapped) std::ranges::reverse(own);
+  const std::span<std::byte> own = std::span(raw).first(place_.number_bytes);
+  if (!packed_.read(own.data(), own.size())) return false;
+  if (place_.swapped) std::ranges::reverse(own);
   static_assert(std::endian::native == std::endian::little);
   number = std::bit_cast<std::uint64_t>(raw);
   return true;
 }
 
-/// What stands before a compressed array's blocks.
-struct BlockTable {
-  std::uint64_t block = 0, last = 0;  ///< bytes of each, unpacked
-  std::vector<std::uint64_t> packed;
-};
-
-/// None unless it fits an array of so many bytes in this file.
-std::optional<BlockTable> block_table(ArrayBytes& bytes, const VtkArrayPlace& place, std::uint64_t count,
-                                      std::uint64_t file_bytes) {
-  BlockTable table;
-  std::uint64_t blocks = 0;
-  if (!read_number(bytes, place, blocks) || !read_number(bytes, place, table.block) ||
-      !read_number(bytes, place, table.last))
-    return std::nullopt;
-  if (table.block == 0 || table.block > largest_block || table.last > table.block || blocks == 0 ||
-      blocks > file_bytes / place.number_bytes)
-    return std::nullopt;
-  if (table.last == 0) table.last = table.block;
-  if ((blocks - 1) * table.block + table.last != count) return std::nullopt;
-  table.packed.resize(blocks);
-  std::uint64_t all = 0;
-  for (std::uint64_t& packed : table.packed) {
-    if (!read_number(bytes, place, packed) || packed > largest_block + (largest_block >> 8)) return std::nullopt;
-    all += packed;
-  }
-  if (all > file_bytes) return std::nullopt;
-  return table;
+std::uint64_t VtkArrayBytes::size_of_block(std::size_t block) const {
+  return block + 1 < packed_blocks_.size() ? block_size_ : last_size_;
 }
 
-/// Hands on `count` bytes, counting them in `made`; false: they end or break before.
+/// What precedes a compressed array's blocks; false unless it fits the file.
+bool VtkArrayBytes::read_table(std::uint64_t file_bytes) {
+  std::uint64_t blocks = 0;
+  if (!read_number(blocks)) return false;
+  if (blocks == 0) return true;
+  if (!read_number(block_size_) || !read_number(last_size_) || blocks > file_bytes / place_.number_bytes) return false;
+  if (last_size_ == 0) last_size_ = block_size_;
+  if (block_size_ == 0 || last_size_ > block_size_ || __builtin_mul_overflow(blocks - 1, block_size_, &size_) ||
+      __builtin_add_overflow(size_, last_size_, &size_))
+    return false;
+  packed_blocks_.resize(blocks);
+  for (std::size_t k = 0; k < blocks; ++k) {
+    std::uint64_t& packed = packed_blocks_[k];
+    if (!read_number(packed) || packed > file_bytes || !can_unpack_to(place_.codec, packed, size_of_block(k)))
+      return false;
+    packed_size_ += packed;
+  }
+  return packed_size_ <= packed_.left();
+}
+
+/// The next blocks, together, to memory that they fill.
+bool VtkArrayBytes::unpack(std::size_t blocks, std::byte* to) {
+  std::vector<std::uint64_t> from(blocks + 1, 0);
+  for (std::size_t k = 0; k < blocks; ++k) from[k + 1] = from[k] + packed_blocks_[next_ + k];
+  const auto packed = std::make_unique_for_overwrite<std::byte[]>(from[blocks]);
+  if (!packed_.read(packed.get(), from[blocks])) return false;
+  std::atomic<bool> whole = true;
+  tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t k) {
+    if (!unpack_block(place_.codec, {packed.get() + from[k], packed_blocks_[next_ + k]},
+                      {to + k * block_size_, size_of_block(next_ + k)}))
+      whole = false;
+  });
+  next_ += blocks;
+  return whole;
+}
+
+bool VtkArrayBytes::read(std::byte* to, std::uint64_t count) {
+  if (place_.codec == VtkCodec::none) return packed_.read(to, count);
+  while (count > 0) {
+    if (block_at_ < block_.size()) {
+      const std::size_t part = std::min<std::uint64_t>(block_.size() - block_at_, count);
+      std::memcpy(to, block_.data() + block_at_, part);
+      block_at_ += part, to += part, count -= part;
+      continue;
+    }
+    const std::size_t left = packed_blocks_.size() - next_;
+    if (left == 0) return false;
+    if (const std::size_t whole = std::min<std::uint64_t>(left, count / block_size_); whole > 0) {
+      const std::uint64_t bytes = (whole - 1) * block_size_ + size_of_block(next_ + whole - 1);
+      if (!unpack(whole, to)) return false;
+      to += bytes, count -= bytes;
+      continue;
+    }
+    block_.resize(size_of_block(next_));
+    block_at_ = 0;
+    if (!unpack(1, block_.data())) return false;
+  }
+  return true;
+}
+
+namespace {
+
+/// Passes on `count` bytes, counting them in `made`; false: they end or break before.
 bool pass_on(const PositionalFile& file, const VtkArrayPlace& place, std::uint64_t count, std::uint64_t& made,
              const ByteSink& use) {
-  ArrayBytes bytes(file, place);
-  if (!place.compressed) {
-    std::uint64_t said = 0;
-    if (!read_number(bytes, place, said) || said != count) return false;
-    std::vector<std::byte> part(std::min<std::uint64_t>(256 << 10, count));
-    for (; made < count; made += part.size()) {
-      part.resize(std::min<std::uint64_t>(part.size(), count - made));
-      if (!bytes.read(part.data(), part.size())) return false;
-      use(part);
-    }
-    return true;
-  }
-  const auto table = block_table(bytes, place, count, file.size());
-  if (!table) return false;
-  std::vector<std::byte> packed, part;
-  for (std::size_t k = 0; k < table->packed.size(); ++k, made += part.size()) {
-    packed.resize(table->packed[k]);
-    part.resize(k + 1 < table->packed.size() ? table->block : table->last);
-    if (!bytes.read(packed.data(), packed.size()) || !inflate_block(packed, part)) return false;
+  auto array = VtkArrayBytes::open(file, place);
+  if (!array || array->size() != count || array->block_size() > largest_streamed_block) return false;
+  std::vector<std::byte> part(std::min<std::uint64_t>(std::max<std::uint64_t>(array->block_size(), 1 << 20), count));
+  for (; made < count; made += part.size()) {
+    part.resize(std::min<std::uint64_t>(part.size(), count - made));
+    if (!array->read(part.data(), part.size())) return false;
     use(part);
   }
   return true;
@@ -157,20 +127,11 @@ bool pass_on(const PositionalFile& file, const VtkArrayPlace& place, std::uint64
 
 std::optional<std::uint64_t> end_of_vtk_array(const PositionalFile& file, const VtkArrayPlace& place,
                                               std::uint64_t count) {
-  ArrayBytes bytes(file, place);
-  std::uint64_t packed = count;
-  if (place.compressed) {
-    const auto table = block_table(bytes, place, count, file.size());
-    if (!table) return std::nullopt;
-    packed = 0;
-    for (const std::uint64_t block : table->packed) packed += block;
-  } else {
-    std::uint64_t said = 0;
-    if (!read_number(bytes, place, said) || said != count) return std::nullopt;
-  }
-  const std::uint64_t text = place.base64 ? packed / 3 * 4 : packed;
-  if (text > file.size() - bytes.position()) return std::nullopt;
-  return bytes.position() + text;
+  const auto array = VtkArrayBytes::open(file, place);
+  if (!array || array->size() != count || array->block_size() > largest_streamed_block) return std::nullopt;
+  const std::uint64_t text = place.base64 ? array->packed_size() / 3 * 4 : array->packed_size();
+  if (text > file.size() - array->position()) return std::nullopt;
+  return array->position() + text;
 }
 
 std::optional<std::vector<std::byte>> small_vtk_array(const PositionalFile& file, const VtkArrayPlace& place,

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace tessera::io {
+
+/// How the blocks of a VTK XML file's arrays are compressed: each a zlib stream, an LZ4 block without a frame, or an xz
+/// stream.
+enum class VtkCodec : std::uint8_t { none, zlib, lz4, lzma };
+
+/// By the file's `compressor`; an empty one is none. Nothing for an unknown one.
+std::optional<VtkCodec> vtk_codec_named(std::string_view compressor);
+
+/// Whether so many bytes can come out of a block of `packed` bytes. No larger block is given memory.
+bool can_unpack_to(VtkCodec codec, std::uint64_t packed, std::uint64_t unpacked);
+
+/// One block into all of `out`. false: it is damaged, or holds more or fewer bytes.
+bool unpack_block(VtkCodec codec, std::span<const std::byte> packed, std::span<std::byte> out);
+
+}  // namespace tessera::io

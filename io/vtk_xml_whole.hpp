@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "io/positional_file.hpp"
+#include "io/vtk_xml_arrays.hpp"
+#include "io/vtk_xml_grid.hpp"
+#include "io/vtk_xml_numbers.hpp"
+
+namespace tessera::io {
+
+/// An array of all pieces, one after the other.
+struct VtkXmlWhole {
+  std::vector<VtkXmlSegment> segments;
+  int components = 1;
+  bool has_ghost_levels = false;  ///< of old files, which become bits of vtkGhostType
+};
+
+/// What of an open file its arrays need.
+struct VtkXmlOpened {
+  std::shared_ptr<const PositionalFile> file;
+  const VtkXmlGrid& grid;
+  const std::string& source;
+  std::shared_ptr<VtkXmlArrays> arrays;
+};
+
+/// Makes a whole array readable, of the type, name and mark of `as`. Throws Error(bad_input) if the file cannot have so
+/// many numbers.
+ForeignArray hold_whole(const VtkXmlOpened& of, VtkXmlWhole whole, ForeignArray as);
+
+/// The fields of points or of cells.
+struct VtkXmlFieldsOf {
+  VtkXmlFields VtkXmlPiece::*fields;
+  std::uint64_t VtkXmlPiece::*count;
+};
+inline constexpr VtkXmlFieldsOf fields_of_points{&VtkXmlPiece::point_fields, &VtkXmlPiece::points};
+inline constexpr VtkXmlFieldsOf fields_of_cells{&VtkXmlPiece::cell_fields, &VtkXmlPiece::cells};
+
+/// Whether all pieces that are not empty have the same fields. VTK's reader takes those of the first piece, and leaves
+/// what others lack as memory happened to be.
+bool fields_agree(const VtkXmlGrid& grid, const VtkXmlFieldsOf& kind);
+
+/// The fields but for those of text, each read once for its tally, on several threads. Throws Error(bad_input) for a
+/// damaged one.
+std::vector<ForeignArray> hold_fields(const VtkXmlOpened& of, const VtkXmlFieldsOf& kind);
+
+}  // namespace tessera::io

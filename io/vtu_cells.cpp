@@ -1,0 +1,121 @@
+#include "io/vtu_cells.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "io/large_vector.hpp"
+#include "io/vtk_xml_numbers.hpp"
+#include "io/vtu_faces.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+constexpr std::uint8_t tetrahedron = 10;
+/// VTK's numbers of hexahedra of any order: those of its first classes, Lagrange's and Bezier's.
+constexpr std::array<std::uint8_t, 3> higher_order_hexahedra = {67, 72, 79};
+
+bool is_higher_order_hexahedron(std::uint8_t type) { return std::ranges::count(higher_order_hexahedra, type) > 0; }
+
+void add_types(const PositionalFile& file, const VtkXmlSegment& types, const std::string& source, VtuCells& cells) {
+  stream_whole_numbers(file, types, 1, source, [&](std::span<const std::int64_t> part) {
+    for (const std::int64_t type : part) cells.types.push_back(static_cast<std::uint8_t>(type));
+  });
+}
+
+/// The file has where each cell ends.
+void add_offsets(const PositionalFile& file, const VtkXmlSegment& ends, const std::string& source, VtuCells& cells) {
+  const std::uint64_t first = cells.offsets.back();
+  std::int64_t last = 0;
+  stream_whole_numbers(file, ends, 1, source, [&](std::span<const std::int64_t> part) {
+    for (const std::int64_t end : part) {
+      if (end < last)
+        throw scene::bad_input(
+            fmt::format("{}: the offset of cell {} is {}, less than the one before, {}; the file is "
+                        "damaged, export it again",
+                        source, cells.offsets.size() - 1, end, last));
+      last = end;
+      cells.offsets.push_back(first + static_cast<std::uint64_t>(end));
+    }
+  });
+  cells.uses.push_back(static_cast<std::uint64_t>(last));
+}
+
+bool all_are_tets(const VtuCells& cells) {
+  if (cells.types.empty() || !std::ranges::all_of(cells.types, [](std::uint8_t t) { return t == tetrahedron; }))
+    return false;
+  for (std::size_t c = 0; c < cells.offsets.size(); ++c)
+    if (cells.offsets[c] != 4 * c) return false;
+  return true;
+}
+
+/// VTK 8 numbered the nodes of the last two of a hexahedron's edges the other way round.
+void reorder_edges(std::span<std::uint32_t> nodes) {
+  const auto order = static_cast<std::size_t>(std::lround(std::cbrt(static_cast<double>(nodes.size())))) - 1;
+  if (nodes.size() < 27 || (order + 1) * (order + 1) * (order + 1) != nodes.size()) return;
+  const std::size_t inner = order - 1, edge = 8 + 10 * inner;
+  std::swap_ranges(nodes.begin() + static_cast<std::ptrdiff_t>(edge),
+                   nodes.begin() + static_cast<std::ptrdiff_t>(edge + inner),
+                   nodes.begin() + static_cast<std::ptrdiff_t>(edge + inner));
+}
+
+void add_reordered(const PositionalFile& file, const VtkXmlGrid& grid, const std::string& source, VtuCells& cells) {
+  std::uint64_t first = 0;
+  reserve_large(cells.connectivity, cells.offsets.back());
+  for (std::size_t p = 0; p < grid.pieces.size(); first += grid.pieces[p++].points) {
+    if (cells.uses[p] == 0) continue;
+    const VtkXmlSegment uses{topology_of(grid, p, "connectivity", source), cells.uses[p]};
+    stream_whole_numbers(file, uses, 1, source, [&](std::span<const std::int64_t> part) {
+      for (const std::int64_t point : part) cells.connectivity.push_back(point_number(point, first));
+    });
+  }
+  for (std::size_t c = 0; c < cells.types.size(); ++c)
+    if (is_higher_order_hexahedron(cells.types[c]))
+      reorder_edges(std::span(cells.connectivity).subspan(cells.offsets[c], cells.offsets[c + 1] - cells.offsets[c]));
+}
+
+}  // namespace
+
+const VtkXmlArray& topology_of(const VtkXmlGrid& grid, std::size_t piece, const char* name, const std::string& source) {
+  const VtkXmlArray* const array = grid.pieces[piece].find(name);
+  if (array == nullptr || array->components != 1)
+    throw scene::bad_input(
+        fmt::format("{}: piece {} of it has no array '{}' of single numbers for its cells; the file "
+                    "is damaged, export it again",
+                    source, piece, name));
+  return *array;
+}
+
+VtuCells read_vtu_cells(const PositionalFile& file, const VtkXmlGrid& grid, const std::string& source) {
+  VtuCells cells;
+  cells.offsets.push_back(0);
+  std::uint64_t count = 0;
+  for (std::size_t p = 0; p < grid.pieces.size(); ++p) {
+    const std::uint64_t of_piece = grid.pieces[p].cells;
+    count += of_piece;
+    for (const char* name : {"types", "offsets"})
+      if (of_piece > 0) require_numbers(file, {topology_of(grid, p, name, source), of_piece}, source);
+  }
+  reserve_large(cells.types, count);
+  reserve_large(cells.offsets, count + 1);
+  for (std::size_t p = 0; p < grid.pieces.size(); ++p) {
+    if (grid.pieces[p].cells == 0) {
+      cells.uses.push_back(0);
+      continue;
+    }
+    add_types(file, {topology_of(grid, p, "types", source), grid.pieces[p].cells}, source, cells);
+    add_offsets(file, {topology_of(grid, p, "offsets", source), grid.pieces[p].cells}, source, cells);
+    require_numbers(file, {topology_of(grid, p, "connectivity", source), cells.uses.back()}, source);
+  }
+  cells.are_tets = all_are_tets(cells);
+  add_vtu_faces(file, grid, source, cells);
+  const bool is_old = grid.major < 2 || (grid.major == 2 && grid.minor < 1);
+  if (is_old && std::ranges::any_of(cells.types, is_higher_order_hexahedron)) add_reordered(file, grid, source, cells);
+  return cells;
+}
+
+}  // namespace tessera::io

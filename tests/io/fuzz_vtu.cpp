@@ -1,0 +1,67 @@
+// Any bytes in a VTK XML file of one data set are blocks of cells whose indices hold and whose fields can be read, or
+// are left to VTK's reader, or are refused in one line.
+#include <tbb/global_control.h>
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "fuzz_check.hpp"
+#include "io/vtk_xml_file.hpp"
+
+namespace {
+
+/// The reader takes files.
+class FuzzFile {
+ public:
+  FuzzFile() {
+    const std::filesystem::path memory = "/dev/shm";
+    const auto folder = std::filesystem::exists(memory) ? memory : std::filesystem::temp_directory_path();
+    path = folder / ("tessera_fuzz_" + std::to_string(getpid()) + ".vtu");
+  }
+  ~FuzzFile() { std::filesystem::remove(path); }
+  void write(const std::uint8_t* data, std::size_t size) const {
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+  }
+  std::filesystem::path path;
+};
+
+void check(const tessera::io::CellBlock& block) {
+  using tessera::test::require;
+  if (!block.types.empty()) {
+    require(block.offsets.size() == block.types.size() + 1);
+    require(block.offsets.back() == block.connectivity.size());
+    for (std::size_t c = 0; c < block.types.size(); ++c) require(block.offsets[c] <= block.offsets[c + 1]);
+  }
+  for (const std::uint32_t v : block.connectivity) require(v < block.positions.size());
+  for (const auto& tet : block.tets)
+    for (const std::uint32_t v : tet) require(v < block.positions.size());
+  for (const tessera::io::BlockField& field : block.fields) {
+    const bool is_point = field.association == tessera::scene::Association::point;
+    require(field.tuples == (is_point ? block.positions.size() : block.cell_count()));
+    std::vector<double> values(field.tuples);
+    field.read(0, 0, values);
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace tessera;
+  static const FuzzFile file;
+  // Inputs are small: threads would only wait for each other.
+  static const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  file.write(data, size);
+  test::parse_or_refuse([&] {
+    const auto opened = io::open_vtk_xml(file.path);
+    if (!opened) return;
+    std::vector<std::string> notes;
+    for (const io::CellBlock& block : io::blocks_of(*opened, notes, io::GridsAre::hexahedra)) check(block);
+  });
+  return 0;
+}

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tessera::test {
+
+/// How the arrays of a .vtu are stored.
+struct VtuStorage {
+  enum class Coding : std::uint8_t { ascii, inline_base64, appended_base64, appended_raw };
+  enum class Codec : std::uint8_t { none, zlib, lz4, lzma };
+
+  Coding coding = Coding::ascii;
+  Codec codec = Codec::none;
+  bool wide_numbers = false;  ///< header_type UInt64
+  bool big_endian = false;
+  std::size_t block = 40;   ///< bytes of a compressed block; 0: the whole array
+  bool split_text = false;  ///< base64: the number of bytes is a text by itself
+  std::size_t line = 0;     ///< base64: characters of a line; 0: all in one
+  std::string version = "1.0";
+};
+
+/// An array and its numbers, as many as a double holds.
+struct VtuArray {
+  std::string type, name;
+  int components = 1;
+  std::vector<double> numbers;
+};
+
+struct VtuPiece {
+  std::size_t points = 0, cells = 0;
+  std::vector<VtuArray> point_data, cell_data, coordinates, topology;
+  std::string point_attributes{}, cell_attributes{};  ///< of the elements, as `Scalars="f"`
+};
+
+/// The text of a file.
+std::string vtu_file_text(const VtuStorage& storage, const std::vector<VtuPiece>& pieces);
+
+/// Two cubes of 12 points, the second of wedges: a hexahedron and two wedges with the point field "f", the vectors
+/// "v", the cell field "c" and points of `point_type`, indices of `index_type`.
+VtuPiece sample_piece(const std::string& point_type = "Float64", const std::string& index_type = "Int64",
+                      const std::string& cell_type = "UInt8");
+
+/// All ways to store: four codings, four codecs (of ascii none), two widths, two byte orders.
+std::vector<VtuStorage> all_storages();
+
+}  // namespace tessera::test
