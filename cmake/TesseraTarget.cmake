@@ -4,7 +4,8 @@
 # which the links do not allow fails to compile.
 
 add_library(tessera_warnings INTERFACE)
-target_compile_options(tessera_warnings INTERFACE -Wall -Wextra -Werror)
+# -pthread: MPI's targets have it, and all that share precompiled headers must agree.
+target_compile_options(tessera_warnings INTERFACE -Wall -Wextra -Werror -pthread)
 if(TESSERA_SANITIZE)
   target_compile_options(tessera_warnings INTERFACE -fsanitize=${TESSERA_SANITIZE} -fno-sanitize-recover=all
                                                     -fno-omit-frame-pointer)

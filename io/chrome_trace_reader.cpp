@@ -31,9 +31,9 @@ struct Event {
 };
 
 /// Takes the parser's events and makes spans of them.
-class Reader final : public nlohmann::json_sax<nlohmann::json> {
+class EventReader final : public nlohmann::json_sax<nlohmann::json> {
  public:
-  Reader(std::string_view text, const std::string& source) : text_(text), source_(source) {}
+  EventReader(std::string_view text, const std::string& source) : text_(text), source_(source) {}
 
   [[nodiscard]] TraceFile take() && {
     if (file_.spans.empty())
@@ -214,7 +214,7 @@ class Reader final : public nlohmann::json_sax<nlohmann::json> {
 }  // namespace
 
 TraceFile parse_chrome_trace(std::string_view text, const std::string& source) {
-  Reader reader(text, source);
+  EventReader reader(text, source);
   nlohmann::json::sax_parse(text.begin(), text.end(), &reader);
   return std::move(reader).take();
 }

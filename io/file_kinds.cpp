@@ -19,11 +19,11 @@ constexpr auto unlisted = FormatRow::Listed::no;
 
 /// A file is of the first row that it begins as; rows of one beginning are in the order in which they are asked.
 constexpr std::array rows = {
-    FormatRow{FileKind::vtk_xml, "VTK XML unstructured grid", ".vtu .pvtu", FileHolds::mesh, Needs::vtk,
+    FormatRow{FileKind::vtk_xml, "VTK XML unstructured grid", ".vtu .pvtu", FileHolds::mesh, Needs::nothing,
               "pieces appended, ghost cells dropped; ranks read pieces", begins_as_vtu},
-    FormatRow{FileKind::vtk_xml, "VTK XML curvilinear grid", ".vts .pvts", FileHolds::mesh, Needs::vtk, pieces,
+    FormatRow{FileKind::vtk_xml, "VTK XML curvilinear grid", ".vts .pvts", FileHolds::mesh, Needs::nothing, pieces,
               begins_as_vts},
-    FormatRow{FileKind::vtk_xml, "VTK XML multi-block", ".vtm .vtmb .vtpc .vtpd", FileHolds::mesh, Needs::vtk,
+    FormatRow{FileKind::vtk_xml, "VTK XML multi-block", ".vtm .vtmb .vtpc .vtpd", FileHolds::mesh, Needs::nothing,
               "all volumes among them; surfaces left out", begins_as_vtk_list},
     FormatRow{FileKind::amr, "VTK XML AMR", ".vth .vthb", FileHolds::mesh, Needs::vtk,
               "overlapping or not; finest cells; `smooth` continuous across levels", begins_as_vtk_amr, "amr_list"},
@@ -83,10 +83,10 @@ constexpr std::array rows = {
     FormatRow{FileKind::ply, "PLY", ".ply", FileHolds::surface, Needs::tetgen, filled, begins_as_ply},
     FormatRow{FileKind::tetgen_surface, "TetGen surface", ".poly .smesh", FileHolds::surface, Needs::tetgen, filled,
               nullptr},
-    FormatRow{FileKind::vtk_grid, "VTK XML image data", ".vti .pvti", FileHolds::grid, Needs::vtk, pieces,
+    FormatRow{FileKind::vtk_grid, "VTK XML image data", ".vti .pvti", FileHolds::grid, Needs::nothing, pieces,
               begins_as_vti},
-    FormatRow{FileKind::vtk_grid, "VTK XML rectilinear grid", ".vtr .pvtr", FileHolds::grid_or_mesh, Needs::vtk, pieces,
-              begins_as_vtr},
+    FormatRow{FileKind::vtk_grid, "VTK XML rectilinear grid", ".vtr .pvtr", FileHolds::grid_or_mesh, Needs::nothing,
+              pieces, begins_as_vtr},
     FormatRow{FileKind::vtk_grid, "legacy VTK structured points or rectilinear grid", ".vtk", FileHolds::grid_or_mesh,
               Needs::vtk, "text or binary", begins_as_legacy_grid},
     FormatRow{FileKind::netcdf, "NetCDF grid", ".nc .nc4 .cdf", FileHolds::grid_or_mesh, Needs::vtk,

@@ -21,9 +21,9 @@ namespace {
 
 using nlohmann::json;
 
-class Reader {
+class MapReader {
  public:
-  Reader(const json& map, const std::string& source) : map_(map), source_(source) {}
+  MapReader(const json& map, const std::string& source) : map_(map), source_(source) {}
 
   [[nodiscard]] scene::Error fault(const std::string& what) const { return scene::bad_input(source_ + ": " + what); }
 
@@ -132,7 +132,7 @@ auto round_middle(const std::vector<Point>& points) {
 }
 
 /// Sets the space; returns a remark for the name, or "".
-std::string set_color_space(const std::string& name, const Reader& reader, colormaps::TransferCurves& curves) {
+std::string set_color_space(const std::string& name, const MapReader& reader, colormaps::TransferCurves& curves) {
   curves.hue_wraps = false;
   if (const json* wrap = reader.find("HSVWrap"))
     curves.hue_wraps = wrap->is_boolean() ? wrap->get<bool>() : wrap->is_number() && wrap->get<double>() != 0;
@@ -158,7 +158,7 @@ std::string set_color_space(const std::string& name, const Reader& reader, color
 }
 
 /// The length over which opacities hold, and where it comes from.
-double unit_distance(const Reader& reader, const colormaps::TransferFunctionOptions& options, std::string& source) {
+double unit_distance(const MapReader& reader, const colormaps::TransferFunctionOptions& options, std::string& source) {
   source = "default";
   double distance = options.default_unit_distance;
   if (const json* in_file = reader.find("ScalarOpacityUnitDistance")) {
@@ -189,7 +189,7 @@ colormaps::LoadedTransferFunction color_map_of(const json& root, const std::stri
   const json& map = root.is_array() ? root.front() : root;
   if (!map.is_object())
     throw scene::bad_input(source + ": is not a colour map; a map is an object with RGBPoints, or a list of such");
-  const Reader reader(map, source);
+  const MapReader reader(map, source);
 
   std::vector<std::string> remarks;
   if (root.is_array() && root.size() > 1) remarks.push_back(fmt::format("first of {} maps", root.size()));

@@ -78,10 +78,14 @@ scene::Error missing_reader(Reader reader, const std::filesystem::path& file) {
   const FormatRow* const row = format_of(file);
   const std::string_view format = row != nullptr ? row->name : "such";
   const ReaderProgram& program = reader_program(reader);
-  return scene::bad_input(fmt::format(
-      "{}: {} files are {} by {}, which is not installed; install it (scripts/readers.sh of the sources builds it), or "
-      "{}",
-      file.string(), format, program.does, program.program, other_remedy(reader, row)));
+  // Formats that this library reads itself need a reader for what is rare in them.
+  const char* const words = row != nullptr && !needs_reader(row->needs, reader)
+                                ? "{}: this {} file has parts that are {} by {} alone"
+                                : "{}: {} files are {} by {}";
+  return scene::bad_input(
+      fmt::format(fmt::runtime(words), file.string(), format, program.does, program.program) +
+      fmt::format(", which is not installed; install it (scripts/readers.sh of the sources builds it), or {}",
+                  other_remedy(reader, row)));
 }
 
 bool needs_reader(Needs needs, Reader reader) {
