@@ -21,7 +21,8 @@ struct ReadProgress {
 /// Hears of it, for ReadOptions::progress. Called by the thread that opens the file, while another program's format is
 /// read about ten times a second, then for each two megabytes or piece that comes, so that it has to be quick. Not
 /// called for files that are read in less than a tenth of a second, nor for formats whose library says nothing of how
-/// far it is, nor for those that Tessera parses itself. It must not throw, and not call the library.
+/// far it is, nor for those that Tessera parses itself, of VTK's XML files for `copying` alone. It must not throw, and
+/// not call the library.
 using ReadProgressFunction = std::function<void(const ReadProgress&)>;
 
 }  // namespace tessera

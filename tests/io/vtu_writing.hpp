@@ -31,7 +31,7 @@ struct VtuArray {
 
 struct VtuPiece {
   std::size_t points = 0, cells = 0;
-  std::vector<VtuArray> point_data, cell_data, coordinates, topology;
+  std::vector<VtuArray> point_data{}, cell_data{}, coordinates{}, topology{};
   std::string point_attributes{}, cell_attributes{};  ///< of the elements, as `Scalars="f"`
 };
 
