@@ -186,7 +186,8 @@ TEST_F(StreamedVtk, ThatAreDamagedAreRefusedInOneLine) {
   const auto refused = [&](const std::string& name, const std::string& content) {
     const auto file = folder.write(name, content);
     SCOPED_TRACE(name + " of " + std::to_string(content.size()));
-    test::expect_bad_input([&] { open_volume(file, streaming()); }, {name + ": ", "write it anew"});
+    test::expect_bad_input([&] { open_volume(file, streaming()); },
+                           {name + ": ", "; the file is truncated or damaged"});
     EXPECT_TRUE(scratch.names().empty());
   };
   for (const VtkCase& c : {VtkCase{true, false, false, false, false}, VtkCase{true, false, true, false, false},
