@@ -1,5 +1,6 @@
 #include "analysis/canvas.hpp"
 
+#include <cairo-svg.h>
 #include <cairo.h>
 #include <fmt/format.h>
 
