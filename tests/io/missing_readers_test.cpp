@@ -37,6 +37,8 @@ std::string vtk_legacy(const std::string& type) {
 /// What a file of a format begins with, as far as this library looks before its reader is asked; by the format's name.
 std::map<std::string, std::string> beginnings() {
   using namespace std::string_literals;
+  std::string dicom(128, '\0');
+  dicom += "DICM";
   return {{"VTK XML AMR", vtk_xml("vtkOverlappingAMR", "<DataSet index=\"0\" file=\"block.vti\"/>")},
           {"VTK XML HyperTreeGrid", vtk_xml("HyperTreeGrid")},
           {"Enzo", "GridRank = 3\n"},
@@ -66,7 +68,7 @@ std::map<std::string, std::string> beginnings() {
           {"legacy VTK structured points or rectilinear grid", vtk_legacy("STRUCTURED_POINTS")},
           {"NetCDF grid", "CDF\1"s},
           {"MINC", "CDF\1 xspace yspace zspace"s},
-          {"DICOM", std::string(128, '\0') + "DICM"}};
+          {"DICOM", dicom}};
 }
 
 class MissingReaders : public ::testing::Test {
