@@ -26,7 +26,7 @@ struct TraceRun {
   int threads = 0;                      ///< a rank
   std::string exchange;                 ///< segments, runs
   std::string rasterizer, integrator;   ///< as the command line names them
-  std::string commit, build;            ///< of the program: tessera/version.hpp
+  std::string commit{}, build{};        ///< of the program: tessera/version.hpp
   bool operator==(const TraceRun&) const = default;
 };
 
