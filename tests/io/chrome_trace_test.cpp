@@ -86,7 +86,8 @@ TEST(ChromeTrace, OneFileHoldsAllRanksAndWhatWasRun) {
   const std::array<std::string, 4> events = {chrome_trace_events(a, 0, "rank 0"), "", "[]",
                                              chrome_trace_events(b, 3, "rank 3 compositor")};
   const test::TemporaryFolder folder;
-  TraceRun run{"1.2.3", "wake.vtu", 516096, 8, 640, 480, 4, 3, 1, 2, "runs", "planes", "exact", "0123abcd", "GNU 12.2.0"};
+  TraceRun run{"1.2.3", "wake.vtu", 516096, 8,        640,     480,        4,           3,
+               1,       2,          "runs", "planes", "exact", "0123abcd", "GNU 12.2.0"};
   write_chrome_trace(events, run, folder / "trace.json");
   const auto root = json::parse(test::contents(folder / "trace.json"));
   std::set<int> ranks;
