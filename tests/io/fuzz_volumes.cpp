@@ -1,44 +1,21 @@
 // Any bytes in a file of any volume format of our own reading (NRRD, NIfTI, MetaImage, bricks, plain .vti and .vtr, by
 // what they begin with) are a volume whose samples can be read and lie in its range, or are refused in one line; held
 // in memory or not makes no difference.
-#include <unistd.h>
-
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include "fuzz_check.hpp"
+#include "fuzz_file.hpp"
 #include "io/volume_formats.hpp"
 #include "io/volume_reader.hpp"
 
-namespace {
-
-/// Readers take files. The name's end counts where the beginning says nothing.
-class FuzzFile {
- public:
-  FuzzFile() {
-    const std::filesystem::path memory = "/dev/shm";
-    const auto folder = std::filesystem::exists(memory) ? memory : std::filesystem::temp_directory_path();
-    path = folder / ("tessera_fuzz_" + std::to_string(getpid()) + ".nii");
-  }
-  ~FuzzFile() { std::filesystem::remove(path); }
-  void write(const std::uint8_t* data, std::size_t size) const {
-    std::ofstream(path, std::ios::binary)
-        .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
-  }
-  std::filesystem::path path;
-};
-
-}  // namespace
-
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tessera;
-  static const FuzzFile file;
+  static const test::FuzzFile file(".nii");
   file.write(data, size);
   std::vector<double> in_memory;
   test::parse_or_refuse([&] {

@@ -1,35 +1,17 @@
 // Any bytes in a VTK XML file of one data set are blocks of cells whose indices hold and whose fields can be read, or
 // are left to VTK's reader, or are refused in one line.
 #include <tbb/global_control.h>
-#include <unistd.h>
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include "fuzz_check.hpp"
+#include "fuzz_file.hpp"
 #include "io/vtk_xml_file.hpp"
 
 namespace {
-
-/// The reader takes files.
-class FuzzFile {
- public:
-  FuzzFile() {
-    const std::filesystem::path memory = "/dev/shm";
-    const auto folder = std::filesystem::exists(memory) ? memory : std::filesystem::temp_directory_path();
-    path = folder / ("tessera_fuzz_" + std::to_string(getpid()) + ".vtu");
-  }
-  ~FuzzFile() { std::filesystem::remove(path); }
-  void write(const std::uint8_t* data, std::size_t size) const {
-    std::ofstream(path, std::ios::binary)
-        .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
-  }
-  std::filesystem::path path;
-};
 
 void check(const tessera::io::CellBlock& block) {
   using tessera::test::require;
@@ -53,7 +35,7 @@ void check(const tessera::io::CellBlock& block) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tessera;
-  static const FuzzFile file;
+  static const test::FuzzFile file(".vtu");
   // Inputs are small: threads would only wait for each other.
   static const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   file.write(data, size);
