@@ -59,7 +59,7 @@ build_examples() {  # build_examples FOLDER PREFIX [OPTION...]
     fi
     [[ $(<"$SCRATCH/log") == *'needs Cairo'* ]] || failed "$folder/annotated_picture: $(cat "$SCRATCH/log")"
   fi
-  if [ "$VTK" = 1 ]; then # one that the helper program reads, which has to be found from wherever the library lies
+  if [ "$VTK" = 1 ]; then # one that a reader program reads, which has to be found from wherever the library lies
     { printf '%s\n' '# vtk DataFile Version 3.0' grid ASCII 'DATASET STRUCTURED_POINTS' 'DIMENSIONS 9 9 9' 'ORIGIN 0 0 0' \
       'SPACING 1 1 1' 'POINT_DATA 729' 'SCALARS s float 1' 'LOOKUP_TABLE default'; seq 729; } >"$SCRATCH/grid.vtk"
     quietly "$folder/tiles_and_stop" "$SCRATCH/grid.vtk"
@@ -71,7 +71,7 @@ build_examples() {  # build_examples FOLDER PREFIX [OPTION...]
 
 if [ "$SHARED" = 1 ]; then
   build_examples shared "$first"
-  [[ $(readelf -d "$SCRATCH/shared/mesh_from_arrays") == *"[libtessera.so.${VERSION%%.*}]"* ]] || failed "it is not linked shared"
+  [[ $(readelf -d "$SCRATCH/shared/mesh_from_arrays") == *"[libtessera.so.${VERSION%.*}]"* ]] || failed "it is not linked shared"
 fi
 if [ "$STATIC" = 1 ]; then
   build_examples static "$first" -DTESSERA_EXAMPLES_STATIC=ON
