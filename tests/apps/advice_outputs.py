@@ -119,11 +119,12 @@ ROWS = [
         "render m.vtu -o a.png --size 65536x1 --threads 2",
     ),
     row(
-        "info m.vtu",
+        "info a.vtk",
         "memory ran out; use a larger machine or a part of the mesh",
-        "info m.vtu",
+        "info a.vtk",
+        {"a.vtk": LEGACY},
+        {"a.vtk": LEGACY},
         limits="trap '' XFSZ; ulimit -f 0",
-        after={"x": ""},
     ),
     row(
         "info m.vtu.gz",
