@@ -1,6 +1,6 @@
 # Writes OUTPUT, which defines TESSERA_COMMIT, if the commit of SOURCE has changed since: run at each build, so that a
 # program states the commit it was built from and nothing is compiled again while that stays the same.
-set(commit unknown) # sources outside a repository, or no git
+set(commit unknown) # sources outside a repository
 find_program(git git)
 if(git)
   # safe.directory: the sources may belong to another user, as in containers.
@@ -9,6 +9,20 @@ if(git)
   # A repository around an unpacked archive is not that of the sources.
   if(result EQUAL 0 AND EXISTS ${SOURCE}/.git)
     set(commit ${found})
+  endif()
+elseif(EXISTS ${SOURCE}/.git/HEAD) # a machine without git: whether the sources differ is not known
+  file(STRINGS ${SOURCE}/.git/HEAD found LIMIT_COUNT 1)
+  if(found MATCHES "^ref: (.+)$")
+    set(branch ${CMAKE_MATCH_1})
+    set(found)
+    if(EXISTS ${SOURCE}/.git/${branch})
+      file(STRINGS ${SOURCE}/.git/${branch} found LIMIT_COUNT 1)
+    elseif(EXISTS ${SOURCE}/.git/packed-refs)
+      file(STRINGS ${SOURCE}/.git/packed-refs found LIMIT_COUNT 1 REGEX " ${branch}$")
+    endif()
+  endif()
+  if(found MATCHES "^[0-9a-f]+")
+    string(SUBSTRING ${found} 0 8 commit)
   endif()
 endif()
 file(CONFIGURE OUTPUT ${OUTPUT} CONTENT "#define TESSERA_COMMIT \"${commit}\"\n")
