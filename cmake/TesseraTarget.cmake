@@ -19,7 +19,7 @@ endif()
 # For code whose speed no user notices, which compiles in two thirds of the time: tests, the command line, reports.
 add_library(tessera_light INTERFACE)
 target_compile_options(tessera_light INTERFACE $<$<CONFIG:Release>:-O1>)
-# For readers and writers, whose loops -O3 makes larger and not faster.
+# For readers and writers: a fifth less time to compile than with -O3.
 add_library(tessera_io_options INTERFACE)
 target_compile_options(tessera_io_options INTERFACE $<$<CONFIG:Release>:-O2>)
 # For the tests' own code. Linked after tessera_warnings, whose options it takes back.
