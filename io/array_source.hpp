@@ -23,8 +23,8 @@ class ArraySource {
   enum class Then : std::uint8_t { dropped, kept };
 
   /// Passes all tuples of an array to `use`, in their order, whole tuples at a time. `use` has to copy the bytes before
-  /// it looks at them: another process may change them. Afterwards the array cannot be read again, unless it is to be
-  /// kept. Throws Error(bad_input) whose line begins with `subject`.
+  /// it looks at them: another process may change them. Afterwards the array can be read again only with
+  /// Then::kept. Throws Error(bad_input) whose line begins with `subject`.
   virtual void stream(const ForeignArray& array, const std::string& subject,
                       const std::function<void(std::span<const std::byte> tuples)>& use, Then then) = 0;
   void stream(const ForeignArray& array, const std::string& subject,

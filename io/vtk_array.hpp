@@ -49,7 +49,7 @@ class VtkArrayBytes {
   [[nodiscard]] std::uint64_t position() const { return packed_.position(); }
   [[nodiscard]] std::uint64_t packed_size() const { return packed_size_; }
 
-  /// The next `count` bytes, of which there are no more than size() together; false: they are damaged.
+  /// The next `count` bytes, at most size() in all; false: they are damaged.
   [[nodiscard]] bool read(std::byte* to, std::uint64_t count);
 
  private:

@@ -12,7 +12,7 @@ namespace tessera::io {
 /// stream.
 enum class VtkCodec : std::uint8_t { none, zlib, lz4, lzma };
 
-/// By the file's `compressor`; an empty one is none. Nothing for an unknown one.
+/// The codec of a file's `compressor` attribute: VtkCodec::none if it is empty, no value if it is unknown.
 std::optional<VtkCodec> vtk_codec_named(std::string_view compressor);
 
 /// Whether so many bytes can come out of a block of `packed` bytes. No larger block is given memory.

@@ -46,7 +46,7 @@ const char* read_float(const char* at, const char* end, T& number) {
   return std::isfinite(number) ? behind : nullptr;
 }
 
-/// Behind the number; null if there is none.
+/// The end of the number; null without a number.
 template <class T>
 const char* read_word(const char* at, const char* end, T& number) {
   if (at + 1 < end && *at == '+' && at[1] != '-') ++at;

@@ -51,7 +51,7 @@ struct VtkXmlGrid {
 };
 
 /// Nothing if the file has what this reader does not know: time steps, arrays without a name or two of one, a version
-/// or type to come. Throws Error(bad_input) of `source` if it is no such file, or damaged.
+/// or type to come. Throws Error(bad_input) of `source` if it is another kind of file, or damaged.
 std::optional<VtkXmlGrid> read_vtk_xml_grid(const PositionalFile& file, const std::string& source);
 
 /// The type of numbers that a VTK XML file names so.

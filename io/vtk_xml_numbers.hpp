@@ -25,7 +25,7 @@ struct VtkXmlSegment {
 /// without unpacking it. To be called before memory is taken for them.
 void require_numbers(const PositionalFile& file, const VtkXmlSegment& segment, const std::string& source);
 
-/// Passes a segment's numbers to `use` in their order, in this machine's byte order, `together` of them never parted.
+/// Passes a segment's numbers to `use` in their order, in this machine's byte order, in multiples of `together`.
 /// Throws Error(bad_input) of `source` if they are damaged or too few.
 void stream_numbers(const PositionalFile& file, const VtkXmlSegment& segment, std::size_t together,
                     const std::string& source, const ByteSink& use);

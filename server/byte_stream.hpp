@@ -19,11 +19,11 @@ class context;
 
 namespace tessera::server {
 
-/// The bytes of one connection, plain or through TLS, whose operations take functions of one type: Boost.Beast's HTTP
-/// and WebSocket are templates of a gigabyte, which ByteStream instantiates once for both.
+/// One connection's stream of bytes, plain or through TLS. All operations take handlers of one type, so that ByteStream
+/// instantiates the large templates of Boost.Beast (HTTP, WebSocket) once for both.
 ///
-/// Threads  of the network's thread alone, on which `done` is called, never before the function returns.
-/// Limits   tcp() has the timer of the operations under way.
+/// Threads  used on the network's thread alone; `done` is called there, after the function has returned.
+/// Limits   tcp() has the timer of the pending operations.
 class Bytes {
  public:
   using Done = std::function<void(boost::system::error_code, std::size_t)>;
@@ -38,7 +38,7 @@ class Bytes {
   virtual ~Bytes() = default;
 
   virtual boost::beast::tcp_stream& tcp() = 0;
-  /// Before all else.
+  /// Must be the first operation; a plain connection completes at once.
   virtual void handshake(std::function<void(boost::system::error_code)> done) = 0;
   virtual void read_some(const ReadPieces& pieces, Done done) = 0;
   virtual void write_some(const WritePieces& pieces, Done done) = 0;

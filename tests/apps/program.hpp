@@ -79,7 +79,7 @@ class Running {
   [[nodiscard]] std::string errors() const { return contents(folder_ / "err"); }
   /// Its end. One that does not come is a failure, and the command is killed.
   Outcome wait();
-  /// The same of a launcher that may hang, which is no failure.
+  /// The same for a launcher that may hang, which is not a failure.
   Outcome wait_or_kill();
 
  private:
