@@ -17,7 +17,7 @@ namespace {
 
 enum class Format { exr, png, jpeg, tiff, pfm, unknown };
 
-Format format_of(const std::filesystem::path& file) {
+Format image_format_of(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
   std::ranges::transform(extension, extension.begin(), [](unsigned char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : static_cast<char>(c);
@@ -98,7 +98,7 @@ std::vector<std::byte> checked_jpeg_bytes(const scene::Image& image, const Image
 
 void write_image(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
   check(image, file, options);
-  switch (format_of(file)) {
+  switch (image_format_of(file)) {
     case Format::exr:
       return write_exr(image, file, options);
     case Format::png:
@@ -120,7 +120,7 @@ scene::Image read_image(const std::filesystem::path& file) {
   if (!std::filesystem::exists(status)) throw missing_file(file);
   if (std::filesystem::is_directory(status)) throw scene::bad_input(file.string() + ": is a folder; name a file in it");
   try {
-    switch (format_of(file)) {
+    switch (image_format_of(file)) {
       case Format::exr:
         return read_exr(file);
       case Format::pfm:
@@ -134,10 +134,10 @@ scene::Image read_image(const std::filesystem::path& file) {
 }
 
 void check_image_path(const std::filesystem::path& file) {
-  if (format_of(file) == Format::unknown) throw unknown_extension(file);
-  if (format_of(file) == Format::jpeg && !has_jpeg())
+  if (image_format_of(file) == Format::unknown) throw unknown_extension(file);
+  if (image_format_of(file) == Format::jpeg && !has_jpeg())
     throw scene::bad_input(file.string() + ": this build leaves .jpg out; build with TESSERA_JPEG=ON, or write .png");
-  if (format_of(file) == Format::tiff && !has_tiff())
+  if (image_format_of(file) == Format::tiff && !has_tiff())
     throw scene::bad_input(file.string() + ": this build leaves .tif out; build with TESSERA_TIFF=ON, or write .png");
   // The only test that holds for every file system and user: begin such a file, and leave it.
   check_writable(file);

@@ -6,7 +6,8 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/install_packages.sh build
-options=(-DTESSERA_TESTS=OFF)
+# Kernels for this machine alone: a minute less.
+options=(-DTESSERA_TESTS=OFF -DTESSERA_INSTRUCTION_SETS=native)
 mpi=OFF
 if command -v mpicc >/dev/null; then mpi=ON; fi
 if [ ! -f build/demo/CMakeCache.txt ]; then options+=(-DTESSERA_READERS=OFF); fi # else as scripts/readers.sh left it

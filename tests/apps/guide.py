@@ -2,12 +2,13 @@
 """Every command of docs/GUIDE.md and docs/REFERENCE.md does what it says: it ends with status 0, on data made here.
 
 Commands are the indented lines of these pages that begin with a program's name (and Python between fences), run as they
-stand by a shell, page after page in one folder. Only the mesh that they begin with is a small one, and charts get
-little time. What needs what is not here is left out, with the reason. Says each that fails; exit status 1 if one does.
+stand by a shell, page after page in one folder. Only the mesh that they begin with and the pictures are small, and
+charts get little time. What needs what is not here is left out, with the reason. Says each that fails; exit status 1 if
+one does.
 
-    guide.py --tessera PROGRAM --source SOURCE_TREE [--whole | --small] [--without-mpi] [--page GUIDE.md]
+    guide.py --tessera PROGRAM --source SOURCE_TREE [--whole] [--without-mpi] [--page GUIDE.md]
 
---whole makes that mesh and those charts as the pages say; --small makes pictures small too, for builds that are slow.
+--whole makes mesh, pictures and charts as the pages say.
 """
 
 import argparse
@@ -80,11 +81,11 @@ def commands(page: Path):
 
 def made_shorter(text: str):
     text = text.replace("generate demo wake.vtu", "generate demo wake.vtu resolution=0.25")
-    return re.sub(r"--budget-seconds \d+", "--budget-seconds 1", text)
-
-
-def with_small_pictures(text: str):
-    return text if "--size " in text else text.replace("tessera render ", "tessera render --size 64x48 ")
+    text = re.sub(r"\bn=256", "n=64", text)
+    text = re.sub(r"--budget-seconds \d+", "--budget-seconds 1", text)
+    if "--size " not in text:
+        return text.replace("tessera render ", "tessera render --size 128x128 ")
+    return re.sub(r"--size (\d+)x(\d+)", lambda m: f"--size {max(64, int(m[1]) // 4)}x{max(64, int(m[2]) // 4)}", text)
 
 
 def why_left_out(text: str, has_mpi: bool):
@@ -98,7 +99,6 @@ def main():
     parser.add_argument("--tessera", type=os.path.abspath, required=True)
     parser.add_argument("--source", type=lambda name: Path(name).resolve(), required=True)
     parser.add_argument("--whole", action="store_true")
-    parser.add_argument("--small", action="store_true")
     parser.add_argument("--page", default="")
     parser.add_argument("--without-mpi", action="store_true")
     options = parser.parse_args()
@@ -123,8 +123,6 @@ def main():
                 continue
             if not options.whole:
                 text = made_shorter(text)
-            if options.small:
-                text = with_small_pictures(text)
             began = time.monotonic()
             try:
                 done = subprocess.run(["bash", "-c", text], cwd=folder, env=environment, timeout=900,

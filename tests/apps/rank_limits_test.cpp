@@ -27,10 +27,13 @@ class RankLimits : public FilmRuns {
 
   /// The least limit under which the loader comes as far as our code, MiB.
   static int least_limit() {
-    int mebibytes = 64;
-    while (mebibytes < 4096 && Running(limited(mebibytes, {TESSERA_PROGRAM, "--version"})).wait().status != 0)
-      mebibytes += 2;
-    return mebibytes;
+    int too_little = 62, enough = 4096;
+    while (enough - too_little > 2) {
+      const int between = (too_little + enough) / 4 * 2;
+      const bool starts = Running(limited(between, {TESSERA_PROGRAM, "--version"})).wait().status == 0;
+      (starts ? enough : too_little) = between;
+    }
+    return enough;
   }
 
   static void expect_no_noise(const Outcome& outcome, const std::string& what) {
