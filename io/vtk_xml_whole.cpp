@@ -30,9 +30,14 @@ const VtkXmlFields& first_fields(const VtkXmlGrid& grid, const VtkXmlFieldsOf& k
   return (first != grid.pieces.end() ? *first : grid.pieces.front()).*kind.fields;
 }
 
-void tally(const VtkXmlOpened& of, const VtkXmlWhole& whole, ForeignArray& field) {
+/// Fields that together have no more bytes are kept as they are tallied: those who want their values next need not
+/// decode them again.
+constexpr std::uint64_t most_decoded = 16 << 20;
+
+void tally(const VtkXmlOpened& of, const VtkXmlWhole& whole, ForeignArray& field, VtkXmlDecoded* decoded) {
   std::array<double, 4096> some{};
   stream_whole(*of.file, whole, of.source, [&](std::span<const std::byte> bytes) {
+    if (decoded != nullptr) decoded->insert(decoded->end(), bytes.begin(), bytes.end());
     const std::size_t tuples = bytes.size() / field.tuple_bytes();
     for (std::size_t first = 0; first < tuples; first += some.size()) {
       const std::span chunk(some.data(), std::min(some.size(), tuples - first));
@@ -44,7 +49,8 @@ void tally(const VtkXmlOpened& of, const VtkXmlWhole& whole, ForeignArray& field
 
 }  // namespace
 
-ForeignArray hold_whole(const VtkXmlOpened& of, VtkXmlWhole whole, ForeignArray as) {
+ForeignArray hold_whole(const VtkXmlOpened& of, VtkXmlWhole whole, ForeignArray as,
+                        std::shared_ptr<const VtkXmlDecoded> decoded) {
   as.components = whole.components;
   std::uint64_t numbers = 0;
   for (const VtkXmlSegment& segment : whole.segments) {
@@ -52,8 +58,13 @@ ForeignArray hold_whole(const VtkXmlOpened& of, VtkXmlWhole whole, ForeignArray 
     numbers += segment.numbers;
   }
   as.tuples = numbers / static_cast<std::uint64_t>(whole.components);
-  return of.arrays->hold(std::move(as), [file = of.file, whole = std::move(whole), source = of.source](
-                                            const ByteSink& use) { stream_whole(*file, whole, source, use); });
+  return of.arrays->hold(std::move(as), [file = of.file, whole = std::move(whole), source = of.source,
+                                         decoded = std::move(decoded)](const ByteSink& use) {
+    if (decoded != nullptr && !decoded->empty())
+      use(*decoded);
+    else
+      stream_whole(*file, whole, source, use);
+  });
 }
 
 bool fields_agree(const VtkXmlGrid& grid, const VtkXmlFieldsOf& kind) {
@@ -69,6 +80,8 @@ std::vector<ForeignArray> hold_fields(const VtkXmlOpened& of, const VtkXmlFields
   const VtkXmlFields& first = first_fields(of.grid, kind);
   std::vector<ForeignArray> fields;
   std::vector<VtkXmlWhole> wholes;
+  std::vector<std::shared_ptr<VtkXmlDecoded>> decoded;
+  std::uint64_t bytes = 0;
   for (std::size_t k = 0; k < first.arrays.size(); ++k) {
     const VtkXmlArray& like = first.arrays[k];
     if (!like.type) continue;
@@ -83,9 +96,13 @@ std::vector<ForeignArray> hold_fields(const VtkXmlOpened& of, const VtkXmlFields
     if (of.grid.major < 2 && like.name == "vtkGhostLevels" && like.type == NumberType::uint8 && like.components == 1)
       as.name = "vtkGhostType", whole.has_ghost_levels = true;
     wholes.push_back(whole);
-    fields.push_back(hold_whole(of, std::move(whole), std::move(as)));
+    decoded.push_back(std::make_shared<VtkXmlDecoded>());
+    fields.push_back(hold_whole(of, std::move(whole), std::move(as), decoded.back()));
+    bytes += fields.back().bytes();
   }
-  tbb::parallel_for(std::size_t{0}, fields.size(), [&](std::size_t k) { tally(of, wholes[k], fields[k]); });
+  tbb::parallel_for(std::size_t{0}, fields.size(), [&](std::size_t k) {
+    tally(of, wholes[k], fields[k], bytes <= most_decoded ? decoded[k].get() : nullptr);
+  });
   return fields;
 }
 

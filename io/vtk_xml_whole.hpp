@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -27,9 +28,13 @@ struct VtkXmlOpened {
   std::shared_ptr<VtkXmlArrays> arrays;
 };
 
-/// Makes a whole array readable, of the type, name and mark of `as`. Throws Error(bad_input) if the file cannot have so
-/// many numbers.
-ForeignArray hold_whole(const VtkXmlOpened& of, VtkXmlWhole whole, ForeignArray as);
+/// Bytes of an array, decoded; empty until they have been read.
+using VtkXmlDecoded = std::vector<std::byte>;
+
+/// Makes a whole array readable, of the type, name and mark of `as`: from `decoded`, if that has been filled by the
+/// time, else from the file. Throws Error(bad_input) if the file cannot have so many numbers.
+ForeignArray hold_whole(const VtkXmlOpened& of, VtkXmlWhole whole, ForeignArray as,
+                        std::shared_ptr<const VtkXmlDecoded> decoded = {});
 
 /// The fields of points or of cells.
 struct VtkXmlFieldsOf {
