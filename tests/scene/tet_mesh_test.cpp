@@ -25,7 +25,7 @@ TEST(TetMesh, ThicknessIsVolumeOverTheLargestFaceAtAnyScale) {
   for (const double scale : {1.0, 1e-20, 1e20})
     EXPECT_NEAR(mean_thickness(corner_tet(glm::dvec3(6, 4, 0.5) * scale)) / scale, (6 * 4 * 0.5 / 6) / 24, 1e-15);
   EXPECT_EQ(mean_thickness(corner_tet({1, 1, 0})), 0);
-  EXPECT_EQ(mean_thickness({}), 0);
+  EXPECT_EQ(mean_thickness(TetMesh{}), 0);
 }
 
 TEST(TetMesh, ASubsetKeepsItsTetsAndNoMore) {
