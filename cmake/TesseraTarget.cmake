@@ -44,7 +44,10 @@ endif()
 # The headers that most sources include, parsed once: tessera_precompiled for libraries, tessera_test_precompiled for the
 # tests' programs, whose code is position independent in another form. Sources include what they use all the same;
 # CMAKE_DISABLE_PRECOMPILE_HEADERS=ON shows what one lacks. A source with an option of its own for code (-ffp-contract) skips
-# them: g++ would take that option from the headers in silence.
+# them: g++ would take that option from the headers in silence, and clang, which has none here, refuses them.
+if(NOT CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  set(CMAKE_DISABLE_PRECOMPILE_HEADERS ON)
+endif()
 set(tessera_common_headers
     <algorithm> <array> <atomic> <bit> <chrono> <cmath> <condition_variable> <cstddef> <cstdint> <cstring> <exception>
     <filesystem> <functional> <limits> <map> <memory> <mutex> <numeric> <optional> <ranges> <span> <stop_token> <string>
