@@ -25,7 +25,7 @@ const npm = spawnSync("npm", ["ci", "--no-audit", "--no-fund", "--ignore-scripts
 if (npm.error?.code === "ENOENT") skip("there is no npm; install it, and the page's tests run");
 if (npm.status !== 0) {
   const said = `${npm.stdout}${npm.stderr}`;
-  if (/ENOTFOUND|EAI_AGAIN|ECONNREFUSED|ETIMEDOUT|ENETUNREACH|ECONNRESET/.test(said) || npm.error) skip("npm reaches no registry, so the page's tests do not run");
+  if (/ENOTFOUND|EAI_AGAIN|ECONNREFUSED|ETIMEDOUT|ENETUNREACH|ECONNRESET|CERT_IN_CHAIN|ISSUER_CERT/.test(said) || npm.error) skip("npm reaches no registry that it trusts, so the page's tests do not run");
   console.error(said);
   process.exit(1);
 }
