@@ -28,7 +28,7 @@ endif()
 # For code whose speed no user notices, which compiles in two thirds of the time: tests, the command line, reports.
 add_library(tessera_optimize_1 INTERFACE)
 target_compile_options(tessera_optimize_1 INTERFACE $<$<CONFIG:Release>:-O1>)
-# For code around the kernels: readers, writers, frames, the reference; a fifth less time to compile than with -O3.
+# For code around the kernels: readers, writers, frames, the reference.
 add_library(tessera_optimize_2 INTERFACE)
 target_compile_options(tessera_optimize_2 INTERFACE $<$<CONFIG:Release>:-O2>)
 # For the tests' own code. Linked after tessera_warnings, whose options it takes back.

@@ -30,8 +30,8 @@ const VtkXmlFields& first_fields(const VtkXmlGrid& grid, const VtkXmlFieldsOf& k
   return (first != grid.pieces.end() ? *first : grid.pieces.front()).*kind.fields;
 }
 
-/// Fields that together have no more bytes are kept as they are tallied: those who want their values next need not
-/// decode them again.
+/// Fields of points, or of cells, that have no more bytes in all are kept when they are tallied, so that they are
+/// decoded once.
 constexpr std::uint64_t most_decoded = 16 << 20;
 
 void tally(const VtkXmlOpened& of, const VtkXmlWhole& whole, ForeignArray& field, VtkXmlDecoded* decoded) {

@@ -21,8 +21,7 @@ TEST_F(RankFaults, AnOutputFolderRemovedInMidRunIsTheSystemsFault) {
     for (const int ranks : {0, 1, 2, 3}) {
       if (ranks > 0 && !has_mpirun()) continue;
       std::filesystem::create_directory(pictures_);
-      // Ranks end a film in order, frame by frame, a millisecond for each.
-      Running running(command(ranks, film(input, {}, 2000)));
+      Running running(command(ranks, film(input)));
       ASSERT_TRUE(wait_for_pictures(running, 3)) << running.wait().err;
       std::filesystem::rename(pictures_, folder_ / "elsewhere");
       const Outcome outcome = running.wait();
