@@ -98,16 +98,13 @@ function(tessera_shaders name)
   target_include_directories(tessera_${name} PRIVATE ${PROJECT_BINARY_DIR}/include/${name}-shaders)
 endfunction()
 
-# tessera_test(NAME [UNITY] [SLOW] [PROCESSES PATTERN] SOURCES ... LINK ...): a GoogleTest program, registered test by test. UNITY: its sources
-# name their helpers differently, so that a unity build (the preset sanitize) may compile several at once. All but SLOW
-# ones are labelled fast, and built by the target fast_tests. Tests of the GoogleTest pattern PROCESSES, which start
+# tessera_test(NAME [SLOW] [PROCESSES PATTERN] SOURCES ... LINK ...): a GoogleTest program, registered test by test. Its
+# sources name their helpers differently, or keep them in a namespace named after the file, since a unity build compiles
+# several at once. All but SLOW ones are labelled fast, and built by the target fast_tests. Tests of the GoogleTest pattern PROCESSES, which start
 # processes, are labelled so too: `ctest -L processes --repeat until-fail:20` shows whether their outcome is a fact.
 function(tessera_test name)
-  cmake_parse_arguments(ARG "UNITY;SLOW" "PROCESSES" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "SLOW" "PROCESSES" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
-  if(NOT ARG_UNITY)
-    set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
-  endif()
   target_link_libraries(${name} PRIVATE tessera_warnings tessera_optimize_1 tessera_test_options ${ARG_LINK}
                                         fmt::fmt GTest::gtest GTest::gtest_main)
   target_precompile_headers(${name} REUSE_FROM tessera_test_precompiled)

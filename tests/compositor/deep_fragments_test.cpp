@@ -12,7 +12,7 @@
 #include "integrals/segment_integrator.hpp"
 #include "support/deep_pixels.hpp"
 
-namespace tessera::compositor {
+namespace tessera::compositor::deep_fragments_test {
 namespace {
 
 using scene::Emission;
@@ -255,4 +255,4 @@ TEST(DeepFragments, FloatsStayTidyWhereDepthsCannotBeToldApart) {
 }
 
 }  // namespace
-}  // namespace tessera::compositor
+}  // namespace tessera::compositor::deep_fragments_test

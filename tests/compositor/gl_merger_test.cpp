@@ -12,7 +12,7 @@
 #include "exchange/part_writer.hpp"
 #include "support/gl_context.hpp"
 
-namespace tessera::compositor {
+namespace tessera::compositor::gl_merger_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -421,4 +421,4 @@ TEST(GlCompositor, AFaultReachesTheJobAndAllLaterOnes) {
 }
 
 }  // namespace
-}  // namespace tessera::compositor
+}  // namespace tessera::compositor::gl_merger_test

@@ -16,7 +16,7 @@
 #include "exchange/packed_pixels.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::compositor {
+namespace tessera::compositor::image_assembly_test {
 namespace {
 
 using exchange::Bytes;
@@ -338,4 +338,4 @@ TEST(ImageAssembly, ATileThatComesTwiceIsRefused) {
 }
 
 }  // namespace
-}  // namespace tessera::compositor
+}  // namespace tessera::compositor::image_assembly_test

@@ -11,7 +11,7 @@
 #include "integrals/lane_table.hpp"
 #include "projection/segment_windows.hpp"
 
-namespace tessera::compositor {
+namespace tessera::compositor::run_merger_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -178,4 +178,4 @@ TEST(RunMerger, PartsThatAreNotWhatTheySayAreRefused) {
 }
 
 }  // namespace
-}  // namespace tessera::compositor
+}  // namespace tessera::compositor::run_merger_test

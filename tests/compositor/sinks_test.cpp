@@ -13,7 +13,7 @@
 #include "compositor/run_sink.hpp"
 #include "compositor/segment_sink.hpp"
 
-namespace tessera::compositor {
+namespace tessera::compositor::sinks_test {
 namespace {
 
 using projection::LatticeSegment;
@@ -338,4 +338,4 @@ TYPED_TEST(Sinks, BehindOpaqueRunsNothingIsSentButWhereWhatHidesItMayComeLater) 
 }
 
 }  // namespace
-}  // namespace tessera::compositor
+}  // namespace tessera::compositor::sinks_test

@@ -12,7 +12,7 @@
 #include "compositor/random_rays.hpp"
 #include "support/instruction_sets.hpp"
 
-namespace tessera::compositor {
+namespace tessera::compositor::window_kernel_test {
 namespace {
 
 using tests::RandomRays;
@@ -200,4 +200,4 @@ TEST(CompositeWindows, RunsEndWhereSegmentsDoNotTouchAndNotBefore) {
 }
 
 }  // namespace
-}  // namespace tessera::compositor
+}  // namespace tessera::compositor::window_kernel_test

@@ -12,7 +12,7 @@
 
 /// The promise of the `exact` integrator: at most 2e-5 from the reference in linear RGBA, whatever the mesh, the view
 /// and the transfer function. (docs/ACCURACY.md: how error is judged.)
-namespace tessera::frame {
+namespace tessera::frame::accuracy_test {
 namespace {
 
 using scene::Camera;
@@ -171,4 +171,4 @@ TEST(AccuracyAtSurfaces, AnEyeExactlyOnAVertexEdgeOrFaceSeesAllCells) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::accuracy_test

@@ -15,7 +15,7 @@
 
 /// Segments that carry a second linear value beside the scalar: here the light that reaches each point, linear in
 /// space, so that the light of whole rays through a mesh of one extinction has a closed form.
-namespace tessera::frame {
+namespace tessera::frame::attribute_test {
 namespace {
 
 constexpr double extinction = 0.8;
@@ -237,4 +237,4 @@ TEST(Attribute, LeavesDepthsAndScalarsAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::attribute_test

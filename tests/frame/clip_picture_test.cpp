@@ -23,7 +23,7 @@
 
 /// Pictures of meshes whose cells are cut, against the reference's of the whole mesh along the parts of rays that are
 /// kept.
-namespace tessera::frame {
+namespace tessera::frame::clip_picture_test {
 namespace {
 
 constexpr double promised_error = 2e-5;  // that of the exact integrator (include/tessera/session.hpp)
@@ -267,4 +267,4 @@ TEST(SelectedDataset, IsVerifiedByTheWhole) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::clip_picture_test

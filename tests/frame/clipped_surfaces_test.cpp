@@ -12,7 +12,7 @@
 #include "io/mesh_selection.hpp"
 #include "reference/judge.hpp"
 
-namespace tessera::frame {
+namespace tessera::frame::clipped_surfaces_test {
 namespace {
 
 constexpr double promised_error = 2e-5;  // docs/ACCURACY.md: of exact
@@ -92,4 +92,4 @@ TEST(ClippedSurfaces, AreThoseOfRaysCutShort) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::clipped_surfaces_test

@@ -13,7 +13,7 @@
 #include "scene/error.hpp"
 #include "tessera/session.hpp"
 
-namespace tessera {
+namespace tessera::coarse_stand_in_test {
 namespace {
 
 using tests::grid_of;
@@ -156,4 +156,4 @@ TEST(CoarseStandIn, OfASheetAlongTheBoxIsAsThick) {
 }
 
 }  // namespace
-}  // namespace tessera
+}  // namespace tessera::coarse_stand_in_test

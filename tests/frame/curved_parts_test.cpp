@@ -10,7 +10,7 @@
 #include "io/curved_meshes.hpp"
 #include "tessera/dataset.hpp"
 
-namespace tessera::frame {
+namespace tessera::frame::curved_parts_test {
 namespace {
 
 /// A tet by its corners' positions and values, in one order.
@@ -104,4 +104,4 @@ TEST(CurvedParts, AreDividedAsTheWholeIs) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::curved_parts_test

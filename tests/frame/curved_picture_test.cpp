@@ -13,7 +13,7 @@
 #include "tessera/dataset.hpp"
 #include "tessera/session.hpp"
 
-namespace tessera::frame {
+namespace tessera::frame::curved_picture_test {
 namespace {
 
 constexpr ImageSize size{24, 24};
@@ -136,4 +136,4 @@ TEST(CurvedPicture, IsWithinTheAccuracyAskedFor) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::curved_picture_test

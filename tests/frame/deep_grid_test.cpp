@@ -11,7 +11,7 @@
 #include "scene/error.hpp"
 #include "support/deep_pixels.hpp"
 
-namespace tessera {
+namespace tessera::deep_grid_test {
 namespace {
 
 constexpr scene::ImageSize size{30, 26};
@@ -148,4 +148,4 @@ TEST(DeepGrid, AnAccuracyOutOfRangeIsRefused) {
 }
 
 }  // namespace
-}  // namespace tessera
+}  // namespace tessera::deep_grid_test

@@ -25,7 +25,7 @@
 
 /// The promise of deep pictures: flattened they are the image, and with an opaque plane put in at any depth they are
 /// within --deep-accuracy of a rendering with that plane.
-namespace tessera::frame {
+namespace tessera::frame::deep_test {
 namespace {
 
 using scene::Camera;
@@ -258,4 +258,4 @@ TEST(Deep, SaysWhatItCannotDo) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::deep_test

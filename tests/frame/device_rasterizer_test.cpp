@@ -10,7 +10,7 @@
 #include "projection/views.hpp"
 #include "reference/judge.hpp"
 
-namespace tessera::frame {
+namespace tessera::frame::device_rasterizer_test {
 namespace {
 
 GlJobSetup on_device(Backend backend = Backend::osmesa) {
@@ -237,4 +237,4 @@ TEST(DeviceRasterizer, WhatIsNotThereIsTheCpusUnderAutomatic) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::device_rasterizer_test

@@ -17,7 +17,7 @@
 #include "scene/error.hpp"
 #include "scene/mesh_facts.hpp"
 
-namespace tessera::frame {
+namespace tessera::frame::distributed_test {
 namespace {
 
 using scene::Camera;
@@ -547,4 +547,4 @@ TEST_P(AnyShape, CountersAddUp) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::distributed_test

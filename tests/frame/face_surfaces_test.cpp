@@ -23,7 +23,7 @@
 #include "scene/error.hpp"
 #include "support/deep_pixels.hpp"
 
-namespace tessera::frame {
+namespace tessera::frame::face_surfaces_test {
 namespace {
 
 using scene::ProjectionKind;
@@ -399,4 +399,4 @@ TEST_P(RealMeshFaces, KeepThePromise) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::face_surfaces_test

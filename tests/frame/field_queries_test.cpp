@@ -14,7 +14,7 @@
 #include "tessera/session.hpp"
 #include "tessera/write.hpp"
 
-namespace tessera {
+namespace tessera::field_queries_test {
 namespace {
 
 using tests::grid_of;
@@ -329,4 +329,4 @@ TEST(Probe, RefusesWhatIsNoPixel) {
 }
 
 }  // namespace
-}  // namespace tessera
+}  // namespace tessera::field_queries_test

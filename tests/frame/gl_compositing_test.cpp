@@ -3,7 +3,7 @@
 #include "frame/gl_job.hpp"
 #include "reference/judge.hpp"
 
-namespace tessera::frame {
+namespace tessera::frame::gl_compositing_test {
 namespace {
 
 TEST(GlCompositing, ExactIsWithinItsPromiseOfTheReference) {
@@ -131,4 +131,4 @@ TEST(GlCompositing, AutomaticGoesOnWithTheCpuWhereTheDeviceFailsAndSaysSo) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::gl_compositing_test

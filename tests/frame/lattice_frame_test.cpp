@@ -12,7 +12,7 @@
 #include "reference/reference.hpp"
 #include "support/instruction_sets.hpp"
 
-namespace tessera::frame {
+namespace tessera::frame::lattice_frame_test {
 namespace {
 
 constexpr scene::ImageSize size{40, 30};
@@ -67,4 +67,4 @@ TEST(LatticeFrame, OnEmulatedLanesAFrameTakesTheDoubleWayToTheSamePromise) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::lattice_frame_test

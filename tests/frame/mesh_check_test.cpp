@@ -8,7 +8,7 @@
 #include "datasets/modify.hpp"
 #include "datasets/shapes.hpp"
 
-namespace tessera::frame {
+namespace tessera::frame::mesh_check_test {
 namespace {
 
 TEST(MeshCheck, MeshesWhoseCellsMatchAreClean) {
@@ -168,4 +168,4 @@ TEST(MeshCheck, FindsHangingNodesAndDiagonalsThatDoNotMatch) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::mesh_check_test

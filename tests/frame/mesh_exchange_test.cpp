@@ -12,7 +12,7 @@
 #include "frame/mesh_chunk.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::frame {
+namespace tessera::frame::mesh_exchange_test {
 namespace {
 
 using exchange::Bytes;
@@ -262,4 +262,4 @@ TEST(MeshChunk, MalformedMessagesAreRefused) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::mesh_exchange_test

@@ -23,7 +23,7 @@
 #include "tessera/session.hpp"
 
 /// Opacity peeling: every layer is the reference's, composited they are the image, and ranks and threads change no bit.
-namespace tessera {
+namespace tessera::peel_test {
 namespace {
 
 constexpr ImageSize size{43, 37};
@@ -338,4 +338,4 @@ TEST(Peel, WhatCannotBeIsRefused) {
 }
 
 }  // namespace
-}  // namespace tessera
+}  // namespace tessera::peel_test

@@ -16,7 +16,7 @@
 /// The tie rule in perspective (docs/ACCURACY.md), held against what it says: a ray in a face, along an edge or through
 /// a vertex belongs to the cells of the ray shifted by (e, e^2) pixel. So a picture is the limit of pictures of the
 /// scene shifted by less and less, for the renderer and for the reference, neither of which is asked about the other.
-namespace tessera::frame {
+namespace tessera::frame::perspective_ties_test {
 namespace {
 
 using scene::Camera;
@@ -225,4 +225,4 @@ TEST(PerspectiveTies, MeshesRoundTheEyeAreTheLimitOfShiftedOnes) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::perspective_ties_test

@@ -8,7 +8,7 @@
 #include "reference/judge.hpp"
 
 /// Fields that lie within some last places of a step's value over whole regions, as saturated ones do.
-namespace tessera::frame {
+namespace tessera::frame::plateau_test {
 namespace {
 
 using scene::ProjectionKind;
@@ -197,4 +197,4 @@ RandomCase random_plateau(Random& random) {
 TEST(Plateau, RandomOnesKeepThePromise) { expect_random_cases_right(5, 100, random_plateau); }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::plateau_test

@@ -13,7 +13,7 @@
 
 /// Pictures of polyhedra that fill a box with a linear field, against the reference's of the same box and field in a
 /// few tets that no polyhedron had a part in.
-namespace tessera::frame {
+namespace tessera::frame::polyhedra_picture_test {
 namespace {
 
 constexpr double promised_error = 2e-5;  // that of the exact integrator (include/tessera/session.hpp)
@@ -128,4 +128,4 @@ TEST(PolyhedraPicture, OfCellDataIsThatOfTheCubesTheyAreMadeOf) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::polyhedra_picture_test

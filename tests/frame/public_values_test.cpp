@@ -11,7 +11,7 @@
 #include "tessera/session.hpp"
 #include "tessera/view.hpp"
 
-namespace tessera {
+namespace tessera::public_values_test {
 namespace {
 
 TEST(PublicValues, PresetColorsAreThoseOfTheFunction) {
@@ -82,4 +82,4 @@ TEST(PublicValues, FunctionsAsTextRenderAlike) {
 }
 
 }  // namespace
-}  // namespace tessera
+}  // namespace tessera::public_values_test

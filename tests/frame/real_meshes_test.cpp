@@ -11,7 +11,7 @@
 
 /// The promise of accuracy_test.cpp on meshes that nobody here made: curvilinear grids with seams and boundary layers,
 /// parts of machines, an oil reservoir with faults at coordinates of 7e6.
-namespace tessera::frame {
+namespace tessera::frame::real_meshes_test {
 namespace {
 
 using scene::TransferFunction;
@@ -83,4 +83,4 @@ TEST_P(RealMesh, RaysHitWhereTheReferencesDoAndAreAsLong) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::real_meshes_test

@@ -14,7 +14,7 @@
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::frame {
+namespace tessera::frame::render_test {
 namespace {
 
 using scene::Camera;
@@ -321,4 +321,4 @@ TEST(Render, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::render_test

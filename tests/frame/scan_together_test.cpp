@@ -10,7 +10,7 @@
 #include "exchange/loopback_transport.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::frame {
+namespace tessera::frame::scan_together_test {
 namespace {
 
 /// Noise, 45 voxels or 6 layers of cells high, with blanks. Counts what is read of it; layers from `broken` on cannot
@@ -87,4 +87,4 @@ TEST(ScanTogether, WhatOneRankCannotReadEndsTheRunForAllWithItsWords) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::scan_together_test

@@ -17,7 +17,7 @@
 #include "scene/error.hpp"
 #include "tessera/communicator.hpp"
 
-namespace tessera {
+namespace tessera::session_test {
 namespace {
 
 constexpr ImageSize size{101, 67};
@@ -591,4 +591,4 @@ TEST(SessionSettings, FaultsNameTheSetting) {
 }
 
 }  // namespace
-}  // namespace tessera
+}  // namespace tessera::session_test

@@ -20,7 +20,7 @@
 #include "tessera/session.hpp"
 
 /// Meshes whose matter is lit by the field's gradient, against light known in closed form and against the reference.
-namespace tessera {
+namespace tessera::shading_test {
 namespace {
 
 using frame::Random;
@@ -230,4 +230,4 @@ TEST(MeshShading, IsRefusedWhereItCannotBe) {
 }
 
 }  // namespace
-}  // namespace tessera
+}  // namespace tessera::shading_test

@@ -17,7 +17,7 @@
 #include "io/volume_bytes.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::frame {
+namespace tessera::frame::shared_volume_test {
 namespace {
 
 /// Files in one folder, temporary ones in another.
@@ -187,4 +187,4 @@ TEST(BrickMemory, IsWhatTheRestOfTheProcessLeaves) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::shared_volume_test

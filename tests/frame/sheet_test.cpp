@@ -6,7 +6,7 @@
 #include "reference/judge.hpp"
 
 /// Thin dense sheets, through which a ray goes a hundred-thousandth of what their faces span in depth.
-namespace tessera::frame {
+namespace tessera::frame::sheet_test {
 namespace {
 
 struct Sheet {
@@ -94,4 +94,4 @@ RandomCase random_sheet(Random& random) {
 TEST(Sheet, RandomOnesKeepThePromise) { expect_random_cases_right(5, 100, random_sheet); }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::sheet_test

@@ -10,7 +10,7 @@
 #include "frame/small_grid.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::frame {
+namespace tessera::frame::sort_first_test {
 namespace {
 
 /// A bright ball off the centre of a hazy box.
@@ -184,4 +184,4 @@ TEST(SortFirst, WeightsShareTheWorkAndWrongOnesAreRefused) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::sort_first_test

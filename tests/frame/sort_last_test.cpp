@@ -23,7 +23,7 @@
 #include "volume/cell_ranges.hpp"
 #include "volume/object_split.hpp"
 
-namespace tessera::frame {
+namespace tessera::frame::sort_last_test {
 namespace {
 
 /// A volume, a view and a way to render it.
@@ -318,4 +318,4 @@ TEST(SortLast, AVolumeOutOfViewIsAnEmptyPicture) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::sort_last_test

@@ -9,7 +9,7 @@
 
 #include "volume/tile_rays.hpp"
 
-namespace tessera::frame {
+namespace tessera::frame::split_by_times_test {
 namespace {
 
 constexpr int side = 64, tile = volume::TileRays::side;
@@ -132,4 +132,4 @@ TEST(SplitByTimes, WhatIsMissedFromPictureToPictureAlikeIsLearned) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::split_by_times_test

@@ -11,7 +11,7 @@
 #include "scene/mesh_facts.hpp"
 
 /// Surfaces that several ranks render have the place and the light that one gives them.
-namespace tessera::frame {
+namespace tessera::frame::surfaces_between_ranks_test {
 namespace {
 
 std::vector<FinishedFrame> render(const std::vector<scene::TetMesh>& parts, const DistributedSettings& settings,
@@ -149,4 +149,4 @@ TEST(SurfacesBetweenRanks, AreInDeepPicturesToo) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::surfaces_between_ranks_test

@@ -20,7 +20,7 @@
 #include "support/instruction_sets.hpp"
 
 /// Surfaces in the volume, against places and colours known in closed form and against the reference.
-namespace tessera::frame {
+namespace tessera::frame::surfaces_test {
 namespace {
 
 using scene::ProjectionKind;
@@ -297,4 +297,4 @@ TEST_P(RealMeshSurfaces, KeepThePromise) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::surfaces_test

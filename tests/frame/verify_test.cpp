@@ -14,7 +14,7 @@
 #include "reference/reference.hpp"
 #include "reference/small_meshes.hpp"
 
-namespace tessera::frame {
+namespace tessera::frame::verify_test {
 namespace {
 
 using reference::ChosenPixel;
@@ -304,4 +304,4 @@ TEST(Verify, LooksAtTheSamePixelsOnAnyNumberOfRanksAndThreads) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::verify_test

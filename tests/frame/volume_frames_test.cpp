@@ -18,7 +18,7 @@
 #include "scene/sample_source.hpp"
 #include "volume/cell_ranges.hpp"
 
-namespace tessera::frame {
+namespace tessera::frame::volume_frames_test {
 namespace {
 
 constexpr scene::ImageSize size{70, 50};
@@ -220,4 +220,4 @@ TEST_P(VolumeLists, AFaultOnAnyRankEndsTheRunOnAll) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::volume_frames_test

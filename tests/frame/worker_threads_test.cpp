@@ -15,7 +15,7 @@
 #include "scene/error.hpp"
 #include "scene/start_thread.hpp"
 
-namespace tessera::frame {
+namespace tessera::frame::worker_threads_test {
 namespace {
 
 TEST(WorkerThreads, RunAllTasksAndHandOnWhatTheyThrow) {
@@ -74,4 +74,4 @@ TEST(StartThread, KnowsWhatLibrariesThrowWhereThereAreNoMoreThreads) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::frame::worker_threads_test

@@ -12,7 +12,7 @@
 #include "reference/integral.hpp"
 #include "support/instruction_sets.hpp"
 
-namespace tessera::integrals {
+namespace tessera::integrals::lane_integrator_test {
 namespace {
 
 using scene::Emission;
@@ -379,4 +379,4 @@ TEST(LaneIntegrator, KnotsOutOfReachOfTheScalarsKeepTheirSlope) {
 }
 
 }  // namespace
-}  // namespace tessera::integrals
+}  // namespace tessera::integrals::lane_integrator_test

@@ -9,7 +9,7 @@
 #include "scene/error.hpp"
 #include "support/instruction_sets.hpp"
 
-namespace tessera::integrals {
+namespace tessera::integrals::segment_integrator_test {
 namespace {
 
 using scene::Emission;
@@ -340,4 +340,4 @@ TEST(SegmentIntegrator, RefusesNumbersOutOfRange) {
 }
 
 }  // namespace
-}  // namespace tessera::integrals
+}  // namespace tessera::integrals::segment_integrator_test

@@ -18,7 +18,7 @@
 #include "io/mesh_assembly.hpp"
 #include "io/mesh_checks.hpp"
 
-namespace tessera::io {
+namespace tessera::io::curved_split_test {
 namespace {
 
 using testing::bent;
@@ -506,4 +506,4 @@ TEST(CurvedSplit, DividesNoCellForDistancesThatAreNoNumbers) {
 }
 
 }  // namespace
-}  // namespace tessera::io
+}  // namespace tessera::io::curved_split_test

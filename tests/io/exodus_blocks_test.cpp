@@ -12,7 +12,7 @@
 #include "io/temporary_folder.hpp"
 #include "tessera/triangle_file.hpp"
 
-namespace tessera::io {
+namespace tessera::io::exodus_blocks_test {
 namespace {
 
 /// The element sets `ends` (the first and the last cube) and 4 (the middle one), a side set and a node set.
@@ -156,4 +156,4 @@ TEST(ExodusBlocks, SideSetsAreSurfaces) {
 }
 
 }  // namespace
-}  // namespace tessera::io
+}  // namespace tessera::io::exodus_blocks_test

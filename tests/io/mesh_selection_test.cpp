@@ -12,7 +12,7 @@
 #include "io/mesh_assembly.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::io {
+namespace tessera::io::mesh_selection_test {
 namespace {
 
 double linear(const glm::dvec3& p) { return 0.5 + p.x - 2 * p.y + 3 * p.z; }
@@ -214,4 +214,4 @@ TEST(Selection, RefusesWhatSelectsNothing) {
 }
 
 }  // namespace
-}  // namespace tessera::io
+}  // namespace tessera::io::mesh_selection_test

@@ -16,7 +16,7 @@
 #include "io/parts_checks.hpp"
 #include "io/temporary_folder.hpp"
 
-namespace tessera::io {
+namespace tessera::io::mesh_shares_test {
 namespace {
 
 /// Coordinates of a cube from x = `at` to at + 1, as hexahedra number their corners.
@@ -136,4 +136,4 @@ TEST(MeshShares, ZonesOfACgnsFileAreDivided) {
 }
 
 }  // namespace
-}  // namespace tessera::io
+}  // namespace tessera::io::mesh_shares_test

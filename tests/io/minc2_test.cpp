@@ -13,7 +13,7 @@ extern "C" {
 #include "io/volume_checks.hpp"
 #include "io/volume_formats.hpp"
 
-namespace tessera::io {
+namespace tessera::io::minc2_test {
 namespace {
 
 using scene::GridIndex;
@@ -112,4 +112,4 @@ TEST(Minc2, DamagedOnesAreRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace tessera::io
+}  // namespace tessera::io::minc2_test

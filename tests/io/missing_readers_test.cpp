@@ -12,7 +12,7 @@
 #include "io/triangle_file.hpp"
 #include "io/volume_reader.hpp"
 
-namespace tessera::io {
+namespace tessera::io::missing_readers_test {
 namespace {
 
 constexpr const char* tetrahedron_poly =
@@ -154,4 +154,4 @@ TEST(ReaderPrograms, AreInTheOrderOfTheirNumbers) {
 }
 
 }  // namespace
-}  // namespace tessera::io
+}  // namespace tessera::io::missing_readers_test

@@ -16,7 +16,7 @@
 #include "io/volume_formats.hpp"
 #include "io/volume_reader.hpp"
 
-namespace tessera::io {
+namespace tessera::io::netcdf_test {
 namespace {
 
 using scene::GridIndex;
@@ -406,4 +406,4 @@ TEST(Minc, DamagedOnesAreRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace tessera::io
+}  // namespace tessera::io::netcdf_test

@@ -22,7 +22,7 @@
 #include "io/mesh_checks.hpp"
 #include "io/polyhedral_meshes.hpp"
 
-namespace tessera::io {
+namespace tessera::io::polyhedra_written_test {
 namespace {
 
 using testing::Faces;
@@ -249,4 +249,4 @@ TEST(PolyhedraWritten, OfExodusAreFacesOfNsidedAndNfaced) {
 }
 
 }  // namespace
-}  // namespace tessera::io
+}  // namespace tessera::io::polyhedra_written_test

@@ -23,7 +23,7 @@
 #include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 
-namespace tessera::io {
+namespace tessera::io::vtk_amr_test {
 namespace {
 
 using namespace testing;
@@ -387,4 +387,4 @@ TEST(HyperTreesOfVtk, AreReadAsVtkHasThemInMemory) {
 }
 
 }  // namespace
-}  // namespace tessera::io
+}  // namespace tessera::io::vtk_amr_test

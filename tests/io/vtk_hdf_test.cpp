@@ -10,7 +10,7 @@
 #include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 
-namespace tessera::io {
+namespace tessera::io::vtk_hdf_test {
 namespace {
 
 /// A file of one group, VTKHDF.
@@ -91,4 +91,4 @@ TEST(VtkHdf, WhatVtkWouldMisreadIsRefused) {
 }
 
 }  // namespace
-}  // namespace tessera::io
+}  // namespace tessera::io::vtk_hdf_test

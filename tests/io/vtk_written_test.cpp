@@ -29,7 +29,7 @@
 #include "io/temporary_folder.hpp"
 #include "io/volume_formats.hpp"
 
-namespace tessera::io {
+namespace tessera::io::vtk_written_test {
 namespace {
 
 /// `n` hexahedra side by side along x, each with points of its own, of which the second is moved halfway into the
@@ -158,4 +158,4 @@ TEST_F(RectilinearWritten, GridsAreReadAlikeWithAndWithoutVtkInEveryEncoding) {
 }
 
 }  // namespace
-}  // namespace tessera::io
+}  // namespace tessera::io::vtk_written_test

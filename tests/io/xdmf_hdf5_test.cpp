@@ -15,7 +15,7 @@
 #include "io/volume_checks.hpp"
 #include "io/volume_formats.hpp"
 
-namespace tessera::io {
+namespace tessera::io::xdmf_hdf5_test {
 namespace {
 
 template <class T>
@@ -94,4 +94,4 @@ TEST(XdmfHdf5, DamagedDataAreRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace tessera::io
+}  // namespace tessera::io::xdmf_hdf5_test

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-namespace tessera::projection {
+namespace tessera::projection::clear_intervals_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -96,4 +96,4 @@ TEST(ClearIntervals, AnEmptyFunctionHidesEverything) {
 }
 
 }  // namespace
-}  // namespace tessera::projection
+}  // namespace tessera::projection::clear_intervals_test

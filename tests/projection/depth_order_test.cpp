@@ -12,7 +12,7 @@
 
 #include "support/instruction_sets.hpp"
 
-namespace tessera::projection {
+namespace tessera::projection::depth_order_test {
 namespace {
 
 bool before(const TileEntry& a, const TileEntry& b) {
@@ -104,4 +104,4 @@ TEST(DepthOrder, SlackIsShort) {
 }
 
 }  // namespace
-}  // namespace tessera::projection
+}  // namespace tessera::projection::depth_order_test

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <random>
 
-namespace tessera::projection {
+namespace tessera::projection::edge_sign_test {
 namespace {
 
 PixelVertex at(double x, double y, double w = 1) { return {x * w, y * w, w, w}; }
@@ -107,4 +107,4 @@ TEST(EdgeSign, SightErrorBoundsWhatRoundingMoves) {
 }
 
 }  // namespace
-}  // namespace tessera::projection
+}  // namespace tessera::projection::edge_sign_test

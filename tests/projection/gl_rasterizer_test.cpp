@@ -20,7 +20,7 @@
 #include "projection/views.hpp"
 #include "support/gl_context.hpp"
 
-namespace tessera::projection {
+namespace tessera::projection::gl_rasterizer_test {
 namespace {
 
 using Records = std::vector<CellRecord>;
@@ -323,4 +323,4 @@ TEST_P(GlRasterizerOn, EdgesThatPassCentresByLessThanDoublesTellAreDecidedExactl
 }
 
 }  // namespace
-}  // namespace tessera::projection
+}  // namespace tessera::projection::gl_rasterizer_test

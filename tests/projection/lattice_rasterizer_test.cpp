@@ -13,7 +13,7 @@
 #include "projection/views.hpp"
 #include "support/instruction_sets.hpp"
 
-namespace tessera::projection {
+namespace tessera::projection::lattice_rasterizer_test {
 namespace {
 
 struct Segment {
@@ -235,4 +235,4 @@ TEST(LatticeRasterizer, BitsDoNotDependOnTheRectangle) {
 }
 
 }  // namespace
-}  // namespace tessera::projection
+}  // namespace tessera::projection::lattice_rasterizer_test

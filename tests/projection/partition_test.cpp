@@ -10,7 +10,7 @@
 
 #include "datasets/boxes.hpp"
 
-namespace tessera::projection {
+namespace tessera::projection::partition_test {
 namespace {
 
 const scene::Box unit_box{glm::dvec3(0), glm::dvec3(1)};
@@ -176,4 +176,4 @@ TEST(Curve, KeysCarryTheGivenIndices) {
 }
 
 }  // namespace
-}  // namespace tessera::projection
+}  // namespace tessera::projection::partition_test

@@ -8,7 +8,7 @@
 
 #include "support/instruction_sets.hpp"
 
-namespace tessera::projection {
+namespace tessera::projection::pixel_space_test {
 namespace {
 
 TEST(PixelSpace, ProjectsManyPointsToTheBitsOfOne) {
@@ -47,4 +47,4 @@ TEST(PixelSpace, ProjectsManyPointsToTheBitsOfOne) {
 }
 
 }  // namespace
-}  // namespace tessera::projection
+}  // namespace tessera::projection::pixel_space_test

@@ -14,7 +14,7 @@
 #include "reference/reference.hpp"
 #include "support/instruction_sets.hpp"
 
-namespace tessera::projection {
+namespace tessera::projection::planes_rasterizer_test {
 namespace {
 
 struct Segment {
@@ -201,4 +201,4 @@ TEST(PlanesRasterizer, NamesTheInstructionSetThatRan) {
 }
 
 }  // namespace
-}  // namespace tessera::projection
+}  // namespace tessera::projection::planes_rasterizer_test

@@ -8,7 +8,7 @@
 
 #include "datasets/boxes.hpp"
 
-namespace tessera::projection {
+namespace tessera::projection::prepared_mesh_test {
 namespace {
 
 /// A cube's tets, their corners shuffled, and some vertices twice.
@@ -62,4 +62,4 @@ TEST(PreparedMesh, AnOrderedMeshIsNotCopied) {
 }
 
 }  // namespace
-}  // namespace tessera::projection
+}  // namespace tessera::projection::prepared_mesh_test

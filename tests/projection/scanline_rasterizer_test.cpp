@@ -14,7 +14,7 @@
 #include "datasets/shapes.hpp"
 #include "support/instruction_sets.hpp"
 
-namespace tessera::projection {
+namespace tessera::projection::scanline_rasterizer_test {
 namespace {
 
 struct Segment {
@@ -346,4 +346,4 @@ TEST(SegmentTuple, RoundTripsExactlyDownToLengthsOfOneUnitOfTheDepth) {
 }
 
 }  // namespace
-}  // namespace tessera::projection
+}  // namespace tessera::projection::scanline_rasterizer_test

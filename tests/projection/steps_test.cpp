@@ -10,7 +10,7 @@
 #include "datasets/boxes.hpp"
 #include "projection/pixel_space.hpp"
 
-namespace tessera::projection {
+namespace tessera::projection::steps_test {
 namespace {
 
 constexpr scene::ImageSize size{24, 24};
@@ -118,4 +118,4 @@ TEST(CellsAtSteps, AreThoseNearAStepWhoseScalarsDifferLittle) {
 }
 
 }  // namespace
-}  // namespace tessera::projection
+}  // namespace tessera::projection::steps_test

@@ -11,7 +11,7 @@
 #include "datasets/boxes.hpp"
 #include "support/instruction_sets.hpp"
 
-namespace tessera::projection {
+namespace tessera::projection::tile_lists_test {
 namespace {
 
 struct Lists {
@@ -324,4 +324,4 @@ TEST(TileLists, ReadEachCellTwiceHoweverManyTasks) {
 }
 
 }  // namespace
-}  // namespace tessera::projection
+}  // namespace tessera::projection::tile_lists_test

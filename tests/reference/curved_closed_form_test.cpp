@@ -9,7 +9,7 @@
 #include "reference/reference.hpp"
 #include "small_meshes.hpp"
 
-namespace tessera::reference {
+namespace tessera::reference::curved_closed_form_test {
 namespace {
 
 using scene::ProjectionKind;
@@ -359,4 +359,4 @@ TEST(CurvedReference, OfStraightTetsIsThatOfTets) {
 }
 
 }  // namespace
-}  // namespace tessera::reference
+}  // namespace tessera::reference::curved_closed_form_test

@@ -6,7 +6,7 @@
 #include "reference/judge.hpp"
 #include "small_meshes.hpp"
 
-namespace tessera::reference {
+namespace tessera::reference::curved_judge_test {
 namespace {
 
 using scene::TransferFunction;
@@ -112,4 +112,4 @@ TEST(CurvedJudge, ARoundSilhouetteIsExcusedWithinAThousandthOfAPixelAndNotFarthe
 }
 
 }  // namespace
-}  // namespace tessera::reference
+}  // namespace tessera::reference::curved_judge_test

@@ -10,7 +10,7 @@
 #include "reference/integral.hpp"
 #include "reference/smooth_scalar.hpp"
 
-namespace tessera::reference {
+namespace tessera::reference::curved_pieces_test {
 namespace {
 
 using scene::Emission;
@@ -165,4 +165,4 @@ TEST(CurvedIntegral, OfARationalScalarIsItsClosedForm) {
 }
 
 }  // namespace
-}  // namespace tessera::reference
+}  // namespace tessera::reference::curved_pieces_test

@@ -11,7 +11,7 @@
 #include "scene/error.hpp"
 #include "small_meshes.hpp"
 
-namespace tessera::reference {
+namespace tessera::reference::curved_reference_test {
 namespace {
 
 using scene::ProjectionKind;
@@ -424,4 +424,4 @@ TEST(CurvedReference, RefusesArraysThatDoNotFit) {
 }
 
 }  // namespace
-}  // namespace tessera::reference
+}  // namespace tessera::reference::curved_reference_test

@@ -9,7 +9,7 @@
 #include "curved_cells.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::reference {
+namespace tessera::reference::curved_shapes_test {
 namespace {
 
 /// Rounding in shape functions of values up to 10 (order 5) that sum up to 125 terms.
@@ -223,4 +223,4 @@ TEST(CurvedShapes, RefuseWhatIsNotACell) {
 }
 
 }  // namespace
-}  // namespace tessera::reference
+}  // namespace tessera::reference::curved_shapes_test

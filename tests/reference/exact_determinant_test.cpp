@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace tessera::reference {
+namespace tessera::reference::exact_determinant_test {
 namespace {
 
 TEST(ExactDeterminant, AgreesWithIntegerArithmetic) {
@@ -39,4 +39,4 @@ TEST(ExactDeterminant, SeesOneBitOfDifference) {
 }
 
 }  // namespace
-}  // namespace tessera::reference
+}  // namespace tessera::reference::exact_determinant_test

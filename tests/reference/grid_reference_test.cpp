@@ -12,7 +12,7 @@
 #include "scene/error.hpp"
 #include "small_meshes.hpp"
 
-namespace tessera::reference {
+namespace tessera::reference::grid_reference_test {
 namespace {
 
 using scene::Association;
@@ -314,4 +314,4 @@ TEST(GridReference, TheJudgeTakesItAsItTakesMeshes) {
 }
 
 }  // namespace
-}  // namespace tessera::reference
+}  // namespace tessera::reference::grid_reference_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace tessera::reference {
+namespace tessera::reference::integral_test {
 namespace {
 
 using scene::Emission;
@@ -173,4 +173,4 @@ TEST(Integral, SplittingASegmentChangesNothing) {
 }
 
 }  // namespace
-}  // namespace tessera::reference
+}  // namespace tessera::reference::integral_test

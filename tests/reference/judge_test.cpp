@@ -10,7 +10,7 @@
 #include "scene/error.hpp"
 #include "small_meshes.hpp"
 
-namespace tessera::reference {
+namespace tessera::reference::judge_test {
 namespace {
 
 using scene::ProjectionKind;
@@ -158,4 +158,4 @@ TEST(RandomPixels, CoverTheImageEvenly) {
 }
 
 }  // namespace
-}  // namespace tessera::reference
+}  // namespace tessera::reference::judge_test

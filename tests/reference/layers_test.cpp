@@ -10,7 +10,7 @@
 #include "reference/small_meshes.hpp"
 
 /// Layers of rays that are known in closed form: the reference of opacity peeling.
-namespace tessera::reference {
+namespace tessera::reference::layers_test {
 namespace {
 
 constexpr scene::ImageSize size{16, 16};
@@ -137,4 +137,4 @@ TEST(ReferenceLayers, ASurfaceIsTheEndOfTheLayerItFills) {
 }
 
 }  // namespace
-}  // namespace tessera::reference
+}  // namespace tessera::reference::layers_test

@@ -8,7 +8,7 @@
 #include "scene/error.hpp"
 #include "small_meshes.hpp"
 
-namespace tessera::reference {
+namespace tessera::reference::reference_closed_form_test {
 namespace {
 
 using scene::Knot;
@@ -305,4 +305,4 @@ TEST(Reference, RefusesInvalidViews) {
 }
 
 }  // namespace
-}  // namespace tessera::reference
+}  // namespace tessera::reference::reference_closed_form_test

@@ -6,7 +6,7 @@
 #include "reference/reference.hpp"
 #include "small_meshes.hpp"
 
-namespace tessera::reference {
+namespace tessera::reference::reference_tiling_test {
 namespace {
 
 using scene::ProjectionKind;
@@ -158,4 +158,4 @@ TEST(ReferenceTiling, WarpedAndFlattenedMeshesStillTile) {
 }
 
 }  // namespace
-}  // namespace tessera::reference
+}  // namespace tessera::reference::reference_tiling_test

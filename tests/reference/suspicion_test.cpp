@@ -11,7 +11,7 @@
 #include "reference/light_error.hpp"
 #include "reference/verification.hpp"
 
-namespace tessera::reference {
+namespace tessera::reference::suspicion_test {
 namespace {
 
 constexpr scene::ImageSize size{64, 48};
@@ -194,7 +194,7 @@ class HalfPlane final : public RayReference {
     for (const PixelIndex& p : wanted) result.push_back(pixel(p.x + 0.5, p.y + 0.5));
     return result;
   }
-  [[nodiscard]] scene::ImageSize size() const override { return reference::size; }
+  [[nodiscard]] scene::ImageSize size() const override { return suspicion_test::size; }
 
  private:
   double x_;
@@ -231,4 +231,4 @@ TEST(Verification, GrantsExcusesToSuspectsButNoMoreThanASampleMayHoldToRandomPix
 }
 
 }  // namespace
-}  // namespace tessera::reference
+}  // namespace tessera::reference::suspicion_test

@@ -6,7 +6,7 @@
 
 #include "small_meshes.hpp"
 
-namespace tessera::reference {
+namespace tessera::reference::view_test {
 namespace {
 
 using scene::ProjectionKind;
@@ -59,4 +59,4 @@ TEST(View, PerspectiveAngleSpansTheHeight) {
 }
 
 }  // namespace
-}  // namespace tessera::reference
+}  // namespace tessera::reference::view_test

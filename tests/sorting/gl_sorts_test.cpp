@@ -11,7 +11,7 @@
 #include "sorting/gl_list_sort.hpp"
 #include "support/gl_context.hpp"
 
-namespace tessera::sorting {
+namespace tessera::sorting::gl_sorts_test {
 namespace {
 
 using gl::Buffer;
@@ -158,4 +158,4 @@ TEST(BitonicTexture, AListBeyondTheWholeTextureIsRefused) {
 }
 
 }  // namespace
-}  // namespace tessera::sorting
+}  // namespace tessera::sorting::gl_sorts_test

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <vector>
 
-namespace tessera::sorting {
+namespace tessera::sorting::pixel_lists_test {
 namespace {
 
 using Key = std::tuple<double, double, std::uint32_t>;
@@ -89,4 +89,4 @@ TEST(PixelLists, ByBackAloneEqualOnesStayInTetOrder) {
 }
 
 }  // namespace
-}  // namespace tessera::sorting
+}  // namespace tessera::sorting::pixel_lists_test

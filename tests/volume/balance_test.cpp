@@ -12,7 +12,7 @@
 #include "volume/learned_work.hpp"
 #include "volume/render.hpp"
 
-namespace tessera::volume {
+namespace tessera::volume::balance_test {
 namespace {
 
 constexpr scene::ImageSize image{256, 256};
@@ -248,4 +248,4 @@ TEST(Balance, MapsOfQuarterResolutionGiveProcessesTheSameWork) {
 }
 
 }  // namespace
-}  // namespace tessera::volume
+}  // namespace tessera::volume::balance_test

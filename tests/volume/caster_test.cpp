@@ -16,7 +16,7 @@
 #include "volume/render.hpp"
 #include "volume/small_volume.hpp"
 
-namespace tessera {
+namespace tessera::caster_test {
 namespace {
 
 using namespace tests;  // small volumes and views
@@ -337,4 +337,4 @@ TEST(VolumeCaster, ABudgetBelowOneBrickIsRefused) {
 }
 
 }  // namespace
-}  // namespace tessera
+}  // namespace tessera::caster_test

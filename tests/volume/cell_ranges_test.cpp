@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-namespace tessera::volume {
+namespace tessera::volume::cell_ranges_test {
 namespace {
 
 /// Noise of odd sizes, blanks among it, also on the faces that cells share.
@@ -77,4 +77,4 @@ TEST(CellRanges, PartsOfAScanAddUpToTheWholeWhereverItIsCut) {
 }
 
 }  // namespace
-}  // namespace tessera::volume
+}  // namespace tessera::volume::cell_ranges_test

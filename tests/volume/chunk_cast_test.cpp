@@ -16,7 +16,7 @@
 #include "volume/image_sink.hpp"
 #include "volume/small_volume.hpp"
 
-namespace tessera {
+namespace tessera::chunk_cast_test {
 namespace {
 
 using namespace tests;  // small volumes and views
@@ -406,4 +406,4 @@ TEST(ChunkCast, StopsAndRefusesWhatIsNoChunk) {
 }
 
 }  // namespace
-}  // namespace tessera
+}  // namespace tessera::chunk_cast_test

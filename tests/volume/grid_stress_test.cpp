@@ -12,7 +12,7 @@
 #include "scene/sample_source.hpp"
 #include "volume/render.hpp"
 
-namespace tessera {
+namespace tessera::grid_stress_test {
 namespace {
 
 constexpr scene::ImageSize size{60, 52};
@@ -197,4 +197,4 @@ TEST(GridStress, SampledStepsOfTenVoxelsSeeAConstantFieldAsItIs) {
 }
 
 }  // namespace
-}  // namespace tessera
+}  // namespace tessera::grid_stress_test

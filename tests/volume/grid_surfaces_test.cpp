@@ -16,7 +16,7 @@
 #include "volume/render.hpp"
 #include "volume/small_volume.hpp"
 
-namespace tessera {
+namespace tessera::grid_surfaces_test {
 namespace {
 
 using namespace tests;  // small volumes and views
@@ -439,4 +439,4 @@ TEST(GridSurface, WhatCannotBeRenderedIsSaid) {
 }
 
 }  // namespace
-}  // namespace tessera
+}  // namespace tessera::grid_surfaces_test

@@ -12,7 +12,7 @@
 #include "support/instruction_sets.hpp"
 #include "volume/small_volume.hpp"
 
-namespace tessera {
+namespace tessera::kernels_test {
 namespace {
 
 using namespace tests;  // small volumes and views
@@ -128,4 +128,4 @@ TEST(VolumeKernels, Steps) {
 }
 
 }  // namespace
-}  // namespace tessera
+}  // namespace tessera::kernels_test

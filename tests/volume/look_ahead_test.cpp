@@ -14,7 +14,7 @@
 #include "volume/view_frustum.hpp"
 #include "volume/view_motion.hpp"
 
-namespace tessera {
+namespace tessera::look_ahead_test {
 namespace {
 
 using namespace tests;
@@ -220,4 +220,4 @@ TEST(VolumeCaster, AVolumeFourTimesTheBudgetStaysWithinItAndPreloadsBetweenFrame
 }
 
 }  // namespace
-}  // namespace tessera
+}  // namespace tessera::look_ahead_test

@@ -9,7 +9,7 @@
 
 #include "volume/small_volume.hpp"
 
-namespace tessera {
+namespace tessera::object_split_test {
 namespace {
 
 using volume::ObjectSplit;
@@ -142,4 +142,4 @@ TEST(ObjectSplit, NoRayComesToABoxBeforeItHasLeftThoseInFront) {
 }
 
 }  // namespace
-}  // namespace tessera
+}  // namespace tessera::object_split_test

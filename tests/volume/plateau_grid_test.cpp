@@ -13,7 +13,7 @@
 #include "scene/sample_source.hpp"
 #include "volume/render.hpp"
 
-namespace tessera {
+namespace tessera::plateau_grid_test {
 namespace {
 
 constexpr double blank = std::numeric_limits<double>::quiet_NaN();
@@ -331,4 +331,4 @@ TEST(PlateauGrid, RaysInALatticePlaneStayOnOneSide) {
 }
 
 }  // namespace
-}  // namespace tessera
+}  // namespace tessera::plateau_grid_test

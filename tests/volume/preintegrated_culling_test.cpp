@@ -7,7 +7,7 @@
 #include "small_volume.hpp"
 #include "volume/cell_ranges.hpp"
 
-namespace tessera {
+namespace tessera::preintegrated_culling_test {
 namespace {
 
 using namespace tests;
@@ -73,4 +73,4 @@ TEST(PreintegratedCulling, LoadsLittleMoreThanWhatShows) {
 }
 
 }  // namespace
-}  // namespace tessera
+}  // namespace tessera::preintegrated_culling_test

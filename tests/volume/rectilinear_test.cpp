@@ -13,7 +13,7 @@
 #include "volume/cost_map.hpp"
 #include "volume/render.hpp"
 
-namespace tessera {
+namespace tessera::rectilinear_test {
 namespace {
 
 constexpr scene::ImageSize size{61, 53};
@@ -181,4 +181,4 @@ TEST(Rectilinear, StepsAreRefused) {
 }
 
 }  // namespace
-}  // namespace tessera
+}  // namespace tessera::rectilinear_test

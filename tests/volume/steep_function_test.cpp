@@ -12,7 +12,7 @@
 #include "scene/sample_source.hpp"
 #include "volume/render.hpp"
 
-namespace tessera {
+namespace tessera::steep_function_test {
 namespace {
 
 constexpr scene::ImageSize size{40, 40};
@@ -161,4 +161,4 @@ TEST(SteepFunction, SurfacesOfOneColourStayInFloatLanes) {
 }
 
 }  // namespace
-}  // namespace tessera
+}  // namespace tessera::steep_function_test

@@ -11,7 +11,7 @@
 #include "volume/balanced_split.hpp"
 #include "volume/image_split.hpp"
 
-namespace tessera::volume {
+namespace tessera::volume::tile_costs_test {
 namespace {
 
 constexpr int tile = 32;
@@ -165,4 +165,4 @@ TEST(BalancedSplit, IsWholeForAnyCostsSizesAndNumbers) {
 }
 
 }  // namespace
-}  // namespace tessera::volume
+}  // namespace tessera::volume::tile_costs_test
