@@ -20,7 +20,8 @@ options_of() {  # options_of NAME
     no-mpi) echo -DTESSERA_READERS=OFF -DTESSERA_MPI=OFF ;;
     no-gl) echo -DTESSERA_READERS=OFF -DTESSERA_GL=OFF ;;
     least)
-      echo -DTESSERA_READERS=OFF -DTESSERA_MPI=OFF -DTESSERA_JPEG=OFF -DTESSERA_TIFF=OFF -DTESSERA_GL=OFF -DTESSERA_CAIRO=OFF "${clang[@]}" \
+      echo -DTESSERA_READERS=OFF -DTESSERA_MPI=OFF -DTESSERA_JPEG=OFF -DTESSERA_TIFF=OFF -DTESSERA_GL=OFF -DTESSERA_CAIRO=OFF \
+        -DTESSERA_INSTRUCTION_SETS=native "${clang[@]}" \
         -DCMAKE_DISABLE_FIND_PACKAGE_{VTK,MPI,TetGen,CLI11}=ON # as if they were not there
       ;;
     clang) echo -DTESSERA_VTK=OFF "${clang[@]}" ;;

@@ -37,12 +37,15 @@ stage() {  # stage NAME COMMAND...: runs it, remembers a failure
 options=()
 if [ "$extent" = all ]; then options=(-DCMAKE_UNITY_BUILD=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON); fi
 
+# One more than there are cores: many tests wait for processes.
+tests_at_once=$(($(nproc) + 1))
+
 build_and_test() {  # build_and_test PRESET [CTEST_ARGUMENT...]
   local preset=$1
   shift
   cmake --preset "$preset" "${options[@]}" &&
     cmake --build --preset "$preset" -j"$(nproc)" &&
-    ctest --preset "$preset" -j"$(nproc)" --no-tests=error "$@" 2>&1 | tee "build/$preset/ctest.log"
+    ctest --preset "$preset" -j"$tests_at_once" --no-tests=error "$@" 2>&1 | tee "build/$preset/ctest.log"
 }
 
 stage format scripts/lint.sh format

@@ -21,7 +21,7 @@ if (packages.every(([name, { version }]) => there[name]?.version === version)) p
 
 mkdirSync(folder, { recursive: true });
 for (const file of ["package.json", "package-lock.json", ".npmrc"]) copyFileSync(join(source, file), join(folder, file));
-const npm = spawnSync("npm", ["ci", "--no-audit", "--no-fund", "--ignore-scripts"], { cwd: folder, encoding: "utf8", timeout: 120000 });
+const npm = spawnSync("npm", ["ci", "--no-audit", "--no-fund", "--ignore-scripts", "--fetch-retry-mintimeout=1000", "--fetch-retry-maxtimeout=5000"], { cwd: folder, encoding: "utf8", timeout: 120000 });
 if (npm.error?.code === "ENOENT") skip("there is no npm; install it, and the page's tests run");
 if (npm.status !== 0) {
   const said = `${npm.stdout}${npm.stderr}`;
