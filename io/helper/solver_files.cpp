@@ -32,6 +32,7 @@
 #include <string_view>
 #include <utility>
 #include <vector>
+#include "io/helper/cgns_zones.hpp"
 
 #include "io/helper/readers.hpp"
 #include "io/helper/time_steps.hpp"
@@ -171,6 +172,7 @@ ForeignContents read_ensight(Holdings& holdings, const std::filesystem::path& fi
 }
 
 ForeignContents read_cgns(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  if (auto contents = read_cgns_zones(holdings, file, request)) return std::move(*contents);
   allow_for(file);
   vtkNew<vtkCGNSReader> reader;
   reader->SetFileName(file.c_str());

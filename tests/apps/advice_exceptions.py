@@ -30,7 +30,7 @@ EXCEPTIONS = {
     r"^io/json_transfer_function\.cpp:\d+: transfer function: it has no knot": (1, LIBRARY),
     r"please report": (6, DEFECT),
     r"^io/vtk_array\.cpp:\d+: \{\}: its samples end or break": (1, BIG),
-    r"2\^32|points are too many for|it lists more than \{\} blocks": (8, HUGE),
+    r"2\^32|points are too many for|it lists more than \{\} blocks": (9, HUGE),
     r"; check the disk$|it cannot be mapped into memory|^io/image_(jpeg|tiff)\.cpp:\d+: \{\}: cannot be written": (8, DISK),
     r"^io/pvtu_writer\.cpp:\d+: \{\}: cannot be written": (1, "a folder that takes files and refuses to rename them"),
     r"cannot be opened; check (its permissions|that you may read it)": (3, ROOT),
@@ -59,6 +59,7 @@ EXCEPTIONS = {
         17,
         HDF5,
     ),
+    r"^io/helper/cgns_": (15, HDF5),
     r"^io/helper/(gmsh_blocks\.cpp:\d+: \{\}: its cells of|netcdf_grid\.cpp:\d+: \{\}: the bounds)": (2, RARE),
     r"^io/(helper_process\.[ch]pp|helper/serve|helper/limits|foreign_fill\.cpp:\d+: filling)": (8, HELPER),
     r"^io/(foreign_fill\.cpp:\d+: mend|block_tets\.cpp:\d+: .*order_tolerance|amr_leaves\.cpp:\d+: .*many pieces)": (

@@ -1,0 +1,10 @@
+#pragma once
+
+// VTK's copy of the CGNS library, whose names are macros; two of them are ours too. Include it first.
+#include <vtk_cgns.h>
+
+#include VTK_CGNS(cgnslib.h)
+
+#undef cg
+#undef size_of
+#undef type_of
