@@ -9,6 +9,7 @@
 #include "io/amrex_header.hpp"
 #include "io/brick_file.hpp"
 #include "io/input_file.hpp"
+#include "io/medit_file.hpp"
 #include "io/volume_formats.hpp"
 
 namespace tessera::io {
@@ -247,6 +248,7 @@ bool begins_as_abaqus(const FileBeginning& file) {
 bool begins_as_medit(const FileBeginning& file) {
   return without_blanks(file.text.substr(0, 64)).starts_with("MeshVersionFormatted");
 }
+bool begins_as_meshb(const FileBeginning& file) { return begins_as_medit_binary(file.text); }
 bool begins_as_mfem(const FileBeginning& file) {
   return file.text.starts_with("MFEM ") && first_lines(file.text, '#', 1)[0].find("mesh v") != std::string_view::npos;
 }

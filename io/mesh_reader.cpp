@@ -12,9 +12,12 @@
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
+#include "io/medit_file.hpp"
 #include "io/mesh_assembly.hpp"
 #include "io/mesh_formats.hpp"
+#include "io/nastran_file.hpp"
 #include "io/su2_file.hpp"
+#include "io/tecplot_file.hpp"
 #include "io/tets_file.hpp"
 #include "scene/error.hpp"
 
@@ -24,6 +27,13 @@ namespace {
 bool has_time_steps(const std::filesystem::path& file) {
   const FormatRow* const row = format_of(file);
   return row != nullptr && row->has_time_steps;
+}
+
+MeshBlocks read_tecplot(const std::filesystem::path& file, std::optional<std::size_t> time_step) {
+  TecplotMesh read = parse_tecplot(MappedFile(file).text(), file.string(), time_step);
+  MeshBlocks mesh{std::move(read.blocks), std::move(read.notes), "Tecplot (text)"};
+  mesh.time_step = read.time_step;
+  return mesh;
 }
 
 MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row, const MeshOptions& options) {
@@ -49,6 +59,12 @@ MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row,
       return read_xdmf_mesh(file, options);
     case FileKind::med:
       return read_med(file, options);
+    case FileKind::medit:
+      return {parse_medit_binary(MappedFile(file).bytes(), file.string()), {}, "Medit, binary"};
+    case FileKind::nastran:
+      return {read_nastran(file), {}, "Nastran"};
+    case FileKind::tecplot:
+      return read_tecplot(file, options.time_step);
     case FileKind::su2:
       return {parse_su2(MappedFile(file).text(), file.string()), {}, "SU2"};
     case FileKind::plot3d:

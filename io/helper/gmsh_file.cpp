@@ -78,11 +78,9 @@ void require_last_section(const std::filesystem::path& file) {
         "{}: it does not end with the end of a section, $End...; it is truncated, write it anew", file.string()));
 }
 
-/// Text, or a 1 of either byte order.
 bool begins_as_medit(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first != std::string_view::npos && text.substr(first).starts_with("MeshVersionFormatted")) return true;
-  return text.starts_with(std::string_view("\1\0\0\0", 4)) || text.starts_with(std::string_view("\0\0\0\1", 4));
+  return first != std::string_view::npos && text.substr(first).starts_with("MeshVersionFormatted");
 }
 
 constexpr const char* medit = "Medit";
@@ -122,17 +120,15 @@ ForeignContents read_by_gmsh(Holdings& holdings, const std::filesystem::path& fi
     const char *extension, *words;
   };
   // As Gmsh knows them: in no other mixture of capitals.
-  constexpr std::array formats = {
-      Format{".mesh", medit},    Format{".meshb", medit}, Format{".unv", "I-DEAS universal"}, Format{".bdf", "Nastran"},
-      Format{".nas", "Nastran"}, Format{".MESH", medit},  Format{".UNV", "I-DEAS universal"}, Format{".BDF", "Nastran"},
-      Format{".NAS", "Nastran"}};
+  constexpr std::array formats = {Format{".mesh", medit}, Format{".meshb", medit}, Format{".unv", "I-DEAS universal"},
+                                  Format{".MESH", medit}, Format{".UNV", "I-DEAS universal"}};
   const std::string source = file.string(), extension = file.extension().string();
   const auto* const format =
       std::find_if(formats.begin(), formats.end(), [&](const Format& f) { return extension == f.extension; });
   if (format == formats.end())
     throw scene::bad_input(fmt::format(
         "{}: Gmsh's library knows such files by their names alone; unpack it, if it is packed, and have its name end "
-        "in .mesh, .meshb, .unv, .bdf or .nas",
+        "in .mesh or .unv",
         source));
   if (format->words == medit && !begins_as_medit(read_beginning(file, 64)))
     throw scene::bad_input(fmt::format("{}: it does not begin as a Medit mesh does; check what it is", source));

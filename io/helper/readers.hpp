@@ -66,7 +66,6 @@ ForeignContents read_vtk_hdf(Holdings& holdings, const std::filesystem::path& fi
 ForeignContents read_avs_ucd(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 ForeignContents read_fluent(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 ForeignContents read_gambit(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
-ForeignContents read_tecplot(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
 /// FLASH, a file of HDF5, and Enzo, by its .hierarchy or .boundary: blocks of all levels, their cell data.
 ForeignContents read_flash(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);

@@ -15,7 +15,6 @@
 #include <vtkNew.h>
 #include <vtkPoints.h>
 #include <vtkSmartPointer.h>
-#include <vtkTecplotReader.h>
 #include <vtkUnstructuredGrid.h>
 
 #include <algorithm>
@@ -32,8 +31,8 @@
 #include <string_view>
 #include <utility>
 #include <vector>
-#include "io/helper/cgns_zones.hpp"
 
+#include "io/helper/cgns_zones.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/time_steps.hpp"
 #include "io/helper/vtk_parts.hpp"
@@ -172,8 +171,8 @@ ForeignContents read_ensight(Holdings& holdings, const std::filesystem::path& fi
 }
 
 ForeignContents read_cgns(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
-  if (auto contents = read_cgns_zones(holdings, file, request)) return std::move(*contents);
   allow_for(file);
+  if (auto contents = read_cgns_zones(holdings, file, request)) return std::move(*contents);
   vtkNew<vtkCGNSReader> reader;
   reader->SetFileName(file.c_str());
   return read_by(holdings, *reader, file, request, "CGNS", [&] {
@@ -225,11 +224,6 @@ ForeignContents read_gambit(Holdings& holdings, const std::filesystem::path& fil
   reader->SetFileName(file.c_str());
   return read_by(
       holdings, *reader, file, request, "GAMBIT", [] {}, order_gambit_corners);
-}
-
-ForeignContents read_tecplot(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
-  allow_for(file);
-  return read_plainly<vtkTecplotReader>(holdings, file, request, "Tecplot (text)");
 }
 
 }  // namespace tessera::io::helper

@@ -20,7 +20,6 @@ constexpr Reader readers[] = {
     Reader{"avs_ucd", read_avs_ucd},
     Reader{"fluent", read_fluent},
     Reader{"gambit", read_gambit},
-    Reader{"tecplot", read_tecplot},
     Reader{"hdf5", read_hdf5},
     Reader{"netcdf", read_netcdf},
     Reader{"minc", read_minc},

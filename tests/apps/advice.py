@@ -23,6 +23,7 @@ from pathlib import Path
 
 import advice_arguments
 import advice_colors
+import advice_decks
 import advice_foreign
 import advice_libraries
 import advice_meshes
@@ -39,6 +40,7 @@ TOPICS = (
     advice_meshes,
     advice_foreign,
     advice_libraries,
+    advice_decks,
 )
 
 

@@ -75,7 +75,7 @@ ROWS = [
     ),
     row(
         "info a.mesh.gz",
-        "have its name end in .mesh, .meshb",
+        "have its name end in .mesh or .unv",
         "info a.mesh",
         {"a.mesh.gz": gzip.compress(MEDIT.encode())},
         {"a.mesh": MEDIT},

@@ -31,7 +31,8 @@ class FileKinds : public ::testing::Test {
 };
 
 struct Beginning {
-  const char *format, *text;
+  const char* format;
+  std::string_view text;
 };
 const Beginning beginnings[] = {
     {"VTK XML unstructured grid", "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\">"},
@@ -62,6 +63,8 @@ const Beginning beginnings[] = {
     {"MetaImage", "ObjectType = Image\nNDims = 3\n"},
     {"Gmsh", "$MeshFormat\n4.1 0 8\n"},
     {"Medit", "MeshVersionFormatted 2\n"},
+    {"Medit binary", std::string_view("\1\0\0\0\4\0\0\0\3\0\0\0\30\0\0\0\0\0\0\0\3\0\0\0", 24)},
+    {"Medit binary", std::string_view("\0\0\0\1\0\0\0\2\0\0\0\3\0\0\0\24\0\0\0\3", 20)},
     {"MFEM", "MFEM mesh v1.0\n"},
     {"SU2", "% mesh\nNDIME= 3\n"},
     {"XDMF", "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">"},
@@ -73,7 +76,7 @@ const Beginning beginnings[] = {
 TEST_F(FileKinds, TheBeginningWinsOverTheName) {
   for (const Beginning& b : beginnings)
     for (const char* name : {"x", "x.dat", "x.ply", "x.vtu", "x.nrrd", "x.cas"})
-      EXPECT_EQ(name_of(name, b.text), b.format) << name;
+      EXPECT_EQ(name_of(name, std::string(b.text)), b.format) << name;
 }
 
 TEST_F(FileKinds, ClassicNetCdfIsExodusByItsDimensions) {

@@ -1,0 +1,187 @@
+#include "io/medit_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include "io/block_groups.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+constexpr std::int32_t code_dimension = 3, code_vertices = 4, code_end = 54, last_known_code = 250;
+
+/// A keyword of cells and VTK's type of them.
+struct MeditCells {
+  std::int32_t code;
+  std::uint8_t type;
+  std::size_t nodes;
+};
+constexpr std::array<MeditCells, 5> medit_cells = {{{8, 10, 4}, {9, 13, 6}, {10, 12, 8}, {49, 14, 5}, {30, 24, 10}}};
+
+/// Volumes that are not read, and another order of nodes.
+constexpr std::array<std::pair<std::int32_t, std::string_view>, 14> unread_cells = {{{33, "hexahedra of order 2"},
+                                                                                     {46, "polyhedra"},
+                                                                                     {86, "prisms of order 2"},
+                                                                                     {87, "pyramids of order 2"},
+                                                                                     {96, "tetrahedra of order 3"},
+                                                                                     {97, "tetrahedra of order 4"},
+                                                                                     {98, "hexahedra of order 3"},
+                                                                                     {99, "hexahedra of order 4"},
+                                                                                     {100, "pyramids of order 3"},
+                                                                                     {101, "pyramids of order 4"},
+                                                                                     {102, "prisms of order 3"},
+                                                                                     {103, "prisms of order 4"},
+                                                                                     {133, "an order of nodes"},
+                                                                                     {207, "polyhedra"}}};
+
+class MeditBinary {
+ public:
+  MeditBinary(std::span<const std::byte> bytes, const std::string& source) : bytes_(bytes), source_(source) {
+    std::int32_t one = 0;
+    std::memcpy(&one, bytes.data(), sizeof one);
+    is_swapped_ = one != 1;
+    at_ = sizeof one;
+    version_ = read<std::int32_t>("version");
+    block_.offsets.push_back(0);
+  }
+
+  std::vector<CellBlock> blocks() {
+    while (at_ < bytes_.size()) {
+      const std::size_t begin = at_;
+      const auto code = read<std::int32_t>("keyword");
+      const std::int64_t next = version_ >= 3 ? read<std::int64_t>("place") : read<std::int32_t>("place");
+      if (code < 1 || code > last_known_code) fail(begin, fmt::format("there is a keyword {}", code));
+      read_keyword(code, begin);
+      if (next == 0 || code == code_end) break;
+      if (next < 0 || static_cast<std::uint64_t>(next) <= begin || static_cast<std::uint64_t>(next) > bytes_.size())
+        fail(begin, fmt::format("the next keyword is at byte {} of {}", next, bytes_.size()));
+      at_ = static_cast<std::size_t>(next);
+    }
+    return made();
+  }
+
+ private:
+  void read_keyword(std::int32_t code, std::size_t begin) {
+    if (code == code_dimension) {
+      if (const auto dimension = read<std::int32_t>("dimension"); dimension != 3)
+        throw scene::bad_input(
+            fmt::format("{}: it has {} dimensions, and a volume has three; give one", source_, dimension));
+    }
+    if (code == code_vertices) read_points(begin);
+    for (const MeditCells& cells : medit_cells)
+      if (cells.code == code) read_cells(cells, begin);
+    for (const auto& [unread, words] : unread_cells)
+      if (unread == code && whole("count") > 0)
+        throw scene::bad_input(
+            fmt::format("{}: it has {}, which are not read; write cells of order 1", source_, words));
+  }
+
+  void read_points(std::size_t begin) {
+    const std::size_t real = version_ == 1 ? sizeof(float) : sizeof(double);
+    const std::size_t count = read_count(3 * real + whole_bytes(), "points", begin);
+    block_.positions.reserve(count);
+    for (std::size_t v = 0; v < count; ++v) {
+      glm::dvec3 p;
+      for (int a = 0; a < 3; ++a) p[a] = version_ == 1 ? read<float>("point") : read<double>("point");
+      static_cast<void>(whole("reference"));
+      block_.positions.push_back(p);
+    }
+  }
+
+  void read_cells(const MeditCells& cells, std::size_t begin) {
+    const std::size_t count = read_count((cells.nodes + 1) * whole_bytes(), "cells", begin);
+    for (std::size_t c = 0; c < count; ++c) {
+      const std::size_t first = at_;
+      for (std::size_t k = 0; k < cells.nodes; ++k) {
+        const std::int64_t node = whole("node");
+        if (node < 1 || node >= std::numeric_limits<std::uint32_t>::max())
+          fail(first, fmt::format("a cell uses point {}", node));
+        block_.connectivity.push_back(static_cast<std::uint32_t>(node - 1));
+      }
+      references_.push_back(whole("reference"));
+      block_.types.push_back(cells.type);
+      block_.offsets.push_back(block_.connectivity.size());
+    }
+  }
+
+  std::vector<CellBlock> made() {
+    if (block_.types.empty())
+      throw scene::bad_input(fmt::format(
+          "{}: it holds no cells of volume; give a mesh of tetrahedra, hexahedra, prisms or pyramids", source_));
+    for (const std::uint32_t node : block_.connectivity)
+      if (node >= block_.positions.size())
+        throw scene::bad_input(fmt::format("{}: a cell uses point {} of {}; the file is damaged, export it again",
+                                           source_, std::uint64_t{node} + 1, block_.positions.size()));
+    return blocks_by_number(block_, references_, "reference", "Reference");
+  }
+
+  [[nodiscard]] std::size_t whole_bytes() const { return version_ >= 4 ? sizeof(std::int64_t) : sizeof(std::int32_t); }
+  std::int64_t whole(const char* what) { return version_ >= 4 ? read<std::int64_t>(what) : read<std::int32_t>(what); }
+
+  std::size_t read_count(std::size_t bytes_each, const char* what, std::size_t begin) {
+    const std::int64_t count = whole("count");
+    if (count < 0 || static_cast<std::uint64_t>(count) > (bytes_.size() - at_) / bytes_each)
+      fail(begin, fmt::format("there are {} {}, more than the file can hold", count, what));
+    return static_cast<std::size_t>(count);
+  }
+
+  template <class T>
+  T read(const char* what) {
+    if (bytes_.size() - at_ < sizeof(T)) fail(at_, fmt::format("the file ends before a {}", what));
+    std::array<std::byte, sizeof(T)> own;
+    std::memcpy(own.data(), bytes_.data() + at_, sizeof(T));
+    if (is_swapped_) std::ranges::reverse(own);
+    at_ += sizeof(T);
+    T value;
+    std::memcpy(&value, own.data(), sizeof(T));
+    return value;
+  }
+
+  [[noreturn]] void fail(std::size_t at, const std::string& what) const {
+    throw scene::bad_input(
+        fmt::format("{}: byte {}: {}; the file is truncated or damaged, export it again", source_, at, what));
+  }
+
+  std::span<const std::byte> bytes_;
+  const std::string& source_;
+  bool is_swapped_ = false;
+  std::int32_t version_ = 0;
+  std::size_t at_ = 0;
+  CellBlock block_;
+  std::vector<std::int64_t> references_;  ///< of the cells
+};
+
+}  // namespace
+
+bool begins_as_medit_binary(std::string_view beginning) {
+  const auto has = [&](std::size_t at, char value, bool is_big) {
+    const std::array<char, 4> little = {value, 0, 0, 0}, big = {0, 0, 0, value};
+    return at + 4 <= beginning.size() &&
+           std::memcmp(beginning.data() + at, is_big ? big.data() : little.data(), 4) == 0;
+  };
+  // Other files begin with a 1 and a small number too, so the first keyword counts, which is the dimension.
+  for (const bool is_big : {false, true})
+    for (const char version : {'\1', '\2', '\3', '\4'}) {
+      const std::size_t dimension_at = version >= 3 ? 20 : 16;
+      if (has(0, 1, is_big) && has(4, version, is_big) && has(8, code_dimension, is_big) &&
+          (has(dimension_at, 2, is_big) || has(dimension_at, 3, is_big)))
+        return true;
+    }
+  return false;
+}
+
+std::vector<CellBlock> parse_medit_binary(std::span<const std::byte> bytes, const std::string& source) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (!begins_as_medit_binary(text.substr(0, 24)))
+    throw scene::bad_input(fmt::format("{}: it does not begin as a binary Medit mesh does; check what it is", source));
+  return MeditBinary(bytes, source).blocks();
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/cell_block.hpp"
+
+namespace tessera::io {
+
+/// Reads the solid elements of a Nastran deck (CTETRA, CPYRAM, CPENTA and CHEXA of order 1 and 2): a block a property,
+/// points in the basic coordinate system (nastran_systems.hpp). An element with nodes in the middle of some edges has
+/// the middle itself where the field of a node is blank. Where there are several blocks the cell field PropertyId tells
+/// them apart. Throws Error(bad_input) with file, line and remedy.
+///
+/// Source  MSC Nastran, "Quick Reference Guide", bulk data entries CHEXA, CPENTA, CPYRAM and CTETRA.
+std::vector<CellBlock> read_nastran(const std::filesystem::path& file);
+
+}  // namespace tessera::io
