@@ -175,7 +175,9 @@ class NastranDeck {
     require_beside_others(from);
     std::error_code unknown;
     const std::filesystem::path file = from.parent_path() / std::filesystem::path(name);
-    if (name.empty() || !std::filesystem::is_regular_file(file, unknown))
+    const bool is_there = !name.empty() && std::filesystem::is_regular_file(file, unknown);
+    if (!is_there && !is_bulk_) return;  // of the executive or case control, which hold no mesh
+    if (!is_there)
       throw scene::bad_input(fmt::format("{}: line {}: it includes {}, and there is no such file; put it there",
                                          from.string(), number, scene::quote(name)));
     end_entry();

@@ -246,6 +246,8 @@ CellBlock block_of_zone(const TecplotHeader& header, std::size_t z, const std::a
 
 TecplotMesh parse_tecplot(std::string_view text, const std::string& source, std::optional<std::size_t> time_step) {
   const TecplotHeader header = parse_tecplot_header(text, source);
+  if (header.zones.empty())
+    throw scene::bad_input(fmt::format("{}: it has no ZONE; check that it is a text of Tecplot's", source));
   const auto with_cells = static_cast<std::size_t>(std::ranges::count_if(header.zones, has_tecplot_cells));
   if (with_cells == 0)
     throw scene::bad_input(

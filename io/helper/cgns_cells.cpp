@@ -301,7 +301,9 @@ bool is_plain(const CgnsZone& zone) {
       if (section.first <= zone.size[1]) return false;
       continue;
     }
-    if (section.first != next) return false;
+    const Solid* const solid = solid_of(section.type);
+    const bool is_curved = solid != nullptr && solid->nodes.size() > 8;  // in this program's own order of nodes
+    if (section.first != next || is_curved) return false;
     next = section.last + 1;
   }
   return next == zone.size[1] + 1;

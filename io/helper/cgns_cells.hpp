@@ -25,7 +25,7 @@ struct CgnsZone {
 void require_cgns(int status, const CgnsZone& zone);
 
 /// Whether VTK's reader takes the cells of an unstructured zone for what they are. It takes the elements with the first
-/// numbers for the cells, as many as the zone has, in the order of the sections.
+/// numbers for the cells, as many as the zone has, in the order of the sections. Elements of order 2 are never plain.
 bool is_plain(const CgnsZone& zone);
 
 /// Sets the cells of an unstructured zone: elements of three dimensions in the order of their numbers, whatever the

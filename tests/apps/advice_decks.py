@@ -61,6 +61,7 @@ ROWS = [
     tecplot("E=1", "E=1, DT=(SINGLE", "the list of DT does not end; export the file again"),
     tecplot("FETETRAHEDRON", "FEMIXED", "which is not read; export bricks or tetrahedra"),
     tecplot("FETETRAHEDRON", "FETRIANGLE", "give one with bricks, tetrahedra or three dimensions"),
+    tecplot("ZONE", "ZONES", "it has no ZONE; check that it is a text of Tecplot's"),
     tecplot("=POINT", "=LINES", "the packing is 'LINES'; write POINT or BLOCK"),
     tecplot("VARIABLES=", "FILETYPE=SOLUTION\nVARIABLES=", "it holds a solution without its grid; write FILETYPE=FULL"),
     tecplot('"X" "Y" "Z" "f"', "X,Y,(Z),f", "VARIABLES holds no name here; quote the names"),

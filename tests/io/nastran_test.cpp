@@ -214,6 +214,9 @@ TEST_F(Nastran, IncludedFilesAreReadInTheirPlaces) {
     EXPECT_NEAR(testing::volume(read.mesh), 1, 1e-12) << include;
     EXPECT_EQ(read.counts.cells_read, 1u);
   }
+  // What comes before the bulk data holds no mesh.
+  const std::string control = "INCLUDE 'modes.v2005'\n" + deck("INCLUDE 'parts/grids.bdf'\n" + small(hexahedron(1, 1)));
+  EXPECT_NEAR(testing::volume(read_mesh(folder.write("d.bdf", control)).mesh), 1, 1e-12);
   test::expect_bad_input([&] { read_mesh(folder.write("b.bdf", deck("INCLUDE 'none.bdf'\n"))); },
                          {"b.bdf", "line 4", "'none.bdf'", "no such file"});
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);

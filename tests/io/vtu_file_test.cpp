@@ -2,10 +2,15 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
+#include "io/mesh_assembly.hpp"
+#include "io/mesh_checks.hpp"
 #include "io/mesh_formats.hpp"
+#include "io/polyhedral_meshes.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/vtu_checks.hpp"
 #include "io/vtu_writing.hpp"
@@ -246,6 +251,76 @@ TEST_F(Vtu, PolyhedraOfBothLayoutsHaveTheSameFaces) {
       EXPECT_EQ(block.faces, (std::vector<std::uint32_t>{6, 4,  12, 15, 16, 13, 4,  18, 19, 22, 21, 4,  12, 13, 19, 18,
                                                          4, 15, 21, 22, 16, 4,  12, 18, 21, 15, 4,  13, 16, 22, 19}));
     }
+}
+
+/// Cells [first, last) of a block of polyhedra as VTK 9.4 writes them, with cell numbers; faces between cells once.
+std::string numbered_polyhedra(const CellBlock& block, std::size_t first, std::size_t last) {
+  const std::vector<testing::Faces> cells = testing::faces_of_cells(block);
+  std::map<std::vector<std::uint32_t>, std::size_t> numbers;
+  std::string points, uses, ends, types, values, corners, corner_ends, faces, face_ends;
+  std::size_t used = 0, of_corners = 0, of_faces = 0;
+  for (const glm::dvec3& p : block.positions) points += fmt::format("{} {} {}\n", p.x, p.y, p.z);
+  for (std::size_t c = first; c < last; ++c) {
+    for (std::size_t k = block.offsets[c]; k < block.offsets[c + 1]; ++k)
+      uses += fmt::format("{} ", block.connectivity[k]);
+    for (const auto& face : cells[c]) {
+      std::vector<std::uint32_t> key(face.begin(), face.end());
+      std::ranges::sort(key);
+      const auto [at, is_new] = numbers.try_emplace(key, numbers.size());
+      faces += fmt::format("{} ", at->second);
+      ++of_faces;
+      if (!is_new) continue;
+      for (const std::uint32_t v : face) corners += fmt::format("{} ", v);
+      corner_ends += fmt::format("{} ", of_corners += face.size());
+    }
+    ends += fmt::format("{} ", used += block.offsets[c + 1] - block.offsets[c]);
+    face_ends += fmt::format("{} ", of_faces);
+    types += "42 ";
+    values += fmt::format("{} ", c);
+  }
+  const auto array = [](const char* name, const char* type, int components, const std::string& text) {
+    return fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"ascii\">{}</DataArray>\n",
+                       type, name, components, text);
+  };
+  return fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\"><CellData>", block.positions.size(),
+                     last - first) +
+         array("n", "Float64", 1, values) + "</CellData><Points>" + array("Points", "Float64", 3, points) +
+         "</Points><Cells>" + array("connectivity", "Int64", 1, uses) + array("offsets", "Int64", 1, ends) +
+         array("types", "UInt8", 1, types) + array("face_connectivity", "Int64", 1, corners) +
+         array("face_offsets", "Int64", 1, corner_ends) + array("polyhedron_to_faces", "Int64", 1, faces) +
+         array("polyhedron_offsets", "Int64", 1, face_ends) + "</Cells></Piece>\n";
+}
+
+std::string vtk94_file(const std::string& pieces) {
+  return "<VTKFile type=\"UnstructuredGrid\" version=\"2.3\" byte_order=\"LittleEndian\" "
+         "header_type=\"UInt64\"><UnstructuredGrid>\n" +
+         pieces + "</UnstructuredGrid></VTKFile>\n";
+}
+
+TEST_F(Vtu, PolyhedraOfVtk94AreReadWholeInPiecesAndInFilesOfPieces) {
+  const CellBlock block = testing::agglomerates(3, 5, 0.2, 3);
+  const std::size_t cells = block.types.size(), half = cells / 2;
+  const std::string first = numbered_polyhedra(block, 0, half), second = numbered_polyhedra(block, half, cells);
+  folder.write("one.vtu", vtk94_file(numbered_polyhedra(block, 0, cells)));
+  folder.write("two.vtu", vtk94_file(first + second));
+  folder.write("a.vtu", vtk94_file(first));
+  folder.write("b.vtu", vtk94_file(second));
+  folder.write("m.pvtu",
+               "<VTKFile type=\"PUnstructuredGrid\" version=\"2.3\"><PUnstructuredGrid GhostLevel=\"0\"><PCellData>"
+               "<PDataArray type=\"Float64\" Name=\"n\"/></PCellData><PPoints><PDataArray type=\"Float64\" "
+               "NumberOfComponents=\"3\"/></PPoints><Piece Source=\"a.vtu\"/><Piece Source=\"b.vtu\"/>"
+               "</PUnstructuredGrid></VTKFile>\n");
+  const MeshFile wanted = assemble_mesh({block}, {}, "mesh");
+  for (const char* name : {"one.vtu", "two.vtu", "m.pvtu"}) {
+    SCOPED_TRACE(name);
+    const MeshFile read = read_mesh(folder / name);
+    EXPECT_EQ(read.counts.cells_polyhedra, cells);
+    EXPECT_EQ(read.mesh.tets.size(), wanted.mesh.tets.size());
+    EXPECT_EQ(read.mesh.original_cell, wanted.mesh.original_cell);
+    EXPECT_NEAR(testing::volume(read.mesh), 1, 1e-12);
+    for (std::size_t t = 0; t < read.mesh.tets.size(); ++t)
+      EXPECT_EQ(read.mesh.scalars[t], wanted.mesh.original_cell[t]);
+  }
 }
 
 TEST_F(Vtu, PolyhedraWhoseFacesDoNotFitAreRefused) {
