@@ -117,7 +117,7 @@ void CurvedCell::set(const CurvedLattice& lattice, std::span<const glm::dvec3> p
                      std::span<const double> values, std::span<const double> weights) {
   lattice_ = &lattice;
   parts_made_ = 0;
-  const std::size_t nodes = positions.size(), slots = std::max(static_cast<std::size_t>(lattice.slots), nodes);
+  const std::size_t nodes = positions.size(), slots = static_cast<std::size_t>(lattice.all_slots);
   values_.assign(slots, glm::dvec4(0));
   weights_.assign(weights.empty() ? 0 : slots, glm::dvec4(0));
   for (std::size_t k = 0; k < nodes; ++k) {
@@ -135,7 +135,7 @@ void CurvedCell::set(const CurvedLattice& lattice, std::span<const glm::dvec3> p
   const auto faces = faces_of(lattice.family);
   for (std::size_t f = 0; f < faces.size(); ++f)
     for (int k = 0; k < faces[f].size; ++k) corner_faces_[faces[f].corner[static_cast<std::size_t>(k)]] |= 1u << f;
-  if (nodes < static_cast<std::size_t>(lattice.slots)) add_missing_nodes();
+  if (!lattice.is_complete) add_missing_nodes();
   make_inside();
 }
 
@@ -160,7 +160,7 @@ void CurvedCell::make_inside() {
 }
 
 /// Each is what a node in the middle of a face or cell has beyond the functions before it, over what its own function
-/// has there.
+/// has there; without the node nothing, but a wedge's inside is between its triangles.
 void CurvedCell::make_bubbles() {
   const auto faces = faces_of(lattice_->family);
   const auto middle = [](const LatticePlace& a, const LatticePlace& b) {
@@ -169,16 +169,23 @@ void CurvedCell::make_bubbles() {
   std::size_t made = 0;
   for (std::size_t f = 0; f < faces.size(); ++f) {
     if (faces[f].size != 3) continue;
+    bubbles_[made++] = glm::dvec4(0);
+    if (lattice_->slot_of_middle[f] < 0) continue;
     glm::dvec4 corners(0), edges(0);
     for (std::size_t k = 0; k < 3; ++k) {
       const LatticePlace a = lattice_corner(faces[f].corner[k]), b = lattice_corner(faces[f].corner[(k + 1) % 3]);
       corners += node(a), edges += node(middle(a, b));
     }
-    const glm::dvec4& own = values_[static_cast<std::size_t>(lattice_->slot_of_middle(f))];
-    bubbles_[made++] = 27.0 * (own - middle_of_triangle(corners, edges));
+    const glm::dvec4& own = values_[static_cast<std::size_t>(lattice_->slot_of_middle[f])];
+    bubbles_[made - 1] = 27.0 * (own - middle_of_triangle(corners, edges));
   }
-  const glm::dvec4& own = values_.back();
-  if (lattice_->family == CurvedFamily::wedge) {
+  const bool is_wedge = lattice_->family == CurvedFamily::wedge;
+  if (lattice_->slot_of_inside < 0) {
+    bubbles_[made] = is_wedge ? 0.5 * (bubbles_[0] + bubbles_[1]) : glm::dvec4(0);
+    return;
+  }
+  const glm::dvec4& own = values_[static_cast<std::size_t>(lattice_->slot_of_inside)];
+  if (is_wedge) {
     bubbles_[made] = 27.0 * (own - middle_of_triangle(node({0, 0, 1}) + node({2, 0, 1}) + node({0, 2, 1}),
                                                       node({1, 0, 1}) + node({1, 1, 1}) + node({0, 1, 1})));
     return;
@@ -189,26 +196,27 @@ void CurvedCell::make_bubbles() {
   bubbles_[made] = 256.0 * (own - ((all - corners) / 4.0 - corners / 8.0 + on_faces / 64.0));
 }
 
-/// Of serendipity cells, whose lattice is quadratic: the middles of faces, then of the cell.
+/// Of cells of second order: the middles of edges, of quadrilaterals, then of a hexahedron.
 void CurvedCell::add_missing_nodes() {
   std::vector<bool> given(values_.size(), false);
-  for (const LatticePlace& p : lattice_->nodes) given[static_cast<std::size_t>(lattice_->slot(p))] = true;
+  for (const int slot : lattice_->slot_of_node) given[static_cast<std::size_t>(slot)] = true;
+  const auto is_given = [&](const LatticePlace& p) { return given[static_cast<std::size_t>(lattice_->slot(p))]; };
   for (const CurvedFace& face : faces_of(lattice_->family)) {
-    if (face.size == 3) continue;
     std::array<glm::dvec4, 4> corners, edges;
     LatticePlace sum{};
-    for (std::size_t k = 0; k < 4; ++k) {
-      const LatticePlace a = lattice_corner(face.corner[k]), b = lattice_corner(face.corner[(k + 1) % 4]);
-      corners[k] = node(a);
-      edges[k] = node({(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2});
+    const auto size = static_cast<std::size_t>(face.size);
+    for (std::size_t k = 0; k < size; ++k) {
+      const LatticePlace a = lattice_corner(face.corner[k]), b = lattice_corner(face.corner[(k + 1) % size]);
+      const LatticePlace between = {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
+      if (!is_given(between)) node(between) = 0.5 * (node(a) + node(b));
+      corners[k] = node(a), edges[k] = node(between);
       for (std::size_t x = 0; x < 3; ++x) sum[x] += a[x];
     }
+    if (size == 3) continue;
     const LatticePlace middle = {sum[0] / 4, sum[1] / 4, sum[2] / 4};
-    if (!given[static_cast<std::size_t>(lattice_->slot(middle))])
-      node(middle) = middle_of_quadrilateral(corners, edges);
+    if (!is_given(middle)) node(middle) = middle_of_quadrilateral(corners, edges);
   }
-  if (lattice_->family != CurvedFamily::hexahedron || given[static_cast<std::size_t>(lattice_->slot({1, 1, 1}))])
-    return;
+  if (lattice_->family != CurvedFamily::hexahedron || lattice_->order[2] < 2 || is_given({1, 1, 1})) return;
   // Transfinite interpolation of faces, edges and corners: what the functions of both serendipity hexahedra give.
   glm::dvec4 sums[4] = {};  // of the corners, edges, faces
   for (int k = 0; k <= 2; ++k)
@@ -313,10 +321,10 @@ void CurvedCell::make_face(unsigned faces, Part& part) const {
       for (std::size_t x = 0; x < 3; ++x) p[x] = a[x] + i * (b[x] - a[x]) / n + j * (c[x] - a[x]) / m;
       add_to(part, p);
     }
-  if (part.triangle && lattice_->has_bubbles) {
+  if (part.triangle && lattice_->slot_of_middle[number] >= 0) {
     const auto& v = part.nodes;
     part.has_bubble = true;
-    part.bubble = 27.0 * (values_[static_cast<std::size_t>(lattice_->slot_of_middle(number))] -
+    part.bubble = 27.0 * (values_[static_cast<std::size_t>(lattice_->slot_of_middle[number])] -
                           middle_of_triangle(v[0] + v[2] + v[5], v[1] + v[3] + v[4]));
   }
   if (lattice_->has_control_points) face_to_values(part);

@@ -188,14 +188,39 @@ void number_slots(CurvedLattice& lattice) {
         if (is_of_lattice(lattice, {i, j, k})) lattice.slot_of_place[at] = lattice.slots++;
 }
 
+/// The number of the triangle that a place is the middle of; nothing for other places.
+std::optional<std::size_t> triangle_with_middle(const CurvedLattice& lattice, const LatticePlace& place) {
+  const auto faces = faces_of(lattice.family);
+  const auto corners = corners_of(lattice.family);
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (faces[f].size != 3) continue;
+    bool is_middle = true;
+    for (std::size_t x = 0; x < 3; ++x) {
+      int sum = 0;
+      for (std::size_t k = 0; k < 3; ++k) sum += corners[faces[f].corner[k]][x] * lattice.order[x] * lattice.refined;
+      is_middle = is_middle && 3 * place[x] == sum;
+    }
+    if (is_middle) return f;
+  }
+  return std::nullopt;
+}
+
 /// Nodes' slots; of those beside the lattice in their own order.
 void number_nodes(CurvedLattice& lattice) {
-  int beside = lattice.slots;
+  int beside = lattice.slots, of_lattice = 0;
   for (const LatticePlace& p : lattice.nodes) {
     const int m = lattice.refined;
-    const bool is_of_it = p[0] % m == 0 && p[1] % m == 0 && p[2] % m == 0;
-    lattice.slot_of_node.push_back(is_of_it ? lattice.slot({p[0] / m, p[1] / m, p[2] / m}) : beside++);
+    if (p[0] % m == 0 && p[1] % m == 0 && p[2] % m == 0) {
+      lattice.slot_of_node.push_back(lattice.slot({p[0] / m, p[1] / m, p[2] / m}));
+      ++of_lattice;
+      continue;
+    }
+    const std::optional<std::size_t> face = triangle_with_middle(lattice, p);
+    (face ? lattice.slot_of_middle[*face] : lattice.slot_of_inside) = beside;
+    lattice.slot_of_node.push_back(beside++);
   }
+  lattice.all_slots = beside;
+  lattice.is_complete = of_lattice == lattice.slots;
 }
 
 /// The n for which nodes_of(n) is `nodes`; 0 if there is none.
@@ -294,6 +319,38 @@ std::optional<CurvedLattice> quadratic_lattice(std::uint8_t vtk_type) {
   }
 }
 
+/// The cells of second order that VTK has not; by their numbers of nodes.
+std::optional<CurvedLattice> incomplete_lattice(std::uint8_t vtk_type, std::size_t nodes) {
+  struct Row {
+    std::uint8_t type;
+    std::size_t nodes;
+    CurvedFamily family;
+    std::size_t first, from, to;  ///< of a complete cell's nodes the first ones, then [from, to)
+  };
+  static constexpr Row rows[] = {
+      {71, 5, CurvedFamily::tet, 4, 14, 15},        {71, 7, CurvedFamily::tet, 7, 0, 0},
+      {71, 8, CurvedFamily::tet, 4, 10, 14},        {71, 11, CurvedFamily::tet, 10, 14, 15},
+      {71, 14, CurvedFamily::tet, 14, 0, 0},        {72, 9, CurvedFamily::hexahedron, 8, 26, 27},
+      {72, 16, CurvedFamily::hexahedron, 16, 0, 0}, {72, 21, CurvedFamily::hexahedron, 20, 26, 27},
+      {72, 26, CurvedFamily::hexahedron, 26, 0, 0}, {73, 16, CurvedFamily::wedge, 15, 20, 21},
+      {73, 20, CurvedFamily::wedge, 20, 0, 0},      {74, 18, CurvedFamily::pyramid, 18, 0, 0}};
+  for (const Row& row : rows) {
+    if (row.type != vtk_type || row.nodes != nodes) continue;
+    const bool is_hexahedron = row.family == CurvedFamily::hexahedron;
+    CurvedLattice lattice = is_hexahedron ? *quadratic_lattice(29) : bubble_lattice(row.family);
+    const std::vector<LatticePlace> all = lattice.nodes;
+    lattice.nodes.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(row.first));
+    lattice.nodes.insert(lattice.nodes.end(), all.begin() + static_cast<std::ptrdiff_t>(row.from),
+                         all.begin() + static_cast<std::ptrdiff_t>(row.to));
+    if (is_hexahedron && nodes == 16) {
+      lattice.order[2] = 1;
+      for (LatticePlace& p : lattice.nodes) p[2] /= 2;
+    }
+    return lattice;
+  }
+  return std::nullopt;
+}
+
 /// Of Lagrange cells, 71 to 74.
 std::optional<CurvedLattice> lagrange_lattice(std::uint8_t vtk_type, std::size_t nodes,
                                               const std::array<int, 3>& degrees) {
@@ -349,6 +406,7 @@ std::optional<CurvedLattice> bezier_lattice(std::uint8_t vtk_type, std::size_t n
 std::optional<CurvedLattice> curved_lattice(std::uint8_t vtk_type, std::size_t nodes,
                                             const std::array<int, 3>& degrees) {
   std::optional<CurvedLattice> lattice = quadratic_lattice(vtk_type);
+  if (!lattice && degrees == std::array<int, 3>{}) lattice = incomplete_lattice(vtk_type, nodes);
   if (!lattice) lattice = lagrange_lattice(vtk_type, nodes, degrees);
   if (!lattice) lattice = bezier_lattice(vtk_type, nodes, degrees);
   if (!lattice || lattice->nodes.size() != nodes) return std::nullopt;

@@ -27,22 +27,24 @@ struct CurvedLattice {
   std::array<int, 3> order{};       ///< along r, s, t; one number for tets and pyramids, r and s alike for wedges
   std::vector<LatticePlace> nodes;  ///< of each of the cell's nodes, times `refined`; may be fewer than the lattice has
   int refined = 1;                  ///< so many steps of nodes' places are one of the lattice
-  /// Quadratic cells whose triangles have a node in their middle too, and with it a cubic function.
+  /// Quadratic cells that may have a node in the middle of a triangle too, and with it a cubic function, and one
+  /// inside.
   bool has_bubbles = false;
   bool has_control_points = false;     ///< nodes are coefficients of Bernstein's polynomials (Bezier cells)
   std::vector<int> slot_of_place;      ///< where at(place) of cells' values is; -1: not of the lattice
   std::vector<int> slot_of_node;       ///< the same of each node; nodes that are not of the lattice come after it
   int slots = 0;                       ///< the lattice's places
+  int all_slots = 0;                   ///< and of nodes that are not of it
+  bool is_complete = true;             ///< each of them has a node
   std::vector<double> pyramid_matrix;  ///< pyramids: pyramid_matrix() of io/curved_pyramid.hpp
 
   [[nodiscard]] int slot(const LatticePlace& p) const {
     const auto at = [](int number) { return static_cast<std::size_t>(number); };
     return slot_of_place[(at(p[2]) * at(order[1] + 1) + at(p[1])) * at(order[0] + 1) + at(p[0])];
   }
-  /// Of the node in the middle of a triangle, by its number among the cell's faces, where has_bubbles.
-  [[nodiscard]] int slot_of_middle(std::size_t face) const {
-    return slots + static_cast<int>(face) - (family == CurvedFamily::pyramid ? 1 : 0);
-  }
+  /// Of the node in the middle of a triangle, by its number among the cell's faces; -1 without one.
+  std::array<int, 5> slot_of_middle = {-1, -1, -1, -1, -1};
+  int slot_of_inside = -1;  ///< of a node inside that is not of the lattice; -1 without one
   /// A node's place in (r, s, t).
   [[nodiscard]] glm::dvec3 place(std::size_t node) const {
     const auto in_units = [&](std::size_t x) { return static_cast<double>(nodes[node][x]) / (refined * order[x]); };
@@ -57,6 +59,12 @@ inline constexpr int highest_pyramid_order = 8;
 /// hexahedra (79) and wedges (80). `degrees` are those of VTK's HigherOrderDegrees, or zero: then hexahedra have one
 /// order along all axes, and wedges as well; tetrahedra and pyramids do not look at them. Nothing if the number of
 /// nodes is that of no such cell, or for other types.
+///
+/// Without degrees Lagrange's types are also the cells of second order that other formats have and VTK has not, whose
+/// nodes are some of VTK's, in its order (c: centre, m: all faces' middles, t: triangles' middles, e: all edges):
+/// tetrahedra of 5 (c), 7 (the base's edges), 8 (m), 11 (e c) and 14 (e m) nodes, hexahedra of 9 (c), 16 (edges of the
+/// base and the top; linear along t), 21 (e c) and 26 (e m), wedges of 16 (e c) and 20 (e m), pyramids of 18 (e m).
+/// What has no node is what the nodes of its edge or face make of it.
 ///
 /// Orders  Lagrange tetrahedra, hexahedra and wedges up to 100, pyramids up to 8, Bezier cells up to 12.
 /// Nodes   in VTK's order (vtkQuadraticTetra.h ..., vtkHigherOrderTetra.h, vtkHigherOrderHexahedron.h,

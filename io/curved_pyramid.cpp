@@ -58,7 +58,7 @@ void pyramid_functions(const CurvedLattice& lattice, const std::array<double, 3>
     const std::array<double, 8> bubbles = {
         x * (1 - yy) * www, y * (1 - xx) * www,     xx * (1 - yy) * www, yy * (1 - xx) * www, xx * ww, yy * ww,
         xx * yy * ww,       w * (xx + yy - xx * yy)};
-    std::copy(bubbles.begin(), bubbles.end(), values.begin() + static_cast<std::ptrdiff_t>(at));
+    std::copy_n(bubbles.begin(), lattice.nodes.size() - at, values.begin() + static_cast<std::ptrdiff_t>(at));
   } else {
     lagrange_functions(lattice.order[0], x, y, height, values);
   }

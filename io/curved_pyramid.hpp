@@ -14,6 +14,7 @@ namespace tessera::io {
 /// 13 nodes  the serendipity hexahedron's with one face at one point, corrected to be quadratic on the triangles
 ///           (Felippa, "Advanced Finite Element Methods", University of Colorado, chapter on pyramids)
 /// 19 nodes  VTK's: quadratic with a cubic bubble on triangles, biquadratic on the base
+/// 18 nodes  the same but for the last, without the node inside
 /// others    Lagrange's of the lattice: all polynomials of the order, and what makes all of them on the base (Bergot,
 ///           Cohen, Durufle, "Higher-order finite elements for hybrid meshes using new nodal pyramidal elements",
 ///           Journal of Scientific Computing 42, 2010)

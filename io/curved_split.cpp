@@ -119,6 +119,8 @@ void CurvedSplitter::tally_excess(const CurvedLattice& lattice, std::span<const 
     double worst = 0;
     for (const auto& [a, b] : edges_of_tet)
       worst = std::max<double>(worst, edge(tet[static_cast<std::size_t>(a)], tet[static_cast<std::size_t>(b)]).excess);
+    // Nodes within faces and cells bend what is within straight edges.
+    if (lattice.has_bubbles || worst <= 1) worst = std::max(worst, excess_of(departures(tet)) / room_inside(degree_));
     say(cell_.is_polynomial() ? worst : worst_of_fractions * worst);
   }
 }

@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
+#include <vector>
 
 #include "io/large_vector.hpp"
+#include "io/node_orders.hpp"
 #include "io/vtk_xml_numbers.hpp"
 #include "io/vtu_faces.hpp"
 #include "scene/error.hpp"
@@ -53,29 +54,41 @@ bool all_are_tets(const VtuCells& cells) {
   return true;
 }
 
-/// VTK 8 numbered the nodes of the last two of a hexahedron's edges the other way round.
-void reorder_edges(std::span<std::uint32_t> nodes) {
-  const auto order = static_cast<std::size_t>(std::lround(std::cbrt(static_cast<double>(nodes.size())))) - 1;
-  if (nodes.size() < 27 || (order + 1) * (order + 1) * (order + 1) != nodes.size()) return;
-  const std::size_t inner = order - 1, edge = 8 + 10 * inner;
-  std::swap_ranges(nodes.begin() + static_cast<std::ptrdiff_t>(edge),
-                   nodes.begin() + static_cast<std::ptrdiff_t>(edge + inner),
-                   nodes.begin() + static_cast<std::ptrdiff_t>(edge + inner));
+/// VTK's HigherOrderDegrees of a piece's cells; none without that array.
+std::vector<std::array<int, 3>> degrees_of(const PositionalFile& file, const VtkXmlPiece& piece,
+                                           const std::string& source) {
+  const auto& arrays = piece.cell_fields.arrays;
+  const auto found = std::ranges::find(arrays, "HigherOrderDegrees", &VtkXmlArray::name);
+  std::vector<std::array<int, 3>> degrees;
+  if (found == arrays.end() || found->components != 3) return degrees;
+  degrees.resize(piece.cells);
+  std::size_t at = 0;
+  stream_whole_numbers(file, {*found, 3 * piece.cells}, 1, source, [&](std::span<const std::int64_t> part) {
+    for (const std::int64_t number : part) {
+      degrees[at / 3][at % 3] = number > 0 && number < 1000 ? static_cast<int>(number) : 0;
+      ++at;
+    }
+  });
+  return degrees;
 }
 
 void add_reordered(const PositionalFile& file, const VtkXmlGrid& grid, const std::string& source, VtuCells& cells) {
-  std::uint64_t first = 0;
+  std::uint64_t first = 0, cell = 0;
   reserve_large(cells.connectivity, cells.offsets.back());
   for (std::size_t p = 0; p < grid.pieces.size(); first += grid.pieces[p++].points) {
-    if (cells.uses[p] == 0) continue;
-    const VtkXmlSegment uses{topology_of(grid, p, "connectivity", source), cells.uses[p]};
-    stream_whole_numbers(file, uses, 1, source, [&](std::span<const std::int64_t> part) {
-      for (const std::int64_t point : part) cells.connectivity.push_back(point_number(point, first));
-    });
+    if (cells.uses[p] > 0) {
+      const VtkXmlSegment uses{topology_of(grid, p, "connectivity", source), cells.uses[p]};
+      stream_whole_numbers(file, uses, 1, source, [&](std::span<const std::int64_t> part) {
+        for (const std::int64_t point : part) cells.connectivity.push_back(point_number(point, first));
+      });
+    }
+    const auto degrees = degrees_of(file, grid.pieces[p], source);
+    for (std::uint64_t c = 0; c < grid.pieces[p].cells; ++c, ++cell)
+      if (is_higher_order_hexahedron(cells.types[cell]))
+        exchange_vtk8_edges(
+            std::span(cells.connectivity).subspan(cells.offsets[cell], cells.offsets[cell + 1] - cells.offsets[cell]),
+            degrees.empty() ? std::array<int, 3>{} : degrees[c]);
   }
-  for (std::size_t c = 0; c < cells.types.size(); ++c)
-    if (is_higher_order_hexahedron(cells.types[c]))
-      reorder_edges(std::span(cells.connectivity).subspan(cells.offsets[c], cells.offsets[c + 1] - cells.offsets[c]));
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "io/block_choice.hpp"
+#include "io/helper/exodus_elements.hpp"
 #include "io/helper/exodus_faces.hpp"
 #include "io/helper/exodus_sets.hpp"
 #include "io/helper/netcdf_size.hpp"
@@ -123,23 +124,6 @@ std::vector<Variable> group_vectors(const std::vector<std::string>& names) {
   return variables;
 }
 
-/// VTK's cell type of a block's topology. More nodes than corners make it a higher-order cell, of which only the
-/// corners are used; Exodus numbers corners as VTK does.
-std::uint8_t vtk_type(std::string topology, std::int64_t nodes) {
-  std::transform(topology.begin(), topology.end(), topology.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  const auto is = [&](const char* prefix) { return topology.starts_with(prefix); };
-  if (is("HEX") && nodes >= 8) return nodes == 8 ? 12 : 72;
-  if (is("TET") && nodes >= 4) return nodes == 4 ? 10 : 71;
-  if (is("WED") && nodes >= 6) return nodes == 6 ? 13 : 73;
-  if (is("PYR") && nodes >= 5) return nodes == 5 ? 14 : 74;
-  if (is("NFA")) return 42;
-  for (const char* flat :
-       {"SHE", "QUA", "TRI", "BAR", "BEA", "TRU", "SPH", "CIR", "NSI", "EDG", "LIN", "POI", "RIG", "CON"})
-    if (is(flat)) return 9;
-  return 255;
-}
-
 /// Reads `n` values of one variable from entity `first` on, as doubles.
 void read_values(const ExodusFile& file, int step, ex_entity_type type, int index, std::int64_t block,
                  std::uint64_t first, std::span<double> out) {
@@ -218,6 +202,7 @@ class Reading {
     choose_step(time_step);
     read_elements();
     read_points();
+    settle_exodus_tet15(block_);
     add_fields();
   }
 
@@ -245,6 +230,7 @@ class Reading {
         file_->id(), init_, choice_, most_values_, source_, [this](const std::string& what) { file_->fail(what); },
         with_surfaces_);
     std::uint64_t first = 0;  // of the block's elements among all
+    std::vector<SidesOf> sides_of;
     for (const std::int64_t id : ids) {
       ex_block info{};
       info.id = id;
@@ -257,13 +243,14 @@ class Reading {
       std::vector<std::uint64_t> of;
       if (!is_chosen(choice_, result_.block_names.back())) of = sets.chosen_of(first, count);
       first += count;
+      sides_of.push_back({id, info.num_nodes_per_entry, first, exodus_topology(info)});
       if (count == 0 || (of.empty() && !is_chosen(choice_, result_.block_names.back()))) {
         blocks_.push_back({id, block_.types.size(), 0});
         continue;
       }
-      const std::string topology(info.topology, ::strnlen(info.topology, sizeof info.topology));
-      const std::uint8_t type = vtk_type(topology, info.num_nodes_per_entry);
-      if (type == 255)
+      const std::string topology = exodus_topology(info);
+      const ExodusElement type = exodus_element(topology, info.num_nodes_per_entry);
+      if (type.vtk == 255)
         throw scene::bad_input(
             fmt::format("{}: element block {} holds '{}' of {} nodes, which is not known; write tetrahedra, wedges, "
                         "pyramids or hexahedra",
@@ -280,20 +267,22 @@ class Reading {
     for (const std::int64_t set : sets.sides())
       add_sides(
           file_->id(), set, init_.num_nodes, most_values_, [this](const std::string& what) { file_->fail(what); },
-          block_);
+          sides_of, block_);
     has_sides_ = !sets.sides().empty();
     if (!block_.faces.empty()) block_.face_locations.resize(block_.types.size(), CellBlock::no_faces);
   }
 
-  void add_block(std::int64_t id, const ex_block& info, std::uint8_t type) {
+  void add_block(std::int64_t id, const ex_block& info, const ExodusElement& element) {
+    const std::uint8_t type = element.vtk;
     const auto count = static_cast<std::size_t>(info.num_entry);
     blocks_.push_back({id, block_.types.size(), count});
     const bool has_corners = (type != 9 || is_faces(info)) && type != 42;
     const auto nodes = static_cast<std::size_t>(std::max<std::int64_t>(has_corners ? info.num_nodes_per_entry : 0, 0));
     if (nodes > 0 && count > most_values_ / nodes)
       file_->fail(fmt::format("it promises {} elements of {} nodes", count, nodes));
-    // Of faces the corners are used: three of 3, 6 and 7 nodes, else four.
-    const bool is_triangle = nodes == 3 || nodes == 6 || nodes == 7;
+    // Of faces the corners are used.
+    const std::string topology = exodus_topology(info);
+    const bool is_triangle = topology.starts_with("TRI") || nodes == 3 || nodes == 6 || nodes == 7;
     block_.types.insert(block_.types.end(), count, type == 9 && is_triangle ? std::uint8_t{5} : type);
     if (nodes > 0) {
       std::vector<std::int64_t> corner(count * nodes);
@@ -308,7 +297,11 @@ class Reading {
         block_.connectivity.push_back(static_cast<std::uint32_t>(corner[k] - 1));
       }
     }
-    for (std::size_t c = 0; c < count; ++c) block_.offsets.push_back(block_.offsets.back() + nodes);
+    for (std::size_t c = 0; c < count; ++c) {
+      block_.offsets.push_back(block_.offsets.back() + nodes);
+      if (element.order != nullptr)
+        to_vtk_order(*element.order, std::span(block_.connectivity).subspan(block_.offsets[block_.offsets.size() - 2]));
+    }
     if (type == 42) faces_.add(id, info, init_.num_nodes, block_);
     report_progress(static_cast<double>(block_.types.size()) /
                     static_cast<double>(std::max<std::int64_t>(init_.num_elem, 1)));
@@ -316,12 +309,9 @@ class Reading {
 
   /// Whether a block's elements are faces that are asked for.
   [[nodiscard]] bool is_faces(const ex_block& info) const {
-    const std::string_view topology(info.topology, ::strnlen(info.topology, sizeof info.topology));
-    const auto is = [&](std::string_view word) {
-      return std::ranges::equal(topology.substr(0, 3), word, {},
-                                [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    };
-    return with_surfaces_ && info.num_nodes_per_entry >= 3 && (is("SHE") || is("QUA") || is("TRI"));
+    const std::string topology = exodus_topology(info);
+    return with_surfaces_ && info.num_nodes_per_entry >= 3 &&
+           (topology.starts_with("SHE") || topology.starts_with("QUA") || topology.starts_with("TRI"));
   }
 
   void read_points() {

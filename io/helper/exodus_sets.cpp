@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 
+#include "io/helper/exodus_elements.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
 
@@ -87,19 +88,65 @@ std::vector<std::uint64_t> ExodusSets::chosen_of(std::uint64_t first, std::uint6
   return chosen;
 }
 
+namespace {
+
+constexpr std::uint8_t polygon = 7;
+
+/// The faces that solids' sides are; false, and nothing added, where one is no solid's.
+bool add_sides_of_solids(int file, std::span<const std::int64_t> elements, std::span<const std::int64_t> sides,
+                         std::int64_t points, std::uint64_t most_values,
+                         const std::function<void(const std::string&)>& fail, std::span<const SidesOf> blocks,
+                         CellBlock& block) {
+  const auto block_of = [&](std::int64_t element) {
+    return static_cast<std::size_t>(
+        std::ranges::lower_bound(blocks, static_cast<std::uint64_t>(element), {}, &SidesOf::end) - blocks.begin());
+  };
+  for (std::size_t face = 0; face < elements.size(); ++face) {
+    if (elements[face] < 1) return false;
+    const std::size_t of = block_of(elements[face]);
+    if (of == blocks.size() || exodus_side(blocks[of].topology, sides[face]).empty()) return false;
+  }
+  std::vector<std::vector<std::int64_t>> nodes(blocks.size());  // of those that are used
+  for (std::size_t face = 0; face < elements.size(); ++face) {
+    const std::size_t of = block_of(elements[face]);
+    const std::uint64_t first = of == 0 ? 0 : blocks[of - 1].end;
+    const auto each = static_cast<std::size_t>(blocks[of].nodes);
+    if (nodes[of].empty()) {
+      if (each == 0 || blocks[of].end - first > most_values / each)
+        fail(fmt::format("it promises {} elements of {} nodes", blocks[of].end - first, blocks[of].nodes));
+      nodes[of].resize(each * (blocks[of].end - first));
+      if (ex_get_conn(file, EX_ELEM_BLOCK, blocks[of].id, nodes[of].data(), nullptr, nullptr) < 0)
+        fail("the elements cannot be read");
+    }
+    for (const std::uint8_t corner : exodus_side(blocks[of].topology, sides[face])) {
+      if (corner >= each) fail(fmt::format("block {} has elements of {} nodes", blocks[of].id, each));
+      const std::int64_t node = nodes[of][(static_cast<std::uint64_t>(elements[face]) - 1 - first) * each + corner];
+      if (node < 1 || node > points) fail(fmt::format("a side set names node {} of {}", node, points));
+      block.connectivity.push_back(static_cast<std::uint32_t>(node - 1));
+    }
+    block.types.push_back(polygon);
+    block.offsets.push_back(block.connectivity.size());
+  }
+  return true;
+}
+
+}  // namespace
+
 void add_sides(int file, std::int64_t id, std::int64_t points, std::uint64_t most_values,
-               const std::function<void(const std::string&)>& fail, CellBlock& block) {
+               const std::function<void(const std::string&)>& fail, std::span<const SidesOf> blocks, CellBlock& block) {
   std::int64_t count = 0, factors = 0, length = 0;
   if (ex_get_set_param(file, EX_SIDE_SET, id, &count, &factors) < 0) fail("a side set cannot be read");
   if (count < 0 || static_cast<std::uint64_t>(count) > most_values)
     fail(fmt::format("it promises a side set of {} faces", count));
   if (count == 0) return;
+  std::vector<std::int64_t> elements(static_cast<std::size_t>(count)), sides(elements.size());
+  if (ex_get_set(file, EX_SIDE_SET, id, elements.data(), sides.data()) < 0) fail("a side set cannot be read");
+  if (add_sides_of_solids(file, elements, sides, points, most_values, fail, blocks, block)) return;
   if (ex_get_side_set_node_list_len(file, id, &length) < 0) fail("a side set cannot be read");
   // Of an element no more than 32 nodes are of one face.
   if (length < 0 || length > 32 * count) fail(fmt::format("it promises a side set of {} corners", length));
   std::vector<std::int64_t> counts(static_cast<std::size_t>(count)), nodes(static_cast<std::size_t>(length));
   if (ex_get_side_set_node_list(file, id, counts.data(), nodes.data()) < 0) fail("a side set cannot be read");
-  constexpr std::uint8_t polygon = 7;
   std::size_t at = 0;
   for (const std::int64_t size : counts) {
     if (size < 0 || at + static_cast<std::size_t>(size) > nodes.size()) fail("a side set cannot be read");

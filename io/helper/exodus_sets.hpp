@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,10 +45,18 @@ class ExodusSets {
 /// The name of an entity of the file, empty if it has none.
 std::string exodus_name(int file, ex_entity_type type, std::int64_t id);
 
+/// An element block as side sets need it.
+struct SidesOf {
+  std::int64_t id = 0, nodes = 0;  ///< of an element
+  std::uint64_t end = 0;           ///< the number of elements in the file's blocks up to this one
+  std::string topology{};          ///< in upper case
+};
+
 /// Adds the faces of a side set as polygons of their corners (VTK's type 7). `points` of the file, `sets` at most as
-/// many as `most_values`; `fail` as above.
+/// many as `most_values`; `fail` as above. `blocks` are the file's element blocks in its order: the corners of solids'
+/// sides are found by them, since the library knows not all types; of others it lists the nodes.
 void add_sides(int file, std::int64_t id, std::int64_t points, std::uint64_t most_values,
-               const std::function<void(const std::string&)>& fail, CellBlock& block);
+               const std::function<void(const std::string&)>& fail, std::span<const SidesOf> blocks, CellBlock& block);
 
 /// Leaves of a block's cells from `first` on those with the numbers `kept`, counted from `first`, ascending.
 void keep_cells(CellBlock& block, std::size_t first, const std::vector<std::uint64_t>& kept);

@@ -14,8 +14,7 @@
 
 namespace tessera::io::helper {
 
-/// Cells of volume that MED and VTK both know; both number corners, and nodes between them, in one order, but for the
-/// faces' sense.
+/// Cells of volume that MED and VTK both know; io/node_orders.hpp has the order of their nodes.
 struct MedCellKind {
   med_geometry_type med;
   std::uint8_t vtk;

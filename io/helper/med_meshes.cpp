@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <string_view>
 
 #include "io/helper/med_file.hpp"
+#include "io/node_orders.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -34,6 +36,14 @@ void read_points(const MedFile& file, const MeshAt& mesh, CellBlock& block) {
   for (std::size_t v = 0; v < count; ++v) block.positions.emplace_back(xyz[3 * v], xyz[3 * v + 1], xyz[3 * v + 2]);
 }
 
+/// Null for hexagonal prisms, whose order is VTK's.
+const NodeOrder* order_of(const MedCellKind& kind) {
+  for (const NodeOrder& order : all_node_orders())
+    if (order.convention == NodeConvention::med && order.vtk_type == kind.vtk && order.nodes == kind.nodes)
+      return &order;
+  return nullptr;
+}
+
 void read_cells(const MedFile& file, const MeshAt& mesh, MedMesh& to) {
   CellBlock& block = to.block;
   block.offsets.push_back(0);
@@ -46,11 +56,13 @@ void read_cells(const MedFile& file, const MeshAt& mesh, MedMesh& to) {
     file.require(MEDmeshElementConnectivityRd(file.id(), mesh.name.c_str(), mesh.step, mesh.iteration, MED_CELL,
                                               kind.med, MED_NODAL, MED_FULL_INTERLACE, corners.data()) >= 0,
                  "the cells");
+    const NodeOrder* const order = order_of(kind);
     for (std::size_t c = 0; c < count; ++c) {
       for (std::size_t n = 0; n < nodes; ++n) {
         const med_int node = corners[c * nodes + n];  // counted from 1
         block.connectivity.push_back(node < 1 ? UINT32_MAX : static_cast<std::uint32_t>(node - 1));
       }
+      if (order != nullptr) to_vtk_order(*order, std::span(block.connectivity).last(nodes));
       block.types.push_back(kind.vtk);
       block.offsets.push_back(block.connectivity.size());
     }

@@ -5,6 +5,8 @@
 #include <vtkCellArray.h>
 #include <vtkCellType.h>
 #include <vtkCommand.h>
+#include <vtkCompositeDataIterator.h>
+#include <vtkCompositeDataSet.h>
 #include <vtkDataObject.h>
 #include <vtkEnSightReader.h>
 #include <vtkFLUENTReader.h>
@@ -15,7 +17,9 @@
 #include <vtkNew.h>
 #include <vtkPoints.h>
 #include <vtkSmartPointer.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
+#include <vtkVersionMacros.h>
 
 #include <algorithm>
 #include <array>
@@ -26,6 +30,7 @@
 #include <glm/vec3.hpp>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -38,6 +43,7 @@
 #include "io/helper/vtk_parts.hpp"
 #include "io/helper/vtk_session.hpp"
 #include "io/input_file.hpp"
+#include "io/node_orders.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -170,16 +176,42 @@ ForeignContents read_ensight(Holdings& holdings, const std::filesystem::path& fi
   return contents;
 }
 
+/// VTK's reader takes a pyramid of 14 nodes for a quadratic one, which has 13; has no type for one of 13; and
+/// before 9.5 puts hexahedra of third order into the order of VTK 8.
+void mend_cgns_cells(vtkDataObject& data) {
+  constexpr bool has_order_of_vtk8 = VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 5, 0);
+  auto* const composite = vtkCompositeDataSet::SafeDownCast(&data);
+  if (composite == nullptr) return;
+  const auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
+  const vtkNew<vtkIdList> nodes;
+  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem()) {
+    auto* const grid = vtkUnstructuredGrid::SafeDownCast(iterator->GetCurrentDataObject());
+    vtkUnsignedCharArray* const types = grid != nullptr ? grid->GetCellTypesArray() : nullptr;
+    for (vtkIdType cell = 0; types != nullptr && cell < types->GetNumberOfValues(); ++cell) {
+      const unsigned char type = types->GetValue(cell);
+      if (type != VTK_EMPTY_CELL && type != VTK_QUADRATIC_PYRAMID && type != VTK_LAGRANGE_HEXAHEDRON) continue;
+      grid->GetCellPoints(cell, nodes);
+      const auto count = static_cast<std::size_t>(nodes->GetNumberOfIds());
+      if (type == VTK_EMPTY_CELL && count == 13) types->SetValue(cell, VTK_QUADRATIC_PYRAMID);
+      if (type == VTK_QUADRATIC_PYRAMID && count == 14) types->SetValue(cell, VTK_LAGRANGE_PYRAMID);
+      if (type != VTK_LAGRANGE_HEXAHEDRON || !has_order_of_vtk8) continue;
+      exchange_vtk8_edges(std::span(nodes->GetPointer(0), count));
+      grid->GetCells()->ReplaceCellAtId(cell, nodes);
+    }
+  }
+}
+
 ForeignContents read_cgns(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   allow_for(file);
   if (auto contents = read_cgns_zones(holdings, file, request)) return std::move(*contents);
   vtkNew<vtkCGNSReader> reader;
   reader->SetFileName(file.c_str());
-  return read_by(holdings, *reader, file, request, "CGNS", [&] {
+  const auto choose = [&] {
     reader->EnableAllBases();
     reader->EnableAllPointArrays();
     reader->EnableAllCellArrays();
-  });
+  };
+  return read_by(holdings, *reader, file, request, "CGNS", choose, mend_cgns_cells);
 }
 
 ForeignContents read_vtk_hdf(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {

@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 #include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkCellType.h>
+#include <vtkDataArray.h>
 #include <vtkDataObject.h>
 #include <vtkDataSetReader.h>
 #include <vtkIdList.h>
@@ -9,6 +12,7 @@
 #include <vtkPolyData.h>
 #include <vtkSTLReader.h>
 #include <vtkSmartPointer.h>
+#include <vtkUnstructuredGrid.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLRectilinearGridReader.h>
@@ -18,6 +22,7 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "io/helper/extents.hpp"
 #include "io/helper/grid_pieces.hpp"
@@ -26,6 +31,7 @@
 #include "io/helper/vtk_session.hpp"
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
+#include "io/node_orders.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -73,8 +79,47 @@ vtkSmartPointer<vtkDataObject> read_structured(const std::string& source) {
   return reader->GetOutputDataObject(0);
 }
 
+/// VTK's reader puts the hexahedra of old files into the order of nodes of today after each piece, and with them those
+/// of all pieces before, which then are as they were.
+class OldCellsOnce final : public vtkXMLUnstructuredGridReader {
+ public:
+  static OldCellsOnce* New() {
+    auto* const made = new OldCellsOnce;
+    made->InitializeObjectBase();
+    return made;
+  }
+
+ protected:
+  int ReadPieceData() override {
+    const vtkIdType before = StartCell;
+    const int success = vtkXMLUnstructuredGridReader::ReadPieceData();
+    const bool is_old = GetFileMajorVersion() < 2 || (GetFileMajorVersion() == 2 && GetFileMinorVersion() < 1);
+    auto* const grid = vtkUnstructuredGrid::SafeDownCast(GetCurrentOutput());
+    if (success != 0 && is_old && grid != nullptr && NumberOfCells[Piece] > 0) exchange_edges(*grid, before);
+    return success;
+  }
+
+ private:
+  static void exchange_edges(vtkUnstructuredGrid& grid, vtkIdType cells) {
+    vtkDataArray* const degrees = grid.GetCellData()->GetArray("HigherOrderDegrees");
+    const vtkNew<vtkIdList> nodes;
+    for (vtkIdType cell = 0; cell < cells; ++cell) {
+      const int type = grid.GetCellType(cell);
+      if (type != VTK_HIGHER_ORDER_HEXAHEDRON && type != VTK_LAGRANGE_HEXAHEDRON && type != VTK_BEZIER_HEXAHEDRON)
+        continue;
+      grid.GetCells()->GetCellAtId(cell, nodes);
+      std::array<int, 3> orders{};
+      if (degrees != nullptr && degrees->GetNumberOfComponents() == 3)
+        for (int axis = 0; axis < 3; ++axis)
+          orders[static_cast<std::size_t>(axis)] = static_cast<int>(degrees->GetComponent(cell, axis));
+      exchange_vtk8_edges(std::span(nodes->GetPointer(0), static_cast<std::size_t>(nodes->GetNumberOfIds())), orders);
+      grid.GetCells()->ReplaceCellAtId(cell, nodes);
+    }
+  }
+};
+
 vtkSmartPointer<vtkDataObject> read_unstructured(const std::string& source) {
-  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  const auto reader = vtkSmartPointer<OldCellsOnce>::Take(OldCellsOnce::New());
   watch_progress(*reader);
   reader->SetFileName(source.c_str());
   reader->Update();

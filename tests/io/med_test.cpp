@@ -6,9 +6,11 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/changed_bytes.hpp"
+#include "io/curved_reference.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/mesh_reader.hpp"
@@ -109,6 +111,62 @@ TEST(Med, WhatAFieldHasNoValueForIsBlank) {
   EXPECT_EQ(u->low, 5);
   EXPECT_EQ(u->high, 7);
   EXPECT_EQ(u->nan_count, 10u);
+}
+
+/// One cell of second order, whose corners go round the base in MED's sense.
+void write_cell(const std::string& name, const testing::BentCell& cell, med_geometry_type kind) {
+  const med_idt file = MEDfileOpen(name.c_str(), MED_ACC_CREAT);
+  ASSERT_GE(file, 0);
+  const std::string axes = "x               y               z               ", units(48, ' '), component(16, ' ');
+  ASSERT_GE(MEDmeshCr(file, mesh_name, 3, 3, MED_UNSTRUCTURED_MESH, "a test", "s", MED_SORT_DTIT, MED_CARTESIAN,
+                      axes.c_str(), units.c_str()),
+            0);
+  std::vector<med_float> points;
+  std::vector<med_int> nodes;
+  for (const glm::dvec3& p : cell.positions) {
+    points.insert(points.end(), {p.x, p.y, p.z});
+    nodes.push_back(static_cast<med_int>(nodes.size()) + 1);
+  }
+  const auto count = static_cast<med_int>(nodes.size());
+  ASSERT_GE(MEDmeshNodeCoordinateWr(file, mesh_name, MED_NO_DT, MED_NO_IT, 0, MED_FULL_INTERLACE, count, points.data()),
+            0);
+  ASSERT_GE(MEDmeshElementConnectivityWr(file, mesh_name, MED_NO_DT, MED_NO_IT, 0, MED_CELL, kind, MED_NODAL,
+                                         MED_FULL_INTERLACE, 1, nodes.data()),
+            0);
+  ASSERT_GE(MEDfieldCr(file, "f", MED_FLOAT64, 1, component.c_str(), component.c_str(), "s", mesh_name), 0);
+  write_field(file, "f", 1, MED_NODE, MED_NONE, 1, count, cell.values);
+  ASSERT_GE(MEDfileClose(file), 0);
+}
+
+TEST(Med, CellsOfSecondOrderHaveTheirVolumeAndTheirField) {
+  const std::vector<std::vector<int>> tet10 = {{1, 2}, {2, 3}, {3, 1}, {1, 4}, {2, 4}, {3, 4}},
+                                      pyramid13 = {{1, 2}, {2, 3}, {3, 4}, {4, 1}, {1, 5}, {2, 5}, {3, 5}, {4, 5}},
+                                      wedge15 = {{1, 2}, {2, 3}, {3, 1}, {4, 5}, {5, 6},
+                                                 {6, 4}, {1, 4}, {2, 5}, {3, 6}},
+                                      hexahedron20 = {{1, 2}, {2, 3}, {3, 4}, {4, 1}, {5, 6}, {6, 7},
+                                                      {7, 8}, {8, 5}, {1, 5}, {2, 6}, {3, 7}, {4, 8}};
+  std::vector<std::vector<int>> wedge18 = wedge15, hexahedron27 = hexahedron20;
+  wedge18.insert(wedge18.end(), {{1, 2, 5, 4}, {2, 3, 6, 5}, {1, 3, 6, 4}});
+  hexahedron27.insert(
+      hexahedron27.end(),
+      {{1, 2, 3, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 4, 8, 7}, {1, 4, 8, 5}, {5, 6, 7, 8}, {1, 2, 3, 4, 5, 6, 7, 8}});
+  constexpr auto tet = CurvedFamily::tet, pyramid = CurvedFamily::pyramid, wedge = CurvedFamily::wedge,
+                 hexahedron = CurvedFamily::hexahedron;
+  const std::vector<std::pair<testing::ReferenceCell, med_geometry_type>> cells = {
+      {{"TETRA10", tet, tet10}, MED_TETRA10},
+      {{"PYRA13", pyramid, pyramid13, testing::CellSpace::linear}, MED_PYRA13},
+      {{"PENTA15", wedge, wedge15}, MED_PENTA15},
+      {{"PENTA18", wedge, wedge18}, MED_PENTA18},
+      {{"HEXA20", hexahedron, hexahedron20}, MED_HEXA20},
+      {{"HEXA27", hexahedron, hexahedron27}, MED_HEXA27}};
+  const test::TemporaryFolder folder;
+  const MeshOptions options = testing::coarse_options();
+  for (const auto& [cell, kind] : cells) {
+    SCOPED_TRACE(cell.name);
+    const testing::BentCell bent = testing::bend(cell, true);
+    write_cell((folder / (cell.name + ".med")).string(), bent, kind);
+    testing::expect_same(read_mesh(folder / (cell.name + ".med"), options), bent);
+  }
 }
 
 TEST(Med, DamagedOnesAreRefusedInOneLine) {

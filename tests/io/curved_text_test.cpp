@@ -1,0 +1,188 @@
+// Cells of second order in text formats, each with its nodes in the order of the format's manual.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/curved_reference.hpp"
+#include "io/mesh_checks.hpp"
+#include "io/mesh_reader.hpp"
+#include "io/reader_programs.hpp"
+#include "io/temporary_folder.hpp"
+
+namespace tessera::io::curved_text_test {
+namespace {
+
+using testing::BentCell;
+using testing::CellSpace;
+using testing::ReferenceCell;
+using Lists = std::vector<std::vector<int>>;
+/// With what the format calls it.
+using Named = std::vector<std::pair<ReferenceCell, std::string>>;
+
+constexpr auto tet = CurvedFamily::tet, pyramid = CurvedFamily::pyramid, wedge = CurvedFamily::wedge,
+               hexahedron = CurvedFamily::hexahedron;
+
+template <class... More>
+Lists together(Lists first, const More&... more) {
+  (first.insert(first.end(), more.begin(), more.end()), ...);
+  return first;
+}
+
+const Lists tet_edges = {{1, 2}, {2, 3}, {3, 1}, {1, 4}, {2, 4}, {3, 4}},
+            pyramid_edges = {{1, 2}, {2, 3}, {3, 4}, {4, 1}, {1, 5}, {2, 5}, {3, 5}, {4, 5}},
+            wedge_base = {{1, 2}, {2, 3}, {3, 1}}, wedge_top = {{4, 5}, {5, 6}, {6, 4}},
+            wedge_upright = {{1, 4}, {2, 5}, {3, 6}}, wedge_sides = {{1, 2, 5, 4}, {2, 3, 6, 5}, {1, 3, 6, 4}},
+            base_edges = {{1, 2}, {2, 3}, {3, 4}, {4, 1}}, top_edges = {{5, 6}, {6, 7}, {7, 8}, {8, 5}},
+            upright_edges = {{1, 5}, {2, 6}, {3, 7}, {4, 8}};
+
+/// As VTK's headers have them, and with it XDMF and EnSight.
+const ReferenceCell tet10{"10-node tetrahedron", tet, tet_edges},
+    pyramid13{"13-node pyramid", pyramid, pyramid_edges, CellSpace::linear},
+    wedge15{"15-node wedge", wedge, together(wedge_base, wedge_top, wedge_upright)},
+    wedge18{"18-node wedge", wedge, together(wedge15.middles, wedge_sides)},
+    hex20{"20-node hexahedron", hexahedron, together(base_edges, top_edges, upright_edges)},
+    hex24{"24-node hexahedron", hexahedron,
+          together(hex20.middles, Lists{{1, 4, 8, 5}, {2, 3, 7, 6}, {1, 2, 6, 5}, {4, 3, 7, 8}})},
+    hex27{"27-node hexahedron", hexahedron,
+          together(hex24.middles, Lists{{1, 2, 3, 4}, {5, 6, 7, 8}, {1, 2, 3, 4, 5, 6, 7, 8}})};
+
+std::string numbers_to(std::size_t end, std::size_t first) {
+  std::string text;
+  for (std::size_t k = first; k < end + first; ++k) text += fmt::format(" {}", k);
+  return text;
+}
+
+class CurvedText : public ::testing::Test {
+ protected:
+  MeshFile read(const std::string& name, const std::string& text, const std::string& field = "f") const {
+    MeshOptions options = testing::coarse_options();
+    options.field = field;
+    return read_mesh(folder.write(name, text), options);
+  }
+  test::TemporaryFolder folder;
+};
+
+TEST_F(CurvedText, LegacyVtk) {
+  if (!has_reader(Reader::vtk)) GTEST_SKIP() << "tessera-read-vtk is not installed";
+  for (const auto& [cell, type] : Named{{tet10, "24"},
+                                        {pyramid13, "27"},
+                                        {wedge15, "26"},
+                                        {wedge18, "32"},
+                                        {hex20, "25"},
+                                        {hex24, "33"},
+                                        {hex27, "29"}}) {
+    SCOPED_TRACE(cell.name);
+    const BentCell bent = testing::bend(cell);
+    const std::size_t n = bent.positions.size();
+    std::string text =
+        fmt::format("# vtk DataFile Version 3.0\none\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {} double\n", n);
+    for (const glm::dvec3& p : bent.positions) text += fmt::format("{} {} {}\n", p.x, p.y, p.z);
+    text += fmt::format("CELLS 1 {}\n{}{}\nCELL_TYPES 1\n{}\nPOINT_DATA {}\nSCALARS f double 1\nLOOKUP_TABLE default\n",
+                        n + 1, n, numbers_to(n, 0), type, n);
+    for (const double value : bent.values) text += fmt::format("{}\n", value);
+    testing::expect_same(read("a.vtk", text), bent);
+  }
+}
+
+TEST_F(CurvedText, Xdmf) {
+  if (!has_reader(Reader::xdmf)) GTEST_SKIP() << "tessera-read-xdmf is not installed";
+  for (const auto& [cell, type] : Named{{tet10, "Tetrahedron_10"},
+                                        {pyramid13, "Pyramid_13"},
+                                        {wedge15, "Wedge_15"},
+                                        {wedge18, "Wedge_18"},
+                                        {hex20, "Hexahedron_20"},
+                                        {hex24, "Hexahedron_24"},
+                                        {hex27, "Hexahedron_27"}}) {
+    SCOPED_TRACE(cell.name);
+    const BentCell bent = testing::bend(cell);
+    const std::size_t n = bent.positions.size();
+    std::string points, values;
+    for (const glm::dvec3& p : bent.positions) points += fmt::format("{} {} {} ", p.x, p.y, p.z);
+    for (const double value : bent.values) values += fmt::format("{} ", value);
+    const auto item = [](const std::string& sides, const std::string& numbers, const char* number, int bytes) {
+      return fmt::format(
+          "<DataItem Dimensions=\"{}\" NumberType=\"{}\" Precision=\"{}\" Format=\"XML\">{}</DataItem>\n", sides,
+          number, bytes, numbers);
+    };
+    const std::string text =
+        "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"3.0\">\n<Domain>\n<Grid Name=\"g\" GridType=\"Uniform\">\n" +
+        fmt::format("<Topology TopologyType=\"{}\" NumberOfElements=\"1\">\n", type) +
+        item(fmt::format("1 {}", n), numbers_to(n, 0), "Int", 4) + "</Topology>\n<Geometry GeometryType=\"XYZ\">\n" +
+        item(fmt::format("{} 3", n), points, "Float", 8) +
+        "</Geometry>\n<Attribute Name=\"f\" AttributeType=\"Scalar\" Center=\"Node\">\n" +
+        item(fmt::format("{}", n), values, "Float", 8) + "</Attribute>\n</Grid>\n</Domain>\n</Xdmf>\n";
+    testing::expect_same(read("a.xmf", text), bent);
+  }
+}
+
+TEST_F(CurvedText, EnSightGold) {
+  if (!has_reader(Reader::vtk)) GTEST_SKIP() << "tessera-read-vtk is not installed";
+  for (const auto& [cell, type] :
+       Named{{tet10, "tetra10"}, {pyramid13, "pyramid13"}, {wedge15, "penta15"}, {hex20, "hexa20"}}) {
+    SCOPED_TRACE(cell.name);
+    const BentCell bent = testing::bend(cell);
+    const std::size_t n = bent.positions.size();
+    std::string geometry =
+        fmt::format("one\ncell\nnode id off\nelement id off\npart\n{:10}\ncell\ncoordinates\n{:10}\n", 1, n);
+    for (int axis = 0; axis < 3; ++axis)
+      for (const glm::dvec3& p : bent.positions) geometry += fmt::format("{:12.5e}\n", p[axis]);
+    geometry += fmt::format("{}\n{:10}\n", type, 1);
+    for (std::size_t k = 1; k <= n; ++k) geometry += fmt::format("{:10}", k);
+    std::string values = fmt::format("f\npart\n{:10}\ncoordinates\n", 1);
+    for (const double value : bent.values) values += fmt::format("{:12.5e}\n", value);
+    folder.write("a.geo", geometry + "\n");
+    folder.write("a.f", values);
+    testing::expect_same(
+        read("a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: a.geo\nVARIABLE\nscalar per node: f a.f\n"), bent);
+  }
+}
+
+TEST_F(CurvedText, Gmsh) {
+  if (!has_reader(Reader::gmsh)) GTEST_SKIP() << "tessera-read-gmsh is not installed";
+  const Lists hexahedron_edges = {{1, 2}, {1, 4}, {1, 5}, {2, 3}, {2, 6}, {3, 4},
+                                  {3, 7}, {4, 8}, {5, 6}, {5, 8}, {6, 7}, {7, 8}},
+              hexahedron_rest = {{1, 4, 3, 2},
+                                 {1, 2, 6, 5},
+                                 {1, 5, 8, 4},
+                                 {2, 3, 7, 6},
+                                 {3, 4, 8, 7},
+                                 {5, 6, 7, 8},
+                                 {1, 2, 3, 4, 5, 6, 7, 8}},
+              prism_edges = {{1, 2}, {1, 3}, {1, 4}, {2, 3}, {2, 5}, {3, 6}, {4, 5}, {4, 6}, {5, 6}},
+              edges = {{1, 2}, {1, 4}, {1, 5}, {2, 3}, {2, 5}, {3, 4}, {3, 5}, {4, 5}};
+  for (const auto& [cell, type] :
+       Named{{{"tet 10", tet, {{1, 2}, {2, 3}, {1, 3}, {1, 4}, {3, 4}, {2, 4}}}, "11"},
+             {{"hexahedron 27", hexahedron, together(hexahedron_edges, hexahedron_rest)}, "12"},
+             {{"prism 18", wedge, together(prism_edges, Lists{{1, 2, 5, 4}, {1, 4, 6, 3}, {2, 3, 6, 5}})}, "13"},
+             {{"pyramid 14", pyramid, together(edges, Lists{{1, 2, 3, 4}})}, "14"},
+             {{"hexahedron 20", hexahedron, hexahedron_edges}, "17"},
+             {{"prism 15", wedge, prism_edges}, "18"},
+             {{"pyramid 13", pyramid, edges, CellSpace::linear}, "19"}}) {
+    SCOPED_TRACE(cell.name);
+    const BentCell bent = testing::bend(cell);
+    const std::size_t n = bent.positions.size();
+    std::string text = fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", n);
+    for (std::size_t k = 0; k < n; ++k)
+      text += fmt::format("{} {} {} {}\n", k + 1, bent.positions[k].x, bent.positions[k].y, bent.positions[k].z);
+    text += fmt::format("$EndNodes\n$Elements\n1\n1 {} 2 1 1{}\n$EndElements\n", type, numbers_to(n, 1));
+    text += fmt::format("$NodeData\n1\n\"f\"\n1\n0\n3\n0\n1\n{}\n", n);
+    for (std::size_t k = 0; k < n; ++k) text += fmt::format("{} {}\n", k + 1, bent.values[k]);
+    testing::expect_same(read("a.msh", text + "$EndNodeData\n"), bent);
+  }
+}
+
+TEST_F(CurvedText, MeditHasItsVolume) {
+  if (!has_reader(Reader::gmsh)) GTEST_SKIP() << "tessera-read-gmsh is not installed";
+  const BentCell bent = testing::bend(tet10);
+  std::string text = "MeshVersionFormatted 2\nDimension 3\nVertices\n10\n";
+  for (const glm::dvec3& p : bent.positions) text += fmt::format("{} {} {} 1\n", p.x, p.y, p.z);
+  const MeshFile mesh = read("a.mesh", text + "TetrahedraP2\n1\n1 2 3 4 5 6 7 8 9 10 1\nEnd\n", "");
+  EXPECT_NEAR(testing::volume(mesh.mesh), bent.volume, 1e-3 * bent.volume);
+  EXPECT_EQ(mesh.higher_order.by_corners, 0u);
+}
+
+}  // namespace
+}  // namespace tessera::io::curved_text_test
