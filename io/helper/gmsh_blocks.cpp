@@ -6,9 +6,8 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <new>
 
-#include "io/helper/gmsh_cells.hpp"
+#include "io/helper/gmsh_elements.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -17,19 +16,13 @@ namespace {
 using scene::Association;
 
 constexpr double absent = std::numeric_limits<double>::quiet_NaN();
-/// In place of a physical group's number, and larger than any.
-constexpr int no_group = std::numeric_limits<int>::max();
+/// In place of a physical group's number.
+constexpr int no_group = 0;
 
-/// Cells of some physical group, by type.
-struct Elements {
-  const GmshCell* cell = nullptr;
-  std::size_t nodes_a_cell = 0;
-  std::vector<std::size_t> tags, nodes;
-};
+/// What becomes one block.
 struct Group {
-  int number = no_group;
   std::string name;
-  std::vector<Elements> elements;
+  std::vector<GmshElements> elements;
 };
 
 /// All nodes, and how their tags find them.
@@ -47,106 +40,158 @@ Nodes read_nodes() {
   return nodes;
 }
 
-/// Cell types as they are met.
-class CellTypes {
+/// The names of physical groups and partitions, and which of them a cell is drawn in.
+class Names {
  public:
-  const GmshCell& of(int type, std::vector<std::string>& notes) {
-    const auto [found, is_new] = known_.try_emplace(type);
-    if (!is_new) return found->second;
-    std::string name;
-    int dimension = 0, order = 0, nodes = 0, corners = 0;
-    std::vector<double> places;
-    try {
-      gmsh::model::mesh::getElementProperties(type, name, dimension, order, nodes, places, corners);
-    } catch (const std::bad_alloc&) {
-      throw;
-    } catch (...) {  // it knows no places in prisms of the third order and above
-      const bool is_third_or_fourth = type == 90 || type == 91;
-      if (is_third_or_fourth || (type >= 106 && type <= 117)) {
-        name = "Prism", corners = 6;
-        order = is_third_or_fourth ? type - 87 : type <= 110 ? type - 101 : 0;  // the others lack inner nodes
-        if (order > 0) places = gmsh_prism_places(order);
-        nodes = order > 0 ? static_cast<int>(places.size() / 3) : 6;
-        if (order == 0) found->second = gmsh_cell(1, 6, std::vector<double>(18)), found->second.by_corners = true;
+  explicit Names(const GmshVolumes& volumes) : memberships_(volumes.memberships) {
+    for (const GmshElements& elements : volumes.elements)
+      for (const std::uint32_t m : elements.members) {
+        const GmshMembership& member = memberships_[m];
+        if (member.groups.empty()) ++cells_of_[no_group];
+        for (const int group : member.groups) ++cells_of_[group];
+        if (member.partition != 0) partitions_.try_emplace(member.partition);
       }
+    for (auto& [group, cells] : cells_of_) {
+      if (group == no_group) continue;
+      std::string name;
+      gmsh::model::getPhysicalName(3, group, name);
+      if (name.empty() && cells_of_.size() > 1) name = fmt::format("group {}", group);
+      group_names_[group] = std::move(name);
     }
-    if (corners >= 4 && corners <= 8 && corners != 7 && places.size() == 3 * static_cast<std::size_t>(nodes))
-      found->second = gmsh_cell(order, static_cast<std::size_t>(corners), places);
-    if (found->second.by_corners)
-      notes.push_back(fmt::format("cells of type {} are rendered as linear ones by their corner nodes", name));
-    return found->second;
+    if (has_groups() && cells_of_.contains(no_group)) group_names_[no_group] = "no group";
+    if (has_partitions())
+      for (auto& [partition, name] : partitions_) name = fmt::format("partition {}", partition);
+    for (const auto& [group, name] : group_names_)
+      if (group != no_group && !name.empty()) all.push_back(name);
+    if (has_groups() && cells_of_.contains(no_group)) all.push_back(group_names_[no_group]);
+    for (const auto& [partition, name] : partitions_)
+      if (has_partitions()) all.push_back(name);
+    all = distinct_names(std::move(all));
+  }
+
+  std::vector<std::string> all;
+
+  [[nodiscard]] bool has_several_groups() const { return cells_of_.size() > 1; }
+  [[nodiscard]] bool has_partitions() const { return partitions_.size() > 1; }
+
+  /// Of the groups of a membership the one with the fewest cells.
+  [[nodiscard]] int smallest_group(std::uint32_t member) const {
+    int smallest = no_group;
+    for (const int group : memberships_[member].groups)
+      if (smallest == no_group || cells_of_.at(group) < cells_of_.at(smallest)) smallest = group;
+    return smallest;
+  }
+
+  /// The block of a membership's cells; none if they are not chosen.
+  [[nodiscard]] std::optional<std::string> block_of(std::uint32_t member, const BlockChoice& choice) const {
+    const std::string smallest = name_of(smallest_group(member));
+    if (choice.empty()) return smallest;
+    if (!smallest.empty() && is_chosen(choice, smallest)) return smallest;
+    for (const int group : memberships_[member].groups)
+      if (const std::string name = name_of(group); !name.empty() && is_chosen(choice, name)) return name;
+    if (const auto found = partitions_.find(memberships_[member].partition);
+        found != partitions_.end() && has_partitions() && is_chosen(choice, found->second))
+      return found->second;
+    return std::nullopt;
   }
 
  private:
-  std::map<int, GmshCell> known_;
+  [[nodiscard]] bool has_groups() const { return cells_of_.size() > (cells_of_.contains(no_group) ? 1 : 0); }
+  [[nodiscard]] std::string name_of(int group) const {
+    const auto found = group_names_.find(group);
+    return found == group_names_.end() ? "" : found->second;
+  }
+
+  const std::vector<GmshMembership>& memberships_;
+  std::map<int, std::size_t> cells_of_;
+  std::map<int, std::string> group_names_, partitions_;
 };
 
-/// Volume cells by physical group; those of none come last.
-std::vector<Group> read_groups(CellTypes& types, const std::string& source, std::vector<std::string>& notes) {
-  std::map<int, Group> groups;
-  std::size_t entities_of_several = 0;
-  gmsh::vectorpair entities;
-  gmsh::model::getEntities(entities, 3);
-  for (const auto& [dimension, entity] : entities) {
-    std::vector<int> physical, element_types;
-    gmsh::model::getPhysicalGroupsForEntity(3, entity, physical);
-    if (physical.size() > 1) ++entities_of_several;
-    std::vector<std::vector<std::size_t>> tags, nodes;
-    gmsh::model::mesh::getElements(element_types, tags, nodes, 3, entity);
-    for (std::size_t k = 0; k < element_types.size(); ++k) {
-      if (tags[k].empty()) continue;
-      const GmshCell& cell = types.of(element_types[k], notes);
-      if (cell.vtk_type == 0)
-        throw scene::bad_input(
-            fmt::format("{}: its cells of Gmsh's type {} are not rendered; split them into "
-                        "tetrahedra",
-                        source, element_types[k]));
-      Group& group = groups[physical.empty() ? no_group : physical.front()];
-      group.elements.push_back({&cell, nodes[k].size() / tags[k].size(), std::move(tags[k]), std::move(nodes[k])});
+/// The elements by the block that they are drawn in; names in the order in which `names` has them.
+std::vector<Group> grouped(GmshVolumes& volumes, const Names& names, const BlockChoice& choice) {
+  std::vector<std::optional<std::string>> block_of;
+  for (std::uint32_t m = 0; m < volumes.memberships.size(); ++m) block_of.push_back(names.block_of(m, choice));
+  std::map<std::string, Group> groups;
+  for (GmshElements& elements : volumes.elements) {
+    std::map<std::string, std::vector<std::size_t>> places;
+    for (std::size_t k = 0; k < elements.tags.size(); ++k)
+      if (const auto& block = block_of[elements.members[k]]) places[*block].push_back(k);
+    for (const auto& [name, of_block] : places) {
+      Group& group = groups[name];
+      group.name = name;
+      if (of_block.size() == elements.tags.size()) {
+        group.elements.push_back(std::move(elements));
+        break;
+      }
+      GmshElements some{elements.cell, elements.nodes_a_cell, {}, {}, {}};
+      for (const std::size_t k : of_block) {
+        some.tags.push_back(elements.tags[k]), some.members.push_back(elements.members[k]);
+        const auto first = elements.nodes.begin() + static_cast<std::ptrdiff_t>(k * elements.nodes_a_cell);
+        some.nodes.insert(some.nodes.end(), first, first + static_cast<std::ptrdiff_t>(elements.nodes_a_cell));
+      }
+      group.elements.push_back(std::move(some));
     }
+    elements = {};
   }
-  if (entities_of_several > 0)
-    notes.push_back(fmt::format("{} volume{} in several physical groups, and drawn in the first of them",
-                                entities_of_several, entities_of_several == 1 ? " is" : "s are"));
   std::vector<Group> list;
-  for (auto& [tag, group] : groups) {
-    group.number = tag;
-    if (tag != no_group) gmsh::model::getPhysicalName(3, tag, group.name);
-    if (group.name.empty() && groups.size() > 1)
-      group.name = tag == no_group ? "no group" : fmt::format("group {}", tag);
-    list.push_back(std::move(group));
-  }
+  for (const std::string& name : names.all)
+    if (const auto found = groups.find(name); found != groups.end()) list.push_back(std::move(found->second));
+  if (const auto found = groups.find(""); found != groups.end()) list.push_back(std::move(found->second));
   return list;
 }
 
 /// Makes a block of a group at a time.
 class Blocks {
  public:
-  Blocks(const Nodes& nodes, const std::vector<GmshView>& views, const std::string& source)
-      : nodes_(nodes), views_(views), source_(source), local_(nodes.tags.size(), unused) {
+  Blocks(const Nodes& nodes, const GmshVolumes& volumes, const Names& names, const std::vector<GmshView>& views,
+         const std::string& source)
+      : nodes_(nodes),
+        volumes_(volumes),
+        names_(names),
+        views_(views),
+        source_(source),
+        local_(nodes.tags.size(), unused) {
     apart_ = std::any_of(views.begin(), views.end(),
                          [](const GmshView& view) { return view.of == GmshView::Of::element_nodes; });
   }
 
-  CellBlock block_of(const Group& group, bool is_only_one) {
+  CellBlock block_of(const Group& group) {
     CellBlock block;
     block.name = group.name;
     block.offsets.push_back(0);
     used_.clear();
-    for (const Elements& elements : group.elements) add_cells(elements, block);
+    for (const GmshElements& elements : group.elements) add_cells(elements, block);
     for (const std::size_t node : used_) local_[node] = unused;
     for (const GmshView& view : views_) add_field(view, group, block);
-    if (!is_only_one && group.number != no_group) add_group_field(group.number, block);
+    // Something to color by where there is no view.
+    if (names_.has_several_groups())
+      add_number_field("PhysicalGroupId", group, block, [&](std::uint32_t m) { return names_.smallest_group(m); });
+    if (names_.has_partitions())
+      add_number_field("PartitionId", group, block, [&](std::uint32_t m) { return volumes_.memberships[m].partition; });
     return block;
   }
 
  private:
   static constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
 
-  /// Something to colour by where there is no view.
-  static void add_group_field(int number, CellBlock& block) {
-    block.fields.push_back(field_of_values("PhysicalGroupId", "int32", Association::cell, 1,
-                                           std::vector<double>(block.types.size(), number)));
+  template <class NumberOf>
+  static void add_number_field(const char* name, const Group& group, CellBlock& block, const NumberOf& number_of) {
+    std::vector<double> numbers;
+    numbers.reserve(block.types.size());
+    for (const GmshElements& elements : group.elements)
+      for (const std::uint32_t member : elements.members) numbers.push_back(number_of(member));
+    block.fields.push_back(field_of_values(name, "int32", Association::cell, 1, std::move(numbers)));
+  }
+
+  /// Where a view has the value of an element, which the file may list under several numbers.
+  [[nodiscard]] std::size_t place_in(const GmshView& view, std::size_t tag) const {
+    const std::size_t at = view.places.find(tag);
+    const auto& others = volumes_.other_tags;
+    if (at != TagIndex::none || others.empty()) return at;
+    for (auto other = std::lower_bound(others.begin(), others.end(), std::pair(tag, std::size_t{0}));
+         other != others.end() && other->first == tag; ++other)
+      if (const std::size_t found = view.places.find(other->second); found != TagIndex::none) return found;
+    return TagIndex::none;
   }
 
   std::size_t place_of(std::size_t tag) const {
@@ -168,7 +213,7 @@ class Blocks {
     return local_[node];
   }
 
-  void add_cells(const Elements& elements, CellBlock& block) {
+  void add_cells(const GmshElements& elements, CellBlock& block) {
     block.types.insert(block.types.end(), elements.tags.size(), elements.cell->vtk_type);
     for (std::size_t c = 0; c < elements.tags.size(); ++c) {
       const std::span cell = std::span(elements.nodes).subspan(c * elements.nodes_a_cell, elements.nodes_a_cell);
@@ -194,9 +239,9 @@ class Blocks {
           copy(&view.values[at * view.components], v);
     } else {
       std::size_t c = 0, v = 0;
-      for (const Elements& elements : group.elements)
+      for (const GmshElements& elements : group.elements)
         for (const std::size_t tag : elements.tags) {
-          const std::size_t at = view.places.find(tag);
+          const std::size_t at = place_in(view, tag);
           if (at != TagIndex::none && of_cells) copy(&view.values[at * view.components], c);
           if (at != TagIndex::none && !of_cells)
             for (std::size_t k = 0; k < elements.cell->nodes.size(); ++k)
@@ -213,6 +258,8 @@ class Blocks {
   }
 
   const Nodes& nodes_;
+  const GmshVolumes& volumes_;
+  const Names& names_;
   const std::vector<GmshView>& views_;
   const std::string& source_;
   std::vector<std::uint32_t> local_;  ///< by node: its point in the block at hand
@@ -222,15 +269,21 @@ class Blocks {
 
 }  // namespace
 
-std::vector<CellBlock> gmsh_blocks(const std::vector<GmshView>& views, const std::string& source,
-                                   std::vector<std::string>& notes) {
+GmshBlocks gmsh_blocks(const std::vector<GmshView>& views, const BlockChoice& choice, const std::filesystem::path& file,
+                       const std::string& source, std::vector<std::string>& notes) {
   const Nodes nodes = read_nodes();
-  CellTypes types;
-  const std::vector<Group> groups = read_groups(types, source, notes);
-  Blocks maker(nodes, views, source);
-  std::vector<CellBlock> blocks;
-  for (const Group& group : groups) blocks.push_back(maker.block_of(group, groups.size() == 1));
-  return blocks;
+  GmshVolumes volumes = gmsh_volumes(file, source, notes);
+  Names names(volumes);
+  const bool is_known = std::all_of(choice.begin(), choice.end(), [&](const std::string& name) {
+    return std::any_of(names.all.begin(), names.all.end(),
+                       [&](const std::string& block) { return means_block(name, block); });
+  });
+  const std::vector<Group> groups = grouped(volumes, names, is_known ? choice : BlockChoice());
+  Blocks maker(nodes, volumes, names, views, source);
+  GmshBlocks result;
+  for (const Group& group : groups) result.blocks.push_back(maker.block_of(group));
+  result.names = std::move(names.all);
+  return result;
 }
 
 }  // namespace tessera::io::helper

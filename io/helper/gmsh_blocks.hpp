@@ -1,17 +1,26 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "io/block_choice.hpp"
 #include "io/cell_block.hpp"
 #include "io/helper/gmsh_views.hpp"
 
 namespace tessera::io::helper {
 
-/// The volume cells of what Gmsh has read, a block for each physical group and one for those in none, with the views as
-/// their fields (NaN where one has no value) and, of several groups, the cell field PhysicalGroupId. Where a view has
-/// values of cells' nodes, each cell has points of its own. Throws Error(bad_input) for a node that is not there.
-std::vector<CellBlock> gmsh_blocks(const std::vector<GmshView>& views, const std::string& source,
-                                   std::vector<std::string>& notes);
+struct GmshBlocks {
+  std::vector<CellBlock> blocks;
+  std::vector<std::string> names;  ///< of all physical groups and partitions, which may share cells
+};
+
+/// The volume cells of what Gmsh has read, each in one block: of those chosen by name the first that it is in, else its
+/// smallest physical group, and one more for cells in none. Views are their fields (NaN where one has no value); of
+/// several groups or partitions there are the cell fields PhysicalGroupId and PartitionId. Where a view has values of
+/// cells' nodes, each cell has points of its own. `file` as gmsh_volumes() has it. A choice of a name that is not there
+/// chooses all, for the caller to refuse. Throws Error(bad_input) for a node that is not there.
+GmshBlocks gmsh_blocks(const std::vector<GmshView>& views, const BlockChoice& choice, const std::filesystem::path& file,
+                       const std::string& source, std::vector<std::string>& notes);
 
 }  // namespace tessera::io::helper

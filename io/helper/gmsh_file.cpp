@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "io/helper/gmsh_blocks.hpp"
+#include "io/helper/gmsh_view_names.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper_messages.hpp"
 #include "io/input_file.hpp"
@@ -20,9 +21,7 @@ namespace tessera::io::helper {
 namespace {
 
 /// The first error in Gmsh's log; the name that it was given is replaced by the file's.
-std::string first_error(const std::string& given, const std::string& source) {
-  std::vector<std::string> log;
-  gmsh::logger::get(log);
+std::string first_error(std::vector<std::string> log, const std::string& given, const std::string& source) {
   for (std::string& line : log) {
     constexpr std::string_view mark = "Error: ";
     if (!line.starts_with(mark)) continue;
@@ -36,7 +35,8 @@ std::string first_error(const std::string& given, const std::string& source) {
   return "";
 }
 
-void merge(const std::string& given, const std::string& source) {
+/// Whether it is read. Not if the library gave up at its partitions, and may be tried without.
+bool merge(const std::string& given, const std::string& source, bool is_last_try = true) {
   static bool is_ready = false;
   if (!is_ready) {
     gmsh::initialize(0, nullptr, false);
@@ -55,11 +55,18 @@ void merge(const std::string& given, const std::string& source) {
   } catch (...) {  // Gmsh throws what it likes
     failed = true;
   }
-  const std::string error = first_error(given, source);
+  std::vector<std::string> log;
+  gmsh::logger::get(log);
+  const bool gave_up_at_partitions = std::any_of(log.begin(), log.end(), [](const std::string& line) {
+    return line.starts_with("Error: No mesh elements were found");
+  });
+  const std::string error = first_error(std::move(log), given, source);
   gmsh::logger::stop();
+  if (gave_up_at_partitions && !is_last_try) return false;
   if (failed || !error.empty())
     throw scene::bad_input(fmt::format("{}: {}; the file is truncated or damaged, write it anew", source,
                                        error.empty() ? "Gmsh cannot read it" : "Gmsh says " + error));
+  return true;
 }
 
 /// Gmsh does not mind a file that ends between two sections.
@@ -86,14 +93,15 @@ bool begins_as_medit(std::string_view text) {
 constexpr const char* medit = "Medit";
 
 ForeignContents contents_of_model(Holdings& holdings, const std::string& source, const nlohmann::json& request,
-                                  const char* format) {
+                                  const char* format, const std::filesystem::path& listed) {
   ForeignContents contents;
   contents.format = format;
   std::optional<std::size_t> time_step;
   if (const auto step = request.find("time_step"); step != request.end()) time_step = step->get<std::size_t>();
   const std::vector<GmshView> views = gmsh_views(time_step, source, contents.notes, contents.time_step);
-  for (CellBlock& block : gmsh_blocks(views, source, contents.notes))
-    contents.parts.push_back(hold_block(holdings, std::move(block)));
+  GmshBlocks read = gmsh_blocks(views, request.value("blocks", BlockChoice()), listed, source, contents.notes);
+  for (CellBlock& block : read.blocks) contents.parts.push_back(hold_block(holdings, std::move(block)));
+  contents.block_names = std::move(read.names);
   gmsh::clear();
   if (contents.parts.empty())
     throw scene::bad_input(fmt::format(
@@ -109,10 +117,15 @@ ForeignContents read_gmsh(Holdings& holdings, const std::filesystem::path& file,
     throw scene::bad_input(fmt::format("{}: it does not begin with $MeshFormat; write it anew", source));
   require_last_section(file);
   // By a name without an extension, since one of another format would be believed.
-  const Descriptor opened(::open(source.c_str(), O_RDONLY | O_CLOEXEC));
+  Descriptor opened(::open(source.c_str(), O_RDONLY | O_CLOEXEC));
   if (!opened.is_open()) throw scene::bad_input(fmt::format("{}: it cannot be opened; check its permissions", source));
-  merge(fmt::format("/proc/self/fd/{}", opened.get()), source);
-  return contents_of_model(holdings, source, request, "Gmsh");
+  if (Descriptor quoted = with_quoted_view_names(file); quoted.is_open()) opened = std::move(quoted);
+  const auto path_of = [](const Descriptor& copy) { return fmt::format("/proc/self/fd/{}", copy.get()); };
+  if (!merge(path_of(opened), source, false)) {
+    if (Descriptor copy = without_partitions(path_of(opened)); copy.is_open()) opened = std::move(copy);
+    merge(path_of(opened), source);
+  }
+  return contents_of_model(holdings, source, request, "Gmsh", file);
 }
 
 ForeignContents read_by_gmsh(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
@@ -133,7 +146,7 @@ ForeignContents read_by_gmsh(Holdings& holdings, const std::filesystem::path& fi
   if (format->words == medit && !begins_as_medit(read_beginning(file, 64)))
     throw scene::bad_input(fmt::format("{}: it does not begin as a Medit mesh does; check what it is", source));
   merge(source, source);
-  return contents_of_model(holdings, source, request, format->words);
+  return contents_of_model(holdings, source, request, format->words, {});
 }
 
 }  // namespace tessera::io::helper

@@ -49,6 +49,7 @@ std::vector<KnownView> known_views() {
     double steps = 0;
     gmsh::option::getNumber(fmt::format("View[{}].NbTimeStep", k), steps);
     gmsh::option::getString(fmt::format("View[{}].Name", k), view.name);
+    if (view.name.find_first_not_of(' ') == std::string::npos) view.name = fmt::format("view {}", k + 1);
     if (steps >= 1) view.steps = static_cast<std::size_t>(steps);
     while (view.steps > 1 && !data_of(view.tag, view.first_step)) ++view.first_step, --view.steps;
     views.push_back(std::move(view));

@@ -60,7 +60,7 @@ NumberTally tally_of(const std::vector<T>& numbers, NumberType type, int compone
 XdmfHeavyFiles::XdmfHeavyFiles(const std::filesystem::path& file) : source_(file.string()) {
   std::error_code unknown;  // there is none of what was in a gzip file
   folder_ = std::filesystem::weakly_canonical(file, unknown).parent_path();
-  files_.push_back(file);
+  files_.push_back(std::filesystem::absolute(file));  // the current folder may be another one later
 }
 
 void XdmfHeavyFiles::add(XdmfArray& array) {
@@ -105,14 +105,14 @@ std::vector<double> doubles_of(XdmfArray& array) {
   return numbers_of<double>(array);
 }
 
-ForeignArray hold_xdmf(Holdings& holdings, XdmfArray& array, const std::string& name, int components) {
+ForeignArray hold_xdmf(Holdings& holdings, XdmfArray& array, const std::string& name, int components, bool is_kept) {
   read_numbers(array);
   const NumberType type = number_type_of(array);
   return with_number_type(type, [&](auto zero) {
     std::vector<decltype(zero)> numbers = numbers_of<decltype(zero)>(array);
     ForeignArray held{.name = name, .type = type, .components = components};
     held.tally = tally_of(numbers, type, components);
-    array.release();
+    if (!is_kept) array.release();
     return hold_vector(holdings, std::move(held), std::move(numbers));
   });
 }

@@ -34,7 +34,8 @@ class XdmfHeavyFiles {
 /// The numbers as doubles; reads them if need be.
 std::vector<double> doubles_of(XdmfArray& array);
 
-/// The numbers in their own type; reads them if need be. The tally is of `components`' lengths.
-ForeignArray hold_xdmf(Holdings& holdings, XdmfArray& array, const std::string& name, int components);
+/// The numbers in their own type; reads them if need be. The tally is of `components`' lengths. The array is empty
+/// afterwards, unless it `is_kept`.
+ForeignArray hold_xdmf(Holdings& holdings, XdmfArray& array, const std::string& name, int components, bool is_kept);
 
 }  // namespace tessera::io::helper

@@ -24,8 +24,8 @@ class InlineNumbers {
     end();
     const std::string *format = element.find("Format"), *kind = element.find("ItemType"),
                       *dimensions = element.find("Dimensions");
-    if (element.name != "DataItem" || dimensions == nullptr || (format != nullptr && *format != "XML") ||
-        (kind != nullptr && *kind != "Uniform"))
+    if (element.name != "DataItem" || dimensions == nullptr || element.find("Reference") != nullptr ||
+        (format != nullptr && *format != "XML") || (kind != nullptr && *kind != "Uniform"))
       return;
     dimensions_ = *dimensions;
     words_ = 0, in_word_ = false;
@@ -61,27 +61,43 @@ class InlineNumbers {
   bool in_word_ = false;
 };
 
+/// What is right by the format's documentation, and an error to its library.
+bool is_to_be_rewritten(const XmlElement& element) {
+  if (element.find("Reference") != nullptr) return true;
+  if (element.name == "Attribute") {
+    const std::string* const type = element.find("AttributeType");
+    return element.find("Name") == nullptr || element.find("Center") == nullptr ||
+           (type != nullptr && *type == "FiniteElementFunction");
+  }
+  if (element.name == "Time") return element.find("Value") == nullptr;
+  if (element.name != "DataItem") return false;
+  const std::string *format = element.find("Format"), *type = element.find("NumberType"),
+                    *precision = element.find("Precision");
+  if (type == nullptr) type = element.find("DataType");
+  return format == nullptr || *format == "HDF5" || *format == "xml" || *format == "hdf" || *format == "binary" ||
+         (type != nullptr && *type == "UInt" && precision != nullptr && *precision == "8");
+}
+
 }  // namespace
 
-void check_xdmf_elements(const std::filesystem::path& file) {
+XdmfText check_xdmf_elements(const std::filesystem::path& file) {
   const MappedFile mapped(file);
   const std::string source = file.string();
   if (mapped.text().find("<!ENTITY") != std::string_view::npos)
     throw scene::bad_input(fmt::format("{}: it defines entities of its own; write it without", source));
   InlineNumbers numbers(source);
+  XdmfText text = XdmfText::plain;
   const auto visit = [&](const XmlElement& element) {
-    if (element.name.ends_with("include") && element.find("href") != nullptr && !element.find("href")->empty())
+    const std::string* const included = element.name.ends_with("include") ? element.find("href") : nullptr;
+    if (included != nullptr && !included->empty() && *included != file.filename())
       throw scene::bad_input(
           fmt::format("{}: it includes another file; have it written as one, with its numbers beside", source));
-    if (element.find("Reference") != nullptr)
-      throw scene::bad_input(
-          fmt::format("{}: its <{}> stands for another by Reference, which Xdmf's library does not know; write it with "
-                      "<xi:include>, or save it as .vtu in ParaView",
-                      source, element.name));
+    if (included != nullptr || is_to_be_rewritten(element)) text = XdmfText::to_be_rewritten;
     numbers.begin(element);
   };
-  each_xml_element(mapped.text(), source, visit, [&](std::string_view text) { numbers.add(text); });
+  each_xml_element(mapped.text(), source, visit, [&](std::string_view words) { numbers.add(words); });
   numbers.end();
+  return text;
 }
 
 }  // namespace tessera::io::helper

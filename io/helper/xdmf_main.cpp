@@ -16,6 +16,8 @@
 #include <XdmfUnstructuredGrid.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
 
 #include "io/block_choice.hpp"
 #include "io/helper/readers.hpp"
@@ -24,12 +26,16 @@
 #include "io/helper/xdmf_cells.hpp"
 #include "io/helper/xdmf_elements.hpp"
 #include "io/helper/xdmf_grids.hpp"
+#include "io/helper/xdmf_rewritten.hpp"
+#include "io/helper/xdmf_shared.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
 namespace {
+
+constexpr const char* finite_element_function = "FiniteElementFunction";
 
 /// Points or cells along x, y and z, of dimensions that go the other way.
 std::array<std::int64_t, 3> sizes_of(XdmfArray& dimensions, const std::string& where) {
@@ -52,42 +58,55 @@ void set_extent(XdmfArray& dimensions, ForeignPart& part, const std::string& whe
   for (std::size_t axis = 0; axis < 3; ++axis) part.extent[2 * axis + 1] = sizes[axis] - 1;
 }
 
-ForeignArray hold_points(Holdings& holdings, XdmfGeometry& geometry, const std::string& where) {
+ForeignArray hold_points(Holdings& holdings, XdmfGeometry& geometry, const std::string& where, bool is_kept) {
   if (geometry.getType() != XdmfGeometryType::XYZ())
     throw scene::bad_input(fmt::format("{}: its points are given as {}, not as x y z; write them so", where,
                                        geometry.getType()->getName()));
-  ForeignArray points = hold_xdmf(holdings, geometry, "", 3);
-  return points;
+  return hold_xdmf(holdings, geometry, "", 3, is_kept);
 }
 
-/// One grid but for its attributes.
+/// What is the same for all blocks.
+struct Reading {
+  Holdings& holdings;
+  bool only_look;
+  const std::string& source;
+  std::set<const XdmfArray*> shared;  ///< that more than one block uses
+  std::vector<std::string>& notes;
+};
+
+/// One block under one of its names.
 class PartOf {
  public:
-  PartOf(Holdings& holdings, const XdmfBlock& block, bool only_look, const std::string& source)
-      : holdings_(holdings),
-        only_look_(only_look),
-        where_(block.name.empty() ? source : fmt::format("{}: block '{}'", source, block.name)) {
-    part.name = block.name;
-    if (auto* regular = dynamic_cast<XdmfRegularGrid*>(block.grid.get())) {
+  PartOf(Reading& reading, const XdmfBlock& block, const std::string& name)
+      : reading_(reading),
+        holdings_(reading.holdings),
+        only_look_(reading.only_look),
+        where_(name.empty() ? reading.source : fmt::format("{}: block '{}'", reading.source, name)) {
+    part.name = name;
+    XdmfGrid* const grid = block.grids.front().get();
+    if (auto* regular = dynamic_cast<XdmfRegularGrid*>(grid)) {
       set(*regular);
-    } else if (auto* rectilinear = dynamic_cast<XdmfRectilinearGrid*>(block.grid.get())) {
+    } else if (auto* rectilinear = dynamic_cast<XdmfRectilinearGrid*>(grid)) {
       set(*rectilinear);
-    } else if (auto* curvilinear = dynamic_cast<XdmfCurvilinearGrid*>(block.grid.get())) {
+    } else if (auto* curvilinear = dynamic_cast<XdmfCurvilinearGrid*>(grid)) {
       part.kind = ForeignPart::Kind::structured;
       if (only_look_) return;
       set_extent(*curvilinear->getDimensions(), part, where_);
-      part.points = hold_points(holdings_, *curvilinear->getGeometry(), where_);
-    } else if (auto* unstructured = dynamic_cast<XdmfUnstructuredGrid*>(block.grid.get())) {
+      part.points = hold_points(holdings_, *curvilinear->getGeometry(), where_, is_shared(*curvilinear->getGeometry()));
+    } else if (auto* unstructured = dynamic_cast<XdmfUnstructuredGrid*>(grid)) {
       if (!only_look_) set(*unstructured);
     } else {
       throw scene::bad_input(fmt::format("{}: it is a grid of a kind that is not known; write it anew", where_));
     }
-    if (!only_look_) add_attributes(*block.grid);
+    for (const auto& each : block.grids)
+      if (!only_look_) add_attributes(*each);
   }
 
   ForeignPart part;
 
  private:
+  [[nodiscard]] bool is_shared(const XdmfArray& array) const { return reading_.shared.contains(&array); }
+
   void set(XdmfRegularGrid& grid) {
     part.kind = ForeignPart::Kind::image;
     if (only_look_) return;
@@ -108,17 +127,17 @@ class PartOf {
       throw scene::bad_input(
           fmt::format("{}: it is a grid of {} dimensions, no volume; give one of three", where_, axes.size()));
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      part.coordinates.push_back(hold_xdmf(holdings_, *axes[axis], "", 1));
+      part.coordinates.push_back(hold_xdmf(holdings_, *axes[axis], "", 1, is_shared(*axes[axis])));
       part.extent[2 * axis + 1] = static_cast<std::int64_t>(part.coordinates.back().tuples) - 1;
     }
   }
 
   void set(XdmfUnstructuredGrid& grid) {
-    part.points = hold_points(holdings_, *grid.getGeometry(), where_);
+    part.points = hold_points(holdings_, *grid.getGeometry(), where_, is_shared(*grid.getGeometry()));
     XdmfTopology& topology = *grid.getTopology();
     if (!topology.isInitialized()) topology.read();
     XdmfCells cells = cells_of(topology, where_);
-    topology.release();
+    if (!is_shared(topology)) topology.release();
     part.types = hold_vector(holdings_, {.type = NumberType::uint8}, std::move(cells.types));
     part.offsets = hold_vector(holdings_, {.type = NumberType::uint64}, std::move(cells.offsets));
     part.connectivity = hold_vector(holdings_, {.type = NumberType::uint32}, std::move(cells.connectivity));
@@ -137,6 +156,11 @@ class PartOf {
   void add_attributes(XdmfGrid& grid) {
     for (unsigned k = 0; k < grid.getNumberAttributes(); ++k) {
       XdmfAttribute& attribute = *grid.getAttribute(k);
+      if (!taken_.insert(&attribute).second) continue;
+      if (attribute.getItemType() == finite_element_function) {
+        reading_.notes.push_back(note_on_function(attribute));
+        continue;
+      }
       const bool is_node = attribute.getCenter() == XdmfAttributeCenter::Node();
       if (!is_node && attribute.getCenter() != XdmfAttributeCenter::Cell()) continue;
       const std::string name = attribute.getName().empty() ? fmt::format("attribute{}", k) : attribute.getName();
@@ -147,43 +171,55 @@ class PartOf {
         throw scene::bad_input(fmt::format("{}: field '{}' has {} values for {} {}; write it anew", where_, name,
                                            values, count, is_node ? "points" : "cells"));
       (is_node ? part.point_fields : part.cell_fields)
-          .push_back(hold_xdmf(holdings_, attribute, name, static_cast<int>(values / count)));
+          .push_back(hold_xdmf(holdings_, attribute, name, static_cast<int>(values / count), is_shared(attribute)));
     }
   }
 
+  /// Its values belong to degrees of freedom, not to the file's points or cells.
+  static std::string note_on_function(const XdmfAttribute& function) {
+    return fmt::format(
+        "the field '{}' is a finite-element function ({} of degree {}) and is left out, for such are not read; write "
+        "its "
+        "values at points or cells (FEniCS: `write` in place of `write_checkpoint`)",
+        function.getName(), function.getElementFamily().empty() ? "some" : function.getElementFamily(),
+        function.getElementDegree());
+  }
+
+  Reading& reading_;
   Holdings& holdings_;
   bool only_look_;
   std::string where_;
+  std::set<const XdmfAttribute*> taken_;
 };
 
 /// Every array that PartOf reads.
 void add_arrays(XdmfGrid& grid, XdmfHeavyFiles& files) {
-  const auto add = [&](const boost::shared_ptr<XdmfArray>& array) {
+  for (XdmfArray* const array : mesh_arrays(grid))
     if (array != nullptr) files.add(*array);
-  };
-  if (auto* regular = dynamic_cast<XdmfRegularGrid*>(&grid)) {
-    for (const auto& array : {regular->getDimensions(), regular->getOrigin(), regular->getBrickSize()}) add(array);
-  } else if (auto* rectilinear = dynamic_cast<XdmfRectilinearGrid*>(&grid)) {
-    for (const auto& axis : rectilinear->getCoordinates()) add(axis);
-  } else if (auto* curvilinear = dynamic_cast<XdmfCurvilinearGrid*>(&grid)) {
-    add(curvilinear->getDimensions());
-    add(curvilinear->getGeometry());
-  } else if (auto* unstructured = dynamic_cast<XdmfUnstructuredGrid*>(&grid)) {
-    add(unstructured->getGeometry());
-    add(unstructured->getTopology());
-  }
-  for (unsigned k = 0; k < grid.getNumberAttributes(); ++k) add(grid.getAttribute(k));
+  for (unsigned k = 0; k < grid.getNumberAttributes(); ++k) files.add(*grid.getAttribute(k));
+}
+
+/// The name that a block is chosen by; none if it is not.
+std::optional<std::string> chosen_name(const XdmfBlock& block, const BlockChoice& choice) {
+  for (const std::string& name : block.names)
+    if (is_chosen(choice, name)) return name;
+  return std::nullopt;
 }
 
 ForeignContents read(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   const std::string source = file.string();
   allow_for(file);
-  check_xdmf_elements(file);
+  const bool is_plain = check_xdmf_elements(file) == XdmfText::plain;
   add_cell_names();
   const auto reader = XdmfReader::New();
-  // The library takes names apart, which those of unnamed files do not bear.
+  XdmfHeavyFiles files(file);
+  // The library takes names apart, which those of unnamed files do not bear; in a text of no file they are relative to
+  // the current folder.
+  const CurrentFolder current(is_inflated(file) || is_plain ? std::filesystem::path() : file.parent_path());
   const auto domain = boost::dynamic_pointer_cast<XdmfDomain>(
-      is_inflated(file) ? reader->parse(read_beginning(file, require_file(file))) : reader->read(source));
+      !is_plain           ? reader->parse(rewritten_xdmf(file))
+      : is_inflated(file) ? reader->parse(read_beginning(file, require_file(file)))
+                          : reader->read(source));
   if (domain == nullptr) throw scene::bad_input(fmt::format("{}: it has no <Domain>; write it anew", source));
   std::optional<std::size_t> time_step;
   const bool only_look = request.value("look", false);
@@ -192,14 +228,17 @@ ForeignContents read(Holdings& holdings, const std::filesystem::path& file, cons
   contents.format = "XDMF";
   std::vector<XdmfBlock> blocks = blocks_at(domain, time_step, source, contents.time_step);
   if (blocks.empty()) throw scene::bad_input(fmt::format("{}: it holds no grid; give a mesh or a volume", source));
-  for (const XdmfBlock& block : blocks) contents.block_names.push_back(block.name);
+  if (blocks.size() == 1) blocks.front().names = {""};
+  for (const XdmfBlock& block : blocks)
+    contents.block_names.insert(contents.block_names.end(), block.names.begin(), block.names.end());
   const auto choice = request.value("blocks", BlockChoice());
-  std::erase_if(blocks, [&](const XdmfBlock& block) { return !is_chosen(choice, block.name); });
-  XdmfHeavyFiles files(file);
-  for (const XdmfBlock& block : blocks) add_arrays(*block.grid, files);
+  std::erase_if(blocks, [&](const XdmfBlock& block) { return !chosen_name(block, choice); });
+  for (const XdmfBlock& block : blocks)
+    for (const auto& grid : block.grids) add_arrays(*grid, files);
   files.allow();
+  Reading reading{holdings, only_look, source, shared_arrays(blocks), contents.notes};
   for (const XdmfBlock& block : blocks) {
-    contents.parts.push_back(std::move(PartOf(holdings, block, only_look, source).part));
+    contents.parts.push_back(std::move(PartOf(reading, block, *chosen_name(block, choice)).part));
     report_progress(static_cast<double>(contents.parts.size()) / static_cast<double>(blocks.size()));
   }
   return contents;
