@@ -37,9 +37,11 @@ bool holds_one_grid(const std::filesystem::path& file, const ForeignReader& by) 
 
 VolumeFile read_foreign_volume(const std::filesystem::path& file, const ForeignReader& by,
                                const VolumeOptions& options) {
-  nlohmann::json request{{"field", options.field}};
-  if (options.time_step) request["time_step"] = *options.time_step;
-  return grid_of(open_by(by, file, std::move(request), options.progress), options);
+  VolumeOptions asked = options;
+  if (asked.field.starts_with('/')) asked.field.erase(0, 1);  // a path, as HDF5's tools write it
+  nlohmann::json request{{"field", asked.field}};
+  if (asked.time_step) request["time_step"] = *asked.time_step;
+  return grid_of(open_by(by, file, std::move(request), asked.progress), asked);
 }
 
 MeshBlocks read_foreign_mesh(const std::filesystem::path& file, const ForeignReader& by, const MeshOptions& options,

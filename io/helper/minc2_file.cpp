@@ -3,6 +3,7 @@ extern "C" {
 #include <minc2.h>
 }
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +12,7 @@ extern "C" {
 #include <string>
 #include <vector>
 
+#include "io/helper/grid_numbers.hpp"
 #include "io/helper/readers.hpp"
 #include "scene/error.hpp"
 
@@ -42,23 +44,29 @@ class Minc2Volume {
           "{}: {} cannot be read as MINC 2; the file is truncated or damaged, write it anew", source_, what));
   }
 
-  /// Slowest first: time, if it has steps, z, y and x. Later reads are in this order, whatever the file's.
+  /// Slowest first: time, if it has steps, z, y and x, then components, if it has some. Later reads are in this order,
+  /// whatever the file's.
   [[nodiscard]] std::vector<Axis> ordered_axes() const {
     int count = 0;
     require(miget_volume_dimension_count(volume_, MI_DIMCLASS_ANY, MI_DIMATTR_ALL, &count), "its dimensions");
-    std::array<char, 5> time{"time"};
-    std::array<char, 7> z{"zspace"}, y{"yspace"}, x{"xspace"};
-    const std::array<char*, 4> names = {time.data(), z.data(), y.data(), x.data()};
-    if (count != 3 && count != 4)
+    if (count < 3 || count > most_axes)
       throw scene::bad_input(
-          fmt::format("{}: it has {} dimensions; give a volume of three, or four with time", source_, count));
-    std::array<char*, 4> wanted{};
-    std::copy_n(names.end() - count, count, wanted.begin());
-    if (miset_apparent_dimension_order_by_name(volume_, count, wanted.data()) != MI_NOERROR)
-      throw scene::bad_input(fmt::format(
-          "{}: its dimensions are other than xspace, yspace, zspace and time; give a volume of scalars in space",
-          source_));
-    std::array<midimhandle_t, 4> dimensions{};
+          fmt::format("{}: it has {} dimensions; give a volume of three, besides time and components", source_, count));
+    // The library follows a null pointer where it is given a name that the file has not.
+    const std::vector<std::string> names = names_in_file(count);
+    std::vector<std::string> wanted;
+    for (const char* name : {"time", "zspace", "yspace", "xspace", "vector_dimension"})
+      if (std::find(names.begin(), names.end(), name) != names.end()) wanted.emplace_back(name);
+    std::vector<char*> pointers;
+    for (std::string& name : wanted) pointers.push_back(name.data());
+    if (std::count_if(wanted.begin(), wanted.end(), [](const std::string& n) { return n.ends_with("space"); }) != 3 ||
+        wanted.size() != names.size() ||
+        miset_apparent_dimension_order_by_name(volume_, count, pointers.data()) != MI_NOERROR)
+      throw scene::bad_input(
+          fmt::format("{}: its dimensions are {}, other than xspace, yspace, zspace, time and vector_dimension; give a "
+                      "volume in space",
+                      source_, fmt::join(names, ", ")));
+    std::array<midimhandle_t, most_axes> dimensions{};
     // It gives their number, or 0 as other calls where all is well.
     if (miget_volume_dimensions(volume_, MI_DIMCLASS_ANY, MI_DIMATTR_ALL, MI_DIMORDER_APPARENT, count,
                                 dimensions.data()) < 0)
@@ -80,16 +88,33 @@ class Minc2Volume {
   }
 
  private:
-  [[nodiscard]] Axis axis_of(midimhandle_t dimension) const {
-    Axis axis;
+  static constexpr int most_axes = 5;
+
+  [[nodiscard]] std::vector<std::string> names_in_file(int count) const {
+    std::array<midimhandle_t, most_axes> dimensions{};
+    if (miget_volume_dimensions(volume_, MI_DIMCLASS_ANY, MI_DIMATTR_ALL, MI_DIMORDER_FILE, count, dimensions.data()) <
+        0)
+      require(MI_ERROR, "its dimensions");
+    std::vector<std::string> names;
+    for (int k = 0; k < count; ++k) names.push_back(name_of(dimensions[static_cast<std::size_t>(k)]));
+    return names;
+  }
+
+  [[nodiscard]] std::string name_of(midimhandle_t dimension) const {
     char* name = nullptr;
     require(miget_dimension_name(dimension, &name), "a dimension's name");
-    axis.name = name;
+    const std::string text = name;
     mifree_name(name);
+    return text;
+  }
+
+  [[nodiscard]] Axis axis_of(midimhandle_t dimension) const {
+    Axis axis;
+    axis.name = name_of(dimension);
     miboolean_t is_irregular = 0;
     miget_dimension_sampling_flag(dimension, &is_irregular);
     require(miget_dimension_size(dimension, &axis.size), "a dimension's size");
-    if (axis.name == "time") return axis;
+    if (axis.name == "time" || axis.name == "vector_dimension") return axis;
     if (is_irregular != 0)
       throw scene::bad_input(
           fmt::format("{}: its samples along {} are uneven; resample it with mincresample", source_, axis.name));
@@ -103,22 +128,14 @@ class Minc2Volume {
   mihandle_t volume_ = nullptr;
 };
 
-template <class T>
-ForeignArray hold_samples(Holdings& holdings, const Minc2Volume& volume, NumberType type, mitype_t as,
-                          const std::vector<misize_t>& first, const std::vector<misize_t>& counts) {
-  std::size_t samples = 1;
+ForeignArray hold_samples(Holdings& holdings, const Minc2Volume& volume, NumberType type,
+                          const std::vector<misize_t>& first, const std::vector<misize_t>& counts, int components) {
+  std::size_t bytes = size_of(type);
   for (const misize_t count : counts)
-    if (__builtin_mul_overflow(samples, count, &samples)) throw std::bad_alloc();
-  std::vector<T> values(samples);
-  volume.read(as, first, counts, values.data());
-  ForeignArray array{.name = "image", .type = type};
-  std::array<double, 4096> some{};
-  for (std::size_t at = 0; at < samples; at += some.size()) {
-    const std::size_t n = std::min(some.size(), samples - at);
-    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(at), n, some.begin());
-    array.tally.add(std::span(some).first(n));
-  }
-  return hold_vector(holdings, std::move(array), std::move(values));
+    if (__builtin_mul_overflow(bytes, count, &bytes)) throw std::bad_alloc();
+  GridNumbers numbers{type, std::vector<std::byte>(bytes)};
+  volume.read(type == NumberType::float64 ? MI_TYPE_DOUBLE : MI_TYPE_FLOAT, first, counts, numbers.bytes.data());
+  return hold_field_numbers(holdings, "image", std::move(numbers), components);
 }
 
 }  // namespace
@@ -131,15 +148,17 @@ ForeignContents read_minc2(Holdings& holdings, const std::filesystem::path& file
   contents.format = "MINC 2";
   std::optional<std::size_t> wish;
   if (const auto step = request.find("time_step"); step != request.end()) wish = step->get<std::size_t>();
-  contents.time_step = chosen_step(wish, axes.size() == 4 ? axes.front().size : 1, source);
+  const bool has_time = axes.front().name == "time", has_components = axes.back().name == "vector_dimension";
+  contents.time_step = chosen_step(wish, has_time ? axes.front().size : 1, source);
   const std::size_t step = contents.time_step.step;
   ForeignPart& part = contents.parts.emplace_back();
   part.kind = ForeignPart::Kind::image;
   std::vector<misize_t> first, counts;
-  if (axes.size() == 4) first.push_back(step), counts.push_back(1);
-  for (std::size_t k = axes.size() - 3; k < axes.size(); ++k) {
+  if (has_time) first.push_back(step), counts.push_back(1);
+  const std::size_t z = has_time ? 1 : 0;
+  for (std::size_t k = z; k < z + 3; ++k) {
     const Axis& axis = axes[k];
-    const std::size_t along = axes.size() - 1 - k;  // x is the last of them
+    const std::size_t along = z + 2 - k;  // x is the last of them
     first.push_back(0), counts.push_back(axis.size);
     part.extent[2 * along + 1] = static_cast<std::int64_t>(axis.size) - 1;
     part.spacing[along] = axis.step;
@@ -151,9 +170,17 @@ ForeignContents read_minc2(Holdings& holdings, const std::filesystem::path& file
   if (request.value("look", false)) return contents;
   const mitype_t type = volume.type();
   const bool is_wide = type == MI_TYPE_INT || type == MI_TYPE_UINT || type == MI_TYPE_DOUBLE;
-  part.point_fields.push_back(
-      is_wide ? hold_samples<double>(holdings, volume, NumberType::float64, MI_TYPE_DOUBLE, first, counts)
-              : hold_samples<float>(holdings, volume, NumberType::float32, MI_TYPE_FLOAT, first, counts));
+  int components = 1;
+  if (has_components) {
+    constexpr misize_t most_components = 64;
+    if (axes.back().size > most_components)
+      throw scene::bad_input(fmt::format("{}: its samples have {} components; write at most {} of them", source,
+                                         axes.back().size, most_components));
+    first.push_back(0), counts.push_back(axes.back().size);
+    components = static_cast<int>(axes.back().size);
+  }
+  part.point_fields.push_back(hold_samples(holdings, volume, is_wide ? NumberType::float64 : NumberType::float32, first,
+                                           counts, std::max(components, 1)));
   return contents;
 }
 

@@ -1,179 +1,86 @@
-// NetCDF grids by VTK's reader of the CF conventions ("NetCDF Climate and Forecast Metadata Conventions").
+// NetCDF grids by the CF conventions ("NetCDF Climate and Forecast Metadata Conventions"), by NetCDF's library itself:
+// VTK 9.1's reader takes the order of axes, unsigned and 64-bit numbers and what is missing for granted.
 #include <fmt/format.h>
-#include <vtkCellData.h>
-#include <vtkDataArray.h>
-#include <vtkDataSet.h>
-#include <vtkDataSetAttributes.h>
-#include <vtkImageData.h>
-#include <vtkNetCDFCFReader.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkSmartPointer.h>
-#include <vtkStringArray.h>
-#include <vtkStructuredGrid.h>
-#include <vtk_netcdf.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <sstream>
+#include <numeric>
+#include <set>
 #include <string_view>
 #include <vector>
 
-#include "io/helper/netcdf_size.hpp"
+#include "io/helper/netcdf_axes.hpp"
+#include "io/helper/netcdf_curved.hpp"
+#include "io/helper/netcdf_values.hpp"
 #include "io/helper/readers.hpp"
-#include "io/helper/time_steps.hpp"
-#include "io/helper/vtk_parts.hpp"
-#include "io/helper/vtk_session.hpp"
-#include "io/input_file.hpp"
+#include "io/helper/serve.hpp"
 #include "scene/error.hpp"
+#include "scene/quote.hpp"
 
 namespace tessera::io::helper {
 namespace {
 
-constexpr const char* write_anew = "the file is truncated or damaged, write it anew";
-
-/// An open file, for what VTK's reader does not say of its variables.
-class NetcdfFile {
- public:
-  explicit NetcdfFile(const std::filesystem::path& file) {
-    if (nc_open(file.c_str(), NC_NOWRITE, &id_) != NC_NOERR)
-      throw scene::bad_input(
-          fmt::format("{}: it begins as NetCDF and cannot be opened; {}", file.string(), write_anew));
-    const std::uint64_t least = least_netcdf_bytes(id_), size = require_file(file);
-    if (size < least) {
-      nc_close(id_);
-      throw scene::bad_input(
-          fmt::format("{}: it has {} bytes of at least {}; {}", file.string(), size, least, write_anew));
-    }
-  }
-  ~NetcdfFile() { nc_close(id_); }
-  NetcdfFile(const NetcdfFile&) = delete;
-  NetcdfFile& operator=(const NetcdfFile&) = delete;
-
-  /// Numbers of a variable's attribute; none if it has none, or text.
-  [[nodiscard]] std::vector<double> numbers(const char* variable, const char* attribute) const {
-    int id = 0;
-    nc_type type = NC_NAT;
-    std::size_t count = 0;
-    constexpr std::size_t most = 1000;
-    if (nc_inq_varid(id_, variable, &id) != NC_NOERR || nc_inq_att(id_, id, attribute, &type, &count) != NC_NOERR ||
-        type == NC_CHAR || type > NC_UINT64 || count > most)
-      return {};
-    std::vector<double> values(count);
-    if (nc_get_att_double(id_, id, attribute, values.data()) != NC_NOERR) values.clear();
-    return values;
-  }
-
-  /// A variable's attribute that is text; empty if it has none.
-  [[nodiscard]] std::string text(const std::string& variable, const char* attribute) const {
-    int id = 0;
-    std::size_t length = 0;
-    constexpr std::size_t most = 1000;
-    nc_type type = NC_NAT;
-    if (nc_inq_varid(id_, variable.c_str(), &id) != NC_NOERR ||
-        nc_inq_att(id_, id, attribute, &type, &length) != NC_NOERR || type != NC_CHAR || length > most)
-      return "";
-    std::string value(length, '\0');
-    if (nc_get_att_text(id_, id, attribute, value.data()) != NC_NOERR) return "";
-    return value.substr(0, value.find('\0'));
-  }
-
-  /// All numbers of a variable, of which there have to be `count`; none if it has others.
-  [[nodiscard]] std::vector<double> values(const std::string& variable, std::size_t count) const {
-    int id = 0, dimensions = 0;
-    if (nc_inq_varid(id_, variable.c_str(), &id) != NC_NOERR || nc_inq_varndims(id_, id, &dimensions) != NC_NOERR)
-      return {};
-    std::vector<int> ids(static_cast<std::size_t>(dimensions));
-    double all = nc_inq_vardimid(id_, id, ids.data()) == NC_NOERR ? 1 : 0;
-    for (const int dimension : ids) {
-      std::size_t length = 0;
-      nc_inq_dimlen(id_, dimension, &length);
-      all *= static_cast<double>(length);
-    }
-    std::vector<double> values(count);
-    if (all != static_cast<double>(count) || nc_get_var_double(id_, id, values.data()) != NC_NOERR) values.clear();
-    return values;
-  }
-
-  /// Whether a variable is of bytes with a sign, which NetCDF's are unless an attribute says otherwise.
-  [[nodiscard]] bool has_signed_bytes(const char* variable) const {
-    int id = 0;
-    nc_type type = NC_NAT;
-    std::size_t length = 0;
-    std::array<char, 8> word{};
-    if (nc_inq_varid(id_, variable, &id) != NC_NOERR || nc_inq_vartype(id_, id, &type) != NC_NOERR || type != NC_BYTE)
-      return false;
-    return nc_inq_attlen(id_, id, "_Unsigned", &length) != NC_NOERR || length >= word.size() ||
-           nc_get_att_text(id_, id, "_Unsigned", word.data()) != NC_NOERR || std::string_view(word.data()) != "true";
-  }
-
-  /// Whether one of its variables is in degrees of longitude or latitude.
-  [[nodiscard]] bool has_degrees() const {
-    int count = 0;
-    nc_inq_nvars(id_, &count);
-    for (int v = 0; v < count; ++v) {
-      std::array<char, 64> units{};
-      std::size_t length = 0;
-      if (nc_inq_attlen(id_, v, "units", &length) != NC_NOERR || length >= units.size() ||
-          nc_get_att_text(id_, v, "units", units.data()) != NC_NOERR)
-        continue;
-      const std::string_view text(units.data());
-      if (text.starts_with("degree") && (text.find('E') != std::string_view::npos || text.ends_with("_east") ||
-                                         text.find('N') != std::string_view::npos || text.ends_with("_north")))
-        return true;
-    }
-    return false;
-  }
-
- private:
-  int id_ = -1;
+struct GridVariable {
+  const NetcdfVariable* variable = nullptr;
+  AxisOrder order;
 };
 
-/// VTK's reader, to which a dimension is time by its variable's units alone; others (of WRF's files) have no such
-/// variable, and a name.
-class GridReader final : public vtkNetCDFCFReader {
- public:
-  static GridReader* New() {
-    auto* const made = new GridReader;
-    made->InitializeObjectBase();
-    return made;
-  }
-
- protected:
-  int IsTimeDimension(int file, int dimension) override {
-    if (vtkNetCDFCFReader::IsTimeDimension(file, dimension) != 0) return 1;
-    std::array<char, NC_MAX_NAME + 1> name{};
-    if (nc_inq_dimname(file, dimension, name.data()) != NC_NOERR) return 0;
-    const std::string_view text(name.data());
-    return text == "time" || text == "Time" || text == "TIME" || text == "t" ? 1 : 0;
-  }
-};
-
-/// Variables of the same dimensions, time aside: one grid.
+/// Variables of the same axes in space: one grid.
 struct GridOfVariables {
-  std::string dimensions;  ///< as VTK writes them, "(lev, lat, lon)"
-  std::vector<std::string> names;
+  std::string dimensions;  ///< as they are listed, "(lev, lat, lon)"
+  std::array<int, 3> ids{};
+  std::optional<CurvedCoordinates> curved;
+  bool is_flat = false;
+  std::vector<GridVariable> fields;
 };
 
-std::size_t count_of(const std::string& dimensions) {
-  return dimensions.find(',') == std::string::npos
-             ? (dimensions.size() > 2 ? 1 : 0)
-             : static_cast<std::size_t>(std::count(dimensions.begin(), dimensions.end(), ',')) + 1;
+std::string words_of(const GridVariable& field) {
+  std::vector<std::string> names;
+  for (std::size_t d = 0; d < field.variable->dimensions.size(); ++d)
+    if (std::find(field.order.along.begin(), field.order.along.end(), d) != field.order.along.end())
+      names.push_back(field.variable->dimensions[d].name);
+  return fmt::format("({})", fmt::join(names, ", "));
 }
 
-/// All grids with variables of three dimensions.
-std::vector<GridOfVariables> grids_of(vtkNetCDFCFReader& reader) {
+bool are_same(const std::optional<CurvedCoordinates>& a, const std::optional<CurvedCoordinates>& b) {
+  return a.has_value() == b.has_value() && (!a || (a->x == b->x && a->y == b->y));
+}
+
+/// Variables that are bounds of the coordinates of others, which are no fields: CF 7.1.
+std::set<const NetcdfVariable*> bounds_in(const NetcdfFile& file) {
+  std::set<const NetcdfVariable*> bounds;
+  for (const NetcdfVariable& variable : file.variables())
+    for (const char* const attribute : {"bounds", "climatology"})
+      if (const std::string name = file.text(variable, attribute); !name.empty())
+        bounds.insert(file.find(variable, name));
+  return bounds;
+}
+
+/// All grids with variables of three dimensions in space.
+std::vector<GridOfVariables> grids_of(const NetcdfFile& file) {
   std::vector<GridOfVariables> grids;
-  for (int k = 0; k < reader.GetNumberOfVariableArrays(); ++k) {
-    const std::string dimensions = reader.GetVariableDimensions()->GetValue(k);
-    if (count_of(dimensions) != 3) continue;
-    auto grid =
-        std::find_if(grids.begin(), grids.end(), [&](const GridOfVariables& g) { return g.dimensions == dimensions; });
-    if (grid == grids.end()) grid = grids.insert(grids.end(), {dimensions, {}});
-    grid->names.emplace_back(reader.GetVariableArrayName(k));
+  const std::set<const NetcdfVariable*> bounds = bounds_in(file);
+  for (const NetcdfVariable& variable : file.variables()) {
+    const bool is_empty = std::any_of(variable.dimensions.begin(), variable.dimensions.end(),
+                                      [](const NetcdfDimension& dimension) { return dimension.length == 0; });
+    const std::optional<AxisOrder> order = axes_of(file, variable);
+    if (!order || is_empty || bounds.contains(&variable)) continue;
+    GridOfVariables its;
+    for (std::size_t a = 0; a < 3; ++a) its.ids[a] = variable.dimensions[order->along[a]].id;
+    its.curved = curved_coordinates_of(file, variable, *order);
+    auto grid = std::find_if(grids.begin(), grids.end(), [&](const GridOfVariables& g) {
+      return g.ids == its.ids && are_same(g.curved, its.curved);
+    });
+    if (grid == grids.end()) {
+      its.dimensions = words_of({&variable, *order});
+      its.is_flat = std::any_of(order->along.begin(), order->along.end(),
+                                [&](std::size_t d) { return variable.dimensions[d].length < 2; });
+      grid = grids.insert(grids.end(), std::move(its));
+    }
+    grid->fields.push_back({&variable, *order});
   }
   return grids;
 }
@@ -190,143 +97,227 @@ const GridOfVariables& choose_grid(const std::vector<GridOfVariables>& grids, co
                                    std::vector<std::string>& notes) {
   const GridOfVariables* chosen = &grids.front();
   for (const GridOfVariables& grid : grids)
-    if (grid.names.size() > chosen->names.size()) chosen = &grid;
+    if (grid.is_flat != chosen->is_flat ? chosen->is_flat : grid.fields.size() > chosen->fields.size()) chosen = &grid;
   for (const GridOfVariables& grid : grids)
-    if (std::any_of(grid.names.begin(), grid.names.end(), [&](const std::string& n) { return means(field, n); }))
+    if (std::any_of(grid.fields.begin(), grid.fields.end(),
+                    [&](const GridVariable& f) { return means(field, f.variable->path); }))
       chosen = &grid;
   for (const GridOfVariables& grid : grids)
     if (&grid != chosen)
       notes.push_back(fmt::format("another grid, {}, has {}{}: name one by `field` to have it", grid.dimensions,
-                                  grid.names.front(), grid.names.size() > 1 ? ", ..." : ""));
+                                  grid.fields.front().variable->path, grid.fields.size() > 1 ? ", ..." : ""));
   return *chosen;
 }
 
-/// What is to be done with a variable's values as VTK gives them.
-struct Mending {
-  bool signed_bytes = false;    ///< VTK takes them for unsigned ones
-  double scale = 1, shift = 0;  ///< which VTK has applied
-  std::vector<double> missing;  ///< as they became; VTK knows the floats that equal _FillValue alone
-  [[nodiscard]] bool is_packed() const { return scale != 1 || shift != 0; }
+std::size_t steps_of(const GridVariable& field) {
+  double all = 1;
+  for (const std::size_t d : field.order.steps) all *= static_cast<double>(field.variable->dimensions[d].length);
+  return field.order.steps.empty() || all > 1e15 ? 0 : static_cast<std::size_t>(all);
+}
+
+/// Indices along the dimensions that are not of space, the last the fastest.
+std::vector<std::size_t> indices_of(const GridVariable& field, std::size_t step) {
+  std::vector<std::size_t> indices(field.order.steps.size());
+  for (std::size_t k = indices.size(); k-- > 0;) {
+    const std::size_t length = std::max<std::size_t>(field.variable->dimensions[field.order.steps[k]].length, 1);
+    indices[k] = step % length;
+    step /= length;
+  }
+  return indices;
+}
+
+/// Axes other than time are steps too, which is worth a word.
+void note_steps(const NetcdfFile& file, const GridVariable& field, std::vector<std::string>& notes) {
+  std::vector<std::string> names;
+  bool is_time = true;
+  for (const std::size_t d : field.order.steps) {
+    const NetcdfDimension& dimension = field.variable->dimensions[d];
+    if (dimension.length < 2) continue;
+    const NetcdfVariable* const coordinate = coordinate_of(file, *field.variable, dimension);
+    NetcdfVariable named{.name = dimension.name, .path = {}, .dimensions = {}};
+    is_time = is_time && role_of(file, coordinate != nullptr ? *coordinate : named) == AxisRole::time;
+    names.push_back(fmt::format("{} ({})", dimension.name, dimension.length));
+  }
+  if (!names.empty() && !is_time)
+    notes.push_back(fmt::format("time steps are counted along {}{}", fmt::join(names, " and "),
+                                names.size() > 1 ? ", the last the fastest" : ""));
+}
+
+GridNumbers unit_steps(std::size_t count) {
+  std::vector<double> steps(count);
+  std::iota(steps.begin(), steps.end(), 0.0);
+  return numbers_of(steps);
+}
+
+bool has_degrees(const NetcdfFile& file, const NetcdfVariable& coordinate) {
+  const AxisRole role = role_of(file, coordinate);
+  return file.text(coordinate, "units").starts_with("degree") && (role == AxisRole::x || role == AxisRole::y);
+}
+
+/// Longitudes that pass the end of the circle go on beyond it.
+void unwind(std::vector<double>& longitudes) {
+  const bool rises = longitudes.size() > 2 && longitudes[1] > longitudes[0];
+  for (std::size_t k = 1; k < longitudes.size(); ++k) {
+    const double step = longitudes[k] - longitudes[k - 1];
+    if (std::abs(step) > 180 && std::abs(step) <= 720 && (step < 0) == rises)
+      longitudes[k] += 360 * std::ceil((std::abs(step) - 180) / 360) * (rises ? 1 : -1);
+  }
+}
+
+/// Coordinates along an axis, as they are to be drawn: z goes up.
+GridNumbers coordinates_along(const NetcdfFile& file, const GridVariable& field, std::size_t axis,
+                              std::vector<std::string>& notes) {
+  const NetcdfDimension& dimension = field.variable->dimensions[field.order.along[axis]];
+  const NetcdfVariable* const coordinate = coordinate_of(file, *field.variable, dimension);
+  if (coordinate == nullptr) return unit_steps(dimension.length);
+  GridNumbers numbers = read_whole(file, *coordinate, dimension.length);
+  std::vector<double> values = numbers.as_doubles();
+  if (axis == 0 && has_degrees(file, *coordinate)) unwind(values);
+  if (axis == 2 && counts_downwards(file, *coordinate)) {
+    for (double& value : values) value = -value;
+    const std::string units = file.text(*coordinate, "units");
+    notes.push_back(fmt::format("{} counts downwards: z is its negative{}", scene::quote(dimension.name),
+                                units.empty() ? "" : ", in " + scene::quote(units)));
+  }
+  return numbers_of(values, numbers.type == NumberType::float32 ? NumberType::float32 : NumberType::float64);
+}
+
+/// Levels between those of the values, one more: the coordinate's bounds if these fit each other, else half way.
+std::vector<double> levels_between(const NetcdfFile& file, const GridVariable& field, const std::vector<double>& z) {
+  std::vector<double> between;
+  const NetcdfDimension& dimension = field.variable->dimensions[field.order.along[2]];
+  const NetcdfVariable* const coordinate = coordinate_of(file, *field.variable, dimension);
+  const NetcdfVariable* const bounds =
+      coordinate != nullptr ? file.find(*coordinate, file.text(*coordinate, "bounds")) : nullptr;
+  if (bounds != nullptr && bounds->dimensions.size() == 2 && bounds->dimensions[0].id == dimension.id &&
+      bounds->dimensions[1].length == 2) {
+    const std::vector<double> ends = read_whole(file, *bounds, 2 * dimension.length).as_doubles();
+    const double sign = counts_downwards(file, *coordinate) ? -1 : 1;
+    const bool is_turned = z.size() > 1 && ends.size() > 3 && ends[0] == ends[3];  // each pair falls as levels rise
+    bool fit = true;
+    for (std::size_t k = 0; k < z.size(); ++k) {
+      const double low = sign * ends[2 * k + (is_turned ? 1 : 0)], high = sign * ends[2 * k + (is_turned ? 0 : 1)];
+      if (k == 0) between.push_back(low);
+      fit = fit && std::abs(between.back() - low) <= 1e-3 * std::abs(high - low);
+      between.push_back(high);
+    }
+    if (fit) return between;
+  }
+  between.clear();
+  for (std::size_t k = 0; k + 1 < z.size(); ++k) between.push_back((z[k] + z[k + 1]) / 2);
+  const double half_first = z.size() > 1 ? (z[1] - z[0]) / 2 : 0.5,
+               half_last = z.size() > 1 ? (z.back() - z[z.size() - 2]) / 2 : 0.5;
+  between.insert(between.begin(), z.front() - half_first);
+  between.push_back(z.back() + half_last);
+  return between;
+}
+
+std::array<std::int64_t, 6> extent_of(const std::array<std::size_t, 3>& points) {
+  std::array<std::int64_t, 6> extent{};
+  for (std::size_t a = 0; a < 3; ++a) extent[2 * a + 1] = static_cast<std::int64_t>(points[a]) - 1;
+  return extent;
+}
+
+ForeignArray read_field(Holdings& holdings, const NetcdfFile& file, const GridVariable& field, std::size_t step,
+                        std::vector<std::string>& notes) {
+  std::vector<std::size_t> first(field.variable->dimensions.size(), 0), counts;
+  for (const NetcdfDimension& dimension : field.variable->dimensions) counts.push_back(dimension.length);
+  const std::vector<std::size_t> indices = indices_of(field, step);
+  for (std::size_t k = 0; k < indices.size(); ++k)
+    first[field.order.steps[k]] = indices[k], counts[field.order.steps[k]] = 1;
+  NetcdfValues values = read_values(file, *field.variable, first, counts);
+  const auto note_blanks = [&](std::uint64_t count, const char* what) {
+    if (count > 0) notes.push_back(fmt::format("{}: {} samples {} are blank", field.variable->path, count, what));
+  };
+  note_blanks(values.default_fills, "of NetCDF's default fill value");
+  note_blanks(values.out_of_range, "outside its valid range");
+  values.numbers.bytes =
+      in_grid_order(std::move(values.numbers.bytes), size_of(values.numbers.type), counts, field.order.along);
+  return hold_field_numbers(holdings, field.variable->path, std::move(values.numbers));
+}
+
+/// A grid without its fields.
+struct PlacedGrid {
+  ForeignPart part;
+  bool has_cells = false;  ///< the fields are those of cells
 };
 
-Mending mending_of(const NetcdfFile& file, const std::string& name, bool is_float32) {
-  const auto first_of = [&](const char* attribute, double otherwise) {
-    const std::vector<double> numbers = file.numbers(name.c_str(), attribute);
-    return numbers.empty() ? otherwise : numbers.front();
-  };
-  Mending mending;
-  mending.signed_bytes = file.has_signed_bytes(name.c_str());
-  mending.scale = first_of("scale_factor", 1), mending.shift = first_of("add_offset", 0);
-  mending.missing = file.numbers(name.c_str(), "missing_value");
-  const std::vector<double> fill = file.numbers(name.c_str(), "_FillValue");
-  mending.missing.insert(mending.missing.end(), fill.begin(), fill.end());
-  for (double& value : mending.missing) {
-    value = value * mending.scale + mending.shift;
-    if (is_float32 && std::abs(value) <= std::numeric_limits<float>::max()) value = static_cast<float>(value);
+PlacedGrid place_grid(Holdings& holdings, const NetcdfFile& file, const GridOfVariables& grid, std::size_t step,
+                      std::vector<std::string>& notes) {
+  const GridVariable& first = grid.fields.front();
+  PlacedGrid placed;
+  ForeignPart& part = placed.part;
+  std::array<std::size_t, 3> points{};
+  for (std::size_t a = 0; a < 3; ++a) points[a] = first.variable->dimensions[first.order.along[a]].length;
+  GridNumbers heights = coordinates_along(file, first, 2, notes);
+  if (!grid.curved) {
+    part.kind = ForeignPart::Kind::rectilinear;
+    part.extent = extent_of(points);
+    for (const std::size_t a : {0u, 1u})
+      part.coordinates.push_back(hold_numbers(holdings, coordinates_along(file, first, a, notes)));
+    part.coordinates.push_back(hold_numbers(holdings, std::move(heights)));
+    return placed;
   }
-  return mending;
+  const std::vector<double> z = heights.as_doubles();
+  CurvedGrid curved = curved_grid(file, *first.variable, first.order, indices_of(first, step), *grid.curved, z,
+                                  levels_between(file, first, z), notes);
+  part.kind = ForeignPart::Kind::structured;
+  part.extent = extent_of(curved.points);
+  part.points = hold_vector(holdings, {.type = NumberType::float64, .components = 3}, std::move(curved.positions));
+  placed.has_cells = curved.has_cells;
+  return placed;
 }
 
-/// Gives bytes their signs back and makes NaN of what the file's attributes say is missing.
-void mend_values(const NetcdfFile& file, vtkDataSetAttributes& fields) {
-  for (int k = 0; k < fields.GetNumberOfArrays(); ++k) {
-    vtkDataArray* const array = fields.GetArray(k);
-    if (array == nullptr || array->GetName() == nullptr) continue;
-    const std::string name = array->GetName();
-    const int type = array->GetDataType();
-    const Mending mending = mending_of(file, name, type == VTK_FLOAT);
-    if (!mending.signed_bytes && mending.missing.empty()) continue;
-    vtkSmartPointer<vtkDataArray> mended = array;
-    if (type != VTK_FLOAT && type != VTK_DOUBLE) {
-      mended = vtkSmartPointer<vtkDataArray>::Take(
-          vtkDataArray::CreateDataArray(array->GetDataTypeSize() <= 2 ? VTK_FLOAT : VTK_DOUBLE));
-      mended->DeepCopy(array);
-      mended->SetName(name.c_str());
-    }
-    // Packed numbers are unpacked by now, each by one rounding: half a step tells them apart.
-    const double reach = mending.is_packed() ? std::abs(mending.scale) / 2 : 0;
-    for (vtkIdType t = 0; t < mended->GetNumberOfTuples(); ++t) {
-      double value = mended->GetComponent(t, 0);
-      if (mending.signed_bytes && (value - mending.shift) / mending.scale > 127.5) value -= 256 * mending.scale;
-      for (const double missing : mending.missing)
-        if (std::abs(value - missing) <= reach) value = std::numeric_limits<double>::quiet_NaN();
-      mended->SetComponent(t, 0, value);
-    }
-    if (mended != array) fields.AddArray(mended);  // in place of the one of its name
-  }
-}
-
-/// Cells of given corners (`bounds`): VTK 9.1 makes the points of their last row wrong. Corners go round a cell, the
-/// first two along the grid's first axis. Throws Error(bad_input) where the corners are not to be found.
-void mend_last_row(const NetcdfFile& file, vtkStructuredGrid& grid, const std::string& source) {
-  std::array<int, 3> points{};
-  grid.GetDimensions(points.data());
-  const auto columns = static_cast<std::size_t>(points[0]) - 1, rows = static_cast<std::size_t>(points[1]) - 1;
-  std::array<std::vector<double>, 2> corners;  // longitude, latitude
-  const char* const field = grid.GetCellData()->GetArrayName(0);
-  std::istringstream names(field != nullptr ? file.text(field, "coordinates") : "");
-  for (std::string name; names >> name;) {
-    const std::string units = file.text(name, "units"), bounds = file.text(name, "bounds");
-    if (!units.starts_with("degree") || bounds.empty()) continue;
-    corners[units.find_first_of("Nn") == std::string::npos ? 0 : 1] = file.values(bounds, columns * rows * 4);
-  }
-  if (corners[0].empty() || corners[1].empty())
-    throw scene::bad_input(fmt::format("{}: the bounds of its cells are not to be found; write it without", source));
-  for (int k = 0; k < points[2]; ++k)
-    for (std::size_t i = 0; i <= columns; ++i) {
-      const std::size_t cell = (rows - 1) * columns + std::min(i, columns - 1),
-                        corner = 4 * cell + (i < columns ? 3 : 2);
-      const auto point = static_cast<vtkIdType>((static_cast<std::size_t>(k) * (rows + 1) + rows) * (columns + 1) + i);
-      std::array<double, 3> place{};
-      grid.GetPoints()->GetPoint(point, place.data());
-      grid.GetPoints()->SetPoint(point, corners[0][corner], corners[1][corner], place[2]);
-    }
-}
-
-/// A reader on which the grid is chosen. Rectilinear axes are read as they stand: VTK takes those for even that are so
-/// to 1 % of a step.
-void prepare(vtkNetCDFCFReader& reader, const std::string& dimensions) {
-  reader.SphericalCoordinatesOff();
-  reader.ReplaceFillValueWithNanOn();
-  reader.SetDimensions(dimensions.c_str());
-  reader.UpdateInformation();
-  if (vtkImageData::SafeDownCast(reader.GetOutputDataObject(0)) != nullptr) reader.SetOutputTypeToRectilinear();
+bool is_in_degrees(const NetcdfFile& file, const GridOfVariables& grid) {
+  if (grid.curved) return has_degrees(file, *grid.curved->x) || has_degrees(file, *grid.curved->y);
+  const GridVariable& first = grid.fields.front();
+  return std::any_of(first.order.along.begin(), first.order.along.end(), [&](std::size_t d) {
+    const NetcdfVariable* const axis = coordinate_of(file, *first.variable, first.variable->dimensions[d]);
+    return axis != nullptr && has_degrees(file, *axis);
+  });
 }
 
 }  // namespace
 
+bool holds_netcdf_grid(const std::filesystem::path& file) { return !grids_of(NetcdfFile(file)).empty(); }
+
 ForeignContents read_netcdf(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   allow_for(file);
-  const std::string source = file.string();
   const NetcdfFile opened(file);
-  const auto reader = vtkSmartPointer<GridReader>::Take(GridReader::New());
   ForeignContents contents;
   contents.format = "NetCDF";
-  const bool only_look = request.value("look", false);
-  const std::string warning = with_quiet_vtk(source, write_anew, [&] {
-    reader->SetFileName(source.c_str());
-    if (reader->UpdateMetaData() == 0) return;
-    const std::vector<GridOfVariables> grids = grids_of(*reader);
-    if (grids.empty())
-      throw scene::bad_input(fmt::format(
-          "{}: none of its variables has three dimensions (beside time); give a file of a grid in space", source));
-    prepare(*reader, choose_grid(grids, request.value("field", ""), contents.notes).dimensions);
-    only_look ? reader->UpdateInformation() : update_at_step(*reader, request, source, contents.time_step);
-  });
-  if (!warning.empty()) contents.notes.push_back("VTK warns: " + warning);
-  auto* const data = vtkDataSet::SafeDownCast(reader->GetOutputDataObject(0));
-  if (data == nullptr) throw scene::bad_input(fmt::format("{}: nothing can be read; write it anew", source));
-  if (!only_look) {
-    mend_values(opened, *data->GetPointData());
-    mend_values(opened, *data->GetCellData());
-    auto* const curvilinear = vtkStructuredGrid::SafeDownCast(data);
-    if (curvilinear != nullptr && curvilinear->GetCellData()->GetNumberOfArrays() > 0)
-      mend_last_row(opened, *curvilinear, source);
-    if (opened.has_degrees())
-      contents.notes.emplace_back(
-          "longitude and latitude, in degrees, are x and y as they stand, not places on a sphere");
+  const std::vector<GridOfVariables> grids = grids_of(opened);
+  if (grids.empty())
+    throw scene::bad_input(
+        fmt::format("{}: none of its variables has three dimensions (beside time); give a file of a grid in space",
+                    opened.source()));
+  const GridOfVariables& grid = choose_grid(grids, request.value("field", ""), contents.notes);
+  if (request.value("look", false)) {
+    contents.parts.emplace_back().kind = grid.curved ? ForeignPart::Kind::structured : ForeignPart::Kind::rectilinear;
+    return contents;
   }
-  contents.parts = parts_of(holdings, *data, source);
+  // Variables that do not change with time are there at all steps.
+  std::size_t steps = 0;
+  const GridVariable* with_steps = nullptr;
+  for (const GridVariable& field : grid.fields)
+    if (steps_of(field) > steps) steps = steps_of(field), with_steps = &field;
+  std::optional<std::size_t> wish;
+  if (const auto step = request.find("time_step"); step != request.end()) wish = step->get<std::size_t>();
+  contents.time_step = chosen_step(wish, steps, opened.source());
+  if (with_steps != nullptr) note_steps(opened, *with_steps, contents.notes);
+  PlacedGrid placed = place_grid(holdings, opened, grid, contents.time_step.step, contents.notes);
+  std::size_t done = 0;
+  for (const GridVariable& field : grid.fields) {
+    const std::size_t its_step =
+        std::min(static_cast<std::size_t>(contents.time_step.step), std::max<std::size_t>(steps_of(field), 1) - 1);
+    (placed.has_cells ? placed.part.cell_fields : placed.part.point_fields)
+        .push_back(read_field(holdings, opened, field, its_step, contents.notes));
+    report_progress(static_cast<double>(++done) / static_cast<double>(grid.fields.size()));
+  }
+  if (is_in_degrees(opened, grid))
+    contents.notes.emplace_back(
+        "longitude and latitude, in degrees, are x and y as they stand, not places on a sphere");
+  contents.parts.push_back(std::move(placed.part));
   return contents;
 }
 

@@ -43,6 +43,9 @@ ForeignContents read_exodus(Holdings& holdings, const std::filesystem::path& fil
 /// `time_step` as of Exodus; missing values are NaN. With `look` the kind of grid alone.
 ForeignContents read_netcdf(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
+/// Whether a file that NetCDF's library can open has such a grid.
+bool holds_netcdf_grid(const std::filesystem::path& file);
+
 /// MINC 1, `time_step` as of Exodus; real values, in the space that the direction cosines give.
 ForeignContents read_minc(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 

@@ -95,6 +95,50 @@ TEST(Minc2, TimeStepsAreChosen) {
   test::expect_no_volume(folder / "f.mnc", "there is no time step 2", options);
 }
 
+/// Three bytes a sample, x the fastest but for these; `steps` > 1 of them.
+void write_minc2_vectors(const std::string& name, misize_t steps) {
+  std::vector<midimhandle_t> dimensions;
+  std::vector<misize_t> first, counts;
+  const auto add = [&](const char* axis, midimclass_t kind, misize_t size) {
+    ASSERT_EQ(micreate_dimension(axis, kind, MI_DIMATTR_REGULARLY_SAMPLED, size, &dimensions.emplace_back()),
+              MI_NOERROR);
+    first.push_back(0), counts.push_back(size);
+  };
+  if (steps > 1) add("time", MI_DIMCLASS_TIME, steps);
+  add("zspace", MI_DIMCLASS_SPATIAL, 2), add("yspace", MI_DIMCLASS_SPATIAL, 3), add("xspace", MI_DIMCLASS_SPATIAL, 4);
+  add("vector_dimension", MI_DIMCLASS_RECORD, 3);
+  mihandle_t volume = nullptr;
+  ASSERT_EQ(micreate_volume(name.c_str(), static_cast<int>(dimensions.size()), dimensions.data(), MI_TYPE_UBYTE,
+                            MI_CLASS_REAL, nullptr, &volume),
+            MI_NOERROR);
+  ASSERT_EQ(micreate_volume_image(volume), MI_NOERROR);
+  miset_volume_valid_range(volume, 255, 0);
+  miset_volume_range(volume, 255, 0);
+  std::vector<unsigned char> samples(72 * steps);
+  for (std::size_t k = 0; k < samples.size(); ++k) samples[k] = static_cast<unsigned char>(k);
+  ASSERT_EQ(miset_voxel_value_hyperslab(volume, MI_TYPE_UBYTE, first.data(), counts.data(), samples.data()),
+            MI_NOERROR);
+  ASSERT_EQ(miclose_volume(volume), MI_NOERROR);
+}
+
+TEST(Minc2, VectorsHaveComponents) {
+  const test::TemporaryFolder folder;
+  for (const misize_t steps : {1, 2}) {
+    write_minc2_vectors((folder / "v.mnc").string(), steps);
+    ASSERT_TRUE(is_volume(folder / "v.mnc"));
+    VolumeOptions options;
+    for (const int component : {0, 1, 2}) {
+      options.field = "image:" + std::to_string(component);
+      const VolumeFile volume = open_volume(folder / "v.mnc", options);
+      EXPECT_EQ(volume.source->geometry().points, (GridIndex{4, 3, 2}));
+      const std::vector<double> samples = test::all_samples(*volume.source);
+      ASSERT_EQ(samples.size(), 24u);
+      for (std::size_t k = 0; k < 24; ++k)  // of the last step
+        EXPECT_NEAR(samples[k], static_cast<double>(72 * (steps - 1) + 3 * k) + component, 1e-4);
+    }
+  }
+}
+
 TEST(Minc2, DamagedOnesAreRefusedInOneLine) {
   const test::TemporaryFolder folder;
   write_minc2((folder / "head.mnc").string(), 1);
