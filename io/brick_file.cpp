@@ -127,6 +127,8 @@ struct BrickHeader {
   scene::Grid grid;
   std::int64_t side = 0;
   scene::ValueRange range;
+  BodyAxes axes = BodyAxes::none;
+  VolumeTags tags{};
 };
 
 BrickHeader parse_brick_header(const std::string& text, const std::filesystem::path& file) {
@@ -149,6 +151,8 @@ BrickHeader parse_brick_header(const std::string& text, const std::filesystem::p
     header.grid.field_name = json.at("field");
     header.side = whole_number(json.at("block"));
     header.range = {json.at("low"), json.at("high"), static_cast<std::uint64_t>(whole_number(json.at("blanks")))};
+    for (const auto& [name, word] : json.items())
+      if (word.is_string()) take_word(name, word.get<std::string>(), header.axes, header.tags);
   } catch (const BrickJson::exception&) {
     throw damaged(file, "its header lacks a word or a number");
   }
@@ -196,6 +200,8 @@ VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& o
   field.high = header.range.empty() ? 0 : header.range.high;
   field.nan_count = header.range.blanks;
   result.fields.push_back(field);
+  result.body_axes = header.axes;
+  result.tags = std::move(header.tags);
   choose_field(options.field, result.fields, file.string());  // refuses any other
   result.in_memory = is_inflated(file);
   result.source = std::make_unique<BrickSource>(std::move(header.grid), file, name, header.side, header.range,
@@ -208,8 +214,8 @@ namespace {
 /// Writes a brick file of a source that it reads once: a row of blocks at a time, blocks on several threads.
 class BrickWriter {
  public:
-  BrickWriter(const scene::SampleSource& source, int side)
-      : source_(source), grid_(source.grid()), layout_(grid_, side) {}
+  BrickWriter(const scene::SampleSource& source, int side, BrickWords words = {})
+      : source_(source), grid_(source.grid()), layout_(grid_, side, std::move(words)) {}
 
   [[nodiscard]] std::uint64_t bytes() const { return layout_.bytes(); }
 
@@ -249,11 +255,12 @@ class BrickWriter {
 
 }  // namespace
 
-void write_bricks(const scene::SampleSource& source, const std::filesystem::path& file, int side) {
+void write_bricks(const scene::SampleSource& source, const std::filesystem::path& file, int side, BodyAxes axes,
+                  const VolumeTags& tags) {
   if (side < least_side || side > most_side)
     throw scene::bad_input(
         fmt::format("`block`: {} is not a block's side; give {} to {}", side, least_side, most_side));
-  BrickWriter writer(source, side);
+  BrickWriter writer(source, side, tag_words(axes, tags));
   AtomicFile out(file);
   writer.write(out);
   out.commit();

@@ -20,7 +20,8 @@ namespace tessera::io {
 ///   bytes 16..     H bytes of JSON, blanks at its end: points [3], association, origin [3], direction [9, column by
 ///   column], spacing [3],
 ///                  coordinates [3 lists, empty where regular], type, scale, shift, field, block (a side, in samples),
-///                  low, high, blanks (of all values)
+///                  low, high, blanks (of all values); where they are stated, by tag_words()
+///                  (volume_tags.hpp): space, modality, unit, length unit, intent
 ///   then           for each block, i fastest: float64 low, float64 high, uint64 blanks (24 bytes)
 ///   then           the samples of each block in the same order, i fastest in it, without padding; blocks at the upper
 ///                  boundary are smaller
@@ -33,7 +34,8 @@ bool looks_like_bricks(std::string_view beginning);
 /// Writes one with blocks of `side` samples (8 to 1024). Reads `source` once, one row of blocks at a time, on the
 /// threads of the caller's arena. Appears by rename. Throws Error(bad_input) for a side out of range,
 /// Error(system_failure) if it cannot be written.
-void write_bricks(const scene::SampleSource& source, const std::filesystem::path& file, int side = 64);
+void write_bricks(const scene::SampleSource& source, const std::filesystem::path& file, int side = 64,
+                  BodyAxes axes = BodyAxes::none, const VolumeTags& tags = {});
 
 /// The same as a file of this process's that others can open (scratch_file.hpp), for open_bricks(). Throws
 /// Error(bad_input) of `subject` if there is no room for it.

@@ -17,25 +17,28 @@ static_assert(std::endian::native == std::endian::little, "brick files are writt
 
 BrickJson json_of_vector(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
-BrickJson brick_header_of(const scene::Grid& grid, int side, const scene::ValueRange& range) {
+std::string brick_header_of(const scene::Grid& grid, int side, const BrickWords& words,
+                            const scene::ValueRange& range) {
   const scene::GridGeometry& g = grid.geometry;
   BrickJson direction = BrickJson::array();
   for (int column = 0; column < 3; ++column)
     for (int row = 0; row < 3; ++row) direction.push_back(g.direction[column][row]);
-  return {{"points", g.points},
-          {"association", g.association == scene::Association::cell ? "cell" : "point"},
-          {"origin", json_of_vector(g.origin)},
-          {"direction", direction},
-          {"spacing", json_of_vector(g.spacing)},
-          {"coordinates", g.coordinates},
-          {"type", scene::name_of(grid.type)},
-          {"scale", grid.scale},
-          {"shift", grid.shift},
-          {"field", grid.field_name},
-          {"block", side},
-          {"low", range.low},
-          {"high", range.high},
-          {"blanks", range.blanks}};
+  BrickJson header = {{"points", g.points},
+                      {"association", g.association == scene::Association::cell ? "cell" : "point"},
+                      {"origin", json_of_vector(g.origin)},
+                      {"direction", direction},
+                      {"spacing", json_of_vector(g.spacing)},
+                      {"coordinates", g.coordinates},
+                      {"type", scene::name_of(grid.type)},
+                      {"scale", grid.scale},
+                      {"shift", grid.shift},
+                      {"field", grid.field_name},
+                      {"block", side},
+                      {"low", range.low},
+                      {"high", range.high},
+                      {"blanks", range.blanks}};
+  for (const auto& [name, word] : words) header[name] = word;
+  return header.dump(-1, ' ', false, BrickJson::error_handler_t::replace);
 }
 
 template <class T>
@@ -83,10 +86,10 @@ std::int64_t Blocks::first_sample(const GridIndex& b) const {
          own.extent(2) * own.extent(1) * own.low[0];
 }
 
-BrickLayout::BrickLayout(const scene::Grid& grid, int side)
-    : grid_(grid), side_(side), blocks_(grid.geometry.samples(), side) {
+BrickLayout::BrickLayout(const scene::Grid& grid, int side, BrickWords words)
+    : grid_(grid), side_(side), words_(std::move(words)), blocks_(grid.geometry.samples(), side) {
   // Room for ranges as long as numbers can be: these are known last.
-  header_bytes_ = brick_header_of(grid_, side, {}).dump().size() + 3 * 32;
+  header_bytes_ = brick_header_of(grid_, side, words_, {}).size() + 3 * 32;
 }
 
 std::uint64_t BrickLayout::first_byte() const {
@@ -105,7 +108,7 @@ std::string BrickLayout::beginning(std::span<const BlockRange> ranges) const {
     whole.high = std::max(whole.high, range.high);
     whole.blanks += range.blanks;
   }
-  std::string header = brick_header_of(grid_, side_, whole).dump();
+  std::string header = brick_header_of(grid_, side_, words_, whole);
   header.resize(header_bytes_, ' ');
   std::string text(brick_magic);
   append_bytes(text, &header_bytes_, 1);

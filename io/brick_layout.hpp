@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "scene/sample_source.hpp"
@@ -44,10 +45,13 @@ class Blocks {
   std::int64_t side_;
 };
 
+/// More words of the header by name (volume_tags.hpp).
+using BrickWords = std::vector<std::pair<std::string, std::string>>;
+
 /// Where what of a file to be written is. Keeps a reference to the grid.
 class BrickLayout {
  public:
-  BrickLayout(const scene::Grid& grid, int side);
+  BrickLayout(const scene::Grid& grid, int side, BrickWords words = {});
 
   [[nodiscard]] const Blocks& blocks() const { return blocks_; }
   [[nodiscard]] std::int64_t side() const { return side_; }
@@ -60,6 +64,7 @@ class BrickLayout {
  private:
   const scene::Grid& grid_;
   int side_;
+  BrickWords words_;
   Blocks blocks_;
   std::uint64_t header_bytes_ = 0;
 };

@@ -154,6 +154,8 @@ std::vector<std::uint8_t> bytes_of(const ForeignContents& contents) {
   return Json::to_cbor({{"parts", std::move(parts)},
                         {"notes", contents.notes},
                         {"format", contents.format},
+                        {"modality", contents.modality},
+                        {"unit", contents.unit},
                         {"block_names", contents.block_names},
                         {"surface_names", contents.surface_names},
                         {"time_steps", contents.time_step.count},
@@ -167,6 +169,8 @@ ForeignContents contents_of(std::span<const std::uint8_t> bytes) {
   for (const Json& part : json.at("parts")) contents.parts.push_back(part_of(part));
   json.at("notes").get_to(contents.notes);
   json.at("format").get_to(contents.format);
+  json.at("modality").get_to(contents.modality);
+  json.at("unit").get_to(contents.unit);
   json.at("block_names").get_to(contents.block_names);
   json.at("surface_names").get_to(contents.surface_names);
   json.at("time_steps").get_to(contents.time_step.count);

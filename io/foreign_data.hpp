@@ -106,6 +106,7 @@ struct ForeignContents {
   std::vector<ForeignPart> parts;
   std::vector<std::string> notes;
   std::string format;
+  std::string modality{}, unit{};            ///< of a patient's picture, of its values; may be empty
   std::vector<std::string> block_names{};    ///< of all blocks, where parts are not the blocks; empty: of the parts
   std::vector<std::string> surface_names{};  ///< of surfaces beside the volume, where they are left out
   TimeStepRead time_step{};

@@ -120,6 +120,10 @@ VolumeFile grid_of(const ForeignFile& opened, const VolumeOptions& options) {
   result.format = opened.contents.format;
   if (result.format.starts_with("DICOM")) result.body_axes = BodyAxes::lps;
   if (result.format.starts_with("MINC")) result.body_axes = BodyAxes::ras;
+  result.tags = {.modality = opened.contents.modality,
+                 .unit = opened.contents.unit,
+                 .length_unit = result.body_axes == BodyAxes::none ? "" : "mm",
+                 .labels = opened.contents.modality == "SEG"};
 
   CellBlock block;  // only its fields are of use
   std::size_t points = 1, cells = 1;

@@ -74,6 +74,9 @@ class NiftiHeader {
   [[nodiscard]] int sform_code() const { return version_ == 1 ? get<std::int16_t>(254) : get<std::int32_t>(348); }
   /// quatern_b, c, d, qoffset_x, y, z.
   [[nodiscard]] double quaternion(std::size_t k) const { return real(256 + 4 * k, 352 + 8 * k); }
+  [[nodiscard]] int intent() const { return version_ == 1 ? get<std::int16_t>(68) : get<std::int32_t>(504); }
+  /// xyzt_units without the bits of time: 1 m, 2 mm, 3 um; 0: not stated.
+  [[nodiscard]] int length_unit() const { return (version_ == 1 ? get<std::int8_t>(123) : get<std::int32_t>(500)) & 7; }
   [[nodiscard]] double srow(std::size_t row, std::size_t column) const {
     return real(280 + 16 * row + 4 * column, 400 + 32 * row + 8 * column);
   }
@@ -133,6 +136,22 @@ std::array<glm::dvec3, 3> quaternion_steps(const NiftiHeader& header, const glm:
           glm::dvec3(2 * (b * d + a * c), 2 * (c * d - a * b), a * a + d * d - c * c - b * b) * spacing.z * mirror};
 }
 
+/// A patient by the header: coordinates of a scanner or an atlas (codes 1, 3, 4), or aligned ones (2, and 5 of other
+/// templates), which libraries write of anything, in millimetres. Otherwise values have to be those of CT.
+void set_nifti_axes(const NiftiHeader& header, int code, StoredVolume& volume) {
+  const bool is_body = code == 1 || code == 3 || code == 4 || header.length_unit() == 2;
+  (is_body ? volume.body_axes : volume.axes_if_ct) = BodyAxes::ras;
+}
+
+/// What values are, and the unit of lengths.
+void set_nifti_tags(const NiftiHeader& header, StoredVolume& volume) {
+  constexpr int label_intent = 1002, neuro_name_intent = 1005;  // nifti1.h
+  volume.tags.labels = header.intent() == label_intent || header.intent() == neuro_name_intent;
+  constexpr std::array units = {"", "m", "mm", "um"};
+  if (const int unit = header.length_unit(); unit > 0 && unit < 4)
+    volume.tags.length_unit = units[static_cast<std::size_t>(unit)];
+}
+
 void set_nifti_geometry(const NiftiHeader& header, const std::filesystem::path& file, StoredVolume& volume) {
   scene::GridGeometry& g = volume.grid.geometry;
   glm::dvec3 spacing;
@@ -143,13 +162,13 @@ void set_nifti_geometry(const NiftiHeader& header, const std::filesystem::path& 
       steps[column] = {header.srow(0, column), header.srow(1, column), header.srow(2, column)};
     set_axes(g, steps);
     g.origin = {header.srow(0, 3), header.srow(1, 3), header.srow(2, 3)};
-    volume.body_axes = BodyAxes::ras;
+    set_nifti_axes(header, header.sform_code(), volume);
     volume.notes.emplace_back("placed by its sform");
   } else if (header.qform_code() > 0) {
     set_axes(g, quaternion_steps(header, spacing));
     g.spacing = spacing;  // as it stands, without the quaternion's rounding
     g.origin = {header.quaternion(3), header.quaternion(4), header.quaternion(5)};
-    volume.body_axes = BodyAxes::ras;
+    set_nifti_axes(header, header.qform_code(), volume);
     volume.notes.emplace_back("placed by its qform");
   } else {
     g.spacing = spacing;
@@ -272,6 +291,7 @@ StoredVolume read_nifti_header(const std::filesystem::path& file) {
           fmt::format("values are {:.9g} * sample + {:.9g}, as its header says", volume.grid.scale, volume.grid.shift));
   }
   set_nifti_geometry(header, file, volume);
+  set_nifti_tags(header, volume);
   set_nifti_payload(header, file, volume);
   return volume;
 }

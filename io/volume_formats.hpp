@@ -39,6 +39,8 @@ struct StoredVolume {
   std::string format;
   std::vector<std::string> notes;
   BodyAxes body_axes = BodyAxes::none;
+  BodyAxes axes_if_ct = BodyAxes::none;  ///< as VolumeFile::axes_if_ct
+  VolumeTags tags{};
 };
 
 StoredVolume read_nifti_header(const std::filesystem::path& file);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <glm/geometric.hpp>
+#include <utility>
 
 #include "io/brick_file.hpp"
 #include "io/clean_errors.hpp"
@@ -17,6 +18,7 @@
 #include "io/stored_payload.hpp"
 #include "io/stored_samples.hpp"
 #include "io/volume_formats.hpp"
+#include "io/vtk_field_words.hpp"
 
 namespace tessera::io {
 namespace {
@@ -167,10 +169,24 @@ VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const 
   }
   result.format = std::move(volume.format);
   result.body_axes = volume.body_axes;
+  result.axes_if_ct = volume.axes_if_ct;
+  result.tags = std::move(volume.tags);
   result.notes = std::move(volume.notes);
   result.notes.insert(result.notes.end(), choice.notes.begin(), choice.notes.end());
   result.fields.push_back(std::move(field));
   return result;
+}
+
+VolumeFile with_tag_note(VolumeFile volume) {
+  if (std::string note = note_on(volume.tags); !note.empty()) volume.notes.push_back(std::move(note));
+  return volume;
+}
+
+VolumeFile open_vtk(const std::filesystem::path& file, const VolumeOptions& options, const std::string& source) {
+  auto plain = read_plain_vtk_grid(file, options.most_in_memory);
+  VolumeFile volume = plain ? open_stored(*std::move(plain), options, source) : read_vtk_grid(file, options);
+  for (const auto& [name, word] : vtk_field_words(file)) take_word(name, word, volume.body_axes, volume.tags);
+  return with_tag_note(std::move(volume));
 }
 
 /// A file that says of itself what it holds.
@@ -179,12 +195,10 @@ VolumeFile open_described(const std::filesystem::path& file, VolumeKind kind, co
   switch (kind) {
     case VolumeKind::vtk:
       require_no_time_step(options.time_step, source);
-      if (auto plain = read_plain_vtk_grid(file, options.most_in_memory))
-        return open_stored(*std::move(plain), options, source);
-      return read_vtk_grid(file, options);
+      return open_vtk(file, options, source);
     case VolumeKind::bricks:
       require_no_time_step(options.time_step, source);
-      return open_bricks(file, options);
+      return with_tag_note(open_bricks(file, options));
     case VolumeKind::netcdf:
       return read_by_vtk(file, "netcdf", options);
     case VolumeKind::hdf5:
@@ -196,7 +210,7 @@ VolumeFile open_described(const std::filesystem::path& file, VolumeKind kind, co
     case VolumeKind::meta_image:
       return open_stored(read_meta_image_header(file), options, source);
     case VolumeKind::nrrd:
-      return open_stored(read_nrrd_header(file), options, source);
+      return with_tag_note(open_stored(read_nrrd_header(file), options, source));
     case VolumeKind::nifti:
       return open_stored(read_nifti_header(file), options, source);
     case VolumeKind::analyze:
@@ -291,6 +305,10 @@ void set_range(VolumeFile& volume, const std::filesystem::path& file, const scen
                                        file.string(), volume.source->geometry().all_samples().count()));
   for (FieldSummary& field : volume.fields)
     if (field.low > field.high) list_range(range, field);
+  // Hounsfield's units, with air and with what scanners fill the corners with, but no -9999.
+  if (const BodyAxes axes = std::exchange(volume.axes_if_ct, BodyAxes::none);
+      axes != BodyAxes::none && range.low <= -900 && range.low >= -4096 && range.high >= 200)
+    volume.body_axes = axes;
   if (range.blanks > 0)
     volume.notes.push_back(fmt::format("{} samples are NaN, infinite or hidden: their voxels are blank", range.blanks));
 }

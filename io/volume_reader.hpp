@@ -11,6 +11,7 @@
 
 #include "io/mesh_reader.hpp"
 #include "io/scratch_file.hpp"
+#include "io/volume_tags.hpp"
 #include "scene/sample_source.hpp"
 #include "tessera/default_view.hpp"
 
@@ -49,6 +50,8 @@ struct VolumeFile {
   std::vector<std::string> notes;              ///< one line each: what was chosen or applied, or odd about the file
   std::string format;
   BodyAxes body_axes = BodyAxes::none;
+  BodyAxes axes_if_ct = BodyAxes::none;  ///< set_range() makes them body_axes if the values are those of CT
+  VolumeTags tags{};
   TimeStepRead time_step{};
 };
 

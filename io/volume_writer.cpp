@@ -52,8 +52,23 @@ void write_values(const scene::SampleSource& source, AtomicFile& out) {
   }
 }
 
+using TagWords = std::vector<std::pair<std::string, std::string>>;
+
+/// Strings of a VTK data set: the codes of their letters, ended by 0.
+std::string field_data_of(const TagWords& words) {
+  if (words.empty()) return {};
+  std::string text = "\n    <FieldData>\n";
+  for (const auto& [name, word] : words) {
+    text += fmt::format("      <DataArray type=\"String\" Name=\"{}\" NumberOfTuples=\"1\" format=\"ascii\">\n        ",
+                        name);
+    for (const char letter : word) text += fmt::format("{} ", static_cast<int>(static_cast<unsigned char>(letter)));
+    text += "0\n      </DataArray>\n";
+  }
+  return text + "    </FieldData>";
+}
+
 /// VTK XML with one appended raw array; of a rectilinear grid with its coordinates inline.
-void write_vtk_volume(const scene::SampleSource& source, AtomicFile& out, bool rectilinear) {
+void write_vtk_volume(const scene::SampleSource& source, AtomicFile& out, bool rectilinear, const TagWords& words) {
   const scene::Grid& grid = source.grid();
   const scene::GridGeometry& g = grid.geometry;
   const SampleType type = written_type(grid);
@@ -71,9 +86,10 @@ void write_vtk_volume(const scene::SampleSource& source, AtomicFile& out, bool r
                         g.origin.x, g.origin.y, g.origin.z, g.spacing.x, g.spacing.y, g.spacing.z, d[0][0], d[1][0],
                         d[2][0], d[0][1], d[1][1], d[2][1], d[0][2], d[1][2], d[2][2]);
   }
+  head += ">" + field_data_of(words);
   const char* const section = point ? "PointData" : "CellData";
   head += fmt::format(
-      ">\n    <Piece Extent=\"{}\">\n      <{} Scalars=\"{}\">\n        <DataArray type=\"{}\" Name=\"{}\" "
+      "\n    <Piece Extent=\"{}\">\n      <{} Scalars=\"{}\">\n        <DataArray type=\"{}\" Name=\"{}\" "
       "format=\"appended\" offset=\"0\"/>\n      </{}>\n",
       extent, section, field, written_vtk_type(type), field, section);
   if (rectilinear) {
@@ -94,18 +110,30 @@ void write_vtk_volume(const scene::SampleSource& source, AtomicFile& out, bool r
   out.write("\n  </AppendedData>\n</VTKFile>\n");
 }
 
-void write_nrrd(const scene::SampleSource& source, AtomicFile& out) {
+void write_nrrd(const scene::SampleSource& source, AtomicFile& out, const TagWords& words) {
   const scene::GridGeometry& g = source.geometry();
   const SampleType type = written_type(source.grid());
-  std::string head = fmt::format("NRRD0004\ntype: {}\ndimension: 3\nspace dimension: 3\nsizes: {} {} {}\n",
-                                 written_nrrd_type(type), g.points[0], g.points[1], g.points[2]);
+  const auto word_of = [&](const char* name) {
+    const auto found = std::ranges::find(words, name, &TagWords::value_type::first);
+    return found == words.end() ? std::string() : found->second;
+  };
+  const std::string space = word_of("space");
+  std::string head =
+      fmt::format("NRRD0004\ntype: {}\ndimension: 3\n{}\nsizes: {} {} {}\n", written_nrrd_type(type),
+                  space.empty() ? "space dimension: 3" : "space: " + space, g.points[0], g.points[1], g.points[2]);
   head += "space directions:";
   for (int axis = 0; axis < 3; ++axis) {
     const glm::dvec3 step = g.direction[axis] * g.spacing[axis];
     head += fmt::format(" ({},{},{})", step.x, step.y, step.z);
   }
   head +=
-      fmt::format("\nspace origin: ({},{},{})\nendian: little\nencoding: raw\n\n", g.origin.x, g.origin.y, g.origin.z);
+      fmt::format("\nspace origin: ({},{},{})\nendian: little\nencoding: raw\n", g.origin.x, g.origin.y, g.origin.z);
+  if (const std::string unit = word_of("length unit"); !unit.empty())
+    head += fmt::format("space units: \"{0}\" \"{0}\" \"{0}\"\n", unit);
+  if (const std::string unit = word_of("unit"); !unit.empty()) head += fmt::format("sample units: \"{}\"\n", unit);
+  for (const char* key : {"modality", "intent"})
+    if (const std::string word = word_of(key); !word.empty()) head += fmt::format("{}:={}\n", key, word);
+  head += '\n';
   out.write(head);
   write_values(source, out);
 }
@@ -136,15 +164,16 @@ bool is_volume_output(const std::filesystem::path& file) {
          extension == ".bricks";
 }
 
-void write_volume(const scene::SampleSource& source, const std::filesystem::path& file, int block) {
+void write_volume(const scene::SampleSource& source, const std::filesystem::path& file, int block, BodyAxes axes,
+                  const VolumeTags& tags) {
   const std::string extension = lower_extension(file);
-  if (extension == ".bricks") return write_bricks(source, file, block);
+  if (extension == ".bricks") return write_bricks(source, file, block, axes, tags);
   check_format(source.grid(), extension, file.string());
   AtomicFile out(file);
   if (extension == ".vti" || extension == ".vtr")
-    write_vtk_volume(source, out, extension == ".vtr");
+    write_vtk_volume(source, out, extension == ".vtr", tag_words(axes, tags));
   else if (extension == ".nrrd")
-    write_nrrd(source, out);
+    write_nrrd(source, out, tag_words(axes, tags));
   else
     write_values(source, out);
   out.commit();

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "io/volume_tags.hpp"
 #include "scene/sample_source.hpp"
 
 namespace tessera::io {
@@ -16,9 +17,10 @@ scene::SampleType written_type(const scene::Grid& grid);
 /// Writes a volume by its extension, samples uncompressed and read from `source` some slices at a time, so that the
 /// file may be larger than memory. Stored types stay; where a format knows no scale and shift (all but .bricks) and the
 /// volume has them, values are written, float32 for up to 16 bits. `block`: side of a brick file's blocks.
-/// Appears by rename. Throws Error(bad_input) for what the format cannot say: cell data in .nrrd and .raw, a
-/// rectilinear grid in all but .vtr and .bricks, a direction in .raw and .vtr; Error(system_failure) if it cannot be
-/// written.
-void write_volume(const scene::SampleSource& source, const std::filesystem::path& file, int block = 64);
+/// `axes` and `tags` are kept by .nrrd, .vti, .vtr and .bricks. Appears by rename. Throws Error(bad_input) for what the
+/// format cannot say: cell data in .nrrd and .raw, a rectilinear grid in all but .vtr and .bricks, a direction in .raw
+/// and .vtr; Error(system_failure) if it cannot be written.
+void write_volume(const scene::SampleSource& source, const std::filesystem::path& file, int block = 64,
+                  BodyAxes axes = BodyAxes::none, const VolumeTags& tags = {});
 
 }  // namespace tessera::io

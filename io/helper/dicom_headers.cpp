@@ -33,6 +33,17 @@ std::string text_of(const nlohmann::json& json) {
   return {bytes.begin(), bytes.end()};
 }
 
+nlohmann::json json_of(const std::vector<DicomFrame>& frames) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const DicomFrame& f : frames)
+    list.push_back({three_of(f.position), three_of(f.row), three_of(f.column), f.slope, f.intercept, f.time});
+  return list;
+}
+
+DicomFrame frame_of(const nlohmann::json& j) {
+  return {vector_of(j.at(0)), vector_of(j.at(1)), vector_of(j.at(2)), j.at(3), j.at(4), j.at(5)};
+}
+
 nlohmann::json json_of(const DicomSlice& s) {
   return nlohmann::json::array({binary(s.series),
                                 binary(s.modality),
@@ -53,7 +64,9 @@ nlohmann::json json_of(const DicomSlice& s) {
                                 s.number,
                                 s.time,
                                 s.samples_end,
-                                s.padding ? nlohmann::json(*s.padding) : nlohmann::json()});
+                                s.padding ? nlohmann::json(*s.padding) : nlohmann::json(),
+                                json_of(s.each),
+                                s.frames_note});
 }
 
 DicomSlice slice_of(const nlohmann::json& j, const std::filesystem::path& file) {
@@ -68,6 +81,8 @@ DicomSlice slice_of(const nlohmann::json& j, const std::filesystem::path& file) 
   j.at(14).get_to(s.slope), j.at(15).get_to(s.intercept), j.at(16).get_to(s.number), j.at(17).get_to(s.time),
       j.at(18).get_to(s.samples_end);
   if (!j.at(19).is_null()) s.padding = j.at(19).get<std::array<double, 2>>();
+  for (const nlohmann::json& frame : j.at(20)) s.each.push_back(frame_of(frame));
+  j.at(21).get_to(s.frames_note);
   return s;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -81,17 +82,26 @@ NumberType type_of(const DicomValues& values) {
   return values.are_whole ? NumberType::float64 : NumberType::float32;
 }
 
+/// The samples of slices' files, each file's once.
+struct DicomStack {
+  std::vector<DicomSlice> slices;
+  std::vector<std::shared_ptr<const DicomSamples>> samples;  ///< of each slice, perhaps with frames of others
+};
+
 /// As stored, and made into values as they are asked for.
 ForeignArray hold_samples(Holdings& holdings, const DicomVolume& volume, std::vector<std::string>& notes) {
-  const auto stacks = std::make_shared<std::vector<DicomSamples>>();
-  stacks->reserve(volume.slices.size());
+  const auto stack = std::make_shared<DicomStack>();
+  stack->slices = volume.slices;
   constexpr std::size_t at_once = 1 << 15;
   DicomValues values;
+  std::map<std::filesystem::path, std::shared_ptr<const DicomSamples>> opened;
   for (const DicomSlice& slice : volume.slices) {
     report_progress(static_cast<double>(&slice - volume.slices.data()) / static_cast<double>(volume.slices.size()));
     report_reading(slice.file);
-    const DicomSamples& samples = stacks->emplace_back(slice);
-    const DicomValues own = samples.values();
+    auto& samples = opened[slice.file];
+    if (!samples) samples = std::make_shared<const DicomSamples>(slice);
+    stack->samples.push_back(samples);
+    const DicomValues own = samples->values(slice);
     values.are_whole = values.are_whole && own.are_whole;
     values.tally.not_finite += own.tally.not_finite;
     if (own.tally.any_finite) values.tally.add(std::array{own.tally.low, own.tally.high});
@@ -99,16 +109,16 @@ ForeignArray hold_samples(Holdings& holdings, const DicomVolume& volume, std::ve
   if (const auto blank = values.tally.not_finite;
       blank > 0 && std::any_of(volume.slices.begin(), volume.slices.end(), [](const auto& s) { return s.padding; }))
     notes.push_back(fmt::format("{} samples are padding, as the header says, and blank", blank));
-  const std::size_t each = stacks->front().count();  // slices of a volume are of one size
+  const std::size_t each = stack->samples.front()->frame_count();  // slices of a volume are of one size
   ForeignArray array{
-      .name = "samples", .type = type_of(values), .tuples = each * stacks->size(), .tally = values.tally};
+      .name = "samples", .type = type_of(values), .tuples = each * stack->slices.size(), .tally = values.tally};
   return holdings.hold(array,
-                       [stacks, each, type = array.type](std::uint64_t first, std::uint64_t count, std::byte* out) {
+                       [stack, each, type = array.type](std::uint64_t first, std::uint64_t count, std::byte* out) {
                          std::vector<double> part;
                          for (std::uint64_t k = first; k < first + count; k += part.size()) {
                            const std::size_t within = k % each;
                            part.resize(std::min<std::uint64_t>({first + count - k, each - within, at_once}));
-                           (*stacks)[k / each].read(within, part);
+                           stack->samples[k / each]->read(stack->slices[k / each], within, part);
                            with_number_type(type, [&](auto zero) {
                              using Number = decltype(zero);
                              for (const double value : part) {
@@ -165,9 +175,10 @@ ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& file
         are_alike ? fmt::format("values are {:.9g} * sample + {:.9g}, as its header says", first.slope, first.intercept)
                   : "slices have scales of their own, which apply");
   }
+  contents.modality = first.modality, contents.unit = first.unit;
   if (!first.unit.empty()) contents.notes.push_back("values are in " + first.unit);
   ForeignPart& part = contents.parts.emplace_back();
-  const auto depth = static_cast<std::int64_t>(volume.slices.size()) * first.frames;
+  const auto depth = static_cast<std::int64_t>(volume.slices.size());
   part.extent = {0, first.columns - 1, 0, first.rows - 1, 0, depth - 1};
   part.origin = {volume.origin.x, volume.origin.y, volume.origin.z};
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <map>
 #include <tuple>
+#include <utility>
 
 #include "scene/error.hpp"
 
@@ -61,6 +62,35 @@ std::vector<DicomSlice> chosen_group(std::vector<DicomSlice> slices, const std::
     notes.push_back(fmt::format("of {} stacks of slices this is one of {}; name one of its files for another",
                                 groups.size(), chosen->size() * static_cast<std::size_t>(chosen->front().frames)));
   return std::move(*chosen);
+}
+
+/// Each frame of a file of several as a slice of its own; of frames that are turned against each other, those of the
+/// direction that most have.
+std::vector<DicomSlice> frames_as_slices(std::vector<DicomSlice> slices, std::vector<std::string>& notes) {
+  if (slices.size() != 1 || slices.front().each.empty()) return slices;
+  DicomSlice file = std::move(slices.front());
+  const std::vector<DicomFrame> each = std::exchange(file.each, {});
+  if (!file.frames_note.empty()) notes.push_back(file.frames_note);
+  std::vector<std::vector<DicomSlice>> directions;
+  for (std::size_t k = 0; k < each.size(); ++k) {
+    const DicomFrame& f = each[k];
+    DicomSlice slice = file;
+    slice.frame = slice.number = static_cast<std::int64_t>(k);
+    slice.position = f.position, slice.row = f.row, slice.column = f.column;
+    slice.slope = f.slope, slice.intercept = f.intercept, slice.time = f.time;
+    const auto alike = std::find_if(directions.begin(), directions.end(),
+                                    [&](const auto& group) { return lie_alike(group.front(), slice); });
+    if (alike != directions.end())
+      alike->push_back(std::move(slice));
+    else
+      directions.emplace_back().push_back(std::move(slice));
+  }
+  const auto most = std::max_element(directions.begin(), directions.end(),
+                                     [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  if (directions.size() > 1)
+    notes.push_back(fmt::format("its frames lie in {} directions; these are the {} of one of them", directions.size(),
+                                most->size()));
+  return std::move(*most);
 }
 
 /// Slices of one place are of several times: the slices of one of them.
@@ -144,12 +174,16 @@ void set_places(DicomVolume& volume) {
 DicomVolume volume_of(std::vector<DicomSlice> slices, const std::filesystem::path& named,
                       std::optional<std::size_t> time_step, const std::string& source) {
   DicomVolume volume;
-  volume.slices =
-      slices_of_step(chosen_group(std::move(slices), named, source, volume.notes), time_step, source, volume);
+  std::vector<DicomSlice> group = chosen_group(std::move(slices), named, source, volume.notes);
+  volume.slices = slices_of_step(frames_as_slices(std::move(group), volume.notes), time_step, source, volume);
   const DicomSlice& first = volume.slices.front();
   volume.origin = first.position;
   volume.steps = {first.row * first.spacing.x, first.column * first.spacing.y, first.normal() * first.spacing.z};
-  if (volume.slices.size() == 1 && first.frames == 1)
+  if (volume.slices.size() == 1 && first.frames > 1)
+    throw scene::bad_input(
+        fmt::format("{}: all its {} frames are at one place: times of one picture, not a volume; give a volume", source,
+                    first.frames));
+  if (volume.slices.size() == 1)
     throw scene::bad_input(
         fmt::format("{}: it is a single slice, without others of its series beside it; give a "
                     "folder of slices",

@@ -12,7 +12,7 @@ namespace tessera::io::helper {
 
 /// Slices that are one volume, in the order of their places along the normal.
 struct DicomVolume {
-  std::vector<DicomSlice> slices;  ///< one of each place; of frames one alone
+  std::vector<DicomSlice> slices;  ///< one of each place
   glm::dvec3 origin{0};            ///< of the first sample
   /// One step of the index along rows' samples, rows, and slices; of uneven slices the last of length one.
   std::array<glm::dvec3, 3> steps{};

@@ -17,6 +17,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "io/helper/dicom_elements.hpp"
+#include "io/helper/dicom_frames.hpp"
 #include "io/mapped_file.hpp"
 #include "scene/error.hpp"
 
@@ -25,52 +27,12 @@ namespace {
 
 constexpr const char* write_anew = "the file is truncated or damaged, write it anew or leave it out";
 
-/// A text element, without the blanks that fill it up; empty if there is none.
-std::string text_of(const gdcm::DataSet& data, std::uint16_t group, std::uint16_t element) {
-  const gdcm::Tag tag(group, element);
-  if (!data.FindDataElement(tag)) return "";
-  const gdcm::ByteValue* const value = data.GetDataElement(tag).GetByteValue();
-  if (value == nullptr) return "";
-  std::string text(value->GetPointer(), value->GetLength());
-  const std::size_t last = text.find_last_not_of(std::string_view(" \0", 2));
-  text.resize(last == std::string::npos ? 0 : last + 1);
-  return text.substr(std::min(text.find_first_not_of(' '), text.size()));
-}
-
-/// Decimal strings, with backslashes between; fewer than there are words if one is no number.
-std::vector<double> numbers_of(const std::string& text) {
-  std::vector<double> numbers;
-  std::string_view rest = text;
-  while (!rest.empty()) {
-    const std::size_t stop = std::min(rest.find('\\'), rest.size());
-    std::string_view word = rest.substr(0, stop);
-    rest.remove_prefix(std::min(stop + 1, rest.size()));
-    word.remove_prefix(std::min(word.find_first_not_of(" +"), word.size()));
-    double value = 0;
-    if (std::from_chars(word.data(), word.data() + word.size(), value).ec != std::errc() || !std::isfinite(value))
-      break;
-    numbers.push_back(value);
-  }
-  return numbers;
-}
-
-std::optional<double> number_of(const gdcm::DataSet& data, std::uint16_t group, std::uint16_t element) {
-  const std::vector<double> numbers = numbers_of(text_of(data, group, element));
-  return numbers.empty() ? std::nullopt : std::optional(numbers.front());
-}
-
-/// Seconds of HHMMSS.FFFFFF.
-double seconds_of(double clock) {
-  const double hours = std::floor(clock / 1e4), minutes = std::floor(clock / 100) - 100 * hours;
-  return hours * 3600 + minutes * 60 + std::fmod(clock, 100);
-}
-
 /// What orders slices of one place: the first of these that the file has.
 double time_of(const gdcm::DataSet& data) {
-  if (const auto index = number_of(data, 0x0020, 0x0100)) return *index;      // temporal position identifier
-  if (const auto trigger = number_of(data, 0x0018, 0x1060)) return *trigger;  // of the heart
-  if (const auto acquired = number_of(data, 0x0008, 0x0032)) return seconds_of(*acquired);
-  if (const auto content = number_of(data, 0x0008, 0x0033)) return seconds_of(*content);
+  if (const auto index = dicom_number(data, 0x0020, 0x0100)) return *index;      // temporal position identifier
+  if (const auto trigger = dicom_number(data, 0x0018, 0x1060)) return *trigger;  // of the heart
+  if (const auto acquired = dicom_number(data, 0x0008, 0x0032)) return dicom_seconds(*acquired);
+  if (const auto content = dicom_number(data, 0x0008, 0x0033)) return dicom_seconds(*content);
   return 0;
 }
 
@@ -79,7 +41,7 @@ void set_place(const gdcm::File& file, DicomSlice& slice) {
   const std::vector<double> spacing = gdcm::ImageHelper::GetSpacingValue(file);
   for (std::size_t k = 0; k < std::min<std::size_t>(spacing.size(), 3); ++k)
     if (spacing[k] > 0 && std::isfinite(spacing[k])) slice.spacing[static_cast<int>(k)] = spacing[k];
-  const bool is_placed = slice.frames > 1 || numbers_of(text_of(data, 0x0020, 0x0032)).size() == 3;
+  const bool is_placed = slice.frames > 1 || dicom_numbers(data, 0x0020, 0x0032).size() == 3;
   const std::vector<double> origin = gdcm::ImageHelper::GetOriginValue(file);
   const std::vector<double> axes = gdcm::ImageHelper::GetDirectionCosinesValue(file);
   if (axes.size() == 6) {
@@ -176,18 +138,19 @@ std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
       return std::nullopt;
     DicomSlice slice;
     slice.file = file;
-    slice.series = text_of(data, 0x0020, 0x000e);
-    slice.modality = text_of(data, 0x0008, 0x0060);
-    slice.unit = text_of(data, 0x0028, 0x1054);
-    if (slice.unit.empty()) slice.unit = text_of(data, 0x0054, 0x1001);
-    if (slice.unit.empty() && slice.modality == "RTDOSE") slice.unit = text_of(data, 0x3004, 0x0002);
+    slice.series = dicom_text(data, 0x0020, 0x000e);
+    slice.modality = dicom_text(data, 0x0008, 0x0060);
+    slice.unit = dicom_text(data, 0x0028, 0x1054);
+    if (slice.unit.empty()) slice.unit = dicom_text(data, 0x0054, 0x1001);
+    if (slice.unit.empty() && slice.modality == "RTDOSE") slice.unit = dicom_text(data, 0x3004, 0x0002);
     if (!set_samples(reader.GetFile(), slice)) return std::nullopt;
     if (reader.GetFile().GetHeader().GetDataSetTransferSyntax() != gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian)
       slice.samples_end = static_cast<std::uint64_t>(std::max<std::streamoff>(in.tellg(), 0));
     set_place(reader.GetFile(), slice);
-    slice.number = static_cast<std::int64_t>(std::clamp(number_of(data, 0x0020, 0x0013).value_or(0), -1e9, 1e9));
+    slice.number = static_cast<std::int64_t>(std::clamp(dicom_number(data, 0x0020, 0x0013).value_or(0), -1e9, 1e9));
     slice.time = time_of(data);
     slice.padding = padding_of(reader.GetFile());
+    if (slice.frames > 1) set_frames(data, slice);
     return slice;
   } catch (const std::bad_alloc&) {
     throw;
@@ -197,7 +160,7 @@ std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
 }
 
 DicomSamples::DicomSamples(const DicomSlice& slice)
-    : slope_(slice.slope), intercept_(slice.intercept), padding_(slice.padding) {
+    : frames_(static_cast<std::size_t>(slice.frames)), padding_(slice.padding) {
   const std::string source = slice.file.string();
   const auto refuse = [&](const char* what) {
     return scene::bad_input(fmt::format("{}: {}; {}", source, what, write_anew));
@@ -227,32 +190,33 @@ DicomSamples::DicomSamples(const DicomSlice& slice)
   if (bytes_.size() != samples * size_of(type_)) throw refuse("its samples are not as many as its header says");
 }
 
-DicomValues DicomSamples::values() const {
+DicomValues DicomSamples::values(const DicomSlice& slice) const {
   DicomValues values;
+  const std::size_t count = frame_count(), begin = static_cast<std::size_t>(slice.frame) * count;
   const auto is_whole = [](double v) { return v == std::floor(v); };
   // Integers that stay such in their order need no looking at each value.
-  const bool is_plain = !padding_ && is_whole(slope_) && is_whole(intercept_) && std::abs(slope_) < 0x1p20 &&
-                        std::abs(intercept_) < 0x1p52 && count() > 0;
+  const bool is_plain = !padding_ && is_whole(slice.slope) && is_whole(slice.intercept) &&
+                        std::abs(slice.slope) < 0x1p20 && std::abs(slice.intercept) < 0x1p52 && count > 0;
   with_number_type(type_, [&](auto zero) {
     using Number = decltype(zero);
     if constexpr (std::is_integral_v<Number>) {
       if (!is_plain) return;
       Number least = std::numeric_limits<Number>::max(), most = std::numeric_limits<Number>::lowest();
-      for (std::size_t k = 0; k < count(); ++k) {
+      for (std::size_t k = begin; k < begin + count; ++k) {
         const auto sample = sample_at<Number>(bytes_.data() + k * sizeof(Number), bits_);
         least = std::min(least, sample), most = std::max(most, sample);
       }
-      const std::array ends{slope_ * static_cast<double>(least) + intercept_,
-                            slope_ * static_cast<double>(most) + intercept_};
+      const std::array ends{slice.slope * static_cast<double>(least) + slice.intercept,
+                            slice.slope * static_cast<double>(most) + slice.intercept};
       values.tally.add(ends);
     }
   });
   if (values.tally.any_finite) return values;
   constexpr std::size_t at_once = 1 << 15;
-  std::vector<double> some(std::min(at_once, count()));
-  for (std::size_t first = 0; first < count(); first += at_once) {
-    const auto part = std::span(some).first(std::min(at_once, count() - first));
-    read(first, part);
+  std::vector<double> some(std::min(at_once, count));
+  for (std::size_t first = 0; first < count; first += at_once) {
+    const auto part = std::span(some).first(std::min(at_once, count - first));
+    read(slice, first, part);
     values.tally.add(part);
     values.are_whole = values.are_whole &&
                        std::all_of(part.begin(), part.end(), [&](double v) { return std::isnan(v) || is_whole(v); });
@@ -260,13 +224,14 @@ DicomValues DicomSamples::values() const {
   return values;
 }
 
-void DicomSamples::read(std::size_t first, std::span<double> out) const {
+void DicomSamples::read(const DicomSlice& slice, std::size_t first, std::span<double> out) const {
+  first += static_cast<std::size_t>(slice.frame) * frame_count();
   with_number_type(type_, [&](auto zero) {
     using Number = decltype(zero);
     for (std::size_t k = 0; k < out.size(); ++k) {
       const double sample = sample_at<Number>(bytes_.data() + (first + k) * sizeof(Number), bits_);
       const bool is_padding = padding_ && sample >= (*padding_)[0] && sample <= (*padding_)[1];
-      out[k] = is_padding ? std::numeric_limits<double>::quiet_NaN() : slope_ * sample + intercept_;
+      out[k] = is_padding ? std::numeric_limits<double>::quiet_NaN() : slice.slope * sample + slice.intercept;
     }
   });
 }

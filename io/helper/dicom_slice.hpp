@@ -15,6 +15,13 @@
 
 namespace tessera::io::helper {
 
+/// One of the frames of a file.
+struct DicomFrame {
+  glm::dvec3 position{0}, row{1, 0, 0}, column{0, 1, 0};
+  double slope = 1, intercept = 0;
+  double time = 0;  ///< as DicomSlice::time
+};
+
 /// What the header of one DICOM file says of its pictures: one, or the frames of several. Positions are millimetres in
 /// the patient's frame: x to the left, y to the back, z to the head (DICOM PS3.3, C.7.6.2).
 struct DicomSlice {
@@ -32,6 +39,9 @@ struct DicomSlice {
   double slope = 1, intercept = 0;  ///< value = slope * sample + intercept
   std::int64_t number = 0;          ///< in the series
   double time = 0;                  ///< whatever tells slices of one place apart; 0 without
+  std::vector<DicomFrame> each{};   ///< of a file of several frames
+  std::int64_t frame = 0;           ///< which of them this is
+  std::string frames_note{};        ///< what the file does not say of their places; may be empty
   /// Samples from the first to the second are padding, which no detector has seen.
   std::optional<std::array<double, 2>> padding{};
 
@@ -53,18 +63,18 @@ class DicomSamples {
   /// Unpacks them. Throws Error(bad_input) in one line.
   explicit DicomSamples(const DicomSlice& slice);
 
-  [[nodiscard]] std::size_t count() const { return bytes_.size() / size_of(type_); }
+  /// Of one frame, with that slice's scale.
+  [[nodiscard]] std::size_t frame_count() const { return bytes_.size() / size_of(type_) / frames_; }
+  [[nodiscard]] DicomValues values(const DicomSlice& slice) const;
 
-  [[nodiscard]] DicomValues values() const;
-
-  /// Values [first, first + out.size()); NaN where a sample is padding.
-  void read(std::size_t first, std::span<double> out) const;
+  /// Values [first, first + out.size()) of a slice's frame; NaN where a sample is padding.
+  void read(const DicomSlice& slice, std::size_t first, std::span<double> out) const;
 
  private:
   std::vector<char> bytes_;
   NumberType type_ = NumberType::uint8;
   int bits_ = 0;  ///< of integers that are the sample's; the others are something else's
-  double slope_, intercept_;
+  std::size_t frames_ = 1;
   std::optional<std::array<double, 2>> padding_;
 };
 

@@ -17,6 +17,7 @@ from advice_library_files import (
     UCD,
     XDMF,
     dicom,
+    dicom_frames,
     exodus,
     foam,
     foam_case,
@@ -259,6 +260,13 @@ ROWS = [
         "info ct/9.dcm",
         {},
         **{str(k): dicom(k, series="1.2.9") for k in (8, 9)},
+    ),
+    row(
+        "info f.dcm",
+        "times of one picture, not a volume; give a volume",
+        None,
+        {"f.dcm": dicom_frames((1, 1, 1))},
+        {"f.dcm": dicom_frames((1, 2, 3))},
     ),
     ct("there is no time step 5", "info ct --time-step 5", "info ct"),
     # formats that are not read, and solvers'

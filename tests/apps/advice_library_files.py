@@ -153,6 +153,25 @@ def dicom(instance, samples=1, bits=16, series="1.2.3.4", pixels=None, position=
     )
 
 
+def dicom_frames(positions):
+    """Frames of 2x2 pixels at these places along z, in one file."""
+
+    def sequence(group, number, *items):
+        content = b"".join(struct.pack("<HHI", 0xFFFE, 0xE000, len(item)) + item for item in items)
+        return struct.pack("<HH2sHI", group, number, b"SQ", 0, len(content)) + content
+
+    def place(z):
+        text = f"0\\0\\{z}".encode()
+        text += b" " * (len(text) % 2)
+        return sequence(0x20, 0x9113, struct.pack("<HH2sH", 0x20, 0x32, b"DS", len(text)) + text)
+
+    whole = dicom(1, pixels=struct.pack("<4H", 1, 2, 3, 4) * len(positions))
+    count = struct.pack("<HH2sH", 0x28, 8, b"IS", 2) + f"{len(positions)} ".encode()
+    rows, pixels = whole.index(struct.pack("<HH2s", 0x28, 0x10, b"US")), whole.index(struct.pack("<HH", 0x7FE0, 0x10))
+    frames = sequence(0x5200, 0x9230, *[place(z) for z in positions])
+    return whole[:rows] + count + whole[rows:pixels] + frames + whole[pixels:]
+
+
 SLICES = {f"ct/{k}.dcm": dicom(k) for k in (1, 2, 3)}
 
 

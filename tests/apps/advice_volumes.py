@@ -21,6 +21,20 @@ def nii(header, advice, samples=SAMPLES):
     return row("info a.nii", advice, None, {"a.nii": header + samples}, {"a.nii": NIFTI})
 
 
+def nrrd_axes(axes, advice):
+    """Axes that cannot be read, and a vector's that can."""
+    head = "NRRD0004\ntype: uint8\nencoding: raw\n"
+    dimension = f"dimension: {len(axes.split(':')[-1].split())}\n"
+    good = "dimension: 4\nkinds: vector domain domain domain\nsizes: 2 2 2 2\n\n"
+    return row(
+        "info a.nrrd",
+        advice,
+        None,
+        {"a.nrrd": f"{head}{dimension}{axes}\n\n".encode() + SAMPLES * 4},
+        {"a.nrrd": (head + good).encode() + SAMPLES * 2},
+    )
+
+
 DETACHED = NRRD.replace(b"encoding: raw\n\n" + SAMPLES, b"encoding: raw\ndata file: a%d.raw 0 1 1\n")
 PARTS = {"a0.raw": SAMPLES[:4], "a1.raw": SAMPLES[4:]}
 META_TEXT = META.replace(b"BinaryData = True", b"BinaryData = False").replace(SAMPLES, b"1 2 3 4 5 6 7 8")
@@ -111,6 +125,10 @@ ROWS = [
             b"2 2\nencoding: raw\n\n" + SAMPLES * 2
         },
     ),
+    nrrd_axes("kinds: vector domain domain domain vector\nsizes: 2 2 2 2 2", "write one of them alone"),
+    nrrd_axes("kinds: time domain domain domain vector\nsizes: 2 2 2 2 2", "or write one step alone"),
+    nrrd_axes("kinds: domain time domain domain\nsizes: 2 2 2 2", "write it first or last"),
+    nrrd_axes("kinds: domain domain domain time\nsizes: 2 2 2 70000", "write at most 65536"),
     row(
         "info a.nrrd",
         "say where they begin",

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "io/dicom_writing.hpp"
 #include "io/file_kinds.hpp"
 #include "io/reader_programs.hpp"
 #include "io/temporary_folder.hpp"
@@ -20,21 +21,10 @@ namespace {
 
 using scene::GridIndex;
 using test::all_samples;
+constexpr auto element = test::dicom_element;
+constexpr auto little = test::dicom_little;
 using test::expect_no_volume;
 using test::has_note;
-
-std::string little(std::uint32_t value, int bytes) {
-  std::string text;
-  for (int k = 0; k < bytes; ++k) text += static_cast<char>((value >> (8 * k)) & 0xff);
-  return text;
-}
-
-std::string element(std::uint32_t group, std::uint32_t number, const std::string& kind, std::string value) {
-  if (value.size() % 2 != 0) value += kind == "UI" ? '\0' : ' ';
-  const bool is_long = kind == "OW" || kind == "OB";
-  return little(group, 2) + little(number, 2) + kind + (is_long ? std::string(2, '\0') : "") +
-         little(static_cast<std::uint32_t>(value.size()), is_long ? 4 : 2) + value;
-}
 
 struct Slice {
   double z = 0;

@@ -8,6 +8,7 @@ extern "C" {
 #include <vector>
 
 #include "io/changed_bytes.hpp"
+#include "io/marker.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/volume_checks.hpp"
@@ -82,6 +83,71 @@ TEST(Minc2, RealValuesLieWhereTheDirectionCosinesPutThem) {
         // In the file x is the fastest, then z, then y. Float holds the sum of a whole and a half exactly.
         EXPECT_EQ(samples[static_cast<std::size_t>(i + 4 * (j + 3 * k))], 5 + (i + 4 * (k + 2 * j)) / 2.0);
       }
+}
+
+/// Samples in the order of `axes`, the slowest first.
+void write_marked(const std::filesystem::path& file, const std::vector<AxisOfFile>& axes,
+                  const std::vector<std::int16_t>& samples) {
+  std::vector<midimhandle_t> dimensions;
+  const std::vector<misize_t> first(axes.size(), 0);
+  std::vector<misize_t> counts;
+  for (const AxisOfFile& axis : axes) {
+    midimhandle_t& dimension = dimensions.emplace_back();
+    ASSERT_EQ(micreate_dimension(axis.name, MI_DIMCLASS_SPATIAL, MI_DIMATTR_REGULARLY_SAMPLED, axis.size, &dimension),
+              MI_NOERROR);
+    miset_dimension_start(dimension, axis.start);
+    miset_dimension_separation(dimension, axis.step);
+    std::array<double, 3> cosines = axis.cosines;
+    miset_dimension_cosines(dimension, cosines.data());
+    counts.push_back(axis.size);
+  }
+  mihandle_t volume = nullptr;
+  ASSERT_EQ(micreate_volume(file.c_str(), static_cast<int>(dimensions.size()), dimensions.data(), MI_TYPE_SHORT,
+                            MI_CLASS_REAL, nullptr, &volume),
+            MI_NOERROR);
+  ASSERT_EQ(micreate_volume_image(volume), MI_NOERROR);
+  miset_volume_valid_range(volume, 1000, 0);
+  miset_volume_range(volume, 1000, 0);
+  std::vector<short> written(samples.begin(), samples.end());
+  ASSERT_EQ(miset_voxel_value_hyperslab(volume, MI_TYPE_SHORT, first.data(), counts.data(), written.data()),
+            MI_NOERROR);
+  ASSERT_EQ(miclose_volume(volume), MI_NOERROR);
+}
+
+/// The file's axis a is named x, y or z by what it leads along, or by its number and turned by its cosines.
+std::vector<AxisOfFile> marked_axes(const test::MarkedVolume& v, bool turns) {
+  constexpr std::array names = {"xspace", "yspace", "zspace"};
+  std::vector<AxisOfFile> axes;
+  for (int a = 2; a >= 0; --a) {
+    const glm::dvec3 along = v.axes[a];
+    const int world = along.x != 0 ? 0 : along.y != 0 ? 1 : 2;
+    AxisOfFile axis{names[static_cast<std::size_t>(turns ? a : world)],
+                    static_cast<misize_t>(v.size[static_cast<std::size_t>(a)]),
+                    0,
+                    0,
+                    {}};
+    if (turns) {
+      axis.start = glm::dot(along, v.origin), axis.step = v.spacing[a];
+      axis.cosines = {along.x, along.y, along.z};
+    } else {
+      axis.start = v.origin[world], axis.step = v.spacing[a] * along[world];
+      axis.cosines[static_cast<std::size_t>(world)] = 1;
+    }
+    axes.push_back(axis);
+  }
+  return axes;
+}
+
+TEST(Minc2, LeftIsLeftInAllOrientations) {
+  const test::TemporaryFolder folder;
+  const auto write = [&](const char* name, bool turns) {
+    return [&folder, name, turns](const test::MarkedVolume& v) {
+      std::filesystem::remove(folder / name);
+      write_marked(folder / name, marked_axes(v, turns), v.samples());
+      return folder / name;
+    };
+  };
+  test::expect_markers({{"MINC cosines", write("c.mnc", true)}, {"MINC steps", write("s.mnc", false)}});
 }
 
 TEST(Minc2, TimeStepsAreChosen) {
