@@ -11,10 +11,10 @@ namespace tessera::apps {
 
 void add_view_options(CLI::App& command, ViewWords& words) {
   command
-      .add_option(
-          "--view", words.view,
-          "direction: front looks along +y, z up; +x looks along +x (default: what stands, stands; a little from "
-          "the right and above)")
+      .add_option("--view", words.view,
+                  "direction: front looks along +y, of a patient at the face; +x looks along +x (default: what stands, "
+                  "stands; a little from "
+                  "the right and above)")
       ->type_name("front|back|left|right|top|bottom|iso|+x|-x|+y|-y|+z|-z");
   command.add_option("--up", words.up, "world direction that points up (default: z; y in views along z)")
       ->type_name("X,Y,Z");

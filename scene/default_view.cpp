@@ -114,18 +114,30 @@ Direction direction_of(const ViewRequest& request, const Box& box, BodyAxes axes
     return Direction{to_eye, request.up ? unit(*request.up) : up};
   };
   const glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  // Towards the front and the left of a patient; of anything else the file's -y and -x.
+  const glm::dvec3 front = axes == BodyAxes::ras ? y : -y, left = axes == BodyAxes::lps ? x : -x;
   switch (request.view) {
     case StandardView::front:
-      return along(-y, z);
+      return along(front, z);
     case StandardView::back:
-      return along(y, z);
+      return along(-front, z);
     case StandardView::left:
-      return along(-x, z);
+      return along(left, z);
     case StandardView::right:
+      return along(-left, z);
+    case StandardView::along_x:
+      return along(-x, z);
+    case StandardView::against_x:
       return along(x, z);
+    case StandardView::along_y:
+      return along(-y, z);
+    case StandardView::against_y:
+      return along(y, z);
     case StandardView::top:
+    case StandardView::against_z:
       return along(z, y);
     case StandardView::bottom:
+    case StandardView::along_z:
       return along(-z, y);
     case StandardView::iso:
       return along(unit(x - y + z), z);
@@ -169,12 +181,12 @@ std::optional<StandardView> standard_view(std::string_view word) {
                                                                              {"top", top},
                                                                              {"bottom", bottom},
                                                                              {"iso", iso},
-                                                                             {"+x", left},
-                                                                             {"-x", right},
-                                                                             {"+y", front},
-                                                                             {"-y", back},
-                                                                             {"+z", bottom},
-                                                                             {"-z", top}}};
+                                                                             {"+x", along_x},
+                                                                             {"-x", against_x},
+                                                                             {"+y", along_y},
+                                                                             {"-y", against_y},
+                                                                             {"+z", along_z},
+                                                                             {"-z", against_z}}};
   const auto* const found = std::ranges::find(words, word, &std::pair<std::string_view, StandardView>::first);
   return found == words.end() ? std::nullopt : std::optional(found->second);
 }

@@ -24,9 +24,26 @@ enum class BodyAxes {
   lps,   ///< y to the back: DICOM, NRRD's LPS, MetaImage with an AnatomicalOrientation
 };
 
-/// Named directions. `front` looks along +y, `right` along -x, `top` along -z and so on, whatever the data; `iso` looks
-/// along (-1, 1, -1). Up in the picture is z, in views along z it is y.
-enum class StandardView { automatic, front, back, left, right, top, bottom, iso };
+/// Named directions. Of a patient (BodyAxes) `front`, `back`, `left` and `right` show that side of the body, the left
+/// one being the patient's. Of anything else `front` looks along +y, `right` along -x and so on. `top` looks along -z,
+/// `iso` along (-1, 1, -1). The others look along an axis, whatever the data. Up in the picture is z, in views along z
+/// it is y.
+enum class StandardView {
+  automatic,
+  front,
+  back,
+  left,
+  right,
+  top,
+  bottom,
+  iso,
+  along_x,
+  against_x,
+  along_y,
+  against_y,
+  along_z,
+  against_z
+};
 
 /// "front" ... "iso", or "+x", "-z": the axis that is looked along. Nothing if it is no such word.
 TESSERA_EXPORT std::optional<StandardView> standard_view(std::string_view word);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <tuple>
 
 #include "tessera/error.hpp"
 
@@ -50,6 +51,22 @@ TEST(DefaultView, PatientsShowTheirFace) {
   const Box body = box_of(2, 4, 9);
   EXPECT_LT(basis_of(body, {}, BodyAxes::ras).forward.y, -0.5);
   EXPECT_GT(basis_of(body, {}, BodyAxes::lps).forward.y, 0.5);
+}
+
+TEST(DefaultView, NamedViewsOfAPatientShowThatSideOfTheBody) {
+  const Box body = box_of(2, 4, 9);
+  const glm::dvec3 x(1, 0, 0), y(0, 1, 0);
+  // Towards the patient's front and left.
+  for (const auto& [axes, front, left] : {std::tuple{BodyAxes::ras, y, -x}, std::tuple{BodyAxes::lps, -y, x}}) {
+    expect_near(basis_of(body, named("front"), axes).forward, -front);
+    expect_near(basis_of(body, named("back"), axes).forward, front);
+    expect_near(basis_of(body, named("left"), axes).forward, -left);
+    expect_near(basis_of(body, named("right"), axes).forward, left);
+    expect_near(basis_of(body, named("front"), axes).right, left);  // face to face, the left is to the right
+    expect_near(basis_of(body, named("+y"), axes).forward, y);
+    expect_near(basis_of(body, named("-x"), axes).forward, -x);
+    expect_near(basis_of(body, named("top"), axes).forward, {0, 0, -1});
+  }
 }
 
 TEST(DefaultView, NamedViewsLookAlongTheirAxes) {
