@@ -86,7 +86,7 @@ void write_vtk_volume(const scene::SampleSource& source, AtomicFile& out, bool r
                         g.origin.x, g.origin.y, g.origin.z, g.spacing.x, g.spacing.y, g.spacing.z, d[0][0], d[1][0],
                         d[2][0], d[0][1], d[1][1], d[2][1], d[0][2], d[1][2], d[2][2]);
   }
-  head += ">" + field_data_of(words);
+  head += fmt::format(">{}", field_data_of(words));
   const char* const section = point ? "PointData" : "CellData";
   head += fmt::format(
       "\n    <Piece Extent=\"{}\">\n      <{} Scalars=\"{}\">\n        <DataArray type=\"{}\" Name=\"{}\" "
@@ -120,7 +120,7 @@ void write_nrrd(const scene::SampleSource& source, AtomicFile& out, const TagWor
   const std::string space = word_of("space");
   std::string head =
       fmt::format("NRRD0004\ntype: {}\ndimension: 3\n{}\nsizes: {} {} {}\n", written_nrrd_type(type),
-                  space.empty() ? "space dimension: 3" : "space: " + space, g.points[0], g.points[1], g.points[2]);
+                  space.empty() ? "space dimension: 3" : fmt::format("space: {}", space), g.points[0], g.points[1], g.points[2]);
   head += "space directions:";
   for (int axis = 0; axis < 3; ++axis) {
     const glm::dvec3 step = g.direction[axis] * g.spacing[axis];
