@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "scene/error.hpp"
+#include "scene/quote.hpp"
 
 namespace tessera::io {
 namespace {
@@ -90,7 +91,8 @@ const NastranSystems::System& NastranSystems::system(std::int64_t id, const std:
     const auto unread = unread_.find(id);
     throw unread == unread_.end()
         ? refuse("which the file does not have; add it, or what includes it")
-        : refuse(fmt::format("a {}, which is not read; have the points written in the basic system", unread->second));
+        : refuse(fmt::format("a {}, which is not read; have the points written in the basic system",
+                             scene::quote(unread->second)));
   }
   System& system = found->second;
   if (system.progress == Progress::done) return system;

@@ -249,7 +249,7 @@ TEST_F(Nastran, FaultsAreNamed) {
   refuse(grids, {"a.bdf", "no elements"});
   refuse(grids + tet, {"a.bdf", "element 9 uses GRID 4"});
   refuse(grids + "GRID,4,5,0.,0.,1.\n" + tet, {"GRID 4 is in the coordinate system 5, which the file does not have"});
-  refuse(grids + "GRID,4,5,0.,0.,1.\nCORD3G,5,1,2,3\n" + tet, {"system 5, a CORD3G, which is not read"});
+  refuse(grids + "GRID,4,5,0.,0.,1.\nCORD3G,5,1,2,3\n" + tet, {"system 5, a 'CORD3G', which is not read"});
   refuse(grids +
              "GRID,4,5,0.,0.,1.\nCORD2R,5,6,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\nCORD2R,6,5,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\n" +
              tet,
