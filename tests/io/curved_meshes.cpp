@@ -34,6 +34,17 @@ const std::vector<Kind> kinds = {{24, 10, 2},
                                  {37, 19, 2},
                                  {71, 15, 2},
                                  {73, 21, 2},
+                                 {71, 5, 1},
+                                 {71, 8, 1},
+                                 {71, 11, 2},
+                                 {71, 14, 2},
+                                 {72, 9, 1},
+                                 {72, 16, 1},
+                                 {72, 21, 2},
+                                 {72, 26, 2},
+                                 {73, 16, 2},
+                                 {73, 20, 2},
+                                 {74, 18, 2},
                                  lagrange(71, {2, 2, 2}),
                                  lagrange(71, {3, 3, 3}),
                                  lagrange(71, {5, 5, 5}),
@@ -89,8 +100,9 @@ CellBlock warped_box(const Kind& kind, int n, const Warp& warp, const Field& fie
         }
         break;
       case CurvedFamily::hexahedron: {
-        // Not all sides of a 24-node hexahedron have nodes in their middles, nor one order those of different ones.
-        const bool may_turn = turned && kind.type != 33 && kind.degrees[0] == kind.degrees[2];
+        // Not all sides of a 24-node hexahedron have nodes in their middles, nor all edges of a 16-node one, nor one
+        // order those of different ones.
+        const bool may_turn = turned && kind.type != 33 && kind.nodes != 16 && kind.degrees[0] == kind.degrees[2];
         const int turn = may_turn ? static_cast<int>(random() % 3) : 0;
         const bool flip = turned && random() % 2 == 0;
         add([=](const glm::dvec3& x) {
