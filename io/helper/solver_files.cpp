@@ -37,7 +37,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/helper/cgns_zones.hpp"
+#include "io/helper/linear_only.hpp" "io/helper/cgns_zones.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/time_steps.hpp"
 #include "io/helper/vtk_parts.hpp"
@@ -163,6 +163,7 @@ ForeignContents read_ensight(Holdings& holdings, const std::filesystem::path& fi
     reader->SetCaseFileName(each.c_str());
     reader->ReadAllVariablesOn();
     ForeignContents some = read_by(holdings, *reader, each, request, "EnSight", [] {});
+    if (std::string note = note_on_ensight6(each); !note.empty()) some.notes.push_back(std::move(note));
     if (cases.size() > 1)
       for (ForeignPart& part : some.parts)
         part.name = each.stem().string() + (part.name.empty() ? "" : "/" + part.name);
@@ -252,6 +253,7 @@ ForeignContents read_fluent(Holdings& holdings, const std::filesystem::path& fil
 
 ForeignContents read_gambit(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   allow_for(file);
+  require_linear_gambit(file);
   const vtkNew<vtkGAMBITReader> reader;
   reader->SetFileName(file.c_str());
   return read_by(

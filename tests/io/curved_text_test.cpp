@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -138,6 +139,41 @@ TEST_F(CurvedText, EnSightGold) {
     testing::expect_same(
         read("a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: a.geo\nVARIABLE\nscalar per node: f a.f\n"), bent);
   }
+}
+
+TEST_F(CurvedText, OfEnSight6ANoteStatesThatCornersAreUsed) {
+  if (!has_reader(Reader::vtk)) GTEST_SKIP() << "tessera-read-vtk is not installed";
+  for (const bool is_quadratic : {true, false}) {
+    const std::vector<glm::dvec3> places = testing::places_of(hex20);
+    const std::size_t n = is_quadratic ? 20 : 8;
+    std::string geometry = fmt::format("one\ncell\nnode id off\nelement id off\ncoordinates\n{:8}\n", n);
+    for (std::size_t k = 0; k < n; ++k)
+      geometry += fmt::format("{:12.5e}{:12.5e}{:12.5e}\n", places[k].x, places[k].y, places[k].z);
+    geometry += fmt::format("part 1\ncell\n{}\n{:8}\n", is_quadratic ? "hexa20" : "hexa8", 1);
+    for (std::size_t k = 1; k <= n; ++k) geometry += fmt::format("{:8}", k);
+    folder.write("six.geo", geometry + "\n");
+    const MeshFile mesh = read("six.case", "FORMAT\ntype: ensight\nGEOMETRY\nmodel: six.geo\n", "");
+    EXPECT_NEAR(testing::volume(mesh.mesh), 1, 1e-12);
+    const bool is_noted = std::ranges::any_of(mesh.notes, [](const std::string& note) {
+      return note.find("(hexa20) are drawn by their corners") != std::string::npos;
+    });
+    EXPECT_EQ(is_noted, is_quadratic);
+  }
+}
+
+TEST_F(CurvedText, OfGambitElementsOfSecondOrderAreRefused) {
+  if (!has_reader(Reader::vtk)) GTEST_SKIP() << "tessera-read-vtk is not installed";
+  const std::vector<glm::dvec3> places = testing::places_of(tet10);
+  std::string text =
+      "        CONTROL INFO 2.0.0\n** GAMBIT NEUTRAL FILE\none\nPROGRAM:  Gambit  VERSION:  2.0.0\n1 Jan 2020\n"
+      "     NUMNP     NELEM     NGRPS    NBSETS     NDFCD     NDFVL\n        10         1         0         0         "
+      "3  "
+      "       3\nENDOFSECTION\n   NODAL COORDINATES 2.0.0\n";
+  for (std::size_t k = 0; k < 10; ++k)
+    text += fmt::format("{:10} {:.6e} {:.6e} {:.6e}\n", k + 1, places[k].x, places[k].y, places[k].z);
+  text += "ENDOFSECTION\n      ELEMENTS/CELLS 2.0.0\n       7  6 10 1 2 3 4 5 6 7\n 8 9 10\nENDOFSECTION\n";
+  test::expect_bad_input([&] { read("a.neu", text, ""); },
+                         {"a.neu: element 7 is a tetrahedron of 10 nodes", "export CGNS"});
 }
 
 TEST_F(CurvedText, Gmsh) {
