@@ -327,4 +327,17 @@ FieldChoice choose_field(const std::string& wish, std::span<const FieldSummary> 
   return *choice;
 }
 
+bool look_like_colors(const FieldSummary& field) {
+  return field.type == "uint8" && (field.components == 3 || field.components == 4);
+}
+
+void refuse_colors(const FieldChoice& choice, const FieldSummary& field, const std::string& wish,
+                   const std::string& source) {
+  if (choice.component != magnitude || wish.ends_with(":mag") || wish.ends_with(":magnitude")) return;
+  throw scene::bad_input(
+      fmt::format("{}: '{}' has colors, of {} components, which are not drawn as such; choose one with `field` {}:0 "
+                  "(red), or their length with {}:mag",
+                  source, field.name, field.components, field.name, field.name));
+}
+
 }  // namespace tessera::io

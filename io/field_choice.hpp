@@ -52,6 +52,13 @@ bool looks_like_noise(const FieldSummary& field);
 FieldChoice choose_field(const std::string& wish, std::span<const FieldSummary> fields, const std::string& source,
                          bool shape = false);
 
+/// Whether samples are colors: of three or four bytes, as MetaImage, NIfTI and VTK's image data have them.
+bool look_like_colors(const FieldSummary& field);
+
+/// Throws Error(bad_input) if the magnitude of colors was chosen without being asked for: `wish` is MeshOptions::field.
+void refuse_colors(const FieldChoice& choice, const FieldSummary& field, const std::string& wish,
+                   const std::string& source);
+
 /// Whether this block has the chosen array, with the summary's number of components.
 const BlockField* find_field(const CellBlock& block, const std::string& name, scene::Association association);
 

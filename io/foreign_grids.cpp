@@ -138,6 +138,9 @@ VolumeFile grid_of(const ForeignFile& opened, const VolumeOptions& options) {
   result.fields = summarize_fields(tallies);
   const FieldChoice choice = choose_field(options.field, result.fields, source);
   result.notes.insert(result.notes.end(), choice.notes.begin(), choice.notes.end());
+  for (const FieldSummary& listed : result.fields)
+    if (listed.name == choice.name && listed.association == choice.association && look_like_colors(listed))
+      refuse_colors(choice, listed, options.field, source);
   const BlockField* field = find_field(block, choice.name, choice.association);
   if (!field) throw scene::bad_input(fmt::format("{}: none of its fields can be shown; name one with `field`", source));
   grid.geometry.association = choice.association;

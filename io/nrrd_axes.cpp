@@ -254,6 +254,17 @@ NrrdAxes nrrd_axes_of(const NrrdFields& fields, const std::vector<std::int64_t>&
   return axes;
 }
 
+std::optional<bool> has_color_axis(const NrrdFields& fields, const NrrdAxes& axes) {
+  const auto* kinds = fields.find("kinds");
+  const std::vector<std::string> words = kinds != nullptr ? nrrd_words(*kinds) : std::vector<std::string>();
+  for (std::size_t a = 0; a < axes.uses.size() && words.size() == axes.uses.size(); ++a) {
+    if (axes.uses[a] != NrrdAxes::Use::components) continue;
+    if (words[a].ends_with("-color")) return true;
+    if (words[a].ends_with("vector")) return false;
+  }
+  return std::nullopt;
+}
+
 void set_nrrd_geometry(const NrrdFields& fields, const NrrdAxes& axes, const std::vector<std::int64_t>& sizes,
                        const std::filesystem::path& file, StoredVolume& volume) {
   scene::GridGeometry& g = volume.grid.geometry;

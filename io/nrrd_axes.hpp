@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "io/nrrd_fields.hpp"
@@ -28,6 +29,9 @@ struct NrrdAxes {
 /// fourth axis of a space of four dimensions, as ITK writes it, are time steps. Throws Error(bad_input).
 NrrdAxes nrrd_axes_of(const NrrdFields& fields, const std::vector<std::int64_t>& sizes,
                       const std::filesystem::path& file);
+
+/// Whether the axis of components holds colors, by its word of `kinds`: true, false of vectors, or not known.
+std::optional<bool> has_color_axis(const NrrdFields& fields, const NrrdAxes& axes);
 
 /// Spacing, directions and origin in a right-handed world, what the file says of a body, and notes.
 ///

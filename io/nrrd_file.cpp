@@ -137,13 +137,13 @@ StoredVolume read_nrrd_header(const std::filesystem::path& file) {
   const NrrdFields fields = nrrd_fields_of(text, file);
   StoredVolume volume;
   volume.format = "NRRD";
-
   const auto sizes = header_count_list(required_field(fields, "sizes", file), file, "sizes");
   const auto dimension = header_count(required_field(fields, "dimension", file), 1, 16, file, "dimension");
   if (sizes.size() != static_cast<std::size_t>(dimension))
     throw damaged(file, fmt::format("it has {} sizes for {} dimensions", sizes.size(), dimension));
   const NrrdAxes axes = nrrd_axes_of(fields, sizes, file);
   set_other_axes(axes, sizes, file, volume);
+  volume.has_colors = has_color_axis(fields, axes);
   for (std::size_t a = 0; a < 3; ++a) volume.grid.geometry.points[a] = sizes[axes.space[a]];
 
   const std::string type = nrrd_lower(required_field(fields, "type", file));

@@ -35,7 +35,8 @@ struct StoredVolume {
   enum class Coding { binary, text, hex } coding = Coding::binary;
   enum class Wide { no, int64, uint64 } wide = Wide::no;  ///< 64-bit integers; `number` is float64, which they become
   std::string field = "samples";
-  bool active = false;  ///< the file marks it as its scalars
+  bool active = false;               ///< the file marks it as its scalars
+  std::optional<bool> has_colors{};  ///< what the file says of its components; else look_like_colors() decides
   std::string format;
   std::vector<std::string> notes;
   BodyAxes body_axes = BodyAxes::none;

@@ -150,6 +150,7 @@ VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const 
   field.active = volume.active;
   field.high = 1;  // until it is known; nobody chooses by it
   const FieldChoice choice = choose_field(options.field, std::span(&field, 1), source);
+  if (volume.has_colors.value_or(look_like_colors(field))) refuse_colors(choice, field, options.field, source);
   const auto chosen = [&](int component) { return chosen_samples(volume, choice, component, step, source); };
   const auto streamed = [&](int component) {
     ChosenSamples samples = chosen(component);

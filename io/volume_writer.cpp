@@ -118,9 +118,9 @@ void write_nrrd(const scene::SampleSource& source, AtomicFile& out, const TagWor
     return found == words.end() ? std::string() : found->second;
   };
   const std::string space = word_of("space");
-  std::string head =
-      fmt::format("NRRD0004\ntype: {}\ndimension: 3\n{}\nsizes: {} {} {}\n", written_nrrd_type(type),
-                  space.empty() ? "space dimension: 3" : fmt::format("space: {}", space), g.points[0], g.points[1], g.points[2]);
+  std::string head = fmt::format("NRRD0004\ntype: {}\ndimension: 3\n{}\nsizes: {} {} {}\n", written_nrrd_type(type),
+                                 space.empty() ? "space dimension: 3" : fmt::format("space: {}", space), g.points[0],
+                                 g.points[1], g.points[2]);
   head += "space directions:";
   for (int axis = 0; axis < 3; ++axis) {
     const glm::dvec3 step = g.direction[axis] * g.spacing[axis];

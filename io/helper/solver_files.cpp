@@ -37,7 +37,8 @@
 #include <utility>
 #include <vector>
 
-#include "io/helper/linear_only.hpp" "io/helper/cgns_zones.hpp"
+#include "io/helper/cgns_zones.hpp"
+#include "io/helper/linear_only.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/time_steps.hpp"
 #include "io/helper/vtk_parts.hpp"

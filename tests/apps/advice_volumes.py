@@ -312,6 +312,12 @@ ROWS = [
         },
     ),
     row(
+        "info a.mha",
+        "choose one with --field samples:0 (red)",
+        "info a.mha --field samples:0",
+        {"a.mha": META.replace(b"ElementType", b"ElementNumberOfChannels = 3\nElementType") + 2 * SAMPLES},
+    ),
+    row(
         "info b.raw --dims 2x2x2 --type uint8 --skip 1",
         "give the right dimensions and type",
         "info b.raw --dims 2x2x2 --type uint8",
