@@ -24,6 +24,7 @@
 #include "io/mesh_assembly.hpp"
 #include "io/volume_reader.hpp"
 #include "scene/error.hpp"
+#include "scene/fill_value.hpp"
 #include "scene/threads.hpp"
 #include "scene/threshold_source.hpp"
 #include "tessera/input_file.hpp"
@@ -56,6 +57,24 @@ void check_mesh_options(const std::filesystem::path& file, const ReadOptions& op
                     file.string()));
 }
 
+/// Values that stand for nothing would rule range, colors and what the volume is taken for: huge ones become blank, of
+/// others a note tells how to leave them out.
+void leave_fill_values_out(io::VolumeFile& volume, const std::filesystem::path& file, const ReadOptions& options,
+                           exchange::Transport& transport, Dataset::State& state) {
+  const std::optional<scene::FillValue> fill = scene::find_fill_value(*volume.source, state.ranges->range);
+  if (!fill) return;
+  if (!fill->is_huge()) {
+    volume.notes.push_back(scene::words_on(*fill, "samples"));
+    return;
+  }
+  volume.notes.push_back(
+      fmt::format("{} samples have the value {:.7g}, a fill value: they are blank", fill->count, fill->value));
+  volume.source = std::make_unique<scene::ThresholdSource>(
+      std::move(volume.source), std::array{fill->others.low, fill->others.high}, file.string());
+  state.ranges =
+      std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source, options.threads));
+}
+
 std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, const ReadOptions& options,
                                             exchange::Transport& transport, scene::Trace* trace) {
   check_grid_options(file, options);
@@ -72,6 +91,7 @@ std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, c
     state->ranges =
         std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source, options.threads));
   }
+  if (!threshold) leave_fill_values_out(volume, file, options, transport, *state);
   scene::ValueRange range = state->ranges->range;
   if (threshold) {
     if (range.empty())
@@ -240,6 +260,11 @@ Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOp
       state->ranks = transport->size();
       state->global_tet = std::move(mesh.part.global_tet);
       keep(std::move(mesh.part.mesh), options, trace, *state);
+      const auto [low, high] = state->facts.scalar_range;
+      if (const auto fill = scene::find_fill_value(state->mesh.scalars, low, high);
+          fill && !options.selection.threshold)
+        state->notes.push_back(
+            scene::words_on(*fill, state->facts.association == Association::point ? "points" : "tets"));
       state->shape = options.shape && state->field_name == shape_field_name;
       state->gather_field_samples(*transport);
     }

@@ -1,0 +1,71 @@
+// Values that stand for nothing do not rule what files show.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "io/temporary_folder.hpp"
+#include "io/volume_bytes.hpp"
+#include "tessera/dataset.hpp"
+
+namespace tessera::fill_values_test {
+namespace {
+
+/// 64 samples 0 to 63, the first 4 of which are the fill value.
+std::filesystem::path volume_with(const test::TemporaryFolder& folder, float fill) {
+  std::vector<float> samples = test::counting<float>(64);
+  std::fill_n(samples.begin(), 4, fill);
+  return folder.write("a_4x4x4_float32.raw", test::bytes_of(samples));
+}
+
+std::string note_with(const Dataset& data, const std::string& words) {
+  for (const std::string& note : data.notes())
+    if (note.find(words) != std::string::npos) return note;
+  return "";
+}
+
+TEST(FillValues, HugeOnesOfVolumesAreBlank) {
+  const test::TemporaryFolder folder;
+  for (const float fill : {-3.4028235e38F, 1e20F, 9.96921e36F}) {
+    const Dataset data = Dataset::open(volume_with(folder, fill));
+    EXPECT_EQ(data.range(), (std::array<double, 2>{4, 63}));
+    EXPECT_EQ(data.blank_samples(), 4u);
+    EXPECT_EQ(data.fields().front().low, 4);
+    EXPECT_NE(note_with(data, "4 samples have the value"), "");
+  }
+}
+
+TEST(FillValues, UsualOnesAreNotedWithTheThresholdThatLeavesThemOut) {
+  const test::TemporaryFolder folder;
+  const auto file = volume_with(folder, -9999);
+  const Dataset data = Dataset::open(file);
+  EXPECT_EQ(data.range(), (std::array<double, 2>{-9999, 63}));
+  EXPECT_NE(note_with(data, "4 samples have the value -9999, ").find("`threshold` 3.41,63.59 leaves"),
+            std::string::npos);
+  ReadOptions options;
+  options.selection.threshold = {{3.41, 63.59}};
+  const Dataset without = Dataset::open(file, options);
+  EXPECT_EQ(without.range(), (std::array<double, 2>{4, 63}));
+  EXPECT_EQ(note_with(without, "fill value"), "");
+  EXPECT_EQ(note_with(Dataset::open(volume_with(folder, -70)), "fill value"), "");
+}
+
+TEST(FillValues, OfMeshesAreNotedToo) {
+  const test::TemporaryFolder folder;
+  std::string mesh =
+      "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\"><UnstructuredGrid><Piece "
+      "NumberOfPoints=\"5\" NumberOfCells=\"3\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
+      "format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1 1 1 1</DataArray></Points><Cells><DataArray type=\"Int32\" "
+      "Name=\"connectivity\" format=\"ascii\">0 1 2 3 1 2 3 4 0 1 2 4</DataArray><DataArray type=\"Int32\" "
+      "Name=\"offsets\" format=\"ascii\">4 8 12</DataArray><DataArray type=\"UInt8\" Name=\"types\" "
+      "format=\"ascii\">10 10 10</DataArray></Cells><CellData><DataArray type=\"Float64\" Name=\"p\" "
+      "format=\"ascii\">2 4 -9999</DataArray></CellData></Piece></UnstructuredGrid></VTKFile>";
+  const Dataset data = Dataset::open(folder.write("m.vtu", mesh));
+  EXPECT_NE(note_with(data, "1 tets have the value -9999, ").find("`threshold` 1.98,4.02 leaves"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tessera::fill_values_test
