@@ -77,7 +77,9 @@ void convert_grid(const std::filesystem::path& input, const std::filesystem::pat
   if (!options.selection.clip.empty())
     throw bad_input("--clip: volumes are written whole; leave it out, and clip when they are rendered");
   StatusLine line(shows_progress(quiet));
-  const Dataset data = open_watched(input, options, line);
+  ReadOptions as_stored = options;
+  as_stored.labels = false;
+  const Dataset data = open_watched(input, as_stored, line);
   line.begin("writing " + output.filename().string());
   write_grid(data, output, block);
   line.begin("");

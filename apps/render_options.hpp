@@ -65,7 +65,7 @@ struct RenderWords {
   std::string backend, compositor, framebuffer, egl_device;
   std::string without;
   std::string threads, tile_size, memory, background, png_bits = "8", frame_rate, repeat, verify, report, timing, peel;
-  std::string dims, type, spacing, origin, endian, skip, step, brick_size, edge_bricks, cache, preload, light;
+  std::string dims, type, spacing, origin, endian, skip, labels, step, brick_size, edge_bricks, cache, preload, light;
   std::string distribution, direct_send, balance, balance_resolution, balance_weights, show;
   std::string projectors, compositors, exchange, partition = "curve", frames_in_flight, seed;
   std::string preset, config, save_config;

@@ -29,13 +29,14 @@ using server::Json;
 constexpr std::string_view served_options =
     " field smooth q max-volume time-step block clip threshold cut-planes higher-order-tolerance higher-order-tets "
     "dims "
-    "type spacing origin endian skip transfer-function rescale unit-distance opacity-scale range log opacity-points "
+    "type spacing origin endian skip labels transfer-function rescale unit-distance opacity-scale range log "
+    "opacity-points "
     "iso "
     "surface blend camera view up azimuth elevation zoom fit size projection integrator accuracy emission step shade "
     "no-shade light background color-bar color-bar-title color-bar-range color-bar-scale field-unit axes outline "
     "scale-bar length-unit annotate annotation-color annotation-size threads memory half png-bits help ";
 
-constexpr std::array<std::string_view, 18> data_options = {"q",
+constexpr std::array<std::string_view, 19> data_options = {"q",
                                                            "max-volume",
                                                            "time-step",
                                                            "block",
@@ -51,6 +52,7 @@ constexpr std::array<std::string_view, 18> data_options = {"q",
                                                            "origin",
                                                            "endian",
                                                            "skip",
+                                                           "labels",
                                                            "threads",
                                                            "memory"};
 constexpr std::array<std::string_view, 13> look_options = {

@@ -15,7 +15,7 @@ constexpr std::string_view setting_names =
     "budget_seconds cache camera check clip color_bar color_bar_range color_bar_scale color_bar_title "
     "compositor compositors config csv deep_accuracy dims direct_send distribution edge_bricks egl_device "
     "elevation emission endian exchange field field_unit figure fit frame_rate framebuffer frames_in_flight "
-    "half help help_all higher_order_tets higher_order_tolerance integrator iso json latency length_unit "
+    "half help help_all higher_order_tets higher_order_tolerance integrator iso json labels latency length_unit "
     "light log max_volume memory no_shade on_stall opacity opacity_points opacity_scale orbit origin "
     "outline output partition peel peer pieces pixels png_bits port preload preset progress projection "
     "projectors q quiet range rasterizer repeat report rescale resume save_config scale_bar seed shade show "

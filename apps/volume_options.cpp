@@ -45,6 +45,11 @@ void add_volume_options(CLI::App& command, RenderWords& words) {
 }
 
 void add_volume_render_options(CLI::App& command, RenderWords& words) {
+  command
+      .add_option("--labels", words.labels,
+                  "volumes: whether values are labels, each of which fills its sample's voxel (default: by the header "
+                  "or the values)")
+      ->type_name("on|off");
   command.add_option("--step", words.step, "volumes: length of a step of sampled and preintegrated (default 0.5)")
       ->type_name("VOXELS");
   command.add_flag("--shade", words.shade,
@@ -118,6 +123,9 @@ ReadOptions volume_options(const RenderWords& words) {
   if (!words.endian.empty() && words.endian != "little" && words.endian != "big")
     throw bad_input(fmt::format("--endian: '{}' is unknown; use little or big", words.endian));
   options.big_endian = words.endian == "big";
+  if (!words.labels.empty() && words.labels != "on" && words.labels != "off")
+    throw bad_input(fmt::format("--labels: '{}' is unknown; use on or off", words.labels));
+  if (!words.labels.empty()) options.labels = words.labels == "on";
   if (!words.skip.empty())
     options.skip = static_cast<std::uint64_t>(parse_count("--skip", words.skip, 0, std::numeric_limits<int>::max()));
   return options;
@@ -245,6 +253,7 @@ void refuse_mesh_words(const RenderWords& words) {
 
 void refuse_volume_options(const RenderWords& words) {
   const std::pair<const char*, bool> given[] = {{"--step", !words.step.empty()},
+                                                {"--labels", !words.labels.empty()},
                                                 {"--no-shade", words.no_shade},
                                                 {"--brick-size", !words.brick_size.empty()},
                                                 {"--edge-bricks", !words.edge_bricks.empty()},

@@ -77,7 +77,32 @@ struct Draft {
   bool scales = true;
 };
 
+/// Labels that are known: steps half way to the next, but no further than half a number, and nothing between.
+Draft draft_known_labels(const std::vector<double>& labels, const std::array<double, 2>& range,
+                         const ValueShares& shares) {
+  Draft draft;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const bool is_first = i == 0, is_last = i + 1 == labels.size();
+    const double low = is_first ? labels[i] : std::max(labels[i] - 0.5, (labels[i - 1] + labels[i]) / 2);
+    const double high = is_last ? labels[i] : std::min(labels[i] + 0.5, (labels[i] + labels[i + 1]) / 2);
+    const double share = std::max(shares.between(low, is_last ? high + 1 : high), 1e-3);
+    const double extinction = labels[i] == 0 ? 0 : std::pow(share, -0.6);
+    const bool follows_gap = !is_first && labels[i] - labels[i - 1] > 1,
+               precedes_gap = !is_last && labels[i + 1] - labels[i] > 1;
+    if (follows_gap) draft.extinctions.push_back({low, 0});
+    for (const double end : {low, high}) {
+      draft.colors.push_back({end, label_color(labels[i])});
+      draft.extinctions.push_back({end, extinction});
+    }
+    if (precedes_gap) draft.extinctions.push_back({high, 0});
+  }
+  draft.range = range;
+  draft.name = fmt::format("{} labels {:g} to {:g}", labels.size(), range[0], range[1]);
+  return draft;
+}
+
 Draft draft_labels(const DefaultField& field, const std::array<double, 2>& range, const ValueShares& shares) {
+  if (field.labels) return draft_known_labels(*field.labels, range, shares);
   Draft draft;
   std::vector<double> labels = shares.distinct(most_labels);
   if (range[0] >= 0 && range[1] <= highest_label) {
@@ -231,9 +256,11 @@ std::vector<double> ValueShares::distinct(std::size_t most) const {
 DefaultKind default_kind(const DefaultField& field, const std::array<double, 2>& range) {
   if (range[0] == range[1]) return DefaultKind::constant;
   if (field.shape) return DefaultKind::shape;
+  if (field.labels && !field.labels->empty()) return DefaultKind::labels;
   const bool patient = field.axes != BodyAxes::none;
-  if ((patient || field.format == "DICOM CT") && range[0] <= -900 && range[1] >= 200) return DefaultKind::ct;
-  if (whole(range[0]) && whole(range[1]) && !field.samples->samples.empty()) {
+  if ((field.modality.empty() ? patient : field.modality == "CT") && range[0] <= -900 && range[1] >= 200)
+    return DefaultKind::ct;
+  if (!field.labels && whole(range[0]) && whole(range[1]) && !field.samples->samples.empty()) {
     const ValueShares shares(*field.samples, true);
     const std::vector<double> labels = shares.distinct(highest_label + 1);
     const bool few = labels.size() <= most_labels || (range[0] >= 0 && range[1] <= highest_label);

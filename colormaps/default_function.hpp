@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,11 +14,13 @@
 /// Kind    the first that fits:
 ///           constant  one value: the colour of the middle, opacity 0.1
 ///           shape     a mesh without a field (ReadOptions::shape): thick fog, near parts light, far ones dark
-///           CT        a patient (BodyAxes) or DICOM CT, values from -900 or less to 200 or more, as Hounsfield's: air
+///           labels    the grid's are known: a colour each, 0 clear, no opacity between them
+///           CT        of modality CT, or of a patient (BodyAxes) without one, values from -900 or less to 200 or more,
+///           as Hounsfield's: air
 ///                     below -900 clear, lung and fat faint, muscle red, bone ivory
-///           labels    all values whole numbers, 3 to 24 of them or all within 0 to 63: a colour each, 0 of a grid
-///           body      another patient (MR): background clear, dark red to ivory
-///           values    anything else: cool-warm
+///           labels    not known whether they are: all values whole numbers, 3 to 24 of them or all within 0 to 63: a
+///           colour each, 0 of a grid body      another patient (MR): background clear, dark red to ivory values
+///           anything else: cool-warm
 /// Range   of body and values: what lies between 0.5 and 99.5 % of the volume, background apart; about zero, as much
 ///         below as above it, if both sides reach beyond 0.3 of the other. An end within 1e-6 of
 ///         the range's width from zero is zero. Values outside have the ends' colour.
@@ -38,7 +41,9 @@ struct DefaultField {
   bool is_grid = false;
   bool shape = false;
   BodyAxes axes = BodyAxes::none;
-  std::string format{};  ///< of the file
+  std::string modality{};  ///< of a patient's picture, as DICOM says it: CT, MR ...; may be empty
+  /// All values of a grid's labels, ascending; empty: they are no labels; none: by the samples.
+  std::optional<std::vector<double>> labels{};
 };
 
 /// What is needed of the volume's distribution: values with all that lies below.

@@ -17,6 +17,7 @@
 #include "frame/render.hpp"
 #include "frame/roles.hpp"
 #include "frame/scan_together.hpp"
+#include "frame/shared_labels.hpp"
 #include "frame/shared_volume.hpp"
 #include "frame/transfer_function_choice.hpp"
 #include "frame/uncut_mesh.hpp"
@@ -25,6 +26,7 @@
 #include "io/volume_reader.hpp"
 #include "scene/error.hpp"
 #include "scene/fill_value.hpp"
+#include "scene/label_source.hpp"
 #include "scene/threads.hpp"
 #include "scene/threshold_source.hpp"
 #include "tessera/input_file.hpp"
@@ -75,6 +77,22 @@ void leave_fill_values_out(io::VolumeFile& volume, const std::filesystem::path& 
       std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source, options.threads));
 }
 
+/// Makes each sample fill its voxel if the values are labels, unless the caller says otherwise. Returns them.
+std::vector<double> take_labels(const std::filesystem::path& file, const ReadOptions& options,
+                                exchange::Transport& transport, io::VolumeFile& volume) {
+  if (options.labels == false) return {};
+  scene::LabelValues found =
+      frame::shared_labels(transport, *volume.source, options.labels.value_or(false) || volume.tags.labels);
+  if (!found.are_labels) return {};
+  if (volume.source->geometry().association == Association::point) {
+    volume.source = std::make_unique<scene::LabelSource>(std::move(volume.source), file.string());
+    volume.notes.push_back(
+        fmt::format("values are labels{}: each sample fills its voxel, none is between two (`labels` off interpolates)",
+                    found.values.empty() ? "" : fmt::format(", {} of them", found.values.size())));
+  }
+  return std::move(found.values);
+}
+
 std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, const ReadOptions& options,
                                             exchange::Transport& transport, scene::Trace* trace) {
   check_grid_options(file, options);
@@ -88,6 +106,7 @@ std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, c
     volume.source = std::make_unique<scene::ThresholdSource>(std::move(volume.source), *threshold, file.string());
   {
     const scene::TraceScope timing(trace, "prepare");
+    state->labels = take_labels(file, options, transport, volume);
     state->ranges =
         std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source, options.threads));
   }
@@ -107,6 +126,7 @@ std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, c
   state->notes = std::move(volume.notes);
   state->format = std::move(volume.format);
   state->body_axes = volume.body_axes;
+  state->tags = std::move(volume.tags);
   state->time_steps = std::max<std::size_t>(volume.time_step.count, 1);
   state->samples = std::move(volume.source);
   return state;

@@ -2,10 +2,12 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "frame/mesh_exchange.hpp"
 #include "io/mesh_reader.hpp"
+#include "io/volume_tags.hpp"
 #include "projection/prepared_mesh.hpp"
 #include "scene/field_samples.hpp"
 #include "scene/mesh_facts.hpp"
@@ -42,6 +44,9 @@ struct TESSERA_HIDDEN Dataset::State {
   std::shared_ptr<const scene::SampleSource> samples;  ///< null: a mesh
   std::shared_ptr<const volume::CellRanges> ranges;
   BodyAxes body_axes = BodyAxes::none;
+  io::VolumeTags tags;
+  /// All values of labels; empty: they are no labels, or too many; none: not looked at.
+  std::optional<std::vector<double>> labels;
 
   /// The mesh prepared for projection, shared by sessions.
   [[nodiscard]] std::shared_ptr<const projection::PreparedMesh> prepared(int threads,

@@ -21,6 +21,7 @@
 #include "projection/partition.hpp"
 #include "projection/planes_rasterizer.hpp"
 #include "scene/error.hpp"
+#include "scene/label_source.hpp"
 #include "scene/threads.hpp"
 #include "tessera/image_file.hpp"
 #include "tessera/input_file.hpp"
@@ -145,16 +146,27 @@ void check_mesh_output(const std::filesystem::path& file, const std::filesystem:
   }
 }
 
-void write_grid(const Dataset& grid, const std::filesystem::path& file, int block) {
-  const Dataset::State& state = grid.state();
-  if (grid.is_mesh()) throw scene::bad_input(state.source + ": is a mesh, no grid; use write_mesh");
-  write_grid(*state.samples, file, block);
-}
+namespace {
 
-void write_grid(const SampleSource& grid, const std::filesystem::path& file, int block) {
+void check_grid_name(const std::filesystem::path& file) {
   if (!io::is_volume_output(file))
     throw scene::bad_input(file.string() +
                            ": is no name of a grid that can be written; choose .vti, .vtr, .nrrd, .raw or .bricks");
+}
+
+}  // namespace
+
+void write_grid(const Dataset& grid, const std::filesystem::path& file, int block) {
+  const Dataset::State& state = grid.state();
+  if (grid.is_mesh()) throw scene::bad_input(state.source + ": is a mesh, no grid; use write_mesh");
+  check_grid_name(file);
+  // Labels as they are in the file, at points.
+  const auto* const labels = dynamic_cast<const scene::LabelSource*>(state.samples.get());
+  io::write_volume(labels == nullptr ? *state.samples : labels->points(), file, block, state.body_axes, state.tags);
+}
+
+void write_grid(const SampleSource& grid, const std::filesystem::path& file, int block) {
+  check_grid_name(file);
   io::write_volume(grid, file, block);
 }
 

@@ -47,7 +47,8 @@ struct Place {
   std::uint64_t bytes = 0;
 };
 
-/// Text path, text folder, u64 bytes, fields, texts of notes, text format, u8 axes of a body, u64 time steps, u64 step.
+/// Text path, text folder, u64 bytes, fields, texts of notes, text format, u8 axes of a body and of one if it is CT,
+/// texts modality, unit and unit of length, u8 labels, u64 time steps, u64 step.
 /// Nothing of a rank that has not read the file.
 Bytes message_of(const io::VolumeFile& volume, const Place& place) {
   Bytes message = exchange::begin_message(MessageKind::volume_facts);
@@ -58,6 +59,11 @@ Bytes message_of(const io::VolumeFile& volume, const Place& place) {
   append_texts(message, volume.notes);
   append_text(message, volume.format);
   append(message, static_cast<std::uint8_t>(volume.body_axes));
+  append(message, static_cast<std::uint8_t>(volume.axes_if_ct));
+  append_text(message, volume.tags.modality);
+  append_text(message, volume.tags.unit);
+  append_text(message, volume.tags.length_unit);
+  append(message, static_cast<std::uint8_t>(volume.tags.labels));
   append(message, std::uint64_t{volume.time_step.count});
   append(message, std::uint64_t{volume.time_step.step});
   return message;
@@ -78,6 +84,11 @@ io::VolumeFile description_in(MessageReader& reader) {
   volume.notes = take_texts(reader);
   volume.format = reader.take_text();
   volume.body_axes = static_cast<BodyAxes>(reader.take<std::uint8_t>());
+  volume.axes_if_ct = static_cast<BodyAxes>(reader.take<std::uint8_t>());
+  volume.tags.modality = reader.take_text();
+  volume.tags.unit = reader.take_text();
+  volume.tags.length_unit = reader.take_text();
+  volume.tags.labels = reader.take<std::uint8_t>() != 0;
   volume.time_step.count = reader.take<std::uint64_t>();
   volume.time_step.step = reader.take<std::uint64_t>();
   reader.finish();

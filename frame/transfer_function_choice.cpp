@@ -104,7 +104,7 @@ LoadedTransferFunction logarithmic(const Dataset::State& data, const std::string
     for (double& value : samples.stored) value = exponent(value);
   }
   LoadedTransferFunction loaded =
-      load(file_or_preset, {&samples, data.samples != nullptr, data.shape, BodyAxes::none, {}}, loading);
+      load(file_or_preset, {&samples, data.samples != nullptr, data.shape, BodyAxes::none, {}, {}}, loading);
   loaded.function = over_values(loaded.function);
   const auto knots = loaded.function.knots();
   loaded.range = {knots.front().value, knots.back().value};
@@ -140,9 +140,9 @@ LoadedTransferFunction transfer_function_of(const Dataset::State& data, const st
   if (options.logarithmic) return logarithmic(data, file_or_preset, options);
   static const scene::FieldSamples none;
   const scene::FieldSamples& samples = file_or_preset.empty() ? data.field_samples() : none;
-  LoadedTransferFunction loaded =
-      load(file_or_preset, {&samples, data.samples != nullptr, data.shape, data.body_axes, data.format},
-           loading_options(data, options));
+  LoadedTransferFunction loaded = load(
+      file_or_preset, {&samples, data.samples != nullptr, data.shape, data.body_axes, data.tags.modality, data.labels},
+      loading_options(data, options));
   warn_of_nothing(data, file_or_preset, loaded);
   return loaded;
 }

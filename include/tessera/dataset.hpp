@@ -66,6 +66,10 @@ struct ReadOptions {
   /// Whether one of these is given.
   [[nodiscard]] bool describes_raw() const { return dims || type || spacing || origin || big_endian || skip > 0; }
 
+  /// Grids: whether values are labels, which are not interpolated: each sample fills its voxel. None: as the header
+  /// states, else by the values (whole numbers that neighbours share).
+  std::optional<bool> labels{};
+
   /// Grids whose samples have to be unpacked (.vti, .vtr, .nii.gz, ...): where these take more than half of so many
   /// bytes, they go into a file without a name in the folder for temporary files, if there is room, and bricks are read
   /// from there. 0: they stay in memory. On several ranks of a machine they go there in any case.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <tuple>
 
@@ -62,6 +63,36 @@ TEST(DefaultFunction, LabelsGetAColourEachAndAGridsZeroIsClear) {
   }
   EXPECT_EQ(colors.size(), 5u);
   EXPECT_GT(default_function({&samples, false}, options_over(0, 4)).function.evaluate(0).extinction, 0);
+}
+
+TEST(DefaultFunction, KnownLabelsHaveNoOpacityBetweenThemAndMoreThan63StillAColourEach) {
+  const auto samples = cube_of([](float x, float, float) { return x < 0.5F ? 1.0 : 9.0; });
+  const DefaultField field{.samples = &samples, .is_grid = true, .labels = std::vector<double>{0, 1, 9}};
+  const LoadedTransferFunction loaded = default_function(field, options_over(0, 9));
+  EXPECT_GT(loaded.function.evaluate(1).extinction, 0);
+  EXPECT_GT(loaded.function.evaluate(9).extinction, 0);
+  EXPECT_EQ(loaded.function.evaluate(0).extinction, 0);
+  for (int absent = 2; absent < 9; ++absent) EXPECT_EQ(loaded.function.evaluate(absent).extinction, 0) << absent;
+  std::vector<double> many(100);
+  std::iota(many.begin(), many.end(), 1);
+  const DefaultField atlas{.samples = &samples, .is_grid = true, .axes = BodyAxes::ras, .labels = many};
+  ASSERT_EQ(default_kind(atlas, {1, 100}), DefaultKind::labels);
+  const auto function = default_function(atlas, options_over(1, 100)).function;
+  for (int label = 1; label < 100; ++label) {
+    EXPECT_GT(function.evaluate(label).extinction, 0) << label;
+    EXPECT_NE(function.evaluate(label).color, function.evaluate(label + 1).color) << label;
+  }
+  // Known to be no labels, however few they are.
+  EXPECT_EQ(default_kind({.samples = &samples, .is_grid = true, .labels = std::vector<double>()}, {1, 9}),
+            DefaultKind::values);
+}
+
+TEST(DefaultFunction, AnotherModalityThanCtIsNotDrawnAsOne) {
+  const auto samples = cube_of([](float x, float, float) { return x < 0.5F ? -1000 : 1500.0 * x - 800.5; });
+  DefaultField field{.samples = &samples, .is_grid = true, .axes = BodyAxes::lps, .modality = "MR"};
+  EXPECT_EQ(default_kind(field, {-1000, 700}), DefaultKind::body);
+  field.modality = "CT", field.axes = BodyAxes::none;
+  EXPECT_EQ(default_kind(field, {-1000, 700}), DefaultKind::ct);
 }
 
 TEST(DefaultFunction, AirOfACtIsClearAndBoneIsDenserThanMuscle) {

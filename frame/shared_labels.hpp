@@ -1,0 +1,11 @@
+#pragma once
+
+#include "exchange/transport.hpp"
+#include "scene/label_source.hpp"
+
+namespace tessera::frame {
+
+/// scene::label_values() of rank 0, on every rank. Collective. Throws what reading samples throws.
+scene::LabelValues shared_labels(exchange::Transport& transport, const scene::SampleSource& source, bool stated);
+
+}  // namespace tessera::frame
