@@ -77,13 +77,20 @@ void leave_fill_values_out(io::VolumeFile& volume, const std::filesystem::path& 
       std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source, options.threads));
 }
 
+/// A scanner's picture, however few values a phantom or a test image has: by its modality, or Hounsfield's units of a
+/// patient.
+bool is_scan(const io::VolumeFile& volume, const std::vector<double>& values) {
+  const bool patient = volume.body_axes != BodyAxes::none || volume.axes_if_ct != BodyAxes::none;
+  return !volume.tags.modality.empty() || (patient && values.front() <= -900 && values.back() >= 200);
+}
+
 /// Makes each sample fill its voxel if the values are labels, unless the caller says otherwise. Returns them.
 std::vector<double> take_labels(const std::filesystem::path& file, const ReadOptions& options,
                                 exchange::Transport& transport, io::VolumeFile& volume) {
   if (options.labels == false) return {};
-  scene::LabelValues found =
-      frame::shared_labels(transport, *volume.source, options.labels.value_or(false) || volume.tags.labels);
-  if (!found.are_labels) return {};
+  const bool stated = options.labels.value_or(false) || volume.tags.labels;
+  scene::LabelValues found = frame::shared_labels(transport, *volume.source, stated);
+  if (!found.are_labels || (!stated && is_scan(volume, found.values))) return {};
   if (volume.source->geometry().association == Association::point) {
     volume.source = std::make_unique<scene::LabelSource>(std::move(volume.source), file.string());
     volume.notes.push_back(

@@ -82,7 +82,7 @@ void set_other_axes(const NrrdAxes& axes, const std::vector<std::int64_t>& sizes
   for (std::size_t a = 0; a < sizes.size(); ++a) {
     const bool before = axes.is_before(a);
     if (axes.uses[a] == NrrdAxes::Use::steps) {
-      if (sizes[a] > 1 << 16)
+      if (before && sizes[a] > 1 << 16)
         throw scene::bad_input(
             fmt::format("{}: axis {} holds {} time steps; write at most 65536", file.string(), a + 1, sizes[a]));
       volume.steps *= static_cast<std::uint64_t>(sizes[a]);

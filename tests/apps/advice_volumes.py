@@ -129,7 +129,7 @@ ROWS = [
     nrrd_axes("kinds: vector domain domain domain vector\nsizes: 2 2 2 2 2", "write one of them alone"),
     nrrd_axes("kinds: time domain domain domain vector\nsizes: 2 2 2 2 2", "or write one step alone"),
     nrrd_axes("kinds: domain time domain domain\nsizes: 2 2 2 2", "write it first or last"),
-    nrrd_axes("kinds: domain domain domain time\nsizes: 2 2 2 70000", "write at most 65536"),
+    nrrd_axes("kinds: time domain domain domain\nsizes: 70000 2 2 2", "write at most 65536"),
     row(
         "info a.nrrd",
         "say where they begin",
