@@ -30,17 +30,23 @@ std::vector<std::string> literal_words(const std::string& type) {
   return CLI::detail::split(type, '|');
 }
 
+enum class Named { fields, blocks, point_vectors };
+
 /// Names in the first of these words that is a file, if it can be read soon.
-std::vector<std::string> names_in_file(const std::vector<std::string>& words, bool blocks) {
+
+std::vector<std::string> names_in_file(const std::vector<std::string>& words, Named named) {
   for (const std::string& word : words) {
     std::error_code unknown;
     if (word.starts_with('-') || !std::filesystem::is_regular_file(word, unknown)) continue;
     if (std::filesystem::file_size(word, unknown) > largest_read) return {};
     try {
       const analysis::Description data = described(Dataset::open(word, {}));
-      if (blocks) return data.blocks;
+      if (named == Named::blocks) return data.blocks;
       std::vector<std::string> names;
-      for (const auto& field : data.fields) names.push_back(field.name);
+      for (const auto& field : data.fields)
+        if (named == Named::fields || (field.components == 3 && field.association == Association::point))
+          names.push_back(field.name);
+      if (named == Named::point_vectors) names.emplace_back("off");
       return names;
     } catch (const std::exception&) {  // a picture's name, or a damaged file
       continue;
@@ -65,8 +71,9 @@ std::vector<std::string> values_of(const CLI::Option& option, const std::vector<
   const std::string name = option.get_lnames().empty() ? "" : option.get_lnames().front();
   const std::string type = option.get_type_name();
   files = type.find("FILE") != std::string::npos;
-  if (name == "field") return names_in_file(words, false);
-  if (name == "block") return names_in_file(words, true);
+  if (name == "field") return names_in_file(words, Named::fields);
+  if (name == "block") return names_in_file(words, Named::blocks);
+  if (name == "warp") return names_in_file(words, Named::point_vectors);
   if (name == "surface") return {"boundary"};
   if (name == "transfer-function") return preset_words(current);
   return literal_words(type);

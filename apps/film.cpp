@@ -17,6 +17,7 @@
 #include "apps/progress.hpp"
 #include "apps/report.hpp"
 #include "apps/run_output.hpp"
+#include "apps/series_choice.hpp"
 #include "apps/setting_words.hpp"
 #include "apps/spare_images.hpp"
 #include "tessera/image_file.hpp"
@@ -51,20 +52,18 @@ std::vector<FilmFrame> frames_of(const RenderOptions& options) {
   return frames;
 }
 
-/// How many steps the input has, as one rank has found it.
-std::size_t steps_in(const RenderOptions& options, Job& job) {
-  std::vector<std::byte> bytes(sizeof(std::uint64_t));
-  if (job.rank() == 0) {
-    const std::uint64_t count = time_steps_of(options.input(), options.read);
-    std::memcpy(bytes.data(), &count, sizeof count);
-  }
-  bytes = job.broadcast(0, std::move(bytes));
-  std::uint64_t count = 0;
-  std::memcpy(&count, bytes.data(), sizeof count);
-  return static_cast<std::size_t>(count);
+/// When the input's steps are, as one rank has found it.
+std::vector<double> times_in(const RenderOptions& options, Job& job) {
+  std::vector<double> times;
+  if (job.rank() == 0) times = times_of(options.input(), options.read);
+  const auto raw = std::as_bytes(std::span(times));
+  const std::vector<std::byte> bytes = job.broadcast(0, {raw.begin(), raw.end()});
+  times.resize(bytes.size() / sizeof(double));
+  std::memcpy(times.data(), bytes.data(), bytes.size());
+  return times;
 }
 
-/// One rank's part in a run. Of a time series one step is held at a time; the first gives transfer function and view.
+/// One rank's part in a run. Of a time series one step is held at a time; the first gives the view.
 class Film final : public Sink {
  public:
   Film(const RenderOptions& options, Job& job)
@@ -188,6 +187,9 @@ class Film final : public Sink {
     watched.progress = output_.line().listener();
     data_.emplace(Dataset::open(frame.data.files, watched, job_.communicator(), settings_.ranks));
     step_ = frame.step;
+    if (const auto time = data_->time(); time && !frame.data.has_time)
+      for (FilmFrame& each : frames_)
+        if (each.step == step_) each.data.time = *time, each.data.has_time = true;
     read_block_surfaces(frame.data.files, watched);
     const auto [low, high] = data_->range();
     if (!first_range_) all_range_ = first_range_.emplace(std::array{low, high});
@@ -201,16 +203,47 @@ class Film final : public Sink {
         with_block_surfaces(options_.settings.surfaces, options_.block_surfaces, *data_, files, std::move(read));
   }
 
-  /// Colours and opacities are the first step's, of whose values the others' may be far.
+  /// Field and colors of several steps, where options do not say them. Leaves the first one open.
+  void choose_for_all_steps() {
+    const std::size_t count = frames_.back().step + 1;
+    const auto first_of = [&](std::size_t step) -> const FilmFrame& {
+      return *std::ranges::find(frames_, step, &FilmFrame::step);
+    };
+    // The writing rank's view of the disk holds for all.
+    std::vector<std::size_t> steps = steps_to_look_at(count);
+    std::vector<std::byte> there;
+    for (const std::size_t step : steps) there.push_back(std::byte{first_of(step).is_there()});
+    there = job_.broadcast(writer_, std::move(there));
+    for (std::size_t k = steps.size(); k-- > 1;)
+      if (there[k] == std::byte{0}) {
+        if (writes_)
+          output_.warn(options_,
+                       fmt::format("time step {} is not there any more: field and colors go by others", steps[k]));
+        steps.erase(steps.begin() + static_cast<std::ptrdiff_t>(k));
+      }
+    const OpenStep open_step = [&](std::size_t step, const ReadOptions& read) -> const Dataset* {
+      try {
+        open(first_of(step), read);
+      } catch (const Error&) {
+        if (step == 0 || job_.size() > 1) throw;
+        return nullptr;
+      }
+      return &*data_;
+    };
+    series_ = choose_by_steps(std::move(steps), options_, read_, open_step);
+    read_.field = series_->field;
+    first_range_ = all_range_ = series_->range;
+    if (series_->function) loaded_ = *series_->function;
+  }
+
+  /// Colours and opacities are of some steps, of whose values the others' may be far.
   void warn_of_range() {
-    const std::string& function = options_.transfer_function;
-    const bool of_file = !options_.function.rescale && (is_json_text(function) || std::filesystem::exists(function));
-    if (!writes_ || !first_range_ || options_.function.range || of_file) return;
+    if (!writes_ || !first_range_ || options_.function.range || function_has_values(options_)) return;
     const auto [low, high] = *first_range_;
     const double beyond = std::max(low - all_range_[0], all_range_[1] - high);
     if (beyond > 0.1 * (high - low))
-      output_.warn(options_, fmt::format("values of all time steps are from {:.6g} to {:.6g}, colours are the first's, "
-                                         "of {:.6g} to {:.6g}; --range {:.6g},{:.6g} spans all",
+      output_.warn(options_, fmt::format("values of all time steps are from {:.6g} to {:.6g}, colours go by those of "
+                                         "{:.6g} to {:.6g}; --range {:.6g},{:.6g} spans all",
                                          all_range_[0], all_range_[1], low, high, all_range_[0], all_range_[1]));
   }
 
@@ -224,8 +257,12 @@ class Film final : public Sink {
       if (!finer) return;
       read_ = *finer;
       open(frames_.front(), read_);
-      loaded_ = transfer_function_of(*data_, options_);
+      find_function();
     }
+  }
+
+  void find_function() {
+    if (!series_ || !series_->function) loaded_ = transfer_function_of(*data_, options_);
   }
 
   /// What the default transfer function means to be shaded is so, unless an option of the run speaks against it.
@@ -239,6 +276,7 @@ class Film final : public Sink {
   /// Of the data at hand, with what its higher-order cells do to pixels.
   [[nodiscard]] analysis::Description description() const {
     analysis::Description data = described(*data_);
+    if (series_) data.notes.push_back(series_note(*series_, frames_.back().step + 1, data_->field_name()));
     if (data_->higher_order_cells().divided == 0) return data;
     const double error = data_->higher_order_error(loaded_.function), accuracy = options_.settings.integrator.accuracy;
     data.higher_order_pixels = error;
@@ -251,8 +289,11 @@ class Film final : public Sink {
   /// Makes the frame's step the one at hand.
   void hold(const FilmFrame& frame) {
     if (!box_) {
-      open(frames_.front(), read_);
-      loaded_ = transfer_function_of(*data_, options_);
+      if (goes_by_steps(frames_.back().step + 1, options_))
+        choose_for_all_steps();
+      else
+        open(frames_.front(), read_);
+      find_function();
       come_near_enough();
       shade_by_default();
       if (writes_) check_annotation(options_.annotation, frame, *data_, loaded_.function);
@@ -418,12 +459,13 @@ class Film final : public Sink {
   std::optional<Dataset> data_;
   std::optional<Session> session_;
   std::size_t step_ = 0;                              ///< of data_
-  std::optional<std::array<double, 2>> first_range_;  ///< of the first step's values
+  std::optional<std::array<double, 2>> first_range_;  ///< of the values that colors go by
   std::array<double, 2> all_range_{};                 ///< of all steps read
   std::optional<Box> box_;                            ///< of the first step; none until something is read
   BodyAxes axes_ = BodyAxes::none;
   std::uint64_t tets_ = 0;
   LoadedTransferFunction loaded_;
+  std::optional<SeriesChoice> series_;  ///< of several steps
 
   std::size_t next_ = 0;           ///< frame that is to be reported
   std::vector<double> frame_ms_;   ///< of the frame at hand
@@ -440,7 +482,8 @@ class Film final : public Sink {
 ExitCode render(const RenderOptions& options, Job& job) {
   if (!takes_steps_of_file(options.plan)) return Film(options, job).run();
   RenderOptions planned = options;
-  planned.plan.file_steps = steps_in(options, job);
+  planned.plan.file_times = times_in(options, job);
+  planned.plan.file_steps = planned.plan.file_times.size();
   return Film(planned, job).run();
 }
 

@@ -22,9 +22,9 @@ Annotation filled(const Annotation& annotation, const WordValues& values) {
 
 Annotation filled(const Annotation& annotation, const FilmFrame& frame, const Dataset& data) {
   const auto [low, high] = data.range();
-  return filled(annotation,
-                {data.field_name(), fmt::format("{:g}", frame.data.time), frame.data.files.front().filename().string(),
-                 fmt::format("{}", frame.number), fmt::format("{:.6g}", low), fmt::format("{:.6g}", high)});
+  const double time = frame.data.has_time ? frame.data.time : data.time().value_or(frame.data.time);
+  return filled(annotation, {data.field_name(), fmt::format("{:g}", time), frame.data.files.front().filename().string(),
+                             fmt::format("{}", frame.number), fmt::format("{:.6g}", low), fmt::format("{:.6g}", high)});
 }
 
 }  // namespace

@@ -37,6 +37,7 @@
 #include "tessera/input_file.hpp"
 #include "tessera/job.hpp"
 #include "tessera/output_file.hpp"
+#include "tessera/time_series.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -88,12 +89,14 @@ ExitCode run(int argc, char** argv, Job& job) {
   }
   if (job.rank() != 0) return ExitCode::complete;  // the other commands are for one process
   if (*line.info) {
-    const bool is_grid = is_grid_input(words);
+    const bool is_grid = is_time_series(words.input) ? draws_grids(words) : is_grid_input(words);
     if (line.check && is_grid) {
       require_input(words.input);
       throw bad_input("--check: is for meshes, and the input is a volume; leave it out");
     }
-    info(words.input, is_grid ? volume_options(words) : mesh_options(words), line.as_json, line.check);
+    ReadOptions options = is_grid ? volume_options(words) : mesh_options(words);
+    options.shape = !is_grid;  // as render without options
+    info(words.input, options, line.as_json, line.check);
   }
   if (*line.convert) require_input(words.input);
   if (*line.convert && is_grid_input(words) && !to_mesh(words.input, line.mesh_output)) {

@@ -94,6 +94,23 @@ void set_ranks(const RenderWords& words, bool merges, RenderOptions& options) {
     ranks.tile_seed = ranks.partition.seed = static_cast<std::uint64_t>(parse_count("--seed", words.seed, 0, no_limit));
 }
 
+/// NAME, NAME:FACTOR or off.
+std::optional<Warp> warp_of(const std::string& word) {
+  if (word.empty()) return std::nullopt;
+  if (word == "off") return Warp{};
+  const std::size_t colon = word.rfind(':');
+  if (colon == std::string::npos) return Warp{word};
+  const auto fault = [&](const char* what) {
+    return bad_input(fmt::format("--warp: '{}' {}; write NAME, NAME:FACTOR or off", word, what));
+  };
+  if (colon == 0) throw fault("names no vector");
+  try {
+    return Warp{word.substr(0, colon), parse_number("--warp", word.substr(colon + 1))};
+  } catch (const Error&) {
+    throw fault("has no number behind its colon");
+  }
+}
+
 /// Pictures that cannot be annotated.
 void refuse_unannotated(const RenderOptions& options) {
   if (options.show_balance) throw bad_input("--show balance: its pictures are not annotated; leave one of the two out");
@@ -114,6 +131,10 @@ void add_mesh_options(CLI::App& command, RenderWords& words) {
       .add_option("--field", words.field, "scalar: NAME, NAME:mag, NAME:x; with point: or cell: before it if needed")
       ->type_name("NAME");
   command.add_flag("--smooth", words.smooth, "average cell data to the points");
+  command
+      .add_option("--warp", words.warp,
+                  "meshes: move points by FACTOR (default: 1) times this vector; off: not even Exodus' displacements")
+      ->type_name("NAME[:FACTOR]|off");
   command.add_option("--q", words.q, "PLOT3D solution file, if it is not beside the grid")->type_name("FILE");
   command.add_option("--max-volume", words.max_volume, "surfaces: largest tetrahedron TetGen fills them with")
       ->type_name("VOLUME");
@@ -140,6 +161,7 @@ ReadOptions mesh_options(const RenderWords& words) {
   mesh.grid_as_mesh = true;
   mesh.field = words.field;
   mesh.smooth = words.smooth;
+  mesh.warp = warp_of(words.warp);
   mesh.plot3d_q = words.q;
   if (!words.max_volume.empty()) mesh.max_volume = parse_positive("--max-volume", words.max_volume);
   mesh.time_step = one_time_step(words.time_step);
@@ -369,6 +391,7 @@ void refuse_mesh_options(const RenderWords& words, const RenderOptions& options)
     throw bad_input("deep picture: --show balance draws none; name an .exr, .png or .pfm");
   if (options.settings.mesh.rasterizer != Rasterizer::planes) refuse("--rasterizer");
   if (read.smooth) refuse("--smooth");
+  if (read.warp) refuse("--warp");
   if (read.max_volume) refuse("--max-volume");
   if (!words.higher_order_tolerance.empty()) refuse("--higher-order-tolerance");
   if (!words.higher_order_tets.empty()) refuse("--higher-order-tets");

@@ -306,8 +306,9 @@ std::string run_line(const RenderOptions& options, const Description& data, cons
       line += fmt::format("; composited by {}", statistics.composited_on);
   }
   if (const std::size_t steps = frames.back().step + 1; is_series(options.plan))
-    line += fmt::format("; transfer function{} of the first of {} time steps, {}, for all",
-                        first.camera ? "" : " and view", steps, frames.front().data.files.front().string());
+    line += first.camera ? fmt::format("; {} time steps", steps)
+                         : fmt::format("; view of the first of {} time steps, {}, for all", steps,
+                                       frames.front().data.files.front().string());
   return line;
 }
 

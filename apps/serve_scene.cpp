@@ -27,7 +27,8 @@ using server::Json;
 
 /// Of `render`, those that `serve` has: what shows data, not what becomes of pictures.
 constexpr std::string_view served_options =
-    " field smooth q max-volume time-step block clip threshold cut-planes higher-order-tolerance higher-order-tets "
+    " field smooth warp q max-volume time-step block clip threshold cut-planes higher-order-tolerance "
+    "higher-order-tets "
     "dims "
     "type spacing origin endian skip labels transfer-function rescale unit-distance opacity-scale range log "
     "opacity-points "
@@ -36,7 +37,8 @@ constexpr std::string_view served_options =
     "no-shade light background color-bar color-bar-title color-bar-range color-bar-scale field-unit axes outline "
     "scale-bar length-unit annotate annotation-color annotation-size threads memory half png-bits help ";
 
-constexpr std::array<std::string_view, 19> data_options = {"q",
+constexpr std::array<std::string_view, 20> data_options = {"q",
+                                                           "warp",
                                                            "max-volume",
                                                            "time-step",
                                                            "block",

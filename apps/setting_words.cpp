@@ -20,7 +20,7 @@ constexpr std::string_view setting_names =
     "outline output partition peel peer pieces pixels png_bits port preload preset progress projection "
     "projectors q quiet range rasterizer repeat report rescale resume save_config scale_bar seed shade show "
     "size skip smooth spacing stall_timeout step subdivide surface threads threshold tile_size time_step "
-    "timing tls_certificate tls_key transfer_function type unit_distance up verify version view without "
+    "timing tls_certificate tls_key transfer_function type unit_distance up verify version view warp without "
     "zoom";
 
 constexpr auto settings = [] {

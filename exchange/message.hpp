@@ -60,12 +60,12 @@ enum class MessageKind : std::uint16_t {
   host = 19,              ///< text: the machine's name
   device = 20,            ///< text: the compositing device's name, empty where none composites
   read_in_parts = 21,     ///< u8: 1: all projectors read
-  field_tallies = 22,     ///< u64 fields; of each a field, u8 any_finite; f64 box of higher-order cells[6],
-                          ///< texts of block names
+  field_tallies = 22,     ///< u64 fields; of each a field, NumberTally, u8 blocks_count_up; f64 box of higher-order
+                          ///< cells[6], texts of block names
   part_summary = 23,      ///< MeshCounts, HigherOrderCells, TimeStepRead, texts of reading, of cells, of surfaces, u64
                           ///< words of used points
   mesh_description = 24,  ///< MeshCounts, HigherOrderCells, u64 fields, fields, texts of notes, of blocks, of surfaces,
-                          ///< text format, u64 time steps, u64 step, text field, u8 association
+                          ///< text format, u64 time steps, u64 step, list of f64 times, text field, u8 association
   mesh_facts = 25,        ///< f64 box[6], f64 scalar range[2], u64 tets, u8 association
   mesh_volume = 26,       ///< 128-bit scene::VolumeSum
   tet_count = 27,         ///< u64

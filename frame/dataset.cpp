@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "colormaps/presets.hpp"
@@ -47,6 +48,7 @@ void check_grid_options(const std::filesystem::path& file, const ReadOptions& op
         fmt::format("{}: `{}` is for meshes, and this is a grid; leave it out", file.string(), setting));
   };
   if (options.smooth) refuse("smooth");
+  if (options.warp) refuse("warp");
   if (options.max_volume) refuse("max_volume");
   if (!options.blocks.empty()) refuse("block");
   if (!options.plot3d_q.empty()) refuse("plot3d_q");
@@ -134,7 +136,7 @@ std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, c
   state->format = std::move(volume.format);
   state->body_axes = volume.body_axes;
   state->tags = std::move(volume.tags);
-  state->time_steps = std::max<std::size_t>(volume.time_step.count, 1);
+  state->time_step = std::move(volume.time_step);
   state->samples = std::move(volume.source);
   return state;
 }
@@ -160,7 +162,7 @@ void take_description(io::MeshFile&& file, Dataset::State& state) {
   state.format = std::move(file.format);
   state.counts = file.counts;
   state.higher_order = file.higher_order;
-  state.time_steps = std::max<std::size_t>(file.time_step.count, 1);
+  state.time_step = std::move(file.time_step);
 }
 
 /// Makes a mesh the state's own, its corners in the order that needs no copy unless theirs is to be kept.
@@ -215,7 +217,9 @@ io::MeshOptions mesh_options(const ReadOptions& o) {
           o.higher_order_tets,
           o.progress,
           o.shape,
-          o.selection};
+          o.selection,
+          false,
+          o.warp};
 }
 
 }  // namespace frame
@@ -388,7 +392,12 @@ std::span<const std::string> Dataset::notes() const { return state_->notes; }
 std::vector<std::string> Dataset::warnings() const {
   return io::warnings_on_cells(state_->counts, state_->higher_order);
 }
-std::size_t Dataset::time_steps() const { return state_->time_steps; }
+std::size_t Dataset::time_steps() const { return std::max<std::size_t>(state_->time_step.count, 1); }
+std::span<const double> Dataset::times() const { return state_->time_step.times; }
+std::optional<double> Dataset::time() const {
+  const io::TimeStepRead& read = state_->time_step;
+  return read.step < read.times.size() ? std::optional(read.times[read.step]) : std::nullopt;
+}
 std::span<const std::string> Dataset::blocks() const { return state_->blocks; }
 std::span<const std::string> Dataset::surfaces() const { return state_->surfaces; }
 const std::string& Dataset::format() const { return state_->format; }
@@ -438,10 +447,17 @@ MeshCheck Dataset::check(const CheckProgressFunction& progress) const {
 }
 
 std::size_t time_steps_of(const std::filesystem::path& file, const ReadOptions& options) {
-  const std::uint64_t count = opens_as_grid(file, options)
-                                  ? io::open_unscanned_volume(file, volume_options(options)).time_step.count
-                                  : io::time_steps_of_mesh(file, frame::mesh_options(options));
-  return std::max<std::size_t>(count, 1);
+  return times_of(file, options).size();
+}
+
+std::vector<double> times_of(const std::filesystem::path& file, const ReadOptions& options) {
+  const io::TimeStepRead read = opens_as_grid(file, options)
+                                    ? io::open_unscanned_volume(file, volume_options(options)).time_step
+                                    : io::time_steps_of_mesh(file, frame::mesh_options(options));
+  if (!read.times.empty()) return read.times;
+  std::vector<double> numbers(std::max<std::size_t>(read.count, 1));
+  std::iota(numbers.begin(), numbers.end(), 0.0);
+  return numbers;
 }
 
 std::vector<std::string> preset_names() { return colormaps::preset_names(); }

@@ -23,7 +23,7 @@ struct TESSERA_HIDDEN Dataset::State {
   std::string source, format, field_name;
   std::vector<FieldInfo> fields;
   std::vector<std::string> notes, blocks, surfaces;
-  std::size_t time_steps = 1;
+  io::TimeStepRead time_step;
   scene::MeshFacts facts;  ///< of the whole; grids have no tets
   MeshCounts counts;
   HigherOrderCells higher_order;

@@ -28,7 +28,8 @@ Bytes message_of(const std::vector<io::FieldTally>& tallies, const scene::Box& b
   append(message, std::uint64_t{tallies.size()});
   for (const io::FieldTally& t : tallies) {
     append_field(message, t.summary);
-    append(message, std::uint8_t{t.any_finite});
+    append(message, t.numbers);
+    append(message, std::uint8_t{t.blocks_count_up});
   }
   append(message, box);
   append_texts(message, block_names);
@@ -40,7 +41,8 @@ std::vector<io::FieldTally> tallies_in(MessageReader& reader, scene::Box& box, s
   std::vector<io::FieldTally> tallies;
   for (auto left = reader.take<std::uint64_t>(); left > 0; --left) {
     io::FieldTally tally{take_field(reader)};
-    tally.any_finite = reader.take<std::uint8_t>() != 0;
+    tally.numbers = reader.take<io::NumberTally>();
+    tally.blocks_count_up = reader.take<std::uint8_t>() != 0;
     tallies.push_back(std::move(tally));
   }
   box = io::joined(box, reader.take<scene::Box>());
@@ -58,8 +60,7 @@ Bytes message_of(const io::MeshFile& file) {
   append_texts(message, file.blocks);
   append_texts(message, file.surfaces);
   append_text(message, file.format);
-  append(message, file.time_step.count);
-  append(message, file.time_step.step);
+  append_time_step(message, file.time_step);
   append_text(message, file.mesh.field_name);
   append(message, static_cast<std::uint8_t>(file.mesh.association));
   return message;
@@ -74,8 +75,7 @@ io::MeshFile description_in(MessageReader& reader) {
   file.blocks = take_texts(reader);
   file.surfaces = take_texts(reader);
   file.format = reader.take_text();
-  file.time_step.count = reader.take<std::uint64_t>();
-  file.time_step.step = reader.take<std::uint64_t>();
+  file.time_step = take_time_step(reader);
   file.mesh.field_name = reader.take_text();
   file.mesh.association = take_association(reader);
   reader.finish();
@@ -144,7 +144,7 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
   std::uint64_t words = 0, first_tet = 0;
   Bytes message = exchange::message_of(MessageKind::part_summary, s.counts);
   append(message, s.higher_order);
-  append(message, s.time_step);
+  append_time_step(message, s.time_step);
   append_texts(message, s.reading_notes);
   append_texts(message, s.cell_notes);
   append_texts(message, s.surfaces);
@@ -153,7 +153,7 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
     io::PartSummary& summary = summaries.emplace_back();
     summary.counts = reader.take<io::MeshCounts>();
     summary.higher_order = reader.take<io::HigherOrderCells>();
-    summary.time_step = reader.take<io::TimeStepRead>();
+    summary.time_step = take_time_step(reader);
     summary.reading_notes = take_texts(reader);
     summary.cell_notes = take_texts(reader);
     summary.surfaces = take_texts(reader);

@@ -31,6 +31,7 @@ void append_field(Bytes& message, const io::FieldSummary& f) {
   append(message, f.high);
   append(message, f.nan_count);
   append(message, std::uint8_t{f.active});
+  append(message, std::uint8_t{f.ids});
 }
 
 io::FieldSummary take_field(MessageReader& reader) {
@@ -43,6 +44,7 @@ io::FieldSummary take_field(MessageReader& reader) {
   f.high = reader.take<double>();
   f.nan_count = reader.take<std::uint64_t>();
   f.active = reader.take<std::uint8_t>() != 0;
+  f.ids = reader.take<std::uint8_t>() != 0;
   return f;
 }
 
@@ -55,6 +57,20 @@ std::vector<io::FieldSummary> take_fields(MessageReader& reader) {
   std::vector<io::FieldSummary> fields;
   for (auto left = reader.take<std::uint64_t>(); left > 0; --left) fields.push_back(take_field(reader));
   return fields;
+}
+
+void append_time_step(Bytes& message, const io::TimeStepRead& read) {
+  append(message, read.count);
+  append(message, read.step);
+  exchange::append_list(message, read.times);
+}
+
+io::TimeStepRead take_time_step(MessageReader& reader) {
+  io::TimeStepRead read;
+  read.count = reader.take<std::uint64_t>();
+  read.step = reader.take<std::uint64_t>();
+  read.times = reader.take_list<double>();
+  return read;
 }
 
 }  // namespace tessera::frame

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "io/field_choice.hpp"
 #include "tessera/error.hpp"
 #include "tessera/image_file.hpp"
 #include "tessera/input_file.hpp"
@@ -71,8 +72,10 @@ std::vector<TimeStep> in_range(std::vector<TimeStep> steps, const FilmPlan& plan
 
 std::vector<TimeStep> steps_of_file(const FilmPlan& plan) {
   std::vector<TimeStep> steps;
-  for (std::size_t step = 0; step < std::max<std::size_t>(plan.file_steps, 1); ++step)
-    steps.push_back({static_cast<double>(step), plan.inputs, step});
+  for (std::size_t step = 0; step < std::max<std::size_t>(plan.file_steps, 1); ++step) {
+    const bool timed = step < plan.file_times.size();
+    steps.push_back({timed ? plan.file_times[step] : static_cast<double>(step), plan.inputs, step, timed});
+  }
   return steps;
 }
 
@@ -143,6 +146,13 @@ Camera FilmFrame::view(const Box& box, ProjectionKind default_projection, const 
   return turn ? tessera::orbit(seen, *turn) : seen;
 }
 
+bool FilmFrame::is_there() const {
+  return std::ranges::all_of(data.files, [](const std::filesystem::path& file) {
+    std::error_code unreadable;
+    return std::filesystem::exists(file, unreadable);
+  });
+}
+
 void FilmFrame::require_still_there() const {
   if (step == 0) return;
   for (const auto& file : data.files) {
@@ -154,8 +164,33 @@ void FilmFrame::require_still_there() const {
   }
 }
 
+std::string field_of_steps(std::span<const std::vector<FieldInfo>> steps, const ReadOptions& options) {
+  if (steps.empty()) return "";
+  const auto is_same = [](const FieldInfo& a, const FieldInfo& b) {
+    return a.name == b.name && a.association == b.association && a.components == b.components;
+  };
+  std::vector<FieldInfo> widest;
+  for (const FieldInfo& first : steps.front()) {
+    FieldInfo field = first;
+    const bool everywhere = std::ranges::all_of(steps, [&](const std::vector<FieldInfo>& step) {
+      const auto found = std::ranges::find_if(step, [&](const FieldInfo& f) { return is_same(f, field); });
+      if (found == step.end()) return false;
+      if (found->high - found->low > field.high - field.low) field.low = found->low, field.high = found->high;
+      field.ids = field.ids || found->ids;
+      return true;
+    });
+    if (everywhere) widest.push_back(std::move(field));
+  }
+  const io::FieldChoice choice = io::choose_field("", widest, "series", true);
+  if (choice.name.empty()) return "";
+  if (options.smooth) return choice.label;
+  return (choice.association == Association::point ? "point:" : "cell:") + choice.label;
+}
+
 ReadOptions read_of_later_steps(ReadOptions options, const Dataset& first) {
-  if (first.is_grid() || !options.field.empty() || first.fields().empty() || first.shows_shape()) return options;
+  if ((first.is_grid() && first.fields().size() < 2) || !options.field.empty() || first.fields().empty() ||
+      first.shows_shape())
+    return options;
   options.field = first.field_name();
   // Smoothing has made point data of cell data, so only the name is sure.
   if (!options.smooth) options.field = (first.association() == Association::point ? "point:" : "cell:") + options.field;

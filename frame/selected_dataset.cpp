@@ -43,7 +43,7 @@ Dataset selected_part(const std::shared_ptr<const Dataset::State>& from, const S
   state->fields = from->fields, state->notes = from->notes, state->blocks = from->blocks,
   state->surfaces = from->surfaces;
   state->higher_order = from->higher_order;
-  state->time_steps = from->time_steps;
+  state->time_step = from->time_step;
   state->options = from->options;
   state->shape = from->shape;
   if (!selection.clip.empty()) {

@@ -48,7 +48,7 @@ struct Place {
 };
 
 /// Text path, text folder, u64 bytes, fields, texts of notes, text format, u8 axes of a body and of one if it is CT,
-/// texts modality, unit and unit of length, u8 labels, u64 time steps, u64 step.
+/// texts modality, unit and unit of length, u8 labels, a time step.
 /// Nothing of a rank that has not read the file.
 Bytes message_of(const io::VolumeFile& volume, const Place& place) {
   Bytes message = exchange::begin_message(MessageKind::volume_facts);
@@ -64,8 +64,7 @@ Bytes message_of(const io::VolumeFile& volume, const Place& place) {
   append_text(message, volume.tags.unit);
   append_text(message, volume.tags.length_unit);
   append(message, static_cast<std::uint8_t>(volume.tags.labels));
-  append(message, std::uint64_t{volume.time_step.count});
-  append(message, std::uint64_t{volume.time_step.step});
+  append_time_step(message, volume.time_step);
   return message;
 }
 
@@ -89,8 +88,7 @@ io::VolumeFile description_in(MessageReader& reader) {
   volume.tags.unit = reader.take_text();
   volume.tags.length_unit = reader.take_text();
   volume.tags.labels = reader.take<std::uint8_t>() != 0;
-  volume.time_step.count = reader.take<std::uint64_t>();
-  volume.time_step.step = reader.take<std::uint64_t>();
+  volume.time_step = take_time_step(reader);
   reader.finish();
   return volume;
 }

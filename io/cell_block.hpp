@@ -25,6 +25,7 @@ struct BlockField {
   std::string type;  ///< "float", "int64", ...
   std::size_t tuples = 0;
   bool active = false;                 ///< the file marks it as its scalars or vectors
+  bool ids = false;                    ///< the file marks it as ids
   std::optional<NumberTally> tally{};  ///< where it is known without reading
   /// Writes tuples [first, first + out.size()) of one component, or their magnitude, as doubles.
   std::function<void(int component, std::size_t first, std::span<double> out)> read;

@@ -21,10 +21,20 @@ using scene::Association;
 
 const char* word(Association a) { return a == Association::point ? "point" : "cell"; }
 
-void include_range(const BlockField& field, FieldTally& tally) {
+bool is_floating(const FieldSummary& f) { return f.type == "float" || f.type == "double"; }
+
+/// Of floats from 0 or 1 on only: pressures may well be 300 to 307.
+bool counts_up(const NumberTally& numbers, const FieldSummary& f) {
+  return f.components == 1 && (!is_floating(f) || numbers.low == 0 || numbers.low == 1) && numbers.counts_up();
+}
+
+void include_numbers(const BlockField& field, FieldTally& tally) {
+  constexpr std::uint64_t least_of_block = 16;  // one cell a block counts up whatever its value
   NumberTally numbers;
   if (field.tally) {
     numbers = *field.tally;
+    // Some readers tally the least and the greatest of what they hold.
+    numbers.whole = numbers.whole && numbers.finite + numbers.not_finite == field.tuples;
   } else {
     std::array<double, 4096> chunk;
     const int component = field.components == 1 ? 0 : magnitude;
@@ -34,12 +44,10 @@ void include_range(const BlockField& field, FieldTally& tally) {
       numbers.add(some);
     }
   }
-  FieldSummary& summary = tally.summary;
-  summary.nan_count += numbers.not_finite;
-  if (!numbers.any_finite) return;
-  summary.low = tally.any_finite ? std::min(summary.low, numbers.low) : numbers.low;
-  summary.high = tally.any_finite ? std::max(summary.high, numbers.high) : numbers.high;
-  tally.any_finite = true;
+  if (field.tuples > 0)
+    tally.blocks_count_up =
+        tally.blocks_count_up && numbers.finite >= least_of_block && counts_up(numbers, tally.summary);
+  tally.numbers.add(numbers);
 }
 
 bool varies(const FieldSummary& f) {
@@ -117,15 +125,25 @@ bool is_id_name(const std::string& name) {
   static constexpr std::array exact = {"id",   "ids",     "iblank", "rank",     "partition",  "processid",  "procid",
                                        "part", "blockid", "region", "material", "material #", "materialid", "block"};
   if (std::find(exact.begin(), exact.end(), lower) != exact.end() || lower.starts_with("vtk")) return true;
-  for (const char* end : {"_id", "_ids", " id", " ids", "-id", "-ids"})
-    if (lower.ends_with(end)) return true;
-  // "GlobalNodeId" but not "Fluid" or "Solid".
-  for (const char* end : {"Id", "Ids", "ID", "IDs", "IDS"})
-    if (name.ends_with(end)) {
-      const std::size_t before = name.size() - std::string_view(end).size();
-      if (before > 0 && std::islower(static_cast<unsigned char>(name[before - 1]))) return true;
+  // A word of the name, as in "GLOBAL_IDS_POINTS" and "GlobalNodeId", but not in "Fluid" or "Solid".
+  std::string word;
+  for (std::size_t k = 0; k <= name.size(); ++k) {
+    const auto c = static_cast<unsigned char>(k < name.size() ? name[k] : ' ');
+    const bool begins = std::isupper(c) && k > 0 && std::islower(static_cast<unsigned char>(name[k - 1]));
+    if (begins || !std::isalpha(c)) {
+      if (word == "id" || word == "ids") return true;
+      word.clear();
     }
+    if (std::isalpha(c)) word += static_cast<char>(std::tolower(c));
+  }
   return false;
+}
+
+bool is_id(const FieldSummary& f) { return f.ids || is_id_name(f.name); }
+
+/// Of so few values 0, 1, 2 ... may be a test's quantity, where nothing else varies.
+bool may_count_by_chance(const FieldSummary& f) {
+  return f.ids && is_floating(f) && f.high - f.low < 64 && !is_label_name(f.name);
 }
 
 const FieldSummary* first_of(std::span<const FieldSummary> fields, const auto& wanted) {
@@ -151,22 +169,28 @@ const FieldSummary* first_quantity(std::span<const FieldSummary> fields, const a
 }
 
 std::optional<FieldChoice> default_choice(std::span<const FieldSummary> fields, bool shape) {
+  const auto is_quantity = [](const FieldSummary& s) { return !is_label(s); };
   if (const auto* f =
-          first_quantity(fields, [](const FieldSummary& s) { return !is_label_name(s.name) && !looks_like_noise(s); }))
+          first_quantity(fields, [&](const FieldSummary& s) { return is_quantity(s) && !looks_like_noise(s); }))
     return choice_of(*f, std::nullopt);
-  if (const auto* f = first_quantity(fields, [](const FieldSummary& s) { return !is_label_name(s.name); })) {
+  if (const auto* f = first_quantity(fields, is_quantity)) {
     FieldChoice choice = choice_of(*f, std::nullopt);
     choice.notes.push_back(fmt::format("'{}' is within {:.2g} of zero everywhere, perhaps noise: no other field varies",
                                        f->name, std::max(std::abs(f->low), std::abs(f->high))));
     return choice;
   }
+  if (const auto* f = first_quantity(fields, may_count_by_chance)) {
+    FieldChoice choice = choice_of(*f, std::nullopt);
+    choice.notes.push_back(
+        fmt::format("'{}' is {:g} to {:g}, each once, perhaps ids: no other field varies", f->name, f->low, f->high));
+    return choice;
+  }
   if (shape) return std::nullopt;
-  if (const auto* f = first_quantity(fields, [](const FieldSummary& s) { return !is_id_name(s.name); }))
+  if (const auto* f = first_quantity(fields, [](const FieldSummary& s) { return !is_id(s); }))
     return choice_of(*f, std::nullopt);
-  if (const auto* f = first_of(fields, [](const FieldSummary& s) { return s.high > s.low && !is_label_name(s.name); }))
+  if (const auto* f = first_of(fields, [&](const FieldSummary& s) { return s.high > s.low && is_quantity(s); }))
     return choice_of(*f, std::nullopt);
-  if (const auto* f = first_of(fields, [](const FieldSummary& s) { return !is_label_name(s.name); }))
-    return choice_of(*f, std::nullopt);
+  if (const auto* f = first_of(fields, is_quantity)) return choice_of(*f, std::nullopt);
   if (const auto* f = first_of(fields, varies)) return choice_of(*f, std::nullopt);
   return std::nullopt;
 }
@@ -202,37 +226,41 @@ std::vector<FieldTally> tally_fields(std::span<const CellBlock> blocks) {
                known.summary.components == field.components;
       });
       if (t == tallies.end()) {
-        tallies.push_back({{field.name, field.association, field.components, field.type}});
+        tallies.push_back({{field.name, field.association, field.components, field.type}, {}, true});
         t = tallies.end() - 1;
       }
       t->summary.active = t->summary.active || field.active;
-      include_range(field, *t);
+      t->summary.ids = t->summary.ids || field.ids;
+      include_numbers(field, *t);
     }
   return tallies;
 }
 
 std::vector<FieldSummary> summarize_fields(std::span<const std::vector<FieldTally>> parts) {
-  std::vector<FieldSummary> summaries;
-  std::vector<bool> any;
+  std::vector<FieldTally> wholes;
   for (const auto& part : parts)
-    for (const auto& [more, any_finite] : part) {
-      auto s = std::find_if(summaries.begin(), summaries.end(), [&more = more](const FieldSummary& known) {
-        return known.name == more.name && known.association == more.association;
+    for (const FieldTally& more : part) {
+      auto whole = std::find_if(wholes.begin(), wholes.end(), [&](const FieldTally& known) {
+        return known.summary.name == more.summary.name && known.summary.association == more.summary.association;
       });
-      if (s == summaries.end()) {
-        summaries.push_back(more);
-        any.push_back(any_finite);
+      if (whole == wholes.end()) {
+        wholes.push_back(more);
         continue;
       }
-      s->active = s->active || more.active;
-      if (s->components != more.components) continue;  // counts as missing where it is so
-      const auto k = static_cast<std::size_t>(s - summaries.begin());
-      s->nan_count += more.nan_count;
-      if (!any_finite) continue;
-      s->low = any[k] ? std::min(s->low, more.low) : more.low;
-      s->high = any[k] ? std::max(s->high, more.high) : more.high;
-      any[k] = true;
+      whole->summary.active = whole->summary.active || more.summary.active;
+      whole->summary.ids = whole->summary.ids || more.summary.ids;
+      if (whole->summary.components != more.summary.components) continue;  // counts as missing where it is so
+      whole->numbers.add(more.numbers);
+      whole->blocks_count_up = whole->blocks_count_up && more.blocks_count_up;
     }
+  std::vector<FieldSummary> summaries;
+  for (FieldTally& whole : wholes) {
+    FieldSummary& s = summaries.emplace_back(std::move(whole.summary));
+    const NumberTally& numbers = whole.numbers;
+    s.nan_count = numbers.not_finite;
+    if (numbers.any_finite) s.low = numbers.low, s.high = numbers.high;
+    s.ids = s.ids || (numbers.any_finite && (whole.blocks_count_up || counts_up(numbers, s)));
+  }
   return summaries;
 }
 
@@ -240,6 +268,8 @@ bool looks_like_noise(const FieldSummary& field) {
   const double low = field.components == 1 ? field.low : -field.high;  // of vectors it is the length's range
   return low < 0 && field.high > 0 && std::max(-low, field.high) <= 1e-12;
 }
+
+bool is_label(const FieldSummary& field) { return field.ids || is_label_name(field.name); }
 
 bool is_label_name(const std::string& name) {
   const std::string lower = lower_case(name);

@@ -22,8 +22,9 @@ struct FieldChoice {
 
 /// One array of one part of a file. An array that changes its number of components from block to block has several.
 struct FieldTally {
-  FieldSummary summary;
-  bool any_finite = false;  ///< else the summary's range means nothing
+  FieldSummary summary{};        ///< but for its range and what follows from `numbers`
+  NumberTally numbers{};         ///< of scalars, or of vectors' lengths
+  bool blocks_count_up = false;  ///< each block numbers its own cells or points
 };
 
 /// All arrays of these blocks in the file's order.
@@ -36,6 +37,9 @@ std::vector<FieldSummary> summarize_fields(std::span<const std::vector<FieldTall
 /// Towards the eye of the default view (tessera/default_view.hpp), of length one.
 inline constexpr glm::dvec3 shape_direction{0.4531538935183250, -0.7848855672213958, 0.4226182617406994};
 
+/// Whether a field is a label by its name, or numbers cells or points (FieldInfo::ids).
+bool is_label(const FieldSummary& field);
+
 /// Whether a name is that of a label rather than a quantity ("GlobalNodeId", "vtkGhostType", "IBlank", "BLOCK_I"): an
 /// id, an index, the number of a rank, part, block or material. Never the default.
 bool is_label_name(const std::string& name);
@@ -47,8 +51,9 @@ bool looks_like_noise(const FieldSummary& field);
 /// Resolves MeshOptions::field. Names win over syntax: "a:b" is the array of that name if there is one; a name of both
 /// a point and a cell array means the point one. Without a wish: the file's active scalars if they vary, else the first
 /// that varies of point scalars, point vectors, cell scalars, cell vectors; of what looks like noise only if nothing
-/// else varies. If only labels vary: the first, or with `shape` (ReadOptions::shape) no array but the shape; and so if
-/// nothing varies. Throws Error(bad_input) listing all names.
+/// else varies. Then a short array of floats that would be ids by its values alone, with a note. If only labels vary:
+/// the first, or with `shape` (ReadOptions::shape) no array but the shape; and so if nothing varies. Throws
+/// Error(bad_input) listing all names.
 FieldChoice choose_field(const std::string& wish, std::span<const FieldSummary> fields, const std::string& source,
                          bool shape = false);
 

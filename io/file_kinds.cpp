@@ -38,7 +38,7 @@ constexpr std::array rows = {
     FormatRow{FileKind::vtk_legacy, "legacy VTK unstructured or curvilinear grid", ".vtk", FileHolds::mesh, Needs::vtk,
               "text or binary", begins_as_legacy_mesh},
     FormatRow{FileKind::exodus, "Exodus II", ".ex2 .exo .exii .e .g", FileHolds::mesh, Needs::vtk,
-              "NetCDF or HDF5; all element blocks; nodes moved by a vector dis...", begins_as_exodus, "", true},
+              "NetCDF or HDF5; all element blocks; nodes moved by displacements", begins_as_exodus, "", true},
     FormatRow{FileKind::solver, "OpenFOAM case", ".foam", FileHolds::mesh, Needs::vtk,
               "the case's folder or a file in it; also decomposed; polyhedra", begins_as_openfoam, "openfoam", true},
     FormatRow{FileKind::solver, "EnSight 6 or Gold", ".case .encas .sos", FileHolds::mesh, Needs::vtk,

@@ -298,6 +298,7 @@ BlockField foreign_field(const ForeignFile& file, const ForeignArray& array, Ass
   field.type = name_of(array.type);
   field.tuples = array.tuples;
   field.active = array.active;
+  field.ids = array.ids;
   field.tally = array.tally;
   field.read = [fetched = std::make_shared<FetchedArray>(file, array)](
                    int component, std::size_t first, std::span<double> out) { fetched->read(component, first, out); };

@@ -12,8 +12,12 @@ namespace {
 using Json = nlohmann::json;
 
 Json json_of(const ForeignArray& a) {
-  return {a.number,    a.name,       static_cast<int>(a.type), a.components,      a.tuples, a.active,
-          a.tally.low, a.tally.high, a.tally.not_finite,       a.tally.any_finite};
+  const NumberTally& t = a.tally;
+  return {a.number,     a.name,       static_cast<int>(a.type),
+          a.components, a.tuples,     a.active,
+          t.low,        t.high,       t.not_finite,
+          t.any_finite, a.ids,        t.whole,
+          t.finite,     t.fingerprint};
 }
 
 ForeignArray array_of(const Json& json) {
@@ -26,8 +30,10 @@ ForeignArray array_of(const Json& json) {
   a.components = json.at(3).get<int>();
   a.tuples = json.at(4).get<std::uint64_t>();
   a.active = json.at(5).get<bool>();
-  a.tally = {json.at(6).get<double>(), json.at(7).get<double>(), json.at(8).get<std::uint64_t>(),
-             json.at(9).get<bool>()};
+  a.tally = {json.at(6).get<double>(),        json.at(7).get<double>(), json.at(8).get<std::uint64_t>(),
+             json.at(9).get<bool>(),          json.at(11).get<bool>(),  json.at(12).get<std::uint64_t>(),
+             json.at(13).get<std::uint64_t>()};
+  a.ids = json.at(10).get<bool>();
   // So that bytes() does not overflow.
   if (a.components < 1 || a.components > 1 << 20 || a.tuples > 1ull << 40)
     throw std::invalid_argument("size of an array");
@@ -160,6 +166,7 @@ std::vector<std::uint8_t> bytes_of(const ForeignContents& contents) {
                         {"surface_names", contents.surface_names},
                         {"time_steps", contents.time_step.count},
                         {"time_step", contents.time_step.step},
+                        {"times", contents.time_step.times},
                         {"has_levels", contents.has_levels}});
 }
 
@@ -175,6 +182,7 @@ ForeignContents contents_of(std::span<const std::uint8_t> bytes) {
   json.at("surface_names").get_to(contents.surface_names);
   json.at("time_steps").get_to(contents.time_step.count);
   json.at("time_step").get_to(contents.time_step.step);
+  json.at("times").get_to(contents.time_step.times);
   json.at("has_levels").get_to(contents.has_levels);
   return contents;
 }

@@ -69,6 +69,7 @@ struct ForeignArray {
   int components = 1;
   std::uint64_t tuples = 0;
   bool active = false;  ///< the file marks it as its scalars or vectors
+  bool ids = false;     ///< the file marks it as ids
   NumberTally tally{};  ///< of fields
 
   [[nodiscard]] std::size_t tuple_bytes() const { return static_cast<std::size_t>(components) * size_of(type); }

@@ -186,7 +186,8 @@ MeshBlocks read_plot3d(const std::filesystem::path& file, const MeshOptions& opt
 MeshBlocks read_plot3d_list(const std::filesystem::path& file, const MeshOptions& options) {
   require_beside_others(file);
   const std::vector<Plot3dStep> steps = parse_plot3d_list(read_text_file(file), file);
-  const TimeStepRead chosen = chosen_step(options.time_step, steps.size(), file.string());
+  TimeStepRead chosen = chosen_step(options.time_step, steps.size(), file.string());
+  for (const Plot3dStep& each : steps) chosen.times.push_back(each.time);
   const Plot3dStep& step = steps[chosen.step];
   MeshOptions of_step = options;
   of_step.time_step.reset();
@@ -194,7 +195,7 @@ MeshBlocks read_plot3d_list(const std::filesystem::path& file, const MeshOptions
   MeshBlocks result = read_plot3d(step.grid, of_step);
   for (CellBlock& block : result.blocks)
     if (block.source.empty()) block.source = step.grid.string();
-  result.time_step = chosen;
+  result.time_step = std::move(chosen);
   if (step.has_functions)
     result.notes.emplace_back("the list names a file of functions beside the solution, which is not read");
   return result;

@@ -42,8 +42,8 @@ MeshBlocks blocks_of_tets(scene::TetMesh mesh);
 /// Legacy .vtk: unstructured, structured and rectilinear grids, ASCII or binary, all their arrays.
 MeshBlocks read_vtk_legacy(const std::filesystem::path& file, const MeshOptions& options);
 
-/// Exodus II: all element blocks, nodal and element variables at one time step (default the last). Nodes are moved by
-/// the file's displacements, if it has some, as ParaView does. Variables NAME_x NAME_y NAME_z become one vector NAME.
+/// Exodus II: all element blocks, nodal and element variables at one time step (default the last). Nodes are where
+/// they began (io/warp.hpp). Variables NAME_x NAME_y NAME_z become one vector NAME.
 MeshBlocks read_exodus(const std::filesystem::path& file, const MeshOptions& options);
 
 /// A file of a solver, by the name of a reader in helper/vtk_main.cpp: all blocks, all arrays, one time step, by

@@ -13,6 +13,7 @@
 #include "io/mesh_shares.hpp"
 #include "io/part_range.hpp"
 #include "io/tets_file.hpp"
+#include "io/warp.hpp"
 
 namespace tessera::io {
 namespace {
@@ -101,6 +102,7 @@ struct MeshPartReading::State {
       read_shared(part, parts);
     else
       read_listed(part, parts);
+    warp(blocks, options, file.string());
   }
 };
 

@@ -19,6 +19,7 @@
 #include "io/su2_file.hpp"
 #include "io/tecplot_file.hpp"
 #include "io/tets_file.hpp"
+#include "io/warp.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -101,15 +102,20 @@ MeshBlocks chosen_blocks(MeshBlocks read, const BlockChoice& choice) {
   return read;
 }
 
+MeshBlocks warped(MeshBlocks read, const MeshOptions& options, const std::string& source) {
+  warp(read, options, source);
+  return read;
+}
+
 /// What is in a gzip file is read under another name, which nobody is to hear of.
 MeshBlocks read_blocks(const std::filesystem::path& file, const MeshOptions& options) {
   const FormatRow* const row = format_of(file);
   if (row == nullptr) refuse_as_mesh(file);
   if (std::filesystem::is_directory(file) || !looks_like_gzip(read_beginning(file, 2)))
-    return chosen_blocks(read_content(file, *row, options), options.blocks);
+    return warped(chosen_blocks(read_content(file, *row, options), options.blocks), options, file.string());
   const InflatedFile inflated(file);
   MeshBlocks read = inflated.read([&](const std::filesystem::path& content) {
-    return chosen_blocks(read_content(content, *row, options), options.blocks);
+    return warped(chosen_blocks(read_content(content, *row, options), options.blocks), options, file.string());
   });
   for (std::string& note : read.notes) note = inflated.renamed(std::move(note));
   for (CellBlock& block : read.blocks) block.source = inflated.renamed(std::move(block.source));
@@ -187,10 +193,10 @@ MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options
   });
 }
 
-std::uint64_t time_steps_of_mesh(const std::filesystem::path& file, const MeshOptions& options) {
+TimeStepRead time_steps_of_mesh(const std::filesystem::path& file, const MeshOptions& options) {
   require_mesh_file(file);
-  if (!has_time_steps(file)) return 1;
-  return with_clean_errors(file.string(), [&] { return read_blocks(file, options).time_step.count; });
+  if (!has_time_steps(file)) return {};
+  return with_clean_errors(file.string(), [&] { return read_blocks(file, options).time_step; });
 }
 
 MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptions& options) {

@@ -13,6 +13,7 @@
 #include "tessera/field_info.hpp"
 #include "tessera/read_progress.hpp"
 #include "tessera/selection.hpp"
+#include "tessera/warp.hpp"
 
 namespace tessera::io {
 
@@ -37,6 +38,7 @@ struct MeshOptions {
   bool shape = false;               ///< ReadOptions::shape
   Selection selection{};            ///< what of the mesh is kept
   bool surfaces = false;            ///< blocks of faces, patches and side sets are read and named too
+  std::optional<Warp> warp{};       ///< ReadOptions::warp
 };
 
 using tessera::HigherOrderCells;
@@ -72,8 +74,9 @@ MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptio
 struct MeshBlocks;
 MeshBlocks read_mesh_blocks(const std::filesystem::path& file, const MeshOptions& options);
 
-/// How many time steps a mesh file has. Of formats that may have several the helper opens it. Throws as read_mesh.
-std::uint64_t time_steps_of_mesh(const std::filesystem::path& file, const MeshOptions& options = {});
+/// The time steps that a mesh file has, and when they are. Of formats that may have several the helper opens it. Throws
+/// as read_mesh.
+TimeStepRead time_steps_of_mesh(const std::filesystem::path& file, const MeshOptions& options = {});
 
 /// Throws Error(bad_input) if the file is not there or read_mesh does not know its format. Does not read it.
 void require_mesh_file(const std::filesystem::path& file);

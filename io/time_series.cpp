@@ -76,6 +76,7 @@ std::vector<TimeStep> read_pattern(const std::filesystem::path& input, const Pat
 std::vector<TimeStep> read_pvd(const std::filesystem::path& input) {
   struct Entry {
     double time;
+    bool has_time;
     long part;
     std::filesystem::path file;
   };
@@ -96,11 +97,11 @@ std::vector<TimeStep> read_pvd(const std::filesystem::path& input) {
     const auto fail = [&](const std::string& what) {
       return scene::bad_input(fmt::format("{}: DataSet {} {}; write it anew", source, entries.size(), what));
     };
-    Entry entry{0, 0, {}};
+    Entry entry{0, false, 0, {}};
     if (const std::string* time = element.find("timestep")) {
       const auto value = parse_number(*time);
       if (!value) throw fail(fmt::format("has the timestep {}, which is not a finite number", quote(*time)));
-      entry.time = *value;
+      entry.time = *value, entry.has_time = true;
     }
     if (const std::string* part = element.find("part"); part != nullptr && !part->empty()) {
       const auto [end, error] = std::from_chars(part->data(), part->data() + part->size(), entry.part);
@@ -117,7 +118,7 @@ std::vector<TimeStep> read_pvd(const std::filesystem::path& input) {
                    [](const Entry& a, const Entry& b) { return a.time != b.time ? a.time < b.time : a.part < b.part; });
   std::vector<TimeStep> steps;
   for (Entry& entry : entries) {
-    if (steps.empty() || steps.back().time != entry.time) steps.push_back({entry.time, {}});
+    if (steps.empty() || steps.back().time != entry.time) steps.push_back({entry.time, {}, {}, entry.has_time});
     steps.back().files.push_back(std::move(entry.file));
   }
   return steps;
@@ -144,7 +145,9 @@ std::vector<TimeStep> parse_file_series(std::string_view text, const std::filesy
     const auto time = entry.find("time");
     if (time != entry.end() && !time->is_number()) throw fail("has a \"time\" that is no number");
     steps.push_back({time == entry.end() ? static_cast<double>(steps.size()) : time->get<double>(),
-                     {input.parent_path() / name->get<std::string>()}});
+                     {input.parent_path() / name->get<std::string>()},
+                     {},
+                     time != entry.end()});
   }
   std::stable_sort(steps.begin(), steps.end(), [](const TimeStep& a, const TimeStep& b) { return a.time < b.time; });
   return steps;

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "scene/error.hpp"
 
@@ -14,8 +17,9 @@ namespace tessera::io {
 
 /// Which of a file's time steps was read.
 struct TimeStepRead {
-  std::uint64_t count = 1;  ///< that the file has; 1, or 0: it does not change with time
-  std::uint64_t step = 0;   ///< counted from 0
+  std::uint64_t count = 1;      ///< that the file has; 1, or 0: it does not change with time
+  std::uint64_t step = 0;       ///< counted from 0
+  std::vector<double> times{};  ///< of all steps, where the file says them: `count`; else none
 };
 
 /// Of so many steps the one that is asked for, the last if none is. Throws Error(bad_input) if it is not there.
@@ -23,13 +27,21 @@ inline TimeStepRead chosen_step(std::optional<std::size_t> wish, std::uint64_t c
   if (wish && *wish >= std::max<std::uint64_t>(count, 1))
     throw scene::bad_input(
         fmt::format("{}: there is no time step {}, the file has {}; count from 0", source, *wish, count));
-  return {count, wish.value_or(count == 0 ? 0 : count - 1)};
+  return {count, wish.value_or(count == 0 ? 0 : count - 1), {}};
+}
+
+/// Keeps times only if there is one for each step, all of them numbers.
+inline void set_times(TimeStepRead& read, std::vector<double> times) {
+  if (times.size() == read.count && std::ranges::all_of(times, [](double t) { return std::isfinite(t); }))
+    read.times = std::move(times);
 }
 
 /// What a file's notes say of it; nothing if there is but one.
 inline std::optional<std::string> note_on(const TimeStepRead& read, std::optional<std::size_t> wish) {
   if (read.count <= 1) return std::nullopt;
-  return fmt::format("time step {} of 0 to {}{}", read.step, read.count - 1,
+  const std::string time =
+      read.step < read.times.size() ? fmt::format(", time {:.6g}", read.times[read.step]) : std::string();
+  return fmt::format("time step {} of 0 to {}{}{}", read.step, read.count - 1, time,
                      wish ? "" : ", the last by default; `time_step` all shows them as a film");
 }
 

@@ -143,7 +143,8 @@ class GridElements {
   void begin_list(const VtkXmlElement& element) {
     VtkXmlPiece& piece = grid_.pieces.back();
     const auto fields = [&](VtkXmlFields& of) {
-      of = {{}, element.word("Scalars"), element.word("Vectors")};
+      of = {
+          {}, element.word("Scalars"), element.word("Vectors"), element.word("GlobalIds"), element.word("PedigreeIds")};
       return &of.arrays;
     };
     list_ = element.name == "PointData"                                 ? fields(piece.point_fields)

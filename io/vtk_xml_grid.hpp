@@ -29,6 +29,7 @@ struct VtkXmlArray {
 struct VtkXmlFields {
   std::vector<VtkXmlArray> arrays;
   std::string scalars, vectors;  ///< the names of the active ones
+  std::string global_ids, pedigree_ids;
 };
 
 /// One <Piece>: what it has of each kind, numbers not read yet.

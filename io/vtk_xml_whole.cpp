@@ -93,6 +93,7 @@ std::vector<ForeignArray> hold_fields(const VtkXmlOpened& of, const VtkXmlFields
     ForeignArray as{.name = like.name, .type = *like.type};
     // Active vectors have three components to VTK.
     as.active = like.name == first.scalars || (like.name == first.vectors && like.components == 3);
+    as.ids = like.name == first.global_ids || like.name == first.pedigree_ids;
     if (of.grid.major < 2 && like.name == "vtkGhostLevels" && like.type == NumberType::uint8 && like.components == 1)
       as.name = "vtkGhostType", whole.has_ghost_levels = true;
     wholes.push_back(whole);

@@ -131,7 +131,8 @@ Json data_answer(const ApiContext& context, const OpenScene& open) {
   std::vector<std::string> notes, warnings;
   for (const std::string& note : data.notes()) notes.push_back(context.reader.worded(note));
   for (const std::string& warning : data.warnings()) warnings.push_back(context.reader.worded(warning));
-  const std::vector<double> times = context.reader.times();
+  std::vector<double> times = context.reader.times();
+  if (times.empty()) times = {data.times().begin(), data.times().end()};
   const Box& box = data.bounds();
   return {{"file", context.reader.input_name()},
           {"format", data.format()},

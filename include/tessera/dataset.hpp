@@ -23,6 +23,7 @@
 #include "tessera/selection.hpp"
 #include "tessera/settings.hpp"
 #include "tessera/transfer_function.hpp"
+#include "tessera/warp.hpp"
 
 namespace tessera {
 
@@ -40,7 +41,9 @@ struct ReadOptions {
   /// `shape_field_name`: how far each point lies towards the eye of the default view. false: the value 1 where there is
   /// no field, else the first of them, labels last.
   bool shape = false;
-  bool smooth = false;                 ///< average cell data to the points, weighted by tet volume
+  bool smooth = false;  ///< average cell data to the points, weighted by tet volume
+  /// How the points are moved. None: as the file means it, Exodus by its displacements, others not.
+  std::optional<Warp> warp{};
   std::filesystem::path plot3d_q{};    ///< PLOT3D solution file; empty: found beside the grid file by its name
   std::optional<double> max_volume{};  ///< surfaces only: largest tet TetGen makes, world units cubed
   /// Files in blocks: names of those to read; none: all. Of a block that is in another ("fluid/internalMesh") the
@@ -195,6 +198,9 @@ class TESSERA_EXPORT Dataset {
   [[nodiscard]] std::vector<std::string> warnings() const;
   /// How many time steps its file has, of which it is one; 1 of what does not change with time.
   [[nodiscard]] std::size_t time_steps() const;
+  /// When these are, and when this one is, in the file's unit, where it says so; else none.
+  [[nodiscard]] std::span<const double> times() const;
+  [[nodiscard]] std::optional<double> time() const;
   /// Names of a file's blocks (ReadOptions::blocks), of those too that were not read.
   [[nodiscard]] std::span<const std::string> blocks() const;
   /// Names of the surfaces beside a mesh that were left out, which read_block_surface() reads: side sets, patches.
@@ -266,6 +272,9 @@ TESSERA_EXPORT std::optional<ReadOptions> finer_read(const ReadOptions& options,
 /// How many time steps a mesh or grid file has (ReadOptions::time_step); 1 if it does not change with time. Formats
 /// that may have several are looked into, as `options` say, others are not read. Throws as Dataset::open.
 TESSERA_EXPORT std::size_t time_steps_of(const std::filesystem::path& file, const ReadOptions& options = {});
+
+/// When they are, where the file says it; else their numbers from 0.
+TESSERA_EXPORT std::vector<double> times_of(const std::filesystem::path& file, const ReadOptions& options = {});
 
 /// The names of all presets' colours, the default first.
 TESSERA_EXPORT std::vector<std::string> preset_names();

@@ -19,6 +19,8 @@ struct FieldInfo {
   double low = 0, high = 0;     ///< finite values, of the magnitude if there are several components; 0, 0 if none is
   std::uint64_t nan_count = 0;  ///< tuples that are NaN or infinite
   bool active = false;          ///< the file marks it as its scalars or vectors
+  bool ids = false;             ///< it numbers cells or points: the file marks it so, or its values are 0 to n - 1 or
+                                ///< 1 to n, each once (of integers from any number on)
 
   bool operator==(const FieldInfo&) const = default;
 };

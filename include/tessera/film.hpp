@@ -29,6 +29,7 @@ struct FilmPlan {
   /// all of a series, and of a file the one that ReadOptions::time_step says.
   std::optional<StepRange> steps{};
   std::size_t file_steps = 1;
+  std::vector<double> file_times{};  ///< when they are (Dataset::times()); none: their numbers
   /// A view or a list of views, a file or JSON itself (cameras_of()); empty: the default view.
   std::filesystem::path cameras;
   int orbit = 0;                  ///< frames of one turn of one view round its up axis; 0: none
@@ -53,6 +54,8 @@ struct TESSERA_EXPORT FilmFrame {
   /// of the plan is adjusted as `request` says, else the view is made as it says.
   [[nodiscard]] Camera view(const Box& box, ProjectionKind default_projection, const ViewRequest& request = {},
                             BodyAxes axes = BodyAxes::none) const;
+  /// Whether all files of its step are.
+  [[nodiscard]] bool is_there() const;
   /// Of a series' later steps, before they are read: throws Error(system_failure) if a file that plan_film() saw is
   /// gone.
   void require_still_there() const;
@@ -68,6 +71,11 @@ TESSERA_EXPORT bool takes_steps_of_file(const FilmPlan& plan);
 /// Error(bad_input) if an input that is to be read is not there, if several frames would share one name, if an orbit is
 /// asked of several views, for steps that are not there, or for what cameras_of() refuses.
 TESSERA_EXPORT std::vector<FilmFrame> plan_film(const FilmPlan& plan);
+
+/// What ReadOptions::field would be chosen for several steps together, of which each has these fields: of a file whose
+/// every array is as in the step where it spans most. With `point:` or `cell:` before it, but of smoothed ones. Arrays
+/// that a step lacks are left out; nothing if none varies that is no label.
+TESSERA_EXPORT std::string field_of_steps(std::span<const std::vector<FieldInfo>> steps, const ReadOptions& options);
 
 /// How later steps of a time series are read: their field is the one that was chosen for the first step. A field that
 /// varies in one step and not in the next would else make the film jump to another.

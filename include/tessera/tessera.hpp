@@ -40,4 +40,5 @@
 #include "tessera/verification.hpp"
 #include "tessera/version.hpp"
 #include "tessera/view.hpp"
+#include "tessera/warp.hpp"
 #include "tessera/write.hpp"

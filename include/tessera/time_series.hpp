@@ -14,6 +14,7 @@ struct TimeStep {
   double time = 0;  ///< as the .pvd or .series gives it; else the number in the name, or the place in a list
   std::vector<std::filesystem::path> files;  ///< at least one; several are pieces of one mesh
   std::optional<std::size_t> in_file{};      ///< of a file with several steps: which of them (ReadOptions::time_step)
+  bool has_time = false;  ///< the .pvd, .series or file says the time; else the number or place stands for it
 };
 
 /// Whether the name stands for several meshes: a .pvd, a .series, or a file name with `%d` or `%04d` that is not a file

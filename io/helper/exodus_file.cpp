@@ -219,6 +219,8 @@ class Reading {
     check_count("time steps", steps, 1);
     result_.time_step = chosen_step(wish, static_cast<std::uint64_t>(steps), source_);
     if (steps > INT32_MAX) file_->fail(fmt::format("it promises {} time steps", steps));
+    std::vector<double> times(static_cast<std::size_t>(steps));
+    if (steps > 0 && ex_get_all_times(file_->id(), times.data()) >= 0) set_times(result_.time_step, std::move(times));
     step_ = wish ? static_cast<int>(*wish) + 1 : static_cast<int>(steps);  // from 1; 0 if there are none
   }
 
@@ -330,13 +332,11 @@ class Reading {
     const auto file = file_;
     const int step = step_;
     if (step > 0) {
-      for (const Variable& variable : group_vectors(file_->variable_names(EX_NODAL))) {
+      for (const Variable& variable : group_vectors(file_->variable_names(EX_NODAL)))
         block_.fields.push_back(make_field(variable, scene::Association::point, nodes,
                                            [file, step](int index, std::size_t first, std::span<double> out) {
                                              read_values(*file, step, EX_NODAL, index, 1, first, out);
                                            }));
-        displace(variable.name, block_.fields.back());
-      }
       if (!has_sides_) add_element_fields();
     }
     if (has_sides_) return finish();
@@ -375,20 +375,6 @@ class Reading {
             read_cell_values(*file, step, index, blocks, has, first, out);
           }));
     }
-  }
-
-  /// The vector that moves the nodes is known by its name alone: "DISPL", "disp", ...
-  void displace(const std::string& name, const BlockField& field) {
-    std::string start = name.substr(0, 3);
-    std::transform(start.begin(), start.end(), start.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (start != "dis" || field.components != 3) return;
-    std::vector<double> axis(block_.positions.size());
-    for (int c = 0; c < 3; ++c) {
-      field.read(c, 0, axis);
-      for (std::size_t v = 0; v < axis.size(); ++v) block_.positions[v][c] += axis[v];
-    }
-    result_.notes.push_back(fmt::format("nodes are displaced by '{}'", name));
   }
 
   std::string source_;

@@ -23,14 +23,15 @@ struct ModelData {
   std::vector<std::size_t> tags;
   std::vector<std::vector<double>> values;
   int components = 0;
+  double time = 0;
 };
 
 /// Nothing for lists of shapes, which have no mesh, and for a step without data.
 std::optional<ModelData> data_of(int tag, std::size_t step) {
   ModelData data;
-  double time = 0;
   try {
-    gmsh::view::getModelData(tag, static_cast<int>(step), data.type, data.tags, data.values, time, data.components);
+    gmsh::view::getModelData(tag, static_cast<int>(step), data.type, data.tags, data.values, data.time,
+                             data.components);
   } catch (const std::bad_alloc&) {
     throw;
   } catch (...) {  // Gmsh throws what it likes
@@ -79,6 +80,15 @@ std::optional<GmshView> view_of(const KnownView& known, std::size_t step) {
   return view;
 }
 
+/// Of the steps of the first view that has so many.
+std::vector<double> times_of(const std::vector<KnownView>& views, std::size_t steps) {
+  std::vector<double> times;
+  const auto longest = std::ranges::find(views, steps, &KnownView::steps);
+  for (std::size_t step = 0; longest != views.end() && step < steps; ++step)
+    if (const auto data = data_of(longest->tag, longest->first_step + step)) times.push_back(data->time);
+  return times;
+}
+
 }  // namespace
 
 TagIndex::TagIndex(const std::vector<std::size_t>& tags) {
@@ -106,6 +116,7 @@ std::vector<GmshView> gmsh_views(std::optional<std::size_t> time_step, const std
   std::size_t steps = 0;
   for (const KnownView& view : known) steps = std::max(steps, view.steps);
   read = chosen_step(time_step, steps, source);
+  if (steps > 1) set_times(read, times_of(known, steps));
   const std::size_t step = read.step;
   std::vector<GmshView> views;
   for (const KnownView& each : known) {

@@ -30,6 +30,7 @@ ForeignArray hold_field(Holdings& holdings, const BlockField& field) {
   array.components = field.components;
   array.tuples = field.tuples;
   array.active = field.active;
+  array.ids = field.ids;
   std::vector<double> some(std::min(field.tuples, tuples_at_once));
   for (std::size_t first = 0; first < field.tuples; first += some.size()) {
     const std::span chunk = std::span(some).first(std::min(some.size(), field.tuples - first));

@@ -107,6 +107,18 @@ void add_field(const MedFile& file, const FieldAt& field, MedMesh& mesh, std::ve
         field_of_values(field.name, "double", scene::Association::cell, field.components, std::move(of_cells)));
 }
 
+/// Of a field's steps; none if one has none.
+std::vector<double> times_of(const MedFile& file, const FieldAt& field, std::size_t steps) {
+  std::vector<double> times(steps);
+  for (std::size_t k = 0; k < steps; ++k) {
+    med_int step = 0, iteration = 0;
+    if (MEDfieldComputingStepInfo(file.id(), field.name.c_str(), static_cast<int>(k) + 1, &step, &iteration,
+                                  &times[k]) < 0)
+      return {};
+  }
+  return times;
+}
+
 }  // namespace
 
 void add_med_fields(const MedFile& file, std::optional<std::size_t> time_step, std::vector<MedMesh>& meshes,
@@ -114,6 +126,7 @@ void add_med_fields(const MedFile& file, std::optional<std::size_t> time_step, s
   const med_int count = MEDnField(file.id());
   file.require(count >= 0 && count < 100000, "the number of fields");
   std::size_t most_steps = 0;
+  std::vector<double> times;
   for (int f = 1; f <= count; ++f) {
     FieldAt field;
     field.components = MEDfieldnComponent(file.id(), f);
@@ -128,7 +141,10 @@ void add_med_fields(const MedFile& file, std::optional<std::size_t> time_step, s
                  "a field");
     field.name = name.data(), field.mesh = mesh_name.data();
     const auto known = static_cast<std::size_t>(std::max<med_int>(steps, 0));
-    most_steps = std::max(most_steps, known);
+    if (known > most_steps) {
+      most_steps = known;
+      times = times_of(file, field, known);
+    }
     const std::size_t step = time_step.value_or(known == 0 ? 0 : known - 1);
     if (step >= known) continue;
     med_float time = 0;
@@ -140,6 +156,7 @@ void add_med_fields(const MedFile& file, std::optional<std::size_t> time_step, s
       if (mesh.block.name == field.mesh) add_field(file, field, mesh, notes);
   }
   read = chosen_step(time_step, most_steps, file.source());
+  set_times(read, std::move(times));
 }
 
 }  // namespace tessera::io::helper

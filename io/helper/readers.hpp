@@ -34,8 +34,7 @@ ForeignContents read_stl(Holdings& holdings, const std::filesystem::path& file, 
 ForeignContents read_vtk_surface(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
 /// Exodus II: all element blocks, nodal and element variables at `time_step`, counted from 0, or the last one. Nodes
-/// are moved by the file's displacements, if it has some, as ParaView does. Variables NAME_x NAME_y NAME_z become one
-/// vector NAME.
+/// are where they began. Variables NAME_x NAME_y NAME_z become one vector NAME.
 ForeignContents read_exodus(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
 /// A grid of NetCDF variables of three dimensions, by the CF conventions where it follows them: rectilinear axes as

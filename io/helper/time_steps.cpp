@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "io/helper/vtk_session.hpp"
 
@@ -22,6 +24,9 @@ void update_at_step(vtkAlgorithm& reader, const nlohmann::json& request, const s
   const auto steps =
       static_cast<std::size_t>(about != nullptr && about->Has(key) ? std::max(about->Length(key), 0) : 0);
   read = chosen_step(wish, steps, source);
+  std::vector<double> times;
+  for (std::size_t k = 0; k < steps; ++k) times.push_back(about->Get(key, static_cast<int>(k)));
+  set_times(read, times);
   const int part = request.value("part", 0), parts = request.value("parts", 1);
   if (steps == 0) {
     if (parts > 1)
@@ -30,7 +35,7 @@ void update_at_step(vtkAlgorithm& reader, const nlohmann::json& request, const s
       reader.Update();
     return;
   }
-  const double time = about->Get(key, static_cast<int>(read.step));
+  const double time = times[read.step];
   if (parts > 1)
     reader.UpdateTimeStep(time, part, parts);
   else

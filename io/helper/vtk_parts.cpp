@@ -262,6 +262,7 @@ std::vector<ForeignArray> hold_fields(Holdings& holdings, vtkDataSetAttributes& 
     const char* const name = array->GetName();
     field.name = name != nullptr && *name != '\0' ? name : fmt::format("{}{}", unnamed, k);
     field.active = array == attributes.GetScalars() || array == attributes.GetVectors();
+    field.ids = array == attributes.GetGlobalIds() || array == attributes.GetPedigreeIds();
     field.tally = tally_of(*array);
     fields.push_back(std::move(field));
   }

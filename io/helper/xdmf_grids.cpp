@@ -76,6 +76,11 @@ class Timeline {
 
   [[nodiscard]] std::size_t count() const { return by_time_ ? times_.size() : longest_; }
 
+  /// Of the steps, where all have one; else none.
+  [[nodiscard]] std::vector<double> times() const {
+    return all_timed_ && times_.size() == count() ? times_ : std::vector<double>();
+  }
+
   /// Null before the collection's first time.
   [[nodiscard]] Grid at(const Steps& steps, std::size_t step) const {
     if (!by_time_) return steps.grids[std::min(step, steps.grids.size() - 1)];
@@ -148,6 +153,7 @@ std::vector<XdmfBlock> blocks_at(const boost::shared_ptr<XdmfDomain>& domain, st
   Walk walk(timeline, read.step);
   for (const Grid& grid : grids) walk.visit(grid, grids.size() > 1 ? grid->getName() : "");
   merge_same_meshes(walk.blocks);
+  set_times(read, timeline.times());
   return std::move(walk.blocks);
 }
 

@@ -61,15 +61,25 @@ TEST_F(TimeSteps, SaysWhichIsShownAndHowToSeeAll) {
       << one.err;
 }
 
-TEST_F(TimeSteps, WarnsIfLaterStepsLeaveTheRangeOfTheFirst) {
-  const Names film = {"render", volume, "-o", folder / "w_%d.pfm", "--size", "8x8", "--time-step", "all"};
+TEST_F(TimeSteps, ColorsSpanTheStepsThatAreLookedAt) {
+  const Names film = {"render",
+                      volume,
+                      "-o",
+                      folder / "w_%d.pfm",
+                      "--size",
+                      "8x8",
+                      "--time-step",
+                      "all",
+                      "--report",
+                      folder / "range.json",
+                      "--transfer-function",
+                      "viridis"};
   const Outcome outcome = tessera(film);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("values of all time steps are from 0 to 34, colours are the first's, of 0 to 4; --range "
-                             "0,34 spans all"),
-            std::string::npos)
-      << outcome.err;
-  EXPECT_EQ(render("w_%d.pfm", "all").err.find("spans all"), std::string::npos);
+  const auto knots = nlohmann::json::parse(contents(folder / "range.json")).at("transfer_function").at("knots");
+  EXPECT_EQ(knots.front().at(0), 0);
+  EXPECT_EQ(knots.back().at(0), 34);
+  EXPECT_EQ(outcome.err.find("spans all"), std::string::npos) << outcome.err;
 }
 
 TEST_F(TimeSteps, SeriesAreChosenFromTheSameWay) {

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <span>
 
 #include "io/mesh_checks.hpp"
 
@@ -74,6 +76,90 @@ TEST(FieldChoice, IndicesAndPartsAreNoDefaultWhereShapesAreShown) {
   for (const char* name : {"rank", "BLOCK_K", "mpi_rank", "material_id", "subdomain"}) EXPECT_TRUE(is_label_name(name));
   for (const char* name : {"mach_number", "refractive_index", "k_eps", "materiality"})
     EXPECT_FALSE(is_label_name(name));
+}
+
+BlockField integers(const std::string& name, std::vector<double> values) {
+  return field_of_values(name, "int64", Association::point, 1, std::move(values));
+}
+
+/// The numbers first, first + 1, ... in an order that is none.
+std::vector<double> shuffled(std::size_t count, double first) {
+  std::vector<double> values(count);
+  for (std::size_t k = 0; k < count; ++k) values[k * 37 % count] = first + static_cast<double>(k);
+  return values;
+}
+
+TEST(FieldChoice, NumbersOfPointsAreIdsByAnyName) {
+  const BlockField cells = field("porosity", Association::cell, {0.1, 0.2});
+  for (const double first : {0.0, 1.0})
+    for (const std::size_t count : {std::size_t{4}, std::size_t{64}, std::size_t{1000}})
+      for (const BlockField& ids :
+           {integers("nr", shuffled(count, first)), field("nr", Association::point, shuffled(count, first))}) {
+        const std::vector<FieldSummary> fields = summary(std::vector{block_with({ids, cells})});
+        EXPECT_TRUE(fields[0].ids) << count;
+        EXPECT_EQ(choose_field("", fields, "mesh.vtu").label, "porosity");
+        EXPECT_EQ(choose_field("", fields, "mesh.vtu", true).label, "porosity");
+      }
+  // Integers may begin anywhere; floats that do are pressures.
+  EXPECT_EQ(choose("", block_with({integers("nr", shuffled(90, 501)), cells})).label, "porosity");
+  EXPECT_EQ(choose("", block_with({field("p", Association::point, shuffled(90, 300)), cells})).label, "p");
+  // One twice, one left out, one between, vectors.
+  std::vector<double> twice = shuffled(90, 0);
+  twice[7] = twice[8];
+  EXPECT_EQ(choose("", block_with({integers("n", twice), cells})).label, "n");
+  std::vector<double> gap = shuffled(90, 0);
+  std::ranges::replace(gap, 50.0, 90.0);
+  EXPECT_EQ(choose("", block_with({integers("n", gap), cells})).label, "n");
+  std::vector<double> between = shuffled(90, 0);
+  between[3] += 0.5;
+  EXPECT_EQ(choose("", block_with({field("n", Association::point, between), cells})).label, "n");
+  std::vector<double> axis(90 * 3, 0);
+  for (std::size_t k = 0; k < 90; ++k) axis[3 * k] = static_cast<double>(k);
+  EXPECT_EQ(choose("", block_with({field("v", Association::point, axis, 3), cells})).label, "v:mag");
+}
+
+TEST(FieldChoice, IdsAreKnownInBlocksAndPartsAlike) {
+  const BlockField cells = field("porosity", Association::cell, {0.1, 0.2});
+  std::vector<double> whole = shuffled(200, 0);
+  const auto block_of = [&](std::size_t first, std::size_t count) {
+    const auto begin = whole.begin() + static_cast<std::ptrdiff_t>(first);
+    return block_with({integers("nr", {begin, begin + static_cast<std::ptrdiff_t>(count)}), cells});
+  };
+  const std::vector<CellBlock> blocks = {block_of(0, 60), block_of(60, 90), block_of(150, 50)};
+  const std::vector<FieldSummary> together = summary(blocks);
+  EXPECT_TRUE(together[0].ids);
+  std::vector<std::vector<FieldTally>> parts;
+  for (const CellBlock& block : blocks) parts.push_back(tally_fields(std::span(&block, 1)));
+  EXPECT_EQ(summarize_fields(parts), together);
+  // Each block counts its own.
+  const std::vector<CellBlock> own = {block_with({integers("nr", shuffled(20, 0)), cells}),
+                                      block_with({integers("nr", shuffled(33, 0)), cells})};
+  EXPECT_TRUE(summary(own)[0].ids);
+  const std::vector<CellBlock> other = {own[0], block_with({integers("nr", std::vector<double>(33, 5)), cells})};
+  EXPECT_FALSE(summary(other)[0].ids);
+}
+
+TEST(FieldChoice, IdsAreLastAndThenOnlyWithAWord) {
+  const BlockField constant = field("T", Association::point, {300, 300});
+  const CellBlock many = block_with({field("nr", Association::point, shuffled(100, 0)), constant});
+  EXPECT_TRUE(choose_field("", summary(std::vector{many}), "mesh.vtu", true).shape);
+  EXPECT_EQ(choose("nr", many).label, "nr");
+  const CellBlock few = block_with({field("p", Association::point, {0, 1, 2, 3, 4, 5, 6, 7}), constant});
+  const FieldChoice chosen = choose_field("", summary(std::vector{few}), "mesh.vtu", true);
+  EXPECT_EQ(chosen.label, "p");
+  ASSERT_EQ(chosen.notes.size(), 2u);
+  EXPECT_NE(chosen.notes[1].find("perhaps ids"), std::string::npos);
+  const CellBlock numbered = block_with({integers("p", {0, 1, 2, 3, 4, 5, 6, 7}), constant});
+  EXPECT_TRUE(choose_field("", summary(std::vector{numbered}), "mesh.vtu", true).shape);
+  // What the file itself calls ids.
+  CellBlock marked = block_with({field("n", Association::point, {7, 3, 3, 9}), field("c", Association::cell, {0, 5})});
+  EXPECT_EQ(choose("", marked).label, "n");
+  marked.fields[0].ids = true;
+  EXPECT_EQ(choose("", marked).label, "c");
+  for (const char* name : {"GLOBAL_IDS_POINTS", "GlobalNodeId", "node_ids_global", "vtkGlobalIds", "PointIds", "id"})
+    EXPECT_TRUE(is_label_name(name)) << name;
+  for (const char* name : {"fluid", "Solid", "idle", "Humidity", "residual", "grid_x"})
+    EXPECT_FALSE(is_label_name(name)) << name;
 }
 
 TEST(FieldChoice, NoiseAroundZeroIsShownOnlyWithAWord) {

@@ -253,7 +253,7 @@ TEST(Plot3d, ListsOfFilesAreReadOneTimeEach) {
   const MeshFile before = read_mesh(list, first);
   EXPECT_EQ(before.mesh.field_name, "none");
   EXPECT_NEAR(testing::volume(before.mesh), 3, 1e-12);
-  EXPECT_EQ(time_steps_of_mesh(list, {}), 2u);
+  EXPECT_EQ(time_steps_of_mesh(list, {}).count, 2u);
   first.time_step = 2;
   test::expect_bad_input([&] { read_mesh(list, first); }, {"a.p3d: there is no time step 2, the file has 2"});
   for (const auto& [entries, words] : std::vector<std::pair<std::string, std::string>>{

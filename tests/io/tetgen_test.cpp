@@ -17,7 +17,7 @@ namespace {
 using test::expect_bad_input;
 
 const std::string node_text =
-    "# five points\n5 3 2 1\n1 0 0 0  0 10 7\n2 1 0 0  1 10 7\n3 0 1 0  2 11 7 # y\n\n4 0 0 1  3 10 7\n5 1 1 1  4 12 "
+    "# five points\n5 3 2 1\n1 0 0 0  0 10 7\n2 1 0 0  1 10 7\n3 0 1 0  2 11 7 # y\n\n4 0 0 1  3 10 7\n5 1 1 1  5 12 "
     "7\n";
 const std::string ele_text = "2 4 1\n1 1 2 3 4 1.5\n2 2 3 4 5 2.5\n";
 
@@ -30,7 +30,7 @@ TEST(NodeEle, EitherNameReadsPointsTetsAndAttributes) {
     EXPECT_EQ(read.format, "TetGen .node/.ele");
     EXPECT_EQ(read.mesh.tets, (std::vector<scene::Tet>{{0, 1, 2, 3}, {1, 2, 3, 4}}));
     EXPECT_EQ(read.mesh.field_name, "attribute0");
-    EXPECT_EQ(read.mesh.scalars, (std::vector<double>{0, 1, 2, 3, 4}));
+    EXPECT_EQ(read.mesh.scalars, (std::vector<double>{0, 1, 2, 3, 5}));
   }
   MeshOptions options;
   options.field = "cell:attribute0";

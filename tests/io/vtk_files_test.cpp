@@ -211,7 +211,7 @@ TEST_F(VtkFiles, TheLegacyVectorIsReadByComponentAndMagnitude) {
             "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 "
             "1\nCELLS 1 5\n4 0 1 2 3\n"
             "CELL_TYPES 1\n10\nPOINT_DATA 4\nVECTORS vel double\n3 4 0 0 0 0 1 0 0 0 0 2\n"
-            "SCALARS a int 1\nLOOKUP_TABLE default\n1 1 1 1\nSCALARS b int 1\nLOOKUP_TABLE default\n1 2 3 4\n");
+            "SCALARS a int 1\nLOOKUP_TABLE default\n1 1 1 1\nSCALARS b int 1\nLOOKUP_TABLE default\n1 2 3 5\n");
   EXPECT_EQ(read_mesh(file).mesh.field_name, "b");
   MeshOptions options;
   options.field = "vel";

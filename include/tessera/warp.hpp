@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+namespace tessera {
+
+/// How far the points of a mesh are moved, by a vector that its file has for each of them.
+struct Warp {
+  std::string vector{};  ///< point data of three components; empty: no point is moved
+  double factor = 1;     ///< of the vector's length; finite
+
+  bool operator==(const Warp&) const = default;
+};
+
+}  // namespace tessera

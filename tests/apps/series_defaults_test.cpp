@@ -1,0 +1,192 @@
+// What the pictures of a time series go by where no option says it, and what `info` says of one.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "apps/program.hpp"
+
+namespace tessera::apps::series_defaults_test {
+namespace {
+
+using Json = nlohmann::json;
+using Names = std::vector<std::string>;
+/// Of a point's x from 0 to 1.
+using Values = std::function<double(double)>;
+
+struct Field {
+  std::string name;
+  Values values;
+};
+
+std::string array_text(const char* type, const std::string& name, int components, const std::string& numbers) {
+  return fmt::format(R"(<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="ascii">{}</DataArray>)", type,
+                     name, components, numbers);
+}
+
+/// A row of five unit cubes along x with these fields at its points.
+std::string row_of_cubes(const std::vector<Field>& fields) {
+  constexpr int cubes = 5;
+  std::string points, corners, offsets, types, data;
+  std::vector<double> xs;
+  for (int i = 0; i <= cubes; ++i)
+    for (int k = 0; k < 4; ++k) {
+      points += fmt::format("{} {} {} ", i, static_cast<int>(k == 1 || k == 2), k / 2);
+      xs.push_back(i / static_cast<double>(cubes));
+    }
+  for (int c = 0; c < cubes; ++c) {
+    for (int k = 0; k < 8; ++k) corners += fmt::format("{} ", 4 * c + k);
+    offsets += fmt::format("{} ", 8 * (c + 1));
+    types += "12 ";
+  }
+  for (const Field& field : fields) {
+    std::string numbers;
+    for (const double x : xs) numbers += fmt::format("{} ", field.values(x));
+    data += array_text("Float64", field.name, 1, numbers);
+  }
+  return fmt::format(
+      R"(<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian"><UnstructuredGrid>)"
+      R"(<Piece NumberOfPoints="{}" NumberOfCells="{}"><PointData>{}</PointData><Points>{}</Points><Cells>{}{}{}</Cells>)"
+      R"(</Piece></UnstructuredGrid></VTKFile>)",
+      xs.size(), cubes, data, array_text("Float64", "", 3, points), array_text("Int64", "connectivity", 1, corners),
+      array_text("Int64", "offsets", 1, offsets), array_text("UInt8", "types", 1, types));
+}
+
+Values times(double factor) {
+  return [factor](double x) { return factor * x; };
+}
+
+class SeriesDefaults : public ::testing::Test {
+ protected:
+  /// s_0.vtu, ... and s.pvd, at times 0, 0.25, 0.5 ...
+  void write(const std::vector<std::vector<Field>>& steps) {
+    std::string list;
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+      (void)folder.file(fmt::format("s_{}.vtu", k), row_of_cubes(steps[k]));
+      list += fmt::format(R"(<DataSet timestep="{}" file="s_{}.vtu"/>)", 0.25 * static_cast<double>(k), k);
+    }
+    pvd = folder.file("s.pvd", R"(<VTKFile type="Collection"><Collection>)" + list + "</Collection></VTKFile>");
+  }
+
+  [[nodiscard]] Names film(const std::string& input, const Names& more = {}) const {
+    Names all = {"render", input, "-o", folder / "f_%d.pfm", "--size", "16x16", "--report", folder / "r.json"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+
+  Json report_of(const std::string& input, const Names& more = {}) const {
+    const Outcome run = tessera(film(input, more));
+    EXPECT_EQ(run.status, 0) << run.err;
+    return Json::parse(contents(folder / "r.json"));
+  }
+
+  Json info_of(const std::string& input, const Names& more = {}) const {
+    Names all = {"info", input, "--json"};
+    all.insert(all.end(), more.begin(), more.end());
+    const Outcome run = tessera(all);
+    EXPECT_EQ(run.status, 0) << run.err;
+    return Json::parse(run.out);
+  }
+
+  Folder folder;
+  std::string pvd;
+};
+
+TEST_F(SeriesDefaults, GoByTheStepsThatVary) {
+  write({{{"still", times(0)}, {"conc", times(0)}, {"depth", times(3)}},
+         {{"still", times(0)}, {"conc", times(0.5)}, {"depth", times(3)}},
+         {{"still", times(0)}, {"conc", times(2)}, {"depth", times(3)}},
+         {{"still", times(0)}, {"conc", times(1)}, {"depth", times(3)}}});
+  for (const std::string& input : {pvd, folder / "s_%d.vtu"}) {
+    const Json report = report_of(input, {"--transfer-function", "viridis"});
+    EXPECT_EQ(report.at("mesh").at("field").at("name"), "conc") << input;
+    EXPECT_EQ(report.at("transfer_function").at("knots").front().at(0), 0);
+    EXPECT_EQ(report.at("transfer_function").at("knots").back().at(0), 2);
+    const Json by_default = report_of(input);
+    EXPECT_GT(by_default.at("transfer_function").at("range").at(1), 1.5);
+    const Json said = info_of(input);
+    EXPECT_EQ(said.at("field").at("name"), "conc");
+    EXPECT_EQ(said.at("time_steps").at("range"), Json({0, 2}));
+    EXPECT_EQ(said.at("renders").at("transfer_function"), by_default.at("transfer_function"));
+    EXPECT_EQ(said.at("notes"), by_default.at("mesh").at("notes"));
+  }
+  // One step alone goes by itself.
+  EXPECT_EQ(info_of(pvd, {"--time-step", "0"}).at("field").at("name"), "depth");
+  EXPECT_EQ(info_of(pvd, {"--time-step", "3"}).at("field").at("range").at(1), 1);
+}
+
+TEST_F(SeriesDefaults, SpanAllStepsLookedAt) {
+  const auto shifted = [](double by) { return [by](double x) { return by + x; }; };
+  write({{{"p", shifted(0)}}, {{"p", shifted(1)}}, {{"p", shifted(5)}}});
+  const Json report = report_of(pvd, {"--transfer-function", "viridis"});
+  EXPECT_EQ(report.at("transfer_function").at("knots").front().at(0), 0);
+  EXPECT_EQ(report.at("transfer_function").at("knots").back().at(0), 6);
+  EXPECT_EQ(report.at("frames").size(), 3u);
+}
+
+TEST_F(SeriesDefaults, LookAtFiveStepsAtMostAndWarnOfOthers) {
+  std::vector<std::vector<Field>> steps(13, {{"p", times(0)}});
+  steps[9] = {{"p", times(1)}};  // of 0, 3, 6, 9 and 12
+  steps[8] = {{"p", times(4)}};
+  write(steps);
+  const Outcome run = tessera(film(pvd));
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.err.find("note: field p and its colors go by time steps 0, 3, 6, 9 and 12 of 0 to 12, where it is from "
+                         "0 to 1"),
+            std::string::npos)
+      << run.err;
+  EXPECT_NE(run.err.find("values of all time steps are from 0 to 4, colours go by those of 0 to 1; --range 0,4 spans "
+                         "all"),
+            std::string::npos)
+      << run.err;
+}
+
+TEST_F(SeriesDefaults, AreTheSameOnRanks) {
+  if (!has_mpirun()) GTEST_SKIP() << "there is no mpirun";
+  write({{{"a", times(0)}, {"b", times(0)}}, {{"a", times(0)}, {"b", times(1)}}, {{"a", times(0)}, {"b", times(4)}}});
+  const Json alone = report_of(pvd);
+  const Outcome run = mpirun(2, film(pvd));
+  ASSERT_EQ(run.status, 0) << run.err;
+  const Json together = Json::parse(contents(folder / "r.json"));
+  EXPECT_EQ(together.at("mesh").at("field").at("name"), "b");
+  EXPECT_EQ(together.at("transfer_function"), alone.at("transfer_function"));
+  EXPECT_EQ(together.at("mesh").at("notes"), alone.at("mesh").at("notes"));
+}
+
+TEST_F(SeriesDefaults, AnUnreadableStepIsSaidWhenItsTurnComes) {
+  write({{{"p", times(1)}}, {{"p", times(1)}}, {{"p", times(1)}}});
+  (void)folder.file("s_2.vtu", "<VTKFile type=\"UnstructuredGrid\">");
+  const Outcome run = tessera(film(pvd));
+  EXPECT_EQ(run.status, 2);
+  EXPECT_TRUE(std::filesystem::exists(folder / "f_1.pfm"));
+  EXPECT_EQ(tessera({"info", pvd}).status, 0);
+}
+
+TEST_F(SeriesDefaults, InfoListsStepsAndTimes) {
+  write({{{"p", times(1)}}, {{"p", times(1)}}, {{"p", times(1)}}});
+  const Outcome text = tessera({"info", pvd});
+  EXPECT_NE(text.out.find("steps     3, at times 0, 0.25, 0.5; below step 0 of 0 to 2\n"), std::string::npos)
+      << text.out;
+  EXPECT_EQ(info_of(pvd, {"--time-step", "2"}).at("time_steps"),
+            Json({{"count", 3}, {"step", 2}, {"times", {0, 0.25, 0.5}}, {"range", nullptr}}));
+  EXPECT_EQ(info_of(folder / "s_%d.vtu").at("time_steps"),
+            Json({{"count", 3}, {"step", 0}, {"numbers", {0, 1, 2}}, {"range", {0, 1}}}));
+  EXPECT_EQ(report_of(pvd).at("frames").at(2).at("time"), 0.5);
+  const Outcome beyond = tessera({"info", pvd, "--time-step", "3"});
+  EXPECT_EQ(beyond.status, 2);
+  EXPECT_NE(beyond.err.find("there is no time step 3, it has 3; count from 0"), std::string::npos) << beyond.err;
+}
+
+TEST_F(SeriesDefaults, InfoAndRenderShowTheSameOfIdsAlone) {
+  int count = 0;
+  const std::string file = folder.file("ids.vtu", row_of_cubes({{"GlobalNodeId", [&](double) { return ++count; }}}));
+  const Json said = info_of(file);
+  EXPECT_EQ(said.at("field").at("name"), "shape (depth)");
+  EXPECT_EQ(report_of(file).at("mesh").at("field"), said.at("field"));
+}
+
+}  // namespace
+}  // namespace tessera::apps::series_defaults_test
