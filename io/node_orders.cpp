@@ -31,6 +31,13 @@ constexpr std::array<std::uint8_t, 27> med_hexahedron27 = {0,  1,  2,  3,  4,  5
                                                            14, 15, 16, 17, 18, 19, 24, 22, 21, 23, 20, 25, 26};
 constexpr std::array<std::uint8_t, 27> cgns_hexahedron27 = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 16, 17,
                                                             18, 19, 12, 13, 14, 15, 24, 22, 21, 23, 20, 25, 26};
+constexpr std::array<std::uint8_t, 20> cgns_tet20 = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,
+                                                     10, 11, 12, 13, 14, 15, 17, 18, 19, 16};
+constexpr std::array<std::uint8_t, 40> cgns_wedge40 = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 18, 19,
+                                                       20, 21, 22, 23, 12, 13, 14, 15, 16, 17, 24, 37, 25, 26,
+                                                       28, 27, 29, 30, 32, 31, 33, 34, 36, 35, 38, 39};
+constexpr std::array<std::uint8_t, 30> cgns_pyramid30 = {0,  1,  2,  3,  4,  5,  6,  7,  8,  10, 9,  12, 11, 13, 14,
+                                                         15, 16, 17, 18, 19, 20, 21, 22, 24, 23, 25, 26, 27, 28, 29};
 constexpr std::array<std::uint8_t, 64> cgns_hexahedron64 = {
     0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 13, 12, 15, 14, 24, 25, 26, 27, 29, 28,
     31, 30, 16, 17, 18, 19, 20, 21, 22, 23, 49, 48, 50, 51, 40, 41, 43, 42, 36, 37, 39, 38,
@@ -79,12 +86,15 @@ constexpr NodeOrder rows[] = {
     {med, CurvedFamily::hexahedron, 27, 29, med_hexahedron27},
     {cgns, CurvedFamily::tet, 4, 10, {}},
     {cgns, CurvedFamily::tet, 10, 24, {}},
+    {cgns, CurvedFamily::tet, 20, 71, cgns_tet20},
     {cgns, CurvedFamily::pyramid, 5, 14, {}},
     {cgns, CurvedFamily::pyramid, 13, 27, {}},
     {cgns, CurvedFamily::pyramid, 14, 74, {}},
+    {cgns, CurvedFamily::pyramid, 30, 74, cgns_pyramid30},
     {cgns, CurvedFamily::wedge, 6, 13, {}},
     {cgns, CurvedFamily::wedge, 15, 26, exodus_wedge15},
     {cgns, CurvedFamily::wedge, 18, 32, exodus_wedge18},
+    {cgns, CurvedFamily::wedge, 40, 73, cgns_wedge40},
     {cgns, CurvedFamily::hexahedron, 8, 12, {}},
     {cgns, CurvedFamily::hexahedron, 20, 25, exodus_hexahedron20},
     {cgns, CurvedFamily::hexahedron, 27, 29, cgns_hexahedron27},

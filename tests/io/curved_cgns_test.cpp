@@ -1,4 +1,4 @@
-// Cells of second order in CGNS files, which its own library writes here, in the order of SIDS.
+// Cells of second and third order in CGNS files, which its own library writes here, in the order of SIDS.
 #include <gtest/gtest.h>
 #include <vtk_cgns.h>
 #include VTK_CGNS(cgnslib.h)
@@ -36,6 +36,43 @@ std::vector<std::vector<int>> hex64_lists() {
   return lists;
 }
 
+std::vector<std::vector<int>> pyramid30_lists() {
+  using testing::a_third, testing::near_first;
+  static constexpr std::array<std::array<int, 2>, 8> edges = {
+      {{1, 2}, {2, 3}, {3, 4}, {4, 1}, {1, 5}, {2, 5}, {3, 5}, {4, 5}}};
+  std::vector<std::vector<int>> lists;
+  for (const auto& [a, b] : edges) lists.push_back(a_third(a, b)), lists.push_back(a_third(b, a));
+  for (const std::array<int, 4>& base :
+       std::array<std::array<int, 4>, 4>{{{1, 2, 3, 4}, {2, 3, 4, 1}, {3, 4, 1, 2}, {4, 1, 2, 3}}})
+    lists.push_back(near_first(base));
+  lists.insert(lists.end(), {{1, 2, 5}, {2, 3, 5}, {3, 4, 5}, {4, 1, 5}, {1, 2, 3, 4, 5, 5}});
+  return lists;
+}
+
+std::vector<std::vector<int>> tet20_lists() {
+  using testing::a_third;
+  static constexpr std::array<std::array<int, 2>, 6> edges = {{{1, 2}, {2, 3}, {3, 1}, {1, 4}, {2, 4}, {3, 4}}};
+  std::vector<std::vector<int>> lists;
+  for (const auto& [a, b] : edges) lists.push_back(a_third(a, b)), lists.push_back(a_third(b, a));
+  lists.insert(lists.end(), {{1, 2, 3}, {1, 2, 4}, {2, 3, 4}, {3, 1, 4}});
+  return lists;
+}
+
+std::vector<std::vector<int>> wedge40_lists() {
+  using testing::a_third, testing::near_first;
+  static constexpr std::array<std::array<int, 2>, 9> edges = {
+      {{1, 2}, {2, 3}, {3, 1}, {1, 4}, {2, 5}, {3, 6}, {4, 5}, {5, 6}, {6, 4}}};
+  static constexpr std::array<std::array<int, 4>, 3> sides = {{{1, 2, 5, 4}, {2, 3, 6, 5}, {3, 1, 4, 6}}};
+  std::vector<std::vector<int>> lists;
+  for (const auto& [a, b] : edges) lists.push_back(a_third(a, b)), lists.push_back(a_third(b, a));
+  lists.push_back({1, 2, 3});
+  for (const auto& f : sides)
+    for (std::size_t k = 0; k < 4; ++k)
+      lists.push_back(near_first({f[k], f[(k + 1) % 4], f[(k + 2) % 4], f[(k + 3) % 4]}));
+  lists.insert(lists.end(), {{4, 5, 6}, {1, 1, 2, 2, 3, 3, 4, 5, 6}, {1, 2, 3, 4, 4, 5, 5, 6, 6}});
+  return lists;
+}
+
 std::vector<std::pair<ReferenceCell, CGNS_ENUMT(ElementType_t)>> sids_cells() {
   const std::vector<std::vector<int>> hex20 = {{1, 2}, {2, 3}, {3, 4}, {4, 1}, {1, 5}, {2, 6},
                                                {3, 7}, {4, 8}, {5, 6}, {6, 7}, {7, 8}, {8, 5}},
@@ -52,8 +89,11 @@ std::vector<std::pair<ReferenceCell, CGNS_ENUMT(ElementType_t)>> sids_cells() {
   constexpr auto hexahedron = CurvedFamily::hexahedron, tet = CurvedFamily::tet, wedge = CurvedFamily::wedge,
                  pyramid = CurvedFamily::pyramid;
   return {{{"TETRA_10", tet, tet10}, CGNS_ENUMV(TETRA_10)},
+          {{"TETRA_20", tet, tet20_lists()}, CGNS_ENUMV(TETRA_20)},
+          {{"PENTA_40", wedge, wedge40_lists()}, CGNS_ENUMV(PENTA_40)},
           {{"PYRA_13", pyramid, pyramid13, CellSpace::linear}, CGNS_ENUMV(PYRA_13)},
           {{"PYRA_14", pyramid, pyramid14}, CGNS_ENUMV(PYRA_14)},
+          {{"PYRA_30", pyramid, pyramid30_lists()}, CGNS_ENUMV(PYRA_30)},
           {{"PENTA_15", wedge, wedge15}, CGNS_ENUMV(PENTA_15)},
           {{"PENTA_18", wedge, wedge18}, CGNS_ENUMV(PENTA_18)},
           {{"HEXA_20", hexahedron, hex20}, CGNS_ENUMV(HEXA_20)},
@@ -84,7 +124,7 @@ void write_cgns(const std::filesystem::path& file, const BentCell& cell, CGNS_EN
   ASSERT_EQ(cg_close(id), CG_OK);
 }
 
-TEST(CurvedCgns, EveryTypeOfSecondOrderHasItsVolumeAndItsField) {
+TEST(CurvedCgns, EveryTypeHasItsVolumeAndItsField) {
   TESSERA_VTK_OR_SKIP();
   const test::TemporaryFolder folder;
   const MeshOptions options = testing::coarse_options();
@@ -94,6 +134,15 @@ TEST(CurvedCgns, EveryTypeOfSecondOrderHasItsVolumeAndItsField) {
     write_cgns(folder / (cell.name + ".cgns"), bent, type);
     testing::expect_same(read_mesh(folder / (cell.name + ".cgns"), options), bent);
   }
+}
+
+TEST(CurvedCgns, TypesThatAreNotReadAreRefused) {
+  TESSERA_VTK_OR_SKIP();
+  const test::TemporaryFolder folder;
+  BentCell cell = testing::bend({"HEXA_32", CurvedFamily::hexahedron, hex64_lists()});
+  cell.positions.resize(32), cell.values.resize(32);
+  write_cgns(folder / "a.cgns", cell, CGNS_ENUMV(HEXA_32));
+  test::expect_bad_input([&] { read_mesh(folder / "a.cgns"); }, {"a.cgns: it has cells of 32 nodes", "HEXA_64"});
 }
 
 }  // namespace
