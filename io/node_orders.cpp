@@ -129,8 +129,8 @@ const NodeOrder& exodus_tet15_with_centre_last() { return other_tet15; }
 void to_vtk_order(const NodeOrder& order, std::span<std::uint32_t> nodes) {
   if (order.from.empty()) return;
   std::array<std::uint32_t, 64> theirs;
-  std::ranges::copy(nodes, theirs.begin());
-  for (std::size_t k = 0; k < nodes.size(); ++k) nodes[k] = theirs[order.from[k]];
+  std::ranges::copy(nodes.first(order.from.size()), theirs.begin());
+  for (std::size_t k = 0; k < order.from.size(); ++k) nodes[k] = theirs[order.from[k]];
 }
 
 void exchange_vtk8_edges(std::span<std::uint32_t> nodes, const std::array<int, 3>& degrees) {

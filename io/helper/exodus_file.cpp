@@ -302,7 +302,8 @@ class Reading {
     for (std::size_t c = 0; c < count; ++c) {
       block_.offsets.push_back(block_.offsets.back() + nodes);
       if (element.order != nullptr)
-        to_vtk_order(*element.order, std::span(block_.connectivity).subspan(block_.offsets[block_.offsets.size() - 2]));
+        to_vtk_order(*element.order,
+                     std::span(block_.connectivity).subspan(block_.offsets[block_.offsets.size() - 2], nodes));
     }
     if (type == 42) faces_.add(id, info, init_.num_nodes, block_);
     report_progress(static_cast<double>(block_.types.size()) /
