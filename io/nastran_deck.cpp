@@ -106,7 +106,9 @@ class NastranDeck {
 
   void read(const std::filesystem::path& file) {
     constexpr std::size_t most_deep = 64;
-    if (!seen_.insert(std::filesystem::canonical(file).string()).second) return;
+    std::error_code has_no_path;  // as what was in a gzip file
+    const std::filesystem::path path = std::filesystem::canonical(file, has_no_path);
+    if (!seen_.insert(has_no_path ? file.string() : path.string()).second) return;
     if (++depth_ > most_deep)
       throw scene::bad_input(
           fmt::format("{}: more than {} files include each other; give one file", file.string(), most_deep));

@@ -1,5 +1,6 @@
 """Rows of advice about Tecplot's text, Nastran's decks and binary Medit meshes, which this library parses itself."""
 
+import gzip
 import struct
 
 from advice_row import damaged, row
@@ -122,6 +123,13 @@ ROWS = [
         "more than 64 files include each other; give one file",
         "info 70.bdf",
         {f"{k}.bdf": f"INCLUDE '{k + 1}.bdf'\n" if k < 70 else NASTRAN for k in range(71)},
+    ),
+    row(
+        "info a.bdf.gz",
+        "unpack it with gunzip",
+        None,
+        {"a.bdf.gz": gzip.compress(b"BEGIN BULK\nINCLUDE 'b.bdf'\nENDDATA\n")},
+        {"a.bdf.gz": gzip.compress(NASTRAN.encode())},
     ),
     # binary Medit
     medit(meshb(dimension=2), "and a volume has three; give one"),
