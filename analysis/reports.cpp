@@ -124,7 +124,9 @@ Json data_json(const std::filesystem::path& input, const Description& data) {
                      {"zero_volume", counts.cells_zero_volume},
                      {"open", counts.cells_open},
                      {"tangled", counts.cells_tangled},
-                     {"quadratic", counts.cells_quadratic}};
+                     {"quadratic", counts.cells_quadratic},
+                     {"duplicate", counts.cells_duplicate},
+                     {"duplicates_dropped", counts.duplicates_dropped}};
     if (counts.cells_out_of_range + counts.cells_clipped + counts.cells_cut > 0)
       json["selection"] = {{"cells_out_of_range", counts.cells_out_of_range},
                            {"cells_clipped", counts.cells_clipped},

@@ -144,6 +144,8 @@ void add_mesh_options(CLI::App& command, RenderWords& words) {
                   "files in blocks: draw this one alone, of those that info lists; may be repeated")
       ->type_name("NAME")
       ->allow_extra_args(false);
+  command.add_flag("--drop-duplicates", words.drop_duplicates,
+                   "draw cells that have the corners of others once, where parts of the mesh are given twice");
   add_clip_options(command, words.clip);
   command
       .add_option("--higher-order-tolerance", words.higher_order_tolerance,
@@ -166,6 +168,7 @@ ReadOptions mesh_options(const RenderWords& words) {
   if (!words.max_volume.empty()) mesh.max_volume = parse_positive("--max-volume", words.max_volume);
   mesh.time_step = one_time_step(words.time_step);
   mesh.blocks = words.blocks;
+  mesh.drop_duplicates = words.drop_duplicates;
   mesh.selection = selection_of(words.clip);
   for (const IsoSurface& iso : iso_surfaces_of(words.surfaces)) mesh.selection.levels.push_back(iso.value);
   if (!words.higher_order_tolerance.empty())
@@ -392,6 +395,7 @@ void refuse_mesh_options(const RenderWords& words, const RenderOptions& options)
   if (options.settings.mesh.rasterizer != Rasterizer::planes) refuse("--rasterizer");
   if (read.smooth) refuse("--smooth");
   if (read.warp) refuse("--warp");
+  if (read.drop_duplicates) refuse("--drop-duplicates");
   if (read.max_volume) refuse("--max-volume");
   if (!words.higher_order_tolerance.empty()) refuse("--higher-order-tolerance");
   if (!words.higher_order_tets.empty()) refuse("--higher-order-tets");

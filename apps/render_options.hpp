@@ -74,8 +74,8 @@ struct RenderWords {
   ViewWords view;
   FunctionWords function;
   SurfaceWords surfaces;
-  bool smooth = false, shade = false, no_shade = false, half = false, rescale = false, resume = false, progress = false,
-       quiet = false;
+  bool smooth = false, drop_duplicates = false, shade = false, no_shade = false, half = false, rescale = false,
+       resume = false, progress = false, quiet = false;
 };
 
 /// Declares the options of `tessera render` on its subcommand.

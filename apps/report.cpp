@@ -215,7 +215,7 @@ std::string samples_line(const Description& grid) {
 std::string cells_line(const MeshCounts& counts) {
   const std::uint64_t dropped = counts.cells_ghost + counts.cells_hidden + counts.cells_nan +
                                 counts.cells_not_volumetric + counts.cells_open + counts.cells_out_of_range +
-                                counts.cells_clipped;
+                                counts.cells_clipped + counts.duplicates_dropped;
   std::string line =
       fmt::format("{} of {} cells kept as {} tets", counts.cells_read - dropped, counts.cells_read, counts.tets_made);
   const std::pair<std::uint64_t, std::string_view> reasons[] = {
@@ -227,6 +227,8 @@ std::string cells_line(const MeshCounts& counts) {
       {counts.cells_open, "not closed dropped"},
       {counts.cells_tangled, "tangled kept"},
       {counts.cells_quadratic, "of higher order"},
+      {counts.cells_duplicate, "duplicate kept"},
+      {counts.duplicates_dropped, "duplicate dropped"},
       {counts.cells_out_of_range, "outside the threshold dropped"},
       {counts.cells_clipped, "clipped away"},
       {counts.cells_cut, "cut"}};

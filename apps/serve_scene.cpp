@@ -27,7 +27,7 @@ using server::Json;
 
 /// Of `render`, those that `serve` has: what shows data, not what becomes of pictures.
 constexpr std::string_view served_options =
-    " field smooth warp q max-volume time-step block clip threshold cut-planes higher-order-tolerance "
+    " field smooth warp q max-volume time-step block drop-duplicates clip threshold cut-planes higher-order-tolerance "
     "higher-order-tets "
     "dims "
     "type spacing origin endian skip labels transfer-function rescale unit-distance opacity-scale range log "
@@ -37,11 +37,12 @@ constexpr std::string_view served_options =
     "no-shade light background color-bar color-bar-title color-bar-range color-bar-scale field-unit axes outline "
     "scale-bar length-unit annotate annotation-color annotation-size threads memory half png-bits help ";
 
-constexpr std::array<std::string_view, 20> data_options = {"q",
+constexpr std::array<std::string_view, 21> data_options = {"q",
                                                            "warp",
                                                            "max-volume",
                                                            "time-step",
                                                            "block",
+                                                           "drop-duplicates",
                                                            "smooth",
                                                            "clip",
                                                            "threshold",

@@ -49,6 +49,7 @@ void check_grid_options(const std::filesystem::path& file, const ReadOptions& op
   };
   if (options.smooth) refuse("smooth");
   if (options.warp) refuse("warp");
+  if (options.drop_duplicates) refuse("drop_duplicates");
   if (options.max_volume) refuse("max_volume");
   if (!options.blocks.empty()) refuse("block");
   if (!options.plot3d_q.empty()) refuse("plot3d_q");
@@ -219,7 +220,8 @@ io::MeshOptions mesh_options(const ReadOptions& o) {
           o.shape,
           o.selection,
           false,
-          o.warp};
+          o.warp,
+          o.drop_duplicates};
 }
 
 }  // namespace frame

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
@@ -14,6 +15,7 @@
 #include <numeric>
 
 #include "io/block_tets.hpp"
+#include "io/duplicate_cells.hpp"
 #include "io/field_choice.hpp"
 #include "io/mesh_selection.hpp"
 #include "scene/error.hpp"
@@ -72,12 +74,18 @@ class Assembly {
     block = {};
   }
 
-  void finish() {
+  void finish(bool drop_duplicates) {
+    mesh_.association = choice_.association;
+    counts_.points_unused = unused_points();
+    // Cells without a value are gone by now, so that a blank copy of another is none.
+    if (drop_duplicates || may_repeat_) {
+      const std::uint64_t found = find_duplicate_cells(mesh_, drop_duplicates, threads_);
+      (drop_duplicates ? counts_.duplicates_dropped : counts_.cells_duplicate) = found;
+      if (drop_duplicates && found > 0) counts_.points_unused = unused_points();
+    }
     counts_.tets_made = mesh_.tets.size();
     if (choice_.association == Association::point) mesh_.scalars = std::move(values_);
-    mesh_.association = choice_.association;
     mesh_.field_name = choice_.label;
-    counts_.points_unused = unused_points();
     if (higher_order_.divided > 0) higher_order_.tolerance = plan_.tolerance;
   }
 
@@ -236,22 +244,44 @@ class Assembly {
     numbered_ = true;
   }
 
-  /// Points that no tet uses.
+  /// Points that no tet uses. On the way it looks at the tets of a sample, whether cells may be there twice.
   std::uint64_t unused_points() {
-    std::vector<std::uint8_t> used(mesh_.positions.size());
+    constexpr std::uint8_t is_used = 1, is_sampled = 2;
+    const DuplicateSample sample(mesh_);
+    std::vector<std::uint8_t> points(mesh_.positions.size());
+    tbb::enumerable_thread_specific<std::vector<std::size_t>> sampled;
+    const auto choose = [&](std::size_t first, std::size_t last) {
+      for (std::size_t v = first; v < last; ++v)
+        if (sample.has(mesh_.positions[v])) points[v] = is_sampled;
+    };
     const auto mark = [&](std::size_t first, std::size_t last) {
-      for (std::size_t t = first; t < last; ++t)
+      std::vector<std::size_t>& tets = sampled.local();
+      for (std::size_t t = first; t < last; ++t) {
+        std::uint8_t all = 0;
         for (const std::uint32_t v : mesh_.tets[t]) {
-          std::atomic_ref<std::uint8_t> mark_of(used[v]);
-          if (mark_of.load(std::memory_order_relaxed) == 0) mark_of.store(1, std::memory_order_relaxed);
+          std::atomic_ref<std::uint8_t> point(points[v]);
+          const std::uint8_t known = point.load(std::memory_order_relaxed);
+          if ((known & is_used) == 0) point.store(known | is_used, std::memory_order_relaxed);
+          all |= known;
         }
+        if ((all & is_sampled) != 0) tets.push_back(t);
+      }
     };
     tbb::task_arena(scene::threads_for(threads_)).execute([&] {
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh_.tets.size(), 65536),
-                        [&](const auto& range) { mark(range.begin(), range.end()); });
+      constexpr std::size_t grain = 65536;
+      const auto each = [&](std::size_t count, const auto& work) {
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+                          [&](const auto& range) { work(range.begin(), range.end()); });
+      };
+      if (!sample.takes_all()) each(points.size(), choose);
+      each(mesh_.tets.size(), mark);
     });
-    for (const std::uint32_t v : higher_order_nodes_) used[v] = 1;
-    return static_cast<std::uint64_t>(std::count(used.begin(), used.end(), 0));
+    std::vector<std::size_t> tets;
+    for (const std::vector<std::size_t>& some : sampled) tets.insert(tets.end(), some.begin(), some.end());
+    may_repeat_ = sample.takes_all() || DuplicateSample::has_repetitions(mesh_, tets);
+    for (const std::uint32_t v : higher_order_nodes_) points[v] |= is_used;
+    return static_cast<std::uint64_t>(
+        std::ranges::count_if(points, [](std::uint8_t point) { return (point & is_used) == 0; }));
   }
 
   std::vector<std::string>& notes_;
@@ -273,13 +303,14 @@ class Assembly {
   std::vector<double> added_values_;
   std::vector<std::uint32_t> higher_order_nodes_;  ///< of all cells that were divided
   bool numbered_ = false;
+  bool may_repeat_ = false;  ///< some cell may have the corners of an earlier one
 };
 
 }  // namespace
 
 AssembledBlocks assemble_blocks(std::vector<CellBlock> blocks, std::span<const FieldSummary> fields,
                                 const FieldChoice& choice, const std::string& source, const HigherOrderPlan& plan,
-                                int threads) {
+                                int threads, bool drop_duplicates) {
   AssembledBlocks result;
   Assembly assembly(result, fields, choice, source, plan, threads);
   std::size_t points = 0, tets = 0;
@@ -289,7 +320,7 @@ AssembledBlocks assemble_blocks(std::vector<CellBlock> blocks, std::span<const F
   }
   if (blocks.size() > 1) assembly.reserve(points, tets);
   for (CellBlock& block : blocks) assembly.add(block);
-  assembly.finish();
+  assembly.finish(drop_duplicates);
   return result;
 }
 
@@ -340,6 +371,12 @@ std::vector<std::string> warnings_on_cells(const MeshCounts& n, const HigherOrde
         fmt::format("{} polyhedra are drawn by tets that overlap: their faces cross each other, or no way was found to "
                     "split them",
                     n.polyhedra_tangled));
+  if (n.cells_duplicate > 0)
+    warnings.push_back(fmt::format(
+        "{} cell{} the corners of other cells, as in parts of a mesh that are given twice, and {} drawn on top of "
+        "them: "
+        "`drop_duplicates` draws each once, or name the parts to draw by `block`",
+        n.cells_duplicate, n.cells_duplicate == 1 ? " has" : "s have", n.cells_duplicate == 1 ? "is" : "are"));
   return warnings;
 }
 
@@ -352,7 +389,8 @@ MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options
   file.notes = choice.notes;
 
   const HigherOrderPlan plan = planning(blocks, options, choice, file.fields);
-  AssembledBlocks assembled = assemble_blocks(std::move(blocks), file.fields, choice, source, plan, options.threads);
+  AssembledBlocks assembled =
+      assemble_blocks(std::move(blocks), file.fields, choice, source, plan, options.threads, options.drop_duplicates);
   file.mesh = std::move(assembled.mesh);
   file.counts = assembled.counts;
   file.higher_order = assembled.higher_order;

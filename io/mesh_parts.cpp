@@ -24,7 +24,7 @@ bool is_tets(const std::filesystem::path& file) { return lower_extension(file) =
 
 bool readable_in_parts(const std::filesystem::path& file, const MeshOptions& options) {
   require_file(file);
-  if (options.smooth) return false;
+  if (options.smooth || options.drop_duplicates) return false;
   if (is_tets(file)) return options.blocks.empty();
   return (!std::filesystem::is_directory(file) && lists_pieces(file)) || has_shares(file);
 }
@@ -150,9 +150,9 @@ MeshFilePart MeshPartReading::finish(const ExcessTally& excess_of_all) {
     part.blocks = std::move(state_->blocks.block_names);
     part.fields = std::move(state_->fields);
     part.choice_notes = state_->choice.notes;
-    AssembledBlocks assembled =
-        assemble_blocks(std::move(state_->blocks.blocks), part.fields, state_->choice, source,
-                        planned(state_->options, state_->asked, excess_of_all), state_->options.threads);
+    AssembledBlocks assembled = assemble_blocks(std::move(state_->blocks.blocks), part.fields, state_->choice, source,
+                                                planned(state_->options, state_->asked, excess_of_all),
+                                                state_->options.threads, state_->options.drop_duplicates);
     part.mesh = std::move(assembled.mesh);
     part.summary.counts = assembled.counts;
     part.summary.higher_order = assembled.higher_order;

@@ -25,12 +25,13 @@
 ///     MeshFile whole = joined(own.summary of all parts, in part order, ...)
 ///
 /// The tets of all parts, one part after the other, are those that read_mesh gives, in its order; `joined` gives
-/// read_mesh's counts, fields and notes.
+/// read_mesh's counts, fields and notes; but of duplicate cells those within a part are counted.
 namespace tessera::io {
 
 /// Whether the file can be read in parts: .pvtu, whose pieces are divided over the parts, VTK's lists of blocks (.vtm
 /// .vtpc), whose files are, .tets, whose tets are, and meshes in shares (io/mesh_shares.hpp). Not if it is to be
-/// smoothed, which needs all cells round a point. Throws Error(bad_input) if there is no such file.
+/// smoothed, which needs all cells round a point, or each cell drawn once, which needs all of them. Throws
+/// Error(bad_input) if there is no such file.
 bool readable_in_parts(const std::filesystem::path& file, const MeshOptions& options);
 
 /// The files that such a file lists, or that it is one of; none of .tets and of what is in folders. Throws

@@ -39,6 +39,7 @@ struct MeshOptions {
   Selection selection{};            ///< what of the mesh is kept
   bool surfaces = false;            ///< blocks of faces, patches and side sets are read and named too
   std::optional<Warp> warp{};       ///< ReadOptions::warp
+  bool drop_duplicates = false;     ///< ReadOptions::drop_duplicates
 };
 
 using tessera::HigherOrderCells;

@@ -49,6 +49,11 @@ struct ReadOptions {
   /// Files in blocks: names of those to read; none: all. Of a block that is in another ("fluid/internalMesh") the
   /// beginning or the end will do.
   std::vector<std::string> blocks{};
+  /// Cells that have the corners of earlier ones, as where pieces, regions or blocks repeat each other, are left out.
+  /// Otherwise all are drawn, and a warning says how many they are; of large meshes if a sample of their cells has
+  /// some. On several ranks one reads the file whole, with it; without it the warning counts what each finds in its
+  /// share.
+  bool drop_duplicates = false;
   /// What of a mesh or grid is kept (tessera/selection.hpp). Bounds and default view are of that; so are a mesh's range
   /// and transfer function.
   Selection selection{};

@@ -41,6 +41,8 @@ struct MeshCounts {
   std::uint64_t polyhedra_from_inside = 0;  ///< of those: split from a point that was added inside
   std::uint64_t polyhedra_in_pieces = 0;    ///< of those: cut into tets one by one, as no point sees all of the inside
   std::uint64_t polyhedra_tangled = 0;      ///< of those: among cells_tangled
+  std::uint64_t cells_duplicate = 0;        ///< kept: an earlier cell has the same corners, and is drawn there too
+  std::uint64_t duplicates_dropped = 0;     ///< such cells that were dropped (ReadOptions::drop_duplicates)
   std::uint64_t points_read = 0;
   std::uint64_t points_unused = 0;   ///< of no tet
   std::uint64_t tets_made = 0;       ///< in the mesh
@@ -68,6 +70,8 @@ inline MeshCounts& MeshCounts::operator+=(const MeshCounts& other) {
   polyhedra_from_inside += other.polyhedra_from_inside;
   polyhedra_in_pieces += other.polyhedra_in_pieces;
   polyhedra_tangled += other.polyhedra_tangled;
+  cells_duplicate += other.cells_duplicate;
+  duplicates_dropped += other.duplicates_dropped;
   points_read += other.points_read;
   points_unused += other.points_unused;
   tets_made += other.tets_made;
@@ -77,7 +81,7 @@ inline MeshCounts& MeshCounts::operator+=(const MeshCounts& other) {
   cells_cut += other.cells_cut;
   return *this;
 }
-static_assert(sizeof(MeshCounts) == 20 * sizeof(std::uint64_t));  // one line above for each
+static_assert(sizeof(MeshCounts) == 22 * sizeof(std::uint64_t));  // one line above for each
 
 /// How near tets come to cells of second and higher order where nothing else is said: in position of the mesh's
 /// diagonal, in value of the field's range; and about how many there may be: not more than 2^18 and twice as many as
