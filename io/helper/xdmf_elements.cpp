@@ -28,11 +28,12 @@ class InlineNumbers {
         (format != nullptr && *format != "XML") || (kind != nullptr && *kind != "Uniform"))
       return;
     dimensions_ = *dimensions;
-    words_ = 0, in_word_ = false;
+    words_ = bytes_ = 0, in_word_ = false;
   }
 
   void add(std::string_view text) {
     if (dimensions_.empty()) return;
+    bytes_ += text.size();
     for (const char c : text) {
       const bool is_blank = c == ' ' || c == '\n' || c == '\t' || c == '\r';
       if (!is_blank && !in_word_) ++words_;
@@ -51,13 +52,19 @@ class InlineNumbers {
           fmt::format("{}: a <DataItem> of the dimensions {} holds {} numbers; it is truncated or damaged, write it "
                       "anew",
                       source_, scene::quote(dimensions_), words_));
+    constexpr std::uint64_t most = 10'000'000;  // of libxml2, as Xdmf's library calls it
+    if (bytes_ > most)
+      throw scene::bad_input(fmt::format(
+          "{}: a <DataItem> has {} bytes of numbers in the text, and Xdmf's library takes {} at most; write "
+          "its numbers to HDF5 or a binary file",
+          source_, bytes_, most));
     dimensions_.clear();
   }
 
  private:
   const std::string& source_;
   std::string dimensions_;  ///< empty: there is nothing to count
-  std::uint64_t words_ = 0;
+  std::uint64_t words_ = 0, bytes_ = 0;
   bool in_word_ = false;
 };
 

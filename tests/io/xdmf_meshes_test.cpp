@@ -162,6 +162,17 @@ TEST_F(XdmfMeshes, PointsThatSeveralBlocksShareAreThereForAll) {
   EXPECT_NEAR(testing::volume(read(domain, std::nullopt, "", {"other"}).mesh), volume * 2 / 3, 1e-12);
 }
 
+TEST_F(XdmfMeshes, MoreTextThanTheLibraryTakesIsSaid) {
+  std::string places = "0 0 0 1 0 0 0 1 0 0 0 1 1 1 1";
+  places.append(10'000'000, ' ');
+  test::expect_bad_input(
+      [&] {
+        read("<Grid Name=\"m\">" + topology + "<Geometry GeometryType=\"XYZ\">" + item("5 3", places) +
+             "</Geometry></Grid>");
+      },
+      {"a.xdmf: ", "10000029 bytes of numbers in the text", "write its numbers to HDF5"});
+}
+
 TEST_F(XdmfMeshes, FiniteElementFunctionsAreNamedAsNotRead) {
   for (const char* kind : {"ItemType=\"FiniteElementFunction\" AttributeType=\"Scalar\" Center=\"Other\"",
                            "AttributeType=\"FiniteElementFunction\" Center=\"Node\""}) {
