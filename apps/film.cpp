@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "apps/empty_picture.hpp"
 #include "apps/frame_annotation.hpp"
 #include "apps/peel_options.hpp"
 #include "apps/picture_queue.hpp"
@@ -99,6 +100,7 @@ class Film final : public Sink {
     pictures_.finish();
     skip_to(frames_.size());
     warn_of_range();
+    warn_of_empty();
     if (timed()) write_trace();
     std::vector<std::byte> code(1);
     if (writes_) code[0] = static_cast<std::byte>(output_.finish(options_));
@@ -198,7 +200,7 @@ class Film final : public Sink {
 
   /// Of the step at hand, with its field.
   void read_block_surfaces(const std::vector<std::filesystem::path>& files, ReadOptions read) {
-    if (options_.block_surfaces.empty()) return;
+    if (options_.block_surfaces.empty() && data_->axis_scale() == glm::dvec3(1)) return;
     settings_.surfaces =
         with_block_surfaces(options_.settings.surfaces, options_.block_surfaces, *data_, files, std::move(read));
   }
@@ -245,6 +247,14 @@ class Film final : public Sink {
       output_.warn(options_, fmt::format("values of all time steps are from {:.6g} to {:.6g}, colours go by those of "
                                          "{:.6g} to {:.6g}; --range {:.6g},{:.6g} spans all",
                                          all_range_[0], all_range_[1], low, high, all_range_[0], all_range_[1]));
+  }
+
+  /// Of pictures that show nothing. What may show something is tried on all ranks, with the step that they hold.
+  void warn_of_empty() {
+    if (options_.quiet || !box_) return;
+    const std::string warning =
+        empty_.warning({job_, writer_, frames_, step_, options_, *data_, loaded_.function, *box_, axes_});
+    if (writes_ && !warning.empty()) output_.warn(options_, warning);
   }
 
   /// Reads higher-order cells again, more finely, where the transfer function needs that for --accuracy. What is
@@ -418,6 +428,7 @@ class Film final : public Sink {
                                              static_cast<std::size_t>(options_.verify));
     }
     const auto at = static_cast<std::size_t>(&frame - frames_.data());
+    empty_.look_at(at, rendered, *data_, loaded_.function, options_);
     skip_to(at);
     output_.add(options_, frame, record);
     next_ = at + 1;
@@ -463,6 +474,7 @@ class Film final : public Sink {
   std::array<double, 2> all_range_{};                 ///< of all steps read
   std::optional<Box> box_;                            ///< of the first step; none until something is read
   BodyAxes axes_ = BodyAxes::none;
+  EmptyPictures empty_;
   std::uint64_t tets_ = 0;
   LoadedTransferFunction loaded_;
   std::optional<SeriesChoice> series_;  ///< of several steps

@@ -146,6 +146,11 @@ void add_mesh_options(CLI::App& command, RenderWords& words) {
       ->allow_extra_args(false);
   command.add_flag("--drop-duplicates", words.drop_duplicates,
                    "draw cells that have the corners of others once, where parts of the mesh are given twice");
+  command
+      .add_option("--scale", words.axis_scale,
+                  "multiplies the axes (default: 1,1,1; degrees beside metres: z by what makes the box no thinner than "
+                  "1:20)")
+      ->type_name("X,Y,Z");
   add_clip_options(command, words.clip);
   command
       .add_option("--higher-order-tolerance", words.higher_order_tolerance,
@@ -166,6 +171,7 @@ ReadOptions mesh_options(const RenderWords& words) {
   mesh.warp = warp_of(words.warp);
   mesh.plot3d_q = words.q;
   if (!words.max_volume.empty()) mesh.max_volume = parse_positive("--max-volume", words.max_volume);
+  mesh.axis_scale = axis_scale_of(words);
   mesh.time_step = one_time_step(words.time_step);
   mesh.blocks = words.blocks;
   mesh.drop_duplicates = words.drop_duplicates;
@@ -404,7 +410,10 @@ void refuse_mesh_options(const RenderWords& words, const RenderOptions& options)
 }
 
 LoadedTransferFunction transfer_function_of(const Dataset& data, const RenderOptions& options) {
-  LoadedTransferFunction loaded = data.transfer_function(options.transfer_function, options.function);
+  TransferFunctionOptions function = options.function;
+  function.emission = options.settings.emission;
+  function.with_surfaces = !options.settings.surfaces.empty() || !options.block_surfaces.empty();
+  LoadedTransferFunction loaded = data.transfer_function(options.transfer_function, function);
   loaded.name = with_options(loaded.name);
   loaded.unit_distance_source = with_options(loaded.unit_distance_source);
   loaded.warnings = with_options(loaded.warnings);

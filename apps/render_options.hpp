@@ -56,7 +56,7 @@ struct RenderOptions {
 
 /// The words as they stand on the command line. CLI11 keeps references to them until it has parsed.
 struct RenderWords {
-  std::string input, field, warp, q, max_volume, time_step, higher_order_tolerance, higher_order_tets;
+  std::string input, field, warp, q, max_volume, axis_scale, time_step, higher_order_tolerance, higher_order_tets;
   std::vector<std::string> blocks;
   std::vector<std::string> more_inputs, outputs;
   std::string transfer_function, unit_distance, opacity_scale = "1", blend = "linear";

@@ -27,7 +27,8 @@ using server::Json;
 
 /// Of `render`, those that `serve` has: what shows data, not what becomes of pictures.
 constexpr std::string_view served_options =
-    " field smooth warp q max-volume time-step block drop-duplicates clip threshold cut-planes higher-order-tolerance "
+    " field scale smooth warp q max-volume time-step block drop-duplicates clip threshold cut-planes "
+    "higher-order-tolerance "
     "higher-order-tets "
     "dims "
     "type spacing origin endian skip labels transfer-function rescale unit-distance opacity-scale range log "
@@ -37,8 +38,9 @@ constexpr std::string_view served_options =
     "no-shade light background color-bar color-bar-title color-bar-range color-bar-scale field-unit axes outline "
     "scale-bar length-unit annotate annotation-color annotation-size threads memory half png-bits help ";
 
-constexpr std::array<std::string_view, 21> data_options = {"q",
+constexpr std::array<std::string_view, 22> data_options = {"q",
                                                            "warp",
+                                                           "scale",
                                                            "max-volume",
                                                            "time-step",
                                                            "block",
@@ -165,7 +167,8 @@ class RenderScene final : public server::Scene {
 
   [[nodiscard]] Settings settings(const Dataset& data, const LoadedTransferFunction& function) const override {
     Settings settings = options().settings;
-    if (!options().block_surfaces.empty()) settings.surfaces = block_surfaces(data);
+    if (!options().block_surfaces.empty() || data.axis_scale() != glm::dvec3(1))
+      settings.surfaces = block_surfaces(data);
     if (shades_by_default(function, options())) settings.grid.shading.emplace();
     return settings;
   }

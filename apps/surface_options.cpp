@@ -112,6 +112,13 @@ std::vector<IsoSurface> iso_surfaces_of(const SurfaceWords& words) {
 Surfaces with_block_surfaces(Surfaces surfaces, std::span<const BlockSurfaceWord> blocks, const Dataset& data,
                              std::span<const std::filesystem::path> files, ReadOptions read) {
   const char* const of = data.association() == Association::cell ? "cell:" : "point:";
+  read.axis_scale = data.axis_scale();
+  if (data.axis_scale() != glm::dvec3(1))
+    for (TriangleSurface& surface : surfaces.triangles) {
+      TriangleMesh scaled = *surface.mesh;
+      for (glm::dvec3& point : scaled.points) point *= data.axis_scale();
+      surface.mesh = std::make_shared<const TriangleMesh>(std::move(scaled));
+    }
   read.field = data.shows_shape() ? std::string() : of + data.field_name();
   for (const BlockSurfaceWord& block : blocks)
     surfaces.triangles.push_back({std::make_shared<const TriangleMesh>(read_block_surface(files, block.name, read)),

@@ -34,8 +34,8 @@ Surfaces surfaces_of(const SurfaceWords& words, std::vector<BlockSurfaceWord>& b
 /// Of them those of a value.
 std::vector<IsoSurface> iso_surfaces_of(const SurfaceWords& words);
 
-/// `surfaces` with those of blocks of the data's files, coloured by its field where they have it. `read` is how the
-/// data were read. Throws Error(bad_input) for a block that is not there.
+/// `surfaces`, scaled as the data's axes are, with those of blocks of its files, coloured by its field where they have
+/// it. `read` is how the data were read. Throws Error(bad_input) for a block that is not there.
 Surfaces with_block_surfaces(Surfaces surfaces, std::span<const BlockSurfaceWord> blocks, const Dataset& data,
                              std::span<const std::filesystem::path> files, ReadOptions read);
 

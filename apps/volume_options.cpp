@@ -100,9 +100,15 @@ void add_volume_render_options(CLI::App& command, RenderWords& words) {
       ->type_name("balance");
 }
 
+std::optional<glm::dvec3> axis_scale_of(const RenderWords& words) {
+  if (words.axis_scale.empty()) return std::nullopt;
+  return parse_vector("--scale", words.axis_scale, true);
+}
+
 ReadOptions volume_options(const RenderWords& words) {
   ReadOptions options;
   options.field = words.field;
+  options.axis_scale = axis_scale_of(words);
   options.time_step = one_time_step(words.time_step);
   options.blocks = words.blocks;
   options.selection = selection_of(words.clip);

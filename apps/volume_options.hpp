@@ -10,6 +10,9 @@ void add_volume_options(CLI::App& command, RenderWords& words);
 /// The options of `tessera render` that are for volumes only.
 void add_volume_render_options(CLI::App& command, RenderWords& words);
 
+/// --scale, of meshes and volumes.
+std::optional<glm::dvec3> axis_scale_of(const RenderWords& words);
+
 ReadOptions volume_options(const RenderWords& words);
 
 /// Whether the input of these words is a volume: by its content, or because .raw options describe it.

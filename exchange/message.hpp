@@ -65,26 +65,26 @@ enum class MessageKind : std::uint16_t {
   part_summary = 23,      ///< MeshCounts, HigherOrderCells, TimeStepRead, texts of reading, of cells, of surfaces, u64
                           ///< words of used points
   mesh_description = 24,  ///< MeshCounts, HigherOrderCells, u64 fields, fields, texts of notes, of blocks, of surfaces,
-                          ///< text format, u64 time steps, u64 step, list of f64 times, text field, u8 association
-  mesh_facts = 25,        ///< f64 box[6], f64 scalar range[2], u64 tets, u8 association
-  mesh_volume = 26,       ///< 128-bit scene::VolumeSum
-  tet_count = 27,         ///< u64
-  tet_table = 28,         ///< list of u64: a rank's tets, or messages, for each projector
-  longest_edge = 29,      ///< f32
-  frames_complete = 30,   ///< u64
-  sink_failed = 31,       ///< u8
-  cell_totals = 32,       ///< f64 lowest, f64 highest, u64 blank samples
-  row_costs = 33,         ///< i32 x0, y0, x1, y1 of the map's region, list of u64
-  column_costs = 34,      ///< the same, a list of u64 for each map row that was asked for
-  seconds = 35,           ///< f64 processor time of the last frame
-  of_job = 36,            ///< list of bytes: the caller's own (tessera/job.hpp)
-  higher_order = 37,      ///< u64[128]: tets by how far they are off (io/higher_order_plan.hpp)
-  process_on_host = 38,   ///< exchange/one_line.cpp
-  arguments = 58,         ///< list of bytes: what the sender was started with (first_contact.cpp)
-  field_samples = 39,     ///< list of scene::FieldSample: of a rank's part (frame/field_samples.cpp)
-  open_faces = 47,        ///< list of OpenFace (frame/boundary_faces.cpp): that one tet of a rank's part has alone
-  speed = 50,             ///< f64 samples a second of the last frame, 0: unknown
-  ray_tets = 48,          ///< list of RayTet (frame/probe.cpp): those of a rank's part that a ray meets
+  ///< text format, u64 time steps, u64 step, list of f64 times, f64 axis scale[3], text field, u8 association
+  mesh_facts = 25,       ///< f64 box[6], f64 scalar range[2], u64 tets, u8 association
+  mesh_volume = 26,      ///< 128-bit scene::VolumeSum
+  tet_count = 27,        ///< u64
+  tet_table = 28,        ///< list of u64: a rank's tets, or messages, for each projector
+  longest_edge = 29,     ///< f32
+  frames_complete = 30,  ///< u64
+  sink_failed = 31,      ///< u8
+  cell_totals = 32,      ///< f64 lowest, f64 highest, u64 blank samples
+  row_costs = 33,        ///< i32 x0, y0, x1, y1 of the map's region, list of u64
+  column_costs = 34,     ///< the same, a list of u64 for each map row that was asked for
+  seconds = 35,          ///< f64 processor time of the last frame
+  of_job = 36,           ///< list of bytes: the caller's own (tessera/job.hpp)
+  higher_order = 37,     ///< u64[128]: tets by how far they are off (io/higher_order_plan.hpp)
+  process_on_host = 38,  ///< exchange/one_line.cpp
+  arguments = 58,        ///< list of bytes: what the sender was started with (first_contact.cpp)
+  field_samples = 39,    ///< list of scene::FieldSample: of a rank's part (frame/field_samples.cpp)
+  open_faces = 47,       ///< list of OpenFace (frame/boundary_faces.cpp): that one tet of a rank's part has alone
+  speed = 50,            ///< f64 samples a second of the last frame, 0: unknown
+  ray_tets = 48,         ///< list of RayTet (frame/probe.cpp): those of a rank's part that a ray meets
   curved_part = 40,  ///< frame/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
   next_frame = 52,   ///< u8: 1: there is one more
   machine = 53,      ///< text: which machine's memory the sender sees, empty: it shares none (shared_pages.cpp)

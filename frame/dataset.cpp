@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -22,12 +23,14 @@
 #include "frame/shared_volume.hpp"
 #include "frame/transfer_function_choice.hpp"
 #include "frame/uncut_mesh.hpp"
+#include "io/axis_scale.hpp"
 #include "io/foreign_data.hpp"
 #include "io/mesh_assembly.hpp"
 #include "io/volume_reader.hpp"
 #include "scene/error.hpp"
 #include "scene/fill_value.hpp"
 #include "scene/label_source.hpp"
+#include "scene/scaled_source.hpp"
 #include "scene/threads.hpp"
 #include "scene/threshold_source.hpp"
 #include "tessera/input_file.hpp"
@@ -103,6 +106,14 @@ std::vector<double> take_labels(const std::filesystem::path& file, const ReadOpt
   return std::move(found.values);
 }
 
+void check_axis_scale(const std::optional<glm::dvec3>& scale) {
+  if (!scale) return;
+  for (int axis = 0; axis < 3; ++axis)
+    if (!((*scale)[axis] > 0) || !std::isfinite((*scale)[axis]))
+      throw scene::bad_input(
+          fmt::format("`scale` is {} {} {}; each factor must be above 0", scale->x, scale->y, scale->z));
+}
+
 std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, const ReadOptions& options,
                                             exchange::Transport& transport, scene::Trace* trace) {
   check_grid_options(file, options);
@@ -114,6 +125,10 @@ std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, c
   const auto& threshold = options.selection.threshold;
   if (threshold)
     volume.source = std::make_unique<scene::ThresholdSource>(std::move(volume.source), *threshold, file.string());
+  state->axis_scale = io::chosen_scale(options.axis_scale, volume.beside_degrees,
+                                       scene::bounds(volume.source->geometry()), volume.notes);
+  if (state->axis_scale != glm::dvec3(1))
+    volume.source = std::make_unique<scene::ScaledSource>(std::move(volume.source), state->axis_scale, file.string());
   {
     const scene::TraceScope timing(trace, "prepare");
     state->labels = take_labels(file, options, transport, volume);
@@ -164,6 +179,7 @@ void take_description(io::MeshFile&& file, Dataset::State& state) {
   state.counts = file.counts;
   state.higher_order = file.higher_order;
   state.time_step = std::move(file.time_step);
+  state.axis_scale = file.axis_scale;
 }
 
 /// Makes a mesh the state's own, its corners in the order that needs no copy unless theirs is to be kept.
@@ -221,7 +237,8 @@ io::MeshOptions mesh_options(const ReadOptions& o) {
           o.selection,
           false,
           o.warp,
-          o.drop_duplicates};
+          o.drop_duplicates,
+          o.axis_scale};
 }
 
 }  // namespace frame
@@ -276,6 +293,7 @@ Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOp
   return together(*transport, [&] {
     std::shared_ptr<State> state;
     if (files.empty()) throw scene::bad_input("input: no file is named; name one");
+    check_axis_scale(options.axis_scale);
     if (files.size() == 1 && opens_as_grid(files.front(), options)) {
       state = opened_grid(files.front(), options, *transport, options.trace);
       complete_grid(*state);
@@ -385,6 +403,7 @@ Dataset Dataset::of_parts(const MeshArrays& part, const Communicator& communicat
 
 bool Dataset::is_mesh() const { return state_->samples == nullptr; }
 const Box& Dataset::bounds() const { return state_->facts.box; }
+const glm::dvec3& Dataset::axis_scale() const { return state_->axis_scale; }
 std::array<double, 2> Dataset::range() const { return state_->facts.scalar_range; }
 Association Dataset::association() const { return state_->facts.association; }
 const std::string& Dataset::field_name() const { return state_->field_name; }

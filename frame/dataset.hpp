@@ -24,7 +24,8 @@ struct TESSERA_HIDDEN Dataset::State {
   std::vector<FieldInfo> fields;
   std::vector<std::string> notes, blocks, surfaces;
   io::TimeStepRead time_step;
-  scene::MeshFacts facts;  ///< of the whole; grids have no tets
+  glm::dvec3 axis_scale{1};  ///< that the file's axes were multiplied by
+  scene::MeshFacts facts;    ///< of the whole; grids have no tets
   MeshCounts counts;
   HigherOrderCells higher_order;
   /// Files that the whole mesh can be read from again, by one rank that verifies; none: arrays.

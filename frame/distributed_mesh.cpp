@@ -61,6 +61,7 @@ Bytes message_of(const io::MeshFile& file) {
   append_texts(message, file.surfaces);
   append_text(message, file.format);
   append_time_step(message, file.time_step);
+  append(message, file.axis_scale);
   append_text(message, file.mesh.field_name);
   append(message, static_cast<std::uint8_t>(file.mesh.association));
   return message;
@@ -76,6 +77,7 @@ io::MeshFile description_in(MessageReader& reader) {
   file.surfaces = take_texts(reader);
   file.format = reader.take_text();
   file.time_step = take_time_step(reader);
+  file.axis_scale = reader.take<glm::dvec3>();
   file.mesh.field_name = reader.take_text();
   file.mesh.association = take_association(reader);
   reader.finish();
@@ -167,6 +169,7 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
   DistributedMesh result;
   io::MeshFile description;
   if (transport.rank() == projectors.front()) description = io::joined(own, summaries, input);
+  description.axis_scale = options.axis_scale.value_or(glm::dvec3(1));
   result.description = share_description(transport, projectors, description);
   result.part.mesh = std::move(own.mesh);
   result.part.mesh.original_cell = {};  // it counts this part's cells

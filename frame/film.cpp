@@ -188,6 +188,7 @@ std::string field_of_steps(std::span<const std::vector<FieldInfo>> steps, const 
 }
 
 ReadOptions read_of_later_steps(ReadOptions options, const Dataset& first) {
+  options.axis_scale = first.axis_scale();
   if ((first.is_grid() && first.fields().size() < 2) || !options.field.empty() || first.fields().empty() ||
       first.shows_shape())
     return options;

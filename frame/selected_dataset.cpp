@@ -44,6 +44,7 @@ Dataset selected_part(const std::shared_ptr<const Dataset::State>& from, const S
   state->surfaces = from->surfaces;
   state->higher_order = from->higher_order;
   state->time_step = from->time_step;
+  state->axis_scale = from->axis_scale;
   state->options = from->options;
   state->shape = from->shape;
   if (!selection.clip.empty()) {

@@ -48,7 +48,7 @@ struct Place {
 };
 
 /// Text path, text folder, u64 bytes, fields, texts of notes, text format, u8 axes of a body and of one if it is CT,
-/// texts modality, unit and unit of length, u8 labels, a time step.
+/// texts modality, unit and unit of length, u8 labels, a time step, u8 whether z is beside degrees.
 /// Nothing of a rank that has not read the file.
 Bytes message_of(const io::VolumeFile& volume, const Place& place) {
   Bytes message = exchange::begin_message(MessageKind::volume_facts);
@@ -65,6 +65,7 @@ Bytes message_of(const io::VolumeFile& volume, const Place& place) {
   append_text(message, volume.tags.length_unit);
   append(message, static_cast<std::uint8_t>(volume.tags.labels));
   append_time_step(message, volume.time_step);
+  append(message, std::uint8_t{volume.beside_degrees});
   return message;
 }
 
@@ -89,6 +90,7 @@ io::VolumeFile description_in(MessageReader& reader) {
   volume.tags.length_unit = reader.take_text();
   volume.tags.labels = reader.take<std::uint8_t>() != 0;
   volume.time_step = take_time_step(reader);
+  volume.beside_degrees = reader.take<std::uint8_t>() != 0;
   reader.finish();
   return volume;
 }

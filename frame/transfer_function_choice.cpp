@@ -114,22 +114,41 @@ LoadedTransferFunction logarithmic(const Dataset::State& data, const std::string
   return loaded;
 }
 
+/// What makes a function show something that is clear over the field's values.
+std::string remedy_for_clear(const LoadedTransferFunction& loaded, const TransferFunctionOptions& options,
+                             const std::array<double, 2>& field, bool emits) {
+  if (options.opacity_scale == 0) return "`opacity_scale` is 0; give a number above 0";
+  const auto knots = loaded.function.knots();
+  if (!loaded.function.visible(knots.front().value, knots.back().value, emits)) {
+    if (!options.opacity_points.empty()) return "`opacity_points` are all 0; give one of them an opacity";
+    const bool has_opacities = loaded.unit_distance.has_value();
+    return has_opacities ? "it has no opacity anywhere; `opacity_points` 0:0.03,1:0.2 gives it some"
+                         : "it has no extinction anywhere; write numbers above 0 into its last column";
+  }
+  if (options.range)
+    return fmt::format("leave `range` out, or give values that the field has, as `range` {:.6g},{:.6g}", field[0],
+                       field[1]);
+  return "`rescale` stretches it over them, `range` over others";
+}
+
 /// The error of meaning: a picture that is right and shows nothing.
-void warn_of_nothing(const Dataset::State& data, const std::string& file_or_preset, LoadedTransferFunction& loaded) {
+void warn_of_nothing(const Dataset::State& data, const std::string& file_or_preset,
+                     const TransferFunctionOptions& options, LoadedTransferFunction& loaded) {
   const auto [low, high] = data.facts.scalar_range;
   const auto knots = loaded.function.knots();
-  if (knots.empty() || file_or_preset.empty()) return;
-  if (!loaded.function.visible(low, high)) {
+  const bool emits = options.emission == Emission::independent, chosen = !file_or_preset.empty() || options.range;
+  if (knots.empty()) return;
+  if (!loaded.function.visible(low, high, emits)) {
+    if (options.with_surfaces) return;
     loaded.warnings.push_back(
-        fmt::format("the transfer function shows nothing: it is clear over the field's {:.6g} to {:.6g}; `rescale` "
-                    "stretches it over them, `range` over others",
-                    low, high));
-  } else if (knots.size() > 1 && colormaps::is_far_off({knots.front().value, knots.back().value}, {low, high})) {
-    loaded.warnings.push_back(
-        fmt::format("the transfer function shows next to nothing: its {:.6g} to {:.6g} holds hardly any of the field's "
-                    "{:.6g} to {:.6g}, or all in one place, so that nearly all has one colour and opacity; `rescale` "
-                    "stretches it over them, `range` over others",
-                    knots.front().value, knots.back().value, low, high));
+        fmt::format("the transfer function shows nothing: it is clear over the field's {:.6g} to {:.6g}; {}", low, high,
+                    remedy_for_clear(loaded, options, {low, high}, emits)));
+  } else if (chosen && !options.logarithmic && knots.size() > 1 &&
+             colormaps::is_far_off({knots.front().value, knots.back().value}, {low, high})) {
+    loaded.warnings.push_back(fmt::format(
+        "the transfer function shows next to nothing: its {:.6g} to {:.6g} holds hardly any of the field's "
+        "{:.6g} to {:.6g}, or all in one place, so that nearly all has one colour and opacity; {}",
+        knots.front().value, knots.back().value, low, high, remedy_for_clear(loaded, options, {low, high}, emits)));
   }
 }
 
@@ -137,13 +156,17 @@ void warn_of_nothing(const Dataset::State& data, const std::string& file_or_pres
 
 LoadedTransferFunction transfer_function_of(const Dataset::State& data, const std::string& file_or_preset,
                                             const TransferFunctionOptions& options) {
-  if (options.logarithmic) return logarithmic(data, file_or_preset, options);
+  if (options.logarithmic) {
+    LoadedTransferFunction loaded = logarithmic(data, file_or_preset, options);
+    warn_of_nothing(data, file_or_preset, options, loaded);
+    return loaded;
+  }
   static const scene::FieldSamples none;
   const scene::FieldSamples& samples = file_or_preset.empty() ? data.field_samples() : none;
   LoadedTransferFunction loaded = load(
       file_or_preset, {&samples, data.samples != nullptr, data.shape, data.body_axes, data.tags.modality, data.labels},
       loading_options(data, options));
-  warn_of_nothing(data, file_or_preset, loaded);
+  warn_of_nothing(data, file_or_preset, options, loaded);
   return loaded;
 }
 

@@ -111,7 +111,8 @@ struct ForeignContents {
   std::vector<std::string> block_names{};    ///< of all blocks, where parts are not the blocks; empty: of the parts
   std::vector<std::string> surface_names{};  ///< of surfaces beside the volume, where they are left out
   TimeStepRead time_step{};
-  bool has_levels = false;  ///< the parts, images, are blocks of several levels of refinement
+  bool beside_degrees = false;  ///< x and y are degrees, z is a length
+  bool has_levels = false;      ///< the parts, images, are blocks of several levels of refinement
 };
 
 /// As bytes (CBOR, RFC 8949) and back. contents_of() throws std::exception for bytes of anything else.

@@ -54,6 +54,7 @@ MeshBlocks read_foreign_mesh(const std::filesystem::path& file, const ForeignRea
   result.format = opened.contents.format;
   result.notes = opened.contents.notes;
   result.time_step = opened.contents.time_step;
+  result.beside_degrees = opened.contents.beside_degrees;
   result.block_names = opened.contents.block_names;
   result.surface_names = opened.contents.surface_names;
   result.blocks = blocks_of(opened, result.notes, grids);

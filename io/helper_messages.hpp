@@ -17,7 +17,7 @@ namespace tessera::io {
 ///         are mapped; or go in parts through a window, which is such a file too, and stays.
 
 /// Of the protocol. The helper says it first; another one's is refused.
-inline constexpr int helper_version = 5;
+inline constexpr int helper_version = 6;
 
 /// Closes what it holds.
 class Descriptor {

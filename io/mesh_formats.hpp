@@ -27,6 +27,8 @@ struct MeshBlocks {
   std::vector<std::string> surface_names{};  ///< of surfaces beside the volume, which are left out
   std::vector<FieldSummary> fields{};  ///< of the file, where the blocks have the chosen one alone, as options ask
   TimeStepRead time_step{};
+  bool beside_degrees = false;  ///< x and y are degrees, z is a length
+  glm::dvec3 axis_scale{1};     ///< that the points are multiplied by
 };
 
 /// Adds the notes that are not there yet: all pieces of a file may give rise to one.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "io/axis_scale.hpp"
 #include "io/clean_errors.hpp"
 #include "io/input_file.hpp"
 #include "io/listed_pieces.hpp"
@@ -113,6 +114,7 @@ MeshPartReading::MeshPartReading(std::filesystem::path file, const MeshOptions& 
   const std::string source = state_->file.string();
   with_clean_errors(source, [&] {
     state_->read(part, parts);
+    scale_blocks(state_->blocks.blocks, state_->options.axis_scale.value_or(glm::dvec3(1)));
     state_->box = higher_order_box(state_->blocks.blocks);
   });
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <memory>
 
+#include "io/axis_scale.hpp"
 #include "io/clean_errors.hpp"
 #include "io/file_kinds.hpp"
 #include "io/gzip.hpp"
@@ -108,7 +109,7 @@ MeshBlocks warped(MeshBlocks read, const MeshOptions& options, const std::string
 }
 
 /// What is in a gzip file is read under another name, which nobody is to hear of.
-MeshBlocks read_blocks(const std::filesystem::path& file, const MeshOptions& options) {
+MeshBlocks read_unscaled_blocks(const std::filesystem::path& file, const MeshOptions& options) {
   const FormatRow* const row = format_of(file);
   if (row == nullptr) refuse_as_mesh(file);
   if (std::filesystem::is_directory(file) || !looks_like_gzip(read_beginning(file, 2)))
@@ -120,6 +121,14 @@ MeshBlocks read_blocks(const std::filesystem::path& file, const MeshOptions& opt
   for (std::string& note : read.notes) note = inflated.renamed(std::move(note));
   for (CellBlock& block : read.blocks) block.source = inflated.renamed(std::move(block.source));
   read.format += ", gzip";
+  return read;
+}
+
+MeshBlocks read_blocks(const std::filesystem::path& file, const MeshOptions& options) {
+  MeshBlocks read = read_unscaled_blocks(file, options);
+  const Box box = read.beside_degrees ? box_of_points(read.blocks) : Box();
+  read.axis_scale = chosen_scale(options.axis_scale, read.beside_degrees, box, read.notes);
+  scale_blocks(read.blocks, read.axis_scale);
   return read;
 }
 
@@ -188,6 +197,7 @@ MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options
     result.surfaces = distinct_names(std::move(read.surface_names));
     result.notes.insert(result.notes.begin(), read.notes.begin(), read.notes.end());
     result.time_step = read.time_step;
+    result.axis_scale = read.axis_scale;
     if (auto note = note_on(read.time_step, options.time_step)) result.notes.insert(result.notes.begin(), *note);
     return result;
   });
@@ -218,6 +228,7 @@ MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptio
       }
       if (auto note = note_on(read.time_step, options.time_step)) read.notes.insert(read.notes.begin(), *note);
       all.time_step = read.time_step;
+      all.axis_scale = read.axis_scale;
       add_notes(read.notes, all.notes);
       add_notes(read.surface_names, all.surface_names);
     });
@@ -231,6 +242,7 @@ MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptio
     result.blocks = std::move(all.block_names);
     result.surfaces = std::move(all.surface_names);
     result.time_step = all.time_step;
+    result.axis_scale = all.axis_scale;
     result.notes.insert(result.notes.begin(), all.notes.begin(), all.notes.end());
     return result;
   });

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <glm/vec3.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -34,12 +35,13 @@ struct MeshOptions {
   /// corners.
   double higher_order_tolerance = default_higher_order_tolerance;
   std::uint64_t higher_order_tets = default_higher_order_tets;
-  ReadProgressFunction progress{};  ///< null: nobody hears
-  bool shape = false;               ///< ReadOptions::shape
-  Selection selection{};            ///< what of the mesh is kept
-  bool surfaces = false;            ///< blocks of faces, patches and side sets are read and named too
-  std::optional<Warp> warp{};       ///< ReadOptions::warp
-  bool drop_duplicates = false;     ///< ReadOptions::drop_duplicates
+  ReadProgressFunction progress{};         ///< null: nobody hears
+  bool shape = false;                      ///< ReadOptions::shape
+  Selection selection{};                   ///< what of the mesh is kept
+  bool surfaces = false;                   ///< blocks of faces, patches and side sets are read and named too
+  std::optional<Warp> warp{};              ///< ReadOptions::warp
+  bool drop_duplicates = false;            ///< ReadOptions::drop_duplicates
+  std::optional<glm::dvec3> axis_scale{};  ///< ReadOptions::axis_scale
 };
 
 using tessera::HigherOrderCells;
@@ -56,7 +58,8 @@ struct MeshFile {
   std::vector<std::string> blocks;    ///< names of all that the file has, read or not
   std::vector<std::string> surfaces;  ///< names of those beside the volume, which block_surface.hpp reads
   TimeStepRead time_step{};
-  std::string format;  ///< "VTK XML unstructured grid", "PLOT3D", "TetGen .node/.ele", ...
+  glm::dvec3 axis_scale{1};  ///< that the points are multiplied by
+  std::string format;        ///< "VTK XML unstructured grid", "PLOT3D", "TetGen .node/.ele", ...
 };
 
 /// Reads a mesh of any format of io/file_kinds.cpp, told by what it begins with, then by its name; or a gzip file of

@@ -53,6 +53,7 @@ struct VolumeFile {
   BodyAxes axes_if_ct = BodyAxes::none;  ///< set_range() makes them body_axes if the values are those of CT
   VolumeTags tags{};
   TimeStepRead time_step{};
+  bool beside_degrees = false;  ///< x and y are degrees, z is a length
 };
 
 /// Whether the file is a regular or rectilinear grid: by what it begins with, so that a .vtk may be a mesh or a volume

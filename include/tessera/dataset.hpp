@@ -57,6 +57,10 @@ struct ReadOptions {
   /// What of a mesh or grid is kept (tessera/selection.hpp). Bounds and default view are of that; so are a mesh's range
   /// and transfer function.
   Selection selection{};
+  /// What the axes of the world are multiplied by, each above 0, before anything else is done with places: clips, views
+  /// and lengths are those of what is scaled. None: 1; but where x and y are degrees and z is a length, and the box is
+  /// thinner than 1:20, z is scaled, which a note says (Dataset::axis_scale() has what was taken).
+  std::optional<glm::dvec3> axis_scale{};
 
   /// Cells of second and higher order become tets that are this near to them: in position of the mesh's diagonal, in
   /// value of the field's range. No more than about `higher_order_tets` are made of them, else the tolerance is larger;
@@ -149,6 +153,10 @@ struct TransferFunctionOptions {
   /// Files over 0 to 1 or -1 to 1, as ParaView's presets are, are stretched as by `rescale` where they would show
   /// next to nothing: less than a hundredth of the field's range lies within theirs, or the reverse.
   bool rescale_presets = false;
+  /// For the warnings: what pictures are made with. Light without extinction shows where emission is independent, and
+  /// with surfaces a clear function may be meant.
+  Emission emission = Emission::absorption;
+  bool with_surfaces = false;
 };
 
 /// A mesh or a grid with one scalar field, opened once. Immutable: copies share it, and so may threads and sessions.
@@ -188,6 +196,8 @@ class TESSERA_EXPORT Dataset {
 
   /// Of the whole, on every rank.
   [[nodiscard]] const Box& bounds() const;
+  /// What the file's axes were multiplied by (ReadOptions::axis_scale).
+  [[nodiscard]] const glm::dvec3& axis_scale() const;
   /// Smallest and largest value of the field that is not blank.
   [[nodiscard]] std::array<double, 2> range() const;
   [[nodiscard]] Association association() const;

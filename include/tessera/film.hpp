@@ -77,8 +77,8 @@ TESSERA_EXPORT std::vector<FilmFrame> plan_film(const FilmPlan& plan);
 /// that a step lacks are left out; nothing if none varies that is no label.
 TESSERA_EXPORT std::string field_of_steps(std::span<const std::vector<FieldInfo>> steps, const ReadOptions& options);
 
-/// How later steps of a time series are read: their field is the one that was chosen for the first step. A field that
-/// varies in one step and not in the next would else make the film jump to another.
+/// How later steps of a time series are read: their field and axis scale are those that were chosen for the first step.
+/// A field that varies in one step and not in the next would else make the film jump to another.
 TESSERA_EXPORT ReadOptions read_of_later_steps(ReadOptions options, const Dataset& first);
 
 /// Before any reading or rendering: can all pictures of the frames that are not finished be written, and the `more`

@@ -314,7 +314,8 @@ ForeignContents read_netcdf(Holdings& holdings, const std::filesystem::path& fil
         .push_back(read_field(holdings, opened, field, its_step, contents.notes));
     report_progress(static_cast<double>(++done) / static_cast<double>(grid.fields.size()));
   }
-  if (is_in_degrees(opened, grid))
+  contents.beside_degrees = is_in_degrees(opened, grid);
+  if (contents.beside_degrees)
     contents.notes.emplace_back(
         "longitude and latitude, in degrees, are x and y as they stand, not places on a sphere");
   contents.parts.push_back(std::move(placed.part));

@@ -24,6 +24,7 @@ from pathlib import Path
 import advice_arguments
 import advice_colors
 import advice_decks
+import advice_empty
 import advice_foreign
 import advice_libraries
 import advice_meshes
@@ -41,6 +42,7 @@ TOPICS = (
     advice_foreign,
     advice_libraries,
     advice_decks,
+    advice_empty,
 )
 
 

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <memory>
+#include <string>
+
+#include "scene/sample_source.hpp"
+
+namespace tessera::scene {
+
+/// The grid with the axes of the world multiplied by `scale`, each factor above 0.
+GridGeometry scaled(GridGeometry geometry, const glm::dvec3& scale);
+
+/// Another source's samples on its grid with the axes of the world scaled.
+class ScaledSource final : public SampleSource {
+ public:
+  /// `source`: the file's name for messages.
+  ScaledSource(std::unique_ptr<SampleSource> all, const glm::dvec3& scale, std::string source);
+
+  [[nodiscard]] std::optional<ValueRange> known_range(const SampleBox& box) const override {
+    return all_->known_range(box);
+  }
+  [[nodiscard]] GridIndex storage_block() const override { return all_->storage_block(); }
+  [[nodiscard]] std::uint64_t bytes_read() const override { return all_->bytes_read(); }
+
+ private:
+  void read_samples(const SampleBox& box, const SampleLayout& layout, std::byte* destination) const override;
+
+  std::unique_ptr<SampleSource> all_;
+};
+
+}  // namespace tessera::scene
