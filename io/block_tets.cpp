@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "scene/error.hpp"
@@ -22,6 +23,25 @@ constexpr std::uint8_t tetra = 10;  // VTK's cell type number
 constexpr std::uint64_t each_curved_cell = 64;
 
 bool finite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
+/// Of MeshCounts::solids.
+std::optional<std::size_t> solid_kind(CellKind kind) {
+  switch (kind) {
+    case CellKind::hexahedron:
+      return 0;
+    case CellKind::wedge:
+      return 1;
+    case CellKind::pyramid:
+      return 2;
+    case CellKind::voxel:
+      return 3;
+    case CellKind::pentagonal_prism:
+    case CellKind::hexagonal_prism:
+      return 4;
+    default:
+      return std::nullopt;
+  }
+}
 
 }  // namespace
 
@@ -47,7 +67,16 @@ void BlockCells::split(std::size_t first, std::size_t last, BlockTets& out) cons
   out.error = nullptr;
   Workplace work{
       .tets = {}, .faces = {}, .corners = {}, .polyhedra = {}, .curved = CurvedWork(curved_.settings().tolerance)};
-  for (std::size_t c = first; c < last; ++c) split_cell(c, work, out);
+  for (std::size_t c = first; c < last; ++c) {
+    const std::size_t tets = out.tets.size();
+    const std::uint64_t tangled = out.counts.cells_tangled;
+    split_cell(c, work, out);
+    if (block_.types.empty() || out.tets.size() == tets) continue;
+    if (const auto kind = solid_kind(shapes_[block_.types[c]].kind)) {
+      ++out.counts.solids[*kind];
+      out.counts.solids_tangled[*kind] += out.counts.cells_tangled - tangled;
+    }
+  }
   out.counts.cells_read = last - first;
 }
 

@@ -185,7 +185,7 @@ bool begins_as_fluent(const FileBeginning& file) {
   // Sections: a comment, whose quotes some leave out, a header, dimensions, the machine that wrote it.
   return words.size() > 1 && is_count(words[0]) && words[0].size() <= 2 &&
          (words[0] == "0" || words[1].front() == '"' || words[1].front() == '(' ||
-          (words[0] == "2" && words[1].front() == '3'));
+          (words[0] == "2" && (words[1].front() == '3' || words[1].front() == '2')));
 }
 
 bool begins_as_gambit(const FileBeginning& file) {
@@ -242,7 +242,9 @@ bool begins_as_abaqus(const FileBeginning& file) {
   if (lines.empty() || !lines[0].starts_with('*')) return false;
   std::string word(lines[0].substr(0, 9));
   std::transform(word.begin(), word.end(), word.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
-  return word.starts_with("*heading") || word.starts_with("*node") || word.starts_with("**");
+  constexpr std::array first_words = {"**",       "*heading", "*node",  "*part",  "*include",
+                                      "*preprin", "*assembl", "*param", "*elset", "*nset"};
+  return std::any_of(first_words.begin(), first_words.end(), [&](const char* w) { return word.starts_with(w); });
 }
 
 bool begins_as_medit(const FileBeginning& file) {
@@ -257,5 +259,43 @@ bool begins_as_netgen(const FileBeginning& file) {
   return !lines.empty() && lines[0] == "mesh3d";
 }
 bool begins_as_nek5000(const FileBeginning& file) { return file.text.starts_with("#std "); }
+
+bool begins_as_ls_dyna(const FileBeginning& file) {
+  const auto lines = first_lines(file.text, '$', 1);
+  return is_text(file.text) && !lines.empty() && lines[0].substr(0, 8) == "*KEYWORD";
+}
+/// A database of binary files without a mark.
+bool begins_as_d3plot(const FileBeginning& file) { return file.file.filename().string().starts_with("d3plot"); }
+bool begins_as_frd(const FileBeginning& file) {
+  return file.text.starts_with("    1C") && file.text.substr(0, 4096).find("\n    1U") != std::string_view::npos;
+}
+bool begins_as_step(const FileBeginning& file) { return without_blanks(file.text).starts_with("ISO-10303-21;"); }
+bool begins_as_brep(const FileBeginning& file) {
+  return without_blanks(file.text).starts_with("DBRep_DrawableShape") ||
+         without_blanks(file.text).starts_with("CASCADE Topology");
+}
+bool begins_as_off(const FileBeginning& file) {
+  const auto lines = first_lines(file.text, '#', 1);
+  return is_text(file.text) && !lines.empty() && (lines[0] == "OFF" || lines[0] == "COFF" || lines[0] == "NOFF");
+}
+bool begins_as_gltf(const FileBeginning& file) { return file.text.starts_with("glTF"); }
+bool begins_as_vdb(const FileBeginning& file) { return file.text.starts_with(std::string_view(" BDV\0\0\0\0", 8)); }
+bool begins_as_nvdb(const FileBeginning& file) { return file.text.starts_with("NanoVDB"); }
+bool begins_as_grib(const FileBeginning& file) {
+  return file.text.size() > 8 && file.text.starts_with("GRIB") && (file.text[7] == 1 || file.text[7] == 2);
+}
+bool begins_as_hdf4(const FileBeginning& file) { return file.text.starts_with("\x0e\x03\x13\x01"); }
+bool begins_as_fits(const FileBeginning& file) { return file.text.starts_with("SIMPLE  ="); }
+bool begins_as_mrc(const FileBeginning& file) {
+  return file.text.size() >= 1024 && file.text.substr(208, 3) == "MAP" && !is_text(file.text.substr(0, 208));
+}
+bool begins_as_amira(const FileBeginning& file) {
+  return file.text.starts_with("# AmiraMesh") || file.text.starts_with("# Avizo");
+}
+bool begins_as_tiff(const FileBeginning& file) {
+  return file.text.starts_with(std::string_view("II*\0", 4)) || file.text.starts_with(std::string_view("MM\0*", 4)) ||
+         file.text.starts_with(std::string_view("II+\0", 4)) || file.text.starts_with(std::string_view("MM\0+", 4));
+}
+bool begins_as_numpy(const FileBeginning& file) { return file.text.starts_with("\x93NUMPY"); }
 
 }  // namespace tessera::io

@@ -57,5 +57,21 @@ bool begins_as_abaqus(const FileBeginning& file);
 bool begins_as_mfem(const FileBeginning& file);
 bool begins_as_netgen(const FileBeginning& file);
 bool begins_as_nek5000(const FileBeginning& file);
+bool begins_as_amira(const FileBeginning& file);
+bool begins_as_brep(const FileBeginning& file);
+bool begins_as_d3plot(const FileBeginning& file);
+bool begins_as_fits(const FileBeginning& file);
+bool begins_as_frd(const FileBeginning& file);
+bool begins_as_gltf(const FileBeginning& file);
+bool begins_as_grib(const FileBeginning& file);
+bool begins_as_hdf4(const FileBeginning& file);
+bool begins_as_ls_dyna(const FileBeginning& file);
+bool begins_as_mrc(const FileBeginning& file);
+bool begins_as_numpy(const FileBeginning& file);
+bool begins_as_nvdb(const FileBeginning& file);
+bool begins_as_off(const FileBeginning& file);
+bool begins_as_step(const FileBeginning& file);
+bool begins_as_tiff(const FileBeginning& file);
+bool begins_as_vdb(const FileBeginning& file);
 
 }  // namespace tessera::io

@@ -133,7 +133,7 @@ MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reade
   if (name == "openfoam" || name == "ensight") require_beside_others(file);
   HelperTask task;
   if (name == "fluent")  // good ones make it crash
-    task.remedy = "it is damaged, or of a kind that VTK's reader does not know: export CGNS or EnSight";
+    task.remedy = "VTK's reader does not know all kinds of it: export CGNS or EnSight";
   return read_foreign_mesh(file, {reader, std::move(task)}, options, GridsAre::hexahedra);
 }
 

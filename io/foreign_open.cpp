@@ -22,8 +22,8 @@ ForeignFile open_foreign(std::shared_ptr<HelperProcess> helper, const std::files
   try {
     opened.contents = contents_of(reply.at("contents").get_binary());
   } catch (const std::exception&) {
-    throw scene::bad_input(
-        fmt::format("{}: its reader says nothing sensible of it; it is damaged, write it anew", opened.source));
+    throw scene::bad_input(fmt::format(
+        "{}: its reader says nothing sensible of it; have it written again, or in another format", opened.source));
   }
   ForeignContents& contents = opened.contents;
   if (!opened.with_surfaces && contents.parts.size() > 1)

@@ -241,7 +241,7 @@ Json content_of(const HelperMessage& reply, const std::string& subject) {
     }
   } catch (const Json::exception&) {
     throw scene::bad_input(
-        fmt::format("{}: its reader gives no sensible answer; the file is damaged, write it anew", subject));
+        fmt::format("{}: its reader gives no sensible answer; have it written again, or in another format", subject));
   }
   if (code != 0)
     throw scene::Error(code == static_cast<int>(scene::ErrorCode::system_failure) ? scene::ErrorCode::system_failure
@@ -313,8 +313,8 @@ SharedBytes HelperProcess::take(const ForeignArray& array, const std::string& su
   try {
     return {reply.file, array.bytes()};
   } catch (const std::invalid_argument&) {
-    throw scene::bad_input(
-        fmt::format("{}: its array '{}' cannot be read; the file is damaged, write it anew", subject, array.name));
+    throw scene::bad_input(fmt::format("{}: its array '{}' cannot be read; have it written again, or in another format",
+                                       subject, array.name));
   }
 }
 

@@ -47,7 +47,7 @@ class SharedBytes {
 /// What a helper is for, in the words of the error that its death becomes: "FILE: WORDS crashed (...); REMEDY". And
 /// which of the programs it is.
 struct HelperTask {
-  std::string words = "reading it", remedy = "the file is damaged, write it anew";
+  std::string words = "reading it", remedy = "have it written again, or in another format";
   Reader reader = Reader::vtk;
   ReadProgressFunction progress{};  ///< hears how far it is; null: nobody
   std::string limit_remedy{};       ///< where it takes too long; empty: as ever

@@ -29,7 +29,7 @@ std::uint64_t require_file(const std::filesystem::path& file) {
   if (error)
     throw scene::bad_input(fmt::format("{}: it is no regular file; give one that can be read twice", file.string()));
   // OpenFOAM's is a mark on the folder that it lies in.
-  if (size == 0 && lower_extension(file) != ".foam")
+  if (size == 0 && lower_extension(file) != ".foam" && lower_extension(file) != ".openfoam")
     throw scene::bad_input(fmt::format("{}: it is empty; write it anew", file.string()));
   return size;
 }

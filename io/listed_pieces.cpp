@@ -114,6 +114,11 @@ PieceList piece_list(const std::filesystem::path& file, const BlockChoice& choic
   if (type_of(file) != in_pieces) {
     list.format = "VTK XML multi-block";
     add_blocks(file, choice, list);
+    if (choice.empty() && list.block_names.empty() && !list.surface_names.empty())
+      throw scene::bad_input(fmt::format(
+          "{}: it lists surfaces alone ({}), no cells of volume; give a mesh, in which `surface` draws such "
+          "files, or one of the files itself, which is filled with cells if it is closed",
+          file.string(), list.surface_names.front() + (list.surface_names.size() > 1 ? ", ..." : "")));
     return list;
   }
   list.format = "VTK XML parallel unstructured grid";

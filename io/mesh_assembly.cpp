@@ -8,6 +8,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -364,6 +365,13 @@ std::vector<std::string> warnings_on_cells(const MeshCounts& n, const HigherOrde
         fmt::format("{} higher-order cells are rendered as linear ones by their corner nodes, without an error bound "
                     "for what that leaves out",
                     higher_order.by_corners));
+  constexpr std::array kinds = {"hexahedra", "wedges", "pyramids", "voxels", "prisms"};
+  for (std::size_t kind = 0; kind < kinds.size(); ++kind)
+    if (n.solids[kind] > 0 && n.solids_tangled[kind] == n.solids[kind])
+      warnings.push_back(
+          fmt::format("all {} {} are tangled, so that they are not drawn as they were meant: is the order of their "
+                      "nodes VTK's? It is another in many programs; write them in VTK's",
+                      n.solids[kind], kinds[kind]));
   if (n.cells_open > 0)
     warnings.push_back(fmt::format("{} polyhedra are left out: their faces are no closed surface", n.cells_open));
   if (n.polyhedra_tangled > 0)

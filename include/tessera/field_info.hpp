@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -43,6 +45,9 @@ struct MeshCounts {
   std::uint64_t polyhedra_tangled = 0;      ///< of those: among cells_tangled
   std::uint64_t cells_duplicate = 0;        ///< kept: an earlier cell has the same corners, and is drawn there too
   std::uint64_t duplicates_dropped = 0;     ///< such cells that were dropped (ReadOptions::drop_duplicates)
+  /// Of kept hexahedra, wedges, pyramids, voxels and prisms of five or six sides: how many there are, and how many of
+  /// them are among cells_tangled.
+  std::array<std::uint64_t, 5> solids{}, solids_tangled{};
   std::uint64_t points_read = 0;
   std::uint64_t points_unused = 0;   ///< of no tet
   std::uint64_t tets_made = 0;       ///< in the mesh
@@ -72,6 +77,10 @@ inline MeshCounts& MeshCounts::operator+=(const MeshCounts& other) {
   polyhedra_tangled += other.polyhedra_tangled;
   cells_duplicate += other.cells_duplicate;
   duplicates_dropped += other.duplicates_dropped;
+  for (std::size_t kind = 0; kind < solids.size(); ++kind) {
+    solids[kind] += other.solids[kind];
+    solids_tangled[kind] += other.solids_tangled[kind];
+  }
   points_read += other.points_read;
   points_unused += other.points_unused;
   tets_made += other.tets_made;
@@ -81,7 +90,7 @@ inline MeshCounts& MeshCounts::operator+=(const MeshCounts& other) {
   cells_cut += other.cells_cut;
   return *this;
 }
-static_assert(sizeof(MeshCounts) == 22 * sizeof(std::uint64_t));  // one line above for each
+static_assert(sizeof(MeshCounts) == 32 * sizeof(std::uint64_t));  // each is added above
 
 /// How near tets come to cells of second and higher order where nothing else is said: in position of the mesh's
 /// diagonal, in value of the field's range; and about how many there may be: not more than 2^18 and twice as many as

@@ -93,6 +93,18 @@ bool has_wide_labels(const std::filesystem::path& folder) {
   return false;
 }
 
+/// Throws if a file of a mesh is gone, which VTK's reader takes for a mesh that is not there, or for damage.
+void require_mesh_files(const std::filesystem::path& folder, const std::string& source) {
+  std::error_code unknown;
+  for (const char* part : {".", "processor0"})
+    for (const std::filesystem::path& mesh : meshes_of(folder / part))
+      for (const char* name : {"points", "faces", "owner", "neighbour"})
+        if (!std::filesystem::exists(mesh / name, unknown) &&
+            !std::filesystem::exists(mesh / (std::string(name) + ".gz"), unknown))
+          throw scene::bad_input(fmt::format("{}: its mesh needs {}, and there is no such file; put it there", source,
+                                             (mesh / name).lexically_normal().string()));
+}
+
 bool is_case(const std::filesystem::path& folder) {
   std::error_code unknown;
   return is_case_folder(folder) || std::filesystem::exists(folder / "processor0", unknown) ||
@@ -181,6 +193,7 @@ ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::path& n
         "{}: there is no mesh of OpenFOAM beside it, constant/polyMesh or processor0/constant/polyMesh; move "
         "it into the folder of a case, or name that folder",
         source));
+  require_mesh_files(folder, source);
   reader->SetCaseType(is_decomposed ? vtkPOpenFOAMReader::DECOMPOSED_CASE : vtkPOpenFOAMReader::RECONSTRUCTED_CASE);
   reader->SetUse64BitLabels(has_wide_labels(folder));
   reader->CreateCellToPointOff();

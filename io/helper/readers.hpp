@@ -89,11 +89,11 @@ void allow_for_folder(const std::filesystem::path& folder, bool is_compressed = 
 /// `chosen` them.
 void allow_filling(std::size_t facets, double tets, bool is_chosen);
 
-/// What to say where memory ran out: the file is damaged, if it had all that its size can explain, else the machine is
-/// too small.
+/// What to say where memory ran out: the file's counts may be wrong, if it had all that its size can explain, else the
+/// machine is too small.
 scene::Error memory_error(const std::string& source,
                           std::string_view damage =
                               "it asks for more memory than a file of its size can need; its "
-                              "counts are damaged, write it anew");
+                              "counts may be wrong: have it written again, or in another format");
 
 }  // namespace tessera::io::helper

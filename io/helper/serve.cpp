@@ -130,7 +130,8 @@ bool answer(std::span<const Reader> readers, Holdings& holdings, Window& window,
   } catch (const std::bad_alloc&) {
     reply = error_json(memory_error(source));
   } catch (const std::exception&) {
-    reply = error_json(scene::bad_input(fmt::format("{}: it cannot be read; it is damaged, write it anew", source)));
+    reply = error_json(
+        scene::bad_input(fmt::format("{}: it cannot be read; have it written again, or in another format", source)));
   }
   return send_message(socket_to_caller, Json::to_cbor(reply), file.get());
 }

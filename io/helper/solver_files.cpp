@@ -39,11 +39,14 @@
 #include <vector>
 
 #include "io/helper/cgns_zones.hpp"
+#include "io/helper/ensight_case.hpp"
 #include "io/helper/linear_only.hpp"
+#include "io/helper/odd_numbers.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/time_steps.hpp"
 #include "io/helper/vtk_parts.hpp"
 #include "io/helper/vtk_session.hpp"
+#include "io/helper/vtk_words.hpp"
 #include "io/input_file.hpp"
 #include "io/node_orders.hpp"
 #include "scene/error.hpp"
@@ -71,7 +74,7 @@ ForeignContents read_by(Holdings& holdings, Reader& reader, const std::filesyste
   if (!warning.empty()) contents.notes.push_back("VTK warns: " + warning);
   vtkDataObject* const data = reader.GetOutputDataObject(0);
   if (data == nullptr) throw scene::bad_input(fmt::format("{}: nothing can be read; write it anew", source));
-  if (mend != nullptr) mend(*data);
+  if (mend) mend(*data);
   contents.parts = parts_of(holdings, *data, source);
   if (contents.parts.empty() && request.value("parts", 1) == 1)
     throw scene::bad_input(fmt::format("{}: it holds no cells; check how it was written", source));
@@ -94,14 +97,56 @@ class FluentErrors : public vtkCommand {
   void Execute(vtkObject*, unsigned long, void* words) override {
     const std::string_view text = words != nullptr ? static_cast<const char*>(words) : "";
     if (!first.empty() || text.find("Could not open data file") != std::string_view::npos) return;
-    const std::size_t message = text.find("): ");
-    for (const char c : text.substr(message == std::string_view::npos ? 0 : message + 3, 200))
-      first += c >= ' ' && c <= '~' ? c : ' ';
-    if (first.empty()) first = "VTK reports an error";
+    first = words_for_users(text);
+    if (first.empty()) first = "VTK's reader does not get over it";
   }
 
   std::string first;
 };
+
+/// What a Fluent file's sections before its first binary one say.
+struct FluentSections {
+  int dimensions = 3;
+  std::string untyped;  ///< zone of cells whose section ends before their type, as a hexadecimal number
+};
+
+FluentSections fluent_sections(const std::filesystem::path& file) {
+  constexpr std::size_t most = 1 << 20;
+  const std::string text = read_beginning(file, most);
+  FluentSections found;
+  for (std::size_t at = 0, depth = 0; at < text.size(); ++at) {
+    if (text[at] == '"') {
+      at = std::min(text.find('"', at + 1), text.size());
+    } else if (text[at] == ')') {
+      depth -= depth > 0 ? 1 : 0;
+    } else if (text[at] == '(' && depth++ == 0) {
+      std::string words = text.substr(at + 1, 200);
+      std::replace(words.begin(), words.end(), '(', ' ');
+      std::istringstream section(words.substr(0, words.find(')')));
+      int kind = 0;
+      if (!(section >> kind)) continue;
+      if (kind >= 2000) break;
+      if (kind == 2) section >> found.dimensions;
+      std::vector<std::string> rest;
+      for (std::string word; section >> word;) rest.push_back(word);
+      if (kind == 12 && rest.size() == 4 && rest[0] != "0" && found.untyped.empty()) found.untyped = rest[0];
+    }
+  }
+  return found;
+}
+
+/// VTK's reader takes what is not there as memory happens to be.
+void require_solid_cells(const std::filesystem::path& file) {
+  const FluentSections sections = fluent_sections(file);
+  if (sections.dimensions == 2)
+    throw scene::bad_input(
+        fmt::format("{}: it is a plane mesh of Fluent's, of 2 dimensions, and has no volume to render; give one of 3",
+                    file.string()));
+  if (!sections.untyped.empty())
+    throw scene::bad_input(fmt::format(
+        "{}: the section of cells of zone {} does not say what they are; export CGNS or EnSight, or the case again",
+        file.string(), sections.untyped));
+}
 
 /// GAMBIT numbers the corners of a quadrangle row by row, also in bricks and pyramids: (0, 0), (1, 0), (0, 1), (1, 1).
 /// VTK's reader takes them as going round, which makes cells that cut themselves. Some programs do write them so, so
@@ -151,6 +196,33 @@ std::vector<std::filesystem::path> ensight_cases(const std::filesystem::path& fi
   return cases;
 }
 
+/// Whether a field as it is asked for ("point:NAME", "NAME:0", ...) is this variable.
+bool asks_for(std::string_view field, const std::string& name) {
+  for (const std::string_view side : {"point:", "cell:"})
+    if (field.starts_with(side)) field.remove_prefix(side.size());
+  return field == name || (field.starts_with(name) && field.substr(name.size()).starts_with(':'));
+}
+
+/// Leaves out what has no file at the step that is asked for; without the geometry there is nothing to read.
+void leave_out_missing(vtkGenericEnSightReader& reader, const std::filesystem::path& file,
+                       const nlohmann::json& request, std::vector<std::string>& notes) {
+  const std::string source = file.string();
+  for (const EnsightCase::Missing& gone : EnsightCase(file).missing(asked_time(reader, request, source))) {
+    if (gone.variable.empty())
+      throw scene::bad_input(
+          fmt::format("{}: it names {}, and there is no such file; put it there", source, gone.file));
+    if (asks_for(request.value("field", ""), gone.variable))
+      throw scene::bad_input(
+          fmt::format("{}: {} of that time step is in {}, and there is no such file; put it there, "
+                      "or choose another `field` or `time_step`",
+                      source, gone.variable, gone.file));
+    gone.of_points ? reader.SetPointArrayStatus(gone.variable.c_str(), 0)
+                   : reader.SetCellArrayStatus(gone.variable.c_str(), 0);
+    notes.push_back(
+        fmt::format("{} is left out: {} is missing, which the case names for it", gone.variable, gone.file));
+  }
+}
+
 }  // namespace
 
 ForeignContents read_ensight(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
@@ -164,7 +236,10 @@ ForeignContents read_ensight(Holdings& holdings, const std::filesystem::path& fi
     vtkNew<vtkGenericEnSightReader> reader;
     reader->SetCaseFileName(each.c_str());
     reader->ReadAllVariablesOn();
-    ForeignContents some = read_by(holdings, *reader, each, request, "EnSight", [] {});
+    std::vector<std::string> notes;
+    ForeignContents some =
+        read_by(holdings, *reader, each, request, "EnSight", [&] { leave_out_missing(*reader, each, request, notes); });
+    std::move(notes.begin(), notes.end(), std::back_inserter(some.notes));
     if (std::string note = note_on_ensight6(each); !note.empty()) some.notes.push_back(std::move(note));
     if (cases.size() > 1)
       for (ForeignPart& part : some.parts)
@@ -244,10 +319,15 @@ ForeignContents read_vtk_hdf(Holdings& holdings, const std::filesystem::path& fi
 
 ForeignContents read_avs_ucd(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   allow_for(file);
-  return read_plainly<vtkAVSucdReader>(holdings, file, request, "AVS UCD");
+  OddNumbers odd(file);
+  const vtkNew<vtkAVSucdReader> reader;
+  reader->SetFileName(odd.file_name().c_str());
+  return read_by(
+      holdings, *reader, file, request, "AVS UCD", [] {}, [&](vtkDataObject& data) { odd.restore(&data); });
 }
 
 ForeignContents read_fluent(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  require_solid_cells(file);
   // Its values lie beside it, by the name with which VTK looks for them.
   std::string data = file.string();
   data.replace(data.size() - std::min<std::size_t>(data.size(), 3), std::string::npos, "dat");
@@ -265,8 +345,7 @@ ForeignContents read_fluent(Holdings& holdings, const std::filesystem::path& fil
   } catch (const scene::Error&) {  // most often by its memory, for it does not mind where a file ends
     throw scene::bad_input(fmt::format("{}: VTK's reader cannot read it; export CGNS or EnSight", file.string()));
   }
-  if (!errors->first.empty())
-    throw scene::bad_input(fmt::format("{}: {}; {}", file.string(), errors->first, write_anew));
+  if (!errors->first.empty()) throw error_of_vtk(file.string(), errors->first, write_anew);
   std::erase_if(contents.notes,
                 [](const std::string& note) { return note.find("open dat file") != std::string::npos; });
   if (!has_data) contents.notes.emplace_back("no .dat file lies beside the case: it has no field");

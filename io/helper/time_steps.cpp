@@ -13,6 +13,16 @@
 
 namespace tessera::io::helper {
 
+double asked_time(vtkAlgorithm& reader, const nlohmann::json& request, const std::string& source) {
+  std::optional<std::size_t> wish;
+  if (const auto step = request.find("time_step"); step != request.end()) wish = step->get<std::size_t>();
+  auto* const key = vtkStreamingDemandDrivenPipeline::TIME_STEPS();
+  vtkInformation* const about = reader.GetOutputInformation(0);
+  const int steps = about != nullptr && about->Has(key) ? std::max(about->Length(key), 0) : 0;
+  const std::size_t step = chosen_step(wish, static_cast<std::size_t>(steps), source).step;
+  return steps == 0 ? 0 : about->Get(key, static_cast<int>(step));
+}
+
 void update_at_step(vtkAlgorithm& reader, const nlohmann::json& request, const std::string& source,
                     TimeStepRead& read) {
   std::optional<std::size_t> wish;

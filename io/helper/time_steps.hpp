@@ -14,4 +14,8 @@ namespace tessera::io::helper {
 /// with_quiet_vtk(). Throws Error(bad_input) for a step that there is not.
 void update_at_step(vtkAlgorithm& reader, const nlohmann::json& request, const std::string& source, TimeStepRead& read);
 
+/// The time of the step that the request asks for, after UpdateInformation(); 0 of a file without time. Throws as
+/// update_at_step().
+double asked_time(vtkAlgorithm& reader, const nlohmann::json& request, const std::string& source);
+
 }  // namespace tessera::io::helper

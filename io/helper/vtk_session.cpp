@@ -11,14 +11,17 @@
 #include <vtkOutputWindow.h>
 #include <vtkSmartPointer.h>
 
-#include <cctype>
+#include <limits>
 #include <mutex>
 #include <new>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
+#include "io/helper/odd_numbers.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/serve.hpp"
+#include "io/helper/vtk_words.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -31,35 +34,25 @@ class MessageTrap : public vtkOutputWindow {
   vtkTypeMacro(MessageTrap, vtkOutputWindow);
 
   void DisplayText(const char*) override {}
-  void DisplayErrorText(const char* text) override { keep(error, text); }
+  void DisplayErrorText(const char* text) override {
+    if (keep(error, text)) failed = true;
+  }
   void DisplayWarningText(const char* text) override { keep(warning, text); }
   void DisplayGenericWarningText(const char* text) override { keep(warning, text); }
   void DisplayDebugText(const char*) override {}
 
   std::string error, warning;
+  bool failed = false;  ///< there is an error, if perhaps without words
   std::vector<std::string> passed_over;
 
  private:
   /// VTK writes "ERROR: In /path/x.cxx, line 12\nvtkX (0x55..): message\n\n"; only the message is for users.
-  void keep(std::string& first, const char* text) {
-    if (!first.empty() || !text) return;
-    std::string message = text;
+  bool keep(std::string& first, const char* text) {
+    if (!first.empty() || text == nullptr) return false;
     for (const std::string& words : passed_over)
-      if (message.find(words) != std::string::npos) return;
-    if (const std::size_t at = message.find("): "); at != std::string::npos) message.erase(0, at + 3);
-    // Where the reader lies in memory says nothing to anybody, and another thing each time.
-    for (std::size_t at = 0; (at = message.find("(0x", at)) != std::string::npos;) {
-      const std::size_t end = message.find(')', at);
-      if (end == std::string::npos) break;
-      message.erase(at, end + 1 - at);
-    }
-    for (const unsigned char c : message) {
-      const char plain = std::isprint(c) ? static_cast<char>(c) : ' ';
-      if (plain != ' ' || (!first.empty() && first.back() != ' ')) first += plain;
-    }
-    while (!first.empty() && (first.back() == ' ' || first.back() == '.')) first.pop_back();
-    if (first.size() > 200) first = first.substr(0, 200) + "...";
-    if (first.empty()) first = "VTK reports an error";
+      if (std::string_view(text).find(words) != std::string_view::npos) return false;
+    first = words_for_users(text);
+    return true;
   }
 };
 vtkStandardNewMacro(MessageTrap);
@@ -104,15 +97,9 @@ std::string with_quiet_vtk(const std::string& source, const std::string& remedy,
   } catch (const std::length_error&) {
     throw scene::bad_input(fmt::format("{}: it gives impossible sizes; {}", source, remedy));
   }
-  // What a file that is cut short gives VTK's legacy reader to say is a warning to it.
-  if (quiet.trap->error.empty() && quiet.trap->warning.find("Error reading") != std::string::npos)
-    throw scene::bad_input(fmt::format("{}: it ends before its data do; {}", source, remedy));
-  // Legacy files of fields alone.
-  if (quiet.trap->error.find("did not create output") != std::string::npos)
-    throw scene::bad_input(fmt::format("{}: it holds no points and cells; give the file that does", source));
-  // Some readers begin with the file's name themselves.
-  if (quiet.trap->error.starts_with(source + ": ")) quiet.trap->error.erase(0, source.size() + 2);
-  if (!quiet.trap->error.empty()) throw scene::bad_input(fmt::format("{}: {}; {}", source, quiet.trap->error, remedy));
+  if (!quiet.trap->failed && quiet.trap->warning.find("Error reading") != std::string::npos)
+    throw error_of_vtk(source, "it ends before its data do", remedy);
+  if (quiet.trap->failed) throw error_of_vtk(source, quiet.trap->error, remedy);
   return quiet.trap->warning;
 }
 
@@ -127,6 +114,12 @@ void watch_progress(vtkAlgorithm& reader) {
 void read_all_arrays(vtkDataSetReader& reader, const std::string& source) {
   watch_progress(reader);
   reader.SetFileName(source.c_str());
+  const OddNumbers odd(source);
+  if (odd.any()) {
+    if (odd.text().size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) throw std::bad_alloc();
+    reader.ReadFromInputStringOn();
+    reader.SetBinaryInputString(odd.text().data(), static_cast<int>(odd.text().size()));
+  }
   reader.ReadAllScalarsOn();
   reader.ReadAllVectorsOn();
   reader.ReadAllNormalsOn();
@@ -135,6 +128,7 @@ void read_all_arrays(vtkDataSetReader& reader, const std::string& source) {
   reader.ReadAllTCoordsOn();
   reader.ReadAllFieldsOn();
   reader.Update();
+  odd.restore(reader.GetOutputDataObject(0));
 }
 
 }  // namespace tessera::io::helper

@@ -29,6 +29,7 @@ import advice_foreign
 import advice_libraries
 import advice_meshes
 import advice_outputs
+import advice_unread
 import advice_volumes
 from advice_exceptions import EXCEPTIONS, NO_ADVICE
 from advice_messages import messages_of
@@ -43,6 +44,7 @@ TOPICS = (
     advice_libraries,
     advice_decks,
     advice_empty,
+    advice_unread,
 )
 
 

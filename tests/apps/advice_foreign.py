@@ -122,7 +122,7 @@ ROWS = [
     damaged("a.sos", SERVERS, "casefile:", "file:", "write it anew", beside=ENSIGHT),
     damaged("a.vtk", LEGACY, "# vtk DataFile Version 3.0", "vtk", "check that it is a legacy VTK file"),
     damaged("a.vtk", LEGACY, "CELL_TYPES 1\n10", "CELL_TYPES 1\n64", "(ParaView: Tetrahedralize)"),
-    damaged("a.vtk", LEGACY, "POINTS 4 float", "POINTS 4 flat", "write it anew"),
+    damaged("a.vtk", LEGACY, "POINTS 4 float", "POINTS 4 flat", "or have it written in another format"),
     # pieces and blocks
     row(
         "info a.pvtu",

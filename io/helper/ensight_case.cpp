@@ -1,0 +1,136 @@
+// EnSight 6 and Gold case files, by the EnSight User Manual ("EnSight Gold Case File Format").
+#include "io/helper/ensight_case.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+namespace tessera::io::helper {
+namespace {
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return words;
+}
+
+bool is_count(const std::string& word) {
+  return !word.empty() && word.size() < 9 && word.find_first_not_of("0123456789") == std::string::npos;
+}
+
+/// Takes the numbers of a time set and a file set away from the beginning of the words.
+std::pair<int, bool> take_sets(std::vector<std::string>& words, std::size_t names) {
+  int time_set = 1;
+  bool in_sets = false;
+  for (int k = 0; k < 2 && words.size() > names && is_count(words.front()); ++k) {
+    k == 0 ? static_cast<void>(time_set = std::stoi(words.front())) : static_cast<void>(in_sets = true);
+    words.erase(words.begin());
+  }
+  return {time_set, in_sets};
+}
+
+std::string without_quotes(std::string name) {
+  if (name.size() > 1 && name.front() == '"' && name.back() == '"') name = name.substr(1, name.size() - 2);
+  return name;
+}
+
+}  // namespace
+
+EnsightCase::EnsightCase(const std::filesystem::path& file)
+    : folder_(file.has_parent_path() ? file.parent_path() : std::filesystem::path(".")) {
+  std::ifstream text(file);
+  std::string section, list;
+  TimeSet* set = nullptr;
+  constexpr std::size_t most_lines = 1 << 20;
+  std::size_t lines = 0;
+  for (std::string line; std::getline(text, line) && lines < most_lines; ++lines) {
+    const std::vector<std::string> words = words_of(line);
+    if (words.empty() || words.front().starts_with('#')) continue;
+    if (words.size() == 1 && std::ranges::all_of(words[0], [](char c) { return c >= 'A' && c <= 'Z'; }))
+      section = words[0];
+    else if (section == "GEOMETRY")
+      read_geometry(line);
+    else if (section == "VARIABLE")
+      read_variable(line);
+    else if (section == "TIME")
+      read_time(line, set, list);
+  }
+}
+
+void EnsightCase::read_geometry(const std::string& line) {
+  const std::size_t colon = line.find(':');
+  if (colon == std::string::npos || line.substr(0, colon).find("model") == std::string::npos) return;
+  std::vector<std::string> words = words_of(line.substr(colon + 1));
+  const auto [time_set, in_sets] = take_sets(words, 1);
+  if (!words.empty()) named_.push_back({"", without_quotes(words.front()), time_set, false, in_sets});
+}
+
+/// `scalar per node: [ts] [fs] NAME FILE`; of a complex one two files and a frequency; a constant has no file.
+void EnsightCase::read_variable(const std::string& line) {
+  const std::size_t colon = line.find(':');
+  if (colon == std::string::npos) return;
+  const std::string kind = line.substr(0, colon);
+  const bool is_complex = kind.find("complex") != std::string::npos;
+  if (kind.find("per node") == std::string::npos && kind.find("per element") == std::string::npos) return;
+  if (kind.find("measured") != std::string::npos) return;
+  std::vector<std::string> words = words_of(line.substr(colon + 1));
+  const auto [time_set, in_sets] = take_sets(words, is_complex ? 3 : 2);
+  const bool of_points = kind.find("per node") != std::string::npos;
+  for (std::size_t k = 1; k < words.size() && k < (is_complex ? 3u : 2u); ++k)
+    named_.push_back({words.front(), without_quotes(words[k]), time_set, of_points, in_sets});
+}
+
+void EnsightCase::read_time(const std::string& line, TimeSet*& set, std::string& list) {
+  const std::size_t colon = line.find(':');
+  std::vector<std::string> words = words_of(line.substr(colon == std::string::npos ? 0 : colon + 1));
+  if (colon != std::string::npos) {
+    list = line.substr(0, colon);
+    if (list.find("time set") != std::string::npos && !words.empty() && is_count(words.front())) {
+      set = &sets_[std::stoi(words.front())];
+      return;
+    }
+  }
+  if (set == nullptr) return;
+  for (const std::string& word : words) {
+    char* end = nullptr;
+    const double number = std::strtod(word.c_str(), &end);
+    if (end == word.c_str()) continue;
+    if (list.find("time values") != std::string::npos) set->times.push_back(number);
+    if (list.find("filename numbers") != std::string::npos) set->numbers.push_back(static_cast<long>(number));
+    if (list.find("filename start number") != std::string::npos) set->start = static_cast<long>(number);
+    if (list.find("filename increment") != std::string::npos) set->increment = static_cast<long>(number);
+  }
+}
+
+std::string EnsightCase::file_of(const Named& named, double time) const {
+  const std::size_t first = named.pattern.find('*');
+  if (first == std::string::npos) return named.pattern;
+  const auto found = sets_.find(named.time_set);
+  if (found == sets_.end()) return "";
+  const TimeSet& set = found->second;
+  std::size_t step = 0;
+  while (step + 1 < set.times.size() && set.times[step + 1] <= time) ++step;
+  if (!set.numbers.empty() && step >= set.numbers.size()) return "";
+  const long number = set.numbers.empty() ? set.start + static_cast<long>(step) * set.increment : set.numbers[step];
+  const std::size_t last = named.pattern.find_last_of('*');
+  return named.pattern.substr(0, first) + fmt::format("{:0{}}", number, last + 1 - first) +
+         named.pattern.substr(last + 1);
+}
+
+std::vector<EnsightCase::Missing> EnsightCase::missing(double time) const {
+  std::vector<Missing> missing;
+  for (const Named& named : named_) {
+    if (named.in_sets) continue;  // how many files a set has, only they say
+    const std::string file = file_of(named, time);
+    std::error_code unknown;
+    if (!file.empty() && !std::filesystem::exists(folder_ / file, unknown) && !unknown)
+      missing.push_back({named.variable, file, named.of_points});
+  }
+  return missing;
+}
+
+}  // namespace tessera::io::helper

@@ -1,0 +1,190 @@
+// What files of other programs lack or have otherwise is said as it is, and what is there is read.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "io/file_kinds.hpp"
+#include "io/foam_case.hpp"
+#include "io/mesh_assembly.hpp"
+#include "io/mesh_checks.hpp"
+#include "io/mesh_reader.hpp"
+#include "io/temporary_folder.hpp"
+#include "io/volume_reader.hpp"
+#include "io/vtk_or_skip.hpp"
+
+namespace tessera::io::messages_test {
+namespace {
+
+using testing::message_of;
+
+class Messages : public ::testing::Test {
+ protected:
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories((folder / name).parent_path());
+    std::ofstream(folder / name, std::ios::binary) << text;
+    return folder / name;
+  }
+  test::TemporaryFolder folder;
+};
+
+bool has_note(const MeshFile& file, const std::string& words) {
+  return std::any_of(file.notes.begin(), file.notes.end(),
+                     [&](const std::string& note) { return note.find(words) != std::string::npos; });
+}
+
+std::string numbers(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) text += fmt::format("{:12.5e}\n", value);
+  return text;
+}
+
+/// A tet with a field of points, `f`, and one of cells, `g`, at three times, whose files are numbered from 7 on.
+class EnsightMessages : public Messages {
+ protected:
+  EnsightMessages() {
+    write("a.case",
+          "FORMAT\ntype: ensight gold\n\nGEOMETRY\nmodel: a.geo\n\nVARIABLE\nscalar per node: 1 f a.f****\n"
+          "scalar per element: 1 g a.g****\n\nTIME\ntime set: 1\nnumber of steps: 3\nfilename start number: 7\n"
+          "filename increment: 2\ntime values: 0.0 0.5\n1.0\n");
+    write("a.geo", "made\nhere\nnode id off\nelement id off\npart\n         1\nbox\ncoordinates\n         4\n" +
+                       numbers({0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}) +
+                       "tetra4\n         1\n         1         2         3         4\n");
+    for (const int step : {7, 9, 11}) {
+      write(fmt::format("a.f{:04}", step), "f\npart\n         1\ncoordinates\n" + numbers({0, 1, 2, 3.0 * step}));
+      write(fmt::format("a.g{:04}", step), "g\npart\n         1\ntetra4\n" + numbers({1.0 * step}));
+    }
+  }
+};
+
+TEST_F(EnsightMessages, AVariableWithoutItsFileIsLeftOutOfThatStep) {
+  TESSERA_VTK_OR_SKIP();
+  EXPECT_EQ(read_mesh(folder / "a.case").mesh.field_name, "f");
+  std::filesystem::remove(folder / "a.f0011");
+  const MeshFile last = read_mesh(folder / "a.case");
+  EXPECT_EQ(last.mesh.field_name, "g");
+  EXPECT_EQ(last.mesh.scalars.front(), 11);
+  EXPECT_TRUE(has_note(last, "f is left out: a.f0011 is missing"));
+  MeshOptions options;
+  options.time_step = 1;
+  EXPECT_EQ(read_mesh(folder / "a.case", options).mesh.field_name, "f");
+  options.time_step = 2, options.field = "f";
+  EXPECT_NE(message_of([&] { read_mesh(folder / "a.case", options); }).find("is in a.f0011, and there is no such file"),
+            std::string::npos);
+}
+
+TEST_F(EnsightMessages, AMissingGeometryIsNamed) {
+  TESSERA_VTK_OR_SKIP();
+  std::filesystem::remove(folder / "a.geo");
+  const std::string message = message_of([&] { read_mesh(folder / "a.case"); });
+  EXPECT_NE(message.find("it names a.geo, and there is no such file"), std::string::npos) << message;
+}
+
+TEST_F(Messages, AMarkOfAnOpenFoamCaseMayBeEmptyByEitherName) {
+  TESSERA_VTK_OR_SKIP();
+  const testing::Cubes cubes(2);
+  testing::write_foam(folder / "case", cubes, [](int) { return true; });
+  for (const char* name : {"case/a.foam", "case/a.OpenFOAM"}) {
+    write(name, "");
+    EXPECT_EQ(read_mesh(folder / name).counts.cells_read, 8u) << name;
+  }
+  std::filesystem::remove(folder / "case/constant/polyMesh/faces");
+  const std::string message = message_of([&] { read_mesh(folder / "case/a.foam"); });
+  EXPECT_NE(message.find("polyMesh/faces, and there is no such file"), std::string::npos) << message;
+}
+
+/// Two tets with a field of points, of which `odd` is a value of the second's.
+std::string legacy(const std::string& odd) {
+  return "# vtk DataFile Version 3.0\nmade\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n0 0 0\n1 0 0\n0 1 0\n"
+         "0 0 1\n1 1 1\nCELLS 2 10\n4 0 1 2 3\n4 1 2 3 4\nCELL_TYPES 2\n10\n10\nPOINT_DATA 5\nSCALARS nan double 1\n"
+         "LOOKUP_TABLE default\n0 1 2 3 " +
+         odd + "\nFIELD FieldData 1\ninf 1 5 float\n4 5 6 7 " + odd + "\n";
+}
+
+TEST_F(Messages, NanInLegacyTextIsANumber) {
+  TESSERA_VTK_OR_SKIP();
+  for (const std::string odd : {"nan", "NaN", "-nan", "inf", "-Infinity", "1.#QNAN"})
+    for (const std::string field : {"nan", "inf"}) {
+      MeshOptions options;
+      options.field = field;
+      const MeshFile read = read_mesh(write("a.vtk", legacy(odd)), options);
+      EXPECT_EQ(read.counts.cells_read, 2u) << odd;
+      EXPECT_EQ(read.counts.cells_nan, 1u) << odd;
+      EXPECT_EQ(read.mesh.scalars[3], field == "nan" ? 3 : 7) << odd;
+    }
+  EXPECT_EQ(read_mesh(write("a.vtk", legacy("9"))).counts.cells_nan, 0u);
+}
+
+TEST_F(Messages, NanInTextOfGridsAndUcdIsANumber) {
+  TESSERA_VTK_OR_SKIP();
+  const auto grid =
+      write("g.vtk",
+            "# vtk DataFile Version 3.0\none\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 3\nORIGIN 0 "
+            "0 0\nSPACING 1 1 1\nPOINT_DATA 12\nSCALARS f float 1\nLOOKUP_TABLE default\n0 1 2 3 4 5 6 7 8 "
+            "9 10 nan\n");
+  const VolumeFile volume = open_volume(grid);
+  EXPECT_EQ(volume.range.blanks, 1u);
+  EXPECT_EQ(volume.range.high, 10);
+  const auto ucd = write("a.inp",
+                         "5 2 1 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n1 1 tet 1 2 3 4\n2 1 tet 2 3 4 5\n1 "
+                         "1\nf, none\n1 0\n2 1\n3 2\n4 3\n5 nan\n");
+  const MeshFile mesh = read_mesh(ucd);
+  EXPECT_EQ(mesh.counts.cells_nan, 1u);
+  EXPECT_EQ(mesh.counts.cells_read, 2u);
+}
+
+TEST_F(Messages, ListsOfSurfacesAndPlaneMeshesAreRefusedForWhatTheyAre) {
+  const auto list = write("a.vtm",
+                          "<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet><DataSet index=\"0\" "
+                          "name=\"skin\" file=\"a.vtp\"/></vtkMultiBlockDataSet></VTKFile>");
+  write("a.vtp", "<VTKFile type=\"PolyData\"><PolyData/></VTKFile>");
+  EXPECT_NE(message_of([&] { read_mesh(list); }).find("it lists surfaces alone (skin)"), std::string::npos);
+  TESSERA_VTK_OR_SKIP();
+  for (const std::string first : {"(0 \"flat\")\n(2 2)\n", "(2 2)\n"}) {
+    const auto flat = write("a.msh", first + "(10 (0 1 5 0 2))\n(12 (0 1 3 0))\n(12 (2 1 3 1))\n");
+    const std::string message = message_of([&] { read_mesh(flat); });
+    EXPECT_NE(message.find("a plane mesh of Fluent's"), std::string::npos) << message;
+  }
+  const auto untyped = write("b.msh", "(0 \"solid\")\n(2 3)\n(10 (0 1 5 0 3))\n(12 (0 1 3 0))\n(12 (2 1 3 1))\n");
+  const std::string message = message_of([&] { read_mesh(untyped); });
+  EXPECT_NE(message.find("the section of cells of zone 2 does not say what they are"), std::string::npos) << message;
+}
+
+TEST_F(Messages, CellsWithTheirNodesInAnotherOrderAreWarnedOf) {
+  const auto block_of = [](const std::vector<std::uint32_t>& order) {
+    CellBlock block;
+    for (int k = 0; k < 12; ++k) block.positions.emplace_back(k % 2, k / 2 % 2, k / 4);
+    block.types = {12, 12};
+    block.offsets = {0, 8, 16};
+    for (const std::uint32_t first : {0u, 4u})
+      for (const std::uint32_t corner : order) block.connectivity.push_back(first + corner);
+    return block;
+  };
+  std::vector<CellBlock> right, voxels;
+  right.push_back(block_of({0, 1, 3, 2, 4, 5, 7, 6}));
+  voxels.push_back(block_of({0, 1, 2, 3, 4, 5, 6, 7}));
+  const MeshFile good = assemble_mesh(std::move(right), {}, "a"), tangled = assemble_mesh(std::move(voxels), {}, "a");
+  EXPECT_TRUE(warnings_on_cells(good.counts, good.higher_order).empty());
+  const auto warnings = warnings_on_cells(tangled.counts, tangled.higher_order);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings.front().find("all 2 hexahedra are tangled"), 0u) << warnings.front();
+}
+
+TEST_F(Messages, OfVtkComeWithoutItsDebuggingAndCallDamagedOnlyWhatIs) {
+  TESSERA_VTK_OR_SKIP();
+  const std::string whole = legacy("9");
+  const std::string cut = message_of([&] { read_mesh(write("a.vtk", whole.substr(0, 150))); });
+  EXPECT_NE(cut.find("truncated or damaged"), std::string::npos) << cut;
+  std::string other = whole;
+  other.replace(other.find("SCALARS nan double"), 18, "SCALARS nan quater");
+  const std::string unknown = message_of([&] { read_mesh(write("a.vtk", other)); });
+  EXPECT_EQ(unknown.find("damaged"), std::string::npos) << unknown;
+  for (const char* words : {"vtk", "0x", "Debug", "ERROR:"})
+    EXPECT_EQ(unknown.substr(unknown.find(": ")).find(words), std::string::npos) << unknown;
+}
+
+}  // namespace
+}  // namespace tessera::io::messages_test
