@@ -177,12 +177,13 @@ class PartOf {
 
   /// Its values belong to degrees of freedom, not to the file's points or cells.
   static std::string note_on_function(const XdmfAttribute& function) {
+    std::string family = function.getElementFamily();
+    if (family.empty()) family = "some";
     return fmt::format(
         "the field '{}' is a finite-element function ({} of degree {}) and is left out, for such are not read; write "
         "its "
         "values at points or cells (FEniCS: `write` in place of `write_checkpoint`)",
-        function.getName(), function.getElementFamily().empty() ? "some" : function.getElementFamily(),
-        function.getElementDegree());
+        function.getName(), family, function.getElementDegree());
   }
 
   Reading& reading_;

@@ -160,6 +160,7 @@ class Rewriting {
 
 std::string rewritten_xdmf(const std::filesystem::path& file) {
   const std::string source = file.string();
+  xmlSetStructuredErrorFunc(nullptr, [](void*, xmlErrorPtr) {});  // else it writes to stderr
   const MappedFile mapped(file);
   const std::string_view text = mapped.text();
   const std::unique_ptr<xmlDoc, void (*)(xmlDoc*)> document(

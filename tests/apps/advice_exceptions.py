@@ -54,13 +54,14 @@ EXCEPTIONS = {
     ),
     r"^io/helper/(gmsh_blocks\.cpp:\d+: \{\}: a cell uses|gmsh_file\.cpp:\d+: \{\}: \{\}Gmsh cannot)": (2, ANSWER),
     r"^io/helper/vtk_readers\.cpp:\d+: grid or": (1, ANSWER),
+    r"^io/helper/(xdmf_rewritten\.cpp:\d+: \{\}: it is not well|gmsh_view_names)": (2, ANSWER),
     r"^io/helper/(dicom_slice|tetgen_fill\.cpp:\d+: \{\}: TetGen finds nothing)": (2, ANSWER),
     r"^io/helper/(hdf5_(kind|file|grid)|netcdf_values|med_meshes|minc2_file|amr_files)|^io/mesh_shares\.cpp:\d+: \{\}: it is named as CGNS": (
         23,
         HDF5,
     ),
     r"^io/helper/cgns_": (15, HDF5),
-    r"^io/helper/gmsh_blocks\.cpp:\d+: \{\}: its cells of": (1, RARE),
+    r"^io/helper/gmsh_elements\.cpp:\d+: \{\}: its cells of": (1, RARE),
     r"^io/(helper_process\.[ch]pp|helper/serve|helper/limits|foreign_fill\.cpp:\d+: filling)": (8, HELPER),
     r"^io/(foreign_fill\.cpp:\d+: mend|block_tets\.cpp:\d+: .*order_tolerance|amr_leaves\.cpp:\d+: .*many pieces)": (
         5,

@@ -93,8 +93,13 @@ ROWS = [
     ),
     wrong_xdmf(
         xdmf(xdmf_mesh(values="1 2 3 4").replace('Name="f"', 'Name="f" Reference="XML"')),
-        "write it with <xi:include>, or save it as .vtu",
+        "write the element itself there, or save the file as .vtu",
     ),
+    wrong_xdmf(
+        XDMF.replace('Name="f"', 'Name="f" ItemType="FiniteElementFunction" ElementFamily="CG" ElementDegree="1"'),
+        "write its values at points or cells",
+    ),
+    wrong_xdmf(xdmf(xdmf_mesh(values="1 2 3 4" + 10_000_000 * " ")), "write its numbers to HDF5 or a binary file"),
     wrong_xdmf(xdmf(xdmf_mesh(points=item("0 0 0 1 0 0 0 1 0", "4 3"))), "it is truncated or damaged, write it anew"),
     wrong_xdmf(xdmf(xdmf_mesh(values="1 2 3")), "field 'f' has 3 values for 4 points; write it anew"),
     wrong_xdmf(
