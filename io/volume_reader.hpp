@@ -78,8 +78,9 @@ void require_volume(const std::filesystem::path& file);
 ///       intercept apply. Analyze 7.5 (.hdr and .img): spacing alone, for it says nothing else reliably.
 ///   DICOM, a folder, one of its files or frames in one: by GDCM, all of it in memory. Position, orientation, spacing,
 ///       rescale; the slices of one series by their places. Uneven ones are a rectilinear grid.
-///   NetCDF of three dimensions beside time, MINC 1 and 2, XDMF of one regular or rectilinear grid: by their libraries,
-///       all of it in memory. Whether NetCDF, HDF5 and XDMF files are volumes, they tell.
+///   NetCDF and HDF5 of three dimensions in space, VTKHDF images, MINC 1 and 2, XDMF of one regular or rectilinear
+///   grid:
+///       by their libraries, all of it in memory. Whether NetCDF, HDF5 and XDMF files are volumes, they tell.
 ///   .raw: described by the options or by its name, in place. .bricks: what write_bricks made, read brick by brick.
 ///   A gzip file of any of these is inflated into memory first, whatever its name.
 ///
