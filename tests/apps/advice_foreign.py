@@ -164,7 +164,7 @@ ROWS = [
     row("info a.vtm --block onee", "the nearest is 'one'", "info a.vtm --block one", {"a.vtm": VTM, **TWO}),
     *(
         row(
-            "info a.pvtu",
+            "info a.pvtu --field f",
             f"{words}' of {size} as other pieces have; write all pieces with the same fields",
             None,
             {

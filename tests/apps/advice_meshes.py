@@ -110,6 +110,7 @@ ROWS = [
     row("info a.ply --max-volume 0", "a number above 0", "info a.ply --max-volume 1", {"a.ply": PLY}),
     # AMReX
     amrex("Header", "Level_0/Cell\n", "", "it is truncated, write it anew"),
+    row("info plt --warp v", "a mesh with levels of refinement is not moved; leave it out", "info plt", AMREX),
     amrex("Header", "0.0\n0\n", "0.0\nx\n", "is wanted; write it anew"),
     amrex("Header", "0.5 0.5 0.5", "0.5 x 0.5", "a number is wanted; write it anew"),
     amrex("Header", "(0,0,0))", "(1,0,0))", "which are not read; write values of cells"),
