@@ -17,8 +17,8 @@ namespace tessera::io {
 ///         library gives (ex_get_side_set_node_list, and Ioss_Hex64). Names are as free as corners: `HEX`, `hex27`.
 /// med     "MED File Format", reference elements (MED_TETRA4 ... MED_HEXA27). The corners of its cells go round against
 ///         VTK's sense, which mirrors the cell and changes no order; only faces' middles come otherwise.
-/// cgns    SIDS, section 3.3 "Unstructured Grid Element Numbering Conventions". VTK 9.1's reader knows most of it; what
-///         it gets wrong is in io/helper/solver_files.cpp.
+/// cgns    SIDS, section 3.3 "Unstructured Grid Element Numbering Conventions". Cells of higher order are read by
+///         CGNS's own library (io/helper/cgns_cells.hpp), as VTK 9.1's reader gets some of them wrong.
 ///
 /// In VTK's order as they are: EnSight (User Manual, EnSight Gold Geometry File Format; VTK's reader mirrors wedges),
 /// XDMF (Tet_10 ... Hex_27, which VTK and meshio write so; the format's pages define none), legacy VTK and VTK XML but

@@ -11,6 +11,7 @@
 #include <span>
 #include <utility>
 
+#include "io/node_orders.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -20,31 +21,32 @@ using ElementType = CGNS_ENUMT(ElementType_t);
 
 constexpr std::uint8_t polyhedron = 42;  // VTK's cell type number
 
-/// An element of three dimensions: VTK's type, and for each of VTK's nodes which of CGNS's it is.
-struct Solid {
-  ElementType type;
-  std::uint8_t vtk_type;
-  std::vector<std::uint8_t> nodes;
-};
-
-const Solid* solid_of(ElementType type) {
-  static const std::array<Solid, 11> solids = {{
-      {CGNS_ENUMV(TETRA_4), 10, {0, 1, 2, 3}},
-      {CGNS_ENUMV(PYRA_5), 14, {0, 1, 2, 3, 4}},
-      {CGNS_ENUMV(PENTA_6), 13, {0, 1, 2, 3, 4, 5}},
-      {CGNS_ENUMV(HEXA_8), 12, {0, 1, 2, 3, 4, 5, 6, 7}},
-      {CGNS_ENUMV(TETRA_10), 24, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}},
-      {CGNS_ENUMV(PYRA_13), 27, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}},
-      {CGNS_ENUMV(PYRA_14), 74, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13}},
-      // CGNS has the edges between base and top before those of the top.
-      {CGNS_ENUMV(PENTA_15), 26, {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11}},
-      {CGNS_ENUMV(PENTA_18), 32, {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11, 15, 16, 17}},
-      {CGNS_ENUMV(HEXA_20), 25, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 16, 17, 18, 19, 12, 13, 14, 15}},
-      {CGNS_ENUMV(HEXA_27), 29, {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 16, 17,
-                                 18, 19, 12, 13, 14, 15, 24, 22, 21, 23, 20, 25, 26}},
-  }};
+/// The order of nodes of an element of three dimensions that is read; null for others.
+const NodeOrder* order_of(ElementType type) {
+  struct Solid {
+    ElementType type;
+    CurvedFamily shape;
+    std::size_t nodes;
+  };
+  constexpr std::array solids = {
+      Solid{CGNS_ENUMV(TETRA_4), CurvedFamily::tet, 4},
+      Solid{CGNS_ENUMV(TETRA_10), CurvedFamily::tet, 10},
+      Solid{CGNS_ENUMV(TETRA_20), CurvedFamily::tet, 20},
+      Solid{CGNS_ENUMV(PYRA_5), CurvedFamily::pyramid, 5},
+      Solid{CGNS_ENUMV(PYRA_13), CurvedFamily::pyramid, 13},
+      Solid{CGNS_ENUMV(PYRA_14), CurvedFamily::pyramid, 14},
+      Solid{CGNS_ENUMV(PYRA_30), CurvedFamily::pyramid, 30},
+      Solid{CGNS_ENUMV(PENTA_6), CurvedFamily::wedge, 6},
+      Solid{CGNS_ENUMV(PENTA_15), CurvedFamily::wedge, 15},
+      Solid{CGNS_ENUMV(PENTA_18), CurvedFamily::wedge, 18},
+      Solid{CGNS_ENUMV(PENTA_40), CurvedFamily::wedge, 40},
+      Solid{CGNS_ENUMV(HEXA_8), CurvedFamily::hexahedron, 8},
+      Solid{CGNS_ENUMV(HEXA_20), CurvedFamily::hexahedron, 20},
+      Solid{CGNS_ENUMV(HEXA_27), CurvedFamily::hexahedron, 27},
+      Solid{CGNS_ENUMV(HEXA_64), CurvedFamily::hexahedron, 64},
+  };
   const auto* const found = std::ranges::find(solids, type, &Solid::type);
-  return found == solids.end() ? nullptr : found;
+  return found == solids.end() ? nullptr : find_node_order(NodeConvention::cgns, found->shape, found->nodes);
 }
 
 /// Corners of a face; 0 of what is none.
@@ -207,17 +209,19 @@ class Cells {
   }
 
   void add_solid(ElementType type, Face nodes, const Section& section) {
-    const Solid* const solid = solid_of(type);
+    const NodeOrder* const solid = order_of(type);
     if (solid == nullptr) {
       if (is_below_three(type)) return;
       refuse(zone_, section,
-             fmt::format("has elements {}, which are not read; export elements of order 1 or 2",
+             fmt::format("has elements {}, which are not read; export elements of order 1 or 2, or TETRA_20, PYRA_30, "
+                         "PENTA_40 or HEXA_64",
                          cg_ElementTypeName(type)));
     }
-    if (nodes.size() < solid->nodes.size())
+    if (nodes.size() < solid->nodes)
       refuse(zone_, section, "has an element with too few nodes; the file is damaged, export it again");
     block_.types.push_back(solid->vtk_type);
-    for (const std::uint8_t k : solid->nodes) block_.connectivity.push_back(point(nodes[k]));
+    for (std::size_t k = 0; k < solid->nodes; ++k)
+      block_.connectivity.push_back(point(nodes[solid->from.empty() ? k : solid->from[k]]));
     block_.offsets.push_back(block_.connectivity.size());
   }
 
@@ -301,9 +305,10 @@ bool is_plain(const CgnsZone& zone) {
       if (section.first <= zone.size[1]) return false;
       continue;
     }
-    const Solid* const solid = solid_of(section.type);
-    const bool is_curved = solid != nullptr && solid->nodes.size() > 8;  // in this program's own order of nodes
-    if (section.first != next || is_curved) return false;
+    const NodeOrder* const solid = order_of(section.type);
+    // Cells of higher order, and those that are not read, are not left to VTK, which has some in another order of
+    // nodes.
+    if (section.first != next || solid == nullptr || solid->nodes > 8) return false;
     next = section.last + 1;
   }
   return next == zone.size[1] + 1;

@@ -5,8 +5,6 @@
 #include <vtkCellArray.h>
 #include <vtkCellType.h>
 #include <vtkCommand.h>
-#include <vtkCompositeDataIterator.h>
-#include <vtkCompositeDataSet.h>
 #include <vtkDataObject.h>
 #include <vtkEnSightReader.h>
 #include <vtkFLUENTReader.h>
@@ -16,10 +14,7 @@
 #include <vtkIdList.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
-#include <vtkSmartPointer.h>
-#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
-#include <vtkVersionMacros.h>
 
 #include <algorithm>
 #include <array>
@@ -31,7 +26,6 @@
 #include <glm/vec3.hpp>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <span>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -48,7 +42,6 @@
 #include "io/helper/vtk_session.hpp"
 #include "io/helper/vtk_words.hpp"
 #include "io/input_file.hpp"
-#include "io/node_orders.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -254,62 +247,16 @@ ForeignContents read_ensight(Holdings& holdings, const std::filesystem::path& fi
   return contents;
 }
 
-/// VTK's reader takes a pyramid of 14 nodes for a quadratic one, which has 13; has no type for one of 13; and
-/// before 9.5 puts hexahedra of third order into the order of VTK 8, and a side of wedges the wrong way. Pyramids of
-/// third order come in the file's order. Throws Error(bad_input) for cells that it has no type for.
-void mend_cgns_cells(vtkDataObject& data, const std::string& source) {
-  constexpr bool is_before_9_5 = VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 5, 0);
-  auto* const composite = vtkCompositeDataSet::SafeDownCast(&data);
-  if (composite == nullptr) return;
-  const auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
-  const vtkNew<vtkIdList> nodes;
-  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem()) {
-    auto* const grid = vtkUnstructuredGrid::SafeDownCast(iterator->GetCurrentDataObject());
-    vtkUnsignedCharArray* const types = grid != nullptr ? grid->GetCellTypesArray() : nullptr;
-    for (vtkIdType cell = 0; types != nullptr && cell < types->GetNumberOfValues(); ++cell) {
-      const unsigned char type = types->GetValue(cell);
-      if (type != VTK_EMPTY_CELL && type != VTK_QUADRATIC_PYRAMID && type != VTK_LAGRANGE_HEXAHEDRON &&
-          type != VTK_LAGRANGE_PYRAMID && type != VTK_LAGRANGE_WEDGE)
-        continue;
-      grid->GetCellPoints(cell, nodes);
-      const auto count = static_cast<std::size_t>(nodes->GetNumberOfIds());
-      if (type == VTK_EMPTY_CELL && count == 13) types->SetValue(cell, VTK_QUADRATIC_PYRAMID);
-      if (type == VTK_QUADRATIC_PYRAMID && count == 14) types->SetValue(cell, VTK_LAGRANGE_PYRAMID);
-      constexpr std::size_t most_of_a_face = 25;  // which no solid has
-      if (type == VTK_EMPTY_CELL && count > 16 && count != most_of_a_face)
-        throw scene::bad_input(
-            fmt::format("{}: it has cells of {} nodes, which VTK's reader does not know; export cells of second order, "
-                        "or TETRA_20, PYRA_30, PENTA_40 and HEXA_64",
-                        source, count));
-      const NodeOrder* const order = find_node_order(NodeConvention::cgns, CurvedFamily::pyramid, count);
-      if (type == VTK_LAGRANGE_PYRAMID && order != nullptr && order->from.size() == count) {
-        const std::vector<vtkIdType> theirs(nodes->begin(), nodes->end());
-        for (std::size_t k = 0; k < count; ++k) nodes->SetId(static_cast<vtkIdType>(k), theirs[order->from[k]]);
-        grid->GetCells()->ReplaceCellAtId(cell, nodes);
-      }
-      if (type == VTK_LAGRANGE_WEDGE && count == 40 && is_before_9_5) {
-        std::swap(nodes->begin()[34], nodes->begin()[35]), std::swap(nodes->begin()[36], nodes->begin()[37]);
-        grid->GetCells()->ReplaceCellAtId(cell, nodes);
-      }
-      if (type != VTK_LAGRANGE_HEXAHEDRON || !is_before_9_5) continue;
-      exchange_vtk8_edges(std::span(nodes->GetPointer(0), count));
-      grid->GetCells()->ReplaceCellAtId(cell, nodes);
-    }
-  }
-}
-
 ForeignContents read_cgns(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   allow_for(file);
   if (auto contents = read_cgns_zones(holdings, file, request)) return std::move(*contents);
   vtkNew<vtkCGNSReader> reader;
   reader->SetFileName(file.c_str());
-  const auto choose = [&] {
+  return read_by(holdings, *reader, file, request, "CGNS", [&] {
     reader->EnableAllBases();
     reader->EnableAllPointArrays();
     reader->EnableAllCellArrays();
-  };
-  return read_by(holdings, *reader, file, request, "CGNS", choose,
-                 [&](vtkDataObject& data) { mend_cgns_cells(data, file.string()); });
+  });
 }
 
 ForeignContents read_vtk_hdf(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
