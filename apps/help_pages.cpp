@@ -20,8 +20,8 @@ struct Topic {
 };
 constexpr std::array topics = {
     Topic{"Server", "", "bind port latency tls-certificate tls-key allow-host"},
-    Topic{"Data", "field block clip threshold time-step labels",
-          "scale smooth warp drop-duplicates q max-volume higher-order-tolerance higher-order-tets cut-planes"},
+    Topic{"Data", "field block clip threshold time-step",
+          "labels scale smooth warp drop-duplicates q max-volume higher-order-tolerance higher-order-tets cut-planes"},
     Topic{"Raw volumes", "", "dims type spacing origin endian skip"},
     Topic{"Colour and opacity", "transfer-function range log opacity opacity-points background",
           "rescale unit-distance blend emission"},

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <initializer_list>
 
 #include "reference/curved_nodes.hpp"
 #include "scene/error.hpp"
@@ -177,24 +178,115 @@ CellShape lagrange_pyramid(int order) {
   return spanned(BernsteinBasis(Domain::box, {order, order, order}), lagrange_pyramid_nodes(order), space);
 }
 
-/// The tet of 15 nodes: the quadratic one, with a cubic bubble for each face and a quartic one inside.
-CellShape enriched_tet() {
-  std::vector<glm::dvec3> nodes = tet_nodes(2);
-  const double third = 1.0 / 3;
-  for (const glm::dvec3& p : {glm::dvec3(third, third, 0), glm::dvec3(third, 0, third), glm::dvec3(third, third, third),
-                              glm::dvec3(0, third, third), glm::dvec3(0.25)})
-    nodes.push_back(p);
-  std::vector<Function> space;
-  for (int k = 0; k <= 2; ++k)
-    for (int j = 0; j + k <= 2; ++j)
-      for (int i = 0; i + j + k <= 2; ++i) space.push_back(corner_monomial(i, j, k));
-  const auto last = [](const glm::dvec3& p) { return 1 - p.x - p.y - p.z; };
+/// Places in the middle of a tet's faces, and of the tet, in the order of the cell of 15 nodes.
+std::vector<glm::dvec3> tet_middles() {
+  constexpr double third = 1.0 / 3;
+  return {{third, third, 0}, {third, 0, third}, {third, third, third}, {0, third, third}, glm::dvec3(0.25)};
+}
+
+/// All polynomials of the tet up to a degree.
+void add_complete(int degree, std::vector<Function>& space) {
+  for (int k = 0; k <= degree; ++k)
+    for (int j = 0; j + k <= degree; ++j)
+      for (int i = 0; i + j + k <= degree; ++i) space.push_back(corner_monomial(i, j, k));
+}
+
+/// What is 1 - r - s - t in the tet.
+double fourth(const glm::dvec3& p) { return 1 - p.x - p.y - p.z; }
+
+/// Cubic bubbles of the tet's faces.
+void add_face_bubbles(std::vector<Function>& space) {
   space.emplace_back([](const glm::dvec3& p) { return p.x * p.y * p.z; });
-  space.emplace_back([=](const glm::dvec3& p) { return p.x * p.y * last(p); });
-  space.emplace_back([=](const glm::dvec3& p) { return p.x * p.z * last(p); });
-  space.emplace_back([=](const glm::dvec3& p) { return p.y * p.z * last(p); });
-  space.emplace_back([=](const glm::dvec3& p) { return p.x * p.y * p.z * last(p); });
+  space.emplace_back([](const glm::dvec3& p) { return p.x * p.y * fourth(p); });
+  space.emplace_back([](const glm::dvec3& p) { return p.x * p.z * fourth(p); });
+  space.emplace_back([](const glm::dvec3& p) { return p.y * p.z * fourth(p); });
+}
+
+/// The tets of 5, 7, 8, 11, 14 and 15 nodes: complete to first degree, of 11 nodes on to second, with a cubic bubble
+/// for each face and a quartic one inside that have a node. Of 7 nodes the base's edges are quadratic.
+CellShape enriched_tet(std::size_t count) {
+  const bool is_quadratic = count > 10, has_faces = count == 8 || count >= 14,
+             has_inside = count != 7 && count != 8 && count != 14;
+  std::vector<glm::dvec3> nodes = count == 7 ? first(7, tet_nodes(2)) : tet_nodes(is_quadratic ? 2 : 1);
+  const std::vector<glm::dvec3> middles = tet_middles();
+  if (has_faces) nodes.insert(nodes.end(), middles.begin(), middles.begin() + 4);
+  if (has_inside) nodes.push_back(middles.back());
+  std::vector<Function> space;
+  add_complete(is_quadratic ? 2 : 1, space);
+  if (count == 7) {
+    space.emplace_back([](const glm::dvec3& p) { return p.x * fourth(p); });
+    space.emplace_back([](const glm::dvec3& p) { return p.x * p.y; });
+    space.emplace_back([](const glm::dvec3& p) { return p.y * fourth(p); });
+  }
+  if (has_faces) add_face_bubbles(space);
+  if (has_inside) space.emplace_back([](const glm::dvec3& p) { return p.x * p.y * p.z * fourth(p); });
   return spanned(BernsteinBasis(Domain::tet, {4, 4, 4}), std::move(nodes), space);
+}
+
+/// (1 - x^2)(1 - y^2) z^k along each axis in turn, for k = 0 and 1, and (1 - x^2)(1 - y^2)(1 - z^2).
+Function hexahedron_bubble(int along, int k, bool inside) {
+  return [=](const glm::dvec3& p) {
+    double value = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double x = 2 * p[axis] - 1;
+      value *= axis == along && !inside ? power(x, k) : 1 - x * x;
+    }
+    return value;
+  };
+}
+
+/// The hexahedra of 9, 16, 21 and 26 nodes: trilinear, or of 16 nodes serendipity across and linear along, of more
+/// the 20 nodes' functions; with bubbles for the faces, and inside, that have a node.
+CellShape incomplete_hexahedron(std::size_t count) {
+  const std::vector<glm::dvec3> all = hexahedron_nodes({2, 2, 2});
+  std::vector<Function> space;
+  if (count == 16) {
+    add_serendipity(1, space);
+    return spanned(BernsteinBasis(Domain::box, {2, 2, 2}), first(16, all), space);
+  }
+  std::vector<glm::dvec3> nodes = first(count == 9 ? 8 : count == 21 ? 20 : 26, all);
+  if (count == 9) {
+    for (int k = 0; k < 2; ++k)
+      for (int j = 0; j < 2; ++j)
+        for (int i = 0; i < 2; ++i) space.push_back(monomial(i, j, k));
+  } else {
+    add_serendipity(1, space);
+    for (const auto& [i, j] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) space.push_back(monomial(i, j, 2));
+  }
+  for (int along = 0; along < 3 && count == 26; ++along)
+    for (int k = 0; k < 2; ++k) space.push_back(hexahedron_bubble(along, k, false));
+  if (count != 26) {
+    nodes.push_back(all.back());
+    space.push_back(hexahedron_bubble(0, 0, true));
+  }
+  return spanned(BernsteinBasis(Domain::box, {2, 2, 2}), std::move(nodes), space);
+}
+
+/// The wedges of 16 and 20 nodes: the 15 nodes' functions, with bubbles inside, or for the five faces.
+CellShape incomplete_wedge(std::size_t count) {
+  const std::vector<glm::dvec3> quadratic = wedge_nodes(2, 2);
+  std::vector<glm::dvec3> nodes(quadratic.begin(), quadratic.begin() + 15);
+  std::vector<Function> space;
+  for (int k = 0; k < 2; ++k)
+    for (int j = 0; j <= 2; ++j)
+      for (int i = 0; i + j <= 2; ++i) space.push_back(corner_monomial(i, j, k));
+  for (const auto& [i, j] : {std::pair{0, 0}, {1, 0}, {0, 1}}) space.push_back(corner_monomial(i, j, 2));
+  constexpr double third = 1.0 / 3;
+  const auto bubble = [](const glm::dvec3& p) { return p.x * p.y * (1 - p.x - p.y); };
+  const auto along = [](const glm::dvec3& p) { return p.z * (1 - p.z); };
+  if (count == 16) {
+    nodes.emplace_back(third, third, 0.5);
+    space.emplace_back([=](const glm::dvec3& p) { return bubble(p) * along(p); });
+  } else {
+    for (const double t : {0.0, 1.0}) nodes.emplace_back(third, third, t);
+    nodes.insert(nodes.end(), quadratic.begin() + 15, quadratic.end());
+    space.emplace_back(bubble);
+    space.emplace_back([=](const glm::dvec3& p) { return bubble(p) * p.z; });
+    space.emplace_back([=](const glm::dvec3& p) { return p.x * p.y * along(p); });
+    space.emplace_back([=](const glm::dvec3& p) { return p.x * (1 - p.x - p.y) * along(p); });
+    space.emplace_back([=](const glm::dvec3& p) { return p.y * (1 - p.x - p.y) * along(p); });
+  }
+  return spanned(BernsteinBasis(Domain::prism, {3, 0, 2}), std::move(nodes), space);
 }
 
 /// The wedge of 21 nodes: quadratic with a cubic bubble in the triangle, quadratic along.
@@ -319,7 +411,12 @@ CellShape cell_shape(std::uint8_t vtk_type, std::size_t nodes, std::array<int, 3
   if (!of_tet && !of_hexahedron && !of_wedge)
     throw scene::bad_input(
         fmt::format("{}: cells of type {} are not known to the reference; leave them out", where, vtk_type));
-  if (vtk_type == 71 && nodes == 15) return enriched_tet();
+  const auto has = [&](std::initializer_list<std::size_t> counts) {
+    return std::find(counts.begin(), counts.end(), nodes) != counts.end();
+  };
+  if (vtk_type == 71 && has({5, 7, 8, 11, 14, 15})) return enriched_tet(nodes);
+  if (vtk_type == 72 && orders == std::array{0, 0, 0} && has({9, 16, 21, 26})) return incomplete_hexahedron(nodes);
+  if (vtk_type == 73 && orders == std::array{0, 0, 0} && has({16, 20})) return incomplete_wedge(nodes);
   if (vtk_type == 73 && nodes == 21) return enriched_wedge();
   const auto count = [&](const std::array<int, 3>& o) {
     const auto [a, b, c] =

@@ -29,8 +29,9 @@ struct CellShape {
 /// What a type, a number of nodes and orders make; `orders` are of VTK's array HigherOrderDegrees, or zeros: told from
 /// the number of nodes, as VTK does. Only Lagrange and Bezier hexahedra and wedges look at them.
 ///
-/// Types   linear 10 to 14; quadratic 24 to 27, 29, 31 to 33, 37; Lagrange 71 to 74, with the tet of 15 nodes and the
-///         wedge of 21; Bezier 78 to 80, of unit weights.
+/// Types   linear 10 to 14; quadratic 24 to 27, 29, 31 to 33, 37; Lagrange 71 to 74, with the tet of 15 nodes, the
+///         wedge of 21, and cells with some of these nodes (tets of 5, 7, 8, 11 and 14, hexahedra of 9, 16, 21 and 26,
+///         wedges of 16 and 20); Bezier 78 to 80, of unit weights.
 /// Throws  scene::Error(bad_input), which begins with `where`, for other types, wrong numbers of nodes and orders above
 ///         10.
 CellShape cell_shape(std::uint8_t vtk_type, std::size_t nodes, std::array<int, 3> orders, const std::string& where);

@@ -88,7 +88,7 @@ std::vector<DicomSlice> frames_as_slices(std::vector<DicomSlice> slices, std::ve
   const auto most = std::max_element(directions.begin(), directions.end(),
                                      [](const auto& a, const auto& b) { return a.size() < b.size(); });
   if (directions.size() > 1)
-    notes.push_back(fmt::format("its frames lie in {} directions; these are the {} of one of them", directions.size(),
+    notes.push_back(fmt::format("its frames lie in {} directions, of which the {} of one are read", directions.size(),
                                 most->size()));
   return std::move(*most);
 }

@@ -182,7 +182,7 @@ class PartOf {
     return fmt::format(
         "the field '{}' is a finite-element function ({} of degree {}) and is left out, for such are not read; write "
         "its "
-        "values at points or cells (FEniCS: `write` in place of `write_checkpoint`)",
+        "values at points or cells (FEniCS: write in place of write_checkpoint)",
         function.getName(), family, function.getElementDegree());
   }
 

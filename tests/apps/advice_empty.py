@@ -38,7 +38,7 @@ DARK = {"f.txt": "0 1e-9 0 0 0\n1 1e-9 0 0 0\n"}
 SEEN = {"f.txt": "0 1 1 1 2\n1 1 1 1 3\n"}
 
 # Every other sample of one field is not a number, so that no voxel has all of its corners.
-HOLES = image_data(values="0 nan nan 1 nan 2 3 nan").replace(
+HOLES = image_data(values="0.5 nan nan 1.5 nan 2.5 3.5 nan").replace(
     "</PointData>", '<DataArray type="Float64" Name="g" format="ascii">0 1 2 3 4 5 6 7</DataArray>\n</PointData>'
 )
 EVERY_OTHER = {"a_2x2x2_uint8.raw": bytes([0, 5, 5, 1, 5, 1, 0, 5])}

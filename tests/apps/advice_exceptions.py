@@ -61,6 +61,8 @@ EXCEPTIONS = {
         HDF5,
     ),
     r"^io/helper/cgns_": (15, HDF5),
+    r"^io/helper/linear_only": (2, RARE),
+    r"^io/tecplot_numbers\.cpp:\d+: the zone has \{\} values": (1, RARE),
     r"^io/helper/gmsh_elements\.cpp:\d+: \{\}: its cells of": (1, RARE),
     r"^io/(helper_process\.[ch]pp|helper/serve|helper/limits|foreign_fill\.cpp:\d+: filling)": (8, HELPER),
     r"^io/(foreign_fill\.cpp:\d+: mend|block_tets\.cpp:\d+: .*order_tolerance|amr_leaves\.cpp:\d+: .*many pieces)": (

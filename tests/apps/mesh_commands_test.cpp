@@ -62,7 +62,7 @@ TEST(Info, HigherOrderCellsAreWarnedOfInALineOfTheirOwn) {
   std::ofstream(mesh) << "# vtk DataFile Version 3.0\na\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 10 float\n"
                          "0 0 0 1 0 0 0 1 0 0 0 1 .5 0 0 .5 .5 0 0 .5 0 0 0 .5 .5 0 .5 0 .5 .5\nCELLS 1 11\n"
                          "10 0 1 2 3 4 5 6 7 8 9\nCELL_TYPES 1\n24\nPOINT_DATA 10\nSCALARS a float 1\n"
-                         "LOOKUP_TABLE default\n0 1 2 3 4 5 6 7 8 9\n";
+                         "LOOKUP_TABLE default\n0 1 2 3 4 5 6 7 8 8.5\n";
   const auto info = tessera({"info", mesh, "--higher-order-tets", "0"});
   EXPECT_NE(info.out.find("\nwarning   1 higher-order cells"), std::string::npos) << info.out;
   const auto render = tessera({"render", mesh, "-o", folder / "a.png", "--size", "16x16", "--higher-order-tets", "0"});

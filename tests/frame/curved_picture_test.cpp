@@ -47,8 +47,10 @@ struct Case {
 
 /// As smooth as a mesh has to be that so little error can be asked of: of few and nearly straight cells.
 Case random_case(Random& random, double accuracy) {
-  const io::testing::Kind& kind =
-      io::testing::kinds[static_cast<std::size_t>(random.below(static_cast<int>(io::testing::kinds.size())))];
+  // No source defines the functions inside a pyramid of 18 nodes, and the reference has none.
+  std::vector<io::testing::Kind> kinds = io::testing::kinds;
+  std::erase_if(kinds, [](const io::testing::Kind& k) { return k.type == 74 && k.nodes == 18; });
+  const io::testing::Kind& kind = kinds[static_cast<std::size_t>(random.below(static_cast<int>(kinds.size())))];
   const double rough = std::sqrt(accuracy), bend = random.uniform(0.1, 0.5) * rough,
                wave = random.uniform(0.5, 3) * rough;
   const glm::dvec3 phase(random.uniform(0, 6), random.uniform(0, 6), random.uniform(0, 6));

@@ -262,7 +262,7 @@ TEST_F(VtkFiles, MissingEmptyAndDirectoryAreTold) {
   std::filesystem::create_directory(folder / "dir.vtu");
   EXPECT_NE(message_of([&] { read_mesh(folder / "dir.vtu"); }).find("it is a directory"), std::string::npos);
   EXPECT_NE(error("e.vtu", "").find("it is empty"), std::string::npos);
-  EXPECT_NE(error("mesh.abc", "x").find("`tessera formats` lists them"), std::string::npos);
+  EXPECT_NE(error("mesh.unknown", "x").find("`tessera formats` lists them"), std::string::npos);
 }
 
 TEST_F(VtkFiles, TextNamedAsMeshIsTold) {

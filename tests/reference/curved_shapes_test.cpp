@@ -199,6 +199,18 @@ TEST(CurvedShapes, NodesAreInVtksOrder) {
       {73, 21, {}, 15, {third, third, 0}},
       {73, 21, {}, 20, {third, third, half}},
       {71, 15, {}, 12, {third, third, third}},
+      // Some of the nodes of second order.
+      {71, 5, {}, 4, {quarter, quarter, quarter}},
+      {71, 7, {}, 6, {0, half, 0}},
+      {71, 8, {}, 7, {0, third, third}},
+      {71, 11, {}, 10, {quarter, quarter, quarter}},
+      {71, 14, {}, 11, {third, 0, third}},
+      {72, 9, {}, 8, {half, half, half}},
+      {72, 16, {}, 12, {half, 0, 1}},
+      {72, 21, {}, 20, {half, half, half}},
+      {72, 26, {}, 25, {half, half, 1}},
+      {73, 16, {}, 15, {third, third, half}},
+      {73, 20, {}, 19, {0, half, half}},
   };
   for (const Known& k : known) {
     const CellShape shape = cell_shape(k.type, k.nodes, k.orders, "test");
@@ -212,7 +224,7 @@ TEST(CurvedShapes, NodesAreInVtksOrder) {
 TEST(CurvedShapes, RefuseWhatIsNotACell) {
   EXPECT_THROW(cell_shape(24, 9, {}, "test"), scene::Error);
   EXPECT_THROW(cell_shape(42, 8, {}, "test"), scene::Error);
-  EXPECT_THROW(cell_shape(71, 11, {}, "test"), scene::Error);
+  EXPECT_THROW(cell_shape(71, 12, {}, "test"), scene::Error);
   EXPECT_THROW(cell_shape(72, 60, {}, "test"), scene::Error);  // no cube
   EXPECT_THROW(cell_shape(72, 60, {3, 2, 3}, "test"), scene::Error);
   EXPECT_THROW(cell_shape(72, 8, {-1, 3, 3}, "test"), scene::Error);
