@@ -125,14 +125,14 @@ double field_integral(const scene::TetMesh& mesh) {
 MeshOptions coarse_options() {
   MeshOptions options;
   options.field = "f";
-  options.higher_order_tolerance = 4e-4;
+  options.higher_order_tolerance = 2e-3;
   return options;
 }
 
 void expect_same(const MeshFile& read, const BentCell& cell, double count) {
-  // A node out of its place changes more than a hundredth.
-  EXPECT_NEAR(volume(read.mesh), count * cell.volume, 1e-3 * count * cell.volume);
-  EXPECT_NEAR(field_integral(read.mesh), count * cell.integral, 1e-3 * count * std::abs(cell.integral));
+  // A node out of its place changes more than a hundredth; tets of the coarse tolerance less than half of that.
+  EXPECT_NEAR(volume(read.mesh), count * cell.volume, 5e-3 * count * cell.volume);
+  EXPECT_NEAR(field_integral(read.mesh), count * cell.integral, 5e-3 * count * std::abs(cell.integral));
   EXPECT_EQ(read.higher_order.by_corners, 0u);
 }
 
