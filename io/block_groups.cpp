@@ -48,8 +48,7 @@ std::vector<CellBlock> blocks_by_number(const CellBlock& all, std::span<const st
                                         const std::string& word, const std::string& field) {
   std::vector<std::int64_t> distinct(numbers.begin(), numbers.end());
   std::ranges::sort(distinct);
-  const auto repeated = std::ranges::unique(distinct);
-  distinct.erase(repeated.begin(), repeated.end());
+  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
   std::vector<CellBlock> blocks;
   std::vector<std::uint32_t> local(all.positions.size(), std::numeric_limits<std::uint32_t>::max());
   if (distinct.size() <= 1 || distinct.size() > most_groups) {

@@ -159,8 +159,8 @@ void NastranSystems::place_points(const std::string& source) {
   if (repeated != points_.end())
     throw scene::bad_input(
         fmt::format("{}: GRID {} is given twice, at different places; remove one", source, repeated->id));
-  const auto same = std::ranges::unique(points_, {}, &Point::id);
-  points_.erase(same.begin(), same.end());
+  const auto is_same = [](const Point& a, const Point& b) { return a.id == b.id; };
+  points_.erase(std::unique(points_.begin(), points_.end(), is_same), points_.end());
   positions_.assign(points_.size(), glm::dvec3(0));
   for (std::size_t v = 0; v < points_.size(); ++v) place(v);
 }

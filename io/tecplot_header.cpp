@@ -176,7 +176,12 @@ class HeaderParser {
       if (key == "ZONE") {
         add_zone(at);
       } else if (key == "VARIABLES" && words_.skip_equals()) {
+        // Parts that were put together repeat the record.
+        const std::vector<std::string> earlier = std::exchange(header_.variables, {});
         read_variables();
+        if (!header_.zones.empty() && header_.variables != earlier)
+          words_.fail(at,
+                      "VARIABLES names others than before the zones; write what has other variables to another file");
       } else if (key == "FILETYPE" && words_.skip_equals()) {
         if (tecplot_upper(words_.value(key).text) == "SOLUTION")
           words_.fail(at, "it holds a solution without its grid; write FILETYPE=FULL");

@@ -49,6 +49,7 @@ def medit(whole, advice):
 
 ROWS = [
     # Tecplot
+    tecplot("1 2 3 4\n", '1 2 3 4\nVARIABLES="X" "Y"\n', "write what has other variables to another file"),
     tecplot("N=4", "N=400000000", "more than the file can hold; it is truncated, export it again"),
     tecplot("1 2 3 4\n", "1 2 3\n", "the zone ends before its nodes of elements do; it is truncated, export it again"),
     tecplot("1 2 3 4\n", "1 2 3 5\n", "nodes count from 1, export the file again"),

@@ -269,6 +269,9 @@ TEST_F(Tecplot, FaultsAreNamedWithTheirLine) {
   const std::string points = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
   const std::string tet = head + "ZONETYPE=FETETRAHEDRON\n";
   EXPECT_EQ(parse_tecplot(tet + points + "1 2 3 4\n", "a.tec", std::nullopt).blocks.size(), 1u);
+  const std::string one = tet + points + "1 2 3 4\n";
+  EXPECT_EQ(parse_tecplot(one + "TITLE=\"b\"\n" + one, "a.tec", std::nullopt).blocks.size(), 2u);  // put together
+  refuse(one + "VARIABLES=X,Y,Z,p\n" + one, {"line 8", "VARIABLES names others"});
   refuse(tet + points + "1 2 3\n", {"a.tec", "line 8", "nodes of elements", "truncated"});
   refuse(tet + points + "1 2 3 5\n", {"line 2", "uses node 5, the zone has 4"});
   refuse(tet + points + "1 2 x 4\n", {"line 7", "'x'", "no number"});
