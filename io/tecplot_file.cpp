@@ -11,6 +11,7 @@
 
 #include "io/tecplot_numbers.hpp"
 #include "scene/error.hpp"
+#include "scene/quote.hpp"
 
 namespace tessera::io {
 namespace {
@@ -115,8 +116,8 @@ class TecplotZones {
     const std::vector<double>& values = numbers(owner).values[variable];
     const std::size_t wanted = header_.zones[owner].of_cells[variable] ? own.elements : own.nodes;
     if (!own.is_passive[variable] && !header_.zones[owner].is_passive[variable] && values.size() != wanted)
-      refuse(own, fmt::format("the zone shares {} values of '{}' with zone {}, and needs {}; export the file again",
-                              values.size(), header_.variables[variable], owner + 1, wanted));
+      refuse(own, fmt::format("the zone shares {} values of {} with zone {}, and needs {}; export the file again",
+                              values.size(), scene::quote(header_.variables[variable]), owner + 1, wanted));
     return values;
   }
 
@@ -220,8 +221,8 @@ CellBlock block_of_zone(const TecplotHeader& header, std::size_t z, const std::a
   for (std::size_t a = 0; a < 3; ++a) {
     const std::vector<double>& values = zones.values(z, axes[a]);
     if (values.size() != zone.nodes)
-      zones.refuse(zone, fmt::format("the coordinate '{}' is not of the zone's nodes; write it NODAL",
-                                     header.variables[axes[a]]));
+      zones.refuse(zone, fmt::format("the coordinate {} is not of the zone's nodes; write it NODAL",
+                                     scene::quote(header.variables[axes[a]])));
     for (std::size_t n = 0; n < zone.nodes; ++n) block.positions[n][static_cast<int>(a)] = values[n];
   }
   const std::size_t owner = zones.owner_of_elements(z);

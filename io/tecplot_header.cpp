@@ -85,7 +85,7 @@ class TecplotWords {
 
   TecplotValue value(const std::string& key) {
     TecplotValue value{.text = {}, .is_list = false, .at = at_};
-    if (at_end()) fail(at_, fmt::format("{} has no value; export the file again", key));
+    if (at_end()) fail(at_, fmt::format("{} has no value; export the file again", scene::quote(key)));
     if (here() == '"') {
       value.text = quoted();
       return value;
@@ -101,7 +101,7 @@ class TecplotWords {
       if (here() == '(') ++depth;
       if (here() == ')' && --depth == 0) break;
     }
-    if (at_end()) fail(value.at, fmt::format("the list of {} does not end; export the file again", key));
+    if (at_end()) fail(value.at, fmt::format("the list of {} does not end; export the file again", scene::quote(key)));
     value.text = text_.substr(first, at_++ - first);
     return value;
   }
