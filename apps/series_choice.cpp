@@ -25,7 +25,7 @@ struct LookedAt {
   std::array<double, 2> range{};
   std::vector<FieldInfo> fields;
   std::optional<LoadedTransferFunction> function;
-  std::exception_ptr no_function;  ///< why there is none, as of logarithms of a step that is 0 everywhere
+  std::exception_ptr no_function;  ///< the error if there is none: with --log, a step that is 0 everywhere
 };
 
 std::vector<std::size_t> all_below(std::size_t end) {

@@ -32,7 +32,7 @@ class TrialCells {
     glm::dvec3 centre{0};
     double radius = 0;  ///< of a ball round the centre that is inside of the cell
   };
-  /// The cell with the largest ball; radius 0 if there is none.
+  /// The cell that has room for the largest ball; radius 0 if there is no cell.
   [[nodiscard]] Cell largest() const;
 
   /// Pixels that are no accident, of a picture of this size.

@@ -12,8 +12,8 @@
 /// Axes of the world multiplied by a factor each (ReadOptions::axis_scale), asked for or chosen.
 namespace tessera::io {
 
-/// Where x and y are degrees and z is a length: 1, or where the box is thinner than 1:20 the power of ten, once, twice
-/// or five times, of which z needs to be at most a quarter of the longer side of the others.
+/// For x and y in degrees and z a length: 1, unless the box is thinner than 1:20; then z is multiplied by the largest
+/// of 1, 2 or 5 times a power of ten with which it is at most a quarter of the longer of x and y.
 glm::dvec3 scale_beside_degrees(const Box& box);
 
 /// What is asked for; else by the box, if `beside_degrees`, with a note; else 1.

@@ -23,8 +23,9 @@ namespace tessera::io {
 /// In VTK's order as they are: EnSight (User Manual, EnSight Gold Geometry File Format; VTK's reader mirrors wedges),
 /// XDMF (Tet_10 ... Hex_27, which VTK and meshio write so; the format's pages define none), legacy VTK and VTK XML but
 /// for old Lagrange hexahedra (exchange_vtk8_edges() below), VTKHDF. Gmsh's own files and Medit's, which
-/// its library reads, go by the places of nodes that the library gives (io/helper/gmsh_cells.hpp); of Nastran's cells
-/// it knows corners alone. AVS UCD, Fluent, GAMBIT, OpenFOAM, PLOT3D, SU2 and Tecplot have linear cells here.
+/// its library reads, go by the places of nodes that the library gives (io/helper/gmsh_cells.hpp). The
+/// middle nodes of Nastran's cells, which may be blank, are numbered in io/nastran_file.cpp. AVS UCD, Fluent, GAMBIT,
+/// OpenFOAM, PLOT3D, SU2 and Tecplot have linear cells here.
 enum class NodeConvention : std::uint8_t { exodus, med, cgns };
 
 /// One cell type of a format, told by its shape and its number of nodes.

@@ -72,9 +72,9 @@ TESSERA_EXPORT bool takes_steps_of_file(const FilmPlan& plan);
 /// asked of several views, for steps that are not there, or for what cameras_of() refuses.
 TESSERA_EXPORT std::vector<FilmFrame> plan_film(const FilmPlan& plan);
 
-/// What ReadOptions::field would be chosen for several steps together, of which each has these fields: of a file whose
-/// every array is as in the step where it spans most. With `point:` or `cell:` before it, but of smoothed ones. Arrays
-/// that a step lacks are left out; nothing if none varies that is no label.
+/// The default of ReadOptions::field for several steps together; `steps` has each step's fields. Each array counts as
+/// in the step where its range is widest; arrays that a step lacks are left out. The name has `point:` or `cell:`
+/// before it, without `smooth`. Empty if no array varies but labels.
 TESSERA_EXPORT std::string field_of_steps(std::span<const std::vector<FieldInfo>> steps, const ReadOptions& options);
 
 /// How later steps of a time series are read: their field and axis scale are those that were chosen for the first step.
