@@ -183,23 +183,34 @@ MostOfPixels most_of(const Image& image) {
   return most;
 }
 
+/// Whether a ray that met what the function shows, over a ten-thousandth of the box, would have more than nothing in
+/// floats.
+static bool would_show(const Dataset& data, const TransferFunction& function, const RenderOptions& options) {
+  const double most = emits(options) ? function.max_color() : function.max_extinction();
+  return most * diagonal(data.bounds()) > 1e-2;
+}
+
 EmptyReason reason_of_empty(const RenderedFrame& frame, const Dataset& data, const TransferFunction& function,
                             const RenderOptions& options) {
   const MostOfPixels most = most_of(frame.image);
   if (frame.image.rgba.empty() || !most.shows_nothing()) return EmptyReason::none;
   const auto [low, high] = data.range();
   if (!function.visible(low, high, emits(options))) return EmptyReason::clear;
+  const bool has_nothing = most.alpha == 0 && most.light == 0;
   if (data.is_grid()) {
     const GridCounters& grid = frame.statistics.grid;
     if (grid.bricks_total > 0 && grid.bricks_invisible == grid.bricks_total) return EmptyReason::blank;
     if (grid.rays == 0) return EmptyReason::outside;  // or between pixels: the box alone decides
     if (grid.voxels_visited == 0) return EmptyReason::missed;
-    return most.alpha == 0 && most.light == 0 && data.blank_samples() > 0 ? EmptyReason::blank : EmptyReason::faint;
+    if (has_nothing && data.blank_samples() > 0) return EmptyReason::blank;
+    return has_nothing && would_show(data, function, options) ? EmptyReason::missed : EmptyReason::faint;
   }
   const FrameCounters& mesh = frame.statistics.mesh;
   if (mesh.tets_total > 0 && mesh.tets_invisible == mesh.tets_total) return EmptyReason::clear;
   if (mesh.tets_projected + mesh.tets_between_pixels == 0) return EmptyReason::outside;
-  return mesh.segments == 0 ? EmptyReason::between : EmptyReason::faint;
+  if (mesh.segments == 0) return EmptyReason::between;
+  const bool has_volume = data.mesh_counts().cells_zero_volume == 0;
+  return has_nothing && has_volume && would_show(data, function, options) ? EmptyReason::missed : EmptyReason::faint;
 }
 
 void EmptyPictures::look_at(std::size_t frame, const RenderedFrame& rendered, const Dataset& data,
@@ -240,11 +251,13 @@ std::string EmptyPictures::advice(const First& first, const FinishedRun& run) {
                  "wider range"
                : "no voxel that the transfer function shows has a number at each of its corners; choose another "
                  "--field";
-  if (reason == EmptyReason::missed)
+  if (reason == EmptyReason::missed) {
+    const bool is_part = run.frames[first.frame].camera || run.options.view.zoom > 1;
     return fmt::format(
-        "no ray meets a value that the transfer function shows; see the whole without --zoom and "
-        "--camera, or give --range {:.6g},{:.6g}, which stretches it over the field's values",
-        first.range[0], first.range[1]);
+        "no ray meets a value that the transfer function shows; {}, or give --range {:.6g},{:.6g}, which stretches it "
+        "over the field's values",
+        is_part ? "see the whole without --zoom and --camera" : "give a larger --size", first.range[0], first.range[1]);
+  }
   Tries tries(run, run.frames[first.frame]);
   std::vector<std::string> remedies;
   // A grid counts its rays alone, and what is not culled is projected wherever it is.

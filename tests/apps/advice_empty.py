@@ -44,7 +44,8 @@ HOLES = image_data(values="0.5 nan nan 1.5 nan 2.5 3.5 nan").replace(
 EVERY_OTHER = {"a_2x2x2_uint8.raw": bytes([0, 5, 5, 1, 5, 1, 0, 5])}
 OF_RAW = "render a_2x2x2_uint8.raw -o a.png --size 16x16 "
 # A single sample, in a corner, that shows.
-CORNER = {"a_8x8x8_float32.raw": struct.pack("<512f", 9, *[0] * 511), "f.txt": "8 1 1 1 0\n9 1 1 1 9\n"}
+CORNER = {"a_8x8x8_float32.raw": struct.pack("<512f", 9, *[0] * 511), "f.txt": "1 1 1 1 0\n9 1 1 1 9\n"}
+SPOT = {**CORNER, "f.txt": "8 1 1 1 0\n9 1 1 1 9\n"}
 OF_CORNER = "render a_8x8x8_float32.raw -o a.png --size 16x16 --transfer-function f.txt "
 
 OCEAN = netcdf(
@@ -78,5 +79,6 @@ ROWS = [
     row("render a.vti -o a.png --size 16x16 --field f", "choose another --field",
         "render a.vti -o a.png --size 16x16 --field g", {"a.vti": HOLES}),
     row(OF_CORNER + "--zoom 50", "see the whole without --zoom", OF_CORNER, CORNER),
+    row(OF_CORNER, "give a larger --size", OF_CORNER.replace("16x16", "256x256"), SPOT),
     row("info a.nc", "--scale 1,1,1 keeps it as it is", "info a.nc --scale 1,1,1", {"a.nc": OCEAN}),
 ]

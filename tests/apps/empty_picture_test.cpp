@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "apps/program.hpp"
@@ -166,6 +167,24 @@ TEST_F(EmptyPicture, OfAFunctionThatMissesTheDataNamesWhatMeetsThem) {
   EXPECT_NE(render(cube, {"--range", "50,60"}).err.find("leave --range out"), std::string::npos);
   const Outcome clear = render(cube, {"--transfer-function", "viridis", "--opacity-points", "0:0,1:0"});
   EXPECT_NE(clear.err.find("--opacity-points are all 0"), std::string::npos) << clear.err;
+}
+
+TEST_F(EmptyPicture, OfAPartWithoutVisibleValuesSaysSo) {
+  // One cell, from 0 to 1 and from 0.8 to 1, of which the view shows the end that the function does not.
+  const std::string volume = folder.file("v_2x2x2_uint8.raw", std::string("\0\1\0\1\0\1\0\1", 8));
+  const std::string mesh = folder.file("thick.vtu", bar(1));
+  const std::string function = folder.file("end.txt", "0.95 1 1 1 0\n1 1 1 1 9\n");
+  const std::string at_0 = R"({"position": [0.1, 0.5, 9], "focal_point": [0.1, 0.5, 0], "view_up": [0, 1, 0], )"
+                           R"("parallel_scale": 0.02})";
+  const std::string at_8 = R"({"position": [0.82, 0.5, 9], "focal_point": [0.82, 0.5, 0], "view_up": [0, 1, 0], )"
+                           R"("parallel_scale": 0.01})";
+  for (const auto& [input, camera] : {std::pair(volume, at_0), std::pair(mesh, at_8)}) {
+    const Outcome outcome = render(input, {"--transfer-function", function, "--camera", camera});
+    EXPECT_NE(outcome.err.find("no ray meets a value that the transfer function shows"), std::string::npos)
+        << outcome.err;
+    render(input, {"--transfer-function", function});
+    EXPECT_TRUE(shows_something(picture));
+  }
 }
 
 TEST_F(EmptyPicture, OfNextToNoOpacityNamesAScaleOfIt) {
