@@ -65,7 +65,7 @@ class Tries {
   }
 
   void try_zooms(std::vector<std::string>& remedies) {
-    for (double times = 2; times <= 1 << 20; times *= 2) {
+    for (int times = 2; times <= 1 << 20; times *= 2) {
       ViewRequest nearer = run_.options.view;
       nearer.zoom *= times;
       if (!shows(frame_, nearer)) continue;

@@ -21,6 +21,7 @@
 #include "apps/series_choice.hpp"
 #include "apps/setting_words.hpp"
 #include "apps/spare_images.hpp"
+#include "tessera/higher_order.hpp"
 #include "tessera/image_file.hpp"
 #include "tessera/session.hpp"
 #include "tessera/statistics.hpp"
@@ -214,6 +215,7 @@ class Film final : public Sink {
     // The writing rank's view of the disk holds for all.
     std::vector<std::size_t> steps = steps_to_look_at(count);
     std::vector<std::byte> there;
+    there.reserve(steps.size());
     for (const std::size_t step : steps) there.push_back(std::byte{first_of(step).is_there()});
     there = job_.broadcast(writer_, std::move(there));
     for (std::size_t k = steps.size(); k-- > 1;)
@@ -257,18 +259,25 @@ class Film final : public Sink {
     if (writes_ && !warning.empty()) output_.warn(options_, warning);
   }
 
-  /// Reads higher-order cells again, more finely, where the transfer function needs that for --accuracy. What is
-  /// right for the first step is taken for all.
+  /// Higher-order cells as finely as --accuracy needs. What is right for the first step is taken for all.
   void come_near_enough() {
-    if (options_.fixed_higher_order) return;
-    // A default function goes by samples of the tets, and becomes another with them.
-    for (int again = 0; again < 4; ++again) {
-      const auto finer = finer_read(read_, *data_, loaded_.function, options_.settings.integrator.accuracy);
-      if (!finer) return;
-      read_ = *finer;
-      open(frames_.front(), read_);
-      find_function();
-    }
+    if (data_->higher_order_cells().divided == 0) return;
+    const auto accuracy =
+        options_.fixed_higher_order ? std::nullopt : std::optional(options_.settings.integrator.accuracy);
+    const HigherOrderRead near = read_for_accuracy(
+        read_, accuracy,
+        [this, is_open = true](const ReadOptions& read) mutable {
+          if (!std::exchange(is_open, false) || read.higher_order_tolerance != read_.higher_order_tolerance)
+            open(frames_.front(), read);
+          return *data_;
+        },
+        [this](const Dataset&) {
+          find_function();
+          return loaded_.function;
+        },
+        settings_, job_.communicator());
+    read_ = near.options;
+    higher_order_pixels_ = near.pixel_error;
   }
 
   void find_function() {
@@ -288,7 +297,7 @@ class Film final : public Sink {
     analysis::Description data = described(*data_);
     if (series_) data.notes.push_back(series_note(*series_, frames_.back().step + 1, data_->field_name()));
     if (data_->higher_order_cells().divided == 0) return data;
-    const double error = data_->higher_order_error(loaded_.function), accuracy = options_.settings.integrator.accuracy;
+    const double error = higher_order_pixels_, accuracy = options_.settings.integrator.accuracy;
     data.higher_order_pixels = error;
     // Of cells drawn by their corners there is a warning already.
     if (error > accuracy && data.higher_order.by_corners == 0)
@@ -466,7 +475,8 @@ class Film final : public Sink {
   Trace trace_, compositing_;
   RunOutput output_;
 
-  ReadOptions later_read_;  ///< of the steps after the first
+  ReadOptions later_read_;          ///< of the steps after the first
+  double higher_order_pixels_ = 0;  ///< HigherOrderRead::pixel_error of the first step
   std::optional<Dataset> data_;
   std::optional<Session> session_;
   std::size_t step_ = 0;                              ///< of data_

@@ -156,7 +156,7 @@ std::string option_form(const CLI::Option& option, bool all) {
 }
 
 std::vector<std::string> help_examples(const CLI::App& command) {
-  const std::string name = command.get_name();
+  const std::string& name = command.get_name();
   if (name == "render")
     return {"tessera render mesh.vtu -o picture.png", "tessera render head.nii.gz --view left --color-bar -o head.png",
             "tessera render mesh.vtu --field p --transfer-function viridis --orbit 120 -o turn.mp4"};

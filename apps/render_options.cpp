@@ -17,6 +17,7 @@
 #include "apps/time_options.hpp"
 #include "apps/volume_options.hpp"
 #include "tessera/error.hpp"
+#include "tessera/higher_order.hpp"
 #include "tessera/input_file.hpp"
 #include "tessera/time_series.hpp"
 
@@ -46,8 +47,9 @@ void set_common(const RenderWords& words, RenderOptions& options) {
   Settings& settings = options.settings;
   if (!options.is_grid()) {
     settings.integrator = mesh_integrator(words);
-    // At first no nearer than needed at best; what the transfer function needs is known once the field's range is.
-    if (!options.fixed_higher_order) options.read.higher_order_tolerance = settings.integrator.accuracy;
+    // At first as coarsely as read_for_accuracy() begins.
+    if (!options.fixed_higher_order)
+      options.read.higher_order_tolerance = first_higher_order_tolerance(settings.integrator.accuracy);
   }
   if (words.rasterizer == "scanline") settings.mesh.rasterizer = Rasterizer::scanline;
   if (words.rasterizer == "device") settings.mesh.rasterizer = Rasterizer::device;

@@ -6,6 +6,7 @@
 #include <exception>
 #include <filesystem>
 #include <numeric>
+#include <ranges>
 #include <set>
 #include <utility>
 
@@ -43,9 +44,9 @@ class SeriesLook {
 
   /// From the last to the first, which stays open.
   void look_at(const std::vector<std::size_t>& steps) {
-    for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
-      if (std::ranges::find(looked_, *step, &LookedAt::step) != looked_.end()) continue;
-      if (const Dataset* data = opened(*step, read_)) looked_.push_back(found_in(*step, *data));
+    for (const std::size_t step : std::views::reverse(steps)) {
+      if (std::ranges::find(looked_, step, &LookedAt::step) != looked_.end()) continue;
+      if (const Dataset* data = opened(step, read_)) looked_.push_back(found_in(step, *data));
     }
   }
 
@@ -105,7 +106,8 @@ class SeriesLook {
 
   [[nodiscard]] std::string chosen_field() const {
     std::vector<std::vector<FieldInfo>> fields;
-    for (auto l = looked_.rbegin(); l != looked_.rend(); ++l) fields.push_back(l->fields);
+    fields.reserve(looked_.size());
+    for (const LookedAt& looked : std::views::reverse(looked_)) fields.push_back(looked.fields);
     return field_of_steps(fields, read_);
   }
 

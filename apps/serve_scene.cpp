@@ -18,6 +18,7 @@
 #include "apps/volume_options.hpp"
 #include "tessera/error.hpp"
 #include "tessera/film.hpp"
+#include "tessera/higher_order.hpp"
 #include "tessera/view.hpp"
 
 namespace tessera::apps {
@@ -148,17 +149,20 @@ class RenderScene final : public server::Scene {
     if (frame_.data.in_file) read.time_step = frame_.data.in_file;
     read.progress = progress;
     frame_.require_still_there();
-    Dataset data = Dataset::open(frame_.data.files, read, communicator, options().settings.ranks);
-    if (options().fixed_higher_order || data.is_grid()) return data;
-    // As `render` comes near enough to curved cells.
-    for (int again = 0; again < 4; ++again) {
-      const LoadedTransferFunction loaded = function(data);
-      const auto finer = finer_read(read, data, loaded.function, options().settings.integrator.accuracy);
-      if (!finer) break;
-      read = *finer;
-      data = Dataset::open(frame_.data.files, read, communicator, options().settings.ranks);
-    }
-    return data;
+    const auto open_with = [&](const ReadOptions& with) {
+      return Dataset::open(frame_.data.files, with, communicator, options().settings.ranks);
+    };
+    Dataset data = open_with(read);
+    if (options().fixed_higher_order || data.higher_order_cells().divided == 0) return data;
+    // As `render` comes near enough to higher-order cells.
+    return read_for_accuracy(
+               read, options().settings.integrator.accuracy,
+               [&, is_open = true](const ReadOptions& with) mutable {
+                 const bool is_same = with.higher_order_tolerance == read.higher_order_tolerance;
+                 return std::exchange(is_open, false) && is_same ? std::move(data) : open_with(with);
+               },
+               [&](const Dataset& each) { return function(each).function; }, options().settings, communicator)
+        .dataset;
   }
 
   [[nodiscard]] LoadedTransferFunction function(const Dataset& data) const override {

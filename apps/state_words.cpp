@@ -233,7 +233,7 @@ std::vector<std::string> arguments_of(const OptionWords& words) {
   std::vector<std::string> arguments;
   for (const auto& [name, values] : words)
     for (const std::string& value : values)
-      arguments.push_back(value == "true" ? "--" + name : "--" + name + "=" + value);
+      arguments.push_back(value == "true" ? fmt::format("--{}", name) : fmt::format("--{}={}", name, value));
   return arguments;
 }
 

@@ -67,6 +67,13 @@ Extent extent_along(const std::array<glm::dvec3, 4>& p) {
   return {(*low)[axis], (*high)[axis]};
 }
 
+/// The pixels whose centres lie from `low` to `high`, of `count`: the first, and the one after the last.
+std::pair<int, int> centres(double low, double high, int count) {
+  const double first = std::clamp(std::ceil(low - 0.5), 0.0, static_cast<double>(count));
+  const double last = std::clamp(std::floor(high - 0.5), -1.0, count - 1.0);
+  return {static_cast<int>(first), static_cast<int>(last) + 1};
+}
+
 }  // namespace
 
 TrialCells::TrialCells(const Dataset& data, const TransferFunction& function, bool emits)
@@ -116,12 +123,11 @@ std::uint64_t TrialCells::pixels(const Camera& camera, ImageSize size, const glm
     Corners p;
     if (!to_pixels(corners, p)) return true;
     const auto [top, bottom] = extent_along<1>(p);
-    const double last_row = std::min(std::floor(bottom - 0.5), size.height - 1.0);
-    for (double row = std::max(std::ceil(top - 0.5), 0.0); row <= last_row; ++row) {
+    const auto [first_row, row_end] = centres(top, bottom, size.height);
+    for (int row = first_row; row < row_end; ++row) {
       const auto [left, right] = across(p, row + 0.5);
-      const double last = std::min(std::floor(right - 0.5), size.width - 1.0);
-      for (double column = std::max(std::ceil(left - 0.5), 0.0); column <= last && covered.size() < sought; ++column)
-        covered.emplace(static_cast<int>(column), static_cast<int>(row));
+      const auto [first, end] = centres(left, right, size.width);
+      for (int column = first; column < end && covered.size() < sought; ++column) covered.emplace(column, row);
       if (covered.size() >= sought) return false;
     }
     return true;

@@ -278,12 +278,6 @@ class TESSERA_EXPORT Dataset {
   std::shared_ptr<const State> state_;
 };
 
-/// How to read a data set again so that higher_order_error() is about `accuracy` at most: with a smaller
-/// higher_order_tolerance than `options`, with which the data set was read. Nothing if it is so already, if the limit
-/// higher_order_tets has loosened the tolerance already, or if the error is infinite whatever the tolerance.
-TESSERA_EXPORT std::optional<ReadOptions> finer_read(const ReadOptions& options, const Dataset& data,
-                                                     const TransferFunction& function, double accuracy);
-
 /// How many time steps a mesh or grid file has (ReadOptions::time_step); 1 if it does not change with time. Formats
 /// that may have several are looked into, as `options` say, others are not read. Throws as Dataset::open.
 TESSERA_EXPORT std::size_t time_steps_of(const std::filesystem::path& file, const ReadOptions& options = {});

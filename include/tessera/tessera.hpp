@@ -15,6 +15,7 @@
 #include "tessera/film.hpp"
 #include "tessera/film_file.hpp"
 #include "tessera/grid.hpp"
+#include "tessera/higher_order.hpp"
 #include "tessera/image.hpp"
 #include "tessera/image_file.hpp"
 #include "tessera/input_file.hpp"

@@ -88,7 +88,7 @@ TEST(Render, DividesHigherOrderCellsAsFinelyAsTheAccuracyNeeds) {
   };
   Outcome outcome;
   std::uint64_t before = 0;
-  for (const auto& [words, accuracy] : {std::pair{"1e-1", 1e-1}, std::pair{"3e-2", 3e-2}, std::pair{"1e-2", 1e-2}}) {
+  for (const auto& [words, accuracy] : {std::pair{"3e-1", 3e-1}, std::pair{"1e-1", 1e-1}, std::pair{"1e-2", 1e-2}}) {
     const auto cells = report_of({"--accuracy", words}, outcome);
     EXPECT_LE(cells.at("pixel_error").get<double>(), accuracy);
     EXPECT_GT(cells.at("tets").get<std::uint64_t>(), before);
