@@ -57,7 +57,7 @@ void add_serve_options(CLI::App& command, RenderWords& words, ServeWords& serve)
 void serve(const RenderWords& words, const ServeWords& serve_words, const CLI::App& command, Job& job) {
   const server::ServeOptions options = serve_options(words, serve_words);
   require_input(words.input);
-  const auto reader = scene_reader(words, command);
+  const auto reader = scene_reader(words, command, job);
   static_cast<void>(reader->scene(server::Json::object()));  // what its words have wrong is said now
   server::ServeEvents events;
   events.listening = [](const std::string& url) {

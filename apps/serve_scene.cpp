@@ -14,6 +14,8 @@
 
 #include "apps/argument_values.hpp"
 #include "apps/frame_annotation.hpp"
+#include "apps/progress.hpp"
+#include "apps/series_choice.hpp"
 #include "apps/setting_words.hpp"
 #include "apps/volume_options.hpp"
 #include "tessera/error.hpp"
@@ -66,6 +68,10 @@ constexpr std::array<std::string_view, 13> look_options = {
     "unit-distance",     "blend",   "iso",   "surface", "no-shade", "emission"};
 constexpr std::array<std::string_view, 9> settings_options = {"integrator", "accuracy", "iso",      "surface", "shade",
                                                               "no-shade",   "light",    "emission", "step"};
+/// What JSON of a transfer function says by itself.
+constexpr std::array<std::string_view, 8> function_options = {
+    "transfer-function", "rescale", "range", "log", "opacity", "opacity-scale", "opacity-points", "unit-distance"};
+constexpr std::array<std::string_view, 3> range_options = {"rescale", "range", "log"};
 /// Options that change no picture, of which a command line need not tell.
 constexpr std::array<std::string_view, 2> unsaid_options = {"threads", "memory"};
 
@@ -88,6 +94,22 @@ std::string first_of(const OptionWords& words, const std::string& option) {
   return values == nullptr || values->empty() ? "" : values->front();
 }
 
+/// The field as `--field` takes it.
+std::string field_word_of(const Dataset& data) {
+  const std::string& name = data.field_name();
+  const std::string bare = name.substr(0, name.rfind(':'));
+  std::size_t alike = 0;
+  for (const FieldInfo& field : data.fields())
+    alike += static_cast<std::size_t>(field.name == name || field.name == bare);
+  if (alike < 2) return name;
+  return (data.association() == Association::cell ? "cell:" : "point:") + name;
+}
+
+bool preset_is_named(const std::string& function) {
+  const std::vector<std::string> names = preset_names();
+  return std::ranges::find(names, function.substr(0, function.find(':'))) != names.end();
+}
+
 /// What options say but for camera and size, and what follows from it.
 struct ParsedWords {
   RenderOptions options;
@@ -95,6 +117,7 @@ struct ParsedWords {
   std::string data, field, look, settings;  ///< keys
   bool shape = false;
   std::string accuracy;
+  std::shared_ptr<const LoadedTransferFunction> series_function{};  ///< null: that of the step
   mutable std::optional<std::pair<std::string, Surfaces>> surfaces{};  ///< with those of blocks, by field; read once
 };
 
@@ -134,15 +157,7 @@ class RenderScene final : public server::Scene {
   [[nodiscard]] const std::string& look_key() const override { return parsed_->look; }
   [[nodiscard]] const std::string& settings_key() const override { return parsed_->settings; }
 
-  [[nodiscard]] std::string field_word(const Dataset& data) const override {
-    const std::string& name = data.field_name();
-    const std::string bare = name.substr(0, name.rfind(':'));
-    std::size_t alike = 0;
-    for (const FieldInfo& field : data.fields())
-      alike += static_cast<std::size_t>(field.name == name || field.name == bare);
-    if (alike < 2) return name;
-    return (data.association() == Association::cell ? "cell:" : "point:") + name;
-  }
+  [[nodiscard]] std::string field_word(const Dataset& data) const override { return field_word_of(data); }
 
   [[nodiscard]] Dataset open(const Communicator& communicator, const ReadProgressFunction& progress) const override {
     ReadOptions read = options().read;
@@ -166,7 +181,7 @@ class RenderScene final : public server::Scene {
   }
 
   [[nodiscard]] LoadedTransferFunction function(const Dataset& data) const override {
-    return transfer_function_of(data, options());
+    return parsed_->series_function ? *parsed_->series_function : transfer_function_of(data, options());
   }
 
   [[nodiscard]] Settings settings(const Dataset& data, const LoadedTransferFunction& function) const override {
@@ -208,6 +223,15 @@ class RenderScene final : public server::Scene {
   std::vector<std::string> keys_;
 };
 
+/// What `render` would choose for all steps of a series.
+struct SeriesStart {
+  std::string field;
+  std::vector<std::string> names;  ///< of that field
+  std::array<double, 2> range{};
+  std::shared_ptr<const LoadedTransferFunction> function;  ///< null: options state its values
+  std::string look;                                        ///< key of the options that it follows
+};
+
 class RenderSceneReader final : public server::SceneReader {
  public:
   RenderSceneReader(const RenderWords& words, const CLI::App& serve)
@@ -219,10 +243,46 @@ class RenderSceneReader final : public server::SceneReader {
       if (served_options.find(" " + option->get_lnames().front() + " ") != std::string_view::npos)
         base_.emplace_back(std::move(name), option->results());
     }
-    if (is_time_series(input_) && find_words(base_, "time-step") == nullptr)
-      base_.emplace_back("time-step", std::vector<std::string>{"0"});
-    if (is_time_series(input_))
-      for (const TimeStep& step : read_time_series(input_)) times_.push_back(step.time);
+    if (!is_time_series(input_)) return;
+    for (const TimeStep& step : read_time_series(input_)) times_.push_back(step.time);
+    shows_all_ = find_words(base_, "time-step") == nullptr;
+    if (shows_all_) base_.emplace_back("time-step", std::vector<std::string>{"0"});
+  }
+
+  /// Field and colors of a series as `render` chooses them for all its steps. A first step that cannot be read is left
+  /// to the scene that opens it. Collective.
+  void choose_for_all_steps(Job& job) {
+    if (!shows_all_) return;
+    const auto parsed = parse(base_);
+    const RenderOptions& options = parsed->options;
+    if (!goes_by_steps(times_.size(), options)) return;
+    const std::vector<TimeStep> series = read_time_series(input_);
+    StatusLine line(shows_progress(false) && job.rank() == 0);
+    try {
+      job.attempt([&](const Communicator& ranks) {
+        std::optional<Dataset> data;
+        const OpenStep open_step = [&](std::size_t step, const ReadOptions& read) -> const Dataset* {
+          data.reset();  // one step's memory at a time
+          line.begin("reading " + series[step].files.front().filename().string());
+          ReadOptions watched = read;
+          watched.progress = line.listener();
+          try {
+            data.emplace(Dataset::open(series[step].files, watched, ranks, options.settings.ranks));
+          } catch (const Error&) {
+            if (step == 0 || job.size() > 1) throw;
+            return nullptr;
+          }
+          return &*data;
+        };
+        const SeriesChoice choice =
+            choose_by_steps(steps_to_look_at(series.size()), options, options.read, open_step);
+        if (choice.field.empty()) return;
+        start_ = {choice.field, {choice.field, field_word_of(*data)}, choice.range, nullptr, parsed->look};
+        if (choice.function) start_->function = std::make_shared<LoadedTransferFunction>(*choice.function);
+      });
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::bad_input) throw;
+    }
   }
 
   std::shared_ptr<const server::Scene> scene(const Json& state) override {
@@ -243,6 +303,13 @@ class RenderSceneReader final : public server::SceneReader {
   std::string command(const Json& state) override {
     static_cast<void>(scene(state));  // what is no picture has no command
     OptionWords words = state_words(base_, state);
+    if (const auto function = series_function(words)) {
+      std::erase_if(words, [](const auto& option) { return among(function_options, option.first); });
+      words.emplace_back("transfer-function", std::vector{transfer_function_json(function->function)});
+      const bool says_shading = find_words(words, "shade") != nullptr || find_words(words, "no-shade") != nullptr;
+      if (function->shaded && !says_shading) words.emplace_back("shade", std::vector<std::string>{"true"});
+    }
+    words = with_series_start(std::move(words));
     std::erase_if(words, [](const auto& option) { return among(unsaid_options, option.first); });
     std::vector<std::string> all = {"tessera", "render", input_};
     const std::vector<std::string> arguments = arguments_of(words);
@@ -269,6 +336,34 @@ class RenderSceneReader final : public server::SceneReader {
  private:
   static constexpr std::size_t most_parsed = 32;
 
+  [[nodiscard]] bool shows_series_field(const OptionWords& words) const {
+    const std::string field = first_of(words, "field");
+    return start_ && (field.empty() || std::ranges::find(start_->names, field) != start_->names.end());
+  }
+
+  /// Null where words ask for another one.
+  [[nodiscard]] std::shared_ptr<const LoadedTransferFunction> series_function(const OptionWords& words) const {
+    const bool is_its_own = shows_series_field(words) && key_of(words, look_options) == start_->look;
+    return is_its_own ? start_->function : nullptr;
+  }
+
+  /// Presets go over the range of all steps, too.
+  [[nodiscard]] OptionWords with_series_start(OptionWords words) const {
+    if (!start_) return words;
+    const std::string function = first_of(words, "transfer-function");
+    const bool has_range = std::ranges::any_of(range_options, [&](std::string_view name) {
+      return find_words(words, std::string(name)) != nullptr;
+    });
+    const auto [low, high] = start_->range;
+    if (shows_series_field(words) && !series_function(words) && preset_is_named(function) && !has_range && low < high)
+      words.emplace_back("range", std::vector{fmt::format("{},{}", low, high)});
+    // Smoothed, a field of cells is one of points.
+    if (find_words(words, "field") == nullptr)
+      words.emplace_back("field",
+                         std::vector{find_words(words, "smooth") == nullptr ? start_->field : start_->names.back()});
+    return words;
+  }
+
   /// Parsed once for all cameras and sizes, which change most.
   std::shared_ptr<const ParsedWords> parsed_words(const OptionWords& words, bool has_camera) {
     Json rest = {has_camera};
@@ -285,7 +380,8 @@ class RenderSceneReader final : public server::SceneReader {
     return kept_.front().second;
   }
 
-  [[nodiscard]] std::shared_ptr<const ParsedWords> parse(const OptionWords& words) const {
+  [[nodiscard]] std::shared_ptr<const ParsedWords> parse(const OptionWords& state) const {
+    const OptionWords words = with_series_start(state);
     CLI::App app("", "render");
     RenderWords given;
     add_render_options(app, given);
@@ -314,6 +410,7 @@ class RenderSceneReader final : public server::SceneReader {
     parsed->accuracy = fmt::format("{:a}", options.read.higher_order_tolerance);
     parsed->look = key_of(words, look_options);
     parsed->settings = key_of(words, settings_options);
+    parsed->series_function = series_function(state);
     return parsed;
   }
 
@@ -321,13 +418,17 @@ class RenderSceneReader final : public server::SceneReader {
   bool is_grid_;
   OptionWords base_;
   std::vector<double> times_;
+  bool shows_all_ = false;  ///< steps of a series
+  std::optional<SeriesStart> start_;
   std::list<std::pair<std::string, std::shared_ptr<const ParsedWords>>> kept_;
 };
 
 }  // namespace
 
-std::unique_ptr<server::SceneReader> scene_reader(const RenderWords& words, const CLI::App& serve) {
-  return std::make_unique<RenderSceneReader>(words, serve);
+std::unique_ptr<server::SceneReader> scene_reader(const RenderWords& words, const CLI::App& serve, Job& job) {
+  auto reader = std::make_unique<RenderSceneReader>(words, serve);
+  reader->choose_for_all_steps(job);
+  return reader;
 }
 
 void add_scene_reader_options(CLI::App& serve, RenderWords& words) {

@@ -7,12 +7,14 @@
 #include "apps/render_options.hpp"
 #include "apps/state_words.hpp"
 #include "server/scene_reader.hpp"
+#include "tessera/job.hpp"
 
 namespace tessera::apps {
 
 /// What `tessera serve` has in common with `tessera render`: options of the latter that a server takes, and the same
-/// parser and checks for states of clients, so that a state's picture is that of its command line.
-std::unique_ptr<server::SceneReader> scene_reader(const RenderWords& words, const CLI::App& serve);
+/// parser and checks for states of clients, so that a state's picture is that of its command line. Reads some steps of a
+/// time series, by all ranks.
+std::unique_ptr<server::SceneReader> scene_reader(const RenderWords& words, const CLI::App& serve, Job& job);
 
 /// Declares the options of `render` that `serve` has too.
 void add_scene_reader_options(CLI::App& serve, RenderWords& words);

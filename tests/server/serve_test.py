@@ -193,7 +193,51 @@ def stand_in_of(file, launcher=()):
         check(header["stages"] and abs(sum(header["stages"].values()) - header["milliseconds"]) < 1, header)
 
 
+def row_of_cubes(step):
+    """Five cubes with `still`, `conc`, which is 0 at step 0 and is 2 at the end of step 1, and `depth`."""
+    points = [(i, int(k in (1, 2)), k // 2) for i in range(6) for k in range(4)]
+    factors = {"still": 0, "conc": (0, 2, 1)[step], "depth": 3}
+    arrays = [("Float64", name, 1, [factor * x / 5 for x, _, _ in points]) for name, factor in factors.items()]
+
+    def text(kind, name, components, numbers):
+        return (f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{components}" format="ascii">'
+                f'{" ".join(map(str, numbers))}</DataArray>')
+
+    return ('<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian"><UnstructuredGrid>'
+            f'<Piece NumberOfPoints="24" NumberOfCells="5"><PointData>{"".join(text(*a) for a in arrays)}</PointData><Points>'
+            f'{text("Float64", "", 3, [c for p in points for c in p])}</Points><Cells>'
+            f'{text("Int64", "connectivity", 1, [4 * c + k for c in range(5) for k in range(8)])}'
+            f'{text("Int64", "offsets", 1, [8 * c for c in range(1, 6)])}{text("UInt8", "types", 1, [12] * 5)}'
+            '</Cells></Piece></UnstructuredGrid></VTKFile>')
+
+
+def series_starts_as_a_film(launcher=()):
+    """Of a series, field and colors are those of `render`, which go by all steps; commands state them."""
+    for step in range(3):
+        (folder / f"row_{step}.vtu").write_text(row_of_cubes(step))
+    words = ["--size", "90x60", "--integrator", "exact"]
+    tessera("render", "row_%d.vtu", "-o", "film_%d.png", *words, launcher=launcher)
+    with Server(options.tessera, folder / "row_%d.vtu", *words, launcher=launcher, environment=MPI) as server:
+        data = server.data()
+        check(data["field"] == "conc", data["field"])
+        camera = data["defaults"]["camera"]
+        for step in range(3):
+            state = {"camera": camera, "time-step": str(step), "size": "90x60"}
+            _, _, picture = server.ask("POST", "/picture", {"state": state})
+            check(picture == (folder / f"film_{step}.png").read_bytes(), f"step {step} is not the film's")
+            command = server.json("POST", "/api/command", {"state": state})["command"]
+            check(picture == rendered(command, launcher), f"not the picture of {command}")
+        preset = {"camera": camera, "time-step": "2", "transfer-function": "viridis", "size": "90x60"}
+        command = server.json("POST", "/api/command", {"state": preset})["command"]
+        check("--range=0,2" in command, command)
+        other = server.json("POST", "/api/command", {"state": dict(preset, field="depth")})["command"]
+        check("--range" not in other and "conc" not in other, other)
+
+
 def part_pictures():
+    series_starts_as_a_film()
+    if not options.without_mpi:
+        series_starts_as_a_film(MPIRUN)
     for file in files():
         pictures_of(file)
         defaults_are_the_first_picture(file)
