@@ -12,6 +12,7 @@
 #include "io/gzip.hpp"
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
+#include "io/time_step_read.hpp"
 #include "io/volume_formats.hpp"
 
 namespace tessera::io {
@@ -77,6 +78,12 @@ class NiftiHeader {
   [[nodiscard]] int intent() const { return version_ == 1 ? get<std::int16_t>(68) : get<std::int32_t>(504); }
   /// xyzt_units without the bits of time: 1 m, 2 mm, 3 um; 0: not stated.
   [[nodiscard]] int length_unit() const { return (version_ == 1 ? get<std::int8_t>(123) : get<std::int32_t>(500)) & 7; }
+  /// Of xyzt_units, in seconds; 0 where it is not one of time, or not stated.
+  [[nodiscard]] double time_unit() const {
+    const int code = (version_ == 1 ? get<std::int8_t>(123) : get<std::int32_t>(500)) & 0x38;
+    return code == 8 ? 1 : code == 16 ? 1e-3 : code == 24 ? 1e-6 : 0;
+  }
+  [[nodiscard]] double time_offset() const { return real(136, 224); }
   [[nodiscard]] double srow(std::size_t row, std::size_t column) const {
     return real(280 + 16 * row + 4 * column, 400 + 32 * row + 8 * column);
   }
@@ -292,6 +299,8 @@ StoredVolume read_nifti_header(const std::filesystem::path& file) {
   }
   set_nifti_geometry(header, file, volume);
   set_nifti_tags(header, volume);
+  volume.times =
+      even_times(header.time_offset() * header.time_unit(), header.pixdim(4) * header.time_unit(), volume.steps);
   set_nifti_payload(header, file, volume);
   return volume;
 }

@@ -13,6 +13,7 @@
 
 #include "io/header_text.hpp"
 #include "io/text_file.hpp"
+#include "io/time_step_read.hpp"
 
 namespace tessera::io {
 namespace {
@@ -252,6 +253,24 @@ NrrdAxes nrrd_axes_of(const NrrdFields& fields, const std::vector<std::int64_t>&
           "{}: axis {} of {}, with {} samples, is between the axes of space; write it first or last (`unu permute`)",
           file.string(), a + 1, count, sizes[a]));
   return axes;
+}
+
+std::vector<double> nrrd_times(const NrrdFields& fields, const NrrdAxes& axes, const std::vector<std::int64_t>& sizes,
+                               const std::filesystem::path& file) {
+  const auto* kinds = fields.find("kinds");
+  const std::vector<std::string> words = kinds != nullptr ? nrrd_words(*kinds) : std::vector<std::string>();
+  for (std::size_t a = 0; a < sizes.size(); ++a) {
+    if (axes.uses[a] != NrrdAxes::Use::steps || (a < words.size() && (words[a] == "list" || words[a] == "point")))
+      continue;
+    const auto given = [&](const char* name) {
+      const auto* value = fields.find(name);
+      return value != nullptr && std::isfinite(header_numbers(*value, sizes.size(), file, name)[a]);
+    };
+    if (!given("spacings") && !(given("axismins") && given("axismaxs"))) continue;
+    const AxisPlaces places = axis_places(fields, a, sizes, file);
+    return even_times(places.first, places.spacing, static_cast<std::uint64_t>(sizes[a]));
+  }
+  return {};
 }
 
 std::optional<bool> has_color_axis(const NrrdFields& fields, const NrrdAxes& axes) {

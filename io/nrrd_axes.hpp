@@ -30,6 +30,10 @@ struct NrrdAxes {
 NrrdAxes nrrd_axes_of(const NrrdFields& fields, const std::vector<std::int64_t>& sizes,
                       const std::filesystem::path& file);
 
+/// Of the steps along an axis that has spacings, or both ends; else, and of lists, none.
+std::vector<double> nrrd_times(const NrrdFields& fields, const NrrdAxes& axes, const std::vector<std::int64_t>& sizes,
+                               const std::filesystem::path& file);
+
 /// Whether the axis of components holds colors, by its word of `kinds`: true, false of vectors, or not known.
 std::optional<bool> has_color_axis(const NrrdFields& fields, const NrrdAxes& axes);
 

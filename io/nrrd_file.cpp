@@ -143,6 +143,7 @@ StoredVolume read_nrrd_header(const std::filesystem::path& file) {
     throw damaged(file, fmt::format("it has {} sizes for {} dimensions", sizes.size(), dimension));
   const NrrdAxes axes = nrrd_axes_of(fields, sizes, file);
   set_other_axes(axes, sizes, file, volume);
+  volume.times = nrrd_times(fields, axes, sizes, file);
   volume.has_colors = has_color_axis(fields, axes);
   for (std::size_t a = 0; a < 3; ++a) volume.grid.geometry.points[a] = sizes[axes.space[a]];
 

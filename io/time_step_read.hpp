@@ -36,6 +36,16 @@ inline void set_times(TimeStepRead& read, std::vector<double> times) {
     read.times = std::move(times);
 }
 
+/// `count` times from `first` on, each `step` after the one before; none if they are not numbers that differ,
+/// or more than a file has that is whole.
+inline std::vector<double> even_times(double first, double step, std::uint64_t count) {
+  constexpr std::uint64_t most = 1 << 20;
+  std::vector<double> times;
+  if (count < 2 || count > most || !std::isfinite(first) || !std::isfinite(step) || step == 0) return times;
+  for (std::uint64_t k = 0; k < count; ++k) times.push_back(first + step * static_cast<double>(k));
+  return times;
+}
+
 /// What a file's notes say of it; nothing if there is but one.
 inline std::optional<std::string> note_on(const TimeStepRead& read, std::optional<std::size_t> wish) {
   if (read.count <= 1) return std::nullopt;

@@ -21,6 +21,7 @@ struct StoredVolume {
   int components = 1;
   bool planar = false;                        ///< all samples of a component together, not all components of a sample
   std::uint64_t steps = 1;                    ///< volumes in the payload, one after the other
+  std::vector<double> times{};                ///< of all steps, where the header states them; else none
   bool interleaved_steps = false;             ///< instead, a sample of each step together; one component
   bool swapped = false;                       ///< bytes are of the other order than this machine's
   std::filesystem::path payload;              ///< the file itself, or another

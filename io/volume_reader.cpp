@@ -78,7 +78,11 @@ void list_range(const scene::ValueRange& range, FieldSummary& field) {
 
 /// The step that is wanted.
 TimeStepRead step_of(const StoredVolume& volume, const VolumeOptions& options, const std::string& source) {
-  if (volume.steps > 1) return chosen_step(options.time_step, volume.steps, source);
+  if (volume.steps > 1) {
+    TimeStepRead read = chosen_step(options.time_step, volume.steps, source);
+    set_times(read, volume.times);
+    return read;
+  }
   require_no_time_step(options.time_step, source);
   return {};
 }

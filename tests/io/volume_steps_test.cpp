@@ -81,6 +81,38 @@ TEST_F(VolumeSteps, NiftiShowsItsLastStepOrTheOneNamed) {
   expect_no_volume(cut, "truncated");
 }
 
+TEST_F(VolumeSteps, NiftiStatesTimesInItsUnit) {
+  struct Unit {
+    std::int8_t code;
+    std::vector<double> times;
+  };
+  // Seconds, milliseconds, hertz, and nothing but millimetres.
+  for (const Unit& unit : {Unit{8 + 2, {1, 3.5, 6}}, Unit{16, {0.001, 0.0035, 0.006}}, Unit{32, {}}, Unit{2, {}}}) {
+    std::string file = three_steps();
+    put<float>(file, 92, 2.5f);
+    put<float>(file, 136, 1);
+    put<std::int8_t>(file, 123, unit.code);
+    const auto times = open_volume(folder.write("t.nii", file), {.time_step = 1}).time_step.times;
+    ASSERT_EQ(times.size(), unit.times.size()) << int{unit.code};
+    for (std::size_t k = 0; k < times.size(); ++k) EXPECT_DOUBLE_EQ(times[k], unit.times[k]);
+  }
+}
+
+TEST_F(VolumeSteps, NrrdStatesTimesAlongTheirAxis) {
+  const auto times = [&](const std::string& about) {
+    const auto file = folder.write("t.nrrd", "NRRD0004\ntype: short\nencoding: raw\nendian: little\ndimension: 4\n" +
+                                                 about + "\n\n" + bytes_of(counting<std::int16_t>(72)));
+    return open_volume(file).time_step.times;
+  };
+  const std::string last = "sizes: 4 3 2 3\nkinds: domain domain domain time\n";
+  EXPECT_EQ(times(last + "spacings: 1 1 1 0.5\naxis mins: 0 0 0 2"), (std::vector<double>{2, 2.5, 3}));
+  EXPECT_EQ(times(last + "axis mins: 0 0 0 2\naxis maxs: 3 2 1 6"), (std::vector<double>{2, 4, 6}));
+  EXPECT_EQ(times("sizes: 3 4 3 2\nkinds: time domain domain domain\nspacings: 0.25 1 1 1"),
+            (std::vector<double>{0, 0.25, 0.5}));
+  EXPECT_TRUE(times(last + "spacings: 1 1 1 nan").empty());
+  EXPECT_TRUE(times("sizes: 3 4 3 2\nkinds: list domain domain domain\nspacings: 0.25 1 1 1").empty());
+}
+
 TEST_F(VolumeSteps, NiftiVectorsAreInPlanes) {
   std::string file = test::nifti_header();
   put<std::int16_t>(file, 40, 5);
