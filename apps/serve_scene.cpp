@@ -117,7 +117,7 @@ struct ParsedWords {
   std::string data, field, look, settings;  ///< keys
   bool shape = false;
   std::string accuracy;
-  std::shared_ptr<const LoadedTransferFunction> series_function{};  ///< null: that of the step
+  std::shared_ptr<const LoadedTransferFunction> series_function{};     ///< null: that of the step
   mutable std::optional<std::pair<std::string, Surfaces>> surfaces{};  ///< with those of blocks, by field; read once
 };
 
@@ -274,8 +274,7 @@ class RenderSceneReader final : public server::SceneReader {
           }
           return &*data;
         };
-        const SeriesChoice choice =
-            choose_by_steps(steps_to_look_at(series.size()), options, options.read, open_step);
+        const SeriesChoice choice = choose_by_steps(steps_to_look_at(series.size()), options, options.read, open_step);
         if (choice.field.empty()) return;
         start_ = {choice.field, {choice.field, field_word_of(*data)}, choice.range, nullptr, parsed->look};
         if (choice.function) start_->function = std::make_shared<LoadedTransferFunction>(*choice.function);
@@ -351,9 +350,8 @@ class RenderSceneReader final : public server::SceneReader {
   [[nodiscard]] OptionWords with_series_start(OptionWords words) const {
     if (!start_) return words;
     const std::string function = first_of(words, "transfer-function");
-    const bool has_range = std::ranges::any_of(range_options, [&](std::string_view name) {
-      return find_words(words, std::string(name)) != nullptr;
-    });
+    const bool has_range = std::ranges::any_of(
+        range_options, [&](std::string_view name) { return find_words(words, std::string(name)) != nullptr; });
     const auto [low, high] = start_->range;
     if (shows_series_field(words) && !series_function(words) && preset_is_named(function) && !has_range && low < high)
       words.emplace_back("range", std::vector{fmt::format("{},{}", low, high)});

@@ -12,8 +12,8 @@
 namespace tessera::apps {
 
 /// What `tessera serve` has in common with `tessera render`: options of the latter that a server takes, and the same
-/// parser and checks for states of clients, so that a state's picture is that of its command line. Reads some steps of a
-/// time series, by all ranks.
+/// parser and checks for states of clients, so that a state's picture is that of its command line. Reads some steps of
+/// a time series, by all ranks.
 std::unique_ptr<server::SceneReader> scene_reader(const RenderWords& words, const CLI::App& serve, Job& job);
 
 /// Declares the options of `render` that `serve` has too.
