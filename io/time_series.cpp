@@ -10,6 +10,7 @@
 #include "io/input_file.hpp"
 #include "io/json_text.hpp"
 #include "io/text_file.hpp"
+#include "io/vtk_field_words.hpp"
 #include "io/xml_elements.hpp"
 #include "scene/error.hpp"
 
@@ -52,6 +53,19 @@ std::optional<Pattern> pattern_of(const std::string& name) {
 bool is_file_series(const std::filesystem::path& input) { return lower_extension(input) == ".series"; }
 bool is_pvd(const std::filesystem::path& input) { return lower_extension(input) == ".pvd"; }
 
+/// Of numbered VTK XML files that state their times, all of them, these.
+void set_own_times(std::vector<TimeStep>& steps) {
+  std::vector<double> times;
+  for (const TimeStep& step : steps) {
+    const std::string extension = lower_extension(step.files.front());
+    if (extension != ".vtu" && extension != ".vti" && extension != ".vtr" && extension != ".vts") return;
+    const auto time = vtk_time_value(step.files.front());
+    if (!time) return;
+    times.push_back(*time);
+  }
+  for (std::size_t k = 0; k < steps.size(); ++k) steps[k].time = times[k], steps[k].has_time = true;
+}
+
 std::vector<TimeStep> read_pattern(const std::filesystem::path& input, const Pattern& pattern) {
   const std::filesystem::path folder = input.has_parent_path() ? input.parent_path() : std::filesystem::path(".");
   std::vector<std::pair<std::uint64_t, std::filesystem::path>> found;
@@ -70,6 +84,7 @@ std::vector<TimeStep> read_pattern(const std::filesystem::path& input, const Pat
   std::vector<TimeStep> steps;
   steps.reserve(found.size());
   for (auto& [number, file] : found) steps.push_back({static_cast<double>(number), {std::move(file)}});
+  set_own_times(steps);
   return steps;
 }
 

@@ -3,7 +3,9 @@
 #include <charconv>
 #include <string_view>
 
+#include "io/header_text.hpp"
 #include "io/input_file.hpp"
+#include "io/text_file.hpp"
 
 namespace tessera::io {
 namespace {
@@ -14,6 +16,23 @@ std::string attribute_in(std::string_view element, std::string_view name) {
   if (at == std::string_view::npos) return {};
   const std::size_t from = at + sought.size(), stop = element.find('"', from);
   return stop == std::string_view::npos ? std::string() : std::string(element.substr(from, stop - from));
+}
+
+template <class Visit>
+void each_field_array(const std::filesystem::path& file, const Visit& visit) {
+  constexpr std::size_t longest = 1 << 16;
+  const std::string text = read_beginning(file, longest);
+  const std::size_t begin = text.find("<FieldData");
+  if (begin == std::string::npos) return;
+  std::string_view rest = std::string_view(text).substr(begin);
+  rest = rest.substr(0, rest.find("</FieldData>"));
+  constexpr std::string_view opening = "<DataArray";
+  for (std::size_t at = rest.find(opening); at != std::string_view::npos; at = rest.find(opening, at + 1)) {
+    const std::size_t close = rest.find('>', at);
+    if (close == std::string_view::npos) break;
+    const std::string_view content = rest.substr(close + 1);
+    visit(rest.substr(at, close - at), content.substr(0, content.find('<')));
+  }
 }
 
 /// Letters up to the code 0.
@@ -37,22 +56,26 @@ std::string word_of_codes(std::string_view text) {
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> vtk_field_words(const std::filesystem::path& file) {
-  constexpr std::size_t longest = 1 << 16;
-  const std::string text = read_beginning(file, longest);
   std::vector<std::pair<std::string, std::string>> words;
-  const std::size_t begin = text.find("<FieldData");
-  if (begin == std::string::npos) return words;
-  std::string_view rest = std::string_view(text).substr(begin);
-  rest = rest.substr(0, rest.find("</FieldData>"));
-  constexpr std::string_view opening = "<DataArray";
-  for (std::size_t at = rest.find(opening); at != std::string_view::npos; at = rest.find(opening, at + 1)) {
-    const std::size_t close = rest.find('>', at);
-    if (close == std::string_view::npos) break;
-    const std::string_view element = rest.substr(at, close - at), content = rest.substr(close + 1);
+  each_field_array(file, [&](std::string_view element, std::string_view content) {
     if (attribute_in(element, "type") == "String" && attribute_in(element, "format") == "ascii")
-      words.emplace_back(attribute_in(element, "Name"), word_of_codes(content.substr(0, content.find('<'))));
-  }
+      words.emplace_back(attribute_in(element, "Name"), word_of_codes(content));
+  });
   return words;
+}
+
+std::optional<double> vtk_time_value(const std::filesystem::path& file) {
+  std::optional<double> time;
+  each_field_array(file, [&](std::string_view element, std::string_view content) {
+    if (attribute_in(element, "Name") != "TimeValue") return;
+    // VTK writes the range of each array, and so the one value of arrays that are not text.
+    const std::string low = attribute_in(element, "RangeMin"), high = attribute_in(element, "RangeMax");
+    if (attribute_in(element, "format") == "ascii")
+      time = parse_number(trimmed(content));
+    else if (low == high)
+      time = parse_number(low);
+  });
+  return time;
 }
 
 }  // namespace tessera::io

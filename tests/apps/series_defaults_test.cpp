@@ -180,6 +180,23 @@ TEST_F(SeriesDefaults, InfoListsStepsAndTimes) {
   EXPECT_NE(beyond.err.find("there is no time step 3, it has 3; count from 0"), std::string::npos) << beyond.err;
 }
 
+TEST_F(SeriesDefaults, NumberedFilesHaveTheTimesThatTheyState) {
+  const auto write_at = [&](int step, const std::string& array) {
+    std::string text = row_of_cubes({{"p", times(1)}});
+    const std::size_t piece = text.find("<Piece");
+    if (!array.empty()) text.insert(piece, "<FieldData>" + array + "</FieldData>");
+    (void)folder.file(fmt::format("t_{}.vtu", step), text);
+  };
+  write_at(7, R"(<DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="ascii"> 0.125 </DataArray>)");
+  // The bytes of 0.5 after their length.
+  write_at(8, R"(<DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="binary" RangeMin="0.5" )"
+              R"(RangeMax="0.5">CAAAAAAAAAAAAOA/</DataArray>)");
+  EXPECT_EQ(info_of(folder / "t_%d.vtu").at("time_steps").at("times"), Json({0.125, 0.5}));
+  EXPECT_EQ(report_of(folder / "t_%d.vtu").at("frames").at(1).at("time"), 0.5);
+  write_at(9, "");  // then there is none of a part of the series
+  EXPECT_EQ(info_of(folder / "t_%d.vtu").at("time_steps").at("numbers"), Json({7, 8, 9}));
+}
+
 TEST_F(SeriesDefaults, InfoAndRenderShowTheSameOfIdsAlone) {
   int count = 0;
   const std::string file = folder.file("ids.vtu", row_of_cubes({{"GlobalNodeId", [&](double) { return ++count; }}}));
