@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+Json vector_json(const glm::dvec3& v) { return {v.x + 0.0, v.y + 0.0, v.z + 0.0}; }  // -0 is 0
 
 Json fields_json(const Description& data) {
   Json fields = Json::array();

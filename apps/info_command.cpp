@@ -21,7 +21,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string triple(const glm::dvec3& v) { return fmt::format("({:.9g} {:.9g} {:.9g})", v.x, v.y, v.z); }
+/// Falling axes may have -0.
+std::string triple(const glm::dvec3& with_signs) {
+  const glm::dvec3 v = with_signs + 0.0;
+  return fmt::format("({:.9g} {:.9g} {:.9g})", v.x, v.y, v.z);
+}
 
 std::string lattice_line(const GridGeometry& g) {
   std::string line = fmt::format("{}x{}x{} points, origin {}", g.points[0], g.points[1], g.points[2], triple(g.origin));
