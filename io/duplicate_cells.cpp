@@ -9,7 +9,9 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cstdlib>
+#include <glm/vec3.hpp>
 #include <memory>
 #include <new>
 #include <numeric>
@@ -33,7 +35,15 @@ struct Freed {
   void operator()(T* memory) const { std::free(memory); }
 };
 
-std::uint64_t key_of_place(const glm::dvec3& p) { return mix(hash_of_place(p)); }
+/// A number that depends on a place alone; -0 and 0 differ.
+std::uint64_t key_of_place(const glm::dvec3& p) {
+  const auto word = [](double x, std::uint64_t odd, int turn) {
+    return std::rotl(std::bit_cast<std::uint64_t>(x) * odd, turn);
+  };
+  const std::uint64_t sum =
+      word(p.x, 0x9e3779b97f4a7c15, 0) ^ word(p.y, 0xbf58476d1ce4e5b9, 21) ^ word(p.z, 0x94d049bb133111eb, 42);
+  return mix((sum ^ sum >> 32) * 0xff51afd7ed558ccd);
+}
 
 /// A number for each cell that depends on its tets' corners' positions alone, in whatever order they are.
 class CellKeys {
@@ -45,11 +55,13 @@ class CellKeys {
     });
   }
 
-  /// Calls `use(first tet, tet after the last, key)` for each cell, from several threads.
-  template <class Use>
-  void each(const Use& use) const {
+  /// Calls `begin()` for each range of cells, from several threads, and then of its result
+  /// `(first tet, tet after the last, key)` for each cell of the range.
+  template <class Begin>
+  void each(const Begin& begin) const {
     const std::size_t tets = mesh_.tets.size();
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tets, grain), [&](const auto& range) {
+      auto use = begin();
       std::size_t t = range.begin();
       while (t > 0 && t < range.end() && mesh_.cell_of(t) == mesh_.cell_of(t - 1)) ++t;
       while (t < range.end()) {
@@ -82,11 +94,12 @@ class KeySet {
     if (words_ == nullptr) throw std::bad_alloc();
   }
 
+  void prefetch(std::uint64_t key) const { __builtin_prefetch(words_.get() + place_of(key), 1); }
+
   /// Whether it seems to have been there already.
   bool insert(std::uint64_t key) {
     const std::uint32_t word = std::max<std::uint32_t>(static_cast<std::uint32_t>(key), 1);
-    __extension__ using Product = unsigned __int128;
-    auto place = static_cast<std::size_t>(static_cast<Product>(key) * places_ >> 64);
+    std::size_t place = place_of(key);
     while (true) {
       std::atomic_ref<std::uint32_t> there(words_.get()[place]);
       std::uint32_t found = there.load(std::memory_order_relaxed);
@@ -97,14 +110,53 @@ class KeySet {
   }
 
  private:
+  [[nodiscard]] std::size_t place_of(std::uint64_t key) const {
+    __extension__ using Product = unsigned __int128;
+    return static_cast<std::size_t>(static_cast<Product>(key) * places_ >> 64);
+  }
+
   std::size_t places_;
   std::unique_ptr<std::uint32_t, Freed<std::uint32_t>> words_;
+};
+
+/// Inserts keys some time after their places were asked for, which hides most of what the memory takes.
+class DelayedInsertion {
+ public:
+  DelayedInsertion(KeySet& set, std::vector<std::uint64_t>& seen_again) : set_(set), seen_again_(seen_again) {}
+  ~DelayedInsertion() {
+    for (std::size_t k = count_ - std::min(count_, delay); k < count_; ++k) insert(waiting_[k % delay]);
+  }
+  DelayedInsertion(const DelayedInsertion&) = delete;
+  DelayedInsertion& operator=(const DelayedInsertion&) = delete;
+
+  void operator()(std::size_t /*first*/, std::size_t /*last*/, std::uint64_t key) {
+    std::uint64_t& place = waiting_[count_ % delay];
+    if (count_++ >= delay) insert(place);
+    set_.prefetch(place = key);
+  }
+
+ private:
+  void insert(std::uint64_t key) {
+    if (set_.insert(key)) seen_again_.push_back(key);
+  }
+
+  static constexpr std::size_t delay = 16;
+  KeySet& set_;
+  std::vector<std::uint64_t>& seen_again_;
+  std::array<std::uint64_t, delay> waiting_{};
+  std::size_t count_ = 0;
 };
 
 template <class T>
 std::vector<T> joined_lists(tbb::enumerable_thread_specific<std::vector<T>>& lists) {
   std::vector<T> all;
   for (std::vector<T>& list : lists) all.insert(all.end(), list.begin(), list.end()), list = {};
+  return all;
+}
+
+template <class T>
+std::vector<T> sorted_lists(tbb::enumerable_thread_specific<std::vector<T>>& lists) {
+  std::vector<T> all = joined_lists(lists);
   tbb::parallel_sort(all.begin(), all.end());
   return all;
 }
@@ -134,25 +186,35 @@ void sorted_corners(const TetMesh& mesh, const KeyedCell& cell, std::vector<Corn
   });
 }
 
+/// The keys that seem to be there several times, each once, of `each(begin)` as CellKeys has it.
+template <class Each>
+std::vector<std::uint64_t> repeated_keys(std::size_t count, const Each& each) {
+  KeySet seen(count);
+  tbb::enumerable_thread_specific<std::vector<std::uint64_t>> seen_again;
+  each([&] { return DelayedInsertion(seen, seen_again.local()); });
+  std::vector<std::uint64_t> repeated = sorted_lists(seen_again);
+  repeated.erase(std::unique(repeated.begin(), repeated.end()), repeated.end());
+  return repeated;
+}
+
+std::size_t cells_of(const TetMesh& mesh) {
+  return mesh.original_cell.empty() ? mesh.tets.size()
+                                    : std::min<std::size_t>(mesh.tets.size(), mesh.original_cell.back() + 1);
+}
+
 /// Cells that an earlier one has the corners of, in their order.
 std::vector<KeyedCell> duplicates_of(const TetMesh& mesh) {
   const CellKeys keys(mesh);
-  tbb::enumerable_thread_specific<std::vector<std::uint64_t>> seen_again;
-  {
-    KeySet seen(mesh.original_cell.empty() ? mesh.tets.size()
-                                           : std::min<std::size_t>(mesh.tets.size(), mesh.original_cell.back() + 1));
-    keys.each([&](std::size_t, std::size_t, std::uint64_t key) {
-      if (seen.insert(key)) seen_again.local().push_back(key);
-    });
-  }
-  std::vector<std::uint64_t> repeated = joined_lists(seen_again);
+  const std::vector<std::uint64_t> repeated =
+      repeated_keys(cells_of(mesh), [&](const auto& begin) { keys.each(begin); });
   if (repeated.empty()) return {};
-  repeated.erase(std::unique(repeated.begin(), repeated.end()), repeated.end());
   tbb::enumerable_thread_specific<std::vector<KeyedCell>> found;
-  keys.each([&](std::size_t first, std::size_t last, std::uint64_t key) {
-    if (std::binary_search(repeated.begin(), repeated.end(), key)) found.local().push_back({key, first, last});
+  keys.each([&] {
+    return [&list = found.local(), &repeated](std::size_t first, std::size_t last, std::uint64_t key) {
+      if (std::binary_search(repeated.begin(), repeated.end(), key)) list.push_back({key, first, last});
+    };
   });
-  std::vector<KeyedCell> cells = joined_lists(found);
+  std::vector<KeyedCell> cells = sorted_lists(found);
   std::vector<std::uint8_t> is_duplicate(cells.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells.size(), 1024), [&](const auto& range) {
     std::vector<Corners> corners, others;
@@ -195,21 +257,39 @@ void remove(const std::vector<KeyedCell>& cells, TetMesh& mesh) {
 
 }  // namespace
 
-bool DuplicateSample::has_repetitions(const TetMesh& mesh, std::span<const std::size_t> tets) {
-  KeySet seen(tets.size());
-  return std::ranges::any_of(tets, [&](std::size_t t) {
-    std::uint64_t key = 0;
-    for (const std::uint32_t v : mesh.tets[t]) key += key_of_place(mesh.positions[v]);
-    return seen.insert(key);
-  });
-}
-
 std::uint64_t find_duplicate_cells(TetMesh& mesh, bool drop, int threads) {
   if (mesh.tets.size() < 2) return 0;
   return tbb::task_arena(scene::threads_for(threads)).execute([&] {
     const std::vector<KeyedCell> duplicates = duplicates_of(mesh);
     if (drop && !duplicates.empty()) remove(duplicates, mesh);
     return static_cast<std::uint64_t>(duplicates.size());
+  });
+}
+
+std::vector<std::uint64_t> duplicate_keys(const TetMesh& mesh, int threads) {
+  return tbb::task_arena(scene::threads_for(threads)).execute([&] {
+    tbb::enumerable_thread_specific<std::vector<std::uint64_t>> lists;
+    CellKeys(mesh).each(
+        [&] { return [&list = lists.local()](std::size_t, std::size_t, std::uint64_t key) { list.push_back(key); }; });
+    return joined_lists(lists);
+  });
+}
+
+std::uint64_t count_repetitions(const std::vector<std::uint64_t>& keys, int threads) {
+  return tbb::task_arena(scene::threads_for(threads)).execute([&] {
+    const std::vector<std::uint64_t> repeated = repeated_keys(keys.size(), [&](const auto& begin) {
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, keys.size(), grain), [&](const auto& range) {
+        auto use = begin();
+        for (std::size_t k = range.begin(); k < range.end(); ++k) use(k, k + 1, keys[k]);
+      });
+    });
+    std::vector<std::uint64_t> times(repeated.size(), 0);
+    std::uint64_t count = 0;
+    if (!repeated.empty())
+      for (const std::uint64_t key : keys)
+        if (const auto at = std::lower_bound(repeated.begin(), repeated.end(), key); at != repeated.end() && *at == key)
+          if (times[static_cast<std::size_t>(at - repeated.begin())]++ > 0) ++count;
+    return count;
   });
 }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
@@ -33,7 +32,8 @@ class Assembly {
  public:
   Assembly(AssembledBlocks& result, std::span<const FieldSummary> fields, const FieldChoice& choice,
            const std::string& source, const HigherOrderPlan& plan, int threads)
-      : notes_(result.notes),
+      : cell_keys_(result.cell_keys),
+        notes_(result.notes),
         mesh_(result.mesh),
         counts_(result.counts),
         higher_order_(result.higher_order),
@@ -75,14 +75,17 @@ class Assembly {
     block = {};
   }
 
-  void finish(bool drop_duplicates) {
+  void finish(Duplicates duplicates) {
     mesh_.association = choice_.association;
     counts_.points_unused = unused_points();
     // Cells without a value are gone by now, so that a blank copy of another is none.
-    if (drop_duplicates || may_repeat_) {
-      const std::uint64_t found = find_duplicate_cells(mesh_, drop_duplicates, threads_);
-      (drop_duplicates ? counts_.duplicates_dropped : counts_.cells_duplicate) = found;
-      if (drop_duplicates && found > 0) counts_.points_unused = unused_points();
+    if (duplicates == Duplicates::keys) {
+      cell_keys_ = duplicate_keys(mesh_, threads_);
+    } else {
+      const bool drop = duplicates == Duplicates::drop;
+      const std::uint64_t found = find_duplicate_cells(mesh_, drop, threads_);
+      (drop ? counts_.duplicates_dropped : counts_.cells_duplicate) = found;
+      if (drop && found > 0) counts_.points_unused = unused_points();
     }
     counts_.tets_made = mesh_.tets.size();
     if (choice_.association == Association::point) mesh_.scalars = std::move(values_);
@@ -245,46 +248,24 @@ class Assembly {
     numbered_ = true;
   }
 
-  /// Points that no tet uses. On the way it looks at the tets of a sample, whether cells may be there twice.
+  /// Points that no tet uses.
   std::uint64_t unused_points() {
-    constexpr std::uint8_t is_used = 1, is_sampled = 2;
-    const DuplicateSample sample(mesh_);
-    std::vector<std::uint8_t> points(mesh_.positions.size());
-    tbb::enumerable_thread_specific<std::vector<std::size_t>> sampled;
-    const auto choose = [&](std::size_t first, std::size_t last) {
-      for (std::size_t v = first; v < last; ++v)
-        if (sample.has(mesh_.positions[v])) points[v] = is_sampled;
-    };
-    const auto mark = [&](std::size_t first, std::size_t last) {
-      std::vector<std::size_t>& tets = sampled.local();
-      for (std::size_t t = first; t < last; ++t) {
-        std::uint8_t all = 0;
-        for (const std::uint32_t v : mesh_.tets[t]) {
-          std::atomic_ref<std::uint8_t> point(points[v]);
-          const std::uint8_t known = point.load(std::memory_order_relaxed);
-          if ((known & is_used) == 0) point.store(known | is_used, std::memory_order_relaxed);
-          all |= known;
-        }
-        if ((all & is_sampled) != 0) tets.push_back(t);
-      }
-    };
+    std::vector<std::uint8_t> is_used(mesh_.positions.size());
     tbb::task_arena(scene::threads_for(threads_)).execute([&] {
       constexpr std::size_t grain = 65536;
-      const auto each = [&](std::size_t count, const auto& work) {
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
-                          [&](const auto& range) { work(range.begin(), range.end()); });
-      };
-      if (!sample.takes_all()) each(points.size(), choose);
-      each(mesh_.tets.size(), mark);
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh_.tets.size(), grain), [&](const auto& range) {
+        for (std::size_t t = range.begin(); t < range.end(); ++t)
+          for (const std::uint32_t v : mesh_.tets[t]) {
+            std::atomic_ref<std::uint8_t> point(is_used[v]);
+            if (point.load(std::memory_order_relaxed) == 0) point.store(1, std::memory_order_relaxed);
+          }
+      });
     });
-    std::vector<std::size_t> tets;
-    for (const std::vector<std::size_t>& some : sampled) tets.insert(tets.end(), some.begin(), some.end());
-    may_repeat_ = sample.takes_all() || DuplicateSample::has_repetitions(mesh_, tets);
-    for (const std::uint32_t v : higher_order_nodes_) points[v] |= is_used;
-    return static_cast<std::uint64_t>(
-        std::ranges::count_if(points, [](std::uint8_t point) { return (point & is_used) == 0; }));
+    for (const std::uint32_t v : higher_order_nodes_) is_used[v] = 1;
+    return static_cast<std::uint64_t>(std::ranges::count(is_used, 0));
   }
 
+  std::vector<std::uint64_t>& cell_keys_;
   std::vector<std::string>& notes_;
   scene::TetMesh& mesh_;
   MeshCounts& counts_;
@@ -304,14 +285,13 @@ class Assembly {
   std::vector<double> added_values_;
   std::vector<std::uint32_t> higher_order_nodes_;  ///< of all cells that were divided
   bool numbered_ = false;
-  bool may_repeat_ = false;  ///< some cell may have the corners of an earlier one
 };
 
 }  // namespace
 
 AssembledBlocks assemble_blocks(std::vector<CellBlock> blocks, std::span<const FieldSummary> fields,
                                 const FieldChoice& choice, const std::string& source, const HigherOrderPlan& plan,
-                                int threads, bool drop_duplicates) {
+                                int threads, Duplicates duplicates) {
   AssembledBlocks result;
   Assembly assembly(result, fields, choice, source, plan, threads);
   std::size_t points = 0, tets = 0;
@@ -321,7 +301,7 @@ AssembledBlocks assemble_blocks(std::vector<CellBlock> blocks, std::span<const F
   }
   if (blocks.size() > 1) assembly.reserve(points, tets);
   for (CellBlock& block : blocks) assembly.add(block);
-  assembly.finish(drop_duplicates);
+  assembly.finish(duplicates);
   return result;
 }
 
@@ -397,8 +377,8 @@ MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options
   file.notes = choice.notes;
 
   const HigherOrderPlan plan = planning(blocks, options, choice, file.fields);
-  AssembledBlocks assembled =
-      assemble_blocks(std::move(blocks), file.fields, choice, source, plan, options.threads, options.drop_duplicates);
+  AssembledBlocks assembled = assemble_blocks(std::move(blocks), file.fields, choice, source, plan, options.threads,
+                                              options.drop_duplicates ? Duplicates::drop : Duplicates::count);
   file.mesh = std::move(assembled.mesh);
   file.counts = assembled.counts;
   file.higher_order = assembled.higher_order;

@@ -18,16 +18,21 @@ struct AssembledBlocks {
   MeshCounts counts;
   HigherOrderCells higher_order;
   std::vector<std::string> notes;
+  std::vector<std::uint64_t> cell_keys;  ///< duplicate_keys(), of Duplicates::keys
 };
+
+/// What is done about cells with the corners of earlier ones. Of a part of a mesh keys are kept, since other parts may
+/// have those cells.
+enum class Duplicates : std::uint8_t { count, drop, keys };
 
 /// Drops ghost, hidden and NaN cells and splits the rest into tets with the chosen one of the file's fields. Blocks are
 /// emptied as they are used, so that no more than one copy of anything is held. A piece of a parallel file has to have
-/// the field; other blocks without it are blanked, and a note says so. Cells with the corners of earlier ones are
-/// counted, and dropped with `drop_duplicates`. Throws Error(bad_input) in one line that begins
-/// with the block's source or `source`. The mesh and the error are the same whatever the `threads` (0: all cores).
+/// the field; other blocks without it are blanked, and a note says so. Throws Error(bad_input) in one line
+/// that begins with the block's source or `source`. The mesh and the error are the same whatever the `threads` (0: all
+/// cores).
 AssembledBlocks assemble_blocks(std::vector<CellBlock> blocks, std::span<const FieldSummary> fields,
                                 const FieldChoice& choice, const std::string& source, const HigherOrderPlan& plan,
-                                int threads = 1, bool drop_duplicates = false);
+                                int threads = 1, Duplicates duplicates = Duplicates::count);
 
 /// Notes on what happened to the cells of a whole file. Throws Error(bad_input) if nothing is left to render.
 std::vector<std::string> notes_on_cells(const MeshCounts& counts, const HigherOrderCells& higher_order,

@@ -154,8 +154,9 @@ MeshFilePart MeshPartReading::finish(const ExcessTally& excess_of_all) {
     part.choice_notes = state_->choice.notes;
     AssembledBlocks assembled = assemble_blocks(std::move(state_->blocks.blocks), part.fields, state_->choice, source,
                                                 planned(state_->options, state_->asked, excess_of_all),
-                                                state_->options.threads, state_->options.drop_duplicates);
+                                                state_->options.threads, Duplicates::keys);
     part.mesh = std::move(assembled.mesh);
+    part.cell_keys = std::move(assembled.cell_keys);
     part.summary.counts = assembled.counts;
     part.summary.higher_order = assembled.higher_order;
     part.summary.cell_notes = std::move(assembled.notes);

@@ -22,10 +22,11 @@
 ///     reading.choose(tallies, box, names);
 ///     excess = sum of reading.excess() of all parts
 ///     MeshFilePart own = reading.finish(excess);
+///     own.summary.counts.cells_duplicate = count_repetitions(cell_keys of all parts that this one looks at)
 ///     MeshFile whole = joined(own.summary of all parts, in part order, ...)
 ///
 /// The tets of all parts, one part after the other, are those that read_mesh gives, in its order; `joined` gives
-/// read_mesh's counts, fields and notes; but of duplicate cells those within a part are counted.
+/// read_mesh's counts, fields and notes, if each key (io/duplicate_cells.hpp) is looked at by one part alone.
 namespace tessera::io {
 
 /// Whether the file can be read in parts: .pvtu, whose pieces are divided over the parts, VTK's lists of blocks (.vtm
@@ -56,6 +57,7 @@ struct MeshFilePart {
   std::vector<std::string> choice_notes;  ///< on the field, the same on all parts
   std::vector<std::string> blocks;        ///< the names of all, the same on all parts
   std::string format;
+  std::vector<std::uint64_t> cell_keys;  ///< duplicate_keys() of the part's cells, before any are selected
 };
 
 class MeshPartReading {

@@ -43,7 +43,7 @@ struct MeshCounts {
   std::uint64_t polyhedra_from_inside = 0;  ///< of those: split from a point that was added inside
   std::uint64_t polyhedra_in_pieces = 0;    ///< of those: cut into tets one by one, as no point sees all of the inside
   std::uint64_t polyhedra_tangled = 0;      ///< of those: among cells_tangled
-  /// Kept: an earlier cell has the same corners, and is drawn there too. Each projecting rank looks at its own share.
+  /// Kept: an earlier cell has the same corners, and is drawn there too.
   std::uint64_t cells_duplicate = 0;
   std::uint64_t duplicates_dropped = 0;  ///< such cells that were dropped (ReadOptions::drop_duplicates)
   /// Of kept hexahedra, wedges, pyramids, voxels and prisms of five or six sides: how many there are, and how many of

@@ -52,6 +52,40 @@ TEST_F(Mpirun, RawSegmentsGiveTheBytesOfOneProcessForEveryPartitionAndShape) {
   }
 }
 
+TEST_F(Mpirun, DuplicateCellsAreCountedAndDroppedAsInOneProcess) {
+  const Folder folder;
+  const std::string cube = folder.cube(), once = folder / "piece.vtu", list = folder / "twice.pvtu";
+  ASSERT_EQ(tessera({"convert", cube, once, "--quiet"}).status, 0);
+  std::filesystem::copy_file(once, folder / "copy.vtu");
+  folder.file("twice.pvtu",
+              "<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid><Piece Source=\"piece.vtu\"/>"
+              "<Piece Source=\"copy.vtu\"/></PUnstructuredGrid></VTKFile>");
+  const auto arguments = [&](const std::string& file, std::vector<std::string> others) {
+    std::vector<std::string> all{"render", file,        "-o", folder / "a.pfm", "--size",
+                                 "40x30",  "--threads", "1",  "--exchange",     "segments"};
+    all.insert(all.end(), others.begin(), others.end());
+    return all;
+  };
+  ASSERT_EQ(tessera(arguments(once, {"--quiet"})).status, 0);
+  const std::string picture_of_one = contents(folder / "a.pfm");
+  for (const int ranks : {1, 2, 3}) {
+    SCOPED_TRACE(ranks);
+    const auto run = [&](const std::vector<std::string>& words) {
+      return ranks == 1 ? tessera(words) : mpirun(ranks, words);
+    };
+    const Outcome kept = run(arguments(list, {}));
+    ASSERT_EQ(kept.status, 0) << kept.err;
+    EXPECT_NE(kept.err.find("warning: 384 cells have the corners of other cells"), std::string::npos) << kept.err;
+    EXPECT_NE(contents(folder / "a.pfm"), picture_of_one);
+    const Outcome dropped = run(arguments(list, {"--drop-duplicates"}));
+    ASSERT_EQ(dropped.status, 0) << dropped.err;
+    EXPECT_NE(dropped.err.find("384 of 768 cells kept as 384 tets, 384 duplicate dropped"), std::string::npos)
+        << dropped.err;
+    EXPECT_EQ(dropped.err.find("corners of other cells"), std::string::npos) << dropped.err;
+    EXPECT_EQ(contents(folder / "a.pfm"), picture_of_one);
+  }
+}
+
 TEST_F(Mpirun, ADeepPictureHasTheBytesOfOneProcess) {
   const Folder folder;
   const std::string mesh = folder.cube();

@@ -173,24 +173,47 @@ TEST_F(DuplicateFiles, GhostCellsAreNotDuplicates) {
   EXPECT_NEAR(testing::volume(levels.mesh), 1, 1e-9);
 }
 
-TEST_F(DuplicateFiles, ALargeMeshIsCheckedByASampleFirst) {
-  constexpr int side = 24;
-  const auto assembled = [](int copies, const MeshOptions& options) {
+TEST_F(DuplicateFiles, EveryDuplicateOfALargeMeshIsCounted) {
+  const auto assembled = [](const MeshOptions& options, bool repeated) {
     std::vector<CellBlock> blocks;
-    for (int k = 0; k < copies; ++k) blocks.push_back(testing::mixed_mesh(side, 5, false));
+    blocks.push_back(testing::mixed_mesh(24, 5, false));
+    blocks.push_back(testing::mixed_mesh(24, 5, false));
+    CellBlock& copy = blocks.back();  // of few cells
+    copy.types.resize(repeated ? 3 : 0);
+    copy.offsets.resize(copy.types.size() + 1);
+    copy.connectivity.resize(copy.offsets.back());
     return assemble_mesh(std::move(blocks), options, "mesh");
   };
-  const MeshFile once = assembled(1, {}), twice = assembled(2, {});
-  EXPECT_FALSE(DuplicateSample(twice.mesh).takes_all());
+  const MeshFile once = assembled({}, false);
+  ASSERT_GT(once.mesh.tets.size(), 65536u);
   EXPECT_EQ(once.counts.cells_duplicate, 0u);
-  EXPECT_EQ(twice.counts.cells_duplicate, once.counts.cells_read);
   MeshOptions options;
-  options.drop_duplicates = true;
   options.threads = 3;
-  const MeshFile dropped = assembled(2, options);
-  EXPECT_EQ(dropped.counts.duplicates_dropped, once.counts.cells_read);
+  EXPECT_EQ(assembled(options, true).counts.cells_duplicate, 3u);
+  options.drop_duplicates = true;
+  const MeshFile dropped = assembled(options, true);
+  EXPECT_EQ(dropped.counts.duplicates_dropped, 3u);
   EXPECT_EQ(dropped.mesh.tets, once.mesh.tets);
-  EXPECT_EQ(dropped.counts.points_unused, dropped.counts.points_read / 2);
+}
+
+TEST_F(DuplicateFiles, KeysOfPartsGiveTheCountOfTheWhole) {
+  const scene::TetMesh once = mixed_tets(false);
+  const scene::TetMesh twice = with_copies(
+      once, [](std::uint64_t cell) { return cell % 5 == 2; }, 9);
+  scene::TetMesh copies = twice;  // what was added, as a part of its own
+  const auto first = static_cast<std::ptrdiff_t>(once.tets.size());
+  copies.tets.erase(copies.tets.begin(), copies.tets.begin() + first);
+  copies.original_cell.erase(copies.original_cell.begin(), copies.original_cell.begin() + first);
+  std::vector<std::uint64_t> keys = duplicate_keys(once, 2);
+  EXPECT_EQ(count_repetitions(keys, 2), 0u);
+  const std::vector<std::uint64_t> others = duplicate_keys(copies, 1);
+  scene::TetMesh counted = twice;
+  const std::uint64_t expected = find_duplicate_cells(counted, false, 2);
+  EXPECT_EQ(others.size(), expected);
+  keys.insert(keys.end(), others.begin(), others.end());
+  EXPECT_EQ(count_repetitions(keys, 2), expected);
+  keys.insert(keys.end(), others.begin(), others.end());
+  EXPECT_EQ(count_repetitions(keys, 3), 2 * expected);
 }
 
 TEST_F(DuplicateFiles, ABlankCopyIsNotDrawnAndNoDuplicate) {
