@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <new>
 #include <span>
 #include <tuple>
 
 #include "io/helper/gmsh_tags.hpp"
+#include "io/helper/gmsh_types.hpp"
 #include "io/helper/gmsh_views.hpp"
 #include "io/mix_bits.hpp"
 #include "scene/error.hpp"
@@ -21,27 +21,13 @@ namespace {
 const GmshCell& cell_of(int type, std::map<int, GmshCell>& known, std::vector<std::string>& notes) {
   const auto [found, is_new] = known.try_emplace(type);
   if (!is_new) return found->second;
-  std::string name;
-  int dimension = 0, order = 0, nodes = 0, corners = 0;
-  std::vector<double> places;
-  try {
-    gmsh::model::mesh::getElementProperties(type, name, dimension, order, nodes, places, corners);
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (...) {  // it knows no places in prisms of the third order and above
-    const bool is_third_or_fourth = type == 90 || type == 91;
-    if (is_third_or_fourth || (type >= 106 && type <= 117)) {
-      name = "Prism", corners = 6;
-      order = is_third_or_fourth ? type - 87 : type <= 110 ? type - 101 : 0;  // the others lack inner nodes
-      if (order > 0) places = gmsh_prism_places(order);
-      nodes = order > 0 ? static_cast<int>(places.size() / 3) : 6;
-      if (order == 0) found->second = gmsh_cell(1, 6, std::vector<double>(18)), found->second.by_corners = true;
-    }
-  }
-  if (corners >= 4 && corners <= 8 && corners != 7 && places.size() == 3 * static_cast<std::size_t>(nodes))
-    found->second = gmsh_cell(order, static_cast<std::size_t>(corners), places);
+  const GmshElementType of = gmsh_element_type(type);
+  if (of.corners == 6 && of.nodes == 0)
+    found->second = gmsh_cell(1, 6, std::vector<double>(18)), found->second.by_corners = true;
+  else if (of.corners >= 4 && of.corners <= 8 && of.corners != 7 && of.places.size() == 3 * of.nodes)
+    found->second = gmsh_cell(of.order, of.corners, of.places);
   if (found->second.by_corners)
-    notes.push_back(fmt::format("cells of type {} are rendered as linear ones by their corner nodes", name));
+    notes.push_back(fmt::format("cells of type {} are rendered as linear ones by their corner nodes", of.name));
   return found->second;
 }
 

@@ -1,16 +1,13 @@
 #include "io/helper/gmsh_tags.hpp"
 
-#include <gmsh.h>
-
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <map>
-#include <new>
 #include <string_view>
 
+#include "io/helper/gmsh_types.hpp"
 #include "io/mapped_file.hpp"
 
 namespace tessera::io::helper {
@@ -73,63 +70,56 @@ Tags text_tags(Words words, double version) {
   return all;
 }
 
-/// How many nodes elements of a type have; 0 of those that the library does not describe.
-class NodeCounts {
- public:
-  std::size_t of(int type) {
-    const auto [found, is_new] = known_.try_emplace(type, 0);
-    if (!is_new) return found->second;
-    std::string name;
-    int dimension = 0, order = 0, nodes = 0, corners = 0;
-    std::vector<double> places;
-    try {
-      gmsh::model::mesh::getElementProperties(type, name, dimension, order, nodes, places, corners);
-      found->second = static_cast<std::size_t>(std::max(nodes, 0));
-    } catch (const std::bad_alloc&) {
-      throw;
-    } catch (...) {  // it does not describe prisms of the third order and above
-      const int n = type == 90 || type == 91 ? type - 87 : type >= 106 && type <= 110 ? type - 101 : 0;
-      found->second = static_cast<std::size_t>(n == 0 ? 0 : (n + 1) * (n + 1) * (n + 2) / 2);
-    }
-    return found->second;
-  }
-
- private:
-  std::map<int, std::size_t> known_;
+/// The list of elements of a file of MSH 2, from the line of their count on.
+struct ElementList {
+  std::string_view elements;
+  double version;
+  bool is_binary, is_swapped;
 };
 
-/// Runs of elements of one type: 32-bit numbers in the byte order of the 1 that ends $MeshFormat.
-Tags binary_tags(Words words, double version, bool is_swapped) {
+/// Runs of elements of one type: 32-bit numbers in the byte order of the 1 that ends $MeshFormat. Calls
+/// `use(bytes of an element's numbers from its own on, how many tags follow, number_at)` for each. Returns whether the
+/// list could be followed to its end.
+template <class Use>
+bool each_binary_element(const ElementList& list, const Use& use) {
+  Words words(list.elements);
   const std::optional<std::int64_t> count = words.number();
-  if (!count) return std::nullopt;
+  if (!count) return false;
   words.end_line();
   const std::string_view bytes = words.rest();
-  NodeCounts nodes;
-  std::vector<GmshElementTags> all;
+  std::map<int, std::size_t> node_counts;
   std::size_t at = 0;
   const auto number_at = [&](std::size_t place) {
     std::uint32_t value = 0;
     std::memcpy(&value, bytes.data() + 4 * place, sizeof value);
-    return static_cast<std::int32_t>(is_swapped ? __builtin_bswap32(value) : value);
+    return static_cast<std::int32_t>(list.is_swapped ? __builtin_bswap32(value) : value);
   };
   const std::size_t numbers = bytes.size() / 4;
-  while (static_cast<std::int64_t>(all.size()) < *count) {
-    if (at + 3 > numbers) return std::nullopt;
+  for (std::int64_t done = 0; done < *count;) {
+    if (at + 3 > numbers) return false;
     const int type = number_at(at), run = number_at(at + 1), tag_count = number_at(at + 2);
-    const std::size_t nodes_each = nodes.of(type);
-    if (nodes_each == 0 || run < 1 || tag_count < 0) return std::nullopt;
-    const std::size_t each = 1 + static_cast<std::size_t>(tag_count) + nodes_each;
+    const auto [nodes, is_new] = node_counts.try_emplace(type, 0);
+    if (is_new) nodes->second = gmsh_element_type(type).nodes;
+    if (nodes->second == 0 || run < 1 || tag_count < 0) return false;
+    const auto tags = static_cast<std::size_t>(tag_count);
+    const std::size_t each = 1 + tags + nodes->second;
     at += 3;
-    if (static_cast<std::size_t>(run) > (numbers - at) / each) return std::nullopt;
-    for (int k = 0; k < run; ++k, at += each) {
-      GmshElementTags tags;
-      tags.element = static_cast<std::size_t>(number_at(at));
-      const auto n = static_cast<std::size_t>(tag_count);
-      for (std::size_t t = 0; t < n; ++t) take_tag(version, t, n, number_at(at + 1 + t), tags);
-      all.push_back(tags);
-    }
+    if (static_cast<std::size_t>(run) > (numbers - at) / each) return false;
+    for (int k = 0; k < run; ++k, ++done, at += each)
+      use(bytes.substr(4 * at, 4 * each), tags, [&](std::size_t place) { return number_at(at + place); });
   }
-  return all;
+  return true;
+}
+
+Tags binary_tags(const ElementList& list) {
+  std::vector<GmshElementTags> all;
+  const bool followed = each_binary_element(list, [&](std::string_view, std::size_t count, const auto& number_at) {
+    GmshElementTags tags;
+    tags.element = static_cast<std::size_t>(number_at(0));
+    for (std::size_t t = 0; t < count; ++t) take_tag(list.version, t, count, number_at(1 + t), tags);
+    all.push_back(tags);
+  });
+  return followed ? Tags(std::move(all)) : std::nullopt;
 }
 
 /// What follows a line that is just this word.
@@ -144,22 +134,40 @@ std::optional<std::string_view> after_line(std::string_view text, std::string_vi
   return std::nullopt;
 }
 
-}  // namespace
-
-Tags gmsh_element_tags(const std::filesystem::path& file) {
-  const MappedFile mapped(file);
-  const std::string_view text = mapped.text();
-  if (const auto elements = after_line(text, "$ELM")) return text_tags(Words(*elements), 1);
+std::optional<ElementList> element_list(std::string_view text) {
   const auto format = after_line(text.substr(0, 4096), "$MeshFormat"), elements = after_line(text, "$Elements");
   if (!format || !elements) return std::nullopt;
   Words words(*format);
   const std::string_view version = words.word();
   if (!version.starts_with("2")) return std::nullopt;
   const double number = version == "2" || version == "2.0" || version == "2.1" ? 2.0 : 2.2;
-  if (words.word() != "1") return text_tags(Words(*elements), number);
+  if (words.word() != "1") return ElementList{*elements, number, false, false};
   words.word();
   words.end_line();
-  return binary_tags(Words(*elements), number, words.rest().size() > 3 && words.rest()[0] == '\0');
+  return ElementList{*elements, number, true, words.rest().size() > 3 && words.rest()[0] == '\0'};
+}
+
+}  // namespace
+
+Tags gmsh_element_tags(const std::filesystem::path& file) {
+  const MappedFile mapped(file);
+  const std::string_view text = mapped.text();
+  if (const auto elements = after_line(text, "$ELM")) return text_tags(Words(*elements), 1);
+  const std::optional<ElementList> list = element_list(text);
+  if (!list) return std::nullopt;
+  return list->is_binary ? binary_tags(*list) : text_tags(Words(list->elements), list->version);
+}
+
+std::string binary_without_partitions(std::string_view text) {
+  const std::optional<ElementList> list = element_list(text);
+  if (!list || !list->is_binary) return {};
+  std::string copy(text);
+  const bool followed = each_binary_element(*list, [&](std::string_view element, std::size_t tags, const auto&) {
+    constexpr std::size_t before = 3;  // its number, its group and its entity
+    const auto at = static_cast<std::size_t>(element.data() - text.data());
+    if (tags > 2) std::fill_n(copy.begin() + static_cast<std::ptrdiff_t>(at + 4 * before), 4 * (tags - 2), '\0');
+  });
+  return followed ? copy : std::string();
 }
 
 }  // namespace tessera::io::helper

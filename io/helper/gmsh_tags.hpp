@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace tessera::io::helper {
@@ -18,5 +20,9 @@ struct GmshElementTags {
 /// The elements of a file of MSH 1 or 2, text or binary, by their numbers; none of other versions, nor where the list
 /// cannot be followed (then groups are those of the entities).
 std::optional<std::vector<GmshElementTags>> gmsh_element_tags(const std::filesystem::path& file);
+
+/// The text of a binary file of MSH 2 with elements in no partitions; empty for others, and where the list of elements
+/// cannot be followed.
+std::string binary_without_partitions(std::string_view text);
 
 }  // namespace tessera::io::helper

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/helper/gmsh_tags.hpp"
 #include "io/mapped_file.hpp"
 #include "scene/error.hpp"
 
@@ -101,6 +102,11 @@ Descriptor with_quoted_view_names(const std::filesystem::path& file) {
 Descriptor without_partitions(const std::filesystem::path& file) {
   const MappedFile mapped(file);
   const std::string_view text = mapped.text();
+  if (const std::string binary = binary_without_partitions(text); !binary.empty()) {
+    Descriptor copy(::memfd_create("tessera", MFD_CLOEXEC));
+    write_all(copy.get(), binary, file.string());
+    return copy;
+  }
   const std::size_t elements = text.find("\n$Elements"), format = line_at(text, 0).next;
   if (!text.starts_with("$MeshFormat") || elements == std::string_view::npos || text.substr(format, 2) != "2." ||
       text.substr(format, 16).find(" 0 ") == std::string_view::npos)

@@ -11,7 +11,7 @@ namespace tessera::io::helper {
 /// Error(system_failure) if there is no memory for it.
 Descriptor with_quoted_view_names(const std::filesystem::path& file);
 
-/// A copy of a text of MSH 2 whose elements are in no partitions; closed where the file is none. Gmsh's library divides
+/// A copy of a file of MSH 2 whose elements are in no partitions; closed where the file is none. Gmsh's library divides
 /// partitioned ones again in its own way, and fails where a mesh has no surfaces. Throws as above.
 Descriptor without_partitions(const std::filesystem::path& file);
 

@@ -65,7 +65,8 @@ std::vector<std::string> listed_twice(const char* left_entity, const char* right
           tet(3, tags(2, right_entity), middle_nodes), tet(4, tags(3, right_entity), "5 4 3 2")};
 }
 
-std::string binary_msh2() {
+/// The same as binary numbers, or the two each in its partition and a ghost of the other's.
+std::string binary_msh2(bool is_partitioned = false) {
   const auto put = [](std::string& bytes, auto number) {
     bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
   };
@@ -76,7 +77,15 @@ std::string binary_msh2() {
     put(text, v + 1);
     for (const int x : points[v]) put(text, static_cast<double>(x));
   }
-  text += "\n$EndNodes\n$Elements\n4\n";
+  text += "\n$EndNodes\n$Elements\n";
+  if (is_partitioned) {
+    text += "2\n";
+    const int numbers[2][13] = {{4, 1, 5, 1, 1, 1, 2, 1, -2, 1, 2, 3, 4}, {4, 1, 5, 2, 2, 2, 2, 2, -1, 2, 3, 4, 5}};
+    for (const auto& element : numbers)
+      for (const int number : element) put(text, number);
+    return text + "\n$EndElements\n";
+  }
+  text += "4\n";
   put(text, 4), put(text, 4), put(text, 2);
   const int numbers[4][7] = {
       {1, 1, 1, 1, 2, 3, 4}, {2, 3, 1, 1, 2, 3, 4}, {3, 2, 2, 2, 3, 4, 5}, {4, 3, 2, 2, 3, 4, 5}};
@@ -146,12 +155,14 @@ TEST_F(GmshGroups, AViewHasTheValueOfAnElementUnderAnyOfItsNumbers) {
 
 TEST_F(GmshGroups, PartitionsAreBlocksAndTheirGhostsAreNotDrawn) {
   // 2.2: the first partition has the element, those below 0 have it as a ghost.
-  const std::string text = msh2({tet(1, "5 1 1 2 1 -2", corner_nodes), tet(2, "5 2 2 2 2 -1", middle_nodes)});
-  const MeshFile mesh = read(text);
-  EXPECT_EQ(mesh.counts.cells_read, 2u);
-  EXPECT_EQ(mesh.blocks, (std::vector<std::string>{"left", "right", "partition 1", "partition 2"}));
-  EXPECT_NEAR(volume_of(text, {"partition 2"}), middle, 1e-12);
-  EXPECT_NEAR(volume_of(text, {"left", "partition 1"}), corner, 1e-12);
+  for (const std::string& text :
+       {msh2({tet(1, "5 1 1 2 1 -2", corner_nodes), tet(2, "5 2 2 2 2 -1", middle_nodes)}), binary_msh2(true)}) {
+    const MeshFile mesh = read(text);
+    EXPECT_EQ(mesh.counts.cells_read, 2u);
+    EXPECT_EQ(mesh.blocks, (std::vector<std::string>{"left", "right", "partition 1", "partition 2"}));
+    EXPECT_NEAR(volume_of(text, {"partition 2"}), middle, 1e-12);
+    EXPECT_NEAR(volume_of(text, {"left", "partition 1"}), corner, 1e-12);
+  }
   // 4.1: ghost entities 4 and 5 hold what the other partition has.
   std::string later =
       "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 0 1\n1 0 0 0 1 1 1 0 0\n$EndEntities\n"
