@@ -12,55 +12,49 @@
 #include "io/block_groups.hpp"
 #include "io/nastran_deck.hpp"
 #include "io/nastran_systems.hpp"
+#include "io/node_orders.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
 namespace {
 
-/// The edges with nodes in their middles, in VTK's order, and for each which of Nastran's nodes that is.
+/// An edge with a node in its middle, and which of Nastran's nodes that is.
 struct NastranEdge {
-  std::uint8_t from, to, node;
+  std::size_t from, to, node;
 };
 
 struct SolidElement {
   std::string_view name;
   std::size_t corners;
   std::uint8_t linear_type, curved_type;  ///< VTK's
-  std::vector<NastranEdge> edges;
+  std::vector<NastranEdge> edges;         ///< in VTK's order
 };
 
+SolidElement solid_of(std::string_view name, CurvedFamily shape, std::size_t nodes) {
+  const std::span<const LatticePlace> corners = corners_of(shape);
+  const NodeOrder& curved = *find_node_order(NodeConvention::nastran, shape, nodes);
+  SolidElement element{name,
+                       corners.size(),
+                       find_node_order(NodeConvention::nastran, shape, corners.size())->vtk_type,
+                       curved.vtk_type,
+                       {}};
+  const CurvedLattice lattice = *curved_lattice(curved.vtk_type, nodes);
+  const auto place = [&](std::size_t corner) {
+    return glm::dvec3(corners[corner][0], corners[corner][1], corners[corner][2]);
+  };
+  for (std::size_t node = corners.size(); node < nodes; ++node)
+    for (std::size_t to = 1; to < corners.size(); ++to)
+      for (std::size_t from = 0; from < to; ++from)
+        if (place(from) + place(to) == 2.0 * lattice.place(node))
+          element.edges.push_back({from, to, curved.from.empty() ? node : curved.from[node]});
+  return element;
+}
+
 const SolidElement* solid_element(std::string_view name) {
-  // Nastran has the edges between base and top before those of the top.
-  static const std::array<SolidElement, 5> elements = {{
-      {"CTETRA", 4, 10, 24, {{0, 1, 4}, {1, 2, 5}, {2, 0, 6}, {0, 3, 7}, {1, 3, 8}, {2, 3, 9}}},
-      {"CPYRAM",
-       5,
-       14,
-       27,
-       {{0, 1, 5}, {1, 2, 6}, {2, 3, 7}, {3, 0, 8}, {0, 4, 9}, {1, 4, 10}, {2, 4, 11}, {3, 4, 12}}},
-      {"CPYRA", 5, 14, 27, {{0, 1, 5}, {1, 2, 6}, {2, 3, 7}, {3, 0, 8}, {0, 4, 9}, {1, 4, 10}, {2, 4, 11}, {3, 4, 12}}},
-      {"CPENTA",
-       6,
-       13,
-       26,
-       {{0, 1, 6}, {1, 2, 7}, {2, 0, 8}, {3, 4, 12}, {4, 5, 13}, {5, 3, 14}, {0, 3, 9}, {1, 4, 10}, {2, 5, 11}}},
-      {"CHEXA",
-       8,
-       12,
-       25,
-       {{0, 1, 8},
-        {1, 2, 9},
-        {2, 3, 10},
-        {3, 0, 11},
-        {4, 5, 16},
-        {5, 6, 17},
-        {6, 7, 18},
-        {7, 4, 19},
-        {0, 4, 12},
-        {1, 5, 13},
-        {2, 6, 14},
-        {3, 7, 15}}},
-  }};
+  static const std::array<SolidElement, 5> elements = {
+      {solid_of("CTETRA", CurvedFamily::tet, 10), solid_of("CPYRAM", CurvedFamily::pyramid, 13),
+       solid_of("CPYRA", CurvedFamily::pyramid, 13), solid_of("CPENTA", CurvedFamily::wedge, 15),
+       solid_of("CHEXA", CurvedFamily::hexahedron, 20)}};
   const auto* const found = std::ranges::find(elements, name, &SolidElement::name);
   return found == elements.end() ? nullptr : found;
 }

@@ -17,16 +17,17 @@ namespace tessera::io {
 ///         library gives (ex_get_side_set_node_list, and Ioss_Hex64). Names are as free as corners: `HEX`, `hex27`.
 /// med     "MED File Format", reference elements (MED_TETRA4 ... MED_HEXA27). The corners of its cells go round against
 ///         VTK's sense, which mirrors the cell and changes no order; only faces' middles come otherwise.
+/// nastran "Quick Reference Guide", CTETRA, CPYRAM, CPENTA and CHEXA: the edges between base and top come before the
+///         top's. Any node in the middle of an edge may be blank.
 /// cgns    SIDS, section 3.3 "Unstructured Grid Element Numbering Conventions". Cells of higher order are read by
 ///         CGNS's own library (io/helper/cgns_cells.hpp), as VTK 9.1's reader gets some of them wrong.
 ///
 /// In VTK's order as they are: EnSight (User Manual, EnSight Gold Geometry File Format; VTK's reader mirrors wedges),
 /// XDMF (Tet_10 ... Hex_27, which VTK and meshio write so; the format's pages define none), legacy VTK and VTK XML but
 /// for old Lagrange hexahedra (exchange_vtk8_edges() below), VTKHDF. Gmsh's own files and Medit's, which
-/// its library reads, go by the places of nodes that the library gives (io/helper/gmsh_cells.hpp). The
-/// middle nodes of Nastran's cells, which may be blank, are numbered in io/nastran_file.cpp. AVS UCD, Fluent, GAMBIT,
-/// OpenFOAM, PLOT3D, SU2 and Tecplot have linear cells here.
-enum class NodeConvention : std::uint8_t { exodus, med, cgns };
+/// its library reads, go by the places of nodes that the library gives (io/helper/gmsh_cells.hpp). AVS UCD, Fluent,
+/// GAMBIT, OpenFOAM, PLOT3D, SU2 and Tecplot have linear cells here.
+enum class NodeConvention : std::uint8_t { exodus, med, cgns, nastran };
 
 /// One cell type of a format, told by its shape and its number of nodes.
 struct NodeOrder {
