@@ -75,7 +75,12 @@ bool is_legacy_of(const FileBeginning& file, std::initializer_list<std::string_v
 std::string vtk_xml_type(std::string_view text) {
   const std::size_t element = text.find("<VTKFile");
   if (element == std::string_view::npos || !without_blanks(text.substr(0, element + 1)).starts_with('<')) return "";
-  const std::size_t end = text.find('>', element), key = text.find("type", element);
+  const std::size_t end = text.find('>', element);
+  constexpr std::string_view word = "type";
+  std::size_t key = text.find(word, element);
+  while (key < end && (!without_blanks(text.substr(key - 1, 1)).empty() ||  // as in header_type
+                       !without_blanks(text.substr(key + word.size())).starts_with('=')))
+    key = text.find(word, key + 1);
   if (key == std::string_view::npos || key > end) return "";
   const std::size_t open = text.find_first_of("\"'", key);
   if (open == std::string_view::npos) return "";

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <map>
 
+#include "io/file_beginnings.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
@@ -77,6 +78,12 @@ TEST_F(FileKinds, TheBeginningWinsOverTheName) {
   for (const Beginning& b : beginnings)
     for (const char* name : {"x", "x.dat", "x.ply", "x.vtu", "x.nrrd", "x.cas"})
       EXPECT_EQ(name_of(name, std::string(b.text)), b.format) << name;
+}
+
+TEST_F(FileKinds, TheTypeOfVtkXmlIsItsOwnAttributeInAnyOrder) {
+  EXPECT_EQ(vtk_xml_type("<?xml version=\"1.0\"?>\n<VTKFile header_type=\"UInt64\" type=\"ImageData\">"), "ImageData");
+  EXPECT_EQ(vtk_xml_type("<VTKFile\n\ttype = 'RectilinearGrid' header_type='UInt32'>"), "RectilinearGrid");
+  EXPECT_EQ(vtk_xml_type("<VTKFile header_type=\"UInt64\">\n<Piece type=\"ImageData\">"), "");
 }
 
 TEST_F(FileKinds, ClassicNetCdfIsExodusByItsDimensions) {
