@@ -52,6 +52,7 @@ std::string balance_words(const RenderOptions& options, const FrameRecord& recor
 Description described(const Dataset& data) {
   Description description(data);
   description.notes = with_options(description.notes);
+  description.warnings = with_options(description.warnings);
   return description;
 }
 
