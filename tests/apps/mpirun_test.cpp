@@ -54,12 +54,13 @@ TEST_F(Mpirun, RawSegmentsGiveTheBytesOfOneProcessForEveryPartitionAndShape) {
 
 TEST_F(Mpirun, DuplicateCellsAreCountedAndDroppedAsInOneProcess) {
   const Folder folder;
-  const std::string cube = folder.cube(), once = folder / "piece.vtu", list = folder / "twice.pvtu";
+  const std::string cube = folder.cube(), once = folder / "piece.vtu";
   ASSERT_EQ(tessera({"convert", cube, once, "--quiet"}).status, 0);
   std::filesystem::copy_file(once, folder / "copy.vtu");
-  folder.file("twice.pvtu",
-              "<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid><Piece Source=\"piece.vtu\"/>"
-              "<Piece Source=\"copy.vtu\"/></PUnstructuredGrid></VTKFile>");
+  const std::string list =
+      folder.file("twice.pvtu",
+                  "<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid><Piece Source=\"piece.vtu\"/>"
+                  "<Piece Source=\"copy.vtu\"/></PUnstructuredGrid></VTKFile>");
   const auto arguments = [&](const std::string& file, std::vector<std::string> others) {
     std::vector<std::string> all{"render", file,        "-o", folder / "a.pfm", "--size",
                                  "40x30",  "--threads", "1",  "--exchange",     "segments"};
