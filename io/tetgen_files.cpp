@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <charconv>
 #include <cstdint>
 #include <limits>
@@ -170,8 +171,11 @@ CellBlock parse_node_ele(std::string_view node, std::string_view ele, const std:
   for (std::size_t t = 0; t < n; ++t) {
     in.need_line("a tet");
     in.need<std::int64_t>("the tet's number");
+    // Of second order TetGen lists the edges (2,3) (0,3) (0,1) (1,2) (1,3) (0,2), VTK (0,1) (1,2) (0,2) (0,3) (1,3)
+    // (2,3).
+    constexpr std::array<std::size_t, 10> vtk_place = {0, 1, 2, 3, 9, 7, 4, 5, 8, 6};
     for (std::size_t k = 0; k < nodes_each; ++k)
-      (nodes_each == 4 ? block.tets[t][k] : block.connectivity[nodes_each * t + k]) =
+      (nodes_each == 4 ? block.tets[t][k] : block.connectivity[nodes_each * t + vtk_place[k]]) =
           point_index(in, in.need<std::int64_t>("a corner"), nodes);
     for (std::vector<double>& values : cell_values) values.push_back(in.need<double>("an attribute"));
   }

@@ -48,6 +48,18 @@ TEST(NodeEle, NumberingFromZeroAndSecondOrderTetsWork) {
   EXPECT_EQ(block.offsets.back(), 10u);
 }
 
+TEST(NodeEle, SecondOrderNodesAreInTetGensOrder) {
+  // The middles of the edges as TetGen 1.5 writes them (-o2): 3-4, 1-4, 1-2, 2-3, 2-4, 1-3.
+  const std::string node =
+      "10 3 0 0\n1 0 0 0\n2 2 0 0\n3 0 2 0\n4 0 0 2\n5 0 1 1\n6 0 0 1\n7 1 0 0\n8 1 1 0\n9 1 0 1\n10 0 1 0\n";
+  const CellBlock block = parse_node_ele(node, "1 10 0\n1 1 2 3 4 5 6 7 8 9 10\n", "m.node", "m.ele");
+  // VTK's: 0-1, 1-2, 2-0, 0-3, 1-3, 2-3.
+  constexpr std::array<std::array<std::size_t, 2>, 6> edges = {{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+  const auto point = [&](std::size_t k) { return block.positions[block.connectivity[k]]; };
+  for (std::size_t e = 0; e < edges.size(); ++e)
+    EXPECT_EQ(point(4 + e), 0.5 * (point(edges[e][0]) + point(edges[e][1]))) << "edge " << e;
+}
+
 TEST(NodeEle, BadTextIsToldByLine) {
   const auto parse = [](const std::string& node, const std::string& ele) {
     return [=] { parse_node_ele(node, ele, "m.node", "m.ele"); };
