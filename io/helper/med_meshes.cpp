@@ -67,7 +67,8 @@ void read_cells(const MedFile& file, const MeshAt& mesh, MedMesh& to) {
       block.offsets.push_back(block.connectivity.size());
     }
   }
-  if (count_of(file, mesh, MED_CELL, MED_POLYHEDRON, MED_INDEX_FACE) > 0)
+  // An index has an entry more than there are cells; of files of version 2 it has that one without any.
+  if (count_of(file, mesh, MED_CELL, MED_POLYHEDRON, MED_INDEX_FACE) > 1)
     throw scene::bad_input(fmt::format(
         "{}: mesh '{}' has polyhedra, which are not read; have them split, or write .vtu", file.source(), mesh.name));
 }
@@ -88,7 +89,7 @@ MedFile::MedFile(const std::filesystem::path& file) : source_(file.string()) {
         "{}: it cannot be opened as HDF5, which MED files are; it is truncated or damaged, write it anew", source_));
   if (is_known != MED_TRUE)
     throw scene::bad_input(
-        fmt::format("{}: it is no MED file of version 3 or later; have Salome save it anew", source_));
+        fmt::format("{}: it is no MED file of version 2.3 or later; have Salome save it anew", source_));
   id_ = MEDfileOpen(file.c_str(), MED_ACC_RDONLY);
   require(id_ >= 0, "the file");
 }

@@ -1,5 +1,6 @@
 // MED meshes and fields, which MED's library writes here.
 #include <gtest/gtest.h>
+#include <hdf5.h>
 #include <med.h>
 
 #include <algorithm>
@@ -167,6 +168,74 @@ TEST(Med, CellsOfSecondOrderHaveTheirVolumeAndTheirField) {
     write_cell((folder / (cell.name + ".med")).string(), bent, kind);
     testing::expect_same(read_mesh(folder / (cell.name + ".med"), options), bent);
   }
+}
+
+/// Two tets over a square of side 2, as version 2.3.6 stores them: MED's library reads that version and does not write
+/// it. Coordinates and corners are one axis or corner after the other.
+void write_version_2(const std::string& name) {
+  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);  // closes what is open in the file, too
+  const hid_t file = H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  ASSERT_GE(file, 0);
+  const hid_t one = H5Screate(H5S_SCALAR);
+  const auto group = [&](const char* path) {
+    const hid_t made = H5Gcreate2(file, path, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    EXPECT_GE(made, 0) << path;
+    return made;
+  };
+  const auto number = [&](hid_t of, const char* attribute, int value) {
+    const hid_t made = H5Acreate2(of, attribute, H5T_STD_I32LE, one, H5P_DEFAULT, H5P_DEFAULT);
+    EXPECT_GE(H5Awrite(made, H5T_NATIVE_INT, &value), 0) << attribute;
+    H5Aclose(made);
+  };
+  const auto text = [&](hid_t of, const char* attribute, std::string value) {
+    const hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, value.size() + 1);
+    const hid_t made = H5Acreate2(of, attribute, type, one, H5P_DEFAULT, H5P_DEFAULT);
+    EXPECT_GE(H5Awrite(made, type, value.c_str()), 0) << attribute;
+    H5Aclose(made);
+    H5Tclose(type);
+  };
+  const auto list = [&](const char* path, hid_t stored, hid_t given, hsize_t count, const void* values) {
+    const hid_t space = H5Screate_simple(1, &count, nullptr);
+    const hid_t made = H5Dcreate2(file, path, stored, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    EXPECT_GE(H5Dwrite(made, given, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), 0) << path;
+    H5Sclose(space);
+    return made;
+  };
+  const hid_t version = group("/INFOS_GENERALES");
+  number(version, "MAJ", 2);
+  number(version, "MIN", 3);
+  number(version, "REL", 6);
+  group("/ENS_MAA");
+  const hid_t mesh = group("/ENS_MAA/bar");
+  number(mesh, "DIM", 3);
+  number(mesh, "TYP", 0);
+  text(mesh, "DES", "");
+  text(mesh, "UNV", "");
+  group("/ENS_MAA/bar/NOE");
+  group("/ENS_MAA/bar/MAI");
+  group("/ENS_MAA/bar/MAI/TE4");
+  const std::array<double, 15> points = {0, 2, 0, 2, 0, 0, 0, 2, 2, 0, 0, 0, 0, 0, 3};
+  const hid_t nodes = list("/ENS_MAA/bar/NOE/COO", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, points.size(), points.data());
+  number(nodes, "NBR", 5);
+  number(nodes, "REP", 0);
+  text(nodes, "NOM", "x               y               z               ");
+  text(nodes, "UNI", std::string(48, ' '));
+  const std::array<int, 8> corners = {1, 3, 2, 2, 3, 4, 5, 5};
+  const hid_t tets = list("/ENS_MAA/bar/MAI/TE4/NOD", H5T_STD_I32LE, H5T_NATIVE_INT, corners.size(), corners.data());
+  number(tets, "NBR", 2);
+  H5Sclose(one);
+  EXPECT_GE(H5Fclose(file), 0);
+  H5Pclose(access);
+}
+
+TEST(Med, VersionTwoIsRead) {
+  const test::TemporaryFolder folder;
+  write_version_2((folder / "bar.med").string());
+  const MeshFile mesh = read_mesh(folder / "bar.med");
+  EXPECT_EQ(mesh.counts.cells_read, 2u);
+  EXPECT_NEAR(testing::volume(mesh.mesh), 4, 1e-12);  // a square of 4 under a height of 3
 }
 
 TEST(Med, DamagedOnesAreRefusedInOneLine) {
