@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "io/file_beginnings.hpp"
+#include "io/file_kinds.hpp"
 #include "io/foreign_mixed.hpp"
+#include "io/gzip.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/listed_pieces.hpp"
@@ -20,6 +22,17 @@
 
 namespace tessera::io {
 namespace {
+
+/// VTK's readers do not check what other files of these names hold, and crash or never end with some.
+void require_solver_beginning(const std::filesystem::path& file, std::string_view reader) {
+  const bool is_gambit = reader == "gambit";
+  if (!is_gambit && reader != "avs_ucd") return;
+  const std::string first = read_beginning(file, 2);
+  const bool is_binary_ucd = !is_gambit && first.starts_with('\a');
+  if (format_begun(file) == nullptr && !is_binary_ucd && !looks_like_gzip(first))
+    throw scene::bad_input(fmt::format("{}: it does not begin as a file of {} does; check what it is", file.string(),
+                                       is_gambit ? "GAMBIT" : "AVS UCD"));
+}
 
 struct XmlKind {
   const char *extension, *type, *words;
@@ -130,6 +143,7 @@ MeshBlocks read_exodus(const std::filesystem::path& file, const MeshOptions& opt
 
 MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader, const MeshOptions& options) {
   const std::string_view name = reader;
+  require_solver_beginning(file, name);
   if (name == "openfoam" || name == "ensight") require_beside_others(file);
   HelperTask task;
   if (name == "fluent")  // good ones make it crash

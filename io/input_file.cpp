@@ -12,6 +12,19 @@
 #include "scene/error.hpp"
 
 namespace tessera::io {
+namespace {
+
+/// Whether `file`, of `size` bytes, is the text that Git LFS keeps in the place of a large file.
+bool is_git_lfs_pointer(const std::filesystem::path& file, std::uintmax_t size) {
+  constexpr std::string_view first_line = "version https://git-lfs.github.com/spec/v1";
+  constexpr std::uintmax_t longest = 1024;  // by the specification of Git LFS
+  if (size < first_line.size() || size > longest) return false;
+  std::string text(first_line.size(), '\0');
+  std::ifstream in(file, std::ios::binary);
+  return in.read(text.data(), static_cast<std::streamsize>(text.size())) && text == first_line;
+}
+
+}  // namespace
 
 std::uint64_t require_file(const std::filesystem::path& file) {
   std::error_code error;
@@ -31,6 +44,8 @@ std::uint64_t require_file(const std::filesystem::path& file) {
   // OpenFOAM's is a mark on the folder that it lies in.
   if (size == 0 && lower_extension(file) != ".foam" && lower_extension(file) != ".openfoam")
     throw scene::bad_input(fmt::format("{}: it is empty; write it anew", file.string()));
+  if (is_git_lfs_pointer(file, size))
+    throw scene::bad_input(fmt::format("{}: a Git LFS pointer; `git lfs pull` brings the file itself", file.string()));
   return size;
 }
 

@@ -21,8 +21,8 @@ bool looks_like_dicom(std::string_view beginning);
 /// thousand, at most four levels below.
 bool is_input_folder(const std::filesystem::path& folder);
 
-/// Throws Error(bad_input) unless `file` is a readable regular file that is not empty, or a folder that stands for one;
-/// returns its bytes' number, of a folder 0.
+/// Throws Error(bad_input) unless `file` is a readable regular file that is neither empty nor a pointer of Git LFS, or
+/// a folder that stands for one; returns its bytes' number, of a folder 0.
 std::uint64_t require_file(const std::filesystem::path& file);
 
 /// The first bytes of a file, at most `limit`. Throws as require_file.

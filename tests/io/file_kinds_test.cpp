@@ -1,6 +1,7 @@
 // What a file is, is told from what it begins with, then from its name.
 #include "io/file_kinds.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -116,6 +117,36 @@ TEST_F(FileKinds, WhatIsNotKnownOrNotReadIsTold) {
             std::string::npos);
   EXPECT_FALSE(is_mesh_file(write("x.vtu", "MFEM mesh v1.0\n")));
   EXPECT_FALSE(is_volume(write("x.vti", "ply\nformat ascii 1.0\n")));
+}
+
+TEST_F(FileKinds, APointerOfGitLfsIsNamedWhateverTheNameOfTheFile) {
+  const std::string pointer =
+      "version https://git-lfs.github.com/spec/v1\n"
+      "oid sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f32b1258daaa5e2ca24d17e2393\nsize 12345\n";
+  const auto refusal_of = [](const std::filesystem::path& file) {
+    return fmt::format("{}: a Git LFS pointer; `git lfs pull` brings the file itself", file.string());
+  };
+  for (const char* name : {"x", "x.vtu", "x.vtk", "x.stl", "x.msh", "x.med", "x.e", "x.cgns", "x.tets", "x.node"}) {
+    const auto file = write(name, pointer);
+    EXPECT_EQ(message_of([&] { read_mesh(file); }), refusal_of(file));
+  }
+  for (const char* name : {"x.vti", "x.nrrd", "x.mha", "x.nii.gz", "x.nc", "x.h5", "x_2x2x2_uint8.raw"}) {
+    const auto file = write(name, pointer);
+    EXPECT_EQ(message_of([&] { open_volume(file); }), refusal_of(file));
+  }
+  // Samples beside a header are files, too.
+  write("samples.raw", pointer);
+  const auto header =
+      write("h.nhdr", "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: samples.raw\n");
+  EXPECT_EQ(message_of([&] { open_volume(header); }), refusal_of(folder / "samples.raw"));
+}
+
+TEST_F(FileKinds, WhatHasTheNameOfASolversMeshAloneIsNotGivenToItsReader) {
+  const std::string text = "26 0 0 1\nPATRAN neutral\n";
+  EXPECT_NE(message_of([&] { read_mesh(write("x.neu", text)); }).find("it does not begin as a file of GAMBIT does"),
+            std::string::npos);
+  EXPECT_NE(message_of([&] { read_mesh(write("x.inp", text)); }).find("it does not begin as a file of AVS UCD does"),
+            std::string::npos);
 }
 
 TEST_F(FileKinds, AFolderIsACaseOrRefused) {
