@@ -252,9 +252,7 @@ bool begins_as_abaqus(const FileBeginning& file) {
   return std::any_of(first_words.begin(), first_words.end(), [&](const char* w) { return word.starts_with(w); });
 }
 
-bool begins_as_medit(const FileBeginning& file) {
-  return without_blanks(file.text.substr(0, 64)).starts_with("MeshVersionFormatted");
-}
+bool begins_as_medit(const FileBeginning& file) { return begins_as_medit_text(file.text); }
 bool begins_as_meshb(const FileBeginning& file) { return begins_as_medit_binary(file.text); }
 bool begins_as_mfem(const FileBeginning& file) {
   return file.text.starts_with("MFEM ") && first_lines(file.text, '#', 1)[0].find("mesh v") != std::string_view::npos;

@@ -24,7 +24,8 @@ enum class FileKind : std::uint8_t {
   med,         ///< by its name: in HDF5, of which the beginning says nothing
   solver,      ///< FormatRow::reader
   gmsh,        ///< what Gmsh's library reads; FormatRow::reader
-  medit,       ///< binary; text see gmsh
+  medit_text,
+  medit,  ///< binary
   nastran,
   su2,
   tecplot,

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <limits>
 #include <utility>
 
 #include "io/block_groups.hpp"
+#include "io/clean_errors.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -20,10 +22,15 @@ constexpr std::int32_t code_dimension = 3, code_vertices = 4, code_end = 54, las
 /// A keyword of cells and VTK's type of them.
 struct MeditCells {
   std::int32_t code;
+  std::string_view word;
   std::uint8_t type;
   std::size_t nodes;
 };
-constexpr std::array<MeditCells, 5> medit_cells = {{{8, 10, 4}, {9, 13, 6}, {10, 12, 8}, {49, 14, 5}, {30, 24, 10}}};
+constexpr std::array<MeditCells, 5> medit_cells = {{{8, "Tetrahedra", 10, 4},
+                                                    {9, "Prisms", 13, 6},
+                                                    {10, "Hexahedra", 12, 8},
+                                                    {49, "Pyramids", 14, 5},
+                                                    {30, "TetrahedraP2", 24, 10}}};
 
 /// Volumes that are not read, and another order of nodes.
 constexpr std::array<std::pair<std::int32_t, std::string_view>, 14> unread_cells = {{{33, "hexahedra of order 2"},
@@ -40,6 +47,25 @@ constexpr std::array<std::pair<std::int32_t, std::string_view>, 14> unread_cells
                                                                                      {103, "prisms of order 4"},
                                                                                      {133, "an order of nodes"},
                                                                                      {207, "polyhedra"}}};
+
+/// In blocks, once their points are known to be there.
+std::vector<CellBlock> checked_blocks(const CellBlock& block, const std::vector<std::int64_t>& references,
+                                      const std::string& source) {
+  if (block.types.empty())
+    throw scene::bad_input(fmt::format(
+        "{}: it holds no cells of volume; give a mesh of tetrahedra, hexahedra, prisms or pyramids", source));
+  for (const std::uint32_t node : block.connectivity)
+    if (node >= block.positions.size())
+      throw scene::bad_input(fmt::format("{}: a cell uses point {} of {}; the file is damaged, export it again", source,
+                                         std::uint64_t{node} + 1, block.positions.size()));
+  return blocks_by_number(block, references, "reference", "Reference");
+}
+
+void require_space(std::int64_t dimension, const std::string& source) {
+  if (dimension != 3)
+    throw scene::bad_input(
+        fmt::format("{}: it has {} dimensions, and a volume has three; give one", source, dimension));
+}
 
 class MeditBinary {
  public:
@@ -64,16 +90,12 @@ class MeditBinary {
         fail(begin, fmt::format("the next keyword is at byte {} of {}", next, bytes_.size()));
       at_ = static_cast<std::size_t>(next);
     }
-    return made();
+    return checked_blocks(block_, references_, source_);
   }
 
  private:
   void read_keyword(std::int32_t code, std::size_t begin) {
-    if (code == code_dimension) {
-      if (const auto dimension = read<std::int32_t>("dimension"); dimension != 3)
-        throw scene::bad_input(
-            fmt::format("{}: it has {} dimensions, and a volume has three; give one", source_, dimension));
-    }
+    if (code == code_dimension) require_space(read<std::int32_t>("dimension"), source_);
     if (code == code_vertices) read_points(begin);
     for (const MeditCells& cells : medit_cells)
       if (cells.code == code) read_cells(cells, begin);
@@ -109,17 +131,6 @@ class MeditBinary {
       block_.types.push_back(cells.type);
       block_.offsets.push_back(block_.connectivity.size());
     }
-  }
-
-  std::vector<CellBlock> made() {
-    if (block_.types.empty())
-      throw scene::bad_input(fmt::format(
-          "{}: it holds no cells of volume; give a mesh of tetrahedra, hexahedra, prisms or pyramids", source_));
-    for (const std::uint32_t node : block_.connectivity)
-      if (node >= block_.positions.size())
-        throw scene::bad_input(fmt::format("{}: a cell uses point {} of {}; the file is damaged, export it again",
-                                           source_, std::uint64_t{node} + 1, block_.positions.size()));
-    return blocks_by_number(block_, references_, "reference", "Reference");
   }
 
   [[nodiscard]] std::size_t whole_bytes() const { return version_ >= 4 ? sizeof(std::int64_t) : sizeof(std::int32_t); }
@@ -158,7 +169,118 @@ class MeditBinary {
   std::vector<std::int64_t> references_;  ///< of the cells
 };
 
+/// Words apart by any blanks, so that lines mean nothing but the end of a comment.
+class MeditText {
+ public:
+  MeditText(std::string_view text, const std::string& source) : rest_(text), source_(source) {
+    block_.offsets.push_back(0);
+  }
+
+  std::vector<CellBlock> blocks() {
+    for (std::string_view word = next(); !word.empty() && word != "End"; word = next()) {
+      if (word == "Dimension") require_space(whole("a dimension"), source_);
+      if (word == "Vertices") read_points();
+      for (const MeditCells& cells : medit_cells)
+        if (word == cells.word) read_cells(cells);
+      if (is_unread(word) && whole("a count") > 0)
+        throw scene::bad_input(fmt::format("{}: line {}: its {} are not read; write cells of order 1", source_, line_,
+                                           printable(std::string(word))));
+      // The numbers of other keywords are passed over one by one.
+    }
+    return checked_blocks(block_, references_, source_);
+  }
+
+ private:
+  /// Volumes of higher order, polyhedra, and another order of nodes of those.
+  static bool is_unread(std::string_view word) {
+    constexpr std::array families = {"Tetrahedra", "Prisms", "Hexahedra", "Pyramids"};
+    const bool is_curved = std::ranges::any_of(families, [&](std::string_view family) {
+      return word.starts_with(family) && word.substr(family.size()).starts_with('P') && word != "TetrahedraP2";
+    });
+    return is_curved || word == "Polyhedra";
+  }
+
+  void read_points() {
+    const std::size_t count = read_count(8, "points");  // four numbers and what parts them
+    block_.positions.reserve(count);
+    for (std::size_t v = 0; v < count; ++v) {
+      glm::dvec3 p;
+      for (int a = 0; a < 3; ++a) p[a] = number<double>("a coordinate");
+      static_cast<void>(whole("a reference"));
+      block_.positions.push_back(p);
+    }
+  }
+
+  void read_cells(const MeditCells& cells) {
+    const std::size_t count = read_count(2 * (cells.nodes + 1), "cells");
+    for (std::size_t c = 0; c < count; ++c) {
+      for (std::size_t k = 0; k < cells.nodes; ++k) {
+        const std::int64_t node = whole("a point of a cell");
+        if (node < 1 || node >= std::numeric_limits<std::uint32_t>::max())
+          fail(fmt::format("a cell uses point {}", node));
+        block_.connectivity.push_back(static_cast<std::uint32_t>(node - 1));
+      }
+      references_.push_back(whole("a reference"));
+      block_.types.push_back(cells.type);
+      block_.offsets.push_back(block_.connectivity.size());
+    }
+  }
+
+  std::size_t read_count(std::size_t bytes_each, const char* what) {
+    const std::int64_t count = whole("a count");
+    if (count < 0 || static_cast<std::uint64_t>(count) > rest_.size() / bytes_each + 1)
+      fail(fmt::format("there are {} {}, more than the file can hold", count, what));
+    return static_cast<std::size_t>(count);
+  }
+
+  std::int64_t whole(const char* what) { return number<std::int64_t>(what); }
+
+  template <class T>
+  T number(const char* what) {
+    const std::string_view word = next();
+    if (word.empty()) fail(fmt::format("the file ends before {}", what));
+    T value{};
+    const auto [end, error] = std::from_chars(word.data() + (word[0] == '+' ? 1 : 0), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size())
+      fail(fmt::format("'{}' is not {}", printable(std::string(word.substr(0, 40))), what));
+    return value;
+  }
+
+  /// Empty at the end of the file.
+  std::string_view next() {
+    while (!rest_.empty() && (is_blank(rest_[0]) || rest_[0] == '#')) {
+      if (rest_[0] == '#') rest_.remove_prefix(std::min(rest_.find('\n'), rest_.size()));
+      if (rest_.empty()) break;
+      if (rest_[0] == '\n') ++line_;
+      rest_.remove_prefix(1);
+    }
+    std::size_t end = 0;
+    while (end < rest_.size() && !is_blank(rest_[end]) && rest_[end] != '#') ++end;
+    const std::string_view word = rest_.substr(0, end);
+    rest_.remove_prefix(end);
+    return word;
+  }
+
+  static bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw scene::bad_input(
+        fmt::format("{}: line {}: {}; the file is truncated or damaged, export it again", source_, line_, what));
+  }
+
+  std::string_view rest_;
+  const std::string& source_;
+  std::size_t line_ = 1;
+  CellBlock block_;
+  std::vector<std::int64_t> references_;  ///< of the cells
+};
+
 }  // namespace
+
+bool begins_as_medit_text(std::string_view beginning) {
+  const std::size_t first = beginning.find_first_not_of(" \t\r\n\v\f");
+  return first < 64 && beginning.substr(first).starts_with("MeshVersionFormatted");
+}
 
 bool begins_as_medit_binary(std::string_view beginning) {
   const auto has = [&](std::size_t at, char value, bool is_big) {
@@ -182,6 +304,12 @@ std::vector<CellBlock> parse_medit_binary(std::span<const std::byte> bytes, cons
   if (!begins_as_medit_binary(text.substr(0, 24)))
     throw scene::bad_input(fmt::format("{}: it does not begin as a binary Medit mesh does; check what it is", source));
   return MeditBinary(bytes, source).blocks();
+}
+
+std::vector<CellBlock> parse_medit_text(std::string_view text, const std::string& source) {
+  if (!begins_as_medit_text(text.substr(0, 128)))
+    throw scene::bad_input(fmt::format("{}: it does not begin as a Medit mesh does; check what it is", source));
+  return MeditText(text, source).blocks();
 }
 
 }  // namespace tessera::io

@@ -14,6 +14,14 @@ namespace tessera::io {
 /// a dimension of 2 or 3.
 bool begins_as_medit_binary(std::string_view beginning);
 
+/// Whether a file begins as a Medit mesh in text (.mesh).
+bool begins_as_medit_text(std::string_view beginning);
+
+/// Parses a Medit mesh in text: numbers and keywords with any blanks and comments between, of the same cells as in
+/// binary, in the same blocks, refused for the same reasons. Version and Dimension may be on one line with the keyword
+/// or not, and the numbers of all other keywords are passed over.
+std::vector<CellBlock> parse_medit_text(std::string_view text, const std::string& source);
+
 /// Parses a binary Medit mesh: tetrahedra, pyramids, prisms and hexahedra, of the second order tetrahedra alone; a
 /// block a reference, which the cell field Reference has where there are several (block_groups.hpp). Throws
 /// Error(bad_input) with the place and a remedy for what is damaged, has two dimensions or cells that are not read.

@@ -61,6 +61,8 @@ MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row,
       return read_xdmf_mesh(file, options);
     case FileKind::med:
       return read_med(file, options);
+    case FileKind::medit_text:
+      return {parse_medit_text(MappedFile(file).text(), file.string()), {}, "Medit"};
     case FileKind::medit:
       return {parse_medit_binary(MappedFile(file).bytes(), file.string()), {}, "Medit, binary"};
     case FileKind::nastran:

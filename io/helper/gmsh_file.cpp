@@ -85,13 +85,6 @@ void require_last_section(const std::filesystem::path& file) {
         "{}: it does not end with the end of a section, $End...; it is truncated, write it anew", file.string()));
 }
 
-bool begins_as_medit(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  return first != std::string_view::npos && text.substr(first).starts_with("MeshVersionFormatted");
-}
-
-constexpr const char* medit = "Medit";
-
 ForeignContents contents_of_model(Holdings& holdings, const std::string& source, const nlohmann::json& request,
                                   const char* format, const std::filesystem::path& listed) {
   ForeignContents contents;
@@ -129,24 +122,14 @@ ForeignContents read_gmsh(Holdings& holdings, const std::filesystem::path& file,
 }
 
 ForeignContents read_by_gmsh(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
-  struct Format {
-    const char *extension, *words;
-  };
-  // As Gmsh knows them: in no other mixture of capitals.
-  constexpr std::array formats = {Format{".mesh", medit}, Format{".meshb", medit}, Format{".unv", "I-DEAS universal"},
-                                  Format{".MESH", medit}, Format{".UNV", "I-DEAS universal"}};
   const std::string source = file.string(), extension = file.extension().string();
-  const auto* const format =
-      std::find_if(formats.begin(), formats.end(), [&](const Format& f) { return extension == f.extension; });
-  if (format == formats.end())
+  if (extension != ".unv" && extension != ".UNV")  // as Gmsh knows it: in no other mixture of capitals
     throw scene::bad_input(fmt::format(
         "{}: Gmsh's library knows such files by their names alone; unpack it, if it is packed, and have its name end "
-        "in .mesh or .unv",
+        "in .unv",
         source));
-  if (format->words == medit && !begins_as_medit(read_beginning(file, 64)))
-    throw scene::bad_input(fmt::format("{}: it does not begin as a Medit mesh does; check what it is", source));
   merge(source, source);
-  return contents_of_model(holdings, source, request, format->words, {});
+  return contents_of_model(holdings, source, request, "I-DEAS universal", {});
 }
 
 }  // namespace tessera::io::helper

@@ -1,8 +1,9 @@
-"""Rows of advice about Tecplot's text, Nastran's decks and binary Medit meshes, which this library parses itself."""
+"""Rows of advice about Tecplot's text, Nastran's decks and Medit meshes, which this library parses itself."""
 
 import gzip
 import struct
 
+from advice_library_files import MEDIT
 from advice_row import damaged, row
 
 VARIABLES = 'VARIABLES="X" "Y" "Z" "f"\n'
@@ -45,6 +46,10 @@ def meshb(dimension=3, kind=8, cell=(1, 2, 3, 4), cells=1):
 
 def medit(whole, advice):
     return row("info a.meshb", advice, None, {"a.meshb": whole}, {"a.meshb": meshb()})
+
+
+def medit_text(old, new, advice):
+    return damaged("a.mesh", MEDIT, old, new, advice)
 
 
 ROWS = [
@@ -133,6 +138,13 @@ ROWS = [
         {"a.bdf.gz": gzip.compress(b"BEGIN BULK\nINCLUDE 'b.bdf'\nENDDATA\n")},
         {"a.bdf.gz": gzip.compress(NASTRAN.encode())},
     ),
+    # Medit
+    medit_text("MeshVersionFormatted", "Mesh", "it does not begin as a Medit mesh does; check what it is"),
+    medit_text("Dimension 3", "Dimension 2", "and a volume has three; give one"),
+    medit_text("Tetrahedra", "Triangles", "give a mesh of tetrahedra, hexahedra, prisms or pyramids"),
+    medit_text("Tetrahedra", "HexahedraP2", "its HexahedraP2 are not read; write cells of order 1"),
+    medit_text("1 2 3 4 0", "1 2 3 5 0", "a cell uses point 5 of 4; the file is damaged, export it again"),
+    medit_text("1 2 3 4 0", "1 2 3", "the file is truncated or damaged, export it again"),
     # binary Medit
     medit(meshb(dimension=2), "and a volume has three; give one"),
     medit(meshb(kind=33), "it has hexahedra of order 2, which are not read; write cells of order 1"),

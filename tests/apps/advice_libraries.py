@@ -8,7 +8,6 @@ from advice_library_files import (
     EXODUS,
     FOAM,
     GMSH,
-    MEDIT,
     MINC,
     PLOT3D,
     PLOT3D_LIST,
@@ -65,22 +64,14 @@ BINARY = struct.pack("<3i24f", 2, 2, 2, *(float(p[a]) for a in range(3) for p in
 GRID = xdmf(xdmf_grid())
 TIMES = collection(0, 1)
 
+LFS_POINTER = f"version https://git-lfs.github.com/spec/v1\noid sha256:{'0' * 64}\nsize 12345\n"
+
 ROWS = [
     # Gmsh
     msh("$EndElements\n", "", "it is truncated, write it anew"),
     msh("$MeshFormat", "$MashFormat", "it does not begin with $MeshFormat; write it anew"),
     msh("1 4 2 1 1 1 2 3 4", "1 4 2 1 1 1 2 3 9", "write it anew"),
     msh("1 4 2 1 1 1 2 3 4", "1 2 2 1 1 1 2 3", "give a mesh of tetrahedra, hexahedra, prisms or pyramids"),
-    damaged(
-        "a.mesh", MEDIT, "MeshVersionFormatted", "Mesh", "it does not begin as a Medit mesh does; check what it is"
-    ),
-    row(
-        "info a.mesh.gz",
-        "have its name end in .mesh or .unv",
-        "info a.mesh",
-        {"a.mesh.gz": gzip.compress(MEDIT.encode())},
-        {"a.mesh": MEDIT},
-    ),
     # XDMF
     wrong_xdmf('<?xml version="1.0"?>\n<Xdmf Version="3.0"/>\n', "it has no <Domain>; write it anew"),
     wrong_xdmf(xdmf(""), "it holds no grid; give a mesh or a volume"),
@@ -281,7 +272,9 @@ ROWS = [
     row("info a.odb", "export Exodus, EnSight or .vtu", "info m.vtu", {"a.odb": "nothing"}),
     row("info a.plt", "write text, CGNS or .vtu", "info m.vtu", {"a.plt": "#!TDV112"}),
     row("info a.mfem", "have MFEM write .vtu", "info m.vtu", {"a.mfem": "MFEM mesh v1.0\n\ndimension\n3\n"}),
+    row("info a.inp", "`git lfs pull` brings the file itself", None, {"a.inp": LFS_POINTER}, {"a.inp": UCD}),
     cut("a.inp", UCD, len(UCD) // 2, "write it anew"),
+    row("info a.inp", "it does not begin as a file of AVS UCD does; check what it is", None, {"a.inp": "SOL 101\n"}, {"a.inp": UCD}),
     row("info a.cas", "export CGNS or EnSight", "info m.vtu", {"a.cas": "(2 3)\n(10 (0 1 ffffffff 0))\n"}),
     row(
         "info a.dcm",

@@ -211,7 +211,6 @@ TEST_F(CurvedText, Gmsh) {
 }
 
 TEST_F(CurvedText, MeditHasItsVolume) {
-  if (!has_reader(Reader::gmsh)) GTEST_SKIP() << "tessera-read-gmsh is not installed";
   const BentCell bent = testing::bend(tet10);
   std::string text = "MeshVersionFormatted 2\nDimension 3\nVertices\n10\n";
   for (const glm::dvec3& p : bent.positions) text += fmt::format("{} {} {} 1\n", p.x, p.y, p.z);

@@ -360,19 +360,6 @@ TEST_F(Gmsh, ThirdOrderPrismsComeInVtksOrder) {
   EXPECT_EQ(cell_points(read.blocks[0]), vtks);
 }
 
-TEST_F(Gmsh, MeditIsReadByItsName) {
-  std::string text = "MeshVersionFormatted 2\nDimension 3\nVertices\n12\n";
-  for (const glm::dvec3& p : two_cubes()) text += fmt::format("{} {} {} 0\n", p.x, p.y, p.z);
-  text += "Hexahedra\n2\n";
-  for (const auto& cell : cube_corners) {
-    for (const int v : cell) text += fmt::format("{} ", v + 1);
-    text += "1\n";
-  }
-  text += "End\n";
-  EXPECT_NEAR(testing::volume(read_mesh(folder.write("a.mesh", text)).mesh), 2, 1e-12);
-  test::expect_bad_input([&] { read_mesh(folder.write("a.dat", text)); }, {"a.dat", ".mesh"});
-}
-
 TEST_F(Gmsh, WhatIsCutOffOrNotThereIsSaid) {
   const std::string whole = msh2(node_data("f", 0, 1));
   for (std::size_t length = 40; length + 14 < whole.size(); length += 97)
@@ -396,9 +383,6 @@ TEST_F(Gmsh, ScriptsAreNotRun) {
       test::fault_of([&] { read_mesh(folder.write(name, before + script + "//\n$End\n")); });
       EXPECT_FALSE(std::filesystem::exists(ran)) << name << before;
     }
-  folder.write("a.Mesh", "MeshVersionFormatted 2\n" + script);
-  test::fault_of([&] { read_mesh(folder / "a.Mesh"); });
-  EXPECT_FALSE(std::filesystem::exists(ran));
   // The options file that Gmsh takes along with a mesh.
   folder.write("b.msh", msh2(""));
   folder.write("b.msh.opt", script);

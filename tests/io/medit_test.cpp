@@ -1,4 +1,4 @@
-// Binary Medit meshes, written here as libMeshb's documentation has them.
+// Medit meshes, binary and text, written here as libMeshb's documentation has them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -167,6 +167,62 @@ TEST(MeditBinary, FaultsAreNamedWithTheirPlace) {
   std::string long_list = tower(1, false);
   long_list[28] = '\x7f';  // the number of points
   refuse(long_list, {"byte 20", "more than the file can hold"});
+}
+
+/// A tetrahedron over each side of a triangle, of references 7 and 8, with `gap` after each word.
+std::string two_tets(const std::string& gap) {
+  std::string text;
+  for (const char* word : {"MeshVersionFormatted", "2", "Dimension", "3", "Vertices", "5"})
+    text.append(word).append(gap);
+  for (const char* word : {"0", "0", "0", "1", "1", "0", "0", "1", "0", "1.", "+0", "1", "0", "0", "1e0", "1"})
+    text.append(word).append(gap);
+  for (const char* word : {"0", "0", "-1", "1", "Tangents", "2", "0.5", "0.5", "0", "-1", "0", "0"})
+    text.append(word).append(gap);
+  for (const char* word : {"Tetrahedra", "2", "1", "2", "3", "4", "7", "1", "2", "3", "5", "8", "RequiredVertices"})
+    text.append(word).append(gap);
+  for (const char* word : {"1", "3", "End"}) text.append(word).append(gap);
+  return text;
+}
+
+TEST(MeditText, LinesAndCommentsPartWordsAsBlanksDo) {
+  const test::TemporaryFolder folder;
+  for (const std::string gap : {"\n", " ", "\t\r\n\r\n", " # of 9 cells\n  \n"}) {
+    SCOPED_TRACE(gap);
+    const MeshFile read = read_mesh(folder.write("a.mesh", two_tets(gap)));
+    EXPECT_EQ(read.format, "Medit");
+    EXPECT_EQ(read.counts.cells_read, 2u);
+    EXPECT_NEAR(testing::volume(read.mesh), 2.0 / 6, 1e-12);
+    EXPECT_EQ(read.blocks, (std::vector<std::string>{"reference 7", "reference 8"}));
+  }
+  // Whatever the name.
+  EXPECT_EQ(read_mesh(folder.write("a.dat", "\n" + two_tets("\n"))).counts.cells_read, 2u);
+}
+
+TEST(MeditText, AllCellsOfFirstOrderAreRead) {
+  const test::TemporaryFolder folder;
+  const std::string text =
+      "MeshVersionFormatted 1\nDimension\n3\nVertices\n12\n0 0 0 0\n1 0 0 0\n1 1 0 0\n0 1 0 0\n0 0 1 0\n1 0 1 0\n1 1 1 "
+      "0\n0 1 1 0\n.5 .5 4 0\n0 0 -1 0\n1 0 -1 0\n0 1 -1 0\nTriangles 1\n1 2 3 4\nHexahedra 1\n1 2 3 4 5 6 7 8 0\n"
+      "Pyramids 1\n5 6 7 8 9 0\nPrisms 1\n10 11 12 1 2 4 0\nEnd\n";
+  EXPECT_NEAR(testing::volume(read_mesh(folder.write("a.mesh", text)).mesh), 1 + 1 + 0.5, 1e-12);
+}
+
+TEST(MeditText, FaultsAreNamedWithTheirLine) {
+  const test::TemporaryFolder folder;
+  const std::string whole = two_tets("\n");
+  const auto refuse = [&](const std::string& from, const std::string& to, const std::vector<std::string>& parts) {
+    std::string text = whole;
+    text.replace(text.find(from), from.size(), to);
+    test::expect_bad_input([&] { read_mesh(folder.write("a.mesh", text)); }, parts);
+  };
+  for (std::size_t length = 30; length + 30 < whole.size(); length += 7)
+    test::expect_bad_input([&] { read_mesh(folder.write("a.mesh", whole.substr(0, length))); }, {"a.mesh"});
+  refuse("Dimension\n3", "Dimension\n2", {"it has 2 dimensions"});
+  refuse("Tetrahedra\n2", "Tetrahedra\n900", {"line 36", "more than the file can hold"});
+  refuse("5\n8", "6\n8", {"a cell uses point 6 of 5"});
+  refuse("5\n8", "x\n8", {"'x' is not a point of a cell"});
+  refuse("Tetrahedra", "HexahedraP2", {"its HexahedraP2 are not read"});
+  refuse("Tetrahedra", "Triangles", {"no cells of volume"});
 }
 
 }  // namespace

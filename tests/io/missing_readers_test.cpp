@@ -55,7 +55,6 @@ std::map<std::string, std::string> beginnings() {
           {"GAMBIT", "CONTROL INFO 2.0\n"},
           {"AVS UCD", "1 1 0 0 0\n1 0 0 0\n"},
           {"Gmsh", "$MeshFormat\n4.1 0 8\n"},
-          {"Medit", "MeshVersionFormatted 2\n"},
           {"I-DEAS universal", "    -1\n"},
           {"PLOT3D", plot3d_cube},
           {"PLOT3D list", R"({"version": 1, "filenames": [{"time": 0, "xyz": "grid.xyz"}]})"},
