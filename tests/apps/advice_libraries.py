@@ -14,6 +14,7 @@ from advice_library_files import (
     SLICES,
     SOLUTION,
     UCD,
+    UNV,
     XDMF,
     dicom,
     dicom_frames,
@@ -72,6 +73,13 @@ ROWS = [
     msh("$MeshFormat", "$MashFormat", "it does not begin with $MeshFormat; write it anew"),
     msh("1 4 2 1 1 1 2 3 4", "1 4 2 1 1 1 2 3 9", "write it anew"),
     msh("1 4 2 1 1 1 2 3 4", "1 2 2 1 1 1 2 3", "give a mesh of tetrahedra, hexahedra, prisms or pyramids"),
+    row(
+        "info a.unv.gz",
+        "have its name end in .unv",
+        "info a.unv",
+        {"a.unv.gz": gzip.compress(UNV.encode())},
+        {"a.unv": UNV},
+    ),
     # XDMF
     wrong_xdmf('<?xml version="1.0"?>\n<Xdmf Version="3.0"/>\n', "it has no <Domain>; write it anew"),
     wrong_xdmf(xdmf(""), "it holds no grid; give a mesh or a volume"),

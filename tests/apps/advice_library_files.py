@@ -14,6 +14,13 @@ MEDIT = (
     + lines((*p, 0) for p in CORNERS)
     + "Tetrahedra\n1\n1 2 3 4 0\nEnd\n"
 )
+UNV = (
+    "    -1\n  2411\n"
+    + lines((f"{k + 1:10}{1:10}{1:10}{11:10}\n" + "".join(f"{x:25.16E}" for x in p),) for k, p in enumerate(CORNERS))
+    + "    -1\n    -1\n  2412\n"
+    + lines(("".join(f"{n:10}" for n in numbers),) for numbers in [(1, 111, 1, 1, 7, 4), (1, 2, 3, 4)])
+    + "    -1\n"
+)
 UCD = (
     "4 1 1 0 0\n"
     + lines((k + 1, *p) for k, p in enumerate(CORNERS))
