@@ -191,13 +191,15 @@ class MeditText {
   }
 
  private:
-  /// Volumes of higher order, polyhedra, and another order of nodes of those.
+  /// Volumes of higher order (TetrahedraP3, HexahedraQ2, Prisms9), another order of their nodes, and polyhedra.
   static bool is_unread(std::string_view word) {
-    constexpr std::array families = {"Tetrahedra", "Prisms", "Hexahedra", "Pyramids"};
-    const bool is_curved = std::ranges::any_of(families, [&](std::string_view family) {
-      return word.starts_with(family) && word.substr(family.size()).starts_with('P') && word != "TetrahedraP2";
-    });
-    return is_curved || word == "Polyhedra";
+    constexpr std::array<std::string_view, 4> families = {"Tetrahedra", "Prisms", "Hexahedra", "Pyramids"};
+    const auto is_curved = [&](std::string_view family) {
+      return word.size() > family.size() && word.starts_with(family) &&
+             std::string_view("PQ0123456789").find(word[family.size()]) != std::string_view::npos;
+    };
+    return (word != "TetrahedraP2" && std::ranges::any_of(families, is_curved)) || word == "Polyhedra" ||
+           word == "PolyhedraHeaders";
   }
 
   void read_points() {

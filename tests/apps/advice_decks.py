@@ -142,7 +142,7 @@ ROWS = [
     medit_text("MeshVersionFormatted", "Mesh", "it does not begin as a Medit mesh does; check what it is"),
     medit_text("Dimension 3", "Dimension 2", "and a volume has three; give one"),
     medit_text("Tetrahedra", "Triangles", "give a mesh of tetrahedra, hexahedra, prisms or pyramids"),
-    medit_text("Tetrahedra", "HexahedraP2", "its HexahedraP2 are not read; write cells of order 1"),
+    medit_text("Tetrahedra", "HexahedraQ2", "its HexahedraQ2 are not read; write cells of order 1"),
     medit_text("1 2 3 4 0", "1 2 3 5 0", "a cell uses point 5 of 4; the file is damaged, export it again"),
     medit_text("1 2 3 4 0", "1 2 3", "the file is truncated or damaged, export it again"),
     # binary Medit

@@ -221,7 +221,8 @@ TEST(MeditText, FaultsAreNamedWithTheirLine) {
   refuse("Tetrahedra\n2", "Tetrahedra\n900", {"line 36", "more than the file can hold"});
   refuse("5\n8", "6\n8", {"a cell uses point 6 of 5"});
   refuse("5\n8", "x\n8", {"'x' is not a point of a cell"});
-  refuse("Tetrahedra", "HexahedraP2", {"its HexahedraP2 are not read"});
+  for (const std::string word : {"HexahedraQ2", "TetrahedraP3", "TetrahedraP2Ordering", "Prisms9", "PolyhedraHeaders"})
+    refuse("Tetrahedra", word, {fmt::format("its {} are not read", word)});
   refuse("Tetrahedra", "Triangles", {"no cells of volume"});
 }
 
