@@ -114,6 +114,12 @@ class Minc2Volume {
     miboolean_t is_irregular = 0;
     miget_dimension_sampling_flag(dimension, &is_irregular);
     require(miget_dimension_size(dimension, &axis.size), "a dimension's size");
+    if (axis.name == "time" && is_irregular == 0) {  // uneven times have numbers
+      if (miget_dimension_start(dimension, MI_ORDER_FILE, &axis.start) != MI_NOERROR ||
+          miget_dimension_separation(dimension, MI_ORDER_FILE, &axis.step) != MI_NOERROR)
+        axis.step = 0;
+      return axis;
+    }
     if (axis.name == "time" || axis.name == "vector_dimension") return axis;
     if (is_irregular != 0)
       throw scene::bad_input(
@@ -150,6 +156,7 @@ ForeignContents read_minc2(Holdings& holdings, const std::filesystem::path& file
   if (const auto step = request.find("time_step"); step != request.end()) wish = step->get<std::size_t>();
   const bool has_time = axes.front().name == "time", has_components = axes.back().name == "vector_dimension";
   contents.time_step = chosen_step(wish, has_time ? axes.front().size : 1, source);
+  if (has_time) set_times(contents.time_step, even_times(axes.front().start, axes.front().step, axes.front().size));
   const std::size_t step = contents.time_step.step;
   ForeignPart& part = contents.parts.emplace_back();
   part.kind = ForeignPart::Kind::image;

@@ -38,6 +38,8 @@ void write_minc2(const std::string& name, misize_t steps) {
     ASSERT_EQ(
         micreate_dimension("time", MI_DIMCLASS_TIME, MI_DIMATTR_REGULARLY_SAMPLED, steps, &dimensions.emplace_back()),
         MI_NOERROR);
+    miset_dimension_start(dimensions.back(), 3);
+    miset_dimension_separation(dimensions.back(), 1.5);
     first.push_back(0), counts.push_back(steps);
   }
   for (const AxisOfFile& axis : axes) {
@@ -154,6 +156,7 @@ TEST(Minc2, TimeStepsAreChosen) {
   const test::TemporaryFolder folder;
   write_minc2((folder / "f.mnc").string(), 2);
   EXPECT_EQ(open_volume(folder / "f.mnc").range, (scene::ValueRange{5 + 12, 5 + 23.5, 0}));
+  EXPECT_EQ(open_volume(folder / "f.mnc").time_step.times, (std::vector<double>{3, 4.5}));
   VolumeOptions options;
   options.time_step = 0;
   EXPECT_EQ(open_volume(folder / "f.mnc", options).range, (scene::ValueRange{5, 5 + 11.5, 0}));
