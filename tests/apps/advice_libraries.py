@@ -283,6 +283,7 @@ ROWS = [
     row("info a.inp", "`git lfs pull` brings the file itself", None, {"a.inp": LFS_POINTER}, {"a.inp": UCD}),
     cut("a.inp", UCD, len(UCD) // 2, "write it anew"),
     row("info a.inp", "it does not begin as a file of AVS UCD does; check what it is", None, {"a.inp": "SOL 101\n"}, {"a.inp": UCD}),
+    row("info a.neu", "as a file of GAMBIT does; check what it is", "info m.vtu", {"a.neu": "25 0 0 1\nPATRAN\n"}),
     row("info a.cas", "export CGNS or EnSight", "info m.vtu", {"a.cas": "(2 3)\n(10 (0 1 ffffffff 0))\n"}),
     row(
         "info a.dcm",
