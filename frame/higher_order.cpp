@@ -187,7 +187,7 @@ HigherOrderRead read_for_accuracy(const ReadOptions& options, std::optional<doub
     if (!first_function) first_function = function;
     const double bound = levels.data().higher_order_error(function);
     is_last = is_last || levels.cells().divided == 0 || (accuracy && bound <= *accuracy) || level == most_levels ||
-              (levels.pictures() == 0 && levels.is_limited());
+              (levels.pictures() != 1 && levels.is_limited());
     if (!is_last) {
       levels.draw(*first_function);
       is_last = levels.is_limited() || (accuracy && levels.error() <= *accuracy);
