@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <functional>
+#include <iterator>
 #include <numeric>
-#include <ranges>
 #include <set>
 #include <utility>
 
@@ -44,10 +45,10 @@ class SeriesLook {
 
   /// From the last to the first, which stays open.
   void look_at(const std::vector<std::size_t>& steps) {
-    for (const std::size_t step : std::views::reverse(steps)) {
-      if (std::ranges::find(looked_, step, &LookedAt::step) != looked_.end()) continue;
+    std::for_each(steps.rbegin(), steps.rend(), [this](std::size_t step) {
+      if (std::ranges::find(looked_, step, &LookedAt::step) != looked_.end()) return;
       if (const Dataset* data = opened(step, read_)) looked_.push_back(found_in(step, *data));
-    }
+    });
   }
 
   [[nodiscard]] bool varies() const {
@@ -106,8 +107,7 @@ class SeriesLook {
 
   [[nodiscard]] std::string chosen_field() const {
     std::vector<std::vector<FieldInfo>> fields;
-    fields.reserve(looked_.size());
-    for (const LookedAt& looked : std::views::reverse(looked_)) fields.push_back(looked.fields);
+    std::transform(looked_.rbegin(), looked_.rend(), std::back_inserter(fields), std::mem_fn(&LookedAt::fields));
     return field_of_steps(fields, read_);
   }
 

@@ -164,7 +164,6 @@ class HigherOrderLevels {
   std::optional<Dataset> data_;
   std::optional<Camera> camera_;
   std::vector<Level> levels_;
-  std::vector<double> differences_;         ///< of each picture but the first from the one before
   double factor_ = infinite, power_ = 0.5;  ///< error = factor tolerance^power
   double error_ = infinite;
 };
