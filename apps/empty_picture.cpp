@@ -161,6 +161,13 @@ std::string advice_on_clear(const std::array<double, 2>& range, const FinishedRu
   return fmt::format("{}; --range {:.6g},{:.6g} stretches it over them", why, range[0], range[1]);
 }
 
+/// Whether a ray that met what the function shows, over a ten-thousandth of the box, would have more than nothing in
+/// floats.
+bool would_show(const Dataset& data, const TransferFunction& function, const RenderOptions& options) {
+  const double most = emits(options) ? function.max_color() : function.max_extinction();
+  return most * diagonal(data.bounds()) > 1e-2;
+}
+
 std::string advice_on_faint(const MostOfPixels& most_seen, const FinishedRun& run) {
   if (emits(run.options))
     return fmt::format("no pixel has more light than {:.2g}; give the transfer function brighter colours",
@@ -181,13 +188,6 @@ MostOfPixels most_of(const Image& image) {
     most.alpha = std::max(most.alpha, image.rgba[i + 3]);
   }
   return most;
-}
-
-/// Whether a ray that met what the function shows, over a ten-thousandth of the box, would have more than nothing in
-/// floats.
-static bool would_show(const Dataset& data, const TransferFunction& function, const RenderOptions& options) {
-  const double most = emits(options) ? function.max_color() : function.max_extinction();
-  return most * diagonal(data.bounds()) > 1e-2;
 }
 
 EmptyReason reason_of_empty(const RenderedFrame& frame, const Dataset& data, const TransferFunction& function,

@@ -405,7 +405,8 @@ class RenderSceneReader final : public server::SceneReader {
     if (!given.clip.clip.empty() && !given.surfaces.iso.empty()) parsed->data += Json(given.surfaces.iso).dump();
     parsed->field = given.field;
     parsed->shape = given.field.empty() && given.transfer_function.empty() && !is_grid_;
-    parsed->accuracy = fmt::format("{:a}", options.read.higher_order_tolerance);
+    parsed->accuracy = fmt::format("{:a}", options.fixed_higher_order ? options.read.higher_order_tolerance
+                                                                      : options.settings.integrator.accuracy);
     parsed->look = key_of(words, look_options);
     parsed->settings = key_of(words, settings_options);
     parsed->series_function = series_function(state);

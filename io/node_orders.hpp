@@ -24,8 +24,8 @@ namespace tessera::io {
 ///
 /// In VTK's order as they are: EnSight (User Manual, EnSight Gold Geometry File Format; VTK's reader mirrors wedges),
 /// XDMF (Tet_10 ... Hex_27, which VTK and meshio write so; the format's pages define none), legacy VTK and VTK XML but
-/// for old Lagrange hexahedra (exchange_vtk8_edges() below), VTKHDF. Gmsh's own files and Medit's, which
-/// its library reads, go by the places of nodes that the library gives (io/helper/gmsh_cells.hpp). AVS UCD, Fluent,
+/// for old Lagrange hexahedra (exchange_vtk8_edges() below), VTKHDF, Medit. Gmsh's own files go by the
+/// places of nodes that its library gives (io/helper/gmsh_cells.hpp), TetGen's by io/tetgen_files.cpp. AVS UCD, Fluent,
 /// GAMBIT, OpenFOAM, PLOT3D, SU2 and Tecplot have linear cells here.
 enum class NodeConvention : std::uint8_t { exodus, med, cgns, nastran };
 

@@ -26,12 +26,11 @@ inline double first_higher_order_tolerance(double accuracy) { return accuracy < 
 /// Reads a mesh with a `higher_order_tolerance` for which its tets change pixels by about `accuracy` at most, and with
 /// no more tets than that takes. Without an accuracy the tolerance is that of `options`, and only the error is found.
 ///
-/// Method  The mesh is read with 64 times the tolerance and less and less, and the tets' pictures from the default
-/// view,
-///         128 x 128 pixels, are compared. From how they differ follow the error and how it falls: in proportion to the
-///         tolerance, or to its square root where rays touch the surface. The error that is stated is three times the
-///         largest, since other pixels and views may be off by more. Dataset::higher_order_error(), a bound for all
-///         rays and mostly far above the error, ends the search sooner where it is small enough.
+/// Method  The mesh is read with 64 times the tolerance, then with smaller ones, and pictures of the tets, 128 x 128
+///         pixels from the default view, are compared. How they differ gives the error and how it falls: in proportion
+///         to the tolerance, or to its square root where rays touch the surface. The error that is stated is three
+///         times the largest, since other pixels and views may be off by more. Dataset::higher_order_error(), a bound
+///         for all rays and mostly far above the error, ends the search sooner where it is small enough.
 /// Limits  It is an estimate, of the volume's light alone: not of surfaces and shading, nor of rays along the mesh's
 ///         surface in other views. Where `higher_order_tets` allows too few, it is that of the tets that there are.
 ///

@@ -234,7 +234,30 @@ def series_starts_as_a_film(launcher=()):
         check("--range" not in other and "conc" not in other, other)
 
 
+def accuracies_of_curved_cells():
+    """A curved cell is read anew for another accuracy, as `render` reads it."""
+    points = "0 0 0 1 0 0.04 0.03 1 0 0.2 0.22 1 0.5 0 0.01 0.51 0.5 0.01 0.01 0.5 0 0.1 0.105 0.5 0.6 0.105 0.51 0.11 0.605 0.5"
+    (folder / "curved.vtu").write_text(
+        '<VTKFile type="UnstructuredGrid" version="2.2" byte_order="LittleEndian"><UnstructuredGrid>'
+        '<Piece NumberOfPoints="10" NumberOfCells="1"><PointData><DataArray type="Float64" Name="f" format="ascii">'
+        '0 1 2 3 0.2 1.9 0.7 1.1 2.2 2.9</DataArray></PointData><Points><DataArray type="Float64" NumberOfComponents="3" '
+        f'format="ascii">{points}</DataArray></Points><Cells><DataArray type="Int64" Name="connectivity" format="ascii">'
+        '0 1 2 3 4 5 6 7 8 9</DataArray><DataArray type="Int64" Name="offsets" format="ascii">10</DataArray>'
+        '<DataArray type="UInt8" Name="types" format="ascii">24</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>')
+    with Server(options.tessera, folder / "curved.vtu", environment=MPI) as server:
+        camera = server.data()["defaults"]["camera"]
+        pictures = set()
+        for accuracy in ("3e-1", "1e-2"):
+            state = {"camera": camera, "size": "90x60", "accuracy": accuracy}
+            _, _, picture = server.ask("POST", "/picture", {"state": state})
+            command = server.json("POST", "/api/command", {"state": state})["command"]
+            check(picture == rendered(command), f"not the picture of {command}")
+            pictures.add(picture)
+        check(len(pictures) == 2, "both accuracies have one picture")
+
+
 def part_pictures():
+    accuracies_of_curved_cells()
     series_starts_as_a_film()
     if not options.without_mpi:
         series_starts_as_a_film(MPIRUN)
