@@ -19,12 +19,11 @@
 #include "io/helper/readers.hpp"
 #include "io/helper/vtk_parts.hpp"
 #include "io/helper/vtk_session.hpp"
+#include "io/helper/vtk_words.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
 namespace {
-
-constexpr const char* write_anew = "the file is truncated or damaged, write it anew";
 
 /// Notes failures of HDF5's functions, which VTK's readers do not look at, for as long as it lives. Where they only ask
 /// whether something is there, they take it out for a moment.

@@ -12,7 +12,7 @@ namespace {
 /// Of the deepest cells along an axis: what the library's lattice holds (io/amr_leaves.cpp).
 constexpr std::int64_t most_cells = 1 << 29;
 
-constexpr const char* write_anew = "it is damaged, write it anew";
+constexpr const char* remedy = "it is damaged, write it anew";
 
 /// A cell of one level, and its place in cells of that level.
 struct Node {
@@ -44,7 +44,7 @@ class Descent {
     const auto& n = forest_.roots;
     if (root < 0 || root / n[first] / n[1] >= n[last])
       throw scene::bad_input(fmt::format("{}: tree {} is that of cell {}, the grid has {} x {} x {} cells; {}", source_,
-                                         t, root, n[0], n[1], n[2], write_anew));
+                                         t, root, n[0], n[1], n[2], remedy));
     Node node{{}, false};
     node.low[first] = static_cast<std::int32_t>(root % n[first]);
     node.low[1] = static_cast<std::int32_t>(root / n[first] % n[1]);
@@ -131,7 +131,7 @@ class Descent {
 
   [[noreturn]] void refuse_count(std::size_t t, std::size_t cells) const {
     throw scene::bad_input(fmt::format("{}: tree {} has {} cells or more by its divisions, {} by its counts; {}",
-                                       source_, t, cells, forest_.trees[t].cells, write_anew));
+                                       source_, t, cells, forest_.trees[t].cells, remedy));
   }
 
   const StoredForest& forest_;

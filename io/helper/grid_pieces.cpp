@@ -63,7 +63,7 @@ struct WholeGrid {
 
 /// Numbers of an attribute; none if there are fewer.
 template <class T, std::size_t count>
-std::optional<std::array<T, count>> numbers_of(const std::string& text) {
+std::optional<std::array<T, count>> attribute_numbers(const std::string& text) {
   std::istringstream words(text);
   std::array<T, count> numbers{};
   for (T& number : numbers)
@@ -78,14 +78,14 @@ WholeGrid read_whole(const std::filesystem::path& file, GridKind kind) {
   WholeGrid whole;
   const auto extent_of = [&](const XmlElement& element, const char* name) {
     const std::string* text = element.find(name);
-    const auto extent = text ? numbers_of<int, 6>(*text) : std::nullopt;
+    const auto extent = text ? attribute_numbers<int, 6>(*text) : std::nullopt;
     if (!extent) throw damaged(file, fmt::format("<{}> has no {} of six whole numbers", element.name, name));
     return *extent;
   };
   const auto set_vector = [&](const XmlElement& element, const char* name, std::array<double, 3>& vector) {
     const std::string* text = element.find(name);
     if (!text) return;
-    const auto numbers = numbers_of<double, 3>(*text);
+    const auto numbers = attribute_numbers<double, 3>(*text);
     if (!numbers) throw damaged(file, fmt::format("its {} is not three numbers", name));
     vector = *numbers;
   };

@@ -21,14 +21,13 @@
 #include "io/helper/readers.hpp"
 #include "io/helper/vtk_parts.hpp"
 #include "io/helper/vtk_session.hpp"
+#include "io/helper/vtk_words.hpp"
 #include "io/input_file.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
 
 namespace tessera::io::helper {
 namespace {
-
-constexpr const char* write_anew = "the file is truncated or damaged, write it anew";
 
 /// More than any file explains, and less than what sums of a few of them overflow.
 constexpr std::int64_t most_numbers = std::int64_t{1} << 40;

@@ -15,13 +15,12 @@
 #include "io/helper/readers.hpp"
 #include "io/helper/vtk_parts.hpp"
 #include "io/helper/vtk_session.hpp"
+#include "io/helper/vtk_words.hpp"
 #include "io/input_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
 namespace {
-
-constexpr const char* write_anew = "the file is truncated or damaged, write it anew";
 
 /// VTK's reader takes what lies behind the file's end as zeros.
 void require_whole(const std::filesystem::path& file) {

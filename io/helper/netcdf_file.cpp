@@ -6,13 +6,12 @@
 #include <array>
 
 #include "io/helper/netcdf_size.hpp"
+#include "io/helper/vtk_words.hpp"
 #include "io/input_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
 namespace {
-
-constexpr const char* write_anew = "the file is truncated or damaged, write it anew";
 
 bool is_number(nc_type type) { return type != NC_NAT && type != NC_CHAR && type <= NC_UINT64; }
 

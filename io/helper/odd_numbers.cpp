@@ -28,10 +28,9 @@ namespace {
 struct StandIn {
   double number, meant;
 };
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::array<StandIn, 3> stand_ins{{{0x1.5a5a5ap-63, std::numeric_limits<double>::quiet_NaN()},
-                                            {0x1.6b6b6cp-63, infinity},
-                                            {-0x1.6b6b6cp-63, -infinity}}};
+                                            {0x1.6b6b6cp-63, std::numeric_limits<double>::infinity()},
+                                            {-0x1.6b6b6cp-63, -std::numeric_limits<double>::infinity()}}};
 
 bool is_number(std::string_view word) {
   return std::isdigit(static_cast<unsigned char>(word.front())) != 0 || word.front() == '.' ||

@@ -18,6 +18,7 @@
 #include "io/helper/time_steps.hpp"
 #include "io/helper/vtk_parts.hpp"
 #include "io/helper/vtk_session.hpp"
+#include "io/helper/vtk_words.hpp"
 #include "io/input_file.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/part_range.hpp"
@@ -25,8 +26,6 @@
 
 namespace tessera::io::helper {
 namespace {
-
-constexpr const char* write_anew = "the file is truncated or damaged, write it anew";
 
 /// Reads one processor's part at a time, where VTK's own reader appends all of them.
 class ProcessorReader : public vtkPOpenFOAMReader {

@@ -47,8 +47,6 @@
 namespace tessera::io::helper {
 namespace {
 
-constexpr const char* write_anew = "the file is truncated or damaged, write it anew";
-
 /// Reads with a reader that is ready but for its file's arrays, which `choose` turns on once they are known. Of those
 /// that know shares of a file the request's `part` of `parts`, which may hold nothing. `mend` puts right what the
 /// reader gets wrong.

@@ -29,6 +29,7 @@
 #include "io/helper/readers.hpp"
 #include "io/helper/vtk_parts.hpp"
 #include "io/helper/vtk_session.hpp"
+#include "io/helper/vtk_words.hpp"
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
 #include "io/node_orders.hpp"
@@ -36,8 +37,6 @@
 
 namespace tessera::io::helper {
 namespace {
-
-constexpr const char* write_anew = "the file is truncated or damaged, write it anew";
 
 /// A reader of structured data that says what pieces the file has.
 template <class Reader>

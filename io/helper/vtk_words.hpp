@@ -7,6 +7,9 @@
 
 namespace tessera::io::helper {
 
+/// The remedy for a file whose bytes are not as its format has them.
+inline constexpr const char* write_anew = "the file is truncated or damaged, write it anew";
+
 /// What VTK says of an error or warning, in one line for users: without the place in its sources, the addresses of its
 /// objects and what it prints of their state. Empty if nothing is left.
 std::string words_for_users(std::string_view said);
