@@ -120,41 +120,62 @@ class HigherOrderLevels {
  private:
   [[nodiscard]] double error_at(double tolerance) const { return factor_ * std::pow(tolerance, power_); }
 
+  /// How two pictures differ.
+  struct Difference {
+    double largest = 0, root_mean_square = 0;
+  };
+
+  /// p in [1/2, 1] for which errors in proportion to t^p make pictures of tolerances t0 > t1 > t2 differ by d1 and d2.
+  static double power_of(double t0, double t1, double t2, double d1, double d2) {
+    double low = 0.5, high = 1;  // what falls faster is taken to fall so
+    for (int halvings = 0; halvings < 30; ++halvings) {
+      const double p = 0.5 * (low + high);
+      const bool falls_faster = d1 * (std::pow(t1, p) - std::pow(t2, p)) > d2 * (std::pow(t0, p) - std::pow(t1, p));
+      (falls_faster ? low : high) = p;
+    }
+    return low;
+  }
+
   /// The error as a power of the tolerance, by the last three pictures: of two the power is the least there is.
   void fit() {
     const std::size_t last = levels_.size() - 1;
     const auto differ = [&](std::size_t level) {
       return difference(levels_[level - 1].picture, levels_[level].picture);
     };
-    const double t1 = levels_[last - 1].tolerance, t2 = levels_[last].tolerance, d2 = differ(last);
+    const double t1 = levels_[last - 1].tolerance, t2 = levels_[last].tolerance;
+    const Difference d2 = differ(last);
     power_ = 0.5;
     factor_ = error_ = infinite;
     if (!(t1 > t2)) return;
     if (last >= 2) {
-      const double t0 = levels_[last - 2].tolerance, d1 = differ(last - 1);
-      double high = 1;  // what falls faster is taken to fall so
-      for (int halvings = 0; halvings < 30; ++halvings) {
-        const double p = 0.5 * (power_ + high);
-        const bool falls_faster = d1 * (std::pow(t1, p) - std::pow(t2, p)) > d2 * (std::pow(t0, p) - std::pow(t1, p));
-        (falls_faster ? power_ : high) = p;
-      }
+      // The largest differences tell of rays along the surface, but are those of a few pixels, met or missed.
+      const double t0 = levels_[last - 2].tolerance;
+      const Difference d1 = differ(last - 1);
+      power_ = 0.5 * (power_of(t0, t1, t2, d1.largest, d2.largest) +
+                      power_of(t0, t1, t2, d1.root_mean_square, d2.root_mean_square));
     }
     constexpr double other_pixels = 3;
-    factor_ = other_pixels * d2 / (std::pow(t1, power_) - std::pow(t2, power_));
+    factor_ = other_pixels * d2.largest / (std::pow(t1, power_) - std::pow(t2, power_));
     error_ = error_at(t2);
   }
 
-  /// The largest, the same on all ranks.
-  [[nodiscard]] double difference(const Image& a, const Image& b) const {
+  /// The same on all ranks.
+  [[nodiscard]] Difference difference(const Image& a, const Image& b) const {
     const int assembler =
         assign_roles(communicator_.size(), settings_.ranks.projectors, settings_.ranks.compositors).assembler();
-    double most = 0;
-    if (communicator_.rank() == assembler)
-      for (std::size_t i = 0; i < a.rgba.size(); ++i)
-        most = std::max(most, static_cast<double>(std::abs(a.rgba[i] - b.rgba[i])));
-    if (communicator_.size() == 1) return most;
+    Difference found;
+    if (communicator_.rank() == assembler) {
+      double squares = 0;
+      for (std::size_t i = 0; i < a.rgba.size(); ++i) {
+        const double by = std::abs(static_cast<double>(a.rgba[i]) - b.rgba[i]);
+        found.largest = std::max(found.largest, by);
+        squares += by * by;
+      }
+      found.root_mean_square = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, a.rgba.size())));
+    }
+    if (communicator_.size() == 1) return found;
     const auto transport = communicator_.state().connect();
-    return exchange::broadcast_value(*transport, assembler, exchange::MessageKind::higher_order, most);
+    return exchange::broadcast_value(*transport, assembler, exchange::MessageKind::higher_order, found);
   }
 
   const std::function<Dataset(const ReadOptions&)>& open_;

@@ -28,7 +28,8 @@ inline double first_higher_order_tolerance(double accuracy) { return accuracy < 
 ///
 /// Method  The mesh is read with 64 times the tolerance, then with smaller ones, and pictures of the tets, 128 x 128
 ///         pixels from the default view, are compared. How they differ gives the error and how it falls: in proportion
-///         to the tolerance, or to its square root where rays touch the surface. The error that is stated is three
+///         to the tolerance, or to its square root where rays touch the surface; the power that is taken lies midway
+///         between those of the largest and of the root mean square difference. The error that is stated is three
 ///         times the largest, since other pixels and views may be off by more. Dataset::higher_order_error(), a bound
 ///         for all rays and mostly far above the error, ends the search sooner where it is small enough.
 /// Limits  It is an estimate, of the volume's light alone: not of surfaces and shading, nor of rays along the mesh's
