@@ -12,7 +12,7 @@
 namespace tessera::io {
 namespace {
 
-constexpr std::string_view blanks = " \t\r\n";
+constexpr std::string_view header_blanks = " \t\r\n";
 constexpr std::int64_t most_fields = 1 << 16, most_boxes = 1 << 20, most_levels = 64, most_cells = 1 << 29;
 
 /// Walks through words, and where their places are fixed through lines. Brackets and commas are between words.
@@ -29,7 +29,7 @@ class Words {
     return line;
   }
 
-  std::string_view word(const char* what, std::string_view between = blanks) {
+  std::string_view word(const char* what, std::string_view between = header_blanks) {
     const std::size_t begin = text_.find_first_not_of(between, at_);
     if (begin == std::string_view::npos)
       fail(fmt::format("the file ends before {}; it is truncated, write it anew", what));
@@ -71,8 +71,8 @@ class Words {
 
   /// Passes over such characters and blanks.
   void skip(std::string_view characters) {
-    while (at_ < text_.size() &&
-           (characters.find(text_[at_]) != std::string_view::npos || blanks.find(text_[at_]) != std::string_view::npos))
+    while (at_ < text_.size() && (characters.find(text_[at_]) != std::string_view::npos ||
+                                  header_blanks.find(text_[at_]) != std::string_view::npos))
       ++at_;
   }
 
@@ -94,9 +94,9 @@ bool looks_like_amrex(std::string_view beginning) {
     const std::size_t end = std::min(beginning.find('\n'), beginning.size());
     std::string_view line = beginning.substr(0, end);
     beginning.remove_prefix(std::min(end + 1, beginning.size()));
-    const std::size_t first = line.find_first_not_of(blanks);
+    const std::size_t first = line.find_first_not_of(header_blanks);
     if (first == std::string_view::npos) return std::string_view();
-    return line.substr(first, line.find_last_not_of(blanks) + 1 - first);
+    return line.substr(first, line.find_last_not_of(header_blanks) + 1 - first);
   };
   const std::string_view version = next(), count = next();
   if (version.empty() || version.find_first_of(" \t") != std::string_view::npos || version.find('\0') != version.npos)
@@ -120,9 +120,9 @@ AmrexHeader parse_amrex_header(std::string_view text, const std::string& source)
   words.line();
   for (std::int64_t f = 0; f < fields; ++f) {
     const std::string_view name = words.line();
-    const std::size_t first = name.find_first_not_of(blanks);
+    const std::size_t first = name.find_first_not_of(header_blanks);
     if (first == std::string_view::npos) words.fail(fmt::format("field {} has no name; write it anew", f));
-    header.fields.emplace_back(name.substr(first, name.find_last_not_of(blanks) + 1 - first));
+    header.fields.emplace_back(name.substr(first, name.find_last_not_of(header_blanks) + 1 - first));
   }
   if (const auto dimensions = words.count("the number of dimensions", 1, 3); dimensions != 3)
     throw scene::bad_input(fmt::format("{}: it has {} dimensions; give a data set of three", source, dimensions));

@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "scene/directions.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -21,8 +22,6 @@ constexpr std::uint8_t tetra = 10;  // VTK's cell type number
 
 /// Tets that each higher-order cell may become beside CurvedSettings::all of them together.
 constexpr std::uint64_t each_curved_cell = 64;
-
-bool finite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 /// Of MeshCounts::solids.
 std::optional<std::size_t> solid_kind(CellKind kind) {
@@ -273,8 +272,9 @@ bool BlockCells::hides_a_point(std::span<const std::uint32_t> corner) const {
 bool BlockCells::is_finite(std::span<const std::uint32_t> corner, std::size_t c) const {
   const bool point = association_ == scene::Association::point;
   if (!point && !std::isfinite(values_[c])) return false;
-  return std::all_of(corner.begin(), corner.end(),
-                     [&](std::uint32_t v) { return finite(points_[v]) && (!point || std::isfinite(values_[v])); });
+  return std::all_of(corner.begin(), corner.end(), [&](std::uint32_t v) {
+    return scene::finite(points_[v]) && (!point || std::isfinite(values_[v]));
+  });
 }
 
 std::string BlockCells::place(std::size_t c) const {

@@ -15,12 +15,12 @@
 namespace tessera::io {
 namespace {
 
-constexpr std::string_view blanks = " \t\r\n\v\f";
+constexpr std::string_view white_space = " \t\r\n\v\f";
 
 std::string_view without_blanks(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(blanks);
+  const std::size_t first = text.find_first_not_of(white_space);
   if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+  return text.substr(first, text.find_last_not_of(white_space) - first + 1);
 }
 
 bool is_text(std::string_view text) { return text.find('\0') == std::string_view::npos; }
@@ -40,7 +40,7 @@ std::vector<std::string_view> first_lines(std::string_view text, char comment, s
 std::vector<std::string_view> words_of(std::string_view line) {
   std::vector<std::string_view> words;
   for (line = without_blanks(line); !line.empty();) {
-    const std::size_t end = std::min(line.find_first_of(blanks), line.size());
+    const std::size_t end = std::min(line.find_first_of(white_space), line.size());
     words.push_back(line.substr(0, end));
     line = without_blanks(line.substr(end));
   }

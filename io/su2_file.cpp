@@ -13,7 +13,7 @@
 namespace tessera::io {
 namespace {
 
-constexpr std::string_view blanks = " \t\r,";
+constexpr std::string_view separators = " \t\r,";
 
 /// Points of a cell of VTK's types that SU2 has; 0 of others.
 std::size_t nodes_of(std::uint64_t type) {
@@ -62,7 +62,7 @@ class Lines {
     const std::size_t equals = line_.find('=');
     if (equals == std::string_view::npos) return {};
     std::string_view word = line_.substr(0, equals);
-    word = word.substr(0, word.find_last_not_of(blanks) + 1);
+    word = word.substr(0, word.find_last_not_of(separators) + 1);
     line_.remove_prefix(equals + 1);
     return word;
   }
@@ -73,10 +73,10 @@ class Lines {
     if (line_.front() == '+') line_.remove_prefix(1);
     T value{};
     const auto [end, error] = std::from_chars(line_.data(), line_.data() + line_.size(), value);
-    const bool is_cut = end != line_.data() + line_.size() && blanks.find(*end) == std::string_view::npos;
+    const bool is_cut = end != line_.data() + line_.size() && separators.find(*end) == std::string_view::npos;
     if (error == std::errc::invalid_argument || is_cut)
       fail(fmt::format("'{}' is no {}; mend it",
-                       line_.substr(0, std::min<std::size_t>(20, line_.find_first_of(blanks))), what));
+                       line_.substr(0, std::min<std::size_t>(20, line_.find_first_of(separators))), what));
     if (error == std::errc::result_out_of_range) {
       if constexpr (std::is_integral_v<T>) fail(fmt::format("{} is too large; mend it", what));
       value = std::numeric_limits<T>::quiet_NaN();  // 1e999: such a cell is blanked
@@ -101,7 +101,7 @@ class Lines {
 
  private:
   bool skip_blanks() {
-    line_.remove_prefix(std::min(line_.find_first_not_of(blanks), line_.size()));
+    line_.remove_prefix(std::min(line_.find_first_not_of(separators), line_.size()));
     return !line_.empty();
   }
 

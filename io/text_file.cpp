@@ -14,7 +14,7 @@ namespace tessera::io {
 namespace {
 
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-constexpr std::string_view blanks = " \t\r\v\f";
+constexpr std::string_view line_blanks = " \t\r\v\f";
 constexpr std::uintmax_t largest_file = 64u << 20;
 
 std::string_view without_mark(std::string_view text) {
@@ -59,10 +59,10 @@ bool TextLines::next(TextLine& line) {
     line.number = number_;
     line.words.clear();
     for (;;) {
-      const std::size_t begin = text.find_first_not_of(blanks);
+      const std::size_t begin = text.find_first_not_of(line_blanks);
       if (begin == std::string_view::npos) break;
       text.remove_prefix(begin);
-      const std::size_t length = std::min(text.find_first_of(blanks), text.size());
+      const std::size_t length = std::min(text.find_first_of(line_blanks), text.size());
       line.words.push_back(text.substr(0, length));
       text.remove_prefix(length);
     }

@@ -2,18 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <glm/common.hpp>
 
+#include "scene/directions.hpp"
 #include "scene/error.hpp"
 
 namespace tessera {
-namespace {
-
-bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
-}  // namespace
-
 std::array<HalfSpace, 6> half_spaces_of(const Box& box) {
   std::array<HalfSpace, 6> sides;
   for (int axis = 0; axis < 3; ++axis) {
@@ -27,7 +21,7 @@ std::array<HalfSpace, 6> half_spaces_of(const Box& box) {
 
 void validate(const Selection& selection) {
   for (const HalfSpace& h : selection.clip) {
-    if (!finite(h.point) || !finite(h.normal))
+    if (!scene::finite(h.point) || !scene::finite(h.normal))
       throw scene::bad_input("`clip`: a plane's numbers are not all finite; give a point and a normal");
     if (h.normal == glm::dvec3(0))
       throw scene::bad_input("`clip`: a normal of 0,0,0 points nowhere; say which side is to be kept");
