@@ -16,7 +16,6 @@ namespace tessera::projection {
 namespace {
 
 static_assert(PreparedMesh::block_tets == 64);  // a word of bits
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// What all of a ray's crossings together may change a pixel by.
 constexpr double tolerance = 5e-6;
 /// Where a segment crosses a step is right to this part of its length in float lanes, and under perspective.
@@ -272,6 +271,7 @@ const Segments& SplitRasterizer<Segments>::rasterize(const ProjectedMesh& projec
 
 template <class Segments>
 void SplitRasterizer<Segments>::split(std::size_t segment, std::span<const Step> steps, double origin) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   const double front = whole_.front[segment], back = whole_.back[segment];
   const double from = whole_.scalar_front[segment], to = whole_.scalar_back[segment];
   // Ends relative to `origin`; no step lies between them.

@@ -37,7 +37,7 @@ struct GridOfVariables {
   std::vector<GridVariable> fields;
 };
 
-std::string words_of(const GridVariable& field) {
+std::string dimension_words(const GridVariable& field) {
   std::vector<std::string> names;
   for (std::size_t d = 0; d < field.variable->dimensions.size(); ++d)
     if (std::find(field.order.along.begin(), field.order.along.end(), d) != field.order.along.end())
@@ -75,7 +75,7 @@ std::vector<GridOfVariables> grids_of(const NetcdfFile& file) {
       return g.ids == its.ids && are_same(g.curved, its.curved);
     });
     if (grid == grids.end()) {
-      its.dimensions = words_of({&variable, *order});
+      its.dimensions = dimension_words({&variable, *order});
       its.is_flat = std::any_of(order->along.begin(), order->along.end(),
                                 [&](std::size_t d) { return variable.dimensions[d].length < 2; });
       grid = grids.insert(grids.end(), std::move(its));

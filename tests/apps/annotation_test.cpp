@@ -16,11 +16,6 @@ using Words = std::vector<std::string>;
 
 const Words all{"--color-bar", "--axes=both", "--outline", "--scale-bar", "--annotate", "top:{field} {min} {max}"};
 
-Words joined(Words words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
-
 TEST(Annotations, TheLayerOverTheBarePictureIsTheAnnotatedOne) {
   const Folder folder;
   const Words render{"render", folder.cube(), "--size", "200x150", "--quiet"};

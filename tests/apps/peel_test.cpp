@@ -15,11 +15,6 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-Words joined(Words words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
-
 std::string volume(const Folder& folder) {
   EXPECT_EQ(tessera({"generate", "ripples", folder / "v.vti", "n=16", "--quiet"}).status, 0);
   return folder / "v.vti";

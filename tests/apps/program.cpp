@@ -164,6 +164,11 @@ bool has_mpirun() {
   return run({"mpirun", "--version"}, folder / "out").status == 0;
 }
 
+std::vector<std::string> joined(std::vector<std::string> words, const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
 std::vector<std::string> mpirun_command(int ranks, const std::vector<std::string>& arguments) {
   // As root and on fewer cores than ranks, as in a container; Open MPI's own leaks are not ours to report.
   std::vector<std::string> command{"env",

@@ -31,6 +31,8 @@ bool has_mpirun();
 Outcome mpirun(int ranks, const std::vector<std::string>& arguments);
 /// The words of that command line.
 std::vector<std::string> mpirun_command(int ranks, const std::vector<std::string>& arguments);
+/// Words, and more of them.
+std::vector<std::string> joined(std::vector<std::string> words, const std::vector<std::string>& more);
 /// Processes of the ranks that now run with `word` in their arguments, by rank.
 std::map<int, pid_t> ranks_with(const std::string& word);
 

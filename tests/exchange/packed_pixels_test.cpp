@@ -20,7 +20,6 @@
 namespace tessera::exchange {
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr std::size_t raw_pixel = 20, size_bytes = 4;
 
 struct Kind {
@@ -47,7 +46,7 @@ void half_empty(scene::Image& image, std::mt19937& random) {
       if (x > 2 * y) continue;
       const std::size_t at = image.index(x, y);
       for (std::size_t k = 0; k < 4; ++k) image.rgba[4 * at + k] = 0;
-      image.depth[at] = infinity;
+      image.depth[at] = std::numeric_limits<float>::infinity();
     }
 }
 
