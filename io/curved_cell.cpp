@@ -47,19 +47,6 @@ bool lexicographic(const glm::dvec3& a, const glm::dvec3& b) {
   return a.z < b.z;
 }
 
-glm::dvec3 position(const glm::dvec4& value) { return {value.x, value.y, value.z}; }
-
-/// The middle of an eight-node quadrilateral, by its polynomials. Sums in the order of positions, so that both cells at
-/// it get the same bits.
-glm::dvec4 middle_of_quadrilateral(std::array<glm::dvec4, 4> corners, std::array<glm::dvec4, 4> edges) {
-  const auto less = [](const glm::dvec4& a, const glm::dvec4& b) { return lexicographic(position(a), position(b)); };
-  std::sort(corners.begin(), corners.end(), less);
-  std::sort(edges.begin(), edges.end(), less);
-  glm::dvec4 corner_sum(0), edge_sum(0);
-  for (std::size_t k = 0; k < 4; ++k) corner_sum += corners[k], edge_sum += edges[k];
-  return 0.5 * edge_sum - 0.25 * corner_sum;
-}
-
 /// Of a Bezier cell's coefficients along one of its axes, or on a triangle or tet, their values on the lattice:
 /// `count` numbers that lie `stride` apart, so many corners the simplex has.
 void to_values(int corners, int degree, glm::dvec4* first, std::size_t count, std::size_t stride) {
@@ -196,36 +183,6 @@ void CurvedCell::make_bubbles() {
   bubbles_[made] = 256.0 * (own - ((all - corners) / 4.0 - corners / 8.0 + on_faces / 64.0));
 }
 
-/// Of cells of second order: the middles of edges, of quadrilaterals, then of a hexahedron.
-void CurvedCell::add_missing_nodes() {
-  std::vector<bool> given(values_.size(), false);
-  for (const int slot : lattice_->slot_of_node) given[static_cast<std::size_t>(slot)] = true;
-  const auto is_given = [&](const LatticePlace& p) { return given[static_cast<std::size_t>(lattice_->slot(p))]; };
-  for (const CurvedFace& face : faces_of(lattice_->family)) {
-    std::array<glm::dvec4, 4> corners, edges;
-    LatticePlace sum{};
-    const auto size = static_cast<std::size_t>(face.size);
-    for (std::size_t k = 0; k < size; ++k) {
-      const LatticePlace a = lattice_corner(face.corner[k]), b = lattice_corner(face.corner[(k + 1) % size]);
-      const LatticePlace between = {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
-      if (!is_given(between)) node(between) = 0.5 * (node(a) + node(b));
-      corners[k] = node(a), edges[k] = node(between);
-      for (std::size_t x = 0; x < 3; ++x) sum[x] += a[x];
-    }
-    if (size == 3) continue;
-    const LatticePlace middle = {sum[0] / 4, sum[1] / 4, sum[2] / 4};
-    if (!is_given(middle)) node(middle) = middle_of_quadrilateral(corners, edges);
-  }
-  if (lattice_->family != CurvedFamily::hexahedron || lattice_->order[2] < 2 || is_given({1, 1, 1})) return;
-  // Transfinite interpolation of faces, edges and corners: what the functions of both serendipity hexahedra give.
-  glm::dvec4 sums[4] = {};  // of the corners, edges, faces
-  for (int k = 0; k <= 2; ++k)
-    for (int j = 0; j <= 2; ++j)
-      for (int i = 0; i <= 2; ++i)
-        sums[(i == 1) + (j == 1) + (k == 1)] += node({i, j, k}) * (i == 1 && j == 1 && k == 1 ? 0.0 : 1.0);
-  node({1, 1, 1}) = 0.5 * sums[2] - 0.25 * sums[1] + 0.125 * sums[0];
-}
-
 LatticePlace CurvedCell::lattice_corner(std::size_t corner) const {
   const LatticePlace& p = corners_of(lattice_->family)[corner];
   return {p[0] * lattice_->order[0], p[1] * lattice_->order[1], p[2] * lattice_->order[2]};
@@ -239,6 +196,16 @@ CellPlace CurvedCell::place_of_corner(std::size_t corner) const {
 bool CurvedCell::before(std::size_t corner, std::size_t other) const {
   const glm::dvec3 &a = corner_position_[corner], &b = corner_position_[other];
   return lexicographic(a, b) || (a == b && corner < other);
+}
+
+std::array<std::size_t, 3> CurvedCell::first_corners(const CurvedFace& face) const {
+  const auto size = static_cast<std::size_t>(face.size);
+  std::size_t first = 0;
+  for (std::size_t k = 1; k < size; ++k)
+    if (before(face.corner[k], face.corner[first])) first = k;
+  std::size_t next = face.corner[(first + 1) % size], last = face.corner[(first + size - 1) % size];
+  if (before(last, next)) std::swap(next, last);
+  return {face.corner[first], next, last};
 }
 
 const CurvedCell::Part& CurvedCell::part_on(unsigned faces) {
@@ -289,17 +256,12 @@ void CurvedCell::add_to(Part& part, const LatticePlace& place) const {
 void CurvedCell::make_face(unsigned faces, Part& part) const {
   const auto number = static_cast<std::size_t>(std::countr_zero(faces));
   const CurvedFace& face = faces_of(lattice_->family)[number];
-  const auto size = static_cast<std::size_t>(face.size);
-  std::size_t first = 0;
-  for (std::size_t k = 1; k < size; ++k)
-    if (before(face.corner[k], face.corner[first])) first = k;
-  std::size_t next = face.corner[(first + 1) % size], last = face.corner[(first + size - 1) % size];
-  if (before(last, next)) std::swap(next, last);
-  part.triangle = size == 3;
-  part.origin = place_of_corner(face.corner[first]);
-  const LatticePlace a = lattice_corner(face.corner[first]), b = lattice_corner(next), c = lattice_corner(last);
+  const auto [first, next, last] = first_corners(face);
+  part.triangle = face.size == 3;
+  part.origin = place_of_corner(first);
+  const LatticePlace a = lattice_corner(first), b = lattice_corner(next), c = lattice_corner(last);
   // Of the face's two directions in the cell, all of whose parts are -1, 0 or 1, two axes tell them apart.
-  const auto &A = corners_of(lattice_->family)[face.corner[first]], &B = corners_of(lattice_->family)[next],
+  const auto &A = corners_of(lattice_->family)[first], &B = corners_of(lattice_->family)[next],
              &C = corners_of(lattice_->family)[last];
   for (const auto& [x, y] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}}) {
     const auto i = static_cast<std::size_t>(x), j = static_cast<std::size_t>(y);
@@ -310,10 +272,7 @@ void CurvedCell::make_face(unsigned faces, Part& part) const {
                     bx * determinant};  // determinant is 1 or -1
     break;
   }
-  const auto steps = [](const LatticePlace& p, const LatticePlace& q) {
-    return std::max({1, std::abs(q[0] - p[0]), std::abs(q[1] - p[1]), std::abs(q[2] - p[2])});
-  };
-  part.order = {steps(a, b), steps(a, c)};
+  part.order = {steps_between(a, b), steps_between(a, c)};
   const auto [n, m] = part.order;
   for (int j = 0; j <= m; ++j)
     for (int i = 0; i <= (part.triangle ? n - j : n); ++i) {

@@ -28,8 +28,8 @@ inline constexpr std::int32_t cell_unit = 1 << 20;
 ///            from the corners' positions. So both cells at a face get the same bits, however they are numbered.
 class CurvedCell {
  public:
-  /// The next cell, of as many positions and values as the lattice has nodes; values may be none: then the field is 0.
-  /// Weights, positive, are Bezier cells', none: all are 1. The lattice must outlive the cell's use.
+  /// The next cell, of as many positions and values as are `given` of the lattice's nodes; values may be none: then the
+  /// field is 0. Weights, positive, are Bezier cells', none: all are 1. The lattice must outlive the cell's use.
   void set(const CurvedLattice& lattice, std::span<const glm::dvec3> positions, std::span<const double> values,
            std::span<const double> weights = {});
 
@@ -83,6 +83,8 @@ class CurvedCell {
   void add_to(Part& part, const LatticePlace& place) const;
   static void face_to_values(Part& part);
   void add_missing_nodes();
+  void add_missing_on(const CurvedFace& face, const std::vector<bool>& given);
+  void add_missing_inside(const std::vector<bool>& given);
   void make_inside();
   void make_bubbles();
   [[nodiscard]] glm::dvec4& node(const LatticePlace& p) { return values_[static_cast<std::size_t>(lattice_->slot(p))]; }
@@ -91,6 +93,8 @@ class CurvedCell {
   }
   [[nodiscard]] LatticePlace lattice_corner(std::size_t corner) const;
   [[nodiscard]] bool before(std::size_t corner, std::size_t other) const;
+  /// A face's first corner by position, and the two next to it, the first of them first.
+  [[nodiscard]] std::array<std::size_t, 3> first_corners(const CurvedFace& face) const;
   /// Coordinates of the part; of the cell itself its own. In units.
   [[nodiscard]] static std::array<std::int32_t, 3> coordinates(const Part& part, const CellPlace& place);
   [[nodiscard]] glm::dvec4 evaluate(const Part& part, const std::array<double, 3>& x) const;

@@ -208,11 +208,12 @@ std::optional<std::size_t> triangle_with_middle(const CurvedLattice& lattice, co
 /// Nodes' slots; of those beside the lattice in their own order.
 void number_nodes(CurvedLattice& lattice) {
   int beside = lattice.slots, of_lattice = 0;
-  for (const LatticePlace& p : lattice.nodes) {
+  for (std::size_t k = 0; k < lattice.nodes.size(); ++k) {
+    const LatticePlace& p = lattice.nodes[k];
     const int m = lattice.refined;
     if (p[0] % m == 0 && p[1] % m == 0 && p[2] % m == 0) {
       lattice.slot_of_node.push_back(lattice.slot({p[0] / m, p[1] / m, p[2] / m}));
-      ++of_lattice;
+      of_lattice += k < lattice.given ? 1 : 0;
       continue;
     }
     const std::optional<std::size_t> face = triangle_with_middle(lattice, p);
@@ -390,6 +391,23 @@ std::optional<CurvedLattice> lagrange_lattice(std::uint8_t vtk_type, std::size_t
   return lattice.nodes.empty() ? std::nullopt : std::optional(std::move(lattice));
 }
 
+/// The cells of third order that have only the first of their lattice's nodes, those of edges or of edges and faces.
+std::optional<CurvedLattice> incomplete_cubic_lattice(std::uint8_t vtk_type, std::size_t nodes) {
+  struct Row {
+    std::uint8_t type;
+    std::size_t nodes, all;
+  };
+  static constexpr Row rows[] = {{71, 16, 20}, {72, 32, 64}, {72, 56, 64}, {73, 24, 40},
+                                 {73, 38, 40}, {74, 21, 30}, {74, 29, 30}};
+  for (const Row& row : rows) {
+    if (row.type != vtk_type || row.nodes != nodes) continue;
+    std::optional<CurvedLattice> lattice = lagrange_lattice(vtk_type, row.all, {});
+    lattice->given = nodes;
+    return lattice;
+  }
+  return std::nullopt;
+}
+
 /// Of Bezier cells, 78 to 80: those of Lagrange's.
 std::optional<CurvedLattice> bezier_lattice(std::uint8_t vtk_type, std::size_t nodes,
                                             const std::array<int, 3>& degrees) {
@@ -407,9 +425,12 @@ std::optional<CurvedLattice> curved_lattice(std::uint8_t vtk_type, std::size_t n
                                             const std::array<int, 3>& degrees) {
   std::optional<CurvedLattice> lattice = quadratic_lattice(vtk_type);
   if (!lattice && degrees == std::array<int, 3>{}) lattice = incomplete_lattice(vtk_type, nodes);
+  if (!lattice && degrees == std::array<int, 3>{}) lattice = incomplete_cubic_lattice(vtk_type, nodes);
   if (!lattice) lattice = lagrange_lattice(vtk_type, nodes, degrees);
   if (!lattice) lattice = bezier_lattice(vtk_type, nodes, degrees);
-  if (!lattice || lattice->nodes.size() != nodes) return std::nullopt;
+  if (!lattice) return std::nullopt;
+  if (lattice->given == 0) lattice->given = lattice->nodes.size();
+  if (lattice->given != nodes) return std::nullopt;
   number_slots(*lattice);
   number_nodes(*lattice);
   if (lattice->family == CurvedFamily::pyramid) lattice->pyramid_matrix = pyramid_matrix(*lattice);

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <span>
@@ -21,11 +23,17 @@ enum class CurvedFamily : std::uint8_t { tet, hexahedron, wedge, pyramid };
 /// A place of the lattice on which a cell has nodes: node / order is its place in (r, s, t).
 using LatticePlace = std::array<int, 3>;
 
+/// So many steps of the lattice are from one place to another on an edge; at least 1.
+inline int steps_between(const LatticePlace& p, const LatticePlace& q) {
+  return std::max({1, std::abs(q[0] - p[0]), std::abs(q[1] - p[1]), std::abs(q[2] - p[2])});
+}
+
 /// The functions of a higher-order cell, by its lattice of nodes.
 struct CurvedLattice {
   CurvedFamily family = CurvedFamily::tet;
   std::array<int, 3> order{};       ///< along r, s, t; one number for tets and pyramids, r and s alike for wedges
   std::vector<LatticePlace> nodes;  ///< of each of the cell's nodes, times `refined`; may be fewer than the lattice has
+  std::size_t given = 0;            ///< cells have the first so many of them; the others follow from these
   int refined = 1;                  ///< so many steps of nodes' places are one of the lattice
   /// Quadratic cells that may have a node in the middle of a triangle too, and with it a cubic function, and one
   /// inside.
@@ -64,7 +72,9 @@ inline constexpr int highest_pyramid_order = 8;
 /// nodes are some of VTK's, in its order (c: centre, m: all faces' middles, t: triangles' middles, e: all edges):
 /// tetrahedra of 5 (c), 7 (the base's edges), 8 (m), 11 (e c) and 14 (e m) nodes, hexahedra of 9 (c), 16 (edges of the
 /// base and the top; linear along t), 21 (e c) and 26 (e m), wedges of 16 (e c) and 20 (e m), pyramids of 18 (e m).
-/// What has no node is what the nodes of its edge or face make of it.
+/// What has no node is what the nodes of its edge or face make of it. So are CGNS's and Exodus' cells of third order
+/// that have the first of VTK's nodes: tetrahedra of 16 (all edges), hexahedra of 32 (edges) and 56 (and faces), wedges
+/// of 24 (edges) and 38 (and faces), pyramids of 21 (edges) and 29 (and faces).
 ///
 /// Orders  Lagrange tetrahedra, hexahedra and wedges up to 100, pyramids up to 8, Bezier cells up to 12.
 /// Nodes   in VTK's order (vtkQuadraticTetra.h ..., vtkHigherOrderTetra.h, vtkHigherOrderHexahedron.h,

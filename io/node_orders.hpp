@@ -13,21 +13,24 @@ namespace tessera::io {
 ///
 /// exodus  "Exodus: A Finite Element Data Model" (SEACAS), section on element types, whose figures follow Patran's
 ///         element library: the edges between base and top come before the top's, a node inside before those of faces.
-///         The manual leaves out tetrahedra of 8 nodes and hexahedra of 64; theirs are those of the sides that the
-///         library gives (ex_get_side_set_node_list, and Ioss_Hex64). Names are as free as corners: `HEX`, `hex27`.
+///         The manual leaves out tetrahedra of 8 nodes and cells of third order; theirs are those of the edges and
+///         sides that the library gives (ex_get_side_set_node_list, and Ioss_Tet16, Wedge24, Hex32 and Hex64). Names
+///         are as free as corners: `HEX`, `hex27`.
 /// med     "MED File Format", reference elements (MED_TETRA4 ... MED_HEXA27). The corners of its cells go round against
 ///         VTK's sense, which mirrors the cell and changes no order; only faces' middles come otherwise.
 /// nastran "Quick Reference Guide", CTETRA, CPYRAM, CPENTA and CHEXA: the edges between base and top come before the
 ///         top's. Any node in the middle of an edge may be blank.
 /// cgns    SIDS, section 3.3 "Unstructured Grid Element Numbering Conventions". Cells of higher order are read by
-///         CGNS's own library (io/helper/cgns_cells.hpp), as VTK 9.1's reader gets some of them wrong.
+///         CGNS's own library (io/helper/cgns_cells.hpp), as VTK 9.1's reader gets some of them wrong. Those of fourth
+///         order are not: SIDS places the nodes inside triangles elsewhere than on the lattice that exporters take.
+/// tetgen  User's manual, ".ele files": the edges of a tetrahedron of 10 nodes.
 ///
 /// In VTK's order as they are: EnSight (User Manual, EnSight Gold Geometry File Format; VTK's reader mirrors wedges),
 /// XDMF (Tet_10 ... Hex_27, which VTK and meshio write so; the format's pages define none), legacy VTK and VTK XML but
 /// for old Lagrange hexahedra (exchange_vtk8_edges() below), VTKHDF, Medit. Gmsh's own files go by the
-/// places of nodes that its library gives (io/helper/gmsh_cells.hpp), TetGen's by io/tetgen_files.cpp. AVS UCD, Fluent,
+/// places of nodes that its library gives (io/helper/gmsh_cells.hpp). AVS UCD, Fluent,
 /// GAMBIT, OpenFOAM, PLOT3D, SU2 and Tecplot have linear cells here.
-enum class NodeConvention : std::uint8_t { exodus, med, cgns, nastran };
+enum class NodeConvention : std::uint8_t { exodus, med, cgns, nastran, tetgen };
 
 /// One cell type of a format, told by its shape and its number of nodes.
 struct NodeOrder {

@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <charconv>
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <system_error>
 
+#include "io/node_orders.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -165,22 +166,21 @@ CellBlock parse_node_ele(std::string_view node, std::string_view ele, const std:
   if (corners != 4 && corners != 10) in.fail(fmt::format("tets have 4 or 10 nodes, not {}", corners));
   if (attributes < 0 || attributes > 1000) in.fail(fmt::format("{} attributes a tet are not possible", attributes));
   const auto nodes_each = static_cast<std::size_t>(corners);
+  const NodeOrder& order = *find_node_order(NodeConvention::tetgen, CurvedFamily::tet, 10);
   CellBlock block;
   nodes_each == 4 ? block.tets.resize(n) : block.connectivity.resize(nodes_each * n);
   std::vector<std::vector<double>> cell_values(static_cast<std::size_t>(attributes));
   for (std::size_t t = 0; t < n; ++t) {
     in.need_line("a tet");
     in.need<std::int64_t>("the tet's number");
-    // Of second order TetGen lists the edges (2,3) (0,3) (0,1) (1,2) (1,3) (0,2), VTK (0,1) (1,2) (0,2) (0,3) (1,3)
-    // (2,3).
-    constexpr std::array<std::size_t, 10> vtk_place = {0, 1, 2, 3, 9, 7, 4, 5, 8, 6};
     for (std::size_t k = 0; k < nodes_each; ++k)
-      (nodes_each == 4 ? block.tets[t][k] : block.connectivity[nodes_each * t + vtk_place[k]]) =
+      (nodes_each == 4 ? block.tets[t][k] : block.connectivity[nodes_each * t + k]) =
           point_index(in, in.need<std::int64_t>("a corner"), nodes);
+    if (nodes_each == 10) to_vtk_order(order, std::span(block.connectivity).subspan(nodes_each * t, nodes_each));
     for (std::vector<double>& values : cell_values) values.push_back(in.need<double>("an attribute"));
   }
   if (nodes_each == 10) {
-    block.types.assign(n, 24);
+    block.types.assign(n, order.vtk_type);
     block.offsets.resize(n + 1);
     for (std::size_t c = 0; c <= n; ++c) block.offsets[c] = 10 * c;
   }

@@ -31,18 +31,25 @@ const NodeOrder* order_of(ElementType type) {
   constexpr std::array solids = {
       Solid{CGNS_ENUMV(TETRA_4), CurvedFamily::tet, 4},
       Solid{CGNS_ENUMV(TETRA_10), CurvedFamily::tet, 10},
+      Solid{CGNS_ENUMV(TETRA_16), CurvedFamily::tet, 16},
       Solid{CGNS_ENUMV(TETRA_20), CurvedFamily::tet, 20},
       Solid{CGNS_ENUMV(PYRA_5), CurvedFamily::pyramid, 5},
       Solid{CGNS_ENUMV(PYRA_13), CurvedFamily::pyramid, 13},
       Solid{CGNS_ENUMV(PYRA_14), CurvedFamily::pyramid, 14},
+      Solid{CGNS_ENUMV(PYRA_21), CurvedFamily::pyramid, 21},
+      Solid{CGNS_ENUMV(PYRA_29), CurvedFamily::pyramid, 29},
       Solid{CGNS_ENUMV(PYRA_30), CurvedFamily::pyramid, 30},
       Solid{CGNS_ENUMV(PENTA_6), CurvedFamily::wedge, 6},
       Solid{CGNS_ENUMV(PENTA_15), CurvedFamily::wedge, 15},
       Solid{CGNS_ENUMV(PENTA_18), CurvedFamily::wedge, 18},
+      Solid{CGNS_ENUMV(PENTA_24), CurvedFamily::wedge, 24},
+      Solid{CGNS_ENUMV(PENTA_38), CurvedFamily::wedge, 38},
       Solid{CGNS_ENUMV(PENTA_40), CurvedFamily::wedge, 40},
       Solid{CGNS_ENUMV(HEXA_8), CurvedFamily::hexahedron, 8},
       Solid{CGNS_ENUMV(HEXA_20), CurvedFamily::hexahedron, 20},
       Solid{CGNS_ENUMV(HEXA_27), CurvedFamily::hexahedron, 27},
+      Solid{CGNS_ENUMV(HEXA_32), CurvedFamily::hexahedron, 32},
+      Solid{CGNS_ENUMV(HEXA_56), CurvedFamily::hexahedron, 56},
       Solid{CGNS_ENUMV(HEXA_64), CurvedFamily::hexahedron, 64},
   };
   const auto* const found = std::ranges::find(solids, type, &Solid::type);
@@ -213,8 +220,7 @@ class Cells {
     if (solid == nullptr) {
       if (is_below_three(type)) return;
       refuse(zone_, section,
-             fmt::format("has elements {}, which are not read; export elements of order 1 or 2, or TETRA_20, PYRA_30, "
-                         "PENTA_40 or HEXA_64",
+             fmt::format("has elements {}, which are not read; export elements of order 1 to 3",
                          cg_ElementTypeName(type)));
     }
     if (nodes.size() < solid->nodes)

@@ -73,6 +73,11 @@ std::vector<std::vector<int>> wedge40_lists() {
   return lists;
 }
 
+std::vector<std::vector<int>> first_of(std::vector<std::vector<int>> lists, std::size_t count) {
+  lists.resize(count);
+  return lists;
+}
+
 std::vector<std::pair<ReferenceCell, CGNS_ENUMT(ElementType_t)>> sids_cells() {
   const std::vector<std::vector<int>> hex20 = {{1, 2}, {2, 3}, {3, 4}, {4, 1}, {1, 5}, {2, 6},
                                                {3, 7}, {4, 8}, {5, 6}, {6, 7}, {7, 8}, {8, 5}},
@@ -89,19 +94,27 @@ std::vector<std::pair<ReferenceCell, CGNS_ENUMT(ElementType_t)>> sids_cells() {
   constexpr auto hexahedron = CurvedFamily::hexahedron, tet = CurvedFamily::tet, wedge = CurvedFamily::wedge,
                  pyramid = CurvedFamily::pyramid;
   return {{{"TETRA_10", tet, tet10}, CGNS_ENUMV(TETRA_10)},
+          {{"TETRA_16", tet, first_of(tet20_lists(), 12)}, CGNS_ENUMV(TETRA_16)},
           {{"TETRA_20", tet, tet20_lists()}, CGNS_ENUMV(TETRA_20)},
+          {{"PENTA_24", wedge, first_of(wedge40_lists(), 18)}, CGNS_ENUMV(PENTA_24)},
+          {{"PENTA_38", wedge, first_of(wedge40_lists(), 32)}, CGNS_ENUMV(PENTA_38)},
           {{"PENTA_40", wedge, wedge40_lists()}, CGNS_ENUMV(PENTA_40)},
           {{"PYRA_13", pyramid, pyramid13, CellSpace::linear}, CGNS_ENUMV(PYRA_13)},
           {{"PYRA_14", pyramid, pyramid14}, CGNS_ENUMV(PYRA_14)},
+          {{"PYRA_21", pyramid, first_of(pyramid30_lists(), 16)}, CGNS_ENUMV(PYRA_21)},
+          {{"PYRA_29", pyramid, first_of(pyramid30_lists(), 24)}, CGNS_ENUMV(PYRA_29)},
           {{"PYRA_30", pyramid, pyramid30_lists()}, CGNS_ENUMV(PYRA_30)},
           {{"PENTA_15", wedge, wedge15}, CGNS_ENUMV(PENTA_15)},
           {{"PENTA_18", wedge, wedge18}, CGNS_ENUMV(PENTA_18)},
           {{"HEXA_20", hexahedron, hex20}, CGNS_ENUMV(HEXA_20)},
           {{"HEXA_27", hexahedron, hex27}, CGNS_ENUMV(HEXA_27)},
+          {{"HEXA_32", hexahedron, first_of(hex64_lists(), 24)}, CGNS_ENUMV(HEXA_32)},
+          {{"HEXA_56", hexahedron, first_of(hex64_lists(), 48)}, CGNS_ENUMV(HEXA_56)},
           {{"HEXA_64", hexahedron, hex64_lists()}, CGNS_ENUMV(HEXA_64)}};
 }
 
-void write_cgns(const std::filesystem::path& file, const BentCell& cell, CGNS_ENUMT(ElementType_t) type) {
+void write_cgns(const std::filesystem::path& file, const BentCell& cell, CGNS_ENUMT(ElementType_t) type,
+                bool is_mixed = false) {
   int id = 0, base = 0, zone = 0, made = 0, solution = 0;
   const auto count = static_cast<cgsize_t>(cell.positions.size());
   ASSERT_EQ(cg_open(file.c_str(), CG_MODE_WRITE, &id), CG_OK) << cg_get_error();
@@ -118,7 +131,16 @@ void write_cgns(const std::filesystem::path& file, const BentCell& cell, CGNS_EN
   }
   std::vector<cgsize_t> nodes;
   for (cgsize_t k = 1; k <= count; ++k) nodes.push_back(k);
-  ASSERT_EQ(cg_section_write(id, base, zone, "cells", type, 1, 1, 0, nodes.data(), &made), CG_OK) << cg_get_error();
+  if (is_mixed) {
+    nodes.insert(nodes.begin(), static_cast<cgsize_t>(type));
+    const std::array<cgsize_t, 2> offsets = {0, count + 1};
+    ASSERT_EQ(
+        cg_poly_section_write(id, base, zone, "cells", CGNS_ENUMV(MIXED), 1, 1, 0, nodes.data(), offsets.data(), &made),
+        CG_OK)
+        << cg_get_error();
+  } else {
+    ASSERT_EQ(cg_section_write(id, base, zone, "cells", type, 1, 1, 0, nodes.data(), &made), CG_OK) << cg_get_error();
+  }
   ASSERT_EQ(cg_sol_write(id, base, zone, "values", CGNS_ENUMV(Vertex), &solution), CG_OK);
   ASSERT_EQ(cg_field_write(id, base, zone, solution, CGNS_ENUMV(RealDouble), "f", cell.values.data(), &made), CG_OK);
   ASSERT_EQ(cg_close(id), CG_OK);
@@ -131,18 +153,22 @@ TEST(CurvedCgns, EveryTypeHasItsVolumeAndItsField) {
   for (const auto& [cell, type] : sids_cells()) {
     SCOPED_TRACE(cell.name);
     const BentCell bent = testing::bend(cell);
-    write_cgns(folder / (cell.name + ".cgns"), bent, type);
-    testing::expect_same(read_mesh(folder / (cell.name + ".cgns"), options), bent);
+    for (const bool is_mixed : {false, true}) {
+      write_cgns(folder / "a.cgns", bent, type, is_mixed);
+      testing::expect_same(read_mesh(folder / "a.cgns", options), bent);
+    }
   }
 }
 
 TEST(CurvedCgns, TypesThatAreNotReadAreRefused) {
   TESSERA_VTK_OR_SKIP();
   const test::TemporaryFolder folder;
-  BentCell cell = testing::bend({"HEXA_32", CurvedFamily::hexahedron, hex64_lists()});
-  cell.positions.resize(32), cell.values.resize(32);
-  write_cgns(folder / "a.cgns", cell, CGNS_ENUMV(HEXA_32));
-  test::expect_bad_input([&] { read_mesh(folder / "a.cgns"); }, {"a.cgns", "has elements HEXA_32", "HEXA_64"});
+  BentCell cell = testing::bend({"HEXA_44", CurvedFamily::hexahedron, hex64_lists()});
+  cell.positions.resize(44), cell.values.resize(44);
+  for (const bool is_mixed : {false, true}) {
+    write_cgns(folder / "a.cgns", cell, CGNS_ENUMV(HEXA_44), is_mixed);
+    test::expect_bad_input([&] { read_mesh(folder / "a.cgns"); }, {"a.cgns", "has elements HEXA_44", "order 1 to 3"});
+  }
 }
 
 }  // namespace

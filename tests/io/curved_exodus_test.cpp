@@ -9,6 +9,7 @@
 
 #include "io/block_surface.hpp"
 #include "io/curved_reference.hpp"
+#include "io/mesh_assembly.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
@@ -67,6 +68,20 @@ ReferenceCell hex64() {
   return {"HEX64", CurvedFamily::hexahedron, lists};
 }
 
+/// Cells of third order with nodes on their edges alone: those of upright edges come low ones first.
+Lists cubic_edges(const Lists& base, const Lists& upright, const Lists& top) {
+  Lists lists;
+  const auto add = [&](const Lists& edges) {
+    for (const std::vector<int>& edge : edges)
+      lists.push_back(testing::a_third(edge[0], edge[1])), lists.push_back(testing::a_third(edge[1], edge[0]));
+  };
+  add(base);
+  for (const std::vector<int>& edge : upright) lists.push_back(testing::a_third(edge[0], edge[1]));
+  for (const std::vector<int>& edge : upright) lists.push_back(testing::a_third(edge[1], edge[0]));
+  add(top);
+  return lists;
+}
+
 std::vector<ReferenceCell> manual_cells() {
   constexpr auto hexahedron = CurvedFamily::hexahedron, tet = CurvedFamily::tet, wedge = CurvedFamily::wedge,
                  pyramid = CurvedFamily::pyramid;
@@ -77,6 +92,7 @@ std::vector<ReferenceCell> manual_cells() {
           {"HEX20", hexahedron, hex20},
           {"hex21", hexahedron, together(hex20, hexahedron_inside)},
           {"HEX", hexahedron, together(hex20, hexahedron_inside, hexahedron_faces)},
+          {"HEX32", hexahedron, cubic_edges(base_edges, upright_edges, top_edges)},
           hex64(),
           {"TETRA5", tet, tet_inside, CellSpace::linear},
           {"TETRA8", tet, {{1, 2, 4}, {2, 3, 4}, {1, 2, 3}, {1, 3, 4}}, CellSpace::linear},
@@ -85,12 +101,14 @@ std::vector<ReferenceCell> manual_cells() {
           {"TETRA14", tet, together(tet_edges, tet_faces)},
           {"TETRA15", tet, together(tet_edges, tet_inside, tet_faces)},
           {"TETRA", tet, together(tet_edges, tet_faces, tet_inside)},  // as the library's own side sets have it
+          {"TETRA16", tet, cubic_edges(wedge_base, {{1, 4}, {2, 4}, {3, 4}}, {})},
           {"WEDGE12", wedge, together(wedge_base, wedge_top), CellSpace::quadratic_in_r_s},
           {"WEDGE15", wedge, wedge15},
           {"WEDGE16", wedge, together(wedge15, wedge_inside)},
           {"Wedge", wedge, together(wedge15, wedge_sides)},
           {"WEDGE20", wedge, together(wedge15, wedge_triangles, wedge_sides_after_triangles)},
           {"WEDGE21", wedge, together(wedge15, wedge_inside, wedge_triangles, wedge_sides_after_triangles)},
+          {"WEDGE24", wedge, cubic_edges(wedge_base, wedge_upright, wedge_top)},
           {"PYRAMID13", pyramid, pyramid_edges, CellSpace::linear},
           {"PYRAMID14", pyramid, together(pyramid_edges, pyramid_base)},
           {"pyramid", pyramid, together(pyramid_edges, pyramid_base, pyramid_triangles)},
@@ -178,6 +196,24 @@ TEST(CurvedExodus, ANodeInsideChangesTheFieldAndNotTheShape) {
     EXPECT_NEAR(testing::volume(read.mesh), volume, 1e-12);
     EXPECT_LT(read.higher_order.field_error, 0.02);
     EXPECT_NEAR(testing::field_integral(read.mesh), integral, read.higher_order.field_error * volume);
+  }
+}
+
+TEST(CurvedExodus, CellsWithoutAPublishedOrderAreDrawnByTheirCorners) {
+  TESSERA_VTK_OR_SKIP();
+  for (const auto& [name, shape, nodes] :
+       {std::tuple("TETRA40", CurvedFamily::tet, 40u), std::tuple("WEDGE52", CurvedFamily::wedge, 52u)}) {
+    SCOPED_TRACE(name);
+    ReferenceCell cell{name, shape, {}};
+    while (testing::places_of(cell).size() < nodes) cell.middles.push_back({1, 2, 3});
+    BentCell plane{testing::places_of(cell), {}, 0, 0};
+    plane.values.assign(plane.positions.size(), 1);
+    const MeshFile read = read_back(name, plane);
+    EXPECT_NEAR(testing::volume(read.mesh), shape == CurvedFamily::tet ? 1.0 / 6 : 0.5, 1e-12);
+    EXPECT_EQ(read.higher_order.by_corners, 1u);
+    const std::vector<std::string> warnings = warnings_on_cells(read.counts, read.higher_order);
+    ASSERT_FALSE(warnings.empty());
+    EXPECT_NE(warnings.front().find("rendered as linear ones by their corner nodes"), std::string::npos);
   }
 }
 
