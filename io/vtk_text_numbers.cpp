@@ -91,6 +91,14 @@ bool VtkTextNumbers::read_number(T& number) {
   return true;
 }
 
+std::string VtkTextNumbers::next_word() const {
+  constexpr std::size_t most = 24;
+  std::size_t first = used_;  // of 1.5 as a whole number the 1 has been read
+  while (first > 0 && !is_blank(text_[first - 1])) --first;
+  const std::string word = text_.substr(first, most);
+  return word.substr(0, static_cast<std::size_t>(std::ranges::find_if(word, is_blank) - word.begin()));
+}
+
 bool VtkTextNumbers::read(NumberType type, std::byte* to, std::uint64_t count) {
   return with_number_type(type, [&](auto zero) {
     using T = decltype(zero);

@@ -25,6 +25,9 @@ class VtkTextNumbers {
   /// number that the type cannot hold.
   [[nodiscard]] bool read(NumberType type, std::byte* to, std::uint64_t count);
 
+  /// What read() could not, or its beginning; empty at the text's end.
+  [[nodiscard]] std::string next_word() const;
+
  private:
   template <class T>
   [[nodiscard]] bool read_number(T& number);

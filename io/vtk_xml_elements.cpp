@@ -32,9 +32,11 @@ class ElementWalk {
     for (std::string_view view = window(); !view.empty(); view = window()) {
       if (in_array_) {
         const std::size_t numbers = std::min(view.find('<'), view.size());
+        is_blank_ = is_blank_ && view.substr(0, numbers).find_first_not_of(" \n\r\t") == std::string_view::npos;
         at_ += numbers;
         if (numbers == view.size()) continue;
         elements_.back().text_end = at_;
+        elements_.back().has_text_behind_tags = next_is('!') || (is_blank_ && !next_is('/'));
         in_array_ = false;
         continue;
       }
@@ -47,7 +49,7 @@ class ElementWalk {
         VtkXmlElement& element = elements_.back();
         element.text_at = element.text_end = at_;
         if (element.name == "AppendedData") return std::move(elements_);
-        in_array_ = is_open_ && (element.name == "DataArray" || element.name == "Array");
+        in_array_ = is_blank_ = is_open_ && (element.name == "DataArray" || element.name == "Array");
       }
     }
     parse("", true);
@@ -84,6 +86,13 @@ class ElementWalk {
                                          source_, at_, XML_ErrorString(XML_GetErrorCode(parser_.get()))));
   }
 
+  /// Whether a tag at at_ goes on so.
+  [[nodiscard]] bool next_is(char c) const {
+    char next = '\0';
+    if (size_ - at_ > 1) file_.read(at_ + 1, reinterpret_cast<std::byte*>(&next), 1);
+    return next == c;
+  }
+
   /// Of the file from at_ on; empty at its end.
   std::string_view window() {
     constexpr std::uint64_t most = 256 << 10;
@@ -105,6 +114,7 @@ class ElementWalk {
   std::size_t depth_ = 0;
   bool is_open_ = false;   ///< the last element, whose end has not come
   bool in_array_ = false;  ///< numbers are passed over up to a tag
+  bool is_blank_ = false;  ///< none has come yet
   std::exception_ptr fault_;
 };
 

@@ -14,8 +14,9 @@ struct VtkXmlElement {
   std::string name;
   std::size_t depth = 0;  ///< of the root 0
   std::map<std::string, std::string> attributes{};
-  std::uint64_t text_at = 0;   ///< behind its opening tag, in the file
-  std::uint64_t text_end = 0;  ///< of a DataArray or Array: at the tag that comes next; of others not set
+  std::uint64_t text_at = 0;          ///< behind its opening tag, in the file
+  std::uint64_t text_end = 0;         ///< of a DataArray or Array: at the tag that comes next; of others not set
+  bool has_text_behind_tags = false;  ///< of these: a comment or an element comes before or between the numbers
 
   /// An attribute, or `otherwise`.
   [[nodiscard]] std::string word(const std::string& attribute, const std::string& otherwise = "") const;

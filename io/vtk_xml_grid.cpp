@@ -70,11 +70,13 @@ VtkXmlArray array_of(const VtkXmlElement& element, const Packing& packing) {
   if (!array.type && type != "String") throw Unknown();
   std::int64_t components = 1;
   if (element.has("NumberOfComponents") && (!read_whole_number(element.word("NumberOfComponents"), components) ||
-                                            components < 1 || components > most_components))
+                                            components < 0 || components > most_components))
     throw Unknown();
+  if (components == 0) array.type.reset();
   array.components = static_cast<int>(components);
   array.place = packing.place;
   if (!element.has("offset")) {
+    if (element.has_text_behind_tags) throw Unknown();
     array.ascii = element.word("format") != "binary";
     array.place.base64 = true;
     array.place.first_byte = element.text_at;
@@ -115,8 +117,8 @@ class GridElements {
       if (element.depth == 4 && list_ != nullptr && in_piece_) list_->push_back(array_of(element, packing_));
     }
     if (grid_.pieces.empty()) throw Unknown();
-    for (const VtkXmlPiece& piece : grid_.pieces)
-      for (const VtkXmlFields* fields : {&piece.point_fields, &piece.cell_fields}) require_names(*fields);
+    for (VtkXmlPiece& piece : grid_.pieces)
+      for (VtkXmlFields* fields : {&piece.point_fields, &piece.cell_fields}) name_all(*fields);
     return std::move(grid_);
   }
 
@@ -155,10 +157,15 @@ class GridElements {
     if (list_ != nullptr) list_->clear();
   }
 
-  static void require_names(const VtkXmlFields& fields) {
+  /// VTK's reader ends at arrays without a name.
+  static void name_all(VtkXmlFields& fields) {
     std::set<std::string> names;
-    for (const VtkXmlArray& array : fields.arrays)
-      if (array.name.empty() || !names.insert(array.name).second) throw Unknown();
+    std::size_t number = 0;
+    for (VtkXmlArray& array : fields.arrays) {
+      ++number;
+      if (array.name.empty()) array.name = fmt::format("array {}", number);
+      if (!names.insert(array.name).second) throw Unknown();
+    }
   }
 
   const std::vector<VtkXmlElement>& elements_;

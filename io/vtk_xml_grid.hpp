@@ -13,8 +13,8 @@ namespace tessera::io {
 
 /// An array as a VTK XML file declares it.
 struct VtkXmlArray {
-  std::string name;
-  std::optional<NumberType> type;  ///< none: text
+  std::string name;                ///< `array NUMBER`, from 1, where the file has none
+  std::optional<NumberType> type;  ///< none: text, or tuples of no numbers
   int components = 1;
   bool ascii = false;
   VtkArrayPlace place{};  ///< of ascii numbers the first byte and the end alone
@@ -51,8 +51,8 @@ struct VtkXmlGrid {
   std::vector<VtkXmlPiece> pieces;
 };
 
-/// Nothing if the file has what this reader does not know: time steps, arrays without a name or two of one, a version
-/// or type to come. Throws Error(bad_input) of `source` if it is another kind of file, or damaged.
+/// Nothing if the file has what this reader does not know: time steps, two arrays of one name, numbers between
+/// comments, a version or type to come. Throws Error(bad_input) of `source` if it is another kind of file, or damaged.
 std::optional<VtkXmlGrid> read_vtk_xml_grid(const PositionalFile& file, const std::string& source);
 
 /// The type of numbers that a VTK XML file names so.

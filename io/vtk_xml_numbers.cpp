@@ -63,6 +63,12 @@ class Numbers {
                                  : bytes_at_once;
   }
 
+  /// Of text what is no number of its type, where read() failed; empty otherwise.
+  [[nodiscard]] std::string wrong_word() const {
+    const auto* const text = std::get_if<VtkTextNumbers>(&from_);
+    return text != nullptr ? text->next_word() : std::string();
+  }
+
   [[nodiscard]] bool read(std::byte* to, std::uint64_t count) {
     if (auto* const text = std::get_if<VtkTextNumbers>(&from_)) return text->read(type_, to, count);
     const std::size_t each = size_of(type_);
@@ -107,11 +113,16 @@ void stream_numbers(const PositionalFile& file, const VtkXmlSegment& segment, st
   std::vector<std::byte> part(at_once * each);
   for (std::uint64_t done = 0; done < segment.numbers;) {
     const std::uint64_t now = std::min(at_once, segment.numbers - done);
-    if (!numbers.read(part.data(), now))
+    if (!numbers.read(part.data(), now)) {
+      if (const std::string word = numbers.wrong_word(); !word.empty())
+        throw scene::bad_input(fmt::format("{}: its array {} has {} where a number of type {} should be; correct it",
+                                           source, scene::quote(segment.array.name), scene::quote(word),
+                                           name_of(*segment.array.type)));
       throw scene::bad_input(
           fmt::format("{}: its array {} breaks between its numbers {} and {} of {}; the file is truncated or "
                       "damaged, export it again",
                       source, scene::quote(segment.array.name), done, done + now, segment.numbers));
+    }
     use(std::span(part).first(now * each));
     done += now;
   }

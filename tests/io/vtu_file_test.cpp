@@ -432,6 +432,35 @@ TEST_F(Vtu, ArraysOfTextAreSkipped) {
   EXPECT_EQ(values_of(block.fields[1], 0), (std::vector<double>{1}));
 }
 
+TEST_F(Vtu, ArraysWithoutANameHaveTheirNumber) {
+  std::string text = vtu_file_text({}, {one_tet(0, 1)});
+  text.erase(text.find("Name=\"p\""), 8);
+  const CellBlock block = vtu_block(write(text));
+  ASSERT_EQ(block.fields.size(), 2u);
+  EXPECT_EQ(block.fields[0].name, "array 1");
+  EXPECT_EQ(values_of(block.fields[0], 0), (std::vector<double>{10, 11, 12, 13}));
+}
+
+TEST_F(Vtu, ArraysOfTuplesWithoutNumbersAreSkipped) {
+  VtuPiece piece = one_tet(0, 1);
+  piece.point_data.insert(piece.point_data.begin(), {"Float64", "none", 0, {}});
+  const CellBlock block = read({}, {piece});
+  ASSERT_EQ(block.fields.size(), 2u);
+  EXPECT_EQ(block.fields[0].name, "p");
+}
+
+TEST_F(Vtu, WordsThatAreNoNumbersAreNamed) {
+  const std::string text = vtu_file_text({}, {one_tet(0, 1)});
+  for (const char* word : {"1.5", "1.#QNAN", "3000000000"}) {
+    std::string changed = text;
+    const std::size_t at = changed.find("10 11 12 13");
+    ASSERT_NE(at, std::string::npos);
+    const auto file = write(changed.replace(at + 3, 2, word));
+    test::expect_bad_input([&] { vtu_block(file); }, {"m.vtu: its array 'p' has '" + std::string(word) +
+                                                      "' where a number of type int32 should"});
+  }
+}
+
 TEST_F(Vtu, WhatIsNotKnownIsLeftToVtk) {
   const std::string text = vtu_file_text({}, {one_tet(0, 1)});
   const auto left = [&](const std::string& from, const std::string& to) {
@@ -445,10 +474,11 @@ TEST_F(Vtu, WhatIsNotKnownIsLeftToVtk) {
   left("\"UInt32\"", "\"UInt16\"");
   left("header_type", "compressor=\"vtkOther\" header_type");
   left("<UnstructuredGrid>", "<UnstructuredGrid TimeValues=\"0 1\">");
-  left("Name=\"p\"", "");
+  left("0 0 0 1 0 0 0 1 0 0 0 1 ", "0 0 0 1 0 0 <!-- here --> 0 1 0 0 0 1 ");
+  left("0 0 0 1 0 0 0 1 0 0 0 1 ", "<![CDATA[0 0 0 1 0 0 0 1 0 0 0 1]]>");
   left("Name=\"p\"", "Name=\"p\" TimeStep=\"0\"");
   left("type=\"Int32\" Name=\"p\"", "type=\"Bit\" Name=\"p\"");
-  left("Name=\"p\" NumberOfComponents=\"1\"", "Name=\"p\" NumberOfComponents=\"0\"");
+  left("Name=\"p\" NumberOfComponents=\"1\"", "Name=\"p\" NumberOfComponents=\"-1\"");
 }
 
 }  // namespace
