@@ -46,7 +46,7 @@ constexpr std::array rows = {
     FormatRow{FileKind::solver, "CGNS", ".cgns", FileHolds::mesh, Needs::vtk, "HDF5 or ADF", begins_as_adf, "cgns",
               true},
     FormatRow{FileKind::solver, "VTKHDF", ".vtkhdf", FileHolds::grid_or_mesh, Needs::vtk,
-              "unstructured grids of one time; image data with time steps are volumes", nullptr, "vtk_hdf", true},
+              "unstructured grids, and image data, which are volumes; time steps", nullptr, "vtk_hdf", true},
     FormatRow{FileKind::med, "MED", ".med .rmed", FileHolds::mesh, Needs::med,
               "Salome's, of version 2.3 and later; HDF5, by its name; fields of nodes and cells", nullptr, "med", true},
     FormatRow{FileKind::xdmf, "XDMF", ".xdmf .xmf", FileHolds::grid_or_mesh, Needs::xdmf,

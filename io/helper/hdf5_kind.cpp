@@ -8,6 +8,7 @@
 #include "io/helper/hdf5_file.hpp"
 #include "io/helper/hdf5_grid.hpp"
 #include "io/helper/readers.hpp"
+#include "io/helper/vtk_hdf_mesh.hpp"
 #include "io/inflated_file.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
@@ -27,13 +28,15 @@ bool is_netcdf(const Hdf5File& opened, const std::filesystem::path& file) {
   return holds_netcdf_grid(file) || !holds_arrays(opened);
 }
 
+/// Files that do not state a type are of the first version.
+bool is_mesh_type(const std::string& vtk_type) { return vtk_type.empty() || vtk_type == "UnstructuredGrid"; }
+
 }  // namespace
 
 ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   require_real_name(file);
   allow_for(file);
   std::string vtk_type;
-  bool has_steps = false;
   enum class Kind { unknown, netcdf, vtk, vtk_image, cgns, exodus, flash, fluent, minc, med } kind = Kind::unknown;
   {
     const Hdf5File opened(file);
@@ -43,7 +46,6 @@ ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file,
     if (opened.has("VTKHDF")) {
       vtk_type = opened.text_of("VTKHDF", "Type");
       kind = vtk_type == "ImageData" ? Kind::vtk_image : Kind::vtk;
-      has_steps = opened.has("VTKHDF/Steps") && opened.number_of("VTKHDF/Steps", "NSteps", 2) != 1;
     } else if (opened.has("CGNSLibraryVersion"))
       kind = Kind::cgns;
     else if (opened.has_attribute("floating_point_word_size") || opened.has("num_nodes"))
@@ -58,6 +60,9 @@ ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file,
       kind = Kind::med;
     else if (is_netcdf(opened, file))
       kind = Kind::netcdf;
+    const bool is_first_share = request.value("part", 0) == 0, is_look = request.value("look", false);
+    if (kind == Kind::vtk && is_mesh_type(vtk_type) && is_first_share && !is_look)
+      return read_vtk_hdf_mesh(holdings, opened, file.string(), request);
     if (kind == Kind::vtk_image) return read_vtk_hdf_image(holdings, opened, file.string(), request);
     if (kind == Kind::unknown) return read_arrays(holdings, opened, file.string(), request);
   }
@@ -68,12 +73,10 @@ ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file,
   if (kind != Kind::cgns && request.value("part", 0) > 0) return {};                          // the first share is all
   switch (kind) {
     case Kind::vtk:
-      if (!vtk_type.empty() && vtk_type != "UnstructuredGrid")
-        throw refuse(fmt::format("VTKHDF of the type {}, which VTK 9.1 does not read", scene::quote(vtk_type)).c_str(),
-                     "save it as .vtu, .vtm or .vtp in ParaView");
-      if (has_steps)  // it would take them for pieces of one mesh
-        throw refuse("VTKHDF with time steps, which VTK 9.1 does not know", "save its steps as .pvd in ParaView");
-      return read_vtk_hdf(holdings, file, request);
+      throw refuse(
+          fmt::format("VTKHDF of the type {}; only UnstructuredGrid and ImageData are read", scene::quote(vtk_type))
+              .c_str(),
+          "save it as .vtu, .vtm, .vth or .vtp in ParaView");
     case Kind::cgns:
       return read_cgns(holdings, file, request);
     case Kind::exodus:

@@ -10,7 +10,6 @@
 #include <vtkFLUENTReader.h>
 #include <vtkGAMBITReader.h>
 #include <vtkGenericEnSightReader.h>
-#include <vtkHDFReader.h>
 #include <vtkIdList.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
@@ -70,15 +69,6 @@ ForeignContents read_by(Holdings& holdings, Reader& reader, const std::filesyste
   if (contents.parts.empty() && request.value("parts", 1) == 1)
     throw scene::bad_input(fmt::format("{}: it holds no cells; check how it was written", source));
   return contents;
-}
-
-/// A reader of one file that reads all of it anyway.
-template <class Reader>
-ForeignContents read_plainly(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request,
-                             const char* format) {
-  vtkNew<Reader> reader;
-  reader->SetFileName(file.c_str());
-  return read_by(holdings, *reader, file, request, format, [] {});
 }
 
 /// The first error of a Fluent reader but for its not finding values, without which a case is a mesh all the same.
@@ -255,11 +245,6 @@ ForeignContents read_cgns(Holdings& holdings, const std::filesystem::path& file,
     reader->EnableAllPointArrays();
     reader->EnableAllCellArrays();
   });
-}
-
-ForeignContents read_vtk_hdf(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
-  allow_for(file);
-  return read_plainly<vtkHDFReader>(holdings, file, request, "VTKHDF");
 }
 
 ForeignContents read_avs_ucd(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {

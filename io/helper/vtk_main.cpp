@@ -16,7 +16,7 @@ constexpr Reader readers[] = {
     Reader{"openfoam", read_openfoam},
     Reader{"ensight", read_ensight},
     Reader{"cgns", read_cgns},
-    Reader{"vtk_hdf", read_vtk_hdf},
+    Reader{"vtk_hdf", read_hdf5},
     Reader{"avs_ucd", read_avs_ucd},
     Reader{"fluent", read_fluent},
     Reader{"gambit", read_gambit},

@@ -281,7 +281,9 @@ TEST(VtkHdfImages, HaveTimeSteps) {
   VolumeOptions options;
   for (const std::size_t step : {0, 1, 2}) {
     options.time_step = step;
-    EXPECT_EQ(test::all_samples(*open_volume(folder / "t.vtkhdf", options).source), ramp(24, step == 1 ? 24 : 0));
+    const VolumeFile read = open_volume(folder / "t.vtkhdf", options);
+    EXPECT_EQ(test::all_samples(*read.source), ramp(24, step == 1 ? 24 : 0));
+    EXPECT_EQ(read.time_step.times, (std::vector<double>{0, 0.5, 1}));
   }
 }
 
