@@ -26,6 +26,7 @@
 
 #include "io/helper/extents.hpp"
 #include "io/helper/grid_pieces.hpp"
+#include "io/helper/legacy_byte_order.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/vtk_parts.hpp"
 #include "io/helper/vtk_session.hpp"
@@ -207,6 +208,7 @@ ForeignContents read_vtk_xml(Holdings& holdings, const std::filesystem::path& fi
 
 ForeignContents read_vtk_legacy(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json&) {
   allow_for(file);
+  require_big_endian(file);
   const std::string source = file.string();
   vtkSmartPointer<vtkDataObject> data;
   const std::string warning = with_quiet_vtk(source, write_anew, [&] {
@@ -267,6 +269,7 @@ ForeignContents read_vtk_surface(Holdings& holdings, const std::filesystem::path
   vtkSmartPointer<vtkDataObject> data;
   if (read_beginning(file, 5) == "# vtk") {
     allow_for(file);
+    require_big_endian(file);
     warning = with_quiet_vtk(source, write_anew, [&] {
       vtkNew<vtkDataSetReader> reader;
       read_all_arrays(*reader, source);

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -116,6 +118,52 @@ TEST_F(Messages, NanInLegacyTextIsANumber) {
       EXPECT_EQ(read.mesh.scalars[3], field == "nan" ? 3 : 7) << odd;
     }
   EXPECT_EQ(read_mesh(write("a.vtk", legacy("9"))).counts.cells_nan, 0u);
+}
+
+/// Bytes of numbers, in the order of legacy VTK files or the other.
+template <class T>
+std::string binary(const std::vector<T>& numbers, bool is_little) {
+  std::string bytes;
+  for (const T number : numbers) {
+    std::string own(sizeof number, '\0');
+    std::memcpy(own.data(), &number, sizeof number);
+    if (is_little != (std::endian::native == std::endian::little)) std::ranges::reverse(own);
+    bytes += own;
+  }
+  return bytes + "\n";
+}
+
+TEST_F(Messages, LittleEndianLegacyFilesAreNamed) {
+  TESSERA_VTK_OR_SKIP();
+  const std::vector<double> points = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const std::vector<float> values = {0, 1, 2, 3, 4, 5, 6, 0.5F};
+  const std::string head = "# vtk DataFile Version 3.0\nmade\nBINARY\nDATASET ";
+  const auto expect = [&](bool is_little, const std::string& text, bool is_volume = false) {
+    const auto file = write("a.vtk", text);
+    const std::string message =
+        test::fault_of([&] { is_volume ? void(open_volume(file)) : void(read_mesh(file)); }).message;
+    if (is_little)
+      EXPECT_NE(message.find("a.vtk: its binary numbers are little-endian"), std::string::npos) << message;
+    else
+      EXPECT_EQ(message.find("little-endian"), std::string::npos) << message;
+  };
+  for (const bool is_little : {true, false}) {
+    SCOPED_TRACE(is_little);
+    const std::string float64 = "POINTS 4 double\n" + binary(points, is_little),
+                      whole =
+                          "POINTS 4 int\n" + binary(std::vector<std::int32_t>(points.begin(), points.end()), is_little);
+    for (const std::string& coordinates : {float64, whole}) {
+      expect(is_little, head + "UNSTRUCTURED_GRID\n" + coordinates + "CELLS 1 5\n" +
+                            binary<std::int32_t>({4, 0, 1, 2, 3}, is_little) + "CELL_TYPES 1\n" +
+                            binary<std::int32_t>({10}, is_little));
+      expect(is_little, head + "POLYDATA\n" + coordinates + "POLYGONS 4 16\n" +
+                            binary<std::int32_t>({3, 0, 2, 1, 3, 0, 1, 3, 3, 1, 2, 3, 3, 0, 3, 2}, is_little));
+    }
+    expect(is_little,
+           head + "STRUCTURED_POINTS\nDIMENSIONS 2 2 2\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 8\n" +
+               "SCALARS f float 1\nLOOKUP_TABLE default\n" + binary(values, is_little),
+           true);
+  }
 }
 
 TEST_F(Messages, NanInTextOfGridsAndUcdIsANumber) {
