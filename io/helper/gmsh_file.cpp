@@ -13,6 +13,7 @@
 #include "io/helper/gmsh_blocks.hpp"
 #include "io/helper/gmsh_view_names.hpp"
 #include "io/helper/readers.hpp"
+#include "io/helper/unv_check.hpp"
 #include "io/helper_messages.hpp"
 #include "io/input_file.hpp"
 #include "scene/error.hpp"
@@ -128,6 +129,7 @@ ForeignContents read_by_gmsh(Holdings& holdings, const std::filesystem::path& fi
         "{}: Gmsh's library knows such files by their names alone; unpack it, if it is packed, and have its name end "
         "in .unv",
         source));
+  require_read_unv(file);
   merge(source, source);
   return contents_of_model(holdings, source, request, "I-DEAS universal", {});
 }

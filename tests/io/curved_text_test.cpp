@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -217,6 +218,70 @@ TEST_F(CurvedText, MeditHasItsVolume) {
   const MeshFile mesh = read("a.mesh", text + "TetrahedraP2\n1\n1 2 3 4 5 6 7 8 9 10 1\nEnd\n", "");
   EXPECT_NEAR(testing::volume(mesh.mesh), bent.volume, 5e-3 * bent.volume);
   EXPECT_EQ(mesh.higher_order.by_corners, 0u);
+}
+
+/// An I-DEAS universal file of one element of a type, with points in a coordinate system.
+std::string universal(const std::vector<glm::dvec3>& points, int type, const std::vector<int>& nodes, int system = 1,
+                      const std::string& before = "") {
+  std::string text = before + "    -1\n  2411\n";
+  for (std::size_t k = 0; k < points.size(); ++k)
+    text += fmt::format("{:10}{:10}{:10}{:10}\n{:25.16E}{:25.16E}{:25.16E}\n", k + 1, system, 1, 11, points[k].x,
+                        points[k].y, points[k].z);
+  text += fmt::format("    -1\n    -1\n  2412\n{:10}{:10}{:10}{:10}{:10}{:10}\n", 1, type, 1, 1, 7, nodes.size());
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    text += fmt::format("{:10}{}", nodes[k], k % 8 == 7 || k + 1 == nodes.size() ? "\n" : "");
+  return text + "    -1\n";
+}
+
+TEST_F(CurvedText, IdeasParabolicElementsGoRoundFromCornerToMiddle) {
+  if (!has_reader(Reader::gmsh)) GTEST_SKIP() << "tessera-read-gmsh is not installed";
+  // Corners and middles, counted from 1 as VTK has them, in the order of I-DEAS.
+  const std::vector<int> of_tet = {1, 5, 2, 6, 3, 7, 8, 9, 10, 4},
+                         of_wedge = {1, 7, 2, 8, 3, 9, 13, 14, 15, 4, 10, 5, 11, 6, 12},
+                         of_brick = {1, 9, 2, 10, 3, 11, 4, 12, 17, 18, 19, 20, 5, 13, 6, 14, 7, 15, 8, 16};
+  for (const auto& [cell, type, nodes] :
+       {std::tuple(tet10, 118, of_tet), std::tuple(wedge15, 113, of_wedge), std::tuple(wedge15, 102, of_wedge),
+        std::tuple(hex20, 116, of_brick), std::tuple(hex20, 105, of_brick)}) {
+    SCOPED_TRACE(type);
+    const BentCell bent = testing::bend(cell);
+    MeshOptions options = testing::coarse_options();
+    options.field.clear();
+    const MeshFile read = read_mesh(folder.write("a.unv", universal(bent.positions, type, nodes)), options);
+    EXPECT_NEAR(testing::volume(read.mesh), bent.volume, 5e-3 * bent.volume);
+    EXPECT_EQ(read.higher_order.by_corners, 0u);
+  }
+}
+
+TEST_F(CurvedText, OfIdeasWhatGmshWouldLeaveOutOrMisplaceIsRefused) {
+  if (!has_reader(Reader::gmsh)) GTEST_SKIP() << "tessera-read-gmsh is not installed";
+  const std::vector<glm::dvec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  std::vector<glm::dvec3> many(32, glm::dvec3(1));
+  std::vector<int> all;
+  for (int k = 1; k <= 32; ++k) all.push_back(k);
+  const auto refused = [&](const std::string& text, const std::vector<std::string>& parts) {
+    const auto file = folder.write("a.unv", text);
+    test::expect_bad_input([&] { read_mesh(file); }, parts);
+  };
+  refused(universal(many, 117, all), {"a.unv: element 1 is a cubic brick (type 117)", "second order"});
+  const std::string axes = "  1.0 0.0 0.0\n  0.0 1.0 0.0\n  0.0 0.0 1.0\n";
+  const auto systems = [&](int type, const char* origin) {
+    return fmt::format(
+        "    -1\n  2420\n{0:10}\nPart\n{0:10}{1:10}{2:10}\nGlobal\n{3}  0.0 0.0 0.0\n{4:10}{5:10}{2:10}"
+        "\nOther\n{3}{6}\n    -1\n",
+        1, 0, 8, axes, 2, type, origin);
+  };
+  const std::vector<int> four = {1, 2, 3, 4};
+  refused(universal(corners, 111, four, 2, systems(1, "  0.0 0.0 0.0")),
+          {"a.unv: point 1 is in the coordinate system 2, which is cylindrical; export"});
+  refused(universal(corners, 111, four, 2, systems(0, "  0.0 0.0 4.0D+00")), {"which is turned or moved; export"});
+  for (const int system : {1, 2}) {
+    const auto file =
+        folder.write("a.unv", universal(corners, 111, four, system, systems(system == 1 ? 2 : 0, "  0.0 0.0 0.0")));
+    EXPECT_NEAR(testing::volume(read_mesh(file).mesh), 1.0 / 6, 1e-12);
+  }
+  std::string old = universal(corners, 111, four);
+  old.replace(old.find("  2412"), 6, "   780");
+  refused(old, {"a.unv: its elements are in dataset 780", "newer version"});
 }
 
 }  // namespace
