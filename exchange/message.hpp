@@ -21,7 +21,7 @@ namespace tessera::exchange {
 static_assert(std::endian::native == std::endian::little, "messages are little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 25;        ///< the next one whenever a message changes
+inline constexpr std::uint16_t wire_version = 26;        ///< the next one whenever a message changes
 
 /// All kinds, by channel, and what follows the header.
 enum class MessageKind : std::uint16_t {
@@ -47,7 +47,7 @@ enum class MessageKind : std::uint16_t {
   stop = 9,  ///< u64 number of the run to stop, 0: to oneself, the run is over
   // Channel mesh.
   mesh_chunk = 10,   ///< MeshChunkHeader and arrays (frame/mesh_chunk.hpp)
-  cell_keys = 61,    ///< u8: 1: no more come from the sender; list of u64: of cells (frame/distributed_mesh.cpp)
+  cell_keys = 61,    ///< u8: 1: no more come from the sender; list of u64: of cells (frame/shared_repetitions.cpp)
   cell_ranges = 11,  ///< u64 first cell, u64 cells, f32 lowest value of each, f32 highest
   // Channel timing.
   clock_question = 12,  ///< nothing
@@ -87,6 +87,7 @@ enum class MessageKind : std::uint16_t {
   speed = 50,            ///< f64 samples a second of the last frame, 0: unknown
   ray_tets = 48,         ///< list of RayTet (frame/probe.cpp): those of a rank's part that a ray meets
   curved_part = 40,  ///< frame/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
+  fill_tally = 62,   ///< scene::FillTally: of a rank's part of a field (frame/dataset.cpp)
   next_frame = 52,   ///< u8: 1: there is one more
   machine = 53,      ///< text: which machine's memory the sender sees, empty: it shares none (shared_pages.cpp)
   pages_offer = 54,  ///< u64 process, u64 key, i64 descriptor of pages for ranks of one machine, -1: none

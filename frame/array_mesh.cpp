@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "io/cell_block.hpp"
+#include "io/duplicate_cells.hpp"
 #include "io/mesh_assembly.hpp"
 #include "scene/error.hpp"
 
@@ -172,6 +173,7 @@ ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty, const io::
     result.owner = arrays.owner;
     result.counts.cells_read = result.counts.tets_made = mesh->tets.size();
     result.counts.points_read = mesh->positions.size();
+    if (!may_be_empty) result.counts.cells_duplicate = io::count_duplicate_cells(*mesh, options.threads);
     return result;
   }
   std::vector<io::CellBlock> blocks;

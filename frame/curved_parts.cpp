@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
+#include <vector>
 
 #include "exchange/collectives.hpp"
+#include "frame/shared_repetitions.hpp"
+#include "io/duplicate_cells.hpp"
 #include "io/higher_order_plan.hpp"
 
 namespace tessera::frame {
@@ -61,6 +65,9 @@ ArrayMesh mesh_of_part(const MeshArrays& part, exchange::Transport& transport) {
                                       const io::FieldChoice& choice, std::span<const io::FieldSummary> fields) {
                                     return plan_together(transport, blocks, options, choice, fields);
                                   });
+  std::vector<int> ranks(static_cast<std::size_t>(transport.size()));
+  std::iota(ranks.begin(), ranks.end(), 0);
+  mesh.counts.cells_duplicate = count_shared_repetitions(transport, io::duplicate_keys(mesh.mesh, 0), ranks, 0);
   const Became own{mesh.counts, mesh.higher_order};
   mesh.counts = {}, mesh.higher_order = {};
   for (const Became& other : exchange::gather_values(transport, MessageKind::curved_part, own)) {

@@ -83,6 +83,21 @@ void leave_fill_values_out(io::VolumeFile& volume, const std::filesystem::path& 
       std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source, options.threads));
 }
 
+/// The same note on every rank.
+void note_fill_value(exchange::Transport& transport, Dataset::State& state) {
+  const auto [low, high] = state.facts.scalar_range;
+  scene::FillTally part(low, high), whole(low, high);
+  if (!part.has_candidates()) return;
+  for (const double value : state.mesh.scalars) part.add(value);
+  for (const scene::FillTally& each : exchange::gather_values(transport, exchange::MessageKind::fill_tally, part))
+    whole.add(each);
+  std::optional<scene::FillValue> fill = whole.found();
+  if (!fill) return;
+  const bool of_points = state.facts.association == Association::point;
+  if (of_points && transport.size() > 1) fill->count = 0;  // parts have the points between them in common
+  state.notes.push_back(scene::words_on(*fill, of_points ? "points" : "tets"));
+}
+
 /// A scanner's picture, however few values a phantom or a test image has: by its modality, or Hounsfield's units of a
 /// patient.
 bool is_scan(const io::VolumeFile& volume, const std::vector<double>& values) {
@@ -311,11 +326,7 @@ Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOp
       state->ranks = transport->size();
       state->global_tet = std::move(mesh.part.global_tet);
       keep(std::move(mesh.part.mesh), options, trace, *state);
-      const auto [low, high] = state->facts.scalar_range;
-      if (const auto fill = scene::find_fill_value(state->mesh.scalars, low, high);
-          fill && !options.selection.threshold)
-        state->notes.push_back(
-            scene::words_on(*fill, state->facts.association == Association::point ? "points" : "tets"));
+      if (!options.selection.threshold) note_fill_value(*transport, *state);
       state->shape = options.shape && state->field_name == shape_field_name;
       state->gather_field_samples(*transport);
     }

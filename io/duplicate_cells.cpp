@@ -27,6 +27,7 @@ namespace {
 
 using scene::Tet;
 using scene::TetMesh;
+using scene::TetMeshView;
 
 constexpr std::size_t grain = 32768;
 
@@ -48,7 +49,7 @@ std::uint64_t key_of_place(const glm::dvec3& p) {
 /// A number for each cell that depends on its tets' corners' positions alone, in whatever order they are.
 class CellKeys {
  public:
-  explicit CellKeys(const TetMesh& mesh)
+  explicit CellKeys(const TetMeshView& mesh)
       : mesh_(mesh), of_vertex_(std::make_unique_for_overwrite<std::uint64_t[]>(mesh.positions.size())) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.positions.size(), grain), [&](const auto& range) {
       for (std::size_t v = range.begin(); v < range.end(); ++v) of_vertex_[v] = key_of_place(mesh.positions[v]);
@@ -80,7 +81,7 @@ class CellKeys {
     return of_vertex_[tet[0]] + of_vertex_[tet[1]] + of_vertex_[tet[2]] + of_vertex_[tet[3]];
   }
 
-  const TetMesh& mesh_;
+  TetMeshView mesh_;
   std::unique_ptr<std::uint64_t[]> of_vertex_;
 };
 
@@ -173,7 +174,7 @@ using Corners = std::array<glm::dvec3, 4>;
 bool is_before(const glm::dvec3& p, const glm::dvec3& q) { return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z); }
 
 /// The tets' corners, in an order that depends on positions alone.
-void sorted_corners(const TetMesh& mesh, const KeyedCell& cell, std::vector<Corners>& corners) {
+void sorted_corners(const TetMeshView& mesh, const KeyedCell& cell, std::vector<Corners>& corners) {
   corners.clear();
   for (std::size_t t = cell.first; t < cell.last; ++t) {
     Corners of_tet;
@@ -197,13 +198,13 @@ std::vector<std::uint64_t> repeated_keys(std::size_t count, const Each& each) {
   return repeated;
 }
 
-std::size_t cells_of(const TetMesh& mesh) {
+std::size_t cells_of(const TetMeshView& mesh) {
   return mesh.original_cell.empty() ? mesh.tets.size()
                                     : std::min<std::size_t>(mesh.tets.size(), mesh.original_cell.back() + 1);
 }
 
 /// Cells that an earlier one has the corners of, in their order.
-std::vector<KeyedCell> duplicates_of(const TetMesh& mesh) {
+std::vector<KeyedCell> duplicates_of(const TetMeshView& mesh) {
   const CellKeys keys(mesh);
   const std::vector<std::uint64_t> repeated =
       repeated_keys(cells_of(mesh), [&](const auto& begin) { keys.each(begin); });
@@ -266,7 +267,14 @@ std::uint64_t find_duplicate_cells(TetMesh& mesh, bool drop, int threads) {
   });
 }
 
-std::vector<std::uint64_t> duplicate_keys(const TetMesh& mesh, int threads) {
+std::uint64_t count_duplicate_cells(const TetMeshView& mesh, int threads) {
+  if (mesh.tets.size() < 2) return 0;
+  return tbb::task_arena(scene::threads_for(threads)).execute([&] {
+    return std::uint64_t{duplicates_of(mesh).size()};
+  });
+}
+
+std::vector<std::uint64_t> duplicate_keys(const TetMeshView& mesh, int threads) {
   return tbb::task_arena(scene::threads_for(threads)).execute([&] {
     tbb::enumerable_thread_specific<std::vector<std::uint64_t>> lists;
     CellKeys(mesh).each(

@@ -13,9 +13,12 @@ namespace tessera::io {
 /// each duplicate.
 std::uint64_t find_duplicate_cells(scene::TetMesh& mesh, bool drop, int threads);
 
+/// The count alone.
+std::uint64_t count_duplicate_cells(const scene::TetMeshView& mesh, int threads);
+
 /// A number for each cell of a part of a mesh, in any order, which depends on the positions of its tets' corners alone:
 /// cells of two parts with the same one are duplicates, but for one pair of 2^64.
-std::vector<std::uint64_t> duplicate_keys(const scene::TetMesh& mesh, int threads);
+std::vector<std::uint64_t> duplicate_keys(const scene::TetMeshView& mesh, int threads);
 
 /// How many of the keys are equal to an earlier one: of the keys of all parts, what find_duplicate_cells() returns for
 /// the whole mesh.

@@ -8,48 +8,39 @@
 #include <vector>
 
 namespace tessera::scene {
-namespace {
 
-/// Counts the values at an end and the range of the others, some values at a time.
-class Tally {
- public:
-  Tally(double low, double high) {
-    for (const double end : {low, high})
-      if (may_be_fill(end)) ends_[candidates_++] = {.value = end, .count = 0, .others = {}};
-  }
+FillTally::FillTally(double low, double high) {
+  for (const double end : {low, high})
+    if (may_be_fill(end)) ends_[candidates_++] = {.value = end, .count = 0, .others = {}};
+}
 
-  [[nodiscard]] bool has_candidates() const { return candidates_ > 0; }
-
-  void add(double value) {
-    if (!std::isfinite(value)) return;
-    for (std::size_t k = 0; k < candidates_; ++k)
-      if (value == ends_[k].value) {
-        ++ends_[k].count;
-        return;
-      }
-    others_.low = std::min(others_.low, value), others_.high = std::max(others_.high, value);
-  }
-
-  /// Far away: by half of what all others span, or of huge ones ten times that.
-  [[nodiscard]] std::optional<FillValue> found() const {
-    const double span = others_.high - others_.low;
-    if (!(span > 0) || !std::isfinite(span)) return std::nullopt;
-    for (std::size_t k = 0; k < candidates_; ++k) {
-      FillValue fill = ends_[k];
-      fill.others = others_;
-      const double gap = std::max(others_.low - fill.value, fill.value - others_.high);
-      if (fill.count > 0 && gap > span * (fill.is_huge() ? 10 : 0.5)) return fill;
+void FillTally::add(double value) {
+  if (!std::isfinite(value)) return;
+  for (std::size_t k = 0; k < candidates_; ++k)
+    if (value == ends_[k].value) {
+      ++ends_[k].count;
+      return;
     }
-    return std::nullopt;
+  others_.low = std::min(others_.low, value), others_.high = std::max(others_.high, value);
+}
+
+void FillTally::add(const FillTally& part) {
+  for (std::size_t k = 0; k < candidates_; ++k) ends_[k].count += part.ends_[k].count;
+  others_.low = std::min(others_.low, part.others_.low), others_.high = std::max(others_.high, part.others_.high);
+}
+
+/// Far away: by half of what all others span, or of huge ones ten times that.
+std::optional<FillValue> FillTally::found() const {
+  const double span = others_.high - others_.low;
+  if (!(span > 0) || !std::isfinite(span)) return std::nullopt;
+  for (std::size_t k = 0; k < candidates_; ++k) {
+    FillValue fill = ends_[k];
+    fill.others = others_;
+    const double gap = std::max(others_.low - fill.value, fill.value - others_.high);
+    if (fill.count > 0 && gap > span * (fill.is_huge() ? 10 : 0.5)) return fill;
   }
-
- private:
-  std::array<FillValue, 2> ends_{};
-  std::size_t candidates_ = 0;
-  ValueRange others_;
-};
-
-}  // namespace
+  return std::nullopt;
+}
 
 bool may_be_fill(double value) {
   constexpr std::array usual = {999.0,    9999.0,    99999.0,  999999.0,      -999.0,   -9999.0,
@@ -60,14 +51,14 @@ bool may_be_fill(double value) {
 }
 
 std::optional<FillValue> find_fill_value(std::span<const double> values, double low, double high) {
-  Tally tally(low, high);
+  FillTally tally(low, high);
   if (!tally.has_candidates()) return std::nullopt;
   for (const double value : values) tally.add(value);
   return tally.found();
 }
 
 std::optional<FillValue> find_fill_value(const SampleSource& source, const ValueRange& range) {
-  Tally tally(range.low, range.high);
+  FillTally tally(range.low, range.high);
   if (range.empty() || !tally.has_candidates()) return std::nullopt;
   const SampleBox all = source.geometry().all_samples();
   std::vector<double> slice;
@@ -86,7 +77,8 @@ std::string words_on(const FillValue& fill, const char* things) {
   return fmt::format(
       "{} {} have the value {:.7g}, which looks like a fill value and rules range and colours: "
       "`threshold` {:.7g},{:.7g} leaves them out",
-      fill.count, things, fill.value, fill.others.low - margin, fill.others.high + margin);
+      fill.count == 0 ? "some" : fmt::format("{}", fill.count), things, fill.value, fill.others.low - margin,
+      fill.others.high + margin);
 }
 
 }  // namespace tessera::scene

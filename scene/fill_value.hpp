@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -27,11 +28,30 @@ struct FillValue {
 /// Whether a value is one of the usual ones. Cheap: what follows reads all values once more.
 bool may_be_fill(double value);
 
+/// Of a field's values, or a part of them, those at an end of its range that may_be_fill(), and the range of the
+/// others. The sum of all parts' tallies is the whole's.
+class FillTally {
+ public:
+  FillTally() = default;
+  FillTally(double low, double high);  ///< of the whole field
+
+  [[nodiscard]] bool has_candidates() const { return candidates_ > 0; }
+  void add(double value);
+  void add(const FillTally& part);  ///< of the same field
+  [[nodiscard]] std::optional<FillValue> found() const;
+
+ private:
+  std::array<FillValue, 2> ends_{};
+  std::uint64_t candidates_ = 0;
+  ValueRange others_;
+};
+
 /// Of values whose range is known; nothing unless an end of it may_be_fill().
 std::optional<FillValue> find_fill_value(std::span<const double> values, double low, double high);
 std::optional<FillValue> find_fill_value(const SampleSource& source, const ValueRange& range);
 
-/// What a note says of it: how many `things` have it, and the threshold that leaves them out.
+/// What a note says of it: how many `things` have it, or some if the count is 0, and the threshold that leaves them
+/// out.
 std::string words_on(const FillValue& fill, const char* things);
 
 }  // namespace tessera::scene

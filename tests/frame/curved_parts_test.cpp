@@ -103,5 +103,35 @@ TEST(CurvedParts, AreDividedAsTheWholeIs) {
     }
 }
 
+// Whether the arrays are borrowed or converted, and whichever ranks have the cells.
+TEST(CurvedParts, CellsGivenTwiceAreCounted) {
+  const std::vector<double> points = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1}, scalars = {0, 1, 2, 3, 4};
+  const std::vector<std::uint32_t> tets = {0, 1, 2, 3, 1, 2, 3, 4, 2, 1, 0, 3, 0, 1, 2, 4, 3, 2, 1, 0};
+  const std::vector<std::int64_t> wide(tets.begin(), tets.end());
+  const auto arrays = [&](std::size_t first, std::size_t last, bool is_borrowed) {
+    MeshArrays result;
+    result.points = std::span<const double>(points);
+    result.scalars = std::span<const double>(scalars);
+    if (is_borrowed)
+      result.tets = std::span(tets).subspan(4 * first, 4 * (last - first));
+    else
+      result.tets = std::span(wide).subspan(4 * first, 4 * (last - first));
+    return result;
+  };
+  for (const bool is_borrowed : {true, false})
+    for (const int ranks : {1, 2, 3, 5, 6}) {
+      SCOPED_TRACE(::testing::Message() << is_borrowed << ", " << ranks);
+      exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
+        const auto self = static_cast<std::size_t>(transport.rank()), parts = static_cast<std::size_t>(ranks);
+        const Dataset data = Dataset::of_parts(arrays(5 * self / parts, 5 * (self + 1) / parts, is_borrowed),
+                                               communicator_over(transport));
+        EXPECT_EQ(data.mesh_counts().cells_read, 5u);
+        EXPECT_EQ(data.mesh_counts().cells_duplicate, 2u);
+        ASSERT_FALSE(data.warnings().empty());
+        EXPECT_EQ(data.warnings().front().find("2 cells have the corners of other cells"), 0u);
+      });
+    }
+}
+
 }  // namespace
 }  // namespace tessera::frame::curved_parts_test

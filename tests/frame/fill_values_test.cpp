@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "exchange/loopback_transport.hpp"
+#include "frame/communicator.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/volume_bytes.hpp"
 #include "tessera/dataset.hpp"
@@ -20,6 +22,16 @@ std::filesystem::path volume_with(const test::TemporaryFolder& folder, float fil
   std::fill_n(samples.begin(), 4, fill);
   return folder.write("a_4x4x4_float32.raw", test::bytes_of(samples));
 }
+
+const char* const mesh_with_fill =
+    "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\"><UnstructuredGrid><Piece "
+    "NumberOfPoints=\"5\" NumberOfCells=\"3\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
+    "format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1 1 1 1</DataArray></Points><Cells><DataArray type=\"Int32\" "
+    "Name=\"connectivity\" format=\"ascii\">0 1 2 3 1 2 3 4 0 1 2 4</DataArray><DataArray type=\"Int32\" "
+    "Name=\"offsets\" format=\"ascii\">4 8 12</DataArray><DataArray type=\"UInt8\" Name=\"types\" "
+    "format=\"ascii\">10 10 10</DataArray></Cells><CellData><DataArray type=\"Float64\" Name=\"p\" "
+    "format=\"ascii\">2 4 -9999</DataArray></CellData><PointData><DataArray type=\"Float64\" Name=\"q\" "
+    "format=\"ascii\">2 4 3 5 -9999</DataArray></PointData></Piece></UnstructuredGrid></VTKFile>";
 
 std::string note_with(const Dataset& data, const std::string& words) {
   for (const std::string& note : data.notes())
@@ -55,16 +67,30 @@ TEST(FillValues, UsualOnesAreNotedWithTheThresholdThatLeavesThemOut) {
 
 TEST(FillValues, OfMeshesAreNotedToo) {
   const test::TemporaryFolder folder;
-  std::string mesh =
-      "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\"><UnstructuredGrid><Piece "
-      "NumberOfPoints=\"5\" NumberOfCells=\"3\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
-      "format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1 1 1 1</DataArray></Points><Cells><DataArray type=\"Int32\" "
-      "Name=\"connectivity\" format=\"ascii\">0 1 2 3 1 2 3 4 0 1 2 4</DataArray><DataArray type=\"Int32\" "
-      "Name=\"offsets\" format=\"ascii\">4 8 12</DataArray><DataArray type=\"UInt8\" Name=\"types\" "
-      "format=\"ascii\">10 10 10</DataArray></Cells><CellData><DataArray type=\"Float64\" Name=\"p\" "
-      "format=\"ascii\">2 4 -9999</DataArray></CellData></Piece></UnstructuredGrid></VTKFile>";
-  const Dataset data = Dataset::open(folder.write("m.vtu", mesh));
+  ReadOptions options;
+  options.field = "p";
+  const Dataset data = Dataset::open(folder.write("m.vtu", mesh_with_fill), options);
   EXPECT_NE(note_with(data, "1 tets have the value -9999, ").find("`threshold` 1.98,4.02 leaves"), std::string::npos);
+}
+
+TEST(FillValues, OfMeshesInPartsAreNotedOnceForTheWhole) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.write("m.vtu", mesh_with_fill);
+  for (const bool of_points : {false, true}) {
+    ReadOptions options;
+    options.field = of_points ? "q" : "p";
+    const std::string whole = note_with(Dataset::open(file, options), "fill value");
+    EXPECT_EQ(whole.find(of_points ? "1 points have" : "1 tets have"), 0u) << whole;
+    exchange::run_ranks(3, [&](exchange::Transport& transport) {
+      const Dataset data =
+          Dataset::open(std::span(&file, 1), options, frame::communicator_over(transport), RankSettings{});
+      EXPECT_EQ(std::ranges::count_if(
+                    data.notes(), [](const std::string& note) { return note.find("fill value") != std::string::npos; }),
+                1);
+      // Points between parts are on both, so they are not counted.
+      EXPECT_EQ(note_with(data, "fill value"), of_points ? "some" + whole.substr(1) : whole);
+    });
+  }
 }
 
 }  // namespace
