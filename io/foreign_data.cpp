@@ -167,6 +167,7 @@ std::vector<std::uint8_t> bytes_of(const ForeignContents& contents) {
                         {"time_steps", contents.time_step.count},
                         {"time_step", contents.time_step.step},
                         {"times", contents.time_step.times},
+                        {"labels", contents.labels},
                         {"beside_degrees", contents.beside_degrees},
                         {"has_levels", contents.has_levels}});
 }
@@ -184,6 +185,7 @@ ForeignContents contents_of(std::span<const std::uint8_t> bytes) {
   json.at("time_steps").get_to(contents.time_step.count);
   json.at("time_step").get_to(contents.time_step.step);
   json.at("times").get_to(contents.time_step.times);
+  json.at("labels").get_to(contents.labels);
   json.at("beside_degrees").get_to(contents.beside_degrees);
   json.at("has_levels").get_to(contents.has_levels);
   return contents;

@@ -111,6 +111,7 @@ struct ForeignContents {
   std::vector<std::string> block_names{};    ///< of all blocks, where parts are not the blocks; empty: of the parts
   std::vector<std::string> surface_names{};  ///< of surfaces beside the volume, where they are left out
   TimeStepRead time_step{};
+  bool labels = false;          ///< values are labels, whatever they are
   bool beside_degrees = false;  ///< x and y are degrees, z is a length
   bool has_levels = false;      ///< the parts, images, are blocks of several levels of refinement
 };

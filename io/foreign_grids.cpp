@@ -124,7 +124,7 @@ VolumeFile grid_of(const ForeignFile& opened, const VolumeOptions& options) {
   result.tags = {.modality = opened.contents.modality,
                  .unit = opened.contents.unit,
                  .length_unit = result.body_axes == BodyAxes::none ? "" : "mm",
-                 .labels = opened.contents.modality == "SEG"};
+                 .labels = opened.contents.labels};
 
   CellBlock block;  // only its fields are of use
   std::size_t points = 1, cells = 1;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <string_view>
@@ -87,9 +88,14 @@ double dicom_seconds(double clock) {
 
 std::optional<double> dicom_moment(const std::string& date_and_time) {
   if (date_and_time.size() < 8) return std::nullopt;
-  const std::vector<double> day = numbers_in(date_and_time.substr(0, 8)), clock = numbers_in(date_and_time.substr(8));
-  if (day.empty()) return std::nullopt;
-  return day.front() * 86400 + (clock.empty() ? 0 : dicom_seconds(clock.front()));
+  const std::vector<double> date = numbers_in(date_and_time.substr(0, 8)), clock = numbers_in(date_and_time.substr(8));
+  if (date.empty()) return std::nullopt;
+  const auto digits = static_cast<unsigned>(std::clamp(date.front(), 0.0, 99999999.0));
+  const std::chrono::sys_days day = std::chrono::year(static_cast<int>(digits / 10000)) /
+                                    std::chrono::month(std::clamp(digits / 100 % 100, 1u, 12u)) /
+                                    std::chrono::day(digits % 100);
+  return static_cast<double>(day.time_since_epoch().count()) * 86400 +
+         (clock.empty() ? 0 : dicom_seconds(clock.front()));
 }
 
 std::vector<gdcm::DataSet> dicom_items(const gdcm::DataSet& data, std::uint16_t group, std::uint16_t element) {

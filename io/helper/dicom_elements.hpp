@@ -30,4 +30,10 @@ std::optional<double> dicom_moment(const std::string& date_and_time);
 /// The items of a sequence; none if it is none.
 std::vector<gdcm::DataSet> dicom_items(const gdcm::DataSet& data, std::uint16_t group, std::uint16_t element);
 
+/// What orders pictures of one place.
+struct DicomTime {
+  double value = 0;
+  double unit = 0;  ///< in seconds; 0: a number that counts
+};
+
 }  // namespace tessera::io::helper

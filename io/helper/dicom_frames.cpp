@@ -48,14 +48,14 @@ void add_measures(const gdcm::DataSet& data, FrameFacts& facts) {
 }
 
 /// What orders frames of one place.
-std::optional<double> time_in(const gdcm::DataSet& groups) {
+std::optional<DicomTime> time_in(const gdcm::DataSet& groups) {
+  if (const auto position = group_in(groups, 0x0020, 0x9310))
+    if (const auto offset = dicom_double(*position, 0x0020, 0x930d)) return DicomTime{*offset, 1};
   if (const auto content = group_in(groups, 0x0020, 0x9111)) {
-    if (const auto index = dicom_count(*content, 0x0020, 0x9128)) return index;  // temporal position
-    for (const std::uint16_t element : {0x9151, 0x9074})                         // reference, acquisition
-      if (const auto moment = dicom_moment(dicom_text(*content, 0x0018, element))) return moment;
+    if (const auto index = dicom_count(*content, 0x0020, 0x9128)) return DicomTime{*index, 0};  // temporal position
+    for (const std::uint16_t element : {0x9151, 0x9074})  // reference, acquisition
+      if (const auto moment = dicom_moment(dicom_text(*content, 0x0018, element))) return DicomTime{*moment, 1};
   }
-  if (const auto segment = group_in(groups, 0x0062, 0x000a))
-    if (const auto number = dicom_count(*segment, 0x0062, 0x000b)) return number;
   return std::nullopt;
 }
 
@@ -71,8 +71,11 @@ void add_groups(const gdcm::DataSet& groups, FrameFacts& facts) {
     if (slope && intercept && *slope != 0) facts.frame.slope = *slope, facts.frame.intercept = *intercept;
   }
   if (const auto time = time_in(groups)) facts.frame.time = *time;
-  if (const auto heart = group_in(groups, 0x0018, 0x9118); heart && facts.frame.time == 0)
-    if (const auto delay = dicom_double(*heart, 0x0020, 0x9153)) facts.frame.time = *delay;
+  if (const auto segment = group_in(groups, 0x0062, 0x000a))
+    if (const auto number = dicom_count(*segment, 0x0062, 0x000b))
+      facts.frame.segment = static_cast<std::int64_t>(*number);
+  if (const auto heart = group_in(groups, 0x0018, 0x9118); heart && facts.frame.time.value == 0)
+    if (const auto delay = dicom_double(*heart, 0x0020, 0x9153)) facts.frame.time = {*delay, 1e-3};
 }
 
 /// What holds for all frames unless they state their own.
@@ -128,9 +131,9 @@ void set_even_places(const gdcm::DataSet& data, const FrameFacts& file, DicomSli
     DicomFrame& frame = slice.each[k];
     const double at = is_listed ? places[k] - 1.0 : static_cast<double>(k % each);
     frame.position += at * apart * glm::normalize(glm::cross(frame.row, frame.column));
-    if (!is_listed) frame.time = static_cast<double>(k / each);
-    if (slots.size() == count) frame.time += 1e5 * slots[k];
-    if (phases.size() == count) frame.time += phases[k];
+    if (!is_listed) frame.time = {static_cast<double>(k / each), 0};
+    if (slots.size() == count) frame.time.value += 1e5 * slots[k];
+    if (phases.size() == count) frame.time.value += phases[k];
   }
   slice.frames_note =
       file.slices_apart != 0

@@ -36,12 +36,26 @@ std::string text_of(const nlohmann::json& json) {
 nlohmann::json json_of(const std::vector<DicomFrame>& frames) {
   nlohmann::json list = nlohmann::json::array();
   for (const DicomFrame& f : frames)
-    list.push_back({three_of(f.position), three_of(f.row), three_of(f.column), f.slope, f.intercept, f.time});
+    list.push_back({three_of(f.position), three_of(f.row), three_of(f.column), f.slope, f.intercept, f.time.value,
+                    f.time.unit, f.segment});
   return list;
 }
 
+nlohmann::json json_of(const DicomSegments& segments) {
+  nlohmann::json list = nlohmann::json::array({binary(segments.type)});
+  for (const auto& [number, name] : segments.names) list.push_back({number, binary(name)});
+  return list;
+}
+
+DicomSegments segments_of(const nlohmann::json& j) {
+  DicomSegments segments{.type = text_of(j.at(0)), .names = {}};
+  for (std::size_t k = 1; k < j.size(); ++k)
+    segments.names.emplace_back(j.at(k).at(0).get<std::int64_t>(), text_of(j.at(k).at(1)));
+  return segments;
+}
+
 DicomFrame frame_of(const nlohmann::json& j) {
-  return {vector_of(j.at(0)), vector_of(j.at(1)), vector_of(j.at(2)), j.at(3), j.at(4), j.at(5)};
+  return {vector_of(j.at(0)), vector_of(j.at(1)), vector_of(j.at(2)), j.at(3), j.at(4), {j.at(5), j.at(6)}, j.at(7)};
 }
 
 nlohmann::json json_of(const DicomSlice& s) {
@@ -62,11 +76,13 @@ nlohmann::json json_of(const DicomSlice& s) {
                                 s.slope,
                                 s.intercept,
                                 s.number,
-                                s.time,
+                                {s.time.value, s.time.unit},
                                 s.samples_end,
                                 s.padding ? nlohmann::json(*s.padding) : nlohmann::json(),
                                 json_of(s.each),
-                                s.frames_note});
+                                s.frames_note,
+                                s.bits,
+                                json_of(s.segments)});
 }
 
 DicomSlice slice_of(const nlohmann::json& j, const std::filesystem::path& file) {
@@ -78,11 +94,14 @@ DicomSlice slice_of(const nlohmann::json& j, const std::filesystem::path& file) 
   j.at(9).get_to(s.has_position);
   s.position = vector_of(j.at(10)), s.row = vector_of(j.at(11)), s.column = vector_of(j.at(12));
   s.spacing = vector_of(j.at(13));
-  j.at(14).get_to(s.slope), j.at(15).get_to(s.intercept), j.at(16).get_to(s.number), j.at(17).get_to(s.time),
-      j.at(18).get_to(s.samples_end);
+  j.at(14).get_to(s.slope), j.at(15).get_to(s.intercept), j.at(16).get_to(s.number);
+  s.time = {j.at(17).at(0), j.at(17).at(1)};
+  j.at(18).get_to(s.samples_end);
   if (!j.at(19).is_null()) s.padding = j.at(19).get<std::array<double, 2>>();
   for (const nlohmann::json& frame : j.at(20)) s.each.push_back(frame_of(frame));
   j.at(21).get_to(s.frames_note);
+  j.at(22).get_to(s.bits);
+  s.segments = segments_of(j.at(23));
   return s;
 }
 

@@ -104,11 +104,14 @@ ForeignArray hold_samples(Holdings& holdings, const DicomVolume& volume, std::ve
     const DicomValues own = samples->values(slice);
     values.are_whole = values.are_whole && own.are_whole;
     values.tally.not_finite += own.tally.not_finite;
+    values.shared += own.shared;
     if (own.tally.any_finite) values.tally.add(std::array{own.tally.low, own.tally.high});
   }
   if (const auto blank = values.tally.not_finite;
       blank > 0 && std::any_of(volume.slices.begin(), volume.slices.end(), [](const auto& s) { return s.padding; }))
     notes.push_back(fmt::format("{} samples are padding, as the header says, and blank", blank));
+  if (values.shared > 0)
+    notes.push_back(fmt::format("{} samples are in several segments, of which the last is shown", values.shared));
   const std::size_t each = stack->samples.front()->frame_count();  // slices of a volume are of one size
   ForeignArray array{
       .name = "samples", .type = type_of(values), .tuples = each * stack->slices.size(), .tally = values.tally};
@@ -175,6 +178,7 @@ ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& file
         are_alike ? fmt::format("values are {:.9g} * sample + {:.9g}, as its header says", first.slope, first.intercept)
                   : "slices have scales of their own, which apply");
   }
+  contents.labels = !first.segments.type.empty() && first.segments.type != "FRACTIONAL";
   contents.modality = first.modality, contents.unit = first.unit;
   if (!first.unit.empty()) contents.notes.push_back("values are in " + first.unit);
   ForeignPart& part = contents.parts.emplace_back();

@@ -46,8 +46,8 @@ std::vector<DicomSlice> chosen_group(std::vector<DicomSlice> slices, const std::
     return std::any_of(group.begin(), group.end(), [&](const DicomSlice& s) { return s.file == named; });
   };
   const auto samples_of = [](const std::vector<DicomSlice>& group) {
-    const bool is_plain = group.front().components == 1;
-    return std::pair(is_plain, static_cast<std::int64_t>(group.size()) * group.front().frames);
+    const bool is_plain = group.front().components == 1, is_scan = group.front().segments.type.empty();
+    return std::tuple(is_plain, is_scan, static_cast<std::int64_t>(group.size()) * group.front().frames);
   };
   auto chosen = std::find_if(groups.begin(), groups.end(), holds_named);
   if (chosen == groups.end())
@@ -78,6 +78,7 @@ std::vector<DicomSlice> frames_as_slices(std::vector<DicomSlice> slices, std::ve
     slice.frame = slice.number = static_cast<std::int64_t>(k);
     slice.position = f.position, slice.row = f.row, slice.column = f.column;
     slice.slope = f.slope, slice.intercept = f.intercept, slice.time = f.time;
+    slice.joined = {{.frame = slice.frame, .segment = f.segment}};
     const auto alike = std::find_if(directions.begin(), directions.end(),
                                     [&](const auto& group) { return lie_alike(group.front(), slice); });
     if (alike != directions.end())
@@ -93,15 +94,15 @@ std::vector<DicomSlice> frames_as_slices(std::vector<DicomSlice> slices, std::ve
   return std::move(*most);
 }
 
-/// Slices of one place are of several times: the slices of one of them.
-std::vector<DicomSlice> slices_of_step(std::vector<DicomSlice> slices, std::optional<std::size_t> wish,
-                                       const std::string& source, DicomVolume& volume) {
+/// Slices of each place along the normal, those of one place by time and number.
+std::vector<std::vector<DicomSlice>> by_place(std::vector<DicomSlice> slices) {
   const glm::dvec3 normal = slices.front().normal();
   const auto place = [&](const DicomSlice& s) {
     return s.has_position ? glm::dot(s.position, normal) : static_cast<double>(s.number);
   };
   std::sort(slices.begin(), slices.end(), [&](const DicomSlice& a, const DicomSlice& b) {
-    return std::make_tuple(place(a), a.time, a.number, a.file) < std::make_tuple(place(b), b.time, b.number, b.file);
+    return std::make_tuple(place(a), a.time.value, a.number, a.file) <
+           std::make_tuple(place(b), b.time.value, b.number, b.file);
   });
   // Places that differ by less than rounding are one.
   std::vector<std::vector<DicomSlice>> places;
@@ -112,18 +113,43 @@ std::vector<DicomSlice> slices_of_step(std::vector<DicomSlice> slices, std::opti
     last = here;
     places.back().push_back(std::move(slice));
   }
-  std::size_t least = places.front().size(), most = least;
-  for (auto& at : places) {
+  for (auto& at : places)
     std::sort(at.begin(), at.end(), [](const DicomSlice& a, const DicomSlice& b) {
-      return std::tie(a.time, a.number, a.file) < std::tie(b.time, b.number, b.file);
+      return std::tie(a.time.value, a.number, a.file) < std::tie(b.time.value, b.number, b.file);
     });
+  return places;
+}
+
+std::size_t chosen_step(std::optional<std::size_t> wish, std::size_t count, const std::string& source) {
+  if (wish && *wish >= count)
+    throw scene::bad_input(
+        fmt::format("{}: there is no time step {}, the series has {}; count from 0", source, *wish, count));
+  return wish.value_or(count - 1);
+}
+
+/// In seconds from the first of so many slices of one place on; none where the files do not say it.
+std::vector<double> times_of(const std::vector<DicomSlice>& at, std::size_t count) {
+  std::vector<double> times;
+  for (std::size_t k = 0; k < count; ++k) {
+    const DicomTime first = at.front().time, its = at[k].time;
+    const double time = (its.value - first.value) * its.unit;
+    if (its.unit == 0 || its.unit != first.unit || (k > 0 && time <= times.back())) return {};
+    times.push_back(time);
+  }
+  return times;
+}
+
+/// Slices of one place are of several times: the slices of one of them.
+std::vector<DicomSlice> slices_of_step(std::vector<DicomSlice> slices, std::optional<std::size_t> wish,
+                                       const std::string& source, DicomVolume& volume) {
+  std::vector<std::vector<DicomSlice>> places = by_place(std::move(slices));
+  std::size_t least = places.front().size(), most = least;
+  for (const auto& at : places) {
     least = std::min(least, at.size()), most = std::max(most, at.size());
   }
-  if (wish && *wish >= least)
-    throw scene::bad_input(
-        fmt::format("{}: there is no time step {}, the series has {}; count from 0", source, *wish, least));
-  const std::size_t step = wish.value_or(least - 1);
+  const std::size_t step = chosen_step(wish, least, source);
   volume.time_step = {least, step};
+  set_times(volume.time_step, times_of(places.front(), least));
   if (most > least)
     volume.notes.push_back(
         fmt::format("some places have {} slices, others {}; what is beyond is left out", most, least));
@@ -131,6 +157,87 @@ std::vector<DicomSlice> slices_of_step(std::vector<DicomSlice> slices, std::opti
   chosen.reserve(places.size());
   for (auto& at : places) chosen.push_back(std::move(at[step]));
   return chosen;
+}
+
+/// "2 liver, 5 spleen" of the numbers that there are.
+std::string names_of(const DicomSegments& segments, const std::vector<std::int64_t>& numbers) {
+  constexpr std::size_t most = 12;
+  std::string words;
+  for (std::size_t k = 0; k < std::min(numbers.size(), most); ++k) {
+    const auto named = std::find_if(segments.names.begin(), segments.names.end(),
+                                    [&](const auto& segment) { return segment.first == numbers[k]; });
+    words +=
+        fmt::format("{}{}{}", k > 0 ? ", " : "", numbers[k],
+                    named == segments.names.end() || named->second.empty() ? "" : fmt::format(" {}", named->second));
+  }
+  return words + (numbers.size() > most ? fmt::format(" and {} more", numbers.size() - most) : "");
+}
+
+/// Frames without anything of a segment may be left out of a file: slices of zeros in their places.
+std::vector<DicomSlice> with_empty_slices(std::vector<DicomSlice> slices, const std::string& source) {
+  if (slices.size() < 2) return slices;
+  const glm::dvec3 along = slices.front().normal();
+  const auto gap = [&](std::size_t k) { return glm::dot(slices[k].position - slices[k - 1].position, along); };
+  double least = gap(1);
+  for (std::size_t k = 2; k < slices.size(); ++k) least = std::min(least, gap(k));
+  const auto are_multiples_of = [&](double step) {
+    for (std::size_t k = 1; k < slices.size(); ++k)
+      if (std::round(gap(k) / step) < 1 || std::abs(gap(k) / step - std::round(gap(k) / step)) > even_enough)
+        return false;
+    return true;
+  };
+  const double stated = slices.front().spacing.z, step = are_multiples_of(stated) ? stated : least;
+  if (!are_multiples_of(step)) return slices;
+  constexpr double most_slices = 65536;
+  std::vector<DicomSlice> filled;
+  for (std::size_t k = 0; k < slices.size(); ++k) {
+    const double steps = k > 0 ? std::round(gap(k) / step) : 1;
+    if (static_cast<double>(filled.size()) + steps > most_slices)
+      throw scene::bad_input(
+          fmt::format("{}: its frames are up to {:.4g} mm apart in steps of {:.4g} mm, more than "
+                      "{:.0f} slices; correct their positions",
+                      source, gap(k), step, most_slices));
+    const glm::dvec3 before = k > 0 ? slices[k - 1].position : slices[k].position;
+    for (double n = 1; n < steps; ++n) {
+      DicomSlice empty = filled.back();
+      empty.position = before + (slices[k].position - before) * (n / steps);
+      empty.joined.clear();
+      filled.push_back(std::move(empty));
+    }
+    filled.push_back(std::move(slices[k]));
+  }
+  return filled;
+}
+
+/// One slice of each place: of labels from all frames, of fractions from those of the chosen segment.
+std::vector<DicomSlice> slices_of_segments(std::vector<DicomSlice> frames, std::optional<std::size_t> wish,
+                                           const std::string& source, DicomVolume& volume) {
+  const DicomSegments segments = frames.front().segments;
+  const bool are_fractions = segments.type == "FRACTIONAL";
+  std::vector<std::int64_t> numbers;
+  for (const DicomSlice& frame : frames) numbers.push_back(frame.joined.front().segment);
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  const std::size_t step = are_fractions ? chosen_step(wish, numbers.size(), source) : 0;
+  if (are_fractions) volume.time_step = {numbers.size(), step};
+  if (numbers.back() > 0)
+    volume.notes.push_back(
+        are_fractions ? fmt::format("values are the fractions of segment {}; time steps are its "
+                                    "segments, from 0 on: {}",
+                                    names_of(segments, {numbers[step]}), names_of(segments, numbers))
+                      : fmt::format("values are numbers of segments, 0 is none: {}", names_of(segments, numbers)));
+  std::vector<DicomSlice> slices;
+  for (std::vector<DicomSlice>& at : by_place(std::move(frames))) {
+    DicomSlice slice = at.front();
+    slice.joins_frames = true;
+    slice.joined.clear();
+    for (const DicomSlice& frame : at)
+      if (!are_fractions || frame.joined.front().segment == numbers[step])
+        slice.joined.push_back({frame.frame, are_fractions ? 0 : frame.joined.front().segment});
+    std::ranges::stable_sort(slice.joined, {}, &DicomFrameOfSegment::segment);
+    slices.push_back(std::move(slice));
+  }
+  return with_empty_slices(std::move(slices), source);
 }
 
 /// Steps from slice to slice, and what is odd about them.
@@ -175,10 +282,16 @@ DicomVolume volume_of(std::vector<DicomSlice> slices, const std::filesystem::pat
                       std::optional<std::size_t> time_step, const std::string& source) {
   DicomVolume volume;
   std::vector<DicomSlice> group = chosen_group(std::move(slices), named, source, volume.notes);
-  volume.slices = slices_of_step(frames_as_slices(std::move(group), volume.notes), time_step, source, volume);
+  group = frames_as_slices(std::move(group), volume.notes);
+  volume.slices = group.front().frames > 1 && !group.front().segments.type.empty()
+                      ? slices_of_segments(std::move(group), time_step, source, volume)
+                      : slices_of_step(std::move(group), time_step, source, volume);
   const DicomSlice& first = volume.slices.front();
   volume.origin = first.position;
   volume.steps = {first.row * first.spacing.x, first.column * first.spacing.y, first.normal() * first.spacing.z};
+  if (volume.slices.size() == 1 && first.joins_frames)
+    throw scene::bad_input(
+        fmt::format("{}: all its segments are in one slice, which is not a volume; give a volume", source));
   if (volume.slices.size() == 1 && first.frames > 1)
     throw scene::bad_input(
         fmt::format("{}: all its {} frames are at one place: times of one picture, not a volume; give a volume", source,

@@ -28,12 +28,17 @@ namespace {
 constexpr const char* write_anew = "the file is truncated or damaged, write it anew or leave it out";
 
 /// What orders slices of one place: the first of these that the file has.
-double time_of(const gdcm::DataSet& data) {
-  if (const auto index = dicom_number(data, 0x0020, 0x0100)) return *index;      // temporal position identifier
-  if (const auto trigger = dicom_number(data, 0x0018, 0x1060)) return *trigger;  // of the heart
-  if (const auto acquired = dicom_number(data, 0x0008, 0x0032)) return dicom_seconds(*acquired);
-  if (const auto content = dicom_number(data, 0x0008, 0x0033)) return dicom_seconds(*content);
-  return 0;
+DicomTime time_of(const gdcm::DataSet& data) {
+  if (const auto index = dicom_number(data, 0x0020, 0x0100)) return {*index, 0};         // temporal position identifier
+  if (const auto trigger = dicom_number(data, 0x0018, 0x1060)) return {*trigger, 1e-3};  // of the heart
+  for (const std::uint16_t element : {0x0022, 0x0023}) {  // acquisition, content: date, and ten further the time
+    const std::string date = dicom_text(data, 0x0008, element);
+    if (const std::string clock = dicom_text(data, 0x0008, static_cast<std::uint16_t>(element + 0x10)); !clock.empty())
+      if (const auto moment = dicom_moment(date + clock); moment && date.size() == 8) return {*moment, 1};
+  }
+  if (const auto acquired = dicom_number(data, 0x0008, 0x0032)) return {dicom_seconds(*acquired), 1};
+  if (const auto content = dicom_number(data, 0x0008, 0x0033)) return {dicom_seconds(*content), 1};
+  return {};
 }
 
 void set_place(const gdcm::File& file, DicomSlice& slice) {
@@ -64,8 +69,10 @@ bool set_samples(const gdcm::File& file, DicomSlice& slice) {
   slice.frames = sizes.size() > 2 ? std::max<std::int64_t>(sizes[2], 1) : 1;
   slice.components = format.GetSamplesPerPixel();
   slice.is_packed = file.GetHeader().GetDataSetTransferSyntax().IsEncapsulated();
-  slice.bytes = static_cast<std::uint64_t>(slice.columns * slice.rows) * static_cast<std::uint64_t>(slice.frames) *
-                format.GetPixelSize();
+  slice.bits = format.GetBitsAllocated();
+  const auto samples =
+      static_cast<std::uint64_t>(slice.columns * slice.rows) * static_cast<std::uint64_t>(slice.frames);
+  slice.bytes = (samples * static_cast<std::uint64_t>(slice.bits) + 7) / 8;
   const std::vector<double> rescale = gdcm::ImageHelper::GetRescaleInterceptSlopeValue(file);
   if (rescale.size() == 2 && std::isfinite(rescale[0]) && std::isfinite(rescale[1]) && rescale[1] != 0)
     slice.intercept = rescale[0], slice.slope = rescale[1];
@@ -120,6 +127,15 @@ std::optional<std::array<double, 2>> padding_of(const gdcm::File& file) {
   return std::array{std::min(*value, limit), std::max(*value, limit)};
 }
 
+DicomSegments segments_of(const gdcm::DataSet& data) {
+  DicomSegments segments{.type = dicom_text(data, 0x0062, 0x0001), .names = {}};
+  if (segments.type.empty()) segments.type = "BINARY";
+  for (const gdcm::DataSet& segment : dicom_items(data, 0x0062, 0x0002))
+    if (const auto number = dicom_count(segment, 0x0062, 0x0004))
+      segments.names.emplace_back(static_cast<std::int64_t>(*number), dicom_text(segment, 0x0062, 0x0005));
+  return segments;
+}
+
 }  // namespace
 
 glm::dvec3 DicomSlice::normal() const { return glm::normalize(glm::cross(row, column)); }
@@ -149,7 +165,11 @@ std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
     set_place(reader.GetFile(), slice);
     slice.number = static_cast<std::int64_t>(std::clamp(dicom_number(data, 0x0020, 0x0013).value_or(0), -1e9, 1e9));
     slice.time = time_of(data);
-    slice.padding = padding_of(reader.GetFile());
+    if (slice.modality == "SEG") slice.segments = segments_of(data);
+    // Of labels the padding value is the background's.
+    if (slice.segments.type.empty()) slice.padding = padding_of(reader.GetFile());
+    if (const auto most = dicom_shorts(data, 0x0062, 0x000e); slice.segments.type == "FRACTIONAL" && !most.empty())
+      slice.slope = 1.0 / std::max<double>(most.front(), 1);
     if (slice.frames > 1) set_frames(data, slice);
     return slice;
   } catch (const std::bad_alloc&) {
@@ -172,6 +192,14 @@ DicomSamples::DicomSamples(const DicomSlice& slice)
                                                   : mapped.text().size() < std::max(slice.samples_end, slice.bytes)))
       throw refuse("it ends before its samples do");
   }
+  if (slice.bits == 1) {
+    unpack_bits(slice);
+    return;
+  }
+  // GDCM aborts on others.
+  if (slice.bits % 8 != 0 && slice.bits != 12)
+    throw scene::bad_input(
+        fmt::format("{}: its samples are of {} bits, which are not read; write 8, 16 or 32", source, slice.bits));
   gdcm::ImageReader reader;
   reader.SetFileName(slice.file.c_str());
   if (!reader.Read()) throw refuse("GDCM cannot read its samples");
@@ -190,12 +218,34 @@ DicomSamples::DicomSamples(const DicomSlice& slice)
   if (bytes_.size() != samples * size_of(type_)) throw refuse("its samples are not as many as its header says");
 }
 
+/// The first sample is the lowest bit; neither rows nor frames begin a byte (PS3.5, 8.1.1).
+void DicomSamples::unpack_bits(const DicomSlice& slice) {
+  const std::string source = slice.file.string();
+  if (slice.is_packed)
+    throw scene::bad_input(
+        fmt::format("{}: its samples of 1 bit are compressed, which is not read; convert it by `segimage2itkimage` of "
+                    "dcmqi to NRRD",
+                    source));
+  gdcm::Reader reader;
+  reader.SetFileName(slice.file.c_str());
+  const gdcm::Tag samples(0x7fe0, 0x0010);
+  const gdcm::ByteValue* const bits = reader.Read() && reader.GetFile().GetDataSet().FindDataElement(samples)
+                                          ? reader.GetFile().GetDataSet().GetDataElement(samples).GetByteValue()
+                                          : nullptr;
+  if (bits == nullptr || bits->GetLength() < slice.bytes)
+    throw scene::bad_input(fmt::format("{}: it ends before its samples do; {}", source, write_anew));
+  bits_ = 8;
+  bytes_.resize(static_cast<std::size_t>(slice.columns * slice.rows * slice.frames));
+  for (std::size_t k = 0; k < bytes_.size(); ++k)
+    bytes_[k] = static_cast<char>(static_cast<unsigned char>(bits->GetPointer()[k / 8]) >> (k % 8) & 1);
+}
+
 DicomValues DicomSamples::values(const DicomSlice& slice) const {
   DicomValues values;
   const std::size_t count = frame_count(), begin = static_cast<std::size_t>(slice.frame) * count;
   const auto is_whole = [](double v) { return v == std::floor(v); };
   // Integers that stay such in their order need no looking at each value.
-  const bool is_plain = !padding_ && is_whole(slice.slope) && is_whole(slice.intercept) &&
+  const bool is_plain = !padding_ && !slice.joins_frames && is_whole(slice.slope) && is_whole(slice.intercept) &&
                         std::abs(slice.slope) < 0x1p20 && std::abs(slice.intercept) < 0x1p52 && count > 0;
   with_number_type(type_, [&](auto zero) {
     using Number = decltype(zero);
@@ -216,7 +266,10 @@ DicomValues DicomSamples::values(const DicomSlice& slice) const {
   std::vector<double> some(std::min(at_once, count));
   for (std::size_t first = 0; first < count; first += at_once) {
     const auto part = std::span(some).first(std::min(at_once, count - first));
-    read(slice, first, part);
+    if (slice.joins_frames)
+      values.shared += read_joined(slice, first, part);
+    else
+      read(slice, first, part);
     values.tally.add(part);
     values.are_whole = values.are_whole &&
                        std::all_of(part.begin(), part.end(), [&](double v) { return std::isnan(v) || is_whole(v); });
@@ -225,7 +278,30 @@ DicomValues DicomSamples::values(const DicomSlice& slice) const {
 }
 
 void DicomSamples::read(const DicomSlice& slice, std::size_t first, std::span<double> out) const {
-  first += static_cast<std::size_t>(slice.frame) * frame_count();
+  if (slice.joins_frames)
+    read_joined(slice, first, out);
+  else
+    read_frame(slice, slice.frame, first, out);
+}
+
+std::uint64_t DicomSamples::read_joined(const DicomSlice& slice, std::size_t first, std::span<double> out) const {
+  std::ranges::fill(out, 0);
+  std::uint64_t shared = 0;
+  std::vector<double> frame(out.size());
+  for (const DicomFrameOfSegment& part : slice.joined) {
+    read_frame(slice, part.frame, first, frame);
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      if (frame[k] == 0) continue;
+      if (out[k] != 0) ++shared;
+      out[k] = part.segment > 0 ? static_cast<double>(part.segment) : frame[k];
+    }
+  }
+  return shared;
+}
+
+void DicomSamples::read_frame(const DicomSlice& slice, std::int64_t frame, std::size_t first,
+                              std::span<double> out) const {
+  first += static_cast<std::size_t>(frame) * frame_count();
   with_number_type(type_, [&](auto zero) {
     using Number = decltype(zero);
     for (std::size_t k = 0; k < out.size(); ++k) {

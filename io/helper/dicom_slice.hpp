@@ -8,9 +8,11 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/foreign_data.hpp"
+#include "io/helper/dicom_elements.hpp"
 #include "io/number_tally.hpp"
 
 namespace tessera::io::helper {
@@ -19,7 +21,19 @@ namespace tessera::io::helper {
 struct DicomFrame {
   glm::dvec3 position{0}, row{1, 0, 0}, column{0, 1, 0};
   double slope = 1, intercept = 0;
-  double time = 0;  ///< as DicomSlice::time
+  DicomTime time{};          ///< as DicomSlice::time
+  std::int64_t segment = 0;  ///< the number of the segment that it shows, of a segmentation; 0: none
+};
+
+/// What the parts of a segmentation (PS3.3, C.8.20.2) are.
+struct DicomSegments {
+  std::string type;  ///< BINARY, FRACTIONAL or LABELMAP; empty: the file is not a segmentation
+  std::vector<std::pair<std::int64_t, std::string>> names;  ///< by number
+};
+
+/// A frame as part of a slice of segments.
+struct DicomFrameOfSegment {
+  std::int64_t frame = 0, segment = 0;
 };
 
 /// What the header of one DICOM file says of its pictures: one, or the frames of several. Positions are millimetres in
@@ -33,17 +47,23 @@ struct DicomSlice {
   bool is_packed = false;         ///< its samples are compressed
   std::uint64_t samples_end = 0;  ///< where they end in the file, if not packed; 0 if all of it is deflated
   std::uint64_t bytes = 0;        ///< of its samples, unpacked
+  int bits = 8;                   ///< of a sample, with those not used
   bool has_position = false;      ///< else by its number in the series
   glm::dvec3 position{0}, row{1, 0, 0}, column{0, 1, 0};
   glm::dvec3 spacing{1};            ///< between columns, rows and, of frames or as thickness, slices
   double slope = 1, intercept = 0;  ///< value = slope * sample + intercept
   std::int64_t number = 0;          ///< in the series
-  double time = 0;                  ///< whatever tells slices of one place apart; 0 without
+  DicomTime time{};                 ///< whatever tells slices of one place apart; 0 without
   std::vector<DicomFrame> each{};   ///< of a file of several frames
   std::int64_t frame = 0;           ///< which of them this is
   std::string frames_note{};        ///< what the file does not say of their places; may be empty
   /// Samples from the first to the second are padding, which no detector has seen.
   std::optional<std::array<double, 2>> padding{};
+  DicomSegments segments{};
+  /// Of a slice of segments, its value is the number of the last segment whose frame is not 0 there, else 0. Of those
+  /// that overlap that is the one with the largest number. Fractions have one frame, whose values these are.
+  bool joins_frames = false;
+  std::vector<DicomFrameOfSegment> joined{};
 
   [[nodiscard]] glm::dvec3 normal() const;
 };
@@ -55,6 +75,7 @@ std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file);
 struct DicomValues {
   NumberTally tally;
   bool are_whole = true;
+  std::uint64_t shared = 0;  ///< samples in several segments
 };
 
 /// The samples of a file as they are stored, frame by frame, row by row.
@@ -71,6 +92,11 @@ class DicomSamples {
   void read(const DicomSlice& slice, std::size_t first, std::span<double> out) const;
 
  private:
+  void unpack_bits(const DicomSlice& slice);
+  void read_frame(const DicomSlice& slice, std::int64_t frame, std::size_t first, std::span<double> out) const;
+  /// The number of samples that are in several segments.
+  std::uint64_t read_joined(const DicomSlice& slice, std::size_t first, std::span<double> out) const;
+
   std::vector<char> bytes_;
   NumberType type_ = NumberType::uint8;
   int bits_ = 0;  ///< of integers that are the sample's; the others are something else's

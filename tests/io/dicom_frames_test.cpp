@@ -113,6 +113,31 @@ TEST_F(DicomFrameFiles, OfOnePlaceAreTimeSteps) {
   EXPECT_EQ(open(between).range, (scene::ValueRange{7, 7, 0}));
 }
 
+TEST_F(DicomFrameFiles, AtSeveralTimesHaveTheseInSecondsFromTheFirst) {
+  const auto times = [&](const std::vector<std::string>& groups) {
+    DicomFrames file = frames_at({0, 1, 0, 1, 0, 1});
+    for (std::size_t f = 0; f < 6; ++f) file.each[f] += groups[f / 2];
+    return open(file).time_step.times;
+  };
+  const auto moment = [](const char* at) { return dicom_group(0x20, 0x9111, dicom_element(0x18, 0x9151, "DT", at)); };
+  EXPECT_EQ(times({moment("20240229235958.5"), moment("20240229235959"), moment("20240229235959.75")}),
+            (std::vector<double>{0, 0.5, 1.25}));
+  EXPECT_EQ(times({moment("20240229235958.5"), moment("20240301000000"), moment("20240301000001")}),
+            (std::vector<double>{0, 1.5, 2.5}));
+  const auto delay = [](double milliseconds) {
+    return dicom_group(0x18, 0x9118, dicom_element(0x20, 0x9153, "FD", test::bytes_of(std::vector{milliseconds})));
+  };
+  EXPECT_EQ(times({delay(20), delay(520), delay(1520)}), (std::vector<double>{0, 0.5, 1.5}));
+  const auto offset = [](double seconds) {
+    return dicom_group(0x20, 0x9310, dicom_element(0x20, 0x930d, "FD", test::bytes_of(std::vector{seconds})));
+  };
+  EXPECT_EQ(times({offset(1), offset(3), offset(4)}), (std::vector<double>{0, 2, 3}));
+  const auto index = [](std::uint32_t number) {
+    return dicom_group(0x20, 0x9111, dicom_element(0x20, 0x9128, "UL", test::dicom_little(number, 4)));
+  };
+  EXPECT_TRUE(times({index(1), index(2), index(3)}).empty());
+}
+
 TEST_F(DicomFrameFiles, WithoutPlacesAreSpacedByWhatTheFileSaysAndANoteSaysSo) {
   DicomFrames file;
   file.storage = "1.2.840.10008.5.1.4.1.1.7.2", file.modality = "OT";

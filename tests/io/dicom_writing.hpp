@@ -46,6 +46,8 @@ struct DicomFrames {
   std::vector<std::string> each{};  ///< and of each
   std::size_t frames = 0;           ///< of samples
   std::vector<std::int16_t> samples{};
+  std::uint32_t bits = 16;  ///< of a sample; signed if 16
+  std::string packed{};     ///< samples of other bits, as they are stored
 };
 
 inline std::string dicom_orientation(const std::string& cosines) {
@@ -77,17 +79,17 @@ inline std::string dicom_file(const DicomFrames& f) {
           dicom_element(0x28, 0x10, "US", dicom_little(static_cast<std::uint32_t>(f.rows), 2)) +
           dicom_element(0x28, 0x11, "US", dicom_little(static_cast<std::uint32_t>(f.columns), 2)) +
           (f.spacing.empty() ? "" : dicom_element(0x28, 0x30, "DS", f.spacing)) +
-          dicom_element(0x28, 0x100, "US", dicom_little(16, 2)) +
-          dicom_element(0x28, 0x101, "US", dicom_little(16, 2)) +
-          dicom_element(0x28, 0x102, "US", dicom_little(15, 2)) + dicom_element(0x28, 0x103, "US", dicom_little(1, 2)) +
-          f.below;
+          dicom_element(0x28, 0x100, "US", dicom_little(f.bits, 2)) +
+          dicom_element(0x28, 0x101, "US", dicom_little(f.bits, 2)) +
+          dicom_element(0x28, 0x102, "US", dicom_little(f.bits - 1, 2)) +
+          dicom_element(0x28, 0x103, "US", dicom_little(f.bits == 16 ? 1 : 0, 2)) + f.below;
   if (!f.shared.empty()) data += dicom_group(0x5200, 0x9229, f.shared);
   std::string items;
   for (const std::string& groups : f.each) items += dicom_item(groups);
   if (!items.empty()) data += dicom_element(0x5200, 0x9230, "SQ", items);
   return std::string(128, '\0') + "DICM" +
          dicom_element(2, 0, "UL", dicom_little(static_cast<std::uint32_t>(about.size()), 4)) + about + data +
-         dicom_element(0x7fe0, 0x10, "OW", bytes_of(f.samples));
+         dicom_element(0x7fe0, 0x10, f.bits == 16 ? "OW" : "OB", f.bits == 16 ? bytes_of(f.samples) : f.packed);
 }
 
 }  // namespace tessera::test
