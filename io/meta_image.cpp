@@ -95,9 +95,11 @@ void read_grid(const MetaHeader& header, std::size_t axes, const std::filesystem
   };
   scene::GridGeometry& g = volume.grid.geometry;
   glm::dvec3 spacing(1);
+  double first_time = 0, time_step = 0;
   if (const auto* value = header.find({"ElementSpacing", "ElementSize"})) {
     const auto s = reals("ElementSpacing", *value, axes);
     spacing = {s[0], s[1], s[2]};
+    if (axes == 4) time_step = s[3];
   }
   std::array<glm::dvec3, 3> steps = {glm::dvec3(spacing.x, 0, 0), glm::dvec3(0, spacing.y, 0),
                                      glm::dvec3(0, 0, spacing.z)};
@@ -114,7 +116,9 @@ void read_grid(const MetaHeader& header, std::size_t axes, const std::filesystem
   if (const auto* value = header.find({"Offset", "Position", "Origin"})) {
     const auto o = reals("Offset", *value, axes);
     g.origin = {o[0], o[1], o[2]};
+    if (axes == 4) first_time = o[3];
   }
+  volume.times = even_times(first_time, time_step, volume.steps);
   if (const auto* value = header.find({"ElementToIntensityFunctionSlope"}))
     volume.grid.scale = reals("ElementToIntensityFunctionSlope", *value, 1)[0];
   if (const auto* value = header.find({"ElementToIntensityFunctionOffset"}))

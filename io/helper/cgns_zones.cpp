@@ -281,14 +281,33 @@ std::optional<ForeignPart> part_of(Holdings& holdings, const CgnsZone& zone, std
   return part;
 }
 
-std::uint64_t steps_of(std::span<const CgnsZone> zones) {
+/// Of the first base that has iterative data.
+struct CgnsSteps {
+  std::uint64_t count = 0;
+  std::vector<double> times;
+};
+
+CgnsSteps steps_of(std::span<const CgnsZone> zones) {
   for (const CgnsZone& zone : zones) {
     Name name{};
     int steps = 0;
-    if (cg_biter_read(zone.file, zone.base, name.data(), &steps) == CG_OK && steps > 0)
-      return static_cast<std::uint64_t>(steps);
+    if (cg_biter_read(zone.file, zone.base, name.data(), &steps) != CG_OK || steps <= 0) continue;
+    CgnsSteps found{static_cast<std::uint64_t>(steps), {}};
+    int arrays = 0;
+    if (cg_goto(zone.file, zone.base, "BaseIterativeData_t", 1, "end") == CG_OK && cg_narrays(&arrays) == CG_OK)
+      for (int k = 1; k <= arrays; ++k) {
+        CGNS_ENUMT(DataType_t) type{};
+        int dimensions = 0;
+        std::array<cgsize_t, 12> lengths{};
+        if (cg_array_info(k, name.data(), &type, &dimensions, lengths.data()) != CG_OK ||
+            std::string_view(name.data()) != "TimeValues" || dimensions != 1 || lengths[0] != steps)
+          continue;
+        found.times.resize(found.count);
+        if (cg_array_read_as(k, CGNS_ENUMV(RealDouble), found.times.data()) != CG_OK) found.times.clear();
+      }
+    return found;
   }
-  return 0;
+  return {};
 }
 
 }  // namespace
@@ -307,7 +326,9 @@ std::optional<ForeignContents> read_cgns_zones(Holdings& holdings, const std::fi
   contents.format = "CGNS";
   std::optional<std::size_t> wish;
   if (const auto step = request.find("time_step"); step != request.end()) wish = step->get<std::size_t>();
-  contents.time_step = chosen_step(wish, steps_of(zones), source);
+  CgnsSteps steps = steps_of(zones);
+  contents.time_step = chosen_step(wish, steps.count, source);
+  set_times(contents.time_step, std::move(steps.times));
   const int part = request.value("part", 0), parts = request.value("parts", 1);
   const std::uint64_t first = first_of_part(zones.size(), part, parts);
   const std::uint64_t last = first_of_part(zones.size(), part + 1, parts);

@@ -34,6 +34,28 @@ void require_whole(const std::filesystem::path& file) {
         fmt::format("{}: it has {} bytes of at least {}; {}", file.string(), size, least, write_anew));
 }
 
+/// Of the steps of a file: where they are in the variable `time`, else by its start and step.
+std::vector<double> minc_times(const std::filesystem::path& file, std::size_t count) {
+  int id = 0, time = 0, dimensions = 0;
+  if (count < 2 || nc_open(file.c_str(), NC_NOWRITE, &id) != NC_NOERR) return {};
+  std::vector<double> times;
+  if (nc_inq_varid(id, "time", &time) == NC_NOERR && nc_inq_varndims(id, time, &dimensions) == NC_NOERR) {
+    std::array<int, NC_MAX_VAR_DIMS> ids{};
+    std::size_t length = 0;
+    double start = 0, step = 0;
+    if (dimensions == 1 && nc_inq_vardimid(id, time, ids.data()) == NC_NOERR &&
+        nc_inq_dimlen(id, ids[0], &length) == NC_NOERR && length == count) {
+      times.resize(count);
+      if (nc_get_var_double(id, time, times.data()) != NC_NOERR) times.clear();
+    } else if (dimensions == 0 && nc_get_att_double(id, time, "step", &step) == NC_NOERR) {
+      if (nc_get_att_double(id, time, "start", &start) != NC_NOERR) start = 0;
+      times = even_times(start, step, count);
+    }
+  }
+  nc_close(id);
+  return times;
+}
+
 }  // namespace
 
 ForeignContents read_minc(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
@@ -52,6 +74,7 @@ ForeignContents read_minc(Holdings& holdings, const std::filesystem::path& file,
     reader->UpdateInformation();
     const auto steps = static_cast<std::size_t>(std::max(reader->GetNumberOfTimeSteps(), 1));
     contents.time_step = chosen_step(wish, steps, source);
+    set_times(contents.time_step, minc_times(file, steps));
     reader->SetTimeStep(static_cast<int>(contents.time_step.step));
     reader->Update();
   });

@@ -126,6 +126,19 @@ std::vector<std::size_t> indices_of(const GridVariable& field, std::size_t step)
   return indices;
 }
 
+/// Coordinates of the one dimension of steps, as they stand; none if there are several, or it is not time.
+std::vector<double> times_of(const NetcdfFile& file, const GridVariable& field) {
+  const NetcdfDimension* along = nullptr;
+  for (const std::size_t d : field.order.steps) {
+    if (field.variable->dimensions[d].length < 2) continue;
+    if (along != nullptr) return {};
+    along = &field.variable->dimensions[d];
+  }
+  const NetcdfVariable* const coordinate = along == nullptr ? nullptr : coordinate_of(file, *field.variable, *along);
+  if (coordinate == nullptr || role_of(file, *coordinate) != AxisRole::time) return {};
+  return read_whole(file, *coordinate, along->length).as_doubles();
+}
+
 /// Axes other than time are steps too, which is worth a word.
 void note_steps(const NetcdfFile& file, const GridVariable& field, std::vector<std::string>& notes) {
   std::vector<std::string> names;
@@ -304,7 +317,10 @@ ForeignContents read_netcdf(Holdings& holdings, const std::filesystem::path& fil
   std::optional<std::size_t> wish;
   if (const auto step = request.find("time_step"); step != request.end()) wish = step->get<std::size_t>();
   contents.time_step = chosen_step(wish, steps, opened.source());
-  if (with_steps != nullptr) note_steps(opened, *with_steps, contents.notes);
+  if (with_steps != nullptr) {
+    note_steps(opened, *with_steps, contents.notes);
+    set_times(contents.time_step, times_of(opened, *with_steps));
+  }
   PlacedGrid placed = place_grid(holdings, opened, grid, contents.time_step.step, contents.notes);
   std::size_t done = 0;
   for (const GridVariable& field : grid.fields) {

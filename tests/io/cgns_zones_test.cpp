@@ -354,6 +354,7 @@ TEST(CgnsZones, StepsHaveTheirOwnSolutionsAndGrids) {
   for (const std::size_t step : {0u, 1u}) {
     const MeshFile mesh = read(folder / "a.cgns", "cell:f", step);
     EXPECT_EQ(mesh.time_step.count, 2u);
+    EXPECT_EQ(mesh.time_step.times, (std::vector<double>{0.5, 2}));
     expect_row(mesh, 2);
     EXPECT_EQ(*std::ranges::max_element(mesh.mesh.scalars), step == 0 ? 1 : 11);
   }

@@ -285,6 +285,7 @@ TEST(VtkHdfImages, HaveTimeSteps) {
     EXPECT_EQ(test::all_samples(*read.source), ramp(24, step == 1 ? 24 : 0));
     EXPECT_EQ(read.time_step.times, (std::vector<double>{0, 0.5, 1}));
   }
+  EXPECT_EQ(open_volume(folder / "t.vtkhdf").time_step.times, (std::vector<double>{0, 0.5, 1}));
 }
 
 TEST(VtkHdfImages, DamagedOnesAreRefused) {

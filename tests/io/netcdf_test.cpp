@@ -92,7 +92,8 @@ TEST(NetcdfGrids, HaveTheirValuesAtTheirPlaces) {
     EXPECT_EQ(samples[59], 159);
     EXPECT_TRUE(std::isnan(samples[8]) && std::isnan(samples[9]));
     EXPECT_EQ(volume.range, (scene::ValueRange{100, 159, 2}));
-    EXPECT_TRUE(has_note(volume, "time step 1 of 0 to 1"));
+    EXPECT_TRUE(has_note(volume, "time step 1 of 0 to 1, time 5"));
+    EXPECT_EQ(volume.time_step.times, (std::vector<double>{0, 5}));
     EXPECT_TRUE(has_note(volume, "(ilev, lat, lon), has W"));
     EXPECT_TRUE(has_note(volume, "longitude and latitude"));
     options.time_step = 0;
@@ -299,8 +300,9 @@ void write_minc(const std::filesystem::path& file, bool has_time) {
     w.text(v, "spacing", "regular__");
     w.number(v, "start", NC_DOUBLE, {start});
     w.number(v, "step", NC_DOUBLE, {step});
-    w.number(v, "direction_cosines", NC_DOUBLE, cosines);
+    if (!cosines.empty()) w.number(v, "direction_cosines", NC_DOUBLE, cosines);
   };
+  if (has_time) axis("time", 3, 1.5, {});
   axis("xspace", 10, 0.5, {0, 1, 0});
   axis("yspace", 20, -2, {-1, 0, 0});  // falls
   axis("zspace", 30, 3, {0, 0, 1});
@@ -350,7 +352,9 @@ TEST(Minc, RealValuesLieWhereTheDirectionCosinesPutThem) {
 TEST(Minc, TimeStepsAreChosen) {
   const test::TemporaryFolder folder;
   write_minc(folder / "f.mnc", true);
-  EXPECT_EQ(open_volume(folder / "f.mnc").range, (scene::ValueRange{24, 47, 0}));
+  const VolumeFile last = open_volume(folder / "f.mnc");
+  EXPECT_EQ(last.range, (scene::ValueRange{24, 47, 0}));
+  EXPECT_EQ(last.time_step.times, (std::vector<double>{3, 4.5}));
   VolumeOptions options;
   options.time_step = 0;
   EXPECT_EQ(open_volume(folder / "f.mnc", options).range, (scene::ValueRange{0, 23, 0}));

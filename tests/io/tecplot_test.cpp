@@ -146,6 +146,7 @@ TEST_F(Tecplot, SolutionTimesAreSteps) {
     const MeshFile at_step = read(file, "p", step);
     expect_pressure(at_step, step + 1);
     EXPECT_EQ(at_step.time_step.count, 3u);
+    EXPECT_EQ(at_step.time_step.times, (std::vector<double>{0, 0.5, 1}));
   }
   expect_pressure(read(file, "p"), 3);
   expect_density(read(file, "rho", 1));

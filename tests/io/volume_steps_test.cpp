@@ -212,11 +212,12 @@ TEST_F(VolumeSteps, SlicesInFilesAreOneVolume) {
 
 TEST_F(VolumeSteps, MetaImageOfFourDimensionsHasTime) {
   const std::string file =
-      "NDims = 4\nDimSize = 4 3 2 3\nElementSpacing = 1 2 3 0.5\nOffset = 5 6 7 0\n"
+      "NDims = 4\nDimSize = 4 3 2 3\nElementSpacing = 1 2 3 0.5\nOffset = 5 6 7 2\n"
       "TransformMatrix = 0 1 0 0 -1 0 0 0 0 0 1 0 0 0 0 1\nElementType = MET_SHORT\n"
       "ElementDataFile = LOCAL\n" +
       bytes_of(counting<std::int16_t>(72));
   const VolumeFile volume = open_volume(folder.write("a.mha", file), {.time_step = 1});
+  EXPECT_EQ(volume.time_step.times, (std::vector<double>{2, 2.5, 3}));
   EXPECT_EQ(all_samples(*volume.source), from(24));
   EXPECT_EQ(volume.source->geometry().spacing, glm::dvec3(1, 2, 3));
   EXPECT_EQ(volume.source->geometry().origin, glm::dvec3(5, 6, 7));
