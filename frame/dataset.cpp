@@ -1,6 +1,7 @@
 #include "frame/dataset.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -27,6 +28,7 @@
 #include "io/foreign_data.hpp"
 #include "io/mesh_assembly.hpp"
 #include "io/volume_reader.hpp"
+#include "io/vtk_field_words.hpp"
 #include "scene/error.hpp"
 #include "scene/fill_value.hpp"
 #include "scene/label_source.hpp"
@@ -69,25 +71,37 @@ void check_mesh_options(const std::filesystem::path& file, const ReadOptions& op
 /// others a note tells how to leave them out.
 void leave_fill_values_out(io::VolumeFile& volume, const std::filesystem::path& file, const ReadOptions& options,
                            exchange::Transport& transport, Dataset::State& state) {
-  const std::optional<scene::FillValue> fill = scene::find_fill_value(*volume.source, state.ranges->range);
+  std::optional<scene::FillValue> fill = scene::find_fill_value(*volume.source, state.ranges->range);
   if (!fill) return;
   if (!fill->is_huge()) {
     volume.notes.push_back(scene::words_on(*fill, "samples"));
     return;
   }
-  volume.notes.push_back(
-      fmt::format("{} samples have the value {:.7g}, a fill value: they are blank", fill->count, fill->value));
+  volume.notes.push_back(fmt::format("{} samples have the value {:.7g}, a fill value: they are blank", fill->count,
+                                     fmt::join(fill->values, " or ")));
   volume.source = std::make_unique<scene::ThresholdSource>(
       std::move(volume.source), std::array{fill->others.low, fill->others.high}, file.string());
   state.ranges =
       std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source, options.threads));
+  fill = scene::find_fill_value(*volume.source, state.ranges->range);
+  if (fill && !fill->is_huge()) volume.notes.push_back(scene::words_on(*fill, "samples"));
+}
+
+/// Floats of a raw file in the other order of bytes are next to nothing, or huge.
+void note_byte_order(io::VolumeFile& volume, const ReadOptions& options, const scene::ValueRange& range) {
+  const double most = std::max(std::abs(range.low), std::abs(range.high));
+  if (volume.format != "raw samples" || !is_float(volume.source->grid().type) || range.empty() || most == 0 ||
+      (most > 1e-30 && most < 1e30))
+    return;
+  volume.notes.push_back(fmt::format("its values are as those in the other order of bytes are: try `endian` {}",
+                                     options.big_endian ? "little" : "big"));
 }
 
 /// The same note on every rank.
 void note_fill_value(exchange::Transport& transport, Dataset::State& state) {
   const auto [low, high] = state.facts.scalar_range;
-  scene::FillTally part(low, high), whole(low, high);
-  if (!part.has_candidates()) return;
+  if (!scene::may_be_fill(low) && !scene::may_be_fill(high)) return;
+  scene::FillTally part, whole;
   for (const double value : state.mesh.scalars) part.add(value);
   for (const scene::FillTally& each : exchange::gather_values(transport, exchange::MessageKind::fill_tally, part))
     whole.add(each);
@@ -121,6 +135,12 @@ std::vector<double> take_labels(const std::filesystem::path& file, const ReadOpt
   return std::move(found.values);
 }
 
+/// Of a file of one step, what its field data state.
+void set_own_time(const std::filesystem::path& file, io::TimeStepRead& read) {
+  if (read.count > 1 || !read.times.empty()) return;
+  if (const auto time = io::vtk_time_value(file)) read = {1, 0, {*time}};
+}
+
 void check_axis_scale(const std::optional<glm::dvec3>& scale) {
   if (!scale) return;
   for (int axis = 0; axis < 3; ++axis)
@@ -150,6 +170,7 @@ std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, c
     state->ranges =
         std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source, options.threads));
   }
+  note_byte_order(volume, options, state->ranges->range);
   if (!threshold) leave_fill_values_out(volume, file, options, transport, *state);
   scene::ValueRange range = state->ranges->range;
   if (threshold) {
@@ -168,6 +189,7 @@ std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, c
   state->body_axes = volume.body_axes;
   state->tags = std::move(volume.tags);
   state->time_step = std::move(volume.time_step);
+  set_own_time(file, state->time_step);
   state->samples = std::move(volume.source);
   return state;
 }
@@ -322,6 +344,7 @@ Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOp
       frame::DistributedMesh mesh = frame::read_distributed(*transport, files, frame::mesh_options(options),
                                                             ranks.partition, roles.projectors, options.threads, trace);
       take_description(std::move(mesh.description), *state);
+      set_own_time(files.front(), state->time_step);
       state->facts = mesh.facts;
       state->ranks = transport->size();
       state->global_tet = std::move(mesh.part.global_tet);

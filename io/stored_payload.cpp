@@ -41,11 +41,16 @@ scene::Error too_few(const StoredVolume& volume, const Wanted& wanted, std::uint
     return scene::bad_input(
         fmt::format("{}: its part of the samples is {} bytes, the file has {}{}; the file is truncated, write it anew",
                     source, wanted.all, has, after));
-  return scene::bad_input(fmt::format(
-      "{}: {}x{}x{} samples of {} {}{} are {} bytes, the file has {}{}; {}", source, n[0], n[1], n[2],
-      volume.components, scene::name_of(volume.number),
-      volume.steps > 1 ? fmt::format(", of {} steps,", volume.steps) : "", wanted.first + wanted.count, has, after,
-      volume.exact_size ? "give the right dimensions and type" : "the file is truncated, write it anew"));
+  const std::uint64_t needed = wanted.first + wanted.count;
+  const std::string remedy =
+      !volume.exact_size ? "the file is truncated, write it anew"
+      : has > needed     ? fmt::format("give the right dimensions and type, or `skip` {} if a header is before them",
+                                       volume.offset + has - needed)
+                         : "give the right dimensions and type";
+  return scene::bad_input(fmt::format("{}: {}x{}x{} samples of {} {}{} are {} bytes, the file has {}{}; {}", source,
+                                      n[0], n[1], n[2], volume.components, scene::name_of(volume.number),
+                                      volume.steps > 1 ? fmt::format(", of {} steps,", volume.steps) : "", needed, has,
+                                      after, remedy));
 }
 
 /// What to unpack of a compressed volume's file.

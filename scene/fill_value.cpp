@@ -1,6 +1,7 @@
 #include "scene/fill_value.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -9,57 +10,66 @@
 
 namespace tessera::scene {
 
-FillTally::FillTally(double low, double high) {
-  for (const double end : {low, high})
-    if (may_be_fill(end)) ends_[candidates_++] = {.value = end, .count = 0, .others = {}};
-}
-
-void FillTally::add(double value) {
+void FillTally::add(double value, std::uint64_t count) {
   if (!std::isfinite(value)) return;
-  for (std::size_t k = 0; k < candidates_; ++k)
-    if (value == ends_[k].value) {
-      ++ends_[k].count;
-      return;
-    }
-  others_.low = std::min(others_.low, value), others_.high = std::max(others_.high, value);
+  const auto end = usual_.begin() + static_cast<std::ptrdiff_t>(usuals_);
+  const auto known = std::find_if(usual_.begin(), end, [&](const Usual& u) { return u.value == value; });
+  if (known != end)
+    known->count += count;
+  else if (usuals_ < usual_.size() && may_be_fill(value))
+    usual_[usuals_++] = {value, count};
+  else
+    others_.low = std::min(others_.low, value), others_.high = std::max(others_.high, value);
 }
 
 void FillTally::add(const FillTally& part) {
-  for (std::size_t k = 0; k < candidates_; ++k) ends_[k].count += part.ends_[k].count;
+  for (std::size_t k = 0; k < part.usuals_; ++k) add(part.usual_[k].value, part.usual_[k].count);
   others_.low = std::min(others_.low, part.others_.low), others_.high = std::max(others_.high, part.others_.high);
 }
 
-/// Far away: by half of what all others span, or of huge ones ten times that.
+/// Far away: by half of what all others span, or of huge ones ten times that. Huge ones come before all that are not.
 std::optional<FillValue> FillTally::found() const {
-  const double span = others_.high - others_.low;
-  if (!(span > 0) || !std::isfinite(span)) return std::nullopt;
-  for (std::size_t k = 0; k < candidates_; ++k) {
-    FillValue fill = ends_[k];
-    fill.others = others_;
-    const double gap = std::max(others_.low - fill.value, fill.value - others_.high);
-    if (fill.count > 0 && gap > span * (fill.is_huge() ? 10 : 0.5)) return fill;
-  }
-  return std::nullopt;
+  ValueRange others = others_;
+  const auto gap_to = [&](const Usual& u) { return std::max(others.low - u.value, u.value - others.high); };
+  const auto is_huge = [](const Usual& u) { return std::abs(u.value) >= huge_value; };
+  const auto is_far = [&](const Usual& u) {
+    const double span = others.high - others.low;
+    return span > 0 && std::isfinite(span) && gap_to(u) > span * (is_huge(u) ? 10 : 0.5);
+  };
+  const auto take_for_other = [&](const Usual& u) {
+    others.low = std::min(others.low, u.value), others.high = std::max(others.high, u.value);
+    return true;
+  };
+  std::vector<Usual> far(usual_.begin(), usual_.begin() + static_cast<std::ptrdiff_t>(usuals_));
+  std::ranges::sort(far, {}, gap_to);
+  std::erase_if(far, [&](const Usual& u) { return !is_far(u) && take_for_other(u); });
+  if (far.empty()) return std::nullopt;
+  if (is_huge(far.back())) std::erase_if(far, [&](const Usual& u) { return !is_huge(u) && take_for_other(u); });
+  FillValue fill{.value = far.back().value, .count = 0, .others = others, .values = {}};
+  for (const Usual& u : far) fill.count += u.count, fill.values.push_back(u.value);
+  std::ranges::sort(fill.values);
+  return fill;
 }
 
 bool may_be_fill(double value) {
-  constexpr std::array usual = {999.0,    9999.0,    99999.0,  999999.0,      -999.0,   -9999.0,
-                                -99999.0, -999999.0, -32767.0, -2147483648.0, -32768.0, -2147483647.0};
+  constexpr std::array usual = {999.0,    9999.0,    99999.0,      999999.0,    -999.0,        -9999.0,
+                                -99999.0, -999999.0, -32767.0,     -32768.0,    -2147483647.0, -2147483648.0,
+                                32767.0,  65535.0,   2147483647.0, 4294967295.0};
   // Some write one more digit behind the point: -9999.9, -999.25.
   return std::abs(value) >= huge_value ||
          std::any_of(usual.begin(), usual.end(), [&](double u) { return std::trunc(value) == u; });
 }
 
 std::optional<FillValue> find_fill_value(std::span<const double> values, double low, double high) {
-  FillTally tally(low, high);
-  if (!tally.has_candidates()) return std::nullopt;
+  if (!may_be_fill(low) && !may_be_fill(high)) return std::nullopt;
+  FillTally tally;
   for (const double value : values) tally.add(value);
   return tally.found();
 }
 
 std::optional<FillValue> find_fill_value(const SampleSource& source, const ValueRange& range) {
-  FillTally tally(range.low, range.high);
-  if (range.empty() || !tally.has_candidates()) return std::nullopt;
+  if (range.empty() || (!may_be_fill(range.low) && !may_be_fill(range.high))) return std::nullopt;
+  FillTally tally;
   const SampleBox all = source.geometry().all_samples();
   std::vector<double> slice;
   for (std::int64_t k = all.low[2]; k < all.high[2]; ++k) {
@@ -74,11 +84,13 @@ std::optional<FillValue> find_fill_value(const SampleSource& source, const Value
 
 std::string words_on(const FillValue& fill, const char* things) {
   const double margin = (fill.others.high - fill.others.low) / 100;
+  const bool is_one = fill.values.size() == 1;
   return fmt::format(
-      "{} {} have the value {:.7g}, which looks like a fill value and rules range and colours: "
+      "{} {} have the value{} {:.7g}, which look{} like {}fill value{} and rule{} range and colours: "
       "`threshold` {:.7g},{:.7g} leaves them out",
-      fill.count == 0 ? "some" : fmt::format("{}", fill.count), things, fill.value, fill.others.low - margin,
-      fill.others.high + margin);
+      fill.count == 0 ? "some" : fmt::format("{}", fill.count), things, is_one ? "" : "s",
+      fmt::join(fill.values, " or "), is_one ? "s" : "", is_one ? "a " : "", is_one ? "" : "s", is_one ? "s" : "",
+      fill.others.low - margin, fill.others.high + margin);
 }
 
 }  // namespace tessera::scene

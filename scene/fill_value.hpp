@@ -2,10 +2,12 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "scene/sample_source.hpp"
 
@@ -14,12 +16,13 @@ namespace tessera::scene {
 /// From here on quantities are rare, and fill values of climate models common.
 inline constexpr double huge_value = 1e20;
 
-/// A value that stands for "nothing here" by the custom of many programs (-9999, 1e20, -FLT_MAX, ...), is the least or
-/// greatest of a field and is far from all others.
+/// A value that stands for "nothing here" by the custom of many programs (-9999, 1e20, -FLT_MAX, the greatest of a type
+/// of integers, ...) and is far from all others; or several: of a field with huge ones and others only the huge ones.
 struct FillValue {
-  double value = 0;
-  std::uint64_t count = 0;  ///< samples that have it
-  ValueRange others;        ///< of all other values
+  double value = 0;              ///< the farthest
+  std::uint64_t count = 0;       ///< samples that have one of them
+  ValueRange others;             ///< of all other values
+  std::vector<double> values{};  ///< all, ascending
 
   /// No quantity is likely to have it: it may be left out without asking.
   [[nodiscard]] bool is_huge() const { return std::abs(value) >= huge_value; }
@@ -28,21 +31,24 @@ struct FillValue {
 /// Whether a value is one of the usual ones. Cheap: what follows reads all values once more.
 bool may_be_fill(double value);
 
-/// Of a field's values, or a part of them, those at an end of its range that may_be_fill(), and the range of the
-/// others. The sum of all parts' tallies is the whole's.
+/// Of a field's values, or a part of them: how often each that may_be_fill() comes, and the range of the others. The
+/// sum of all parts' tallies is the whole's.
 class FillTally {
  public:
-  FillTally() = default;
-  FillTally(double low, double high);  ///< of the whole field
-
-  [[nodiscard]] bool has_candidates() const { return candidates_ > 0; }
-  void add(double value);
-  void add(const FillTally& part);  ///< of the same field
+  void add(double value) { add(value, 1); }
+  void add(const FillTally& part);
   [[nodiscard]] std::optional<FillValue> found() const;
 
  private:
-  std::array<FillValue, 2> ends_{};
-  std::uint64_t candidates_ = 0;
+  struct Usual {
+    double value = 0;
+    std::uint64_t count = 0;
+  };
+
+  void add(double value, std::uint64_t count);
+
+  std::array<Usual, 8> usual_{};
+  std::size_t usuals_ = 0;
   ValueRange others_;
 };
 

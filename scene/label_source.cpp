@@ -5,6 +5,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "scene/fill_value.hpp"
+
 namespace tessera::scene {
 namespace {
 
@@ -22,7 +24,7 @@ class LabelTallies {
     LabelTally* before = nullptr;
     double last = 0;
     for (const double value : row) {
-      if (!std::isfinite(value)) {
+      if (!std::isfinite(value) || std::abs(value) >= huge_value) {  // blank, or a fill value
         before = nullptr;
         continue;
       }
@@ -47,7 +49,7 @@ class LabelTallies {
   /// Two rows next to each other.
   void compare(std::span<const double> row, std::span<const double> next) {
     for (std::size_t i = 0; i < row.size(); ++i)
-      if (row[i] != next[i] && std::isfinite(row[i] - next[i])) add_step(row[i], next[i]);
+      if (row[i] != next[i] && std::abs(row[i] - next[i]) < huge_value) add_step(row[i], next[i]);
   }
 
   [[nodiscard]] bool are_labels() const {

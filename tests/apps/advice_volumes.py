@@ -325,6 +325,12 @@ ROWS = [
         {"b.raw": SAMPLES},
     ),
     row(
+        "info b.raw --dims 2x2x2 --type uint8",
+        "or --skip 5 if a header is before them",
+        "info b.raw --dims 2x2x2 --type uint8 --skip 5",
+        {"b.raw": b"12345" + SAMPLES},
+    ),
+    row(
         "info b.raw", "does not say its dimensions and type", "info b.raw --dims 2x2x2 --type uint8", {"b.raw": SAMPLES}
     ),
 ]

@@ -1,4 +1,5 @@
 // Volumes on several ranks, as users start them.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -68,6 +69,42 @@ TEST_F(VolumeMpirun, RectilinearGridsHaveTheBytesOfOneProcessToo) {
     for (const char* end : {"_0.exr", "_1.exr", "_0.deep.exr", "_1.deep.exr"})
       EXPECT_EQ(contents(folder_ / (std::string("ranks") + end)), contents(folder_ / (std::string("one") + end)))
           << ranks << end;
+  }
+}
+
+TEST_F(VolumeMpirun, LabelsAndFillValuesAreFoundByAllProcessesAlike) {
+  // Boxes of four labels, of which one is in a corner alone, and fill values: one that is blanked, one that is noted.
+  constexpr int side = 16;
+  std::string labels = "NRRD0004\ntype: float\ndimension: 3\nsizes: 16 16 16\nendian: little\nencoding: ascii\n\n",
+              filled = labels;
+  for (int n = 0; n < side * side * side; ++n) {
+    const int i = n % side, j = n / side % side, k = n / side / side;
+    const int label = i > 12 && j > 12 && k > 12 ? 40 : i / 6 + 3 * (j / 9);
+    labels += n == 0 ? "1e20 " : fmt::format("{} ", label);
+    filled += n == 0 ? "1e20 " : i == 0 ? "-9999 " : fmt::format("{:.6} ", 0.37 * i + 0.11 * j * k);
+  }
+  const auto count = [](const std::string& text, const std::string& words) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1)) ++found;
+    return found;
+  };
+  const auto run = [&](const std::string& file, int ranks, const std::string& output) {
+    const std::vector<std::string> words{"render", file, "-o", output, "--size", "70x50", "--threads", "1"};
+    const Outcome outcome = ranks == 1 ? tessera(words) : mpirun(ranks, words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out + outcome.err;
+  };
+  const std::string label_file = folder_.file("labels.nrrd", labels), fill_file = folder_.file("fill.nrrd", filled);
+  run(label_file, 1, folder_ / "labels_one.exr");
+  run(fill_file, 1, folder_ / "fill_one.exr");
+  for (const int ranks : {2, 3}) {
+    const std::string said = run(label_file, ranks, folder_ / "labels.exr");
+    EXPECT_EQ(count(said, "values are labels, 7 of them"), 1u) << said;
+    EXPECT_EQ(contents(folder_ / "labels.exr"), contents(folder_ / "labels_one.exr")) << ranks;
+    const std::string noted = run(fill_file, ranks, folder_ / "fill.exr");
+    EXPECT_EQ(count(noted, "1 samples have the value 1e+20, a fill value"), 1u) << noted;
+    EXPECT_EQ(count(noted, "255 samples have the value -9999, which looks like a fill value"), 1u) << noted;
+    EXPECT_EQ(contents(folder_ / "fill.exr"), contents(folder_ / "fill_one.exr")) << ranks;
   }
 }
 

@@ -16,8 +16,8 @@ std::optional<FillValue> found_in(const std::vector<double>& values) {
 }
 
 TEST(FillValues, AreUsualOnesFarFromAllOthers) {
-  for (const double fill : {-9999.0, -999.25, -32768.0, 99999.0, 1e20, -3.4028234663852886e38, 9.969209968386869e36,
-                            std::numeric_limits<double>::max()}) {
+  for (const double fill : {65535.0, 32767.0, -9999.0, -999.25, -32768.0, 99999.0, 1e20, -3.4028234663852886e38,
+                            9.969209968386869e36, std::numeric_limits<double>::max()}) {
     const std::optional<FillValue> found = found_in({1, fill, 5, 3, fill, 7.5});
     ASSERT_TRUE(found.has_value()) << fill;
     EXPECT_EQ(found->value, fill);
@@ -26,6 +26,27 @@ TEST(FillValues, AreUsualOnesFarFromAllOthers) {
     EXPECT_EQ(found->others.high, 7.5);
     EXPECT_EQ(found->is_huge(), std::abs(fill) >= 1e20);
   }
+}
+
+TEST(FillValues, OfSeveralAreAllFarFromTheRestTheHugeOnesFirst) {
+  const std::vector<double> both = {1, -9999, 5, -32768, -9999, 7};
+  const std::optional<FillValue> two = found_in(both);
+  ASSERT_TRUE(two.has_value());
+  EXPECT_EQ(two->values, (std::vector<double>{-32768, -9999}));
+  EXPECT_EQ(two->count, 3u);
+  EXPECT_EQ(two->others.low, 1);
+  EXPECT_NE(words_on(*two, "samples").find("3 samples have the values -32768 or -9999, which look like fill values"),
+            std::string::npos);
+  EXPECT_NE(words_on(*two, "samples").find("`threshold` 0.94,7.06 leaves"), std::string::npos);
+  std::vector<double> with_huge = both;
+  with_huge.insert(with_huge.end(), {1e20, 1e20, -1e30});
+  const std::optional<FillValue> huge = found_in(with_huge);
+  ASSERT_TRUE(huge.has_value());
+  EXPECT_TRUE(huge->is_huge());
+  EXPECT_EQ(huge->values, (std::vector<double>{-1e30, 1e20}));
+  EXPECT_EQ(huge->count, 3u);
+  EXPECT_EQ(huge->others.low, -32768);  // a note has these
+  EXPECT_EQ(huge->others.high, 7);
 }
 
 TEST(FillValues, AreNoneThatOthersAreNear) {

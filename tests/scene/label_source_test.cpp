@@ -46,6 +46,7 @@ TEST(LabelValues, OneBlankSampleChangesNothing) {
   };
   EXPECT_EQ(with(std::nan("")).values, with(box_at(5, 6, 7)).values);
   EXPECT_TRUE(with(std::nan("")).are_labels);
+  EXPECT_EQ(with(1e20).values, with(box_at(5, 6, 7)).values);  // a fill value
   EXPECT_FALSE(with(0.5).are_labels);
 }
 
