@@ -59,6 +59,7 @@ class SeriesLook {
   SeriesChoice choose() {
     SeriesChoice choice;
     choice.field = read_.field.empty() ? chosen_field() : read_.field;
+    if (choice.field.empty()) require_same_field();
     ReadOptions chosen = read_;
     chosen.field = choice.field;
     if (read_.field.empty() && !choice.field.empty())
@@ -109,6 +110,18 @@ class SeriesLook {
     std::vector<std::vector<FieldInfo>> fields;
     std::transform(looked_.rbegin(), looked_.rend(), std::back_inserter(fields), std::mem_fn(&LookedAt::fields));
     return field_of_steps(fields, read_);
+  }
+
+  /// No field of all steps varies: none may show a field that others lack, in colors of another one.
+  void require_same_field() const {
+    const auto with = std::ranges::find_if(looked_, [](const LookedAt& l) { return !l.field.empty(); });
+    if (with == looked_.end()) return;
+    const auto without = std::ranges::find_if(looked_, [&](const LookedAt& l) { return l.field != with->field; });
+    if (without == looked_.end()) return;
+    throw bad_input(
+        fmt::format("time step {} has no field '{}', which time step {} shows; choose steps that have it with "
+                    "--time-step FIRST:LAST, or with --field a field of all steps",
+                    without->step, with->field, with->step));
   }
 
   std::optional<LoadedTransferFunction> function_over(const std::array<double, 2>& range, const LookedAt& widest,

@@ -172,13 +172,17 @@ std::string field_of_steps(std::span<const std::vector<FieldInfo>> steps, const 
   std::vector<FieldInfo> widest;
   for (const FieldInfo& first : steps.front()) {
     FieldInfo field = first;
+    // Values may count in one step, as an initial ramp does, and not in the others.
+    bool is_quantity = false;
     const bool everywhere = std::ranges::all_of(steps, [&](const std::vector<FieldInfo>& step) {
       const auto found = std::ranges::find_if(step, [&](const FieldInfo& f) { return is_same(f, field); });
       if (found == step.end()) return false;
       if (found->high - found->low > field.high - field.low) field.low = found->low, field.high = found->high;
       field.ids = field.ids || found->ids;
+      is_quantity = is_quantity || (found->high > found->low && !found->ids);
       return true;
     });
+    field.ids = field.ids && !is_quantity;
     if (everywhere) widest.push_back(std::move(field));
   }
   const io::FieldChoice choice = io::choose_field("", widest, "series", true);
