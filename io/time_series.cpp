@@ -53,12 +53,10 @@ std::optional<Pattern> pattern_of(const std::string& name) {
 bool is_file_series(const std::filesystem::path& input) { return lower_extension(input) == ".series"; }
 bool is_pvd(const std::filesystem::path& input) { return lower_extension(input) == ".pvd"; }
 
-/// Of numbered VTK XML files that state their times, all of them, these.
+/// Of numbered VTK files that state their times, all of them, these.
 void set_own_times(std::vector<TimeStep>& steps) {
   std::vector<double> times;
   for (const TimeStep& step : steps) {
-    const std::string extension = lower_extension(step.files.front());
-    if (extension != ".vtu" && extension != ".vti" && extension != ".vtr" && extension != ".vts") return;
     const auto time = vtk_time_value(step.files.front());
     if (!time) return;
     times.push_back(*time);

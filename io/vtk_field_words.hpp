@@ -12,7 +12,9 @@ namespace tessera::io {
 /// within its first 64 KiB, as write_volume() does. Others are left out; never an error.
 std::vector<std::pair<std::string, std::string>> vtk_field_words(const std::filesystem::path& file);
 
-/// The number `TimeValue` of a VTK XML file's field data, as VTK writes it, in the same bytes; never an error.
+/// The time that a VTK file's field data state: `TimeValue`, in legacy files `TIME` too, as VTK and VisIt write them,
+/// in the same bytes; of a list of pieces that of the list, else of its first piece. Nothing of other files; never an
+/// error.
 std::optional<double> vtk_time_value(const std::filesystem::path& file);
 
 }  // namespace tessera::io

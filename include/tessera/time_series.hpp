@@ -26,8 +26,9 @@ TESSERA_EXPORT bool is_time_series(const std::filesystem::path& input);
 /// .pvd (ParaView's): <VTKFile type="Collection"> with <DataSet timestep= part= file=>; relative paths are against the
 /// .pvd's folder, entries of one timestep are its parts. .series (ParaView's): JSON, {"files": [{"name", "time"},
 /// ...]}, each entry a step. Pattern: the files there are whose name the pattern gives for some number, by number; gaps
-/// are fine; where all are VTK XML files with `TimeValue` in their field data, times are these. Throws Error(bad_input)
-/// in one line for a missing, malformed or huge list, one that lists nothing, and a pattern without a file.
+/// are fine; where all are VTK files with `TimeValue` or `TIME` in their field data, times are these. Throws
+/// Error(bad_input) in one line for a missing, malformed or huge list, one that lists nothing, and a pattern without a
+/// file.
 TESSERA_EXPORT std::vector<TimeStep> read_time_series(const std::filesystem::path& input);
 
 /// A name with its first `%d` or `%0Nd` (as in printf) replaced by a number; nothing if it has none. Other text, other

@@ -197,12 +197,74 @@ TEST_F(SeriesDefaults, NumberedFilesHaveTheTimesThatTheyState) {
   EXPECT_EQ(info_of(folder / "t_%d.vtu").at("time_steps").at("numbers"), Json({7, 8, 9}));
 }
 
+TEST_F(SeriesDefaults, LegacyFilesAndListsOfPiecesHaveTheTimesThatTheyState) {
+  const std::string grid =
+      "DIMENSIONS 2 2 2\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 8\nSCALARS p float 1\nLOOKUP_TABLE default\n";
+  const std::string head = "# vtk DataFile Version 3.0\ntitle\n", dataset = "DATASET STRUCTURED_POINTS\n";
+  const auto big_endian = [](auto number) {
+    std::string bytes(reinterpret_cast<const char*>(&number), sizeof number);
+    return std::string(bytes.rbegin(), bytes.rend());
+  };
+  std::string ascii =
+      head + "ASCII\n" + dataset + "FIELD FieldData 2\nCYCLE 1 1 int\n7\nTIME 1 1 double\n0.125\n" + grid;
+  std::string binary = head + "BINARY\n" + dataset + "FIELD FieldData 2\nCYCLE 1 1 int\n" + big_endian(8) +
+                       "\nTIME 1 1 double\n" + big_endian(0.5) + "\n" + grid;
+  for (int k = 0; k < 8; ++k)
+    ascii += fmt::format("{} ", 3 * k * k), binary += big_endian(static_cast<float>(3 * k * k));
+  (void)folder.file("l_7.vtk", ascii);
+  (void)folder.file("l_8.vtk", binary);
+  EXPECT_EQ(info_of(folder / "l_%d.vtk").at("time_steps").at("times"), Json({0.125, 0.5}));
+  // In a list of files, whose places they would be, too.
+  Names list = film(folder / "l_8.vtk");
+  list.insert(list.begin() + 1, folder / "l_7.vtk");
+  EXPECT_EQ(tessera(list).status, 0);
+  EXPECT_EQ(Json::parse(contents(folder / "r.json")).at("frames").at(1).at("time"), 0.5);
+
+  for (const int step : {1, 2}) {
+    std::string text = row_of_cubes({{"p", times(1)}});
+    text.insert(text.find("<Piece"), fmt::format(R"(<FieldData><DataArray type="Float64" Name="TimeValue" )"
+                                                 R"(format="ascii">{}</DataArray></FieldData>)",
+                                                 0.75 * step));
+    (void)folder.file(fmt::format("q_{}_0.vtu", step), text);
+    (void)folder.file(
+        fmt::format("q_{}.pvtu", step),
+        fmt::format(R"(<VTKFile type="PUnstructuredGrid" version="1.0" byte_order="LittleEndian">)"
+                    R"(<PUnstructuredGrid GhostLevel="0"><PPointData><PDataArray type="Float64" Name="p"/>)"
+                    R"(</PPointData><PPoints><PDataArray type="Float64" NumberOfComponents="3"/></PPoints>)"
+                    R"(<Piece Source="q_{}_0.vtu"/></PUnstructuredGrid></VTKFile>)",
+                    step));
+  }
+  EXPECT_EQ(info_of(folder / "q_%d.pvtu").at("time_steps").at("times"), Json({0.75, 1.5}));
+}
+
 TEST_F(SeriesDefaults, InfoAndRenderShowTheSameOfIdsAlone) {
   int count = 0;
   const std::string file = folder.file("ids.vtu", row_of_cubes({{"GlobalNodeId", [&](double) { return ++count; }}}));
   const Json said = info_of(file);
   EXPECT_EQ(said.at("field").at("name"), "shape (depth)");
   EXPECT_EQ(report_of(file).at("mesh").at("field"), said.at("field"));
+}
+
+TEST_F(SeriesDefaults, NeverShowAFieldInSomeStepsAndTheShapeInOthers) {
+  write({{}, {{"conc", times(1)}}, {{"conc", times(2)}}});
+  for (const Names& command : {film(pvd), Names{"info", pvd}}) {
+    const Outcome run = tessera(command);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_NE(run.err.find("time step 0 has no field 'point:conc', which time step"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("--time-step FIRST:LAST"), std::string::npos) << run.err;
+  }
+  const Json later = report_of(pvd, {"--time-step", "1:2"});
+  EXPECT_EQ(later.at("mesh").at("field").at("name"), "conc");
+  write({{}, {}});
+  EXPECT_EQ(report_of(pvd).at("mesh").at("field").at("name"), "shape (depth)");
+}
+
+TEST_F(SeriesDefaults, CountAFieldAsIdsOnlyIfItIsInAllStepsInWhichItVaries) {
+  // 24 points: 0, 1, ... in the first step, which no quantity is, and other values in the next.
+  int n = 0;
+  const auto counted = [&n](double) { return n++ % 24; };
+  write({{{"heat", counted}, {"other", times(0)}}, {{"heat", times(3)}, {"other", times(0)}}});
+  EXPECT_EQ(report_of(pvd).at("mesh").at("field").at("name"), "heat");
 }
 
 }  // namespace
