@@ -10,6 +10,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string_view>
+#include <utility>
 
 #include "scene/error.hpp"
 #include "tessera/nearest_name.hpp"
@@ -125,14 +127,21 @@ bool is_id_name(const std::string& name) {
   static constexpr std::array exact = {"id",   "ids",     "iblank", "rank",     "partition",  "processid",  "procid",
                                        "part", "blockid", "region", "material", "material #", "materialid", "block"};
   if (std::find(exact.begin(), exact.end(), lower) != exact.end() || lower.starts_with("vtk")) return true;
-  // A word of the name, as in "GLOBAL_IDS_POINTS" and "GlobalNodeId", but not in "Fluid" or "Solid".
-  std::string word;
+  // A word of the name, as in "GLOBAL_IDS_POINTS" and "GlobalNodeId", but not in "Fluid" or "Solid"; or two, as in
+  // "NodeNumber", but not in "Mach number".
+  constexpr std::array<std::string_view, 4> ids = {"id", "ids", "gid", "gids"};
+  constexpr std::array<std::string_view, 7> counted = {"node", "element", "elem", "cell", "point", "vertex", "face"};
+  constexpr std::array<std::string_view, 6> numbers = {"number", "numbers", "num", "no", "nr", "index"};
+  const auto is_in = [](const auto& words, const std::string& word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  };
+  std::string word, before;
   for (std::size_t k = 0; k <= name.size(); ++k) {
     const auto c = static_cast<unsigned char>(k < name.size() ? name[k] : ' ');
     const bool begins = std::isupper(c) && k > 0 && std::islower(static_cast<unsigned char>(name[k - 1]));
     if (begins || !std::isalpha(c)) {
-      if (word == "id" || word == "ids") return true;
-      word.clear();
+      if (is_in(ids, word) || (is_in(counted, before) && is_in(numbers, word))) return true;
+      if (!word.empty()) before = std::exchange(word, {});
     }
     if (std::isalpha(c)) word += static_cast<char>(std::tolower(c));
   }

@@ -73,7 +73,9 @@ TEST(FieldChoice, IndicesAndPartsAreNoDefaultWhereShapesAreShown) {
   ASSERT_EQ(shape.notes.size(), 1u);
   EXPECT_NE(shape.notes.front().find("BLOCK_I"), std::string::npos);
   EXPECT_EQ(choose_field("BLOCK_I", fields, "mesh.vtu", true).label, "BLOCK_I");
-  for (const char* name : {"rank", "BLOCK_K", "mpi_rank", "material_id", "subdomain"}) EXPECT_TRUE(is_label_name(name));
+  for (const char* name :
+       {"rank", "BLOCK_K", "mpi_rank", "material_id", "subdomain", "gid", "NodeNumber", "elem_num", "cell index"})
+    EXPECT_TRUE(is_label_name(name));
   for (const char* name : {"mach_number", "refractive_index", "k_eps", "materiality"})
     EXPECT_FALSE(is_label_name(name));
 }
