@@ -82,6 +82,7 @@ nlohmann::json json_of(const DicomSlice& s) {
                                 json_of(s.each),
                                 s.frames_note,
                                 s.bits,
+                                s.is_mosaic,
                                 json_of(s.segments)});
 }
 
@@ -101,7 +102,8 @@ DicomSlice slice_of(const nlohmann::json& j, const std::filesystem::path& file) 
   for (const nlohmann::json& frame : j.at(20)) s.each.push_back(frame_of(frame));
   j.at(21).get_to(s.frames_note);
   j.at(22).get_to(s.bits);
-  s.segments = segments_of(j.at(23));
+  j.at(23).get_to(s.is_mosaic);
+  s.segments = segments_of(j.at(24));
   return s;
 }
 

@@ -148,7 +148,11 @@ ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& file
     const std::vector<DicomSlice> one = read_dicom_headers(std::span(&file, 1));
     if (one.empty())
       throw scene::bad_input(
-          fmt::format("{}: GDCM finds no pictures in it; give a folder or a file of slices", source));
+          looks_like_dicom(read_beginning(file, 132))
+              ? fmt::format("{}: it is DICOM, and GDCM finds no pictures in it: it is a report, plan or list, or ends "
+                            "within its header; give a folder or a file of slices",
+                            source)
+              : fmt::format("{}: GDCM finds no pictures in it; give a folder or a file of slices", source));
     if (one.front().frames > 1) {
       slices = one;
     } else {

@@ -58,6 +58,11 @@ std::vector<DicomSlice> chosen_group(std::vector<DicomSlice> slices, const std::
         fmt::format("{}: its pictures are coloured, of {} numbers a sample, no values of a volume; "
                     "give a series of one number a sample",
                     source, chosen->front().components));
+  if (chosen->front().is_mosaic)
+    throw scene::bad_input(
+        fmt::format("{}: its slices are side by side in one picture (Siemens' mosaic), which is not read; convert it: "
+                    "dcm2niix FOLDER",
+                    source));
   if (groups.size() > 1)
     notes.push_back(fmt::format("of {} stacks of slices this is one of {}; name one of its files for another",
                                 groups.size(), chosen->size() * static_cast<std::size_t>(chosen->front().frames)));

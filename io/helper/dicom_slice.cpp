@@ -160,6 +160,7 @@ std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
     if (slice.unit.empty()) slice.unit = dicom_text(data, 0x0054, 0x1001);
     if (slice.unit.empty() && slice.modality == "RTDOSE") slice.unit = dicom_text(data, 0x3004, 0x0002);
     if (!set_samples(reader.GetFile(), slice)) return std::nullopt;
+    slice.is_mosaic = dicom_text(data, 0x0008, 0x0008).find("\\MOSAIC") != std::string::npos;
     if (reader.GetFile().GetHeader().GetDataSetTransferSyntax() != gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian)
       slice.samples_end = static_cast<std::uint64_t>(std::max<std::streamoff>(in.tellg(), 0));
     set_place(reader.GetFile(), slice);
@@ -180,7 +181,7 @@ std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
 }
 
 DicomSamples::DicomSamples(const DicomSlice& slice)
-    : frames_(static_cast<std::size_t>(slice.frames)), padding_(slice.padding) {
+    : frame_size_(static_cast<std::size_t>(slice.columns * slice.rows)), padding_(slice.padding) {
   const std::string source = slice.file.string();
   const auto refuse = [&](const char* what) {
     return scene::bad_input(fmt::format("{}: {}; {}", source, what, write_anew));
@@ -193,7 +194,7 @@ DicomSamples::DicomSamples(const DicomSlice& slice)
       throw refuse("it ends before its samples do");
   }
   if (slice.bits == 1) {
-    unpack_bits(slice);
+    take_bits(slice);
     return;
   }
   // GDCM aborts on others.
@@ -219,12 +220,12 @@ DicomSamples::DicomSamples(const DicomSlice& slice)
 }
 
 /// The first sample is the lowest bit; neither rows nor frames begin a byte (PS3.5, 8.1.1).
-void DicomSamples::unpack_bits(const DicomSlice& slice) {
+void DicomSamples::take_bits(const DicomSlice& slice) {
   const std::string source = slice.file.string();
   if (slice.is_packed)
     throw scene::bad_input(
-        fmt::format("{}: its samples of 1 bit are compressed, which is not read; convert it by `segimage2itkimage` of "
-                    "dcmqi to NRRD",
+        fmt::format("{}: its samples of 1 bit are compressed, which is not read; convert it to NRRD by dcmqi's "
+                    "segimage2itkimage",
                     source));
   gdcm::Reader reader;
   reader.SetFileName(slice.file.c_str());
@@ -234,10 +235,8 @@ void DicomSamples::unpack_bits(const DicomSlice& slice) {
                                           : nullptr;
   if (bits == nullptr || bits->GetLength() < slice.bytes)
     throw scene::bad_input(fmt::format("{}: it ends before its samples do; {}", source, write_anew));
-  bits_ = 8;
-  bytes_.resize(static_cast<std::size_t>(slice.columns * slice.rows * slice.frames));
-  for (std::size_t k = 0; k < bytes_.size(); ++k)
-    bytes_[k] = static_cast<char>(static_cast<unsigned char>(bits->GetPointer()[k / 8]) >> (k % 8) & 1);
+  has_bits_ = true;
+  bytes_.assign(bits->GetPointer(), bits->GetPointer() + slice.bytes);
 }
 
 DicomValues DicomSamples::values(const DicomSlice& slice) const {
@@ -245,8 +244,9 @@ DicomValues DicomSamples::values(const DicomSlice& slice) const {
   const std::size_t count = frame_count(), begin = static_cast<std::size_t>(slice.frame) * count;
   const auto is_whole = [](double v) { return v == std::floor(v); };
   // Integers that stay such in their order need no looking at each value.
-  const bool is_plain = !padding_ && !slice.joins_frames && is_whole(slice.slope) && is_whole(slice.intercept) &&
-                        std::abs(slice.slope) < 0x1p20 && std::abs(slice.intercept) < 0x1p52 && count > 0;
+  const bool is_plain = !padding_ && !slice.joins_frames && !has_bits_ && is_whole(slice.slope) &&
+                        is_whole(slice.intercept) && std::abs(slice.slope) < 0x1p20 &&
+                        std::abs(slice.intercept) < 0x1p52 && count > 0;
   with_number_type(type_, [&](auto zero) {
     using Number = decltype(zero);
     if constexpr (std::is_integral_v<Number>) {
@@ -287,13 +287,19 @@ void DicomSamples::read(const DicomSlice& slice, std::size_t first, std::span<do
 std::uint64_t DicomSamples::read_joined(const DicomSlice& slice, std::size_t first, std::span<double> out) const {
   std::ranges::fill(out, 0);
   std::uint64_t shared = 0;
-  std::vector<double> frame(out.size());
+  std::vector<double> frame(has_bits_ ? 0 : out.size());
   for (const DicomFrameOfSegment& part : slice.joined) {
-    read_frame(slice, part.frame, first, frame);
+    if (!has_bits_) read_frame(slice, part.frame, first, frame);
+    const std::size_t begin = static_cast<std::size_t>(part.frame) * frame_size_ + first;
     for (std::size_t k = 0; k < out.size(); ++k) {
-      if (frame[k] == 0) continue;
+      if (has_bits_ && (begin + k) % 8 == 0 && bytes_[(begin + k) / 8] == 0) {
+        k += 7;  // most of a segmentation is nothing
+        continue;
+      }
+      const double sample = has_bits_ ? slice.slope * bit_at(begin + k) : frame[k];
+      if (sample == 0) continue;
       if (out[k] != 0) ++shared;
-      out[k] = part.segment > 0 ? static_cast<double>(part.segment) : frame[k];
+      out[k] = part.segment > 0 ? static_cast<double>(part.segment) : sample;
     }
   }
   return shared;
@@ -302,6 +308,10 @@ std::uint64_t DicomSamples::read_joined(const DicomSlice& slice, std::size_t fir
 void DicomSamples::read_frame(const DicomSlice& slice, std::int64_t frame, std::size_t first,
                               std::span<double> out) const {
   first += static_cast<std::size_t>(frame) * frame_count();
+  if (has_bits_) {
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] = slice.slope * bit_at(first + k) + slice.intercept;
+    return;
+  }
   with_number_type(type_, [&](auto zero) {
     using Number = decltype(zero);
     for (std::size_t k = 0; k < out.size(); ++k) {

@@ -45,6 +45,7 @@ struct DicomSlice {
   std::int64_t columns = 0, rows = 0, frames = 1;
   int components = 1;             ///< 3: colours
   bool is_packed = false;         ///< its samples are compressed
+  bool is_mosaic = false;         ///< slices side by side in one picture, as Siemens writes them
   std::uint64_t samples_end = 0;  ///< where they end in the file, if not packed; 0 if all of it is deflated
   std::uint64_t bytes = 0;        ///< of its samples, unpacked
   int bits = 8;                   ///< of a sample, with those not used
@@ -85,14 +86,15 @@ class DicomSamples {
   explicit DicomSamples(const DicomSlice& slice);
 
   /// Of one frame, with that slice's scale.
-  [[nodiscard]] std::size_t frame_count() const { return bytes_.size() / size_of(type_) / frames_; }
+  [[nodiscard]] std::size_t frame_count() const { return frame_size_; }
   [[nodiscard]] DicomValues values(const DicomSlice& slice) const;
 
   /// Values [first, first + out.size()) of a slice's frame; NaN where a sample is padding.
   void read(const DicomSlice& slice, std::size_t first, std::span<double> out) const;
 
  private:
-  void unpack_bits(const DicomSlice& slice);
+  void take_bits(const DicomSlice& slice);
+  [[nodiscard]] int bit_at(std::size_t k) const { return static_cast<unsigned char>(bytes_[k / 8]) >> (k % 8) & 1; }
   void read_frame(const DicomSlice& slice, std::int64_t frame, std::size_t first, std::span<double> out) const;
   /// The number of samples that are in several segments.
   std::uint64_t read_joined(const DicomSlice& slice, std::size_t first, std::span<double> out) const;
@@ -100,7 +102,8 @@ class DicomSamples {
   std::vector<char> bytes_;
   NumberType type_ = NumberType::uint8;
   int bits_ = 0;  ///< of integers that are the sample's; the others are something else's
-  std::size_t frames_ = 1;
+  std::size_t frame_size_ = 0;
+  bool has_bits_ = false;  ///< samples are of one bit, eight a byte
   std::optional<std::array<double, 2>> padding_;
 };
 

@@ -33,6 +33,7 @@ struct Slice {
   int number = 1;
   double slope = 1, intercept = 0;
   int time = 0;  ///< 0: none said
+  std::string image_type = "ORIGINAL\\PRIMARY";
   int columns = 4, rows = 3, colours = 1;
   std::vector<std::int16_t> samples{};
   std::vector<std::int16_t> padding{};  ///< none, a value, or a value and the limit of a range
@@ -45,9 +46,9 @@ std::string dicom(const Slice& s) {
   const std::uint32_t bits = s.colours > 1 ? 8 : s.is_wide ? 32 : 16;
   const std::string about = element(2, 2, "UI", ct_storage) + element(2, 3, "UI", fmt::format("1.2.{}", s.number)) +
                             element(2, 0x10, "UI", "1.2.840.10008.1.2.1");
-  std::string data = element(8, 0x16, "UI", ct_storage) + element(8, 0x60, "CS", "CT") +
-                     element(0x18, 0x50, "DS", "2") + element(0x20, 0xe, "UI", s.series) +
-                     element(0x20, 0x13, "IS", fmt::format("{}", s.number)) +
+  std::string data = element(8, 8, "CS", s.image_type) + element(8, 0x16, "UI", ct_storage) +
+                     element(8, 0x60, "CS", "CT") + element(0x18, 0x50, "DS", "2") +
+                     element(0x20, 0xe, "UI", s.series) + element(0x20, 0x13, "IS", fmt::format("{}", s.number)) +
                      element(0x20, 0x32, "DS", fmt::format("{}\\-20\\{}", 10 + s.shift, s.z)) +
                      element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0");
   if (s.time > 0) data += element(0x20, 0x100, "IS", fmt::format("{}", s.time));
@@ -115,6 +116,13 @@ TEST_F(Dicom, AFolderOfSlicesIsOneVolumeInTheOrderOfTheirPlaces) {
     EXPECT_TRUE(has_note(volume, "HU"));
     EXPECT_EQ(volume.format, "DICOM CT");
   }
+}
+
+TEST_F(Dicom, MosaicsAreNoSlices) {
+  for (int k = 0; k < 2; ++k)
+    write(fmt::format("{}.dcm", k),
+          {.z = 1.0 * k, .number = k, .image_type = "ORIGINAL\\PRIMARY\\M\\MOSAIC", .samples = twelve(k)});
+  expect_no_volume(folder.path(), "mosaic), which is not read; convert it: dcm2niix");
 }
 
 TEST_F(Dicom, GapsAreToldAndKeptAndTiltedStacksAreSheared) {
@@ -192,6 +200,7 @@ TEST_F(Dicom, DamagedFilesAreNamedAndOtherFilesLeftOut) {
     EXPECT_TRUE(fault.message.empty() || fault.code == scene::ErrorCode::bad_input) << fault.message;
   }
   expect_no_volume(folder.write("text.dcm", std::string(200, 'x')), "GDCM finds no pictures");
+  expect_no_volume(folder.write("cut.dcm", whole.substr(0, 300)), "ends within its header");
 }
 
 TEST_F(Dicom, PaddingIsBlank) {
