@@ -47,7 +47,7 @@ MetaHeader parse_meta_header(std::string_view text, const std::filesystem::path&
     const std::size_t stop = std::min(text.find('\n', header.end), text.size());
     const std::string_view line = text.substr(header.end, stop - header.end);
     header.end = std::min(stop + 1, text.size());
-    const std::size_t equals = line.find('=');
+    const std::size_t equals = line.find_first_of("=:");  // MetaIO takes both
     if (trimmed(line).empty()) continue;
     if (equals == std::string_view::npos)
       throw damaged(file, fmt::format("{} is no line 'Key = value' of its header", quote(trimmed(line))));
@@ -182,6 +182,9 @@ StoredVolume read_meta_image_header(const std::filesystem::path& file) {
 
   read_samples_of(header, file, volume);
   read_grid(header, axes, file, volume);
+  if (const auto* modality = header.find({"Modality"}); modality != nullptr && modality->starts_with("MET_MOD_"))
+    if (const std::string word = modality->substr(8); word == "CT" || word == "MR" || word == "NM" || word == "US")
+      volume.tags.modality = word;
   read_payload(header, std::string_view(text).substr(header.end), file, volume);
   return volume;
 }

@@ -43,6 +43,11 @@ std::vector<std::optional<glm::dvec4>> space_vectors_of(std::string_view text, c
     if (text.front() != '(' || close == std::string_view::npos)
       throw damaged(file, fmt::format("space directions hold {}, no vector", quote(text)));
     const std::string_view vector = text.substr(0, close + 1);
+    if (std::ranges::count(vector, ',') == 1)
+      throw scene::bad_input(
+          fmt::format("{}: its space has two dimensions, by the direction {}; write a space of three, with a "
+                      "direction for each axis",
+                      file.string(), quote(vector)));
     const std::size_t count = std::ranges::count(vector, ',') == 3 ? 4 : 3;
     const auto v = header_numbers(vector, count, file, "a space direction");
     if (std::ranges::all_of(v, [](double x) { return std::isnan(x); }))

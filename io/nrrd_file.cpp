@@ -169,7 +169,9 @@ StoredVolume read_nrrd_header(const std::filesystem::path& file) {
         fmt::format("{}: its encoding {} is not read; write raw, gzip, ascii or hex", file.string(), quote(encoding)));
   const auto* endian = fields.find("endian");
   if (!endian && scene::size_of(volume.number) > 1 && volume.coding != StoredVolume::Coding::text)
-    throw damaged(file, "its header has no field 'endian'");
+    throw scene::bad_input(fmt::format(
+        "{}: its header does not state the order of its samples' bytes; add a line 'endian: little', or big",
+        file.string()));
   volume.swapped = endian && (nrrd_lower(*endian) == "big") != (std::endian::native == std::endian::big);
   set_nrrd_geometry(fields, axes, sizes, file, volume);
   set_nrrd_tags(fields, volume);

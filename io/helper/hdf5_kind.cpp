@@ -19,13 +19,15 @@ namespace {
 /// NetCDF-4, or other HDF5 with scales, which its library takes for such.
 bool is_netcdf(const Hdf5File& opened, const std::filesystem::path& file) {
   const std::vector<Hdf5Array> arrays = opened.arrays();
-  if (!opened.has_attribute("_NCProperties") && !opened.has_attribute("_nc3_strict") &&
+  const bool is_written_by_netcdf = opened.has_attribute("_NCProperties") || opened.has_attribute("_nc3_strict");
+  if (!is_written_by_netcdf &&
       std::none_of(arrays.begin(), arrays.end(), [&](const Hdf5Array& array) { return opened.has_scales(array); }))
     return false;
   int id = 0;
   if (nc_open(file.c_str(), NC_NOWRITE, &id) != NC_NOERR) return false;
   nc_close(id);
-  return holds_netcdf_grid(file) || !holds_arrays(opened);
+  // Dimensions of NetCDF have a meaning, as time has, which those of other arrays lack.
+  return is_written_by_netcdf || holds_netcdf_grid(file) || !holds_arrays(opened);
 }
 
 /// Files that do not state a type are of the first version.

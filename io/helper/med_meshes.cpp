@@ -1,10 +1,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
 #include <span>
 #include <string_view>
+#include <system_error>
 
 #include "io/helper/med_file.hpp"
+#include "io/input_file.hpp"
 #include "io/node_orders.hpp"
 #include "scene/error.hpp"
 
@@ -80,11 +85,26 @@ std::string plain(std::string_view text) {
   return name;
 }
 
+/// Whether a file is shorter than the address of its end, in HDF5's superblock (HDF5 File Format Specification, II.A).
+bool ends_early(const std::filesystem::path& file) {
+  const std::string beginning = read_beginning(file, 64);
+  if (!beginning.starts_with("\x89HDF") || beginning.size() < 64) return beginning.starts_with("\x89HDF");
+  const int version = beginning[8], bytes_of_address = beginning[version < 2 ? 13 : 9];
+  if (bytes_of_address != sizeof(std::uint64_t)) return false;
+  const std::size_t at = version == 0 ? 40 : version == 1 ? 44 : 28;
+  std::uint64_t end = 0;
+  std::memcpy(&end, beginning.data() + at, sizeof end);
+  std::error_code unknown;
+  const std::uintmax_t size = std::filesystem::file_size(file, unknown);
+  return !unknown && size < end;
+}
+
 }  // namespace
 
 MedFile::MedFile(const std::filesystem::path& file) : source_(file.string()) {
   med_bool is_hdf5 = MED_FALSE, is_known = MED_FALSE;
-  if (MEDfileCompatibility(file.c_str(), &is_hdf5, &is_known) < 0 || is_hdf5 != MED_TRUE)
+  // MED's library looks at the first bytes alone.
+  if (ends_early(file) || MEDfileCompatibility(file.c_str(), &is_hdf5, &is_known) < 0 || is_hdf5 != MED_TRUE)
     throw scene::bad_input(fmt::format(
         "{}: it cannot be opened as HDF5, which MED files are; it is truncated or damaged, write it anew", source_));
   if (is_known != MED_TRUE)

@@ -75,6 +75,20 @@ TEST(KeptTags, ANiftiIsAPatientIfItsHeaderOrValuesSaySo) {
   }
 }
 
+TEST(KeptTags, TheModalityOfAMetaImageIsKnownWhateverSeparatesItsHeadersWords) {
+  const test::TemporaryFolder folder;
+  for (const auto& [word, modality] :
+       {std::pair("MET_MOD_CT", "CT"), std::pair("MET_MOD_MR", "MR"), std::pair("MET_MOD_UNKNOWN", "")})
+    for (const char* between : {" = ", ": "}) {
+      std::string header;
+      for (const auto& [key, value] : {std::pair("ObjectType", "Image"), std::pair("NDims", "3"),
+                                       std::pair("Modality", word), std::pair("DimSize", "2 2 2"),
+                                       std::pair("ElementType", "MET_UCHAR"), std::pair("ElementDataFile", "LOCAL")})
+        header += std::string(key) + between + value + "\n";
+      EXPECT_EQ(open_volume(folder.write("a.mha", header + "abcdefgh")).tags.modality, modality) << word << between;
+    }
+}
+
 TEST(KeptTags, TheIntentOfANiftiMakesLabels) {
   const test::TemporaryFolder folder;
   std::string file = test::nifti();

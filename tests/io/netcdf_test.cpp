@@ -261,13 +261,20 @@ TEST(NetcdfGrids, DamagedOnesAreRefusedInOneLine) {
       EXPECT_FALSE(is_volume(cut));
     }
   }
-  {
-    NetcdfWriter w(folder / "flat.nc", 0);
-    const std::vector<int> dimensions = {w.dimension("y", 3), w.dimension("x", 4)};
-    w.variable("v", NC_DOUBLE, dimensions);
-    w.end_definitions();
-  }
-  test::expect_bad_input([&] { read_mesh(folder / "flat.nc"); }, {"flat.nc: none of its variables has three dimens"});
+  for (const int mode : {0, NC_NETCDF4})
+    for (const bool has_time : {false, true}) {  // which is not the third in space
+      {
+        NetcdfWriter w(folder / "flat.nc", mode);
+        std::vector<int> dimensions;
+        if (has_time) dimensions.push_back(w.dimension("time", 2));
+        for (const int d : {w.dimension("y", 3), w.dimension("x", 4)}) dimensions.push_back(d);
+        w.variable("v", NC_DOUBLE, dimensions);
+        w.end_definitions();
+      }
+      test::expect_bad_input([&] { read_mesh(folder / "flat.nc"); },
+                             {"flat.nc: none of its variables has three dimens"});
+      EXPECT_FALSE(is_volume(folder / "flat.nc"));
+    }
 }
 
 /// As whichever it is.

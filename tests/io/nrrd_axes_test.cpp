@@ -140,5 +140,13 @@ TEST_F(NrrdAxes, UnitsModalityAndLabelsAreKnownFromFieldsAndKeys) {
   EXPECT_EQ(open_volume(write(placed + "LPS")).tags, VolumeTags());
 }
 
+TEST_F(NrrdAxes, HeadersThatLackSomethingAreNotCalledDamaged) {
+  expect_no_volume(write(cube + "space dimension: 2\nspace directions: (2,0) (0,3) none"),
+                   "its space has two dimensions");
+  const std::string about = "NRRD0004\ntype: short\nencoding: raw\n" + cube + "\n";
+  expect_no_volume(folder.write("b.nrrd", about + test::bytes_of(test::counting<std::int16_t>(24))),
+                   "add a line 'endian: little'");
+}
+
 }  // namespace
 }  // namespace tessera::io::nrrd_axes_test
