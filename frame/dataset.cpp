@@ -1,7 +1,6 @@
 #include "frame/dataset.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -15,12 +14,12 @@
 #include "frame/communicator.hpp"
 #include "frame/curved_parts.hpp"
 #include "frame/distributed_mesh.hpp"
+#include "frame/grid_values.hpp"
 #include "frame/mesh_check.hpp"
 #include "frame/mesh_input.hpp"
 #include "frame/render.hpp"
 #include "frame/roles.hpp"
 #include "frame/scan_together.hpp"
-#include "frame/shared_labels.hpp"
 #include "frame/shared_volume.hpp"
 #include "frame/transfer_function_choice.hpp"
 #include "frame/uncut_mesh.hpp"
@@ -31,7 +30,6 @@
 #include "io/vtk_field_words.hpp"
 #include "scene/error.hpp"
 #include "scene/fill_value.hpp"
-#include "scene/label_source.hpp"
 #include "scene/scaled_source.hpp"
 #include "scene/threads.hpp"
 #include "scene/threshold_source.hpp"
@@ -67,36 +65,6 @@ void check_mesh_options(const std::filesystem::path& file, const ReadOptions& op
                     file.string()));
 }
 
-/// Values that stand for nothing would rule range, colors and what the volume is taken for: huge ones become blank, of
-/// others a note tells how to leave them out.
-void leave_fill_values_out(io::VolumeFile& volume, const std::filesystem::path& file, const ReadOptions& options,
-                           exchange::Transport& transport, Dataset::State& state) {
-  std::optional<scene::FillValue> fill = scene::find_fill_value(*volume.source, state.ranges->range);
-  if (!fill) return;
-  if (!fill->is_huge()) {
-    volume.notes.push_back(scene::words_on(*fill, "samples"));
-    return;
-  }
-  volume.notes.push_back(fmt::format("{} samples have the value {:.7g}, a fill value: they are blank", fill->count,
-                                     fmt::join(fill->values, " or ")));
-  volume.source = std::make_unique<scene::ThresholdSource>(
-      std::move(volume.source), std::array{fill->others.low, fill->others.high}, file.string());
-  state.ranges =
-      std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source, options.threads));
-  fill = scene::find_fill_value(*volume.source, state.ranges->range);
-  if (fill && !fill->is_huge()) volume.notes.push_back(scene::words_on(*fill, "samples"));
-}
-
-/// Floats of a raw file in the other order of bytes are next to nothing, or huge.
-void note_byte_order(io::VolumeFile& volume, const ReadOptions& options, const scene::ValueRange& range) {
-  const double most = std::max(std::abs(range.low), std::abs(range.high));
-  if (volume.format != "raw samples" || !is_float(volume.source->grid().type) || range.empty() || most == 0 ||
-      (most > 1e-30 && most < 1e30))
-    return;
-  volume.notes.push_back(fmt::format("its values are as those in the other order of bytes are: try `endian` {}",
-                                     options.big_endian ? "little" : "big"));
-}
-
 /// The same note on every rank.
 void note_fill_value(exchange::Transport& transport, Dataset::State& state) {
   const auto [low, high] = state.facts.scalar_range;
@@ -110,29 +78,6 @@ void note_fill_value(exchange::Transport& transport, Dataset::State& state) {
   const bool of_points = state.facts.association == Association::point;
   if (of_points && transport.size() > 1) fill->count = 0;  // parts have the points between them in common
   state.notes.push_back(scene::words_on(*fill, of_points ? "points" : "tets"));
-}
-
-/// A scanner's picture, however few values a phantom or a test image has: by its modality, or Hounsfield's units of a
-/// patient.
-bool is_scan(const io::VolumeFile& volume, const std::vector<double>& values) {
-  const bool patient = volume.body_axes != BodyAxes::none || volume.axes_if_ct != BodyAxes::none;
-  return !volume.tags.modality.empty() || (patient && values.front() <= -900 && values.back() >= 200);
-}
-
-/// Makes each sample fill its voxel if the values are labels, unless the caller says otherwise. Returns them.
-std::vector<double> take_labels(const std::filesystem::path& file, const ReadOptions& options,
-                                exchange::Transport& transport, io::VolumeFile& volume) {
-  if (options.labels == false) return {};
-  const bool stated = options.labels.value_or(false) || volume.tags.labels;
-  scene::LabelValues found = frame::shared_labels(transport, *volume.source, stated);
-  if (!found.are_labels || (!stated && is_scan(volume, found.values))) return {};
-  if (volume.source->geometry().association == Association::point) {
-    volume.source = std::make_unique<scene::LabelSource>(std::move(volume.source), file.string());
-    volume.notes.push_back(
-        fmt::format("values are labels{}: each sample fills its voxel, none is between two (`labels` off interpolates)",
-                    found.values.empty() ? "" : fmt::format(", {} of them", found.values.size())));
-  }
-  return std::move(found.values);
 }
 
 /// Of a file of one step, what its field data state.
@@ -166,12 +111,12 @@ std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, c
     volume.source = std::make_unique<scene::ScaledSource>(std::move(volume.source), state->axis_scale, file.string());
   {
     const scene::TraceScope timing(trace, "prepare");
-    state->labels = take_labels(file, options, transport, volume);
+    state->labels = frame::take_labels(file, options, transport, volume);
     state->ranges =
         std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source, options.threads));
   }
-  note_byte_order(volume, options, state->ranges->range);
-  if (!threshold) leave_fill_values_out(volume, file, options, transport, *state);
+  frame::note_byte_order(volume, options, state->ranges->range);
+  if (!threshold) frame::leave_fill_values_out(volume, file, options, transport, state->ranges);
   scene::ValueRange range = state->ranges->range;
   if (threshold) {
     if (range.empty())
