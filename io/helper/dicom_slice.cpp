@@ -197,10 +197,11 @@ DicomSamples::DicomSamples(const DicomSlice& slice)
     take_bits(slice);
     return;
   }
-  // GDCM aborts on others.
-  if (slice.bits % 8 != 0 && slice.bits != 12)
-    throw scene::bad_input(
+  const auto refuse_bits = [&] {
+    return scene::bad_input(
         fmt::format("{}: its samples are of {} bits, which are not read; write 8, 16 or 32", source, slice.bits));
+  };
+  if (slice.bits % 8 != 0 && slice.bits != 12) throw refuse_bits();  // GDCM aborts on them
   gdcm::ImageReader reader;
   reader.SetFileName(slice.file.c_str());
   if (!reader.Read()) throw refuse("GDCM cannot read its samples");
@@ -210,9 +211,7 @@ DicomSamples::DicomSamples(const DicomSlice& slice)
   if (image.GetBufferLength() != samples * format.GetPixelSize() || format.GetSamplesPerPixel() != 1)
     throw refuse("its samples are not as many as its header says");
   const std::optional<NumberType> type = number_type_of(format);
-  if (!type)
-    throw scene::bad_input(fmt::format("{}: its samples are of {} bits, which are not read; write 8, 16 or 32", source,
-                                       format.GetBitsAllocated()));
+  if (!type) throw refuse_bits();
   type_ = *type, bits_ = format.GetBitsStored();
   bytes_.resize(image.GetBufferLength());
   if (!image.GetBuffer(bytes_.data())) throw refuse("GDCM cannot unpack its samples");

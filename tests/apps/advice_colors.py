@@ -1,6 +1,6 @@
 """Rows of advice about cameras, transfer functions, ranges, lists of files and traces."""
 
-from advice_files import COLOR_MAP, JSON_CAMERA, KNOTS, PVCC, PVD, SERIES, TETRAHEDRON, TEXT_CAMERA, TRACE
+from advice_files import COLOR_MAP, JSON_CAMERA, KNOTS, PVCC, PVD, SERIES, TETRAHEDRON, TEXT_CAMERA, TRACE, unstructured
 from advice_row import damaged, row
 
 R = "render m.vtu -o a.png --size 16x16 "
@@ -146,6 +146,12 @@ ROWS = [
         {"q1.vtu": TETRAHEDRON},
     ),
     row("render nowhere/q%d.vtu -o a%d.png", "check its name", R),
+    row(
+        "render t%d.vtu -o a%d.png --size 16x16",
+        "choose steps that have it with --time-step FIRST:LAST",
+        "render t%d.vtu -o a%d.png --size 16x16 --time-step 1:2",
+        {"t0.vtu": unstructured(), "t1.vtu": TETRAHEDRON, "t2.vtu": TETRAHEDRON},
+    ),
     row("convert s.series o.vtu", "give one of its meshes", "convert m.vtu o.vtu", {"s.series": SERIES}),
     row(
         "info s.series --time-step 2",

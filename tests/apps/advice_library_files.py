@@ -112,7 +112,9 @@ def foam_case(folder="case/"):
 FOAM = foam_case()
 
 
-def dicom(instance, samples=1, bits=16, series="1.2.3.4", pixels=None, position=None, orientation="1\\0\\0\\0\\1\\0"):
+def dicom(
+    instance, samples=1, bits=16, series="1.2.3.4", pixels=None, position=None, orientation="1\\0\\0\\0\\1\\0", about=""
+):
     """A slice of 2x2 pixels, explicit little endian, as part 5 of the DICOM standard has it."""
 
     def element(group, number, kind, value):
@@ -138,6 +140,7 @@ def dicom(instance, samples=1, bits=16, series="1.2.3.4", pixels=None, position=
         + b"DICM"
         + element(2, 0, "UL", struct.pack("<I", len(meta)))
         + meta
+        + (element(8, 8, "CS", about) if about else b"")
         + element(8, 0x16, "UI", kind)
         + element(8, 0x18, "UI", uid)
         + element(8, 0x60, "CS", "CT")
@@ -177,6 +180,20 @@ def dicom_frames(positions):
     rows, pixels = whole.index(struct.pack("<HH2s", 0x28, 0x10, b"US")), whole.index(struct.pack("<HH", 0x7FE0, 0x10))
     frames = sequence(0x5200, 0x9230, *[place(z) for z in positions])
     return whole[:rows] + count + whole[rows:pixels] + frames + whole[pixels:]
+
+
+# One of no bytes, and the end.
+FRAGMENTS = b"\xfe\xff\0\xe0\0\0\0\0\xfe\xff\xdd\xe0\0\0\0\0"
+
+
+def packed(slices):
+    """As of RLE."""
+    return slices.replace(b"1.2.840.10008.1.2.1\0", b"1.2.840.10008.1.2.5\0")
+
+
+def segmentation(positions):
+    """The same as segments."""
+    return dicom_frames(positions).replace(b"\x08\0\x60\0CS\2\0CT", b"\x08\0\x60\0CS\4\0SEG ")
 
 
 SLICES = {f"ct/{k}.dcm": dicom(k) for k in (1, 2, 3)}

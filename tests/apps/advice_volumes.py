@@ -91,6 +91,14 @@ ROWS = [
         "dimension: 2\nsizes: 4 2",
         "a volume has three, before them components and after",
     ),
+    nrrd("(1,0,0) (0,1,0) (0,0,1)", "(1,0) (0,1) none", "write a space of three, with a direction for each axis"),
+    row(
+        "info a.nrrd",
+        "add a line 'endian: little', or big",
+        None,
+        {"a.nrrd": NRRD.replace(b"uint8", b"short").replace(b"endian: little\n", b"") + SAMPLES},
+        {"a.nrrd": NRRD.replace(b"uint8", b"short") + SAMPLES},
+    ),
     nrrd("sizes: 2 2 2", "sizes: 2 2 x", "the file is truncated or damaged, write it anew"),
     nrrd("sizes: 2 2 2", "sizes: 9999999999 9999999999 9999999999", "write the file anew"),
     row(
