@@ -56,7 +56,7 @@ EXCEPTIONS = {
     r"^io/helper/vtk_readers\.cpp:\d+: grid or": (1, ANSWER),
     r"^io/helper/(xdmf_rewritten\.cpp:\d+: \{\}: it is not well|gmsh_view_names)": (2, ANSWER),
     r"^io/helper/tetgen_fill\.cpp:\d+: \{\}: TetGen finds nothing": (1, ANSWER),
-    r"^io/helper/(hdf5_(kind|file|grid)|netcdf_values|med_meshes|minc2_file|amr_files)|^io/mesh_shares\.cpp:\d+: \{\}: it is named as CGNS": (
+    r"^io/helper/(hdf5_(kind|file|grid)|vtk_hdf_mesh|netcdf_values|med_meshes|minc2_file|amr_files)|^io/mesh_shares\.cpp:\d+: \{\}: it is named as CGNS": (
         23,
         HDF5,
     ),

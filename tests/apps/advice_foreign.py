@@ -1,10 +1,12 @@
 """Rows of advice about files of VTK's formats."""
 
 import gzip
+import struct
 
 from advice_files import (
     AMR,
     AMR_FILES,
+    CORNERS,
     IMAGE,
     LEGACY,
     PVTU,
@@ -31,6 +33,20 @@ R = "render m.vtu -o a.png --size 16x16 "
 def mesh(whole, advice, good=TET):
     """A .vtu that is written anew."""
     return row("info a.vtu", advice, None, {"a.vtu": whole}, {"a.vtu": good})
+
+
+def binary_legacy(order):
+    """Legacy VTK of one tetrahedron in binary numbers of a byte order, which is to be big-endian."""
+    numbers = struct.Struct(f"{order}12f").pack(*[x for p in CORNERS for x in p])
+    return (
+        b"# vtk DataFile Version 3.0\none\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n"
+        + numbers
+        + b"\nCELLS 1 5\n"
+        + struct.pack(f"{order}5i", 4, 0, 1, 2, 3)
+        + b"\nCELL_TYPES 1\n"
+        + struct.pack(f"{order}i", 10)
+        + b"\n"
+    )
 
 
 def amr(advice, good=AMR_FILES, command="info a.vth", **files):
@@ -122,6 +138,13 @@ ROWS = [
     damaged("a.sos", SERVERS, "casefile:", "file:", "write it anew", beside=ENSIGHT),
     damaged("a.vtk", LEGACY, "# vtk DataFile Version 3.0", "vtk", "check that it is a legacy VTK file"),
     damaged("a.vtk", LEGACY, "CELL_TYPES 1\n10", "CELL_TYPES 1\n64", "(ParaView: Tetrahedralize)"),
+    row(
+        "info a.vtk",
+        "swap their bytes, or export text or .vtu",
+        None,
+        {"a.vtk": binary_legacy("<")},
+        {"a.vtk": binary_legacy(">")},
+    ),
     damaged("a.vtk", LEGACY, "POINTS 4 float", "POINTS 4 flat", "or have it written in another format"),
     # pieces and blocks
     row(
@@ -351,6 +374,7 @@ ROWS = [
         {"q.vtp": VTP},
     ),
     mesh(TET.replace('NumberOfPoints="4"', 'NumberOfPoints="99999999999"'), "export it again"),
+    mesh(TET.replace("0 0 0 1 0 0", "0 0 0 one 0 0"), "should be; correct it"),
     mesh(TET.replace('NumberOfComponents="3"', 'NumberOfComponents="2"'), "give x y z"),
     mesh(unstructured(cells="", offsets="", types=""), "check how it was written"),
     row(

@@ -68,6 +68,9 @@ BINARY = struct.pack("<3i24f", 2, 2, 2, *(float(p[a]) for a in range(3) for p in
 GRID = xdmf(xdmf_grid())
 TIMES = collection(0, 1)
 
+CYLINDRICAL = (
+    f"    -1\n  2420\n{1:10}\npart\n{2:10}{1:10}{8:10}\nround\n" + "1.0 0.0 0.0\n0.0 1.0 0.0\n0.0 0.0 1.0\n0.0 0.0 0.0\n    -1\n"
+)
 LFS_POINTER = f"version https://git-lfs.github.com/spec/v1\noid sha256:{'0' * 64}\nsize 12345\n"
 
 ROWS = [
@@ -81,6 +84,15 @@ ROWS = [
         "have its name end in .unv",
         "info a.unv",
         {"a.unv.gz": gzip.compress(UNV.encode())},
+        {"a.unv": UNV},
+    ),
+    damaged("a.unv", UNV, f"{111:10}", f"{117:10}", "export elements of first or second order"),
+    damaged("a.unv", UNV, "  2412", "   780", "export it by a newer version, or in another format"),
+    row(
+        "info a.unv",
+        "export points in the global one",
+        None,
+        {"a.unv": CYLINDRICAL + UNV.replace(f"{1:10}{1:10}", f"{1:10}{2:10}", 1)},
         {"a.unv": UNV},
     ),
     # XDMF
