@@ -66,7 +66,8 @@ VtkXmlArray array_of(const VtkXmlElement& element, const Packing& packing) {
   VtkXmlArray array;
   array.name = element.word("Name");
   const std::string type = element.word("type");
-  array.type = vtk_xml_number_type(type);
+  array.are_bits = type == "Bit";
+  array.type = array.are_bits ? NumberType::uint8 : vtk_xml_number_type(type);
   if (!array.type && type != "String") throw Unknown();
   std::int64_t components = 1;
   if (element.has("NumberOfComponents") && (!read_whole_number(element.word("NumberOfComponents"), components) ||

@@ -16,6 +16,7 @@ struct VtkXmlArray {
   std::string name;                ///< `array NUMBER`, from 1, where the file has none
   std::optional<NumberType> type;  ///< none: text, or tuples of no numbers
   int components = 1;
+  bool are_bits = false;  ///< eight in a byte, the first highest, but in text; to others they are of uint8
   bool ascii = false;
   VtkArrayPlace place{};  ///< of ascii numbers the first byte and the end alone
 

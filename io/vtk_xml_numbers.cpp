@@ -53,7 +53,9 @@ class Numbers {
   /// There are no more.
   [[nodiscard]] std::uint64_t most() const {
     const auto* const text = std::get_if<VtkTextNumbers>(&from_);
-    return text != nullptr ? text->left() : std::get<VtkArrayBytes>(from_).size() / size_of(type_);
+    if (text != nullptr) return text->left();
+    const std::uint64_t bytes = std::get<VtkArrayBytes>(from_).size();
+    return are_bits_ ? 8 * bytes : bytes / size_of(type_);
   }
 
   [[nodiscard]] std::size_t bytes_to_read() const {
@@ -71,6 +73,7 @@ class Numbers {
 
   [[nodiscard]] bool read(std::byte* to, std::uint64_t count) {
     if (auto* const text = std::get_if<VtkTextNumbers>(&from_)) return text->read(type_, to, count);
+    if (are_bits_) return read_bits(to, count);
     const std::size_t each = size_of(type_);
     if (!std::get<VtkArrayBytes>(from_).read(to, count * each)) return false;
     if (swapped_) swap_numbers({to, count * each}, each);
@@ -80,11 +83,24 @@ class Numbers {
  private:
   using From = std::variant<VtkTextNumbers, VtkArrayBytes>;
   Numbers(const VtkXmlArray& array, From from)
-      : type_(*array.type), swapped_(array.place.swapped), from_(std::move(from)) {}
+      : type_(*array.type), are_bits_(array.are_bits), swapped_(array.place.swapped), from_(std::move(from)) {}
+
+  [[nodiscard]] bool read_bits(std::byte* to, std::uint64_t count) {
+    for (; count > 0; --count, --bits_left_, ++to) {
+      if (bits_left_ == 0) {
+        if (!std::get<VtkArrayBytes>(from_).read(&byte_, 1)) return false;
+        bits_left_ = 8;
+      }
+      *to = (byte_ >> (bits_left_ - 1)) & std::byte{1};
+    }
+    return true;
+  }
 
   NumberType type_;
-  bool swapped_;
+  bool are_bits_, swapped_;
   From from_;
+  std::byte byte_{};
+  int bits_left_ = 0;  ///< of the byte
 };
 
 Numbers numbers_in(const PositionalFile& file, const VtkXmlSegment& segment, const std::string& source) {

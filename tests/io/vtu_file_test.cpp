@@ -449,6 +449,20 @@ TEST_F(Vtu, ArraysOfTuplesWithoutNumbersAreSkipped) {
   EXPECT_EQ(block.fields[0].name, "p");
 }
 
+TEST_F(Vtu, TooFewBitsAreRefused) {
+  std::string text = vtu_file_text({}, {one_tet(0, 1)});
+  text.replace(text.find("type=\"Int32\" Name=\"p\""), 21, "type=\"Bit\" Name=\"p\"");
+  for (const char* few : {"1 0 1", "2 0 1 1"}) {
+    std::string changed = text;
+    changed.replace(changed.find("10 11 12 13"), 11, few);
+    const auto file = write(changed);
+    if (few[0] == '1')
+      test::expect_bad_input([&] { vtu_block(file); }, {"m.vtu", "'p'"});
+    else
+      EXPECT_EQ(vtu_block(file).fields[0].type, "uint8");
+  }
+}
+
 TEST_F(Vtu, WordsThatAreNoNumbersAreNamed) {
   const std::string text = vtu_file_text({}, {one_tet(0, 1)});
   for (const char* word : {"1.5", "1.#QNAN", "3000000000"}) {
@@ -477,7 +491,6 @@ TEST_F(Vtu, WhatIsNotKnownIsLeftToVtk) {
   left("0 0 0 1 0 0 0 1 0 0 0 1 ", "0 0 0 1 0 0 <!-- here --> 0 1 0 0 0 1 ");
   left("0 0 0 1 0 0 0 1 0 0 0 1 ", "<![CDATA[0 0 0 1 0 0 0 1 0 0 0 1]]>");
   left("Name=\"p\"", "Name=\"p\" TimeStep=\"0\"");
-  left("type=\"Int32\" Name=\"p\"", "type=\"Bit\" Name=\"p\"");
   left("Name=\"p\" NumberOfComponents=\"1\"", "Name=\"p\" NumberOfComponents=\"-1\"");
 }
 
