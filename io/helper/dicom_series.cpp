@@ -18,9 +18,10 @@ namespace {
 constexpr double same_place = 1e-3, even_enough = 1e-2;
 
 bool lie_alike(const DicomSlice& a, const DicomSlice& b) {
-  return a.series == b.series && a.columns == b.columns && a.rows == b.rows && a.frames == b.frames &&
-         a.components == b.components && a.has_position == b.has_position && glm::dot(a.row, b.row) > 0.9999 &&
-         glm::dot(a.column, b.column) > 0.9999;
+  const auto are_near = [](double x, double y) { return std::abs(x - y) <= same_place * std::max(x, y); };
+  return are_near(a.spacing.x, b.spacing.x) && are_near(a.spacing.y, b.spacing.y) && a.series == b.series &&
+         a.columns == b.columns && a.rows == b.rows && a.frames == b.frames && a.components == b.components &&
+         a.has_position == b.has_position && glm::dot(a.row, b.row) > 0.9999 && glm::dot(a.column, b.column) > 0.9999;
 }
 
 /// Slices that may be of one volume, in groups.

@@ -47,6 +47,10 @@ void set_place(const gdcm::File& file, DicomSlice& slice) {
   for (std::size_t k = 0; k < std::min<std::size_t>(spacing.size(), 3); ++k)
     if (spacing[k] > 0 && std::isfinite(spacing[k])) slice.spacing[static_cast<int>(k)] = spacing[k];
   const bool is_placed = slice.frames > 1 || dicom_numbers(data, 0x0020, 0x0032).size() == 3;
+  if (!is_placed)  // GDCM has 1
+    for (const std::uint16_t element : {0x0050, 0x0088})
+      if (const auto apart = dicom_number(data, 0x0018, element); apart && *apart != 0)
+        slice.spacing.z = std::abs(*apart);
   const std::vector<double> origin = gdcm::ImageHelper::GetOriginValue(file);
   const std::vector<double> axes = gdcm::ImageHelper::GetDirectionCosinesValue(file);
   if (axes.size() == 6) {

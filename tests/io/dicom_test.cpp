@@ -35,6 +35,8 @@ struct Slice {
   int time = 0;  ///< 0: none said
   std::string image_type = "ORIGINAL\\PRIMARY";
   int columns = 4, rows = 3, colours = 1;
+  std::string spacing = "0.75\\0.5";
+  bool is_placed = true;
   std::vector<std::int16_t> samples{};
   std::vector<std::int16_t> padding{};  ///< none, a value, or a value and the limit of a range
   bool is_wide = false;                 ///< samples are the upper halves of 32 bits without a sign, the lower ones 1
@@ -49,7 +51,7 @@ std::string dicom(const Slice& s) {
   std::string data = element(8, 8, "CS", s.image_type) + element(8, 0x16, "UI", ct_storage) +
                      element(8, 0x60, "CS", "CT") + element(0x18, 0x50, "DS", "2") +
                      element(0x20, 0xe, "UI", s.series) + element(0x20, 0x13, "IS", fmt::format("{}", s.number)) +
-                     element(0x20, 0x32, "DS", fmt::format("{}\\-20\\{}", 10 + s.shift, s.z)) +
+                     (s.is_placed ? element(0x20, 0x32, "DS", fmt::format("{}\\-20\\{}", 10 + s.shift, s.z)) : "") +
                      element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0");
   if (s.time > 0) data += element(0x20, 0x100, "IS", fmt::format("{}", s.time));
   data += element(0x28, 2, "US", little(static_cast<std::uint32_t>(s.colours), 2)) +
@@ -57,7 +59,7 @@ std::string dicom(const Slice& s) {
   if (s.colours > 1) data += element(0x28, 6, "US", little(0, 2));
   data += element(0x28, 0x10, "US", little(static_cast<std::uint32_t>(s.rows), 2)) +
           element(0x28, 0x11, "US", little(static_cast<std::uint32_t>(s.columns), 2)) +
-          element(0x28, 0x30, "DS", "0.75\\0.5") + element(0x28, 0x100, "US", little(bits, 2)) +
+          element(0x28, 0x30, "DS", s.spacing) + element(0x28, 0x100, "US", little(bits, 2)) +
           element(0x28, 0x101, "US", little(bits, 2)) + element(0x28, 0x102, "US", little(bits - 1, 2)) +
           element(0x28, 0x103, "US", little(bits == 16 ? 1 : 0, 2));
   for (std::size_t k = 0; k < s.padding.size(); ++k)
@@ -116,6 +118,25 @@ TEST_F(Dicom, AFolderOfSlicesIsOneVolumeInTheOrderOfTheirPlaces) {
     EXPECT_TRUE(has_note(volume, "HU"));
     EXPECT_EQ(volume.format, "DICOM CT");
   }
+}
+
+TEST_F(Dicom, WithoutPlacesAreAsFarApartAsTheyAreThick) {
+  for (int k = 0; k < 3; ++k)
+    write(fmt::format("{}.dcm", k), {.number = 3 - k, .is_placed = false, .samples = twelve(100 * (2 - k))});
+  const VolumeFile volume = open_volume(folder.path());
+  EXPECT_EQ(volume.source->geometry().spacing, glm::dvec3(0.5, 0.75, 2));
+  EXPECT_EQ(all_samples(*volume.source).front(), 0);  // by their numbers
+  EXPECT_TRUE(has_note(volume, "by their numbers, 2 mm apart"));
+}
+
+TEST_F(Dicom, OfOtherSpacingsAreStacksOfTheirOwn) {
+  for (int k = 0; k < 4; ++k)
+    write(fmt::format("{}.dcm", k),
+          {.z = 1.0 * k, .number = k, .spacing = k == 0 ? "0.75\\0.6" : "0.75\\0.5", .samples = twelve(k)});
+  const VolumeFile volume = open_volume(folder.path());
+  EXPECT_EQ(volume.source->geometry().points, (GridIndex{4, 3, 3}));
+  EXPECT_EQ(volume.source->geometry().spacing.x, 0.5);
+  EXPECT_TRUE(has_note(volume, "of 2 stacks of slices this is one of 3"));
 }
 
 TEST_F(Dicom, MosaicsAreNoSlices) {
