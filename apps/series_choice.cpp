@@ -113,7 +113,8 @@ class SeriesLook {
   }
 
   /// No field of all steps varies: none may show a field that others lack, in colors of another one.
-  void require_same_field() const {
+  void require_same_field() {
+    std::ranges::sort(looked_, {}, &LookedAt::step);
     const auto with = std::ranges::find_if(looked_, [](const LookedAt& l) { return !l.field.empty(); });
     if (with == looked_.end()) return;
     const auto without = std::ranges::find_if(looked_, [&](const LookedAt& l) { return l.field != with->field; });

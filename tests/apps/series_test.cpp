@@ -122,7 +122,7 @@ TEST_F(Series, PartsOfATimestepAreOneMesh) {
 }
 
 TEST_F(Series, TheFieldOfTheFirstStepIsKept) {
-  // The file's fields are chosen by what varies; a later step that lacks the first one's is told.
+  // The file's fields are chosen by what varies; that a later step lacks the first one's is told before any picture.
   const auto rename = [&](const std::string& mesh) {
     const auto text = contents(mesh);
     std::string changed = text;
@@ -133,7 +133,11 @@ TEST_F(Series, TheFieldOfTheFirstStepIsKept) {
   };
   const auto run = tessera(arguments({meshes[0], rename(meshes[1])}, "f_%d.pfm"));
   EXPECT_EQ(run.status, 2);
-  EXPECT_NE(run.err.find("renamed.vtu: no field 'point:f'"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("time step 1 has no field 'point:f', which time step 0 shows"), std::string::npos) << run.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "f_0.pfm"));
+  const auto named = tessera(arguments({meshes[0], folder / "renamed.vtu"}, "f_%d.pfm", {"--field", "f"}));
+  EXPECT_EQ(named.status, 2);
+  EXPECT_NE(named.err.find("renamed.vtu: no field 'f'"), std::string::npos) << named.err;
 }
 
 TEST_F(Series, FaultsAreOneLineBeforeAnythingIsRendered) {
