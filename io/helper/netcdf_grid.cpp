@@ -126,17 +126,19 @@ std::vector<std::size_t> indices_of(const GridVariable& field, std::size_t step)
   return indices;
 }
 
-/// Coordinates of the one dimension of steps, as they stand; none if there are several, or it is not time.
+/// Coordinates of the one dimension of steps, as they stand, or a time alone; none if there are several, or it is not
+/// time.
 std::vector<double> times_of(const NetcdfFile& file, const GridVariable& field) {
-  const NetcdfDimension* along = nullptr;
+  std::vector<double> times;
   for (const std::size_t d : field.order.steps) {
-    if (field.variable->dimensions[d].length < 2) continue;
-    if (along != nullptr) return {};
-    along = &field.variable->dimensions[d];
+    const NetcdfDimension& dimension = field.variable->dimensions[d];
+    if (dimension.length > 1 && steps_of(field) > dimension.length) return {};
+    if (dimension.length < steps_of(field)) continue;
+    const NetcdfVariable* const coordinate = coordinate_of(file, *field.variable, dimension);
+    if (coordinate != nullptr && role_of(file, *coordinate) == AxisRole::time)
+      times = read_whole(file, *coordinate, dimension.length).as_doubles();
   }
-  const NetcdfVariable* const coordinate = along == nullptr ? nullptr : coordinate_of(file, *field.variable, *along);
-  if (coordinate == nullptr || role_of(file, *coordinate) != AxisRole::time) return {};
-  return read_whole(file, *coordinate, along->length).as_doubles();
+  return times;
 }
 
 /// Axes other than time are steps too, which is worth a word.

@@ -154,6 +154,9 @@ std::vector<XdmfBlock> blocks_at(const boost::shared_ptr<XdmfDomain>& domain, st
   for (const Grid& grid : grids) walk.visit(grid, grids.size() > 1 ? grid->getName() : "");
   merge_same_meshes(walk.blocks);
   set_times(read, timeline.times());
+  if (timeline.count() == 0)
+    for (const Grid& grid : grids)
+      if (const auto time = time_of(grid); time && read.times.empty()) read = {1, 0, {*time}};
   return std::move(walk.blocks);
 }
 

@@ -175,6 +175,24 @@ TEST(NetcdfGrids, KnowTimeByItsNameToo) {
   }
 }
 
+TEST(NetcdfGrids, OfOneTimeHaveIt) {
+  const test::TemporaryFolder folder;
+  for (const std::size_t members : {1, 2}) {
+    {
+      NetcdfWriter w(folder / "one", 0);
+      const int time = w.dimension("time", 1), member = w.dimension("member", members);
+      const std::vector<int> dimensions = {time, member, w.dimension("z", 2), w.dimension("y", 2), w.dimension("x", 2)};
+      const int vtime = w.variable("time", NC_DOUBLE, {time}), v = w.variable("T", NC_FLOAT, dimensions);
+      w.end_definitions();
+      w.put(vtime, {6.5});
+      w.put(v, ramp(8 * members, 0));
+    }
+    const TimeStepRead read = open_volume(folder / "one").time_step;
+    EXPECT_EQ(read.count, members);
+    EXPECT_EQ(read.times, members == 1 ? std::vector{6.5} : std::vector<double>());  // members are steps too
+  }
+}
+
 TEST(NetcdfGrids, OfTwoDimensionalCoordinatesAreMeshes) {
   const test::TemporaryFolder folder;
   {

@@ -113,11 +113,18 @@ TEST_F(Xdmf, TimeStepsAreInTheOrderOfTheirTimes) {
     return *std::max_element(mesh.mesh.scalars.begin(), mesh.mesh.scalars.end());
   };
   EXPECT_EQ(range(std::nullopt), 30);
+  EXPECT_EQ(read(series).time_step.times, (std::vector<double>{1, 2}));
   EXPECT_EQ(range(0), 3);
   EXPECT_EQ(range(1), 30);
   MeshOptions options;
   options.time_step = 2;
   expect_refused(series, {"there is no time step 2, the file has 2"}, options);
+}
+
+TEST_F(Xdmf, AGridOfOneTimeHasIt) {
+  EXPECT_EQ(read(two_tets("m", 0, 1, timed(2.5))).time_step.times, std::vector{2.5});
+  EXPECT_EQ(read(collection("s", "Spatial", two_tets("m", 0, 1, timed(2.5)))).time_step.times, std::vector{2.5});
+  EXPECT_TRUE(read(two_tets("m", 0, 1)).time_step.times.empty());
 }
 
 TEST_F(Xdmf, GridsInSpaceAreBlocks) {
