@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "colormaps/presets.hpp"
+#include "exchange/collectives.hpp"
+#include "exchange/message.hpp"
 #include "exchange/transport.hpp"
 #include "frame/array_mesh.hpp"
 #include "frame/communicator.hpp"
