@@ -224,7 +224,7 @@ std::vector<DicomSlice> slices_of_segments(std::vector<DicomSlice> frames, std::
   for (const DicomSlice& frame : frames) numbers.push_back(frame.joined.front().segment);
   std::sort(numbers.begin(), numbers.end());
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-  const std::size_t step = are_fractions ? chosen_step(wish, numbers.size(), source) : 0;
+  const std::size_t step = chosen_step(wish, are_fractions ? numbers.size() : 1, source);
   if (are_fractions) volume.time_step = {numbers.size(), step};
   if (numbers.back() > 0)
     volume.notes.push_back(

@@ -106,6 +106,12 @@ TEST_F(DicomSegments, OfOneBitAreLabelsOfOneVolumeWhateverTheirOrder) {
   }
 }
 
+TEST_F(DicomSegments, OfLabelsAreNoTimeSteps) {
+  const auto file = folder.write("a.dcm", test::dicom_file(segmentation({{1, 0, 2, 7}, {1, 1, 0, 9}, {2, 1, 9, 12}})));
+  EXPECT_EQ(open_volume(file, {.time_step = 0}).range, (scene::ValueRange{0, 2, 0}));
+  expect_no_volume(file, "there is no time step 1", {.time_step = 1});
+}
+
 TEST_F(DicomSegments, ShowTheLastOfThoseThatOverlapWithANote) {
   const VolumeFile volume = open(segmentation({{2, 0, 3, 8}, {2, 1}, {1, 0, 0, 5}, {1, 1, 0, 5}}));
   EXPECT_EQ(all_samples(*volume.source), wanted({{1, 0, 0, 5}, {1, 1, 0, 5}, {2, 0, 3, 8}}, 2));
