@@ -1,9 +1,8 @@
 #include "compositor/deep_sink.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "compositor/finite_float.hpp"
 #include "compositor/picture_sink.hpp"
 
 namespace tessera::compositor {
@@ -12,19 +11,14 @@ namespace {
 /// Pieces that are integrated together: they stay in a core's second-level cache.
 constexpr std::size_t batch_pieces = 8192;
 
-float finite(double value) {
-  constexpr double most = std::numeric_limits<float>::max();
-  return static_cast<float>(std::clamp(value, -most, most));
-}
-
 }  // namespace
 
 void append_tidy(std::span<const DeepSample> samples, std::vector<scene::DeepImageSample>& to) {
   const std::size_t first = to.size();
   for (const DeepSample& s : samples) {
-    const scene::DeepImageSample sample{finite(s.front),    finite(s.back),
-                                        finite(s.light[0]), finite(s.light[1]),
-                                        finite(s.light[2]), static_cast<float>(-std::expm1(-s.optical_depth))};
+    const scene::DeepImageSample sample{finite_float(s.front),    finite_float(s.back),
+                                        finite_float(s.light[0]), finite_float(s.light[1]),
+                                        finite_float(s.light[2]), static_cast<float>(-std::expm1(-s.optical_depth))};
     if (sample.alpha == 0 && sample.red == 0 && sample.green == 0 && sample.blue == 0) continue;
     if (to.size() > first) {
       scene::DeepImageSample& last = to.back();

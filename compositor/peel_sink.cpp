@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "compositor/finite_float.hpp"
 #include "compositor/picture_sink.hpp"
 
 namespace tessera::compositor {
@@ -13,17 +13,13 @@ namespace {
 /// Segments that are integrated together: they stay in a core's second-level cache.
 constexpr std::size_t batch_segments = 8192;
 
-float finite(double value) {
-  constexpr double most = std::numeric_limits<float>::max();
-  return static_cast<float>(std::clamp(value, -most, most));
-}
-
 }  // namespace
 
 void append_layers(std::span<const integrals::RayLayer> layers, std::vector<scene::DeepImageSample>& to) {
   for (const integrals::RayLayer& l : layers)
-    to.push_back({finite(l.front), finite(l.back), finite(std::max(0.0, l.red)), finite(std::max(0.0, l.green)),
-                  finite(std::max(0.0, l.blue)), static_cast<float>(-std::expm1(-l.optical_depth))});
+    to.push_back({finite_float(l.front), finite_float(l.back), finite_float(std::max(0.0, l.red)),
+                  finite_float(std::max(0.0, l.green)), finite_float(std::max(0.0, l.blue)),
+                  static_cast<float>(-std::expm1(-l.optical_depth))});
 }
 
 PeelSink::PeelSink(const TileScene& scene, const ImageWindow& window, const scene::TransferFunction& function,

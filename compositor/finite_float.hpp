@@ -1,0 +1,14 @@
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+namespace tessera::compositor {
+
+/// The float nearest to a number, and never infinite.
+inline float finite_float(double value) {
+  constexpr double most = std::numeric_limits<float>::max();
+  return static_cast<float>(std::clamp(value, -most, most));
+}
+
+}  // namespace tessera::compositor
