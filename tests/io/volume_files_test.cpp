@@ -222,7 +222,8 @@ TEST_F(VolumeFiles, NrrdFaultsAreNamed) {
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\nline skip: 9\n"), "fewer lines");
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: LIST\na.raw\nb.raw"),
                  "'a.raw', and there is no such file");
-  expect_refused(with("type: uint16\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n"), "add a line 'endian: little', or big");
+  expect_refused(with("type: uint16\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n"),
+                 "add a line 'endian: little', or big");
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 3\nencoding: raw\n"), "12 bytes, the file has 8");
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 2\nspacings: 1 0 1\nencoding: raw\n"), "along y is 0");
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 60000 60000 60000\nencoding: gzip\n"), "cannot hold");
