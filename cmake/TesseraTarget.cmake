@@ -34,7 +34,7 @@ target_compile_options(tessera_optimize_2 INTERFACE $<$<CONFIG:Release>:-O2>)
 # For the tests' own code. Linked after tessera_warnings, whose options it takes back.
 add_library(tessera_test_options INTERFACE)
 if(TESSERA_QUICK_SANITIZE)
-  # Not optimized, they compile in two thirds of the time; what they test is.
+  # Without optimization tests compile in about two thirds of the time. The code under test is optimized.
   target_compile_options(tessera_test_options INTERFACE -fno-sanitize=undefined -O0)
 endif()
 if(TESSERA_SANITIZE MATCHES thread AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)

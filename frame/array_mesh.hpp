@@ -20,9 +20,9 @@ struct ArrayMesh {
 };
 
 /// Borrows the arrays where they are laid out as the renderer wants them and nothing is blank, else converts them as a
-/// file's. `may_be_empty`: of a part, whose cells are to be counted
-/// with the others' to find duplicates. `planning` is called once, of no blocks where there is nothing to convert.
-/// Throws Error(bad_input) naming array and place.
+/// file's. `may_be_empty`: of a part; duplicate cells are then counted with those of the other parts, not here.
+/// `planning` is called once, of no blocks where there is nothing to convert. Throws Error(bad_input) naming array and
+/// place.
 ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty,
                          const io::HigherOrderPlanning& planning = io::plan_higher_order);
 

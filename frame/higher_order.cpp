@@ -148,7 +148,7 @@ class HigherOrderLevels {
     factor_ = error_ = infinite;
     if (!(t1 > t2)) return;
     if (last >= 2) {
-      // The largest differences tell of rays along the surface, but are those of a few pixels, met or missed.
+      // Rays along the surface show in the largest difference, which depends on a few pixels; the mean is of all.
       const double t0 = levels_[last - 2].tolerance;
       const Difference d1 = differ(last - 1);
       power_ = 0.5 * (power_of(t0, t1, t2, d1.largest, d2.largest) +

@@ -65,7 +65,7 @@ class Numbers {
                                  : bytes_at_once;
   }
 
-  /// Of text what is no number of its type, where read() failed; empty otherwise.
+  /// The word that is not a number of the array's type, where read() failed on text; else empty.
   [[nodiscard]] std::string wrong_word() const {
     const auto* const text = std::get_if<VtkTextNumbers>(&from_);
     return text != nullptr ? text->next_word() : std::string();

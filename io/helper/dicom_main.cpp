@@ -111,7 +111,8 @@ ForeignArray hold_samples(Holdings& holdings, const DicomVolume& volume, std::ve
       blank > 0 && std::any_of(volume.slices.begin(), volume.slices.end(), [](const auto& s) { return s.padding; }))
     notes.push_back(fmt::format("{} samples are padding, as the header says, and blank", blank));
   if (values.shared > 0)
-    notes.push_back(fmt::format("{} samples are in several segments, of which the last is shown", values.shared));
+    notes.push_back(
+        fmt::format("{} samples are in several segments; the segment with the largest number is shown", values.shared));
   const std::size_t each = stack->samples.front()->frame_count();  // slices of a volume are of one size
   ForeignArray array{
       .name = "samples", .type = type_of(values), .tuples = each * stack->slices.size(), .tally = values.tally};

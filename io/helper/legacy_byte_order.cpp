@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -73,6 +74,15 @@ bool has_little_floats(std::string_view bytes, const std::string& type, std::siz
   return type == "double" && are_little_endian<double>(bytes.substr(0, 8 * count), is_usual);
 }
 
+/// Whether a field's first numbers of `size` bytes are mostly different: 1e-35 everywhere is usual in the wrong order
+/// alone.
+bool are_various(std::string_view bytes, std::size_t size) {
+  const std::size_t count = std::min<std::size_t>(64, bytes.size() / size);
+  std::set<std::string_view> different;
+  for (std::size_t k = 0; k < count; ++k) different.insert(bytes.substr(k * size, size));
+  return 2 * different.size() >= count;
+}
+
 bool is_little_endian(std::string_view text) {
   std::string_view rest;
   if (const auto words = line_of(text, "POINTS", rest);
@@ -92,7 +102,8 @@ bool is_little_endian(std::string_view text) {
   rest.remove_prefix(std::min(rest.find('\n') + 1, rest.size()));
   std::string_view behind;
   const auto points = line_of(text, "POINT_DATA", behind);
-  return has_little_floats(rest, words[2], points.size() > 1 ? count_in(points[1]) : 1);
+  return are_various(rest, words[2] == "double" ? 8 : 4) &&
+         has_little_floats(rest, words[2], points.size() > 1 ? count_in(points[1]) : 1);
 }
 
 }  // namespace

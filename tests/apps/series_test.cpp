@@ -122,7 +122,7 @@ TEST_F(Series, PartsOfATimestepAreOneMesh) {
 }
 
 TEST_F(Series, TheFieldOfTheFirstStepIsKept) {
-  // The file's fields are chosen by what varies; that a later step lacks the first one's is told before any picture.
+  // The field is chosen by what varies. A later step that lacks it is reported before any picture.
   const auto rename = [&](const std::string& mesh) {
     const auto text = contents(mesh);
     std::string changed = text;

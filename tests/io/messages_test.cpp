@@ -163,6 +163,11 @@ TEST_F(Messages, LittleEndianLegacyFilesAreNamed) {
            head + "STRUCTURED_POINTS\nDIMENSIONS 2 2 2\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 8\n" +
                "SCALARS f float 1\nLOOKUP_TABLE default\n" + binary(values, is_little),
            true);
+    // One value, which is odd in the right order alone.
+    expect(false,
+           head + "STRUCTURED_POINTS\nDIMENSIONS 2 2 2\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 8\n" +
+               "SCALARS f float 1\nLOOKUP_TABLE default\n" + binary(std::vector<float>(8, 1e-35F), false),
+           true);
   }
 }
 
