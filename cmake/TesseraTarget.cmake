@@ -27,23 +27,24 @@ if(TESSERA_QUICK_SANITIZE)
 endif()
 # For code whose speed no user notices, which compiles in two thirds of the time: tests, the command line, reports.
 add_library(tessera_optimize_1 INTERFACE)
-target_compile_options(tessera_optimize_1 INTERFACE $<$<CONFIG:Release>:-O1>)
+target_compile_options(tessera_optimize_1 INTERFACE $<$<CONFIG:Release>:-O1> $<$<BOOL:${TESSERA_QUICK_SANITIZE}>:-O0>)
 # For code around the kernels: readers, writers, frames, the reference.
 add_library(tessera_optimize_2 INTERFACE)
 target_compile_options(tessera_optimize_2 INTERFACE $<$<CONFIG:Release>:-O2>)
 # For the tests' own code. Linked after tessera_warnings, whose options it takes back.
 add_library(tessera_test_options INTERFACE)
 if(TESSERA_QUICK_SANITIZE)
-  # Without optimization tests compile in about two thirds of the time. The code under test is optimized.
-  target_compile_options(tessera_test_options INTERFACE -fno-sanitize=undefined -O0)
+  target_compile_options(tessera_test_options INTERFACE -fno-sanitize=undefined)
+  target_compile_definitions(tessera_test_options INTERFACE TESSERA_QUICK_TESTS)
 endif()
 if(TESSERA_SANITIZE MATCHES thread AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   # oneTBB's headers have fences, which TSan does not follow; g++ says so at each.
   target_compile_options(tessera_warnings INTERFACE -Wno-tsan)
 endif()
 
-# The headers that most sources include, parsed once: tessera_precompiled for libraries, tessera_test_precompiled for the
-# tests' programs, whose code is position independent in another form. Sources include what they use all the same;
+# The headers that most sources include, parsed once: tessera_precompiled for libraries, tessera_precompiled_1 for those of
+# tessera_optimize_1 where it differs, tessera_test_precompiled for the tests' programs, whose code is position
+# independent in another form. Sources include what they use all the same;
 # CMAKE_DISABLE_PRECOMPILE_HEADERS=ON shows what one lacks. A source with an option of its own for code (-ffp-contract) skips
 # them: g++ would take that option from the headers in silence, and clang refuses them.
 set(tessera_common_headers
@@ -71,7 +72,11 @@ function(tessera_library name)
     add_library(tessera_${name} STATIC ${ARG_SOURCES})
     tessera_stage_headers(tessera_${name} ${name} PUBLIC)
     target_link_libraries(tessera_${name} PUBLIC ${ARG_LINK} PRIVATE tessera_warnings fmt::fmt ${ARG_PRIVATE_LINK})
-    target_precompile_headers(tessera_${name} REUSE_FROM tessera_precompiled)
+    set(precompiled tessera_precompiled)
+    if(TESSERA_QUICK_SANITIZE AND "tessera_optimize_1" IN_LIST ARG_PRIVATE_LINK)
+      set(precompiled tessera_precompiled_1) # g++ refuses headers of another optimization
+    endif()
+    target_precompile_headers(tessera_${name} REUSE_FROM ${precompiled})
   else() # headers only
     add_library(tessera_${name} INTERFACE)
     tessera_stage_headers(tessera_${name} ${name} INTERFACE)

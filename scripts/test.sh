@@ -37,8 +37,8 @@ stage() {  # stage NAME COMMAND...: runs it, remembers a failure
 options=()
 if [ "$extent" = all ]; then options=(-DCMAKE_UNITY_BUILD=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON); fi
 
-# One more than there are cores: many tests wait for processes.
-tests_at_once=$(($(nproc) + 1))
+# More than there are cores: many tests wait for processes.
+tests_at_once=$((2 * $(nproc)))
 
 build_and_test() {  # build_and_test PRESET [CTEST_ARGUMENT...]
   local preset=$1

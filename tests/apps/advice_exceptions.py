@@ -86,6 +86,7 @@ NO_ADVICE = [
     r"io/chrome_trace_reader\.cpp:\d+: name is missing",
     r"io/file_kinds\.cpp:\d+: (closed|VTK XML|AMReX|Enzo|FLASH|Exodus|OpenFOAM|VTKHDF|MED|Fluent|AVS|Gmsh|Medit|I-DEAS|Tecplot \.\.)",
     r"io/file_kinds\.cpp:\d+: (Nastran|SU2|PLOT3D|raw tetra|NetCDF|MINC|MetaImage|NRRD|NIfTI|Analyze|DICOM)",
+    r"io/helper/dicom_main\.cpp:\d+: \{\} samples are in several segments",
     r"io/helper/dicom_series\.cpp:\d+: (some places have|slices are|values are)",
     r"io/text_transfer_function\.cpp:\d+:  \(extinctions as they stand",
 ]

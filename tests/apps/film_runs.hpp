@@ -40,9 +40,11 @@ class FilmRuns : public ::testing::Test {
     return words;
   }
 
-  [[nodiscard]] std::size_t pictures() const {
+  [[nodiscard]] std::size_t pictures() const { return pictures(pictures_); }
+
+  static std::size_t pictures(const std::filesystem::path& folder) {
     std::error_code gone;
-    const std::filesystem::directory_iterator begin(pictures_, gone);
+    const std::filesystem::directory_iterator begin(folder, gone);
     return static_cast<std::size_t>(std::distance(begin, std::filesystem::directory_iterator()));
   }
 

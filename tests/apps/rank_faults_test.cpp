@@ -20,12 +20,17 @@ TEST_F(RankFaults, AnOutputFolderRemovedInMidRunIsTheSystemsFault) {
   for (const std::string& input : inputs_)
     for (const int ranks : {0, 1, 2, 3}) {
       if (ranks > 0 && !has_mpirun()) continue;
-      std::filesystem::create_directory(pictures_);
-      Running running(command(ranks, film(input)));
-      ASSERT_TRUE(wait_for_pictures(running, 3)) << running.wait().err;
-      std::filesystem::rename(pictures_, folder_ / "elsewhere");
-      const Outcome outcome = running.wait();
-      std::filesystem::remove_all(folder_ / "elsewhere");
+      Outcome outcome;
+      bool in_time = false;  // before the last picture
+      for (int frames = 500; !in_time; frames *= 2) {
+        std::filesystem::create_directory(pictures_);
+        Running running(command(ranks, film(input, {}, frames)));
+        ASSERT_TRUE(wait_for_pictures(running, 3)) << running.wait().err;
+        std::filesystem::rename(pictures_, folder_ / "elsewhere");
+        outcome = running.wait();
+        in_time = pictures(folder_ / "elsewhere") < static_cast<std::size_t>(frames);
+        std::filesystem::remove_all(folder_ / "elsewhere");
+      }
       EXPECT_EQ(outcome.status, 3) << input << " " << ranks << "\n" << outcome.err;
       const Words lines = outcome.own_lines();
       ASSERT_EQ(lines.size(), 1u) << outcome.err;

@@ -16,6 +16,7 @@
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
 #include "scene/mesh_facts.hpp"
+#include "support/some_cases.hpp"
 
 namespace tessera::frame::distributed_test {
 namespace {
@@ -156,6 +157,7 @@ TEST_P(AnyShape, SegmentsGiveTheBitsOfASingleProcessAndRunsAlmost) {
   const Shape shape = GetParam();
   const auto n = static_cast<std::size_t>(shape.projectors);
   const ImageSize size{97, 61};
+  test::SomeCases some(5);
   for (const bool cells : {false, true}) {
     scene::TetMesh mesh = datasets::cube(8, 0.2);
     if (cells) mesh = datasets::with_cell_data(std::move(mesh), 6);
@@ -165,6 +167,7 @@ TEST_P(AnyShape, SegmentsGiveTheBitsOfASingleProcessAndRunsAlmost) {
            {slices(mesh, n), datasets::parts(mesh, shape.projectors, datasets::Partition::random_blobs, 3),
             datasets::parts(mesh, shape.projectors, datasets::Partition::interleaved, 5)})
         for (const int threads : {1, 2}) {
+          if (!some.next()) continue;
           Parts numbered = parts;
           if (cells) numbered = slices(mesh, n);  // with_cell_data has original cells: parts() names those
           DistributedSettings settings;

@@ -15,6 +15,7 @@
 
 #include "io/volume_checks.hpp"
 #include "io/volume_reader.hpp"
+#include "support/some_cases.hpp"
 
 /// A volume of a patient with one bright sample, in any of the 48 orientations: where does a reader put it?
 namespace tessera::test {
@@ -81,7 +82,9 @@ inline void expect_markers(const std::vector<MarkedFormat>& formats) {
   std::cout << "axes  marker (R, A, S)  ";
   for (const MarkedFormat& format : formats) std::cout << "| " << format.name << ' ';
   std::cout << '\n';
+  SomeCases some(5);
   for (const MarkedVolume& marked : all_orientations()) {
+    if (!some.next()) continue;
     const glm::dvec3 wanted = marked.marker_place();
     std::cout << marked.letters() << "   " << wanted.x << ' ' << wanted.y << ' ' << wanted.z << '\t';
     for (const MarkedFormat& format : formats) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numeric>
 #include <random>
 
@@ -51,6 +52,35 @@ Corners renumbered(Corners c, std::mt19937& random) {
 }
 
 }  // namespace
+
+std::vector<std::pair<TrianglePlace, int>> count_triangles(const scene::TetMesh& mesh) {
+  // Numbers of places, sorted: a map of triangles takes several times as long.
+  std::vector<Point> places;
+  for (const glm::dvec3& p : mesh.positions) places.push_back({p.x, p.y, p.z});
+  std::sort(places.begin(), places.end());
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  std::vector<std::size_t> number;
+  for (const glm::dvec3& p : mesh.positions)
+    number.push_back(static_cast<std::size_t>(
+        std::lower_bound(places.begin(), places.end(), Point{p.x, p.y, p.z}) - places.begin()));
+  std::vector<std::array<std::size_t, 3>> triangles;
+  for (const scene::Tet& t : mesh.tets) {
+    const std::array<std::size_t, 4> n = {number[t[0]], number[t[1]], number[t[2]], number[t[3]]};
+    for (std::array<std::size_t, 3> triangle : {std::array{n[1], n[2], n[3]}, std::array{n[0], n[2], n[3]},
+                                                std::array{n[0], n[1], n[3]}, std::array{n[0], n[1], n[2]}}) {
+      std::sort(triangle.begin(), triangle.end());
+      triangles.push_back(triangle);
+    }
+  }
+  std::sort(triangles.begin(), triangles.end());
+  std::vector<std::pair<TrianglePlace, int>> uses;
+  for (std::size_t k = 0; k < triangles.size(); ++k)
+    if (k > 0 && triangles[k] == triangles[k - 1])
+      ++uses.back().second;
+    else
+      uses.push_back({{places[triangles[k][0]], places[triangles[k][1]], places[triangles[k][2]]}, 1});
+  return uses;
+}
 
 std::string vtu_text(const CellBlock& block) {
   std::vector<double> xyz;

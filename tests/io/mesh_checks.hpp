@@ -1,11 +1,10 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/cell_block.hpp"
@@ -19,21 +18,7 @@ using Point = std::array<double, 3>;
 using TrianglePlace = std::array<Point, 3>;
 
 /// How many tets have each triangle, by position and not by index.
-inline std::map<TrianglePlace, int> count_triangles(const scene::TetMesh& mesh) {
-  std::map<TrianglePlace, int> uses;
-  for (const scene::Tet& tet : mesh.tets)
-    for (int skipped = 0; skipped < 4; ++skipped) {
-      TrianglePlace place;
-      for (int k = 0, n = 0; k < 4; ++k) {
-        if (k == skipped) continue;
-        const glm::dvec3& p = mesh.positions[tet[static_cast<std::size_t>(k)]];
-        place[static_cast<std::size_t>(n++)] = {p.x, p.y, p.z};
-      }
-      std::sort(place.begin(), place.end());
-      ++uses[place];
-    }
-  return uses;
-}
+std::vector<std::pair<TrianglePlace, int>> count_triangles(const scene::TetMesh& mesh);
 
 inline double volume(const scene::TetMesh& mesh) {
   double sum = 0;

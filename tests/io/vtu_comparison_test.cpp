@@ -15,6 +15,7 @@
 #include "io/vtk_or_skip.hpp"
 #include "io/vtu_checks.hpp"
 #include "io/vtu_writing.hpp"
+#include "support/some_cases.hpp"
 
 namespace tessera::io {
 namespace {
@@ -86,10 +87,12 @@ TEST_F(VtuComparison, OurMeshesAreReadAsVtkReadsThem) {
 
 // Not -inf, of which VTK 9.1 makes inf, nor -nan and infinity, which it does not read.
 TEST_F(VtuComparison, NumbersAreSpelledAsVtkReadsThem) {
+  test::SomeCases some(5);
   for (const char* numbers :
        {"nan inf 1 NaN", "INF Inf +1 NAN", "1e-400 -0 .5 5.", "1e400 0 0 0", "+nan 0 0 0", "1.5e 0 0 0", "0x10 0 0 0",
         "1d3 0 0 0", "- 1 2 3", "1,2 3 4 5", "1-2 +-3 4", "++1 0 0 0"})
     for (const char* type : {"Float32", "Float64", "Int8", "UInt8", "UInt16", "Int32", "UInt64"}) {
+      if (!some.next()) continue;
       SCOPED_TRACE(fmt::format("{} as {}", numbers, type));
       VtuPiece piece = test::sample_piece();
       piece.point_data = {{type, "n", 1, {}}};

@@ -11,6 +11,7 @@
 
 #include "scene/error.hpp"
 #include "support/instruction_sets.hpp"
+#include "support/some_cases.hpp"
 #include "volume/brick_cache.hpp"
 #include "volume/double_caster.hpp"
 #include "volume/render.hpp"
@@ -50,10 +51,13 @@ TEST(VolumeCaster, ExactIsWithin1e5OfDoublePrecisionFromAllSides) {
 TEST(VolumeCaster, ExactIsWithin1e5InNoise) {
   // Every voxel's field is as far from straight as it can be.
   const Volume v = make_volume({21, 18, 17}, Field::noise);
+  test::SomeCases some(5);
   for (const char* name : views)
-    for (const auto& function : {smooth_function(), sharp_function(), many_knots()})
+    for (const auto& function : {smooth_function(), sharp_function(), many_knots()}) {
+      if (!some.next()) continue;
       EXPECT_LT(error_of(render(v, view(name), function, exact()), v, view(name), function), 1e-5)
           << name << ", " << function.knots().size() << " knots";
+    }
 }
 
 TEST(VolumeCaster, AutomaticMeetsItsAccuracyInNoise) {
@@ -127,10 +131,12 @@ TEST(VolumeCaster, BlankSamplesBlankTheirVoxels) {
 
 TEST(VolumeCaster, SameBitsForAnyBricksThreadsAndCache) {
   const Volume v = make_volume({37, 30, 26}, Field::smooth);
+  test::SomeCases some(5);
   for (const char* name : {"oblique", "from -x", "inside"}) {
     const scene::Image image = render(v, view(name), sharp_function());
     for (const int brick : {2, 3, 8, 11, 64})
       for (const int threads : {1, 2}) {
+        if (!some.next()) continue;
         volume::RenderSettings s;
         s.brick_size = brick, s.threads = threads;
         EXPECT_TRUE(same_bits(render(v, view(name), sharp_function(), s), image)) << name << ' ' << brick;

@@ -12,6 +12,7 @@
 #include "scene/error.hpp"
 #include "scene/frame_watch.hpp"
 #include "support/instruction_sets.hpp"
+#include "support/some_cases.hpp"
 #include "volume/cell_ranges.hpp"
 #include "volume/image_sink.hpp"
 #include "volume/small_volume.hpp"
@@ -105,8 +106,10 @@ std::vector<scene::GridIndex> chunk_sizes(const scene::GridIndex& voxels) {
 
 TEST(ChunkCast, FragmentsOfChunksCompositedGiveThePicture) {
   const Volume v = make_volume({37, 30, 36}, Field::smooth);
+  test::SomeCases some(5);
   for (const char* name : views)
     for (const auto& function : {smooth_function(), sharp_function()}) {
+      if (!some.next()) continue;
       const scene::Camera camera = view(name);
       const scene::Image whole = render(v, camera, function, exact());
       for (const scene::GridIndex& sides : chunk_sizes(v.grid.geometry.voxels())) {
@@ -135,11 +138,13 @@ TEST(ChunkCast, EveryInstructionSetCastsChunks) {
 
 TEST(ChunkCast, CellDataShadingAndSamplesGoInChunksToo) {
   const Volume points = make_volume({37, 30, 36}, Field::smooth), cells = make_volume({19, 17, 20}, Field::noise, true);
+  test::SomeCases some(3);
   for (const char* name : {"oblique", "from -x", "perspective"}) {
     const scene::Camera camera = view(name);
     const auto check = [&](const Volume& v, const volume::RenderSettings& settings, const char* what) {
       const scene::Image whole = render(v, camera, smooth_function(), settings);
       for (const scene::GridIndex& sides : chunk_sizes(v.grid.geometry.voxels())) {
+        if (!some.next()) continue;
         Composite sink(size);
         cast_apart(v, settings, camera, smooth_function(), boxes_front_to_back(v.grid.geometry, sides, camera), sink);
         EXPECT_LT(difference(sink.image, whole), 1e-6) << what << ' ' << name << ' ' << sides[0];
@@ -182,10 +187,12 @@ TEST(ChunkCast, RectilinearGridsGoInChunksToo) {
     v.grid.geometry.coordinates[a] = planes;
   }
   v.source = scene::MemorySource::of(v.grid, v.values);
+  test::SomeCases some(4);
   for (const char* name : {"oblique", "along z", "perspective", "inside", "clipped"}) {
     const scene::Camera camera = view(name);
     const scene::Image whole = render(v, camera, smooth_function(), exact());
     for (const scene::GridIndex& sides : chunk_sizes(v.grid.geometry.voxels())) {
+      if (!some.next()) continue;
       const std::vector<VoxelBox> chunks = boxes_front_to_back(v.grid.geometry, sides, camera);
       Composite sink(size);
       cast_apart(v, with(volume::Method::exact), camera, smooth_function(), chunks, sink);
@@ -219,7 +226,9 @@ TEST(ChunkCast, RaysThatAreNotSureAreCastAgainWithinTheirChunk) {
 TEST(ChunkCast, ARayThatGoesOnHasTheBitsOfOneInOneGo) {
   const Volume points = make_volume({65, 65, 65}, Field::smooth), cells = make_volume({64, 64, 64}, Field::noise, true);
   const std::pair<const char*, std::size_t> ways[] = {{"oblique", 2}, {"from -x", 0}, {"from y", 1}, {"along z", 2}};
+  test::SomeCases some(2);
   for (const auto& way : ways) {
+    if (!some.next()) continue;
     const char* const name = way.first;  // clang 14 lets no lambda have a structured binding
     const scene::Camera camera = view(name);
     scene::GridIndex sides{64, 64, 64};

@@ -11,6 +11,7 @@
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
 #include "support/instruction_sets.hpp"
+#include "support/some_cases.hpp"
 #include "volume/chunk_cast.hpp"
 #include "volume/image_sink.hpp"
 #include "volume/render.hpp"
@@ -340,8 +341,11 @@ TEST(GridSurface, RandomOnesKeepThePromise) {
   const int first = wanted("TESSERA_RANDOM_FIRST", 0), last = first + wanted("TESSERA_RANDOM_CASES", 60);
   const scene::ImageSize small{48, 40};
   double worst = 0;
-  std::size_t excused = 0, pixels = 0, seen = 0;
+  std::size_t excused = 0, pixels = 0, seen = 0, tried = 0;
+  test::SomeCases some(4);
   for (int number = first; number < last; ++number) {
+    if (!some.next()) continue;
+    ++tried;
     const Case c = random_case(static_cast<unsigned>(number));
     const auto image = volume::Renderer(*c.source, c.settings).render(c.camera, small, c.function);
     const reference::GridReference truth(*c.source, c.camera, small, c.function, c.settings.emission,
@@ -357,7 +361,7 @@ TEST(GridSurface, RandomOnesKeepThePromise) {
     worst = std::max(worst, judged.max_error_not_excused), excused += judged.excused, pixels += judged.pixels_checked;
   }
   EXPECT_LE(static_cast<double>(excused), 1e-4 * static_cast<double>(pixels) + 3);
-  EXPECT_GT(seen, static_cast<std::size_t>(last - first) * 3 / 4);
+  EXPECT_GT(seen, tried * 3 / 4);
   std::printf("cases %d to %d: largest error %.3g, %zu of %zu pixels excused\n", first, last - 1, worst, excused,
               pixels);
 }
@@ -381,8 +385,10 @@ TEST(GridSurface, BitsDoNotDependOnBricksThreadsOrRegionsNorLightOnSkippedSpace)
   const Volume volume = make_volume({45, 37, 41}, Field::smooth);
   Surfaces surfaces;
   surfaces.iso = {{0.4, glm::dvec3(1, 0.4, 0), 0.3}, {0.62, {}, 0.5}, {0.75, glm::dvec3(0, 1, 0.2), 1}};
+  test::SomeCases some(5);
   for (const char* name : views)
     for (const bool shaded : {false, true}) {
+      if (!some.next()) continue;
       volume::RenderSettings settings = exact_with(surfaces);
       if (shaded) settings.shading.emplace();
       const scene::Image image = render(volume, view(name), sharp_function(), settings);
