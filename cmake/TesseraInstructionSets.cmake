@@ -1,6 +1,6 @@
 # Tells Highway which instruction sets kernels are compiled for: TESSERA_INSTRUCTION_SETS. Quick sanitized builds, and
 # ThreadSanitizer's, where threads are watched and not lanes, have AVX2 alone.
-if(TESSERA_QUICK_SANITIZE OR TESSERA_SANITIZE MATCHES thread)
+if((TESSERA_QUICK AND TESSERA_SANITIZE) OR TESSERA_SANITIZE MATCHES thread)
   set(sets AVX2)
 elseif(TESSERA_INSTRUCTION_SETS STREQUAL native)
   find_package(hwy REQUIRED)

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # test.sh        installs what is missing, checks the format, builds and runs all tests as released
 # test.sh --all  also under ASan and UBSan and TSan, without the parts that are options, fuzzes, and runs clang-tidy
-# With CI=true, as .ci/run calls it, all but TSan and most of the configurations; the sanitized build is a quick one
-# (TESSERA_QUICK_SANITIZE) without tests that wait for stalls; clang-tidy sees what changed, for some minutes at most. What
-# has not begun after 65 minutes is left out. Goes on after a failed stage; the end says which, and what was left out.
+# With CI=true, as .ci/run calls it, all but TSan and most of the configurations; the sanitized build and the configuration
+# are quick ones (TESSERA_QUICK), the former without tests that wait for stalls; clang-tidy sees what changed, for some
+# minutes at most. What has not begun after 65 minutes is left out. Goes on after a failed stage; the end says which, and
+# what was left out.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -55,13 +56,13 @@ if [ -n "$extent" ]; then
   sanitized=()
   if [ "$extent" = ci ]; then
     sanitized=(-E '^Rank(Faults|Limits|Stalls)\.')
-    options+=(-DTESSERA_QUICK_SANITIZE=ON)
+    options+=(-DTESSERA_QUICK=ON)
   fi
   stage sanitize build_and_test sanitize "${sanitized[@]}"
   presets=(sanitize release)
   if [ "$extent" = all ]; then configurations=(); else configurations=(least); fi
   stage configurations scripts/configurations.sh "${configurations[@]}"
-  stage fuzz scripts/fuzz.sh 20
+  stage fuzz scripts/fuzz.sh 10
 fi
 if [ "$extent" = ci ]; then stage tidy scripts/lint.sh changed; fi
 if [ "$extent" = all ]; then

@@ -2,11 +2,11 @@
 
 namespace tessera::test {
 
-/// Which cases of a long test are tried: all of them; in the quick sanitized build (TESSERA_QUICK_SANITIZE), where each takes
-/// ten times as long, the first of every `of`. They differ in numbers and hardly in the memory that they touch.
+/// Which cases of a long test are tried: all of them; in quick builds (TESSERA_QUICK), which are sanitized or not optimized and
+/// take ten times as long, the first of every `of`. They differ in numbers, and hardly in the memory that they touch.
 class SomeCases {
  public:
-#ifdef TESSERA_QUICK_TESTS
+#ifdef TESSERA_QUICK
   explicit SomeCases(int of) : of_(of) {}
 #else
   explicit SomeCases(int) {}
