@@ -3,7 +3,7 @@
 hostile clients harm nobody, and it ends in order.
 
     serve_test.py --tessera PROGRAM [--part pictures|refusals|tls|hostile|ends] [--without-mpi]
-                  [--without-tls] [--sanitized]
+                  [--without-tls] [--sanitized] [--every N]
 
 TESSERA_SERVE_MESSAGES: how many mutated messages are sent (30000), TESSERA_SERVE_FRAMES: over how many small frames
 memory is watched (500).
@@ -91,7 +91,8 @@ def pictures_of(file, launcher=()):
     with Server(options.tessera, file, "--memory", "1G", launcher=launcher, environment=MPI) as server:
         client = server.socket()
         check(client.receive()["type"] == "welcome", "no welcome")
-        for number, state in enumerate(states_of(server, is_grid, file.name != "cells.vtu"), 1):
+        states = list(enumerate(states_of(server, is_grid, file.name != "cells.vtu"), 1))
+        for number, state in states[:: options.every]:
             client.state(number, state)
             header, image = client.last_frame(number)
             check(header["level"] == "exact" and header["mime"] == "image/png", header)
@@ -545,7 +546,7 @@ def socket_or_none(server):
 
 
 def memory_stays(server, state):
-    frames = int(os.environ.get("TESSERA_SERVE_FRAMES", "500"))
+    frames = int(os.environ.get("TESSERA_SERVE_FRAMES", "150" if options.sanitized else "500"))
     client = admitted(server)
     client.receive()
     position = list(state["camera"]["position"])
@@ -648,6 +649,7 @@ def main():
     parser.add_argument("--without-mpi", action="store_true")
     parser.add_argument("--without-tls", action="store_true")
     parser.add_argument("--sanitized", action="store_true")
+    parser.add_argument("--every", type=int, default=1, help="each so many-th state of part pictures")
     options = parser.parse_args()
     options.tessera = str(Path(options.tessera).resolve())
     options.without_mpi = options.without_mpi or not shutil.which("mpirun")
