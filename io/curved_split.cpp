@@ -307,14 +307,17 @@ bool CurvedSplitter::divide_worst_face(const Tet& tet) {
   const std::span<const glm::dvec4> inside = net_departures(tet);
   tet_error_ = error_of(inside);
   if (cell_.degree_on(faces_on(tet)) < 3) return false;  // all coefficients are edges'
-  // Where all is well by a margin over rounding, a face is well too, whoever looks at it.
   // It is no number where coordinates are too large to be squared: then nothing comes nearer.
   const double excess = excess_of(inside);
-  if (!(excess > 0.9)) return false;
+  if (!(excess > 0)) return false;
   for (const auto& [i, j, k] : faces_of_tet) {
     const std::array<std::uint32_t, 3> face = {tet[static_cast<std::size_t>(i)], tet[static_cast<std::size_t>(j)],
                                                tet[static_cast<std::size_t>(k)]};
-    if (cell_.degree_on(faces_on(face)) < 3 || !(excess_of(departures(face)) > 1)) continue;
+    const int degree = cell_.degree_on(faces_on(face));
+    // A face's coefficients are among the tet's if it has the tet's degree: where all is well by a margin over
+    // rounding, that face is well too, whoever looks at it. Of a lower degree they are larger than the tet's.
+    if (degree < 3 || (excess <= 0.9 && nets_are_exact_ && degree == degree_)) continue;
+    if (!(excess_of(departures(face)) > 1)) continue;
     const std::uint32_t point = point_within(face);
     if (point == none) continue;
     for (const std::uint32_t corner : face) {

@@ -1,6 +1,5 @@
 // Ranks that stop and go on, in a simulated job: who notices, how often, and who keeps silent.
 #include "exchange/heartbeats.hpp"
-#include "support/some_cases.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +7,8 @@
 #include <deque>
 #include <random>
 #include <string>
+
+#include "support/some_cases.hpp"
 
 namespace tessera::exchange {
 namespace {

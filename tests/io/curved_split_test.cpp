@@ -1,6 +1,7 @@
 // Higher-order cells: their functions, that neighbours divide what they share alike, and that errors keep their bounds.
 #include "io/curved_split.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -178,7 +179,7 @@ void expect_closed_ball(const scene::TetMesh& mesh) {
 }
 
 /// Many tets a cell, few enough for sanitized builds.
-constexpr double coarse = 4e-2;
+constexpr double coarse = 6e-2;
 
 void expect_one_ball(std::vector<CellBlock> blocks) {
   const MeshFile file = assemble_mesh(std::move(blocks), tolerance(coarse), "mesh");
@@ -189,17 +190,18 @@ void expect_one_ball(std::vector<CellBlock> blocks) {
 
 TEST(CurvedSplit, LeavesNoCracksWhateverTheNumbering) {
   const Field wavy = [](const glm::dvec3& p) { return std::sin(9 * p.x * p.y) + p.z * p.z; };
-  test::SomeCases some(3);
+  test::SomeCases some(5);
   for (const Kind& kind : kinds)
-    for (const bool turned : {false, true}) {
-      if (!some.next()) continue;
-      SCOPED_TRACE(::testing::PrintToString(static_cast<int>(kind.type)) + (turned ? " turned" : ""));
-      const MeshFile file = assemble_mesh({warped_box(kind, 2, bent, wavy, turned)}, tolerance(coarse), "mesh");
-      EXPECT_EQ(file.higher_order.by_corners, 0u);
-      EXPECT_GT(file.higher_order.tets, file.higher_order.divided * 2);
-      EXPECT_LE(file.higher_order.position_error, coarse * 2);
-      expect_closed_ball(file.mesh);
-    }
+    for (const double relative : {1e-1, 6e-2})  // cells look at faces apart: some divide one just here, some there
+      for (const bool turned : {false, true}) {
+        if (!some.next()) continue;
+        SCOPED_TRACE(fmt::format("{}, {} nodes, {}{}", kind.type, kind.nodes, relative, turned ? ", turned" : ""));
+        const MeshFile file = assemble_mesh({warped_box(kind, 2, bent, wavy, turned)}, tolerance(relative), "mesh");
+        EXPECT_EQ(file.higher_order.by_corners, 0u);
+        EXPECT_GT(file.higher_order.tets, file.higher_order.divided * 2);
+        EXPECT_LE(file.higher_order.position_error, relative * 2);
+        expect_closed_ball(file.mesh);
+      }
 }
 
 /// The largest difference between the field of tets and `truth` at random points of them.
@@ -287,7 +289,7 @@ TEST(CurvedSplit, FillsWhatTheCellsFill) {
   // A box that quadratic cells bend exactly: the integral of (1 + 0.4 x) (1 + 0.2 z).
   const Warp bend = [](const glm::dvec3& p) { return glm::dvec3(p.x + 0.2 * p.x * p.x, p.y + 0.2 * p.y * p.z, p.z); };
   const Field one = [](const glm::dvec3&) { return 1.0; };
-  test::SomeCases some(3);
+  test::SomeCases some(5);
   for (const Kind& kind : kinds) {
     if (kind.degree < 2) continue;
     for (const double relative : {1e-2, 1e-3}) {
@@ -399,7 +401,7 @@ TEST(CurvedSplit, LeavesNoCracksBetweenKinds) {
       {{24, 10, 2}, {71, 10, 2}},
       {{79, 27, 1, {2, 2, 2}}, {79, 27, 1, {2, 2, 2}}},
   };
-  test::SomeCases some(3);
+  test::SomeCases some(5);
   for (const auto& group : alike)
     for (const Kind& left : group)
       for (const Kind& right : group) {

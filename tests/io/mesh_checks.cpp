@@ -61,8 +61,8 @@ std::vector<std::pair<TrianglePlace, int>> count_triangles(const scene::TetMesh&
   places.erase(std::unique(places.begin(), places.end()), places.end());
   std::vector<std::size_t> number;
   for (const glm::dvec3& p : mesh.positions)
-    number.push_back(static_cast<std::size_t>(
-        std::lower_bound(places.begin(), places.end(), Point{p.x, p.y, p.z}) - places.begin()));
+    number.push_back(static_cast<std::size_t>(std::lower_bound(places.begin(), places.end(), Point{p.x, p.y, p.z}) -
+                                              places.begin()));
   std::vector<std::array<std::size_t, 3>> triangles;
   for (const scene::Tet& t : mesh.tets) {
     const std::array<std::size_t, 4> n = {number[t[0]], number[t[1]], number[t[2]], number[t[3]]};

@@ -2,8 +2,9 @@
 
 namespace tessera::test {
 
-/// Which cases of a long test are tried: all of them; in quick builds (TESSERA_QUICK), which are sanitized or not optimized and
-/// take ten times as long, the first of every `of`. They differ in numbers, and hardly in the memory that they touch.
+/// Which cases of a long test are tried: all of them; in quick builds (TESSERA_QUICK), which are sanitized or not
+/// optimized and take ten times as long, the first of every `of`. They differ in numbers, and hardly in the memory that
+/// they touch.
 class SomeCases {
  public:
 #ifdef TESSERA_QUICK
