@@ -6,10 +6,10 @@
 #include <XdmfArrayType.hpp>
 #include <XdmfBinaryController.hpp>
 #include <XdmfHeavyDataController.hpp>
-#include <XdmfSubset.hpp>
 #include <algorithm>
 
 #include "io/helper/readers.hpp"
+#include "io/helper/xdmf_references.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "scene/error.hpp"
@@ -17,23 +17,6 @@
 
 namespace tessera::io::helper {
 namespace {
-
-NumberType number_type_of(const XdmfArray& array) {
-  const auto type = array.getArrayType();
-  if (type == XdmfArrayType::Int8()) return NumberType::int8;
-  if (type == XdmfArrayType::UInt8()) return NumberType::uint8;
-  if (type == XdmfArrayType::Int16()) return NumberType::int16;
-  if (type == XdmfArrayType::UInt16()) return NumberType::uint16;
-  if (type == XdmfArrayType::Int32()) return NumberType::int32;
-  if (type == XdmfArrayType::UInt32()) return NumberType::uint32;
-  if (type == XdmfArrayType::Int64()) return NumberType::int64;
-  if (type == XdmfArrayType::Float32()) return NumberType::float32;
-  return NumberType::float64;
-}
-
-void read_numbers(XdmfArray& array) {
-  if (!array.isInitialized()) array.read();
-}
 
 template <class T>
 std::vector<T> numbers_of(const XdmfArray& array) {
@@ -64,13 +47,7 @@ XdmfHeavyFiles::XdmfHeavyFiles(const std::filesystem::path& file) : source_(file
 }
 
 void XdmfHeavyFiles::add(XdmfArray& array) {
-  if (array.getReadMode() == XdmfArray::Reference) {
-    const auto subset = boost::dynamic_pointer_cast<XdmfSubset>(array.getReference());
-    if (subset == nullptr || subset->getReferenceArray() == nullptr)
-      throw scene::bad_input(fmt::format(
-          "{}: it has numbers that are a function of others; have the program that made it write them", source_));
-    return add(*subset->getReferenceArray());
-  }
+  for (XdmfArray* const other : referenced_arrays(array, source_)) add(*other);
   for (unsigned k = 0; k < array.getNumberHeavyDataControllers(); ++k) {
     require_beside_others(source_);
     const std::filesystem::path named = array.getHeavyDataController(k)->getFilePath();

@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <XdmfInformation.hpp>
 #include <XdmfTopology.hpp>
 #include <XdmfTopologyType.hpp>
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <span>
 
+#include "io/helper/xdmf_elements.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -80,6 +83,12 @@ class Numbers {
   std::size_t at_ = 0;
 };
 
+/// The number of the first point, which rewritten_xdmf() notes; Xdmf's library passes over it.
+std::int64_t base_of(XdmfTopology& topology) {
+  const auto noted = topology.getInformation(base_offset);
+  return noted == nullptr ? 0 : std::strtoll(noted->getValue().c_str(), nullptr, 10);
+}
+
 }  // namespace
 
 void add_cell_names() { TopologyNames::add(); }
@@ -87,7 +96,7 @@ void add_cell_names() { TopologyNames::add(); }
 XdmfCells cells_of(XdmfTopology& topology, const std::string& where) {
   std::vector<std::int64_t> values(topology.getSize());
   if (!values.empty()) topology.getValues<std::int64_t>(0, values.data(), static_cast<unsigned>(values.size()), 1, 1);
-  Numbers numbers(values, topology.getBaseOffset(), where);
+  Numbers numbers(values, base_of(topology), where);
   XdmfCells cells;
   cells.offsets.push_back(0);
   if (topology.getType() == XdmfTopologyType::Mixed()) {

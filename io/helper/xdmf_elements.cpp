@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -68,6 +69,38 @@ class InlineNumbers {
   bool in_word_ = false;
 };
 
+std::string upper(std::string text) {
+  for (char& c : text)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  return text;
+}
+
+/// The value of the first of these attributes that there is.
+std::string word(const XmlElement& element, std::initializer_list<const char*> names) {
+  for (const char* name : names)
+    if (const std::string* const value = element.find(name)) return *value;
+  return "";
+}
+
+/// What Xdmf's library would read as something else.
+void check_item(const XmlElement& element, const std::string& source) {
+  if (element.name != "DataItem") return;
+  if (upper(word(element, {"ItemType"})).starts_with("COORDINATE"))
+    throw scene::bad_input(
+        fmt::format("{}: a <DataItem> of the type {} picks single numbers, which is not read; have the program that "
+                    "made it write these, or choose them as a HyperSlab",
+                    source, scene::quote(word(element, {"ItemType"}))));
+  if (upper(word(element, {"Format"})) != "BINARY") return;
+  const std::string type = upper(word(element, {"NumberType", "DataType"})), bytes = word(element, {"Precision"});
+  const bool is_known = bytes.empty() || bytes == "4" || bytes == "8" ||
+                        ((bytes == "1" || bytes == "2") && type != "FLOAT" && !type.empty());
+  if (!is_known)
+    throw scene::bad_input(fmt::format(
+        "{}: a <DataItem> has binary numbers of the Precision {}; write floats of 4 or 8 bytes or integers of 1, 2, 4 "
+        "or 8",
+        source, scene::quote(bytes)));
+}
+
 /// What is right by the format's documentation, and an error to its library.
 bool is_to_be_rewritten(const XmlElement& element) {
   if (element.find("Reference") != nullptr) return true;
@@ -77,15 +110,36 @@ bool is_to_be_rewritten(const XmlElement& element) {
            (type != nullptr && *type == "FiniteElementFunction");
   }
   if (element.name == "Time") return element.find("Value") == nullptr;
+  if (element.name == "Topology")
+    return element.find(base_offset) != nullptr ||
+           (element.find("Dimensions") == nullptr && is_structured(word(element, {"TopologyType", "Type"})));
+  if (element.name == "Geometry") return is_of_three_arrays(word(element, {"GeometryType", "Type"}));
   if (element.name != "DataItem") return false;
-  const std::string *format = element.find("Format"), *type = element.find("NumberType"),
-                    *precision = element.find("Precision");
-  if (type == nullptr) type = element.find("DataType");
+  const std::string* const format = element.find("Format");
   return format == nullptr || *format == "HDF5" || *format == "xml" || *format == "hdf" || *format == "binary" ||
-         (type != nullptr && *type == "UInt" && precision != nullptr && *precision == "8");
+         is_selection(word(element, {"ItemType"})) ||
+         library_type(word(element, {"NumberType", "DataType"}), word(element, {"Precision"}));
 }
 
 }  // namespace
+
+bool is_structured(const std::string& topology_type) {
+  const std::string type = upper(topology_type);
+  return type == "3DCORECTMESH" || type == "3DRECTMESH" || type == "3DSMESH";
+}
+
+bool is_of_three_arrays(const std::string& geometry_type) { return upper(geometry_type) == "X_Y_Z"; }
+
+bool is_selection(const std::string& item_type) { return upper(item_type) == "HYPERSLAB"; }
+
+std::optional<std::string> library_type(const std::string& number_type, const std::string& precision) {
+  const std::string type = upper(number_type), sign = type == "UINT" ? "U" : "";
+  if (type != "INT" && type != "UINT") return std::nullopt;
+  if (precision == "1") return sign + "Char";
+  if (precision == "2") return sign + "Short";
+  if (type == "UINT" && precision == "8") return "Int";  // there is no such type, and half of the bytes would be taken
+  return std::nullopt;
+}
 
 XdmfText check_xdmf_elements(const std::filesystem::path& file) {
   const MappedFile mapped(file);
@@ -99,6 +153,7 @@ XdmfText check_xdmf_elements(const std::filesystem::path& file) {
     if (included != nullptr && !included->empty() && *included != file.filename())
       throw scene::bad_input(
           fmt::format("{}: it includes another file; have it written as one, with its numbers beside", source));
+    check_item(element, source);
     if (included != nullptr || is_to_be_rewritten(element)) text = XdmfText::to_be_rewritten;
     numbers.begin(element);
   };

@@ -26,6 +26,7 @@
 #include "io/helper/xdmf_cells.hpp"
 #include "io/helper/xdmf_elements.hpp"
 #include "io/helper/xdmf_grids.hpp"
+#include "io/helper/xdmf_references.hpp"
 #include "io/helper/xdmf_rewritten.hpp"
 #include "io/helper/xdmf_shared.hpp"
 #include "io/inflated_file.hpp"
@@ -135,7 +136,7 @@ class PartOf {
   void set(XdmfUnstructuredGrid& grid) {
     part.points = hold_points(holdings_, *grid.getGeometry(), where_, is_shared(*grid.getGeometry()));
     XdmfTopology& topology = *grid.getTopology();
-    if (!topology.isInitialized()) topology.read();
+    read_numbers(topology);
     XdmfCells cells = cells_of(topology, where_);
     if (!is_shared(topology)) topology.release();
     part.types = hold_vector(holdings_, {.type = NumberType::uint8}, std::move(cells.types));
@@ -164,7 +165,7 @@ class PartOf {
       const bool is_node = attribute.getCenter() == XdmfAttributeCenter::Node();
       if (!is_node && attribute.getCenter() != XdmfAttributeCenter::Cell()) continue;
       const std::string name = attribute.getName().empty() ? fmt::format("attribute{}", k) : attribute.getName();
-      if (!attribute.isInitialized()) attribute.read();
+      read_numbers(attribute);
       const std::uint64_t count = count_of(is_node), values = attribute.getSize();
       if (count == 0 || values == 0) continue;
       if (values % count != 0 || values / count > 1024)

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "io/helper/xdmf_elements.hpp"
+#include "io/helper/xdmf_references.hpp"
 #include "io/mapped_file.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
@@ -40,6 +42,7 @@ class Rewriting {
 
   void apply() {
     complete_attributes();
+    complete_grids();
     complete_items();
     spread_times();
     for (xmlNode* node : all("//*[@href]")) xmlUnsetProp(node, xml("href"));  // of this very file
@@ -66,6 +69,8 @@ class Rewriting {
     xmlSetProp(node, xml(name), xml(value.c_str()));
   }
 
+  static const char* type_name(xmlNode* node, const char* name) { return property(node, name) ? name : "Type"; }
+
   void complete_attributes() {
     std::size_t number = 0;
     for (xmlNode* node : all("//Attribute[not(@Reference)]")) {
@@ -77,15 +82,43 @@ class Rewriting {
     }
   }
 
+  void complete_grids() {
+    for (xmlNode* node : all("//Topology[not(@Dimensions)][@NumberOfElements]"))
+      if (is_structured(property(node, type_name(node, "TopologyType")).value_or("")))
+        set(node, "Dimensions", *property(node, "NumberOfElements"));
+    for (xmlNode* node : all("//Topology[@BaseOffset]")) {
+      xmlNode* const noted = xmlNewChild(node, nullptr, xml("Information"), nullptr);
+      set(noted, "Name", base_offset), set(noted, "Value", *property(node, base_offset));
+    }
+    for (xmlNode* node : all("//Geometry[not(@Reference)]")) {
+      const char* const type = type_name(node, "GeometryType");
+      if (!is_of_three_arrays(property(node, type).value_or(""))) continue;
+      set(node, type, "XYZ");
+      const std::vector<xmlNode*> items = all("DataItem", node);
+      xmlNode* const joined = xmlNewChild(node, nullptr, xml("DataItem"), nullptr);
+      set(joined, "ItemType", "Function"), set(joined, "Function", interleaved);
+      for (xmlNode* item : items) xmlUnlinkNode(item), xmlAddChild(joined, item);
+    }
+  }
+
+  void complete_selection(xmlNode* node) {
+    set(node, "ItemType", "HyperSlab");
+    const std::vector<xmlNode*> items = all("DataItem", node);
+    if (items.empty()) return;
+    xmlUnsetProp(items.front(), xml("DataType"));
+    set(items.front(), "NumberType", "Int"), set(items.front(), "Precision", "8");  // else floats, which round
+  }
+
   void complete_items() {
     for (xmlNode* node : all("//DataItem[not(@Reference)]")) {
       const std::optional<std::string> format = property(node, "Format");
       if (!format || format == "xml") set(node, "Format", "XML");
       if (format == "HDF5" || format == "hdf") set(node, "Format", "HDF");
       if (format == "binary") set(node, "Format", "Binary");
-      // It has no such type, and would take half of the bytes.
+      if (is_selection(property(node, "ItemType").value_or(""))) complete_selection(node);
       const char* const type = property(node, "NumberType") ? "NumberType" : "DataType";
-      if (property(node, type) == "UInt" && property(node, "Precision") == "8") set(node, type, "Int");
+      if (const auto name = library_type(property(node, type).value_or(""), property(node, "Precision").value_or("")))
+        set(node, type, *name);
     }
   }
 
