@@ -374,6 +374,67 @@ TEST(Minc, RealValuesLieWhereTheDirectionCosinesPutThem) {
   expect(1, 2, 1);
 }
 
+/// 24 samples from `first` on, of real values from 0 to 230 over the valid range.
+VolumeFile minc_of(const std::filesystem::path& file, nc_type type, const char* sign, nc_type of_range,
+                   const std::vector<double>& range, double first) {
+  {
+    NetcdfWriter w(file, 0);
+    std::vector<int> dimensions;
+    for (const auto& [name, length] : {std::pair("zspace", 2), std::pair("yspace", 3), std::pair("xspace", 4)})
+      dimensions.push_back(w.dimension(name, static_cast<std::size_t>(length)));
+    for (const auto& [name, cosines] :
+         {std::pair("xspace", std::vector<double>{0, 1, 0}), std::pair("yspace", std::vector<double>{1, 0, 0}),
+          std::pair("zspace", std::vector<double>{0, 0, 1})}) {
+      const int axis = w.variable(name, NC_INT, {});
+      w.number(axis, "start", NC_DOUBLE, {0});
+      w.number(axis, "step", NC_DOUBLE, {1});
+      w.number(axis, "direction_cosines", NC_FLOAT, cosines);
+    }
+    const int image = w.variable("image", type, dimensions);
+    w.text(image, "signtype", sign);
+    if (!range.empty()) w.number(image, "valid_range", of_range, range);
+    const int high = w.variable("image-max", NC_DOUBLE, {}), low = w.variable("image-min", NC_DOUBLE, {});
+    w.end_definitions();
+    w.put(image, ramp(24, first));
+    w.put(low, std::vector<double>{0});
+    w.put(high, std::vector<double>{230});
+  }
+  return open_volume(file);
+}
+
+TEST(Minc, TheValidRangeMayBeOfAnyType) {
+  const test::TemporaryFolder folder;
+  const auto check = [&](nc_type type, const char* sign, nc_type of_range, const std::vector<double>& range,
+                         double first, double slope, double intercept) {
+    const VolumeFile volume = minc_of(folder / "v.mnc", type, sign, of_range, range, first);
+    const std::vector<double> samples = all_samples(*volume.source);
+    for (std::size_t k = 0; k < 24; ++k)
+      EXPECT_NEAR(samples[k], (first + double(k)) * slope + intercept, 1e-4) << type << " " << of_range;
+    // Along y, by cosines that are no doubles.
+    EXPECT_EQ(at(volume.source->geometry(), {1, 0, 0}) - at(volume.source->geometry(), {0, 0, 0}), glm::dvec3(0, 1, 0));
+  };
+  for (const nc_type of_range : {NC_SHORT, NC_INT, NC_FLOAT, NC_DOUBLE})
+    check(NC_SHORT, "signed__", of_range, {0, 23}, 0, 10, 0);
+  check(NC_SHORT, "signed__", NC_SHORT, {23, 0}, 0, 10, 0);
+  check(NC_SHORT, "signed__", NC_SHORT, {-23, 23}, 0, 5, 115);
+  check(NC_BYTE, "unsigned", NC_BYTE, {0, 23}, 0, 10, 0);
+  check(NC_BYTE, "unsigned", NC_BYTE, {0, -26}, 0, 1, 0);  // 230
+  check(NC_BYTE, "unsigned", NC_DOUBLE, {0, 230}, 0, 1, 0);
+  check(NC_BYTE, "signed__", NC_BYTE, {-115, 115}, -23, 1, 115);
+  check(NC_BYTE, "signed__", NC_BYTE, {}, -23, 230.0 / 255, 230.0 * 128 / 255);
+  check(NC_SHORT, "unsigned", NC_SHORT, {0, -1}, 0, 230.0 / 65535, 0);
+  check(NC_BYTE, "unsigned", NC_BYTE, {}, 0, 230.0 / 255, 0);
+  check(NC_SHORT, "signed__", NC_BYTE, {}, 0, 230.0 / 65535, 230.0 * 32768 / 65535);
+  // Floats are real values.
+  check(NC_FLOAT, "signed__", NC_FLOAT, {0, 23}, 0, 1, 0);
+  check(NC_DOUBLE, "signed__", NC_DOUBLE, {0, 23}, 0, 1, 0);
+  test::expect_bad_input(
+      [&] {
+        minc_of(folder / "v.mnc", NC_SHORT, "signed__", NC_SHORT, {7, 7}, 0);
+      },
+      {"v.mnc: its valid_range is 7 to 7; "});
+}
+
 TEST(Minc, TimeStepsAreChosen) {
   const test::TemporaryFolder folder;
   write_minc(folder / "f.mnc", true);
