@@ -12,11 +12,13 @@
 #include <vtkGenericEnSightReader.h>
 #include <vtkIdList.h>
 #include <vtkNew.h>
+#include <vtkObjectFactory.h>
 #include <vtkPoints.h>
 #include <vtkUnstructuredGrid.h>
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -41,6 +43,7 @@
 #include "io/helper/vtk_session.hpp"
 #include "io/helper/vtk_words.hpp"
 #include "io/input_file.hpp"
+#include "io/mapped_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -83,6 +86,57 @@ class FluentErrors : public vtkCommand {
   }
 
   std::string first;
+};
+
+/// Beside the case, by the name with which VTK looks for it.
+std::filesystem::path fluent_values_of(const std::filesystem::path& file) {
+  std::string name = file.string();
+  name.replace(name.size() - std::min<std::size_t>(name.size(), 3), std::string::npos, "dat");
+  return name;
+}
+
+/// The values of a .dat file in which a blank ends those in text; nothing if all have one. VTK's reader takes the last
+/// character before the parenthesis for one.
+std::string spaced_fluent_values(std::string_view text) {
+  constexpr std::string_view binary_end = "End of Binary Section";
+  std::string spaced;
+  std::size_t copied = 0;
+  for (std::size_t at = text.find('('); at != std::string_view::npos; at = text.find('(', at)) {
+    const std::size_t blank = std::min(text.find_first_of(" (", at + 1), text.size());
+    const std::string_view index = text.substr(at + 1, blank - at - 1);
+    if (index.size() > 3) {  // as the reader tells binary sections
+      const std::size_t end = text.find(binary_end, at);
+      if (end == std::string_view::npos) break;
+      at = end + binary_end.size();
+      continue;
+    }
+    std::size_t values_end = 0;
+    for (std::size_t depth = 0; at < text.size(); ++at) {
+      if (text[at] == '(') ++depth;
+      if (text[at] == ')' && depth == 2) values_end = at;
+      if (text[at] == ')' && --depth == 0) break;
+    }
+    if (index == "300" && at < text.size() && std::isspace(static_cast<unsigned char>(text[values_end - 1])) == 0) {
+      spaced.append(text.substr(copied, values_end - copied)).append(" ");
+      copied = values_end;
+    }
+  }
+  return copied == 0 ? std::string() : spaced.append(text.substr(copied));
+}
+
+class FluentReader : public vtkFLUENTReader {
+ public:
+  static FluentReader* New() { VTK_STANDARD_NEW_BODY(FluentReader); }
+
+ protected:
+  bool OpenDataFile(const char* file) override {
+    if (!vtkFLUENTReader::OpenDataFile(file)) return false;
+    std::string spaced = spaced_fluent_values(MappedFile(fluent_values_of(file)).text());
+    if (spaced.empty()) return true;
+    delete FluentDataFile;
+    FluentDataFile = new std::istringstream(std::move(spaced));
+    return true;
+  }
 };
 
 /// What a Fluent file's sections before its first binary one say.
@@ -258,14 +312,11 @@ ForeignContents read_avs_ucd(Holdings& holdings, const std::filesystem::path& fi
 
 ForeignContents read_fluent(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   require_solid_cells(file);
-  // Its values lie beside it, by the name with which VTK looks for them.
-  std::string data = file.string();
-  data.replace(data.size() - std::min<std::size_t>(data.size(), 3), std::string::npos, "dat");
   std::error_code unknown;
-  const bool has_data = std::filesystem::is_regular_file(data, unknown);
+  const bool has_data = std::filesystem::is_regular_file(fluent_values_of(file), unknown);
   has_data ? allow_for_folder(file.has_parent_path() ? file.parent_path() : std::filesystem::path("."))
            : allow_for(file);
-  vtkNew<vtkFLUENTReader> reader;
+  vtkNew<FluentReader> reader;
   vtkNew<FluentErrors> errors;
   reader->AddObserver(vtkCommand::ErrorEvent, errors);
   reader->SetFileName(file.c_str());

@@ -172,6 +172,23 @@ TEST(SolverFiles, AFluentCaseIsAMeshWithTheValuesBesideItIfAny) {
     const glm::ivec3 at(centre);
     EXPECT_EQ(read.mesh.scalars[t], 300 + at.x + 3 * (at.y + 3 * at.z));
   }
+  // The same numbers, of which the last has its parenthesis at once, in one line, after another section.
+  data.back() = ')';
+  std::string line = data;
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  std::string pressure = line + ")(33 (1 6 8))\n";
+  pressure.replace(pressure.find("(300 (3"), 7, "(300 (1");
+  for (const std::string& text : {data + ")\n", line + ")", pressure + line + ")\n", line + " )\n"}) {
+    folder.write("a.dat", text);
+    MeshOptions options;
+    options.field = "TEMPERATURE";
+    EXPECT_EQ(read_mesh(file, options).mesh.scalars, read.mesh.scalars) << text;
+  }
+  std::string close = fluent(cubes);
+  for (std::size_t at = close.find("\n))"); at != std::string::npos; at = close.find("\n))")) close.erase(at, 1);
+  const MeshFile closed = read_mesh(folder.write("c.cas", close));
+  EXPECT_EQ(closed.mesh.positions, alone.mesh.positions);
+  EXPECT_EQ(closed.counts.cells_read, 27u);
   test::expect_bad_input([&] { read_mesh(folder.write("b.cas", fluent(cubes).substr(0, 900))); }, {"b.cas"});
 }
 
