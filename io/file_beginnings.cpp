@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstring>
+#include <fstream>
 #include <optional>
 #include <vector>
 
@@ -15,6 +17,7 @@
 namespace tessera::io {
 namespace {
 
+constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
 constexpr std::string_view white_space = " \t\r\n\v\f";
 
 std::string_view without_blanks(std::string_view text) {
@@ -148,7 +151,14 @@ bool begins_as_netcdf(const FileBeginning& file) {
   return (file.text.starts_with("CDF\1") || file.text.starts_with("CDF\2") || file.text.starts_with("CDF\5")) &&
          !begins_as_exodus(file) && !begins_as_minc(file);
 }
-bool begins_as_hdf5(const FileBeginning& file) { return file.text.starts_with("\x89HDF\r\n\x1a\n"); }
+bool begins_as_hdf5(const FileBeginning& file) { return file.text.starts_with(hdf5_signature); }
+bool has_hdf5_behind_block(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::array<char, hdf5_signature.size()> bytes{};
+  for (std::int64_t at = 512; in.seekg(at) && in.read(bytes.data(), bytes.size()); at *= 2)
+    if (std::string_view(bytes.data(), bytes.size()) == hdf5_signature) return true;
+  return false;
+}
 /// Four bytes before it are "@(#)" with the highest bit of some set.
 bool begins_as_adf(const FileBeginning& file) {
   return file.text.size() > 4 && file.text.substr(4).starts_with("ADF Database Version");

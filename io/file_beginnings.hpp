@@ -29,6 +29,8 @@ bool begins_as_exodus(const FileBeginning& file);
 bool begins_as_minc(const FileBeginning& file);
 bool begins_as_netcdf(const FileBeginning& file);
 bool begins_as_hdf5(const FileBeginning& file);
+/// Whether HDF5 begins behind a block of the user's own, whose size is 512 bytes or a power of two times that.
+bool has_hdf5_behind_block(const std::filesystem::path& file);
 bool begins_as_adf(const FileBeginning& file);
 bool begins_as_openfoam(const FileBeginning& file);
 bool begins_as_ensight(const FileBeginning& file);

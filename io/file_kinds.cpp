@@ -225,12 +225,14 @@ bool is_vtk(const FormatRow& row) {
          row.kind == FileKind::vtk_surface;
 }
 
-/// Of a folder.
-const FormatRow& row_of_folder(const std::filesystem::path& folder) {
-  const auto begins = is_case_folder(folder)    ? begins_as_openfoam
-                      : is_amrex_folder(folder) ? begins_as_amrex
-                                                : begins_as_dicom;
+const FormatRow& row_of_beginning(bool (*begins)(const FileBeginning&)) {
   return *std::find_if(rows.begin(), rows.end(), [&](const FormatRow& r) { return r.begins == begins; });
+}
+
+const FormatRow& row_of_folder(const std::filesystem::path& folder) {
+  return row_of_beginning(is_case_folder(folder)    ? begins_as_openfoam
+                          : is_amrex_folder(folder) ? begins_as_amrex
+                                                    : begins_as_dicom);
 }
 
 }  // namespace
@@ -262,8 +264,9 @@ const FormatRow* format_begun(const std::filesystem::path& file) {
   const FileBeginning beginning{file, text, size};
   for (const FormatRow& row : rows)
     if (row.begins != nullptr && row.begins(beginning)) return &row;
-  // VTK XML of a kind that no row has: damaged, or its reader says what it holds.
   const FormatRow* const named = format_named(file);
+  if (named == nullptr && has_hdf5_behind_block(file)) return &row_of_beginning(begins_as_hdf5);
+  // VTK XML of a kind that no row has: damaged, or its reader says what it holds.
   if (!begins_as_other_vtk_xml(beginning) || (named != nullptr && is_vtk(*named))) return nullptr;
   return &other_vtk_xml;
 }

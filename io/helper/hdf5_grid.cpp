@@ -37,7 +37,7 @@ std::optional<GridArray> grid_array(const Hdf5Array& array) {
   const std::size_t rank = array.lengths.size();
   if (rank < 3 || std::find(array.lengths.begin(), array.lengths.end(), 0u) != array.lengths.end()) return std::nullopt;
   const std::size_t last = array.lengths.back();
-  const bool has_components = rank > 3 && last >= 2 && last <= most_components;
+  const bool has_components = rank > 3 && last <= most_components;
   return GridArray{&array, rank - (has_components ? 4 : 3), has_components ? last : 1};
 }
 

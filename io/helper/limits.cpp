@@ -45,7 +45,7 @@ bool had_enough_memory = true;
 /// Whether its bytes may stand for a thousand times as many.
 bool may_be_compressed(const std::filesystem::path& file) {
   const std::string beginning = read_beginning(file, 4096);
-  return beginning.find("compressor=") != std::string::npos || beginning.starts_with("\x89HDF") ||
+  return beginning.find("compressor=") != std::string::npos || beginning.find("\x89HDF\r\n") != std::string::npos ||
          beginning.starts_with("\x1f\x8b");
 }
 

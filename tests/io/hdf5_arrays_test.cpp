@@ -21,8 +21,12 @@ using test::has_note;
 
 class Hdf5Writer {
  public:
-  explicit Hdf5Writer(const std::filesystem::path& file)
-      : file_(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)) {}
+  explicit Hdf5Writer(const std::filesystem::path& file, hsize_t user_block = 0) {
+    const hid_t creation = H5Pcreate(H5P_FILE_CREATE);
+    EXPECT_GE(H5Pset_userblock(creation, user_block), 0);
+    file_ = H5Fcreate(file.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT);
+    H5Pclose(creation);
+  }
   ~Hdf5Writer() { EXPECT_GE(H5Fclose(file_), 0); }
   Hdf5Writer(const Hdf5Writer&) = delete;
   Hdf5Writer& operator=(const Hdf5Writer&) = delete;
@@ -80,7 +84,7 @@ class Hdf5Writer {
   }
 
  private:
-  hid_t file_;
+  hid_t file_ = H5I_INVALID_HID;
 };
 
 std::vector<double> ramp(std::size_t count, double first = 0) {
@@ -154,6 +158,33 @@ TEST(Hdf5Arrays, OfMoreAxesHaveStepsAndComponents) {
   EXPECT_EQ(second.source->geometry().points, (GridIndex{6, 2, 5}));
   EXPECT_EQ(second.range, (scene::ValueRange{1, 119, 0}));
   EXPECT_TRUE(has_note(second, "the last dimension of v, of 2, is taken for components"));
+}
+
+TEST(Hdf5Arrays, MayHaveALastDimensionOfOne) {
+  const test::TemporaryFolder folder;
+  for (const std::vector<hsize_t>& lengths : {std::vector<hsize_t>{2, 3, 4, 1}, {1, 2, 3, 4, 1}}) {
+    {
+      const Hdf5Writer w(folder / "a.h5");
+      w.array("v", H5T_IEEE_F32LE, lengths, ramp(24));
+    }
+    const VolumeFile volume = open_volume(folder / "a.h5");
+    EXPECT_EQ(volume.source->geometry().points, (GridIndex{4, 3, 2}));
+    EXPECT_EQ(test::all_samples(*volume.source), ramp(24));
+    EXPECT_FALSE(has_note(volume, "components"));
+  }
+}
+
+TEST(Hdf5Arrays, MayLieBehindABlockOfTheUsers) {
+  const test::TemporaryFolder folder;
+  for (const hsize_t block : {512, 1024, 2048, 4096, 65536})
+    for (const char* name : {"a.h5", "a"}) {
+      {
+        const Hdf5Writer w(folder / name, block);
+        w.array("v", H5T_IEEE_F32LE, {2, 3, 4}, ramp(24));
+      }
+      ASSERT_TRUE(is_volume(folder / name)) << block;
+      EXPECT_EQ(test::all_samples(*open_volume(folder / name).source), ramp(24));
+    }
 }
 
 TEST(Hdf5Arrays, MissingOnesAreBlank) {
