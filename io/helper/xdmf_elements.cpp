@@ -134,6 +134,7 @@ bool is_selection(const std::string& item_type) { return upper(item_type) == "HY
 
 std::optional<std::string> library_type(const std::string& number_type, const std::string& precision) {
   const std::string type = upper(number_type), sign = type == "UINT" ? "U" : "";
+  if (type.empty() && precision == "8") return "Float";  // which would be taken for 4 bytes
   if (type != "INT" && type != "UINT") return std::nullopt;
   if (precision == "1") return sign + "Char";
   if (precision == "2") return sign + "Short";

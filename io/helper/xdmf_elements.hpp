@@ -25,7 +25,7 @@ bool is_of_three_arrays(const std::string& geometry_type);
 /// Whether an ItemType is a HyperSlab in any spelling.
 bool is_selection(const std::string& item_type);
 
-/// The name by which Xdmf's library knows whole numbers of 1, 2 and 8 bytes, where it takes the file's name as 4 bytes.
+/// The name by which Xdmf's library knows numbers of 1, 2 and 8 bytes, where it takes the file's name as 4 bytes.
 std::optional<std::string> library_type(const std::string& number_type, const std::string& precision);
 
 }  // namespace tessera::io::helper

@@ -38,7 +38,7 @@ std::string trimmed(const std::string& text) {
 class Rewriting {
  public:
   Rewriting(xmlDoc* document, const std::string& source)
-      : document_(document), source_(source), context_(xmlXPathNewContext(document), xmlXPathFreeContext) {}
+      : source_(source), context_(xmlXPathNewContext(document), xmlXPathFreeContext) {}
 
   void apply() {
     complete_attributes();
@@ -184,7 +184,6 @@ class Rewriting {
 
   static constexpr const char* remedy = "write the element itself there, or save the file as .vtu in ParaView";
 
-  xmlDoc* document_;
   const std::string& source_;
   std::unique_ptr<xmlXPathContext, void (*)(xmlXPathContext*)> context_;
 };
