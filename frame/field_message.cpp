@@ -32,6 +32,7 @@ void append_field(Bytes& message, const io::FieldSummary& f) {
   append(message, f.nan_count);
   append(message, std::uint8_t{f.active});
   append(message, std::uint8_t{f.ids});
+  append(message, std::uint8_t{f.fractions});
 }
 
 io::FieldSummary take_field(MessageReader& reader) {
@@ -45,6 +46,7 @@ io::FieldSummary take_field(MessageReader& reader) {
   f.nan_count = reader.take<std::uint64_t>();
   f.active = reader.take<std::uint8_t>() != 0;
   f.ids = reader.take<std::uint8_t>() != 0;
+  f.fractions = reader.take<std::uint8_t>() != 0;
   return f;
 }
 

@@ -179,6 +179,7 @@ std::string field_of_steps(std::span<const std::vector<FieldInfo>> steps, const 
       if (found == step.end()) return false;
       if (found->high - found->low > field.high - field.low) field.low = found->low, field.high = found->high;
       field.ids = field.ids || found->ids;
+      field.fractions = field.fractions || found->fractions;
       is_quantity = is_quantity || (found->high > found->low && !found->ids);
       return true;
     });

@@ -148,7 +148,7 @@ bool is_id_name(const std::string& name) {
   return false;
 }
 
-bool is_id(const FieldSummary& f) { return f.ids || is_id_name(f.name); }
+bool is_id(const FieldSummary& f) { return f.ids || (!f.fractions && is_id_name(f.name)); }
 
 /// Of so few values 0, 1, 2 ... may be a test's quantity, where nothing else varies.
 bool may_count_by_chance(const FieldSummary& f) {
@@ -268,6 +268,7 @@ std::vector<FieldSummary> summarize_fields(std::span<const std::vector<FieldTall
     const NumberTally& numbers = whole.numbers;
     s.nan_count = numbers.not_finite;
     if (numbers.any_finite) s.low = numbers.low, s.high = numbers.high;
+    s.fractions = numbers.any_finite && !numbers.whole && is_floating(s);
     s.ids = s.ids || (numbers.any_finite && (whole.blocks_count_up || counts_up(numbers, s)));
   }
   return summaries;
@@ -278,7 +279,7 @@ bool looks_like_noise(const FieldSummary& field) {
   return low < 0 && field.high > 0 && std::max(-low, field.high) <= 1e-12;
 }
 
-bool is_label(const FieldSummary& field) { return field.ids || is_label_name(field.name); }
+bool is_label(const FieldSummary& field) { return field.ids || (!field.fractions && is_label_name(field.name)); }
 
 bool is_label_name(const std::string& name) {
   const std::string lower = lower_case(name);

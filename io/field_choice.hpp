@@ -37,11 +37,11 @@ std::vector<FieldSummary> summarize_fields(std::span<const std::vector<FieldTall
 /// Towards the eye of the default view (tessera/default_view.hpp), of length one.
 inline constexpr glm::dvec3 shape_direction{0.4531538935183250, -0.7848855672213958, 0.4226182617406994};
 
-/// Whether a field is a label by its name, or numbers cells or points (FieldInfo::ids).
+/// Whether a field is a label by its name and holds whole numbers only, or numbers cells or points (FieldInfo::ids).
 bool is_label(const FieldSummary& field);
 
 /// Whether a name is that of a label rather than a quantity ("GlobalNodeId", "vtkGhostType", "IBlank", "BLOCK_I"): an
-/// id, an index, the number of a rank, part, block or material. Never the default.
+/// id, an index, the number of a rank, part, block or material. Never the default where its values are whole numbers.
 bool is_label_name(const std::string& name);
 
 /// Whether a field is nowhere further from zero than 1e-12 and goes through it: what is left of zeros after arithmetic,

@@ -23,6 +23,7 @@ struct FieldInfo {
   bool active = false;          ///< the file marks it as its scalars or vectors
   bool ids = false;             ///< it numbers cells or points: the file marks it so, or its values are 0 to n - 1 or
                                 ///< 1 to n, each once (of integers from any number on)
+  bool fractions = false;       ///< not all of its finite values are whole numbers
 
   bool operator==(const FieldInfo&) const = default;
 };

@@ -80,6 +80,19 @@ TEST(FieldChoice, IndicesAndPartsAreNoDefaultWhereShapesAreShown) {
     EXPECT_FALSE(is_label_name(name));
 }
 
+TEST(FieldChoice, NamesTellLabelsOfWholeNumbersOnly) {
+  const BlockField other = field("other", Association::cell, {0.5, 0.75});
+  for (const char* name : {"k", "i", "K", "zone", "process", "proc", "block", "region", "rank", "material_id"}) {
+    const CellBlock quantity = block_with({field(name, Association::point, {0.25, 3, 7, 7}), other});
+    EXPECT_EQ(choose("", quantity).label, name);
+    EXPECT_EQ(choose_field("", summary(std::vector{quantity}), "mesh.vtu", true).label, name);
+    EXPECT_EQ(choose("", block_with({field(name, Association::point, {0, 3, 7, 7}), other})).label, "other") << name;
+    // One part of the file has whole numbers, another has not.
+    const std::vector<CellBlock> parts = {block_with({field(name, Association::point, {0, 3, 7, 7}), other}), quantity};
+    EXPECT_EQ(choose_field("", summary(parts), "mesh.vtu").label, name);
+  }
+}
+
 BlockField integers(const std::string& name, std::vector<double> values) {
   return field_of_values(name, "int64", Association::point, 1, std::move(values));
 }
