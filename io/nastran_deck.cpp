@@ -65,16 +65,26 @@ std::vector<std::string> deck_fields(std::string_view line) {
   return fields;
 }
 
+/// The number of all of a text but a sign + before it.
+template <class Number>
+std::optional<Number> number_of(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
+}
+
+/// "3" or "(3)".
+std::string_view without_brackets(std::string_view text) {
+  return text.starts_with('(') && text.ends_with(')') ? text.substr(1, text.size() - 2) : text;
+}
+
 }  // namespace
 
 std::optional<std::int64_t> NastranEntry::whole_number(std::size_t field) const {
   if (is_blank(field)) return std::nullopt;
-  std::string_view text = fields_[field];
-  if (text.starts_with('+')) text.remove_prefix(1);
-  std::int64_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size())
-    refuse(fmt::format("{} of {} is not a whole number; correct it", scene::quote(fields_[field]), name_));
+  const auto number = number_of<std::int64_t>(fields_[field]);
+  if (!number) refuse(fmt::format("{} of {} is not a whole number; correct it", scene::quote(fields_[field]), name_));
   return number;
 }
 
@@ -87,15 +97,45 @@ double NastranEntry::real(std::size_t field) const {
     if (c == '+') continue;
     text += c == 'd' || c == 'D' || c == 'E' ? 'e' : c;
   }
-  double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size())
-    refuse(fmt::format("{} of {} is not a number; correct it", scene::quote(fields_[field]), name_));
-  return number;
+  const auto number = number_of<double>(text);
+  if (!number) refuse(fmt::format("{} of {} is not a number; correct it", scene::quote(fields_[field]), name_));
+  return *number;
 }
 
 void NastranEntry::refuse(const std::string& what) const {
   throw scene::bad_input(fmt::format("{}: line {}: {}", source_, line_, what));
+}
+
+bool NastranEntry::has_replications() const {
+  return std::ranges::any_of(fields_, [](const std::string& f) { return f.starts_with('=') || f.starts_with('*'); });
+}
+
+void NastranEntry::replicate(const NastranEntry& before) {
+  const auto copy = [&](std::size_t k) { return before.is_blank(k) ? "" : before.fields_[k]; };
+  for (std::size_t k = 0; k < fields_.size(); ++k) {
+    const std::string written = fields_[k];
+    if (!written.starts_with('=') && !written.starts_with('*')) continue;
+    if (before.name_ != name_)
+      refuse(fmt::format("{} of {} has no {} before it to replicate; write its number", scene::quote(written), name_,
+                         name_));
+    if (written == "=") {
+      fields_[k] = copy(k);
+    } else if (written == "==") {  // to the end of its line, of the last one to the entry's
+      std::size_t end = (k / fields_a_line + 1) * fields_a_line;
+      if (end >= fields_.size()) fields_.resize(end = std::max(end, before.fields_.size()));
+      for (; k < end; ++k) fields_[k] = copy(k);
+    } else {
+      fields_[k] = without_brackets(std::string_view(written).substr(1));
+      if (written[0] == '=' || fields_[k].empty())
+        refuse(fmt::format("{} of {} is no replication; correct it", scene::quote(written), name_));
+      const auto number = number_of<std::int64_t>(before.is_blank(k) ? "0" : before.fields_[k]);
+      const auto more = number_of<std::int64_t>(fields_[k]);
+      std::int64_t sum = 0;
+      if (number && more && __builtin_add_overflow(*number, *more, &sum))
+        refuse(fmt::format("{} of {} leads to a number beyond 2^63; correct it", scene::quote(written), name_));
+      fields_[k] = number && more ? fmt::format("{}", sum) : fmt::format("{}", before.real(k) + real(k));
+    }
+  }
 }
 
 /// Puts lines together to entries.
@@ -132,7 +172,20 @@ class NastranDeck {
   }
 
   void end_entry() {
-    if (!entry_.name_.empty()) use_(entry_);
+    if (entry_.name_.empty()) return;
+    if (is_image_ && std::ranges::all_of(entry_.fields_, &std::string::empty)) entry_.fields_ = pattern_;
+    if (entry_.has_replications()) {
+      pattern_ = entry_.fields_;
+      for (; images_ > 0; --images_) {
+        entry_.fields_ = pattern_;
+        entry_.replicate(before_);
+        use_(entry_);
+        before_ = entry_;
+      }
+    } else {
+      use_(entry_);
+      std::swap(before_, entry_);
+    }
     entry_.name_.clear();
   }
 
@@ -152,6 +205,13 @@ class NastranDeck {
     line = line.substr(first.size());
     if (second.empty()) return line.empty() || line[0] == ' ' || line[0] == '\'' || line[0] == '"' || line[0] == '\t';
     return nastran_upper(without_blanks_around(line).substr(0, second.size())) == second;
+  }
+  /// BEGIN SUPER=1, BEGIN BULK SUPER=1
+  static bool begins_part(std::string_view line, std::string_view part) {
+    if (!has_words(line, "BEGIN", "")) return false;
+    line = without_blanks_around(without_blanks_around(line).substr(5));
+    if (has_words(line, "BULK", "")) line = without_blanks_around(line.substr(4));
+    return nastran_upper(line.substr(0, part.size())) == part;
   }
   static bool is_include(std::string_view line) { return has_words(line, "INCLUDE", ""); }
 
@@ -188,6 +248,12 @@ class NastranDeck {
 
   void add(const std::string& line, const std::filesystem::path& file, std::size_t number) {
     if (without_blanks_around(line).empty()) return;
+    for (const char* part : {"SUPER", "AUXMODEL", "MODULE"})
+      if (begins_part(line, part))
+        throw scene::bad_input(
+            fmt::format("{}: line {}: BEGIN {} begins a part whose numbers are its own, which is not read; give each "
+                        "part as a file of its own",
+                        file.string(), number, part));
     if (has_words(line, "BEGIN", "BULK")) {
       is_bulk_ = true;
       return;
@@ -201,22 +267,40 @@ class NastranDeck {
       end_entry();
       std::string name =
           nastran_upper(without_blanks_around(std::string_view(line).substr(0, line.find_first_of(", \t*\r"))));
+      is_image_ = name.starts_with('=');
+      if (is_image_ && before_.name_.empty()) return;  // of an entry that is not used
+      const std::string images = is_image_ ? std::exchange(name, before_.name_).substr(1) : "";
       name.resize(std::min(name.size(), small_field));
       has_ended_ = name == "ENDDATA";
-      if (has_ended_ || !is_used_(name)) return;
+      if (has_ended_ || !is_used_(name)) return before_.name_.clear();
       entry_.name_ = std::move(name);
       entry_.source_ = file.string();
       entry_.line_ = number;
       entry_.fields_.clear();
+      count_images(images);
     }
     fields = deck_fields(line);
     entry_.fields_.insert(entry_.fields_.end(), std::make_move_iterator(fields.begin() + 1),
                           std::make_move_iterator(fields.end()));
   }
 
+  /// Of "(3)", "3" or "": how often the entry is replicated.
+  void count_images(const std::string& images) {
+    constexpr std::size_t most_images = 10'000'000;
+    const auto count = number_of<std::size_t>(images.empty() ? "1" : without_brackets(images));
+    if (!count) entry_.refuse(fmt::format("{} is no number of replications; correct it", scene::quote("=" + images)));
+    images_ = *count;
+    if (is_image_ && images_ > most_images - all_images_)
+      entry_.refuse(fmt::format("it replicates more than {} entries; write them out", most_images));
+    if (is_image_) all_images_ += images_;
+  }
+
   const std::function<bool(std::string_view)>& is_used_;
   const std::function<void(const NastranEntry&)>& use_;
-  NastranEntry entry_;
+  NastranEntry entry_, before_;
+  std::vector<std::string> pattern_;  ///< the last replication as it was written
+  std::size_t images_ = 1, all_images_ = 0;
+  bool is_image_ = false;  ///< entry_ begins with '='
   std::set<std::string> seen_;
   std::size_t depth_ = 0;
   bool is_bulk_ = false, has_ended_ = false;

@@ -11,7 +11,8 @@
 namespace tessera::io {
 
 /// An entry of a Nastran deck's bulk data: its name in capitals without the asterisk, and its fields after that, 8 or
-/// 16 letters each or between commas, continuations included. Fields that are not there are blank.
+/// 16 letters each or between commas, continuations included, replications carried out. Fields that are not there are
+/// blank.
 class NastranEntry {
  public:
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -27,6 +28,10 @@ class NastranEntry {
 
  private:
   friend class NastranDeck;
+
+  [[nodiscard]] bool has_replications() const;
+  /// Replaces "=", "==" and "*(x)" by what they make of the entry before.
+  void replicate(const NastranEntry& before);
 
   std::string name_, source_;
   std::size_t line_ = 0;

@@ -118,6 +118,13 @@ ROWS = [
     nastran("\n,1.,0.,0.", "\n,0.,0.,2.", "whose three points are on one line; correct it", SYSTEM),
     nastran("5,1,2,3", "5,1,2,8", "which uses GRID 8, which the file does not have; add it", OF_POINTS),
     nastran("5,1,2,3", "5,1,2,4", "in a coordinate system that it makes itself; correct it", OF_POINTS),
+    nastran("CTETRA", "=,*x,==\nCTETRA", "'x' of GRID is not a number; correct it"),
+    nastran("CTETRA", "=,=3,==\nCTETRA", "'=3' of GRID is no replication; correct it"),
+    nastran("CTETRA", "=(n),*1,==\nCTETRA", "'=(N)' is no number of replications; correct it"),
+    nastran("CTETRA", "=(99999999),*1,==\nCTETRA", "it replicates more than 10000000 entries; write them out"),
+    nastran("CTETRA", "=,*9223372036854775807,==\nCTETRA", "leads to a number beyond 2^63; correct it"),
+    nastran("CTETRA,9", "CTETRA,=", "'=' of CTETRA has no CTETRA before it to replicate; write its number"),
+    nastran("ENDDATA", "BEGIN SUPER=1\nENDDATA", "give each part as a file of its own"),
     row(
         "info a.bdf",
         "it includes 'b.bdf', and there is no such file; put it there",

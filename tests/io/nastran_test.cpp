@@ -241,6 +241,41 @@ TEST_F(Nastran, PropertiesAreBlocksAndAField) {
   EXPECT_NEAR(testing::volume(read_mesh(file, options).mesh), 1, 1e-12);
 }
 
+TEST_F(Nastran, ReplicationsCopyAndAddToTheEntryBefore) {
+  const std::string grids = "GRID,1,,0.,0.,0.\n=,*1,=,*(1.5),==\n=(2)\nGRID,5,,2,0.25,-1.\n=,*(1),=,=,*-1,*(.5)\n";
+  expect_points(deck(grids + "CTETRA,1,1,1,2,3,4\nCTETRA,2,1,3,4,5,6\n"),
+                {{0, 0, 0}, {1.5, 0, 0}, {3, 0, 0}, {4.5, 0, 0}, {2, 0.25, -1}, {2, -0.75, -0.5}});
+  const auto cells_of = [&](const std::string& elements) {
+    std::string bulk;
+    for (int k = 0; k < 40; ++k) bulk += fmt::format("GRID,{},,{}.,{}.,{}.\n", k + 1, k % 3, k * k % 7, k * k * k % 11);
+    std::vector<std::vector<std::uint32_t>> cells;
+    for (const CellBlock& block : read_nastran(folder.write("a.bdf", deck(bulk + elements))))
+      for (std::size_t c = 0; c < block.types.size(); ++c) {
+        const auto first = block.connectivity.begin() + static_cast<std::ptrdiff_t>(block.offsets[c]);
+        cells.emplace_back(first, first + static_cast<std::ptrdiff_t>(block.offsets[c + 1] - block.offsets[c]));
+        for (std::uint32_t& node : cells.back()) ++node;
+      }
+    return cells;
+  };
+  using Cells = std::vector<std::vector<std::uint32_t>>;
+  const Cells tets = {{1, 2, 3, 4}, {5, 6, 7, 8}, {9, 10, 11, 12}};
+  EXPECT_EQ(cells_of("CTETRA,1,1,1,2,3,4\n=,*1,=,*4,*4,*4,*4\n=,*1,=,*4,*4,*4,*4\n"), tets);
+  EXPECT_EQ(cells_of("CTETRA,1,1,1,2,3,4\n$ a comment\n=(2),*1,=,*4,*4,*4,*4\n"), tets);
+  EXPECT_EQ(cells_of("CTETRA,1,1,1,2,3,4\n=,*1,=,*4,*4,*4,*4\n=1\n"), tets);
+  EXPECT_EQ(cells_of("CTETRA  1       1       1       2       3       4\n"
+                     "=(2)    *(1)    =       *(4)    *(4)    *(4)    *(4)\n"),
+            tets);
+  EXPECT_EQ(cells_of("CTETRA,1,1,1,2,3,4\nCTETRA,*1,=,5,6,7,8\n=,*1,==\n"),
+            (Cells{{1, 2, 3, 4}, {5, 6, 7, 8}, {5, 6, 7, 8}}));
+  // Continued; `==` copies what a continuation holds.
+  const Cells hexahedra = {{1, 2, 3, 4, 5, 6, 7, 8}, {9, 10, 11, 12, 13, 14, 15, 16}};
+  EXPECT_EQ(cells_of("CHEXA,1,1,1,2,3,4,5,6,+\n+,7,8\n=,*1,=,*8,*8,*8,*8,*8,*8,+\n+,*8,*8\n"), hexahedra);
+  EXPECT_EQ(cells_of("CHEXA,1,1,1,2,3,4,5,6,+\n+,7,8\n=,*1,=,3,4,5,6,==\n"),
+            (Cells{hexahedra[0], {3, 4, 5, 6, 5, 6, 7, 8}}));
+  // Of entries that are not read they are not read either.
+  EXPECT_EQ(cells_of("CTETRA,1,1,1,2,3,4\nCQUAD4,2,1,1,2,3,4\n=,*1,=,*4,*4,*4,*4\n").size(), 1u);
+}
+
 TEST_F(Nastran, FaultsAreNamed) {
   const auto refuse = [&](const std::string& bulk, const std::vector<std::string>& parts) {
     test::expect_bad_input([&] { read_nastran(folder.write("a.bdf", deck(bulk))); }, parts);
@@ -260,6 +295,14 @@ TEST_F(Nastran, FaultsAreNamed) {
   refuse(grids + "GRID,4,,0.,zero,1.\n" + tet, {"line 7", "'zero' of GRID is not a number"});
   refuse(grids + "GRID,1,,5.,0.,1.\n" + tet, {"GRID 1 is given twice"});
   refuse(grids + "CTETRA,9,1,1,2,,4\n", {"line 7", "number 3 is blank"});
+  refuse(grids + "GRID,4,,0.,0.,1.\n=,*x,==\n" + tet, {"line 8", "'x' of GRID is not a number"});
+  refuse(grids + "GRID,4,,0.,0.,1.\n=,=3,==\n" + tet, {"line 8", "'=3' of GRID is no replication"});
+  refuse(grids + "GRID,4,,0.,0.,1.\n=(many)\n" + tet, {"line 8", "'=(MANY)' is no number of replications"});
+  refuse(grids + "GRID,4,,0.,0.,1.\n=,*1,==\n=(4000000000)\n" + tet, {"line 9", "replicates more than 10000000"});
+  refuse(grids + "GRID,9223372036854775807,,0.,0.,1.\n=,*1,==\n" + tet, {"line 8", "'*1' of GRID", "2^63"});
+  refuse(grids + "CTETRA,=,1,1,2,3,4\n", {"line 7", "'=' of CTETRA has no CTETRA before it"});
+  for (const char* part : {"BEGIN SUPER=1\n", "begin bulk super = 1\n"})
+    refuse(grids + part + "GRID,1,,5.,0.,0.\n" + tet, {"line 7", "BEGIN SUPER", "give each part as a file"});
 }
 
 }  // namespace
