@@ -263,7 +263,14 @@ bool begins_as_abaqus(const FileBeginning& file) {
 }
 
 bool begins_as_medit(const FileBeginning& file) { return begins_as_medit_text(file.text); }
-bool begins_as_meshb(const FileBeginning& file) { return begins_as_medit_binary(file.text); }
+/// It begins with a number 1 alone, as binary Medit does, so that its name tells.
+bool begins_as_freesurfer(const FileBeginning& file) {
+  const std::string name = file.file.filename().string();
+  return (name.ends_with(".mgh") || name.ends_with(".mgz")) && file.text.starts_with(std::string_view("\0\0\0\1", 4));
+}
+bool begins_as_meshb(const FileBeginning& file) {
+  return begins_as_medit_binary(file.text) && !begins_as_freesurfer(file);
+}
 bool begins_as_mfem(const FileBeginning& file) {
   return file.text.starts_with("MFEM ") && first_lines(file.text, '#', 1)[0].find("mesh v") != std::string_view::npos;
 }

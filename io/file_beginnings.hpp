@@ -38,6 +38,7 @@ bool begins_as_fluent(const FileBeginning& file);
 bool begins_as_gambit(const FileBeginning& file);
 bool begins_as_gmsh(const FileBeginning& file);
 bool begins_as_medit(const FileBeginning& file);
+bool begins_as_freesurfer(const FileBeginning& file);
 bool begins_as_meshb(const FileBeginning& file);
 bool begins_as_su2(const FileBeginning& file);
 bool begins_as_plot3d_list(const FileBeginning& file);

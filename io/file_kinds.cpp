@@ -186,7 +186,7 @@ constexpr std::array rows = {
     FormatRow{FileKind::unread, "FITS", ".fits .fit .fts", FileHolds::not_read, Needs::nothing,
               "save it as .nrrd by astropy and pynrrd", begins_as_fits},
     FormatRow{FileKind::unread, "FreeSurfer volume", ".mgz .mgh", FileHolds::not_read, Needs::nothing,
-              "convert it: mri_convert FILE out.nii.gz", nullptr},
+              "convert it: mri_convert FILE out.nii.gz", begins_as_freesurfer},
     FormatRow{FileKind::unread, "GIPL", ".gipl", FileHolds::not_read, Needs::nothing,
               "convert it: c3d FILE -o out.nii.gz", nullptr},
     FormatRow{FileKind::unread, "AFNI", ".brik .head", FileHolds::not_read, Needs::nothing,

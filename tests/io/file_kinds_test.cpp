@@ -32,6 +32,18 @@ class FileKinds : public ::testing::Test {
   test::TemporaryFolder folder;
 };
 
+TEST_F(FileKinds, FreeSurferVolumesAreNoBinaryMedit) {
+  std::string header(284 + 24, '\0');  // version, then width, height, depth, frames, type: big-endian
+  header[3] = 1, header[7] = 4, header[11] = 3, header[15] = 2, header[19] = 1;
+  for (const char* name : {"a.mgh", "a.mgz"}) {
+    EXPECT_EQ(name_of(name, header), "FreeSurfer volume");
+    EXPECT_NE(message_of([&] { read_mesh(folder / name); }).find("mri_convert"), std::string::npos);
+  }
+  std::string medit(24, '\0');
+  medit[3] = 1, medit[7] = 2, medit[11] = 3, medit[15] = 20, medit[19] = 3;
+  EXPECT_EQ(name_of("a.meshb", medit), "Medit binary");
+}
+
 struct Beginning {
   const char* format;
   std::string_view text;
