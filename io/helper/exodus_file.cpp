@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -62,6 +63,32 @@ class ExodusFile {
   void require(int status, const char* what) const {
     if (status < 0) fail(fmt::format("{} cannot be read", what));
   }
+  /// Of what sets nothing where it warns.
+  void require_values(int status, const char* what) const { require(status == EX_NOERR ? status : EX_FATAL, what); }
+
+  /// The array of a variable of the nodes. Without `file_size`, which meshio leaves out, the library looks for one
+  /// array of all variables, and finds none.
+  [[nodiscard]] std::optional<int> node_array(int index) const {
+    int array = 0, axes = 0;
+    if (nc_inq_varid(id_, "vals_nod_var", &array) == NC_NOERR ||
+        nc_inq_varid(id_, fmt::format("vals_nod_var{}", index).c_str(), &array) != NC_NOERR ||
+        nc_inq_varndims(id_, array, &axes) != NC_NOERR || axes < 2)
+      return std::nullopt;
+    return array;
+  }
+  /// Numbers that it has at each node.
+  [[nodiscard]] std::size_t numbers_a_node(int index) const {
+    std::array<int, NC_MAX_VAR_DIMS> axes{};
+    int count = 0;
+    const auto array = node_array(index);
+    if (!array || nc_inq_varndims(id_, *array, &count) != NC_NOERR ||
+        nc_inq_vardimid(id_, *array, axes.data()) != NC_NOERR)
+      return 1;
+    std::size_t numbers = 1, length = 0;
+    for (const int axis : std::span(axes).first(static_cast<std::size_t>(count)).subspan(2))
+      if (nc_inq_dimlen(id_, axis, &length) == NC_NOERR) numbers *= length;
+    return numbers;
+  }
 
   [[noreturn]] void fail(const std::string& what) const {
     throw scene::bad_input(fmt::format("{}: {}; the file is truncated or damaged, write it anew", source_, what));
@@ -102,21 +129,35 @@ struct Variable {
   std::vector<int> indices;  ///< in the file, from 1
 };
 
-/// "V_x" "V_y" "V_z", "VX" "VY" "VZ": three neighbours that differ in their last letter only.
+/// "V_x" "V_y" "V_z", "VX" "VY" "VZ": three that differ in their last letter only; of what may be a tensor, as "Sxx"
+/// "Sxy" "Sxz", neighbours.
 std::vector<Variable> group_vectors(const std::vector<std::string>& names) {
-  const auto ends_in = [&](std::size_t k, char letter) {
-    return names[k].size() > 1 && std::tolower(static_cast<unsigned char>(names[k].back())) == letter;
+  const auto with_last = [](std::string name, char letter) {
+    name.back() = letter;
+    return name;
   };
-  const auto stem = [&](std::size_t k) { return names[k].substr(0, names[k].size() - 1); };
+  const auto last_of = [](const std::string& name) {
+    return name.size() < 2 ? ' ' : static_cast<char>(std::tolower(static_cast<unsigned char>(name.back())));
+  };
+  std::map<std::string, std::size_t> places;  // of names whose last letter is a small one
+  for (std::size_t k = 0; k < names.size(); ++k) places.emplace(with_last(names[k], last_of(names[k])), k);
   std::vector<Variable> variables;
+  std::vector<bool> is_used(names.size());
   for (std::size_t k = 0; k < names.size(); ++k) {
-    if (k + 2 < names.size() && ends_in(k, 'x') && ends_in(k + 1, 'y') && ends_in(k + 2, 'z') &&
-        stem(k) == stem(k + 1) && stem(k) == stem(k + 2)) {
-      std::string name = stem(k);
+    if (is_used[k]) continue;
+    std::vector<int> parts;
+    std::string name = names[k];
+    if (const char last = last_of(name); last >= 'x' && last <= 'z')
+      for (const char axis : {'x', 'y', 'z'})
+        if (const auto at = places.find(with_last(name, axis)); at != places.end() && !is_used[at->second])
+          parts.push_back(static_cast<int>(at->second) + 1);
+    name.pop_back();
+    const char before = last_of(name);
+    const bool may_be_tensor = before >= 'x' && before <= 'z';
+    if (parts.size() == 3 && (!may_be_tensor || (parts[1] == parts[0] + 1 && parts[2] == parts[0] + 2))) {
+      for (const int part : parts) is_used[static_cast<std::size_t>(part) - 1] = true;
       if (name.size() > 1 && name.back() == '_') name.pop_back();
-      const int first = static_cast<int>(k) + 1;
-      variables.push_back({name, {first, first + 1, first + 2}});
-      k += 2;
+      variables.push_back({name, parts});
     } else {
       variables.push_back({names[k], {static_cast<int>(k) + 1}});
     }
@@ -128,9 +169,15 @@ std::vector<Variable> group_vectors(const std::vector<std::string>& names) {
 void read_values(const ExodusFile& file, int step, ex_entity_type type, int index, std::int64_t block,
                  std::uint64_t first, std::span<double> out) {
   if (out.empty()) return;
-  file.require(ex_get_partial_var(file.id(), step, type, index, block, static_cast<std::int64_t>(first) + 1,
-                                  static_cast<std::int64_t>(out.size()), out.data()),
-               "a variable");
+  if (const auto array = type == EX_NODAL ? file.node_array(index) : std::nullopt) {
+    std::array<std::size_t, NC_MAX_VAR_DIMS> from{static_cast<std::size_t>(step) - 1, first}, count;
+    count.fill(1), count[1] = out.size();
+    file.require_values(nc_get_vara_double(file.id(), *array, from.data(), count.data(), out.data()), "a variable");
+    return;
+  }
+  file.require_values(ex_get_partial_var(file.id(), step, type, index, block, static_cast<std::int64_t>(first) + 1,
+                                         static_cast<std::int64_t>(out.size()), out.data()),
+                      "a variable");
 }
 
 /// The element blocks' values at cells [first, first + out.size()); NaN in blocks without the variable.
@@ -288,7 +335,8 @@ class Reading {
     block_.types.insert(block_.types.end(), count, type == 9 && is_triangle ? std::uint8_t{5} : type);
     if (nodes > 0) {
       std::vector<std::int64_t> corner(count * nodes);
-      file_->require(ex_get_conn(file_->id(), EX_ELEM_BLOCK, id, corner.data(), nullptr, nullptr), "the elements");
+      file_->require_values(ex_get_conn(file_->id(), EX_ELEM_BLOCK, id, corner.data(), nullptr, nullptr),
+                            "the elements");
       block_.connectivity.reserve(block_.connectivity.size() + corner.size());
       for (std::size_t k = 0; k < corner.size(); ++k) {
         if (corner[k] < 1 || corner[k] > init_.num_nodes)
@@ -324,7 +372,7 @@ class Reading {
     if (n == 0) return;
     std::array<std::vector<double>, 3> xyz;
     for (std::vector<double>& axis : xyz) axis.resize(n);
-    file_->require(ex_get_coord(file_->id(), xyz[0].data(), xyz[1].data(), xyz[2].data()), "the nodes");
+    file_->require_values(ex_get_coord(file_->id(), xyz[0].data(), xyz[1].data(), xyz[2].data()), "the nodes");
     for (std::size_t v = 0; v < n; ++v) block_.positions[v] = {xyz[0][v], xyz[1][v], xyz[2][v]};
   }
 
@@ -333,11 +381,19 @@ class Reading {
     const auto file = file_;
     const int step = step_;
     if (step > 0) {
-      for (const Variable& variable : group_vectors(file_->variable_names(EX_NODAL)))
+      for (const Variable& variable : group_vectors(file_->variable_names(EX_NODAL))) {
+        if (const std::size_t numbers = file_->numbers_a_node(variable.indices.front()); numbers > 1) {
+          result_.notes.push_back(
+              fmt::format("field '{}' is left out: it has {} numbers a node in one variable; write "
+                          "a variable for each",
+                          variable.name, numbers));
+          continue;
+        }
         block_.fields.push_back(make_field(variable, scene::Association::point, nodes,
                                            [file, step](int index, std::size_t first, std::span<double> out) {
                                              read_values(*file, step, EX_NODAL, index, 1, first, out);
                                            }));
+      }
       if (!has_sides_) add_element_fields();
     }
     if (has_sides_) return finish();
