@@ -1,9 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <numbers>
 #include <span>
 #include <string_view>
 #include <system_error>
@@ -20,6 +23,8 @@ namespace {
 struct MeshAt {
   std::string name;
   med_int step = MED_NO_DT, iteration = MED_NO_IT;
+  bool is_cylinder = false;  ///< r, theta, z
+  double angle_unit = 1;     ///< in radians
 };
 
 std::size_t count_of(const MedFile& file, const MeshAt& mesh, med_entity_type entity, med_geometry_type kind,
@@ -38,7 +43,13 @@ void read_points(const MedFile& file, const MeshAt& mesh, CellBlock& block) {
                                        xyz.data()) >= 0,
                "the nodes");
   block.positions.reserve(count);
-  for (std::size_t v = 0; v < count; ++v) block.positions.emplace_back(xyz[3 * v], xyz[3 * v + 1], xyz[3 * v + 2]);
+  for (std::size_t v = 0; v < count; ++v) {
+    const double *const p = &xyz[3 * v], angle = mesh.angle_unit * p[1];
+    if (mesh.is_cylinder)
+      block.positions.emplace_back(p[0] * std::cos(angle), p[0] * std::sin(angle), p[2]);
+    else
+      block.positions.emplace_back(p[0], p[1], p[2]);
+  }
 }
 
 /// Null for hexagonal prisms, whose order is VTK's.
@@ -143,13 +154,19 @@ std::vector<MedMesh> med_meshes(const MedFile& file, std::vector<std::string>& n
                              time_unit.data(), &sorting, &steps, &axis_type, axis_names.data(), axis_units.data()) >= 0,
                  "a mesh");
     MeshAt mesh{plain(name.data())};
-    if (type != MED_UNSTRUCTURED_MESH || dimensions != 3 || axis_type != MED_CARTESIAN) {
+    if (type != MED_UNSTRUCTURED_MESH || dimensions != 3 ||
+        (axis_type != MED_CARTESIAN && axis_type != MED_CYLINDRICAL)) {
       notes.push_back(fmt::format("mesh '{}' is {} and is left out", mesh.name,
                                   type != MED_UNSTRUCTURED_MESH ? "structured"
                                   : dimensions != 3             ? "not in space"
-                                                                : "not in x y z"));
+                                                                : "in spherical coordinates"));
       continue;
     }
+    mesh.is_cylinder = axis_type == MED_CYLINDRICAL;
+    const std::string_view units(axis_units.data(), axis_units.size());
+    const std::string unit = plain(units.substr(MED_SNAME_SIZE, MED_SNAME_SIZE));
+    if (unit.starts_with("deg") || unit.starts_with("Deg") || unit.starts_with("DEG") || unit == "\u00b0")
+      mesh.angle_unit = std::numbers::pi / 180;
     med_float time = 0;
     if (steps > 0) MEDmeshComputationStepInfo(file.id(), mesh.name.c_str(), 1, &mesh.step, &mesh.iteration, &time);
     MedMesh read;
@@ -159,7 +176,8 @@ std::vector<MedMesh> med_meshes(const MedFile& file, std::vector<std::string>& n
     meshes.push_back(std::move(read));
   }
   if (meshes.empty())
-    throw scene::bad_input(fmt::format("{}: it holds no unstructured mesh in space; give one", file.source()));
+    throw scene::bad_input(fmt::format("{}: it holds no unstructured mesh in space{}{}; give one in x, y and z",
+                                       file.source(), notes.empty() ? "" : ": ", fmt::join(notes, ", ")));
   return meshes;
 }
 

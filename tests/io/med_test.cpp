@@ -72,6 +72,39 @@ void write_bar(const std::string& name) {
   ASSERT_GE(MEDfileClose(file), 0);
 }
 
+/// A cube's corners as coordinates of a system of axes.
+void write_cube_in(const std::string& name, med_axis_type system, const char* angle_unit, double quarter) {
+  const med_idt file = MEDfileOpen(name.c_str(), MED_ACC_CREAT);
+  ASSERT_GE(file, 0);
+  const std::string axes(48, ' ');
+  std::string units(48, ' ');
+  units.replace(16, std::string_view(angle_unit).size(), angle_unit);
+  ASSERT_GE(MEDmeshCr(file, mesh_name, 3, 3, MED_UNSTRUCTURED_MESH, "a test", "s", MED_SORT_DTIT, system, axes.c_str(),
+                      units.c_str()),
+            0);
+  const std::vector<med_float> points = {1, 0, 0, 3, 0, 0, 3, quarter, 0, 1, quarter, 0,
+                                         1, 0, 2, 3, 0, 2, 3, quarter, 2, 1, quarter, 2};
+  ASSERT_GE(MEDmeshNodeCoordinateWr(file, mesh_name, MED_NO_DT, MED_NO_IT, 0, MED_FULL_INTERLACE, 8, points.data()), 0);
+  const std::vector<med_int> corners = {1, 4, 3, 2, 5, 8, 7, 6};
+  ASSERT_GE(MEDmeshElementConnectivityWr(file, mesh_name, MED_NO_DT, MED_NO_IT, 0, MED_CELL, MED_HEXA8, MED_NODAL,
+                                         MED_FULL_INTERLACE, 1, corners.data()),
+            0);
+  ASSERT_GE(MEDfileClose(file), 0);
+}
+
+TEST(Med, CylinderCoordinatesAreTurnedToXyz) {
+  const test::TemporaryFolder folder;
+  for (const auto& [unit, quarter] : {std::pair("rad", std::acos(0.0)), std::pair("", std::acos(0.0)),
+                                      std::pair("deg", 90.0), std::pair("degree", 90.0)}) {
+    write_cube_in((folder / "a.med").string(), MED_CYLINDRICAL, unit, quarter);
+    // Between the chords of a quarter of rings of radii 1 and 3.
+    EXPECT_NEAR(testing::volume(read_mesh(folder / "a.med").mesh), 8, 1e-5) << unit;
+    std::filesystem::remove(folder / "a.med");
+  }
+  write_cube_in((folder / "b.med").string(), MED_SPHERICAL, "rad", 1);
+  test::expect_bad_input([&] { read_mesh(folder / "b.med"); }, {"b.med", "'bar' is in spherical coordinates"});
+}
+
 TEST(Med, CellsAndFieldsAreRead) {
   const test::TemporaryFolder folder;
   write_bar((folder / "bar.med").string());
