@@ -26,6 +26,7 @@ from advice_library_files import (
     foam_case,
     foam_list,
     item,
+    minc,
     netcdf,
     netcdf_grid,
     xdmf,
@@ -39,6 +40,11 @@ HDF5 = b"\x89HDF\r\n\x1a\n" + b"?" * 2000
 
 def wrong_xdmf(whole, advice, good=XDMF, **more):
     return row("info a.xdmf", advice, None, {"a.xdmf": whole, **more}, {"a.xdmf": good})
+
+
+def f_of(values):
+    """XDMF whose field is this item."""
+    return XDMF.replace(item("1 2 3 4"), values)
 
 
 def msh(old, new, advice):
@@ -116,6 +122,20 @@ ROWS = [
     wrong_xdmf(xdmf(xdmf_mesh(values="1 2 3 4" + 10_000_000 * " ")), "write its numbers to HDF5 or a binary file"),
     wrong_xdmf(xdmf(xdmf_mesh(points=item("0 0 0 1 0 0 0 1 0", "4 3"))), "it is truncated or damaged, write it anew"),
     wrong_xdmf(xdmf(xdmf_mesh(values="1 2 3")), "field 'f' has 3 values for 4 points; write it anew"),
+    wrong_xdmf(
+        f_of('<DataItem ItemType="HyperSlab" Dimensions="4">' + item("1 1 4", "3 1") + item("1 2 3 4") + "</DataItem>"),
+        "give three rows of as many numbers, with the slowest dimension first",
+    ),
+    wrong_xdmf(
+        f_of('<DataItem ItemType="Coordinates" Dimensions="4">' + item("0 1 2 3") + item("1 2 3 4") + "</DataItem>"),
+        "or choose them as a HyperSlab",
+    ),
+    wrong_xdmf(
+        f_of('<DataItem Format="Binary" NumberType="Float" Precision="2" Dimensions="4">a.bin</DataItem>'),
+        "write floats of 4 or 8 bytes or integers of 1, 2, 4 or 8",
+        **{"a.bin": "12345678"},
+    ),
+    wrong_xdmf(xdmf(xdmf_mesh(geometry="X_Y_Z")), "not by three arrays of one length; write it anew"),
     wrong_xdmf(
         xdmf(
             xdmf_mesh(values="1 2 3")
@@ -206,6 +226,7 @@ ROWS = [
     row(
         "info a.nc", "give a file of a grid in space", None, {"a.nc": netcdf_grid(("y", "x"))}, {"a.nc": netcdf_grid()}
     ),
+    row("info a.mnc", "its valid_range is 7 to 7; write it anew", None, {"a.mnc": minc((7.0, 7.0))}, {"a.mnc": MINC}),
     row("info a.mnc", "the file is truncated or damaged, write it anew", None, {"a.mnc": MINC[:-30]}, {"a.mnc": MINC}),
     # OpenFOAM
     row(

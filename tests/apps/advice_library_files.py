@@ -316,7 +316,7 @@ def exodus(dimension=3, corners=(1, 2, 3, 4), kind="TETRA4", set_element=1, side
 EXODUS = exodus()
 
 
-def minc():
+def minc(valid=(0.0, 127.0)):
     space = [
         (
             name,
@@ -332,7 +332,7 @@ def minc():
         )
         for name in ("zspace", "yspace", "xspace")
     ]
-    range_of = [("valid_range", "d", [0.0, 127.0]), ("signtype", "c", "signed__"), ("complete", "c", "true_")]
+    range_of = [("valid_range", "d", list(valid)), ("signtype", "c", "signed__"), ("complete", "c", "true_")]
     return netcdf(
         {"zspace": 2, "yspace": 2, "xspace": 2},
         space

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "io/changed_bytes.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/reader_programs.hpp"
@@ -103,6 +104,8 @@ TEST_F(XdmfItems, SelectionsOutsideOfTheirArraysAreRefused) {
   for (const char* rows : {"2 0 0 1 1 1 2 3 4", "0 0 0 1 1 2 2 3 4", "0 0 0 0 1 1 2 3 4", "0 0 1 1 2 24",
                            "0 0 0 1 1 1 0 3 4", "0 0 -1 1 1 1 2 3 4"})
     expect_refused(selection(rows, item), {"a HyperSlab of start", "does not fit an array of the dimensions 3 5 6"});
+  const std::string good = file_of(regular, selection("1 1 1 1 1 1 2 3 4", item));
+  test::expect_no_crash_of_changes(folder, "changed.xmf", good, [](const auto& file) { open_volume(file); });
   expect_refused(selection("0 0 0", item, "Coordinates"), {"of the type 'Coordinates' picks single numbers"});
 }
 
