@@ -138,17 +138,25 @@ void write_nrrd(const scene::SampleSource& source, AtomicFile& out, const TagWor
   write_values(source, out);
 }
 
+/// What a format has no words for; null: it has for all.
+const char* unsaid(const scene::GridGeometry& g, std::string_view extension) {
+  const bool xml = extension == ".vti" || extension == ".vtr";
+  if (extension == ".bricks") return nullptr;
+  if (!xml && g.association == scene::Association::cell) return "that it is cell data";
+  if (extension != ".vtr" && g.rectilinear()) return "where a rectilinear grid's points are";
+  const bool is_turned = g.direction != glm::dmat3(1.0);
+  return (extension == ".raw" || extension == ".vtr") && is_turned ? "how the grid is turned" : nullptr;
+}
+
 /// Throws for what the format has no words for.
 void check_format(const scene::Grid& grid, const std::string& extension, const std::string& target) {
-  const scene::GridGeometry& g = grid.geometry;
-  const auto refuse = [&](const char* what, const char* remedy) {
-    throw scene::bad_input(fmt::format("{}: {} cannot say {}; write {}", target, extension, what, remedy));
-  };
-  const bool xml = extension == ".vti" || extension == ".vtr";
-  if (!xml && g.association == scene::Association::cell) refuse("that it is cell data", ".vti, .vtr or .bricks");
-  if (extension != ".vtr" && g.rectilinear()) refuse("where a rectilinear grid's points are", ".vtr or .bricks");
-  if ((extension == ".raw" || extension == ".vtr") && g.direction != glm::dmat3(1.0))
-    refuse("how the grid is turned", ".vti, .nrrd or .bricks");
+  const char* const what = unsaid(grid.geometry, extension);
+  if (what == nullptr) return;
+  std::vector<const char*> others;
+  for (const char* other : {".vti", ".vtr", ".nrrd"})
+    if (unsaid(grid.geometry, other) == nullptr) others.push_back(other);
+  throw scene::bad_input(fmt::format("{}: {} cannot say {}; write {}{}.bricks", target, extension, what,
+                                     fmt::join(others, ", "), others.empty() ? "" : " or "));
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ from advice_library_files import (
     UCD,
     UNV,
     XDMF,
+    axis,
     dicom,
     FRAGMENTS,
     dicom_frames,
@@ -227,6 +228,17 @@ ROWS = [
         "info a.nc", "give a file of a grid in space", None, {"a.nc": netcdf_grid(("y", "x"))}, {"a.nc": netcdf_grid()}
     ),
     row("info a.mnc", "its valid_range is 7 to 7; write it anew", None, {"a.mnc": minc((7.0, 7.0))}, {"a.mnc": MINC}),
+    row(
+        "convert a.nc b.vtr",
+        "how the grid is turned; write .bricks",
+        "convert a.nc b.bricks",
+        {
+            "a.nc": netcdf(
+                {"z": 3, "y": 2, "x": 2},
+                [axis("z", (4.0, 1.0, 0.0)), axis("y"), axis("x"), ("f", "f", ("z", "y", "x"), [0.5] * 11 + [2.0], ())],
+            )
+        },
+    ),
     row("info a.mnc", "the file is truncated or damaged, write it anew", None, {"a.mnc": MINC[:-30]}, {"a.mnc": MINC}),
     # OpenFOAM
     row(

@@ -588,6 +588,28 @@ TEST_F(VolumeFiles, FormatsRefuseWhatTheyCannotSay) {
   grid.geometry.points = {22, 11, 18};
   EXPECT_THROW(write_volume(*scene::MemorySource::of(grid, wavy_values()), folder / "a.nrrd"), scene::Error);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  // What a message proposes can be written.
+  for (const bool cell : {false, true})
+    for (const bool is_rectilinear : {false, true})
+      for (const bool is_turned : {false, true}) {
+        grid = wavy_grid();
+        if (cell) grid.geometry.association = Association::cell, grid.geometry.points = {22, 11, 18};
+        grid.geometry.direction = is_turned ? glm::dmat3{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}} : glm::dmat3(1);
+        if (is_rectilinear) {
+          grid.geometry.coordinates[1] = counting<double>(cell ? 11 : 10);
+          grid.geometry.coordinates[1].back() += 0.5;
+        }
+        const auto source = scene::MemorySource::of(grid, wavy_values());
+        for (const std::string extension : {".vti", ".vtr", ".nrrd", ".raw"}) {
+          const std::string message = testing::message_of([&] { write_volume(*source, folder / ("a" + extension)); });
+          if (message.empty()) continue;
+          const std::string others = message.substr(message.find("; write "));
+          for (const std::string other : {".vti", ".vtr", ".nrrd", ".bricks"})
+            EXPECT_EQ(testing::message_of([&] { write_volume(*source, folder / ("b" + other)); }).empty(),
+                      others.find(other) != std::string::npos)
+                << message;
+        }
+      }
 }
 
 /// Every format, cut short and with bytes changed: opened, or refused in one line, never a crash.
