@@ -60,7 +60,7 @@ EXCEPTIONS = {
         23,
         HDF5,
     ),
-    r"^io/helper/cgns_": (15, HDF5),
+    r"^io/helper/cgns_": (18, HDF5),
     r"^io/helper/exodus_file\.cpp:\d+: field": (1, RARE),
     r"^io/helper/linear_only": (2, RARE),
     r"^io/tecplot_numbers\.cpp:\d+: the zone has \{\} values": (1, RARE),

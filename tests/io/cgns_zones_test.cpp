@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -34,7 +36,9 @@ void require(int status) { ASSERT_EQ(status, CG_OK) << cg_get_error(); }
 /// An open file of one base.
 class CgnsWriter {
  public:
-  explicit CgnsWriter(const std::filesystem::path& file) {
+  explicit CgnsWriter(const std::filesystem::path& file,
+                      const std::array<const char*, 3>& axes = {"CoordinateX", "CoordinateY", "CoordinateZ"})
+      : axes_(axes) {
     require(cg_open(file.c_str(), CG_MODE_WRITE, &id_));
     require(cg_base_write(id_, "base", 3, 3, &base_));
   }
@@ -51,7 +55,7 @@ class CgnsWriter {
   }
 
   void write_coordinates(const std::vector<glm::dvec3>& points, const std::string& grid) {
-    constexpr std::array<const char*, 3> names{"CoordinateX", "CoordinateY", "CoordinateZ"};
+    const std::array<const char*, 3>& names = axes_;
     int made = 0;
     if (!grid.empty()) {
       require(cg_grid_write(id_, base_, zone_, grid.c_str(), &made));
@@ -89,6 +93,21 @@ class CgnsWriter {
       require(cg_field_write(id_, base_, zone_, solution, CGNS_ENUMV(RealDouble), field.c_str(), values.data(), &made));
   }
 
+  /// A field of those points or cells alone that `indices` tell.
+  void write_part(const std::string& name, CGNS_ENUMT(GridLocation_t) location, CGNS_ENUMT(PointSetType_t) set,
+                  cgsize_t count, const Numbers& indices, const std::string& field, const std::vector<double>& values) {
+    int solution = 0, made = 0;
+    require(cg_sol_ptset_write(id_, base_, zone_, name.c_str(), location, set, count, indices.data(), &solution));
+    require(cg_field_write(id_, base_, zone_, solution, CGNS_ENUMV(RealDouble), field.c_str(), values.data(), &made));
+  }
+
+  /// Angles of the base are in degrees.
+  void write_degrees() const {
+    require(cg_goto(id_, base_, "end"));
+    require(cg_units_write(CGNS_ENUMV(Kilogram), CGNS_ENUMV(Meter), CGNS_ENUMV(Second), CGNS_ENUMV(Kelvin),
+                           CGNS_ENUMV(Degree)));
+  }
+
   /// Times, and for each the solutions and grids of the zone at hand.
   void write_steps(const std::vector<double>& times, const std::vector<std::string>& solutions,
                    const std::vector<std::string>& grids) {
@@ -108,6 +127,7 @@ class CgnsWriter {
   }
 
  private:
+  std::array<const char*, 3> axes_;
   int id_ = 0, base_ = 0, zone_ = 0;
   std::size_t points_ = 0, cells_ = 0;
 };
@@ -423,6 +443,118 @@ TEST(CgnsZones, CellsOfSecondOrderHaveTheirNodesInVtksOrder) {
       EXPECT_NEAR(mesh.mesh.scalars[v], p.x + 2 * p.y + 3 * p.z, 1e-9);
     }
   }
+}
+
+TEST(CgnsZones, SolutionsOfSomePointsOrCellsAreBlankElsewhere) {
+  const test::TemporaryFolder folder;
+  const Row row(4);
+  const auto& n = row.points;
+  struct Case {
+    bool is_structured;
+    CGNS_ENUMT(GridLocation_t) location;
+    CGNS_ENUMT(PointSetType_t) set;
+    cgsize_t count;
+    Numbers indices;
+    std::vector<std::size_t> places;
+  };
+  const auto point = CGNS_ENUMV(Vertex), cell = CGNS_ENUMV(CellCenter);
+  const auto range = CGNS_ENUMV(PointRange), list = CGNS_ENUMV(PointList);
+  for (const Case& c : {Case{false, cell, range, 2, {2, 3}, {1, 2}}, Case{false, cell, list, 3, {4, 1, 2}, {3, 0, 1}},
+                        Case{false, point, list, 8, {17, 2, 1, 6, 7, 12, 11, 16}, {16, 1, 0, 5, 6, 11, 10, 15}},
+                        Case{true, cell, range, 2, {2, 1, 1, 4, 1, 1}, {1, 2, 3}},
+                        Case{true, cell, list, 2, {4, 1, 1, 1, 1, 1}, {3, 0}},
+                        Case{true, point, range, 2, {2, 1, 1, 3, 2, 2}, {1, 2, 6, 7, 11, 12, 16, 17}}}) {
+    SCOPED_TRACE(fmt::format("{} {} {}", c.is_structured, static_cast<int>(c.location), static_cast<int>(c.set)));
+    std::vector<double> values;
+    for (const std::size_t place : c.places) values.push_back(100 + static_cast<double>(place));
+    CgnsWriter file(folder / "a.cgns");
+    file.begin_zone("zone", n, 4, c.is_structured ? Numbers{5, 2, 2, 4, 1, 1, 0, 0, 0} : Numbers{});
+    if (!c.is_structured) file.write(cubes(row, 0, 4, 1), 4);
+    file.write_part("some", c.location, c.set, c.count, c.indices, "f", values);
+    file.close();
+    MeshOptions options;
+    options.field = c.location == cell ? "cell:f" : "point:f";
+    const MeshFile mesh = read_mesh(folder / "a.cgns", options);
+    std::uint64_t kept = 0;
+    for (std::size_t i = 0; i < 4; ++i) kept += c.location == cell ? std::ranges::count(c.places, i) : 0;
+    if (c.location == point) kept = 1;  // one cube has all its corners
+    EXPECT_EQ(mesh.counts.cells_nan, 4 - kept);
+    EXPECT_NEAR(testing::volume(mesh.mesh), static_cast<double>(kept), 1e-12);
+    for (std::size_t t = 0; t < mesh.mesh.tets.size() && c.location == cell; ++t) {
+      double x = 0;
+      for (const std::uint32_t v : mesh.mesh.tets[t]) x += 0.25 * mesh.mesh.positions[v].x;
+      EXPECT_EQ(mesh.mesh.scalars[t], 100 + std::floor(x));
+    }
+    if (c.location != point) continue;
+    for (const auto& tet : mesh.mesh.tets)
+      for (const std::uint32_t v : tet) {
+        const glm::dvec3 p = mesh.mesh.positions[v];
+        EXPECT_EQ(mesh.mesh.scalars[v], 100 + p.x + 5 * p.y + 10 * p.z);
+      }
+  }
+  CgnsWriter file(folder / "b.cgns");
+  file.begin_zone("zone", n, 4);
+  file.write(cubes(row, 0, 4, 1), 4);
+  file.write_part("left", cell, list, 2, {1, 2}, "f", {0, 1});
+  file.write_part("right", cell, list, 2, {4, 3}, "f", {3, 2});
+  file.close();
+  expect_row(read(folder / "b.cgns"), 4);
+  CgnsWriter far(folder / "c.cgns");
+  far.begin_zone("zone", n, 4);
+  far.write(cubes(row, 0, 4, 1), 4);
+  far.write_part("some", cell, list, 1, {5}, "f", {0});
+  far.close();
+  test::expect_bad_input([&] { read(folder / "c.cgns"); }, {"c.cgns: base/zone", "'some'", "index 5 of 1 to 4"});
+}
+
+TEST(CgnsZones, FieldsOfOneNameInSeveralSolutionsAreBothThere) {
+  const test::TemporaryFolder folder;
+  const Row row(3);
+  CgnsWriter file(folder / "a.cgns");
+  file.begin_zone("zone", row.points, 3);
+  file.write(cubes(row, 0, 3, 1), 3);
+  const std::vector<double> zeros(3);
+  file.write_values("Inst", CGNS_ENUMV(CellCenter),
+                    {{"f", counted(3)}, {"VX", counted(3)}, {"VY", zeros}, {"VZ", zeros}});
+  file.write_values(
+      "Mean", CGNS_ENUMV(CellCenter),
+      {{"f", counted(3, 10)}, {"VX", counted(3, 20)}, {"VY", zeros}, {"VZ", zeros}, {"g", counted(3, 30)}});
+  file.write_values("Points", CGNS_ENUMV(Vertex), {{"f", std::vector<double>(16, 0.5)}});
+  file.close();
+  for (const auto& [field, from] : {std::pair("Inst/f", 0.), std::pair("Mean/f", 10.), std::pair("Inst/V:x", 0.),
+                                    std::pair("Mean/V:x", 20.), std::pair("g", 30.)})
+    expect_row(read(folder / "a.cgns", field), 3, from);
+  EXPECT_EQ(read(folder / "a.cgns", "point:f").mesh.scalars.front(), 0.5);
+}
+
+TEST(CgnsZones, CylinderCoordinatesAreTurnedToXyz) {
+  const test::TemporaryFolder folder;
+  for (const bool is_structured : {false, true})
+    for (const bool in_degrees : {false, true}) {
+      // A quarter of a ring of radii 1 and 3 in 90 steps, two high.
+      Row row(90);
+      const double quarter = in_degrees ? 90 : std::numbers::pi / 2;
+      for (glm::dvec3& p : row.points) p = {3 - 2 * p.y, quarter * p.x / 90, 2 * p.z};
+      CgnsWriter file(folder / "a.cgns", {"CoordinateR", "CoordinateTheta", "CoordinateZ"});
+      file.begin_zone("zone", row.points, 90, is_structured ? Numbers{91, 2, 2, 90, 1, 1, 0, 0, 0} : Numbers{});
+      if (!is_structured) file.write(cubes(row, 0, 90, 1), 90);
+      if (in_degrees) file.write_degrees();
+      file.write_values("cells", CGNS_ENUMV(CellCenter), {{"f", counted(90)}});
+      file.close();
+      const MeshFile mesh = read(folder / "a.cgns");
+      EXPECT_NEAR(testing::volume(mesh.mesh), 2 * 4 * 90 * std::sin(std::numbers::pi / 180), 1e-5);
+      for (const auto& p : mesh.mesh.positions) {
+        EXPECT_GE(p.x, -1e-6);
+        EXPECT_GE(p.y, -1e-6);
+        EXPECT_LT(std::min(std::abs(std::hypot(p.x, p.y) - 1), std::abs(std::hypot(p.x, p.y) - 3)), 1e-5);
+      }
+    }
+  CgnsWriter sphere(folder / "b.cgns", {"CoordinateR", "CoordinateTheta", "CoordinatePhi"});
+  const Row row(1);
+  sphere.begin_zone("zone", row.points, 1);
+  sphere.write(cubes(row, 0, 1, 1), 1);
+  sphere.close();
+  test::expect_bad_input([&] { read_mesh(folder / "b.cgns"); }, {"base/zone", "2 of CoordinateR", "not read"});
 }
 
 TEST(CgnsZones, WhatIsNotReadIsNamed) {
