@@ -113,7 +113,7 @@ MeshBlocks warped(MeshBlocks read, const MeshOptions& options, const std::string
 /// What is in a gzip file is read under another name, which nobody is to hear of.
 MeshBlocks read_unscaled_blocks(const std::filesystem::path& file, const MeshOptions& options) {
   const FormatRow* const row = format_of(file);
-  if (row == nullptr) refuse_as_mesh(file);
+  if (row == nullptr || row->kind == FileKind::unread) refuse_as_mesh(file);  // inflated, it has no name that tells
   if (std::filesystem::is_directory(file) || !looks_like_gzip(read_beginning(file, 2)))
     return warped(chosen_blocks(read_content(file, *row, options), options.blocks), options, file.string());
   const InflatedFile inflated(file);

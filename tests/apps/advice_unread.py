@@ -1,9 +1,14 @@
 """Rows of advice about files that are not read, or of which something is missing."""
 
+import gzip
+import struct
+
 from advice_files import LEGACY, STL, VTM, VTP, unstructured
 from advice_foreign import ENSIGHT, TET
 from advice_library_files import UCD
 from advice_row import cut, damaged, row
+
+FREESURFER = struct.pack(">6i", 1, 4, 3, 2, 1, 3) + bytes(356)
 
 
 def not_read(name, advice, content="nothing"):
@@ -68,6 +73,8 @@ ROWS = [
     not_read("a", "convert it to HDF5 with h4toh5", b"\x0e\x03\x13\x01\0"),
     not_read("a", "save it as .nrrd by astropy and pynrrd", "SIMPLE  =                    T"),
     not_read("a.mgz", "mri_convert FILE out.nii.gz"),
+    not_read("a.mgh", "mri_convert FILE out.nii.gz", FREESURFER),
+    not_read("a.mgz", "mri_convert FILE out.nii.gz", gzip.compress(FREESURFER)),
     not_read("a.gipl", "c3d FILE -o out.nii.gz"),
     not_read("a.brik", "3dAFNItoNIFTI FILE"),
     not_read("a", "describe it: --dims, --type and --skip 1024", bytes(208) + b"MAP " + bytes(812)),
