@@ -546,21 +546,29 @@ def socket_or_none(server):
 
 
 def memory_stays(server, state):
+    """Frames leave no memory behind: of several rounds of them one takes none. A leak grows in each, threads and caches
+    begin once."""
     frames = int(os.environ.get("TESSERA_SERVE_FRAMES", "150" if options.sanitized else "500"))
     client = admitted(server)
     client.receive()
     position = list(state["camera"]["position"])
-    sizes = []
-    for number in range(1, frames + 1):
-        camera = dict(state["camera"], position=[position[0] + 1e-3 * number, *position[1:]])
-        client.state(number, dict(state, camera=camera, opacity=1 + number % 40), moving=True)
-        client.frame()
-        if number % (frames // 10) == 0:
-            sizes.append(server.resident_bytes())
+    rounds = 1 if options.sanitized else 6  # whose quarantine grows
+    number = 0
+    for _ in range(rounds):
+        sizes = []
+        for k in range(1, frames + 1):
+            number += 1
+            camera = dict(state["camera"], position=[position[0] + 1e-3 * number, *position[1:]])
+            client.state(number, dict(state, camera=camera, opacity=1 + number % 40), moving=True)
+            client.frame()
+            if k % (frames // 10) == 0:
+                sizes.append(server.resident_bytes())
+        print(f"resident over {frames} frames: " + " ".join(f"{size >> 20}" for size in sizes) + " MiB")
+        if sizes[-1] - sizes[4] < 8 << 20:
+            break
+    else:
+        check(options.sanitized, "memory grows with frames")
     client.close()
-    print(f"resident over {frames} frames: " + " ".join(f"{size >> 20}" for size in sizes) + " MiB")
-    if not options.sanitized:  # whose quarantine grows
-        check(sizes[-1] - sizes[4] < 8 << 20, "memory grows with frames")
 
 
 def part_ends():
