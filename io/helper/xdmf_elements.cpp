@@ -138,7 +138,7 @@ std::optional<std::string> library_type(const std::string& number_type, const st
   if (type != "INT" && type != "UINT") return std::nullopt;
   if (precision == "1") return sign + "Char";
   if (precision == "2") return sign + "Short";
-  if (type == "UINT" && precision == "8") return "Int";  // there is no such type, and half of the bytes would be taken
+  if (type == "UINT" && precision == "8") return "Int";  // which the library lacks; it would read 4 of the 8
   return std::nullopt;
 }
 

@@ -172,7 +172,7 @@ TEST(SolverFiles, AFluentCaseIsAMeshWithTheValuesBesideItIfAny) {
     const glm::ivec3 at(centre);
     EXPECT_EQ(read.mesh.scalars[t], 300 + at.x + 3 * (at.y + 3 * at.z));
   }
-  // The same numbers, of which the last has its parenthesis at once, in one line, after another section.
+  // The same numbers in one line, the parenthesis directly after the last, behind another section.
   data.back() = ')';
   std::string line = data;
   std::replace(line.begin(), line.end(), '\n', ' ');
