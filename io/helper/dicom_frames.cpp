@@ -164,6 +164,7 @@ void set_frames(const gdcm::DataSet& data, DicomSlice& slice) {
     if (k < frames.size()) add_groups(frames[k], facts);
     all_placed = all_placed && facts.has_position;
     if (k == 0) first = facts;
+    facts.frame.spacing = glm::dvec2(facts.spacing);
     slice.each.push_back(facts.frame);
   }
   slice.spacing = first.spacing;

@@ -37,7 +37,7 @@ nlohmann::json json_of(const std::vector<DicomFrame>& frames) {
   nlohmann::json list = nlohmann::json::array();
   for (const DicomFrame& f : frames)
     list.push_back({three_of(f.position), three_of(f.row), three_of(f.column), f.slope, f.intercept, f.time.value,
-                    f.time.unit, f.segment});
+                    f.time.unit, f.spacing.x, f.spacing.y, f.segment});
   return list;
 }
 
@@ -55,7 +55,14 @@ DicomSegments segments_of(const nlohmann::json& j) {
 }
 
 DicomFrame frame_of(const nlohmann::json& j) {
-  return {vector_of(j.at(0)), vector_of(j.at(1)), vector_of(j.at(2)), j.at(3), j.at(4), {j.at(5), j.at(6)}, j.at(7)};
+  return {vector_of(j.at(0)),
+          vector_of(j.at(1)),
+          vector_of(j.at(2)),
+          j.at(3),
+          j.at(4),
+          {j.at(5), j.at(6)},
+          {j.at(7), j.at(8)},
+          j.at(9)};
 }
 
 nlohmann::json json_of(const DicomSlice& s) {

@@ -70,33 +70,34 @@ std::vector<DicomSlice> chosen_group(std::vector<DicomSlice> slices, const std::
   return std::move(*chosen);
 }
 
-/// Each frame of a file of several as a slice of its own; of frames that are turned against each other, those of the
-/// direction that most have.
+/// Each frame of a file of several as a slice of its own; of frames of several directions or spacings, those of the
+/// one that most have.
 std::vector<DicomSlice> frames_as_slices(std::vector<DicomSlice> slices, std::vector<std::string>& notes) {
   if (slices.size() != 1 || slices.front().each.empty()) return slices;
   DicomSlice file = std::move(slices.front());
   const std::vector<DicomFrame> each = std::exchange(file.each, {});
   if (!file.frames_note.empty()) notes.push_back(file.frames_note);
-  std::vector<std::vector<DicomSlice>> directions;
+  std::vector<std::vector<DicomSlice>> stacks;
   for (std::size_t k = 0; k < each.size(); ++k) {
     const DicomFrame& f = each[k];
     DicomSlice slice = file;
     slice.frame = slice.number = static_cast<std::int64_t>(k);
     slice.position = f.position, slice.row = f.row, slice.column = f.column;
+    slice.spacing.x = f.spacing.x, slice.spacing.y = f.spacing.y;
     slice.slope = f.slope, slice.intercept = f.intercept, slice.time = f.time;
     slice.joined = {{.frame = slice.frame, .segment = f.segment}};
-    const auto alike = std::find_if(directions.begin(), directions.end(),
-                                    [&](const auto& group) { return lie_alike(group.front(), slice); });
-    if (alike != directions.end())
+    const auto alike =
+        std::find_if(stacks.begin(), stacks.end(), [&](const auto& group) { return lie_alike(group.front(), slice); });
+    if (alike != stacks.end())
       alike->push_back(std::move(slice));
     else
-      directions.emplace_back().push_back(std::move(slice));
+      stacks.emplace_back().push_back(std::move(slice));
   }
-  const auto most = std::max_element(directions.begin(), directions.end(),
-                                     [](const auto& a, const auto& b) { return a.size() < b.size(); });
-  if (directions.size() > 1)
-    notes.push_back(fmt::format("its frames lie in {} directions, of which the {} of one are read", directions.size(),
-                                most->size()));
+  const auto most =
+      std::max_element(stacks.begin(), stacks.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  if (stacks.size() > 1)
+    notes.push_back(fmt::format("its frames have {} directions or spacings, of which the {} of one are read",
+                                stacks.size(), most->size()));
   return std::move(*most);
 }
 

@@ -22,6 +22,7 @@ struct DicomFrame {
   glm::dvec3 position{0}, row{1, 0, 0}, column{0, 1, 0};
   double slope = 1, intercept = 0;
   DicomTime time{};          ///< as DicomSlice::time
+  glm::dvec2 spacing{1};     ///< between columns, and between rows
   std::int64_t segment = 0;  ///< the number of the segment that it shows, of a segmentation; 0: none
 };
 

@@ -179,12 +179,18 @@ TEST_F(DicomFrameFiles, OfADoseLieAtTheirOffsetsAndAreScaled) {
   EXPECT_TRUE(with("0\\3\\9", {0, 1, 2}).source->geometry().rectilinear());
 }
 
-TEST_F(DicomFrameFiles, InSeveralDirectionsAreThoseOfOneAndOfOnePlaceAreNoVolume) {
+TEST_F(DicomFrameFiles, InSeveralDirectionsOrSpacingsAreThoseOfOneAndOfOnePlaceAreNoVolume) {
   DicomFrames file = frames_at({0, 1, 2, 0});
   file.each.back() = test::dicom_position({0, 0, 0}) + test::dicom_orientation("0\\1\\0\\0\\0\\1");
   const VolumeFile most = open(file);
   EXPECT_EQ(all_samples(*most.source), wanted(3));
-  EXPECT_TRUE(has_note(most, "frames lie in 2 directions"));
+  EXPECT_TRUE(has_note(most, "frames have 2 directions or spacings, of which the 3 of one are read"));
+  // One of another spacing, and all of one that is not what the file states of all.
+  file.each.back() = test::dicom_position({10, -20, 12.5}) + test::dicom_measures(1.5, 1, 9);
+  EXPECT_EQ(all_samples(*open(file).source), wanted(3));
+  for (std::string& each : file.each) each += test::dicom_measures(1.5, 1, 9);
+  file.each.back() = test::dicom_position({10, -20, 12.5});
+  EXPECT_EQ(open(file).source->geometry().spacing, glm::dvec3(1, 1.5, 2.5));
   expect_no_volume(folder.write("b.dcm", test::dicom_file(frames_at({1, 1, 1}))), "all its 3 frames are at one place");
 }
 
