@@ -24,6 +24,8 @@ if(TESSERA_QUICK AND TESSERA_SANITIZE)
   # Checks at every pointer take two fifths of the time to compile, and what they find ASan mostly finds as it is used. The
   # parsers' fuzz targets have them.
   target_compile_options(tessera_warnings INTERFACE -fno-sanitize=null,alignment,vptr,object-size)
+  # The sanitizers' descriptions take a million relocations at each start, which is a quarter of a short command.
+  target_link_options(tessera_warnings INTERFACE $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:-no-pie>)
 endif()
 # For code whose speed no user notices, which compiles in two thirds of the time: tests, the command line, reports.
 add_library(tessera_optimize_1 INTERFACE)

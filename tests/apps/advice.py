@@ -178,8 +178,8 @@ def follow_in_time(tessera, data, folder, row):
 
 def uncovered(source, said, is_partial):
     """Messages that no row made and that are not excepted; exceptions of no use. `is_partial`: not all rows ran."""
-    messages = messages_of(source, ("apps", "io"))
-    messages = [message for message in messages if not any(re.search(known, str(message)) for known in NO_ADVICE)]
+    every = messages_of(source, ("apps", "io"))
+    messages = [message for message in every if not any(re.search(known, str(message)) for known in NO_ADVICE)]
     followed = [message for message in messages if message.pattern.search(said)]
     rest = [message for message in messages if message not in followed]
     excused = 0
@@ -191,7 +191,7 @@ def uncovered(source, said, is_partial):
         if len(excepted) != count and not is_partial:
             wrong.append(f"advice_exceptions.py: '{pattern}' excepts {len(excepted)} messages that no row makes")
     for pattern in NO_ADVICE:
-        if not any(re.search(pattern, str(message)) for message in messages_of(source, ("apps", "io"))):
+        if not any(re.search(pattern, str(message)) for message in every):
             wrong.append(f"advice_exceptions.py: '{pattern}' is no message")
     if not is_partial:
         wrong += [f"no row and no exception: {message}" for message in rest]

@@ -12,6 +12,7 @@
 #include "apps/quadratic_mesh.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/reader_programs.hpp"
+#include "support/some_cases.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -299,6 +300,7 @@ TEST_F(Mpirun, MeshesWithLevelsGiveTheBytesOfOneProcess) {
       "<VTKFile type=\"vtkOverlappingAMR\" version=\"1.1\"><vtkOverlappingAMR><Block level=\"0\"><DataSet index=\"0\" "
       "file=\"coarse.vti\"/></Block><Block level=\"1\"><DataSet index=\"0\" file=\"fine.vti\"/></Block>"
       "</vtkOverlappingAMR></VTKFile>");
+  test::SomeCases some(2);
   for (const std::string& file : {trees, blocks})
     for (const bool smooth : {false, true}) {
       std::vector<std::string> arguments{"render",  file,        "-o", folder / "one.pfm", "--size",  "60x50",
@@ -306,7 +308,8 @@ TEST_F(Mpirun, MeshesWithLevelsGiveTheBytesOfOneProcess) {
       if (smooth) arguments.emplace_back("--smooth");
       ASSERT_EQ(tessera(arguments).status, 0) << file;
       arguments[3] = folder / "ranks.pfm";
-      for (const int ranks : {1, 2, 3}) {
+      for (const int ranks : {2, 3, 1}) {
+        if (!some.next()) continue;
         const Outcome outcome = mpirun(ranks, arguments);
         ASSERT_EQ(outcome.status, 0) << outcome.err;
         EXPECT_EQ(contents(folder / "ranks.pfm"), contents(folder / "one.pfm"))

@@ -227,7 +227,7 @@ double worst_difference(const scene::TetMesh& mesh, const Field& truth, int poin
 TEST(CurvedSplit, KeepsAFieldWithinItsBound) {
   const Field quadratic = [](const glm::dvec3& p) { return p.x * p.x - 2 * p.y * p.z + 0.5 * p.z * p.z + p.y; };
   const Warp straight = [](const glm::dvec3& p) { return p; };
-  test::SomeCases some(4);
+  test::SomeCases some(7);
   for (const Kind& kind : kinds) {
     if (kind.degree < 2) continue;
     for (const double relative : {1e-1, 1e-2, 4e-3}) {
@@ -326,7 +326,9 @@ CellBlock quarter_tube() {
 }
 
 TEST(CurvedSplit, DrawsTheCirclesOfRationalCells) {
-  for (const double relative : {1e-1, 1e-2, 1e-3}) {
+  test::SomeCases some(3);
+  for (const double relative : {1e-2, 1e-1, 1e-3}) {
+    if (!some.next()) continue;
     const MeshFile file = assemble_mesh({quarter_tube()}, tolerance(relative), "mesh");
     EXPECT_EQ(file.higher_order.by_corners, 0u);
     const double error = file.higher_order.position_error;
