@@ -287,7 +287,7 @@ void refuse_as_mesh(const std::filesystem::path& file) {
         "{}: it neither begins as a file of a known format nor has a name of one; `tessera formats` lists them",
         file.string()));
   if (row->kind == FileKind::unread)
-    throw scene::bad_input(fmt::format("{}: it is {}, which is not read; {}", file.string(), row->name, row->remark));
+    throw scene::bad_input(fmt::format("{}: its format ({}) is not read; {}", file.string(), row->name, row->remark));
   if (row->holds == FileHolds::series)
     throw scene::bad_input(
         fmt::format("{}: it is a time series, which render and serve take; give one of its meshes", file.string()));

@@ -20,8 +20,9 @@ TESSERA_EXPORT void write_mesh(const MeshArrays& mesh, const std::filesystem::pa
 /// Writes a mesh as a .pvtu and `pieces` .vtu files beside it, each tet in one of them, for ranks to read.
 TESSERA_EXPORT void write_mesh_pieces(const MeshArrays& mesh, const std::filesystem::path& file, int pieces,
                                       const Partition& partition = {});
-/// Before reading: throws Error(bad_input) unless a mesh can be written there, in so many pieces if a number is given,
-/// and none of the files would be `input` or one of its own pieces. Names may exist, but not as something that is read.
+/// Before reading: throws Error(bad_input) unless `input`, if any, is a mesh's file, a mesh can be written there, in so
+/// many pieces if a number is given, and none of the files would be `input` or one of its own pieces. Names may exist,
+/// but not as something that is read.
 TESSERA_EXPORT void check_mesh_output(const std::filesystem::path& file, const std::filesystem::path& input,
                                       std::optional<int> pieces = std::nullopt);
 

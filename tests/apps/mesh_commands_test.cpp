@@ -219,6 +219,10 @@ TEST(Convert, RefusesFormatsItDoesNotWrite) {
     EXPECT_EQ(run.error_lines(), 1u);
     EXPECT_FALSE(std::filesystem::exists(folder / name));
   }
+  // An input that is not read: no other output helps.
+  const auto array = tessera({"convert", folder.file("a.npy", "\x93NUMPY"), folder / "a.nrrd"});
+  EXPECT_EQ(array.status, 2);
+  EXPECT_NE(array.err.find("its format (NumPy array) is not read"), std::string::npos) << array.err;
 }
 
 TEST(Generate, MakesEveryKindThatItsHelpLists) {

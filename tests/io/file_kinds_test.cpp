@@ -125,7 +125,7 @@ TEST_F(FileKinds, TheNameCountsWhereTheBeginningSaysNothing) {
 TEST_F(FileKinds, WhatIsNotKnownOrNotReadIsTold) {
   EXPECT_NE(message_of([&] { read_mesh(write("x.dat", "Dear reader,")); }).find("`tessera formats` lists them"),
             std::string::npos);
-  EXPECT_NE(message_of([&] { read_mesh(write("x.vtu", "MFEM mesh v1.0\n")); }).find("it is MFEM, which is not read"),
+  EXPECT_NE(message_of([&] { read_mesh(write("x.vtu", "MFEM mesh v1.0\n")); }).find("its format (MFEM) is not read"),
             std::string::npos);
   EXPECT_FALSE(is_mesh_file(write("x.vtu", "MFEM mesh v1.0\n")));
   EXPECT_FALSE(is_volume(write("x.vti", "ply\nformat ascii 1.0\n")));
