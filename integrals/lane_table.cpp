@@ -85,7 +85,25 @@ LaneTable::LaneTable(const scene::TransferFunction& function, double scalar_orig
   constexpr float infinity = std::numeric_limits<float>::infinity();
   const std::vector<Place> places = places_of(function, scalar_origin, scalar_unit, steps, emission);
   knot_count = places.size();
-  stride = knot_count + 2 + padding;
+  // About four cells a knot: evenly spread knots then have a cell of their own.
+  std::vector<float> knots;
+  for (const Place& place : places) knots.push_back(static_cast<float>(place.position));
+  const std::size_t cells = std::bit_ceil(4 * knot_count);
+  const float width = knots[knot_count - 1] - knots[0];
+  grid_origin = knots[0];
+  grid_scale = width > 0 ? static_cast<float>(cells) / width : 0.0f;
+  last_cell = static_cast<float>(cells - 1);
+  std::vector<std::size_t> in_cell(cells, 0);
+  for (std::size_t i = 0; i < knot_count; ++i)
+    ++in_cell[static_cast<std::size_t>(std::clamp((knots[i] - grid_origin) * grid_scale, 0.0f, last_cell))];
+  std::size_t before = 0;
+  for (const std::size_t n : in_cell) {
+    knots_before.push_back(static_cast<std::int32_t>(before));
+    before += n;
+  }
+  largest_step = std::bit_floor(*std::max_element(in_cell.begin(), in_cell.end()));
+  // A search from the last knot looks as far ahead as its first step.
+  stride = knot_count + 2 + std::max(padding, largest_step);
   rows.assign(column_count * stride, 0.0f);
   float* const edges = &rows[edge * stride];
   std::fill(edges, edges + stride, infinity);
@@ -134,23 +152,6 @@ LaneTable::LaneTable(const scene::TransferFunction& function, double scalar_orig
 
   const auto knots_of = function.knots();
   for (std::size_t i = 1; i < knots_of.size(); ++i) has_steps = has_steps || knots_of[i].value == knots_of[i - 1].value;
-
-  // About four cells a knot: evenly spread knots then have a cell of their own.
-  const float* const knots = edges + 1;
-  const std::size_t cells = std::bit_ceil(4 * knot_count);
-  const float width = knots[knot_count - 1] - knots[0];
-  grid_origin = knots[0];
-  grid_scale = width > 0 ? static_cast<float>(cells) / width : 0.0f;
-  last_cell = static_cast<float>(cells - 1);
-  std::vector<std::size_t> in_cell(cells, 0);
-  for (std::size_t i = 0; i < knot_count; ++i)
-    ++in_cell[static_cast<std::size_t>(std::clamp((knots[i] - grid_origin) * grid_scale, 0.0f, last_cell))];
-  std::size_t before = 0;
-  for (const std::size_t n : in_cell) {
-    knots_before.push_back(static_cast<std::int32_t>(before));
-    before += n;
-  }
-  largest_step = std::bit_floor(*std::max_element(in_cell.begin(), in_cell.end()));
 }
 
 }  // namespace tessera::integrals

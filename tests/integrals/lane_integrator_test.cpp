@@ -156,6 +156,36 @@ TEST(LaneIntegrator, AgreesWithDoublePrecisionOnEveryInstructionSet) {
   });
 }
 
+// As of a logarithm: nearly all knots are in one cell of the table's grid, behind which scalars are sought, too.
+TEST(LaneIntegrator, FindsIntervalsOfKnotsCrowdedAtOneEnd) {
+  tests::for_each_instruction_set([&](const char* name) {
+    SCOPED_TRACE(name);
+    for (const double sign : {1.0, -1.0})
+      for (const int knots : {40, 300, 900}) {
+        Random random(static_cast<unsigned>(knots));
+        std::vector<Knot> list;
+        for (int i = 0; i < knots; ++i) {
+          const double value = whole(std::exp2(20.0 * i / knots));
+          if (list.empty() || value > list.back().value)
+            list.push_back({value, {random(), random(), random()}, random() < 0.25 ? 0.0 : random()});
+        }
+        for (Knot& knot : list) knot.value *= sign;
+        if (sign < 0) std::reverse(list.begin(), list.end());
+        const TransferFunction f(list);
+        std::vector<Segment> segments;
+        for (std::size_t i = 0; i < list.size(); ++i) {
+          const auto here = static_cast<float>(list[i].value);
+          for (const float step : {-1.0F, 1.0F}) segments.push_back({1, here, here + step});
+          // Over no more knots than sums of pieces are known to stand.
+          const auto there = static_cast<float>(list[std::min(i + 100, list.size() - 1)].value);
+          segments.push_back({1, here, there});
+          segments.push_back({1, there, here});
+        }
+        expect_close(segments, in_lanes(f, segments), in_double(f, segments));
+      }
+  });
+}
+
 TEST(LaneIntegrator, AgreesWithTheReference) {
   Random random(103);
   for (const int knots : {2, 6, 20, 100})
