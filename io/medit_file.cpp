@@ -177,11 +177,16 @@ class MeditText {
   }
 
   std::vector<CellBlock> blocks() {
+    std::string_view list;  // that has just been read
     for (std::string_view word = next(); !word.empty() && word != "End"; word = next()) {
+      if (!list.empty() && std::string_view("+-.0123456789").find(word[0]) != std::string_view::npos)
+        fail(fmt::format("'{}' follows the last of its {}, which are of more numbers than they should be",
+                         printable(std::string(word.substr(0, 40))), list));
+      list = {};
       if (word == "Dimension") require_space(whole("a dimension"), source_);
-      if (word == "Vertices") read_points();
+      if (word == "Vertices") read_points(), list = word;
       for (const MeditCells& cells : medit_cells)
-        if (word == cells.word) read_cells(cells);
+        if (word == cells.word) read_cells(cells), list = word;
       if (is_unread(word) && whole("a count") > 0)
         throw scene::bad_input(fmt::format("{}: line {}: its {} are not read; write cells of order 1", source_, line_,
                                            printable(std::string(word))));
