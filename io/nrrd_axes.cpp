@@ -248,6 +248,12 @@ NrrdAxes nrrd_axes_of(const NrrdFields& fields, const std::vector<std::int64_t>&
     const std::size_t skip = skips ? 1 : 0;
     std::ranges::fill(axes.uses, NrrdAxes::Use::nothing);
     for (std::size_t a = 0; a < 3; ++a) axes.uses[skip + a] = NrrdAxes::Use::space;
+    if (count == 4 && skips && !are_domains && sizes[0] > 1 && by_kinds[0] == NrrdAxes::Use::nothing)
+      axes.note = fmt::format(
+          "it does not say what its 4 axes are: the first, of {} samples, is taken for components; `kinds` in the "
+          "header "
+          "(domain domain domain time) says otherwise",
+          sizes[0]);
   }
   fill_unknown_uses(axes.uses, sizes, by_kinds);
   for (std::size_t a = 0, k = 0; a < count; ++a)
@@ -295,7 +301,8 @@ void set_nrrd_geometry(const NrrdFields& fields, const NrrdAxes& axes, const std
   NrrdSpace space;
   if (const auto* field = fields.find("space")) space = space_of(*field);
   volume.body_axes = space.axes;
-  if (!space.note.empty()) volume.notes.push_back(space.note);
+  for (const std::string& note : {axes.note, space.note})
+    if (!note.empty()) volume.notes.push_back(note);
   std::array<glm::dvec3, 3> steps{};
   glm::dvec3 origin(0);
   const auto* directions = fields.find("spacedirections");

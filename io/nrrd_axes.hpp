@@ -20,6 +20,7 @@ struct NrrdAxes {
 
   std::vector<Use> uses;             ///< one an axis, the fastest first
   std::array<std::size_t, 3> space;  ///< their numbers, with none but axes of nothing between them
+  std::string note{};                ///< where the header leaves open which they are
 
   [[nodiscard]] bool is_before(std::size_t axis) const { return axis < space[0]; }
 };
