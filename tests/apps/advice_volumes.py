@@ -78,6 +78,16 @@ ROWS = [
     row(V + "--dims 8x8x8", "this one says them itself", V),
     row("info v.vti --check", "leave it out", "info v.vti"),
     # NRRD
+    row(
+        "info a.nrrd",
+        "in the header (domain domain domain time) says otherwise",
+        "info a.nrrd",
+        {"a.nrrd": b"NRRD0004\ntype: uint8\ndimension: 4\nsizes: 2 2 2 2\nencoding: raw\n\n" + SAMPLES * 2},
+        {
+            "a.nrrd": b"NRRD0004\ntype: uint8\ndimension: 4\nsizes: 2 2 2 2\nkinds: domain domain domain time\n"
+            b"encoding: raw\n\n" + SAMPLES * 2
+        },
+    ),
     nrrd("sizes: 2", "sizes: 3", "the file is truncated, write it anew"),
     nrrd("uint8", "block", "write integers, float or double"),
     nrrd("encoding: raw", "encoding: bzip2", "write raw, gzip, ascii or hex"),
