@@ -87,6 +87,7 @@ LaneTable::LaneTable(const scene::TransferFunction& function, double scalar_orig
   knot_count = places.size();
   // About four cells a knot: evenly spread knots then have a cell of their own.
   std::vector<float> knots;
+  knots.reserve(knot_count);
   for (const Place& place : places) knots.push_back(static_cast<float>(place.position));
   const std::size_t cells = std::bit_ceil(4 * knot_count);
   const float width = knots[knot_count - 1] - knots[0];

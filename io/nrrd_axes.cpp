@@ -250,9 +250,8 @@ NrrdAxes nrrd_axes_of(const NrrdFields& fields, const std::vector<std::int64_t>&
     for (std::size_t a = 0; a < 3; ++a) axes.uses[skip + a] = NrrdAxes::Use::space;
     if (count == 4 && skips && !are_domains && sizes[0] > 1 && by_kinds[0] == NrrdAxes::Use::nothing)
       axes.note = fmt::format(
-          "it does not say what its 4 axes are: the first, of {} samples, is taken for components; `kinds` in the "
-          "header "
-          "(domain domain domain time) says otherwise",
+          "its header has no kinds: the first of its 4 axes, of {} samples, is taken for components; "
+          "add a line of kinds if it is one of space",
           sizes[0]);
   }
   fill_unknown_uses(axes.uses, sizes, by_kinds);

@@ -80,7 +80,7 @@ ROWS = [
     # NRRD
     row(
         "info a.nrrd",
-        "in the header (domain domain domain time) says otherwise",
+        "add a line of kinds if it is one of space",
         "info a.nrrd",
         {"a.nrrd": b"NRRD0004\ntype: uint8\ndimension: 4\nsizes: 2 2 2 2\nencoding: raw\n\n" + SAMPLES * 2},
         {
