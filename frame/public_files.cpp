@@ -120,7 +120,7 @@ void write_mesh_pieces(const MeshArrays& arrays, const std::filesystem::path& fi
 
 void check_mesh_output(const std::filesystem::path& file, const std::filesystem::path& input,
                        std::optional<int> pieces) {
-  if (!input.empty()) io::require_mesh_file(input);  // no other output mends it
+  if (!input.empty()) io::require_mesh_file(input);  // first: another output would not help
   const auto extension = file.extension();
   if (!pieces) {
     if (extension == ".pvtu")

@@ -156,7 +156,8 @@ TEST(LaneIntegrator, AgreesWithDoublePrecisionOnEveryInstructionSet) {
   });
 }
 
-// As of a logarithm: nearly all knots are in one cell of the table's grid, behind which scalars are sought, too.
+// Spaced as by a logarithm: nearly all knots are in one cell of the table's grid, so that searches begin with large
+// steps, from other cells too.
 TEST(LaneIntegrator, FindsIntervalsOfKnotsCrowdedAtOneEnd) {
   tests::for_each_instruction_set([&](const char* name) {
     SCOPED_TRACE(name);
@@ -176,7 +177,7 @@ TEST(LaneIntegrator, FindsIntervalsOfKnotsCrowdedAtOneEnd) {
         for (std::size_t i = 0; i < list.size(); ++i) {
           const auto here = static_cast<float>(list[i].value);
           for (const float step : {-1.0F, 1.0F}) segments.push_back({1, here, here + step});
-          // Over no more knots than sums of pieces are known to stand.
+          // Over at most 100 knots: rounding grows with the number of pieces.
           const auto there = static_cast<float>(list[std::min(i + 100, list.size() - 1)].value);
           segments.push_back({1, here, there});
           segments.push_back({1, there, here});

@@ -224,7 +224,7 @@ TEST(MeditText, FaultsAreNamedWithTheirLine) {
   for (const std::string word : {"HexahedraQ2", "TetrahedraP3", "TetrahedraP2Ordering", "Prisms9", "PolyhedraHeaders"})
     refuse("Tetrahedra", word, {fmt::format("its {} are not read", word)});
   refuse("Tetrahedra", "Triangles", {"no cells of volume"});
-  // As Gmsh writes cells of second order: under the keyword of the first.
+  // Numbers are left over: the count is too small, or cells have more nodes than their keyword takes.
   refuse("Tetrahedra\n2", "Tetrahedra\n1", {"follows the last of its Tetrahedra"});
   refuse("Vertices\n5", "Vertices\n4", {"follows the last of its Vertices"});
 }
