@@ -13,6 +13,42 @@ namespace {
 bool is_at(const FaceMark& mark, double depth) { return std::abs(mark.depth - depth) <= mark.tolerance; }
 
 double next_behind(double depth) { return std::nextafter(depth, std::numeric_limits<double>::infinity()); }
+double next_before(double depth) { return std::nextafter(depth, -std::numeric_limits<double>::infinity()); }
+
+/// Orders marks at one depth by slope in x, those of one such slope by that in y, and those of one plane by number.
+void order_by_slope(std::span<FaceMark> marks, std::size_t axis = 0) {
+  if (marks.size() < 2) return;
+  if (axis == 2) {
+    std::sort(marks.begin(), marks.end(), [](const FaceMark& a, const FaceMark& b) {
+      return std::tie(a.number, a.cosine, a.value) < std::tie(b.number, b.cosine, b.value);
+    });
+    return;
+  }
+  std::sort(marks.begin(), marks.end(), [&](const FaceMark& a, const FaceMark& b) {
+    const auto key = [&](const FaceMark& m) {
+      return std::tie(m.slope[axis], m.slope_error[axis], m.number, m.cosine, m.value);
+    };
+    return key(a) < key(b);
+  });
+  for (std::size_t first = 0, last; first < marks.size(); first = last) {
+    const auto is_one = [&](const FaceMark& mark) {
+      return mark.slope[axis] - marks[first].slope[axis] <= mark.slope_error[axis] + marks[first].slope_error[axis];
+    };
+    for (last = first + 1; last < marks.size() && is_one(marks[last]);) ++last;
+    order_by_slope(marks.subspan(first, last - first), axis + 1);
+  }
+}
+
+/// Marks of one ray at one depth.
+void put_in_place(std::span<FaceMark> marks) {
+  order_by_slope(marks);
+  double place = marks.front().depth;
+  for (FaceMark& mark : marks) {
+    mark.place = next_behind(place);
+    place = next_behind(mark.place);
+  }
+  for (FaceMark& mark : marks) mark.behind = next_behind(place);
+}
 
 /// The scalar at part `part` of a segment: not the higher end's, so that a part that lies below a step of the transfer
 /// function keeps an end below it.
@@ -33,16 +69,18 @@ void FaceMarks::reset(std::size_t pixels) {
 
 void FaceMarks::sort() {
   // By all that a mark holds: equal ones are interchangeable, so the order in which triangles come shows nowhere.
-  const auto key = [](const FaceMark& m) { return std::tie(m.pixel, m.depth, m.number, m.cosine, m.value); };
-  const auto before = [&](const FaceMark& a, const FaceMark& b) { return key(a) < key(b); };
-  std::sort(marks_.begin(), marks_.end(), before);
-  // Triangles that coincide are at one depth, whatever was rounded how.
+  std::sort(marks_.begin(), marks_.end(), [](const FaceMark& a, const FaceMark& b) {
+    const auto key = [](const FaceMark& m) {
+      return std::tie(m.pixel, m.depth, m.number, m.cosine, m.value, m.slope, m.slope_error);
+    };
+    return key(a) < key(b);
+  });
   for (auto first = marks_.begin(); first != marks_.end();) {
     auto last = first + 1;
     while (last != marks_.end() && last->pixel == first->pixel &&
            last->depth - first->depth <= first->tolerance + last->tolerance)
       (last++)->depth = first->depth;
-    if (last - first > 1) std::sort(first, last, before);
+    put_in_place(std::span(first, last));
     first = last;
   }
   for (const FaceMark& mark : marks_) {
@@ -57,7 +95,7 @@ void FaceMarks::append_own(RaySegments& segments) const {
     if (!mark.own) continue;
     const std::size_t at = segments.size++;
     segments.pixel_and_tet[at] = mark.pixel;
-    segments.front[at] = segments.back[at] = mark.depth;
+    segments.front[at] = segments.back[at] = mark.place;
     segments.scalar_front[at] = marked(Crossing{mark.number, mark.cosine});
     segments.scalar_back[at] = mark.value;
   }
@@ -76,11 +114,13 @@ void FaceMarks::cut(RaySegments& segments, std::size_t first) const {
 void FaceMarks::cut_one(RaySegments& segments, std::size_t at, std::span<const FaceMark> marks) const {
   const double front = segments.front[at], back = segments.back[at];
   if (is_crossing(segments.scalar_front[at])) {
-    for (const FaceMark& mark : marks)
-      if (is_at(mark, front)) {
-        segments.front[at] = segments.back[at] = mark.depth;
-        return;
-      }
+    const auto mark = std::ranges::find_if(marks, [&](const FaceMark& m) { return is_at(m, front); });
+    if (mark == marks.end()) return;
+    const std::uint32_t number = crossing_of(segments.scalar_front[at]).number;
+    const auto next =
+        std::find_if(mark, marks.end(), [&](const FaceMark& m) { return m.depth != mark->depth || m.number > number; });
+    const bool is_last = next == marks.end() || next->depth != mark->depth;
+    segments.front[at] = segments.back[at] = next_before(is_last ? mark->behind : next->place);
     return;
   }
   const double from = segments.scalar_front[at], to = segments.scalar_back[at];
@@ -88,7 +128,7 @@ void FaceMarks::cut_one(RaySegments& segments, std::size_t at, std::span<const F
   for (const FaceMark& mark : marks) {
     if (is_at(mark, front)) {
       // Nothing of what is left is before it.
-      segments.front[rest] = next_behind(mark.depth);
+      segments.front[rest] = mark.behind;
       if (!(segments.front[rest] < segments.back[rest])) {
         segments.front[rest] = segments.back[rest] = mark.depth;
         return;
@@ -102,7 +142,7 @@ void FaceMarks::cut_one(RaySegments& segments, std::size_t at, std::span<const F
       const double scalar = scalar_between(from, to, (mark.depth - front) / (back - front));
       const std::size_t behind = segments.size++;
       segments.pixel_and_tet[behind] = segments.pixel_and_tet[at];
-      segments.front[behind] = next_behind(mark.depth), segments.back[behind] = segments.back[rest];
+      segments.front[behind] = mark.behind, segments.back[behind] = segments.back[rest];
       segments.scalar_front[behind] = scalar, segments.scalar_back[behind] = segments.scalar_back[rest];
       segments.back[rest] = mark.depth, segments.scalar_back[rest] = scalar;
       rest = behind;

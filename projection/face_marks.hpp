@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -12,24 +13,31 @@ namespace tessera::projection {
 
 /// Where a ray meets a triangle of a surface.
 struct FaceMark {
-  std::uint32_t pixel;   ///< row-major in the rectangle
-  std::uint32_t number;  ///< scene::SurfaceSet::face_crossing()
-  double depth, value;   ///< planar; the field's at the place, 0 where there is none
-  double tolerance;      ///< what rounding may have moved it by in depth
-  float cosine;          ///< of the angle between ray and normal
-  bool own;              ///< of this process; of another's the depth alone is needed
+  std::uint32_t pixel;                       ///< row-major in the rectangle
+  std::uint32_t number;                      ///< scene::SurfaceSet::face_crossing()
+  double depth, value;                       ///< planar; the field's at the place, 0 where there is none
+  double tolerance;                          ///< what rounding may have moved it by in depth
+  std::array<double, 2> slope, slope_error;  ///< change of depth from a pixel to the next in x, in y
+  float cosine;                              ///< of the angle between ray and normal
+  bool own;                                  ///< of this process; of another's the depth alone is needed
+  double place = 0, behind = 0;              ///< set by FaceMarks::sort()
 };
 
 /// The triangles that the rays of a rectangle meet, and what they do to the ray segments of its pixels, in double
 /// precision.
 ///
 /// A mark becomes a crossing among the segments (surface_crossings.hpp), put in by the one process whose triangle it
-/// is. Segments are cut there by whoever has them, so that in depth order the crossing lies between their parts:
-///   - an end within a mark's tolerance is put where the mark is, as is a crossing of an iso-surface: cells whose face
-///     the triangle is, and crossings on it, are on their side of it whatever was rounded how;
-///   - what is behind begins a double's last place behind the mark. So it touches nothing before it, and runs of
-///     segments (compositor/run_sink.hpp) end at a mark that another process has.
-/// What is done to a segment depends on the segment and the marks of its ray alone, which all processes have.
+/// is. Segments are cut there by whoever has them, so that in depth order the crossing lies between their parts.
+///
+/// Marks of a ray whose depths differ by no more than their tolerances are at one depth, as where the ray passes an
+/// edge or a corner. They are met in the order in which the ray, moved as edge_sign() moves it, meets their planes: by
+/// slope in x, then in y. Marks of one plane are in the order of their numbers (scene::SurfaceSet). This order is
+/// written into depths, which every exchange keeps, in steps of a double's last place:
+///   - segments that end at the marks end at the depth itself;
+///   - the marks follow, two steps apart, and what lies behind begins two steps behind the last;
+///   - a crossing of an iso-surface lies a step before the first mark of a larger number, or a step behind the last.
+/// So runs of segments (compositor/run_sink.hpp) end at a mark that another process has. What is done to a segment
+/// depends on the segment and the marks of its ray alone, which all processes have.
 class FaceMarks {
  public:
   /// Forgets all, and is of a rectangle of so many pixels.

@@ -20,6 +20,10 @@ using TriangleCorners = std::array<PixelVertex, 3>;
 /// The most that a mark's tolerance is of its depth: what lies between is taken for nothing.
 constexpr double most_tolerance = 1e-9;
 
+/// Planes whose slopes differ by less, in parts of what they are made of, are one: rounding of positions and edge
+/// functions is below it.
+constexpr double coplanar = 1e-9;
+
 scene::PixelRect box_of(const TriangleCorners& c, const scene::PixelRect& window) {
   return footprint({c[0], c[1], c[2], c[2]}, window);
 }
@@ -61,6 +65,11 @@ Edge edge_at(const PixelVertex& a, const PixelVertex& b, double x, double y, dou
   const int sign = edge_sign(a, b, x, y, pixels_per_tangent, &met);
   // Within the error any magnitude is as right.
   return {sign * std::max({std::abs(value), error * 0x1p-20, 1e-290}), met};
+}
+
+/// How an edge function grows from a pixel to the next.
+std::array<double, 2> growth(const PixelVertex& a, const PixelVertex& b) {
+  return {a.y * b.w - a.w * b.y, a.w * b.x - a.x * b.w};
 }
 
 bool one_side(const Edge& a, const Edge& b) { return (a.value > 0 && b.value > 0) || (a.value < 0 && b.value < 0); }
@@ -151,6 +160,8 @@ void FrameFaces::meet_triangle(const Place& place, const scene::PixelRect& rect,
   if (!mesh.values.empty())
     for (std::size_t i = 0; i < 3; ++i) value[i] = mesh.values[index[i]];
   const auto [low, high] = std::minmax({value[0], value[1], value[2]});
+  // Of the edges opposite to the corners.
+  const std::array<std::array<double, 2>, 3> growths{growth(c[1], c[2]), growth(c[2], c[0]), growth(c[0], c[1])};
   for (int y = box.y0; y < box.y1; ++y)
     for (int x = box.x0; x < box.x1; ++x) {
       const double px = x + 0.5, py = y + 0.5;
@@ -171,12 +182,20 @@ void FrameFaces::meet_triangle(const Place& place, const scene::PixelRect& rect,
       if (!(depth > space_->near_depth() + (space_->near_depth() > 0 ? 0 : tolerance)) ||
           !(depth < space_->far_depth()))
         continue;
+      // The depth is a mean whose weights are the edge functions; so is its slope, with their growth for weights.
+      std::array<double, 2> slope{}, slope_error{};
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+          const double weight = growths[i][axis] / (ab.value + bc.value + ca.value);
+          slope[axis] += weight * (c[i].depth - depth);
+          slope_error[axis] += std::abs(weight) * (2 * tolerance + coplanar * std::abs(c[i].depth - depth));
+        }
       const glm::dvec3 ray = space_->direction(px, py);
       const bool leaves = glm::dot(ray, normal) > 0;
       marks.add({static_cast<std::uint32_t>((y - rect.y0) * rect.width() + x - rect.x0),
                  leaves ? surface.leaving : surface.entering, depth,
-                 std::clamp(mean(value[0], value[1], value[2]), low, high), tolerance, cosine_between(ray, normal),
-                 surface.owns(place.triangle)});
+                 std::clamp(mean(value[0], value[1], value[2]), low, high), tolerance, slope, slope_error,
+                 cosine_between(ray, normal), surface.owns(place.triangle)});
     }
 }
 

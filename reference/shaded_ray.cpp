@@ -1,8 +1,11 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <optional>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "reference/integral.hpp"
 #include "reference/kept_interval.hpp"
@@ -67,14 +70,20 @@ class Reference::Ray {
     }
   }
 
+  /// How the depth of a plane changes from a pixel to the next, and the most that rounding makes of it.
+  struct Slope {
+    double value = 0, error = 0;
+  };
+
   /// Where a ray meets a face of a surface.
   struct Mark {
     double depth, reach;
-    /// In the order in which a ray meets what is at one depth.
+    /// In the order in which a ray meets what is in one plane.
     enum class Kind : std::uint8_t { leaves, goes_through, enters } kind;
     std::size_t paint;
     glm::dvec3 normal;
     double scalar;
+    std::array<Slope, 2> slope{};  ///< in x and y
   };
 
   /// Faces at one depth: of the first one.
@@ -168,11 +177,52 @@ class Reference::Ray {
         place.reach = std::max(place.reach, marks_[last].reach);
       }
       place.last = last;
-      std::stable_sort(
-          marks_.begin() + static_cast<std::ptrdiff_t>(first), marks_.begin() + static_cast<std::ptrdiff_t>(last),
-          [](const Mark& a, const Mark& b) { return std::tie(a.kind, a.paint) < std::tie(b.kind, b.paint); });
+      std::vector<Mark> marks(marks_.begin() + static_cast<std::ptrdiff_t>(first),
+                              marks_.begin() + static_cast<std::ptrdiff_t>(last));
+      for (Mark& mark : marks) mark.slope = slope(mark.normal, mark.depth);
+      std::ranges::copy(in_order(std::move(marks), 0), marks_.begin() + static_cast<std::ptrdiff_t>(first));
       places_.push_back(place);
     }
+  }
+
+  [[nodiscard]] std::array<Slope, 2> slope(const glm::dvec3& normal, double depth) const {
+    constexpr double rounding = 1e-9;
+    const View::Ray ray = reference_.view_.ray(x_, y_);
+    std::array<Slope, 2> slopes;
+    for (int axis = 0; axis < 2; ++axis) {
+      const View::Ray next = reference_.view_.ray(x_ + (axis == 0 ? 1 : 0), y_ + (axis == 1 ? 1 : 0));
+      const glm::dvec3 moved = next.origin - ray.origin + depth * (next.step - ray.step);
+      const double across = glm::dot(normal, ray.step);
+      slopes[static_cast<std::size_t>(axis)] = {-glm::dot(normal, moved) / across,
+                                                rounding * glm::length(normal) * glm::length(moved) / std::abs(across)};
+    }
+    return slopes;
+  }
+
+  /// Marks at one depth as a ray meets them that is shifted by (e, e^2) pixel, as in intersect(): the plane that comes
+  /// nearer by the shift in x is met first, of planes alike in that the one that comes nearer by y, and what is in one
+  /// plane by kind and paint.
+  static std::vector<Mark> in_order(std::vector<Mark> marks, std::size_t axis) {
+    if (marks.size() < 2) return marks;
+    if (axis == 2) {
+      std::ranges::stable_sort(
+          marks, [](const Mark& a, const Mark& b) { return std::tie(a.kind, a.paint) < std::tie(b.kind, b.paint); });
+      return marks;
+    }
+    std::ranges::stable_sort(marks, {}, [axis](const Mark& m) { return m.slope[axis].value; });
+    std::vector<Mark> ordered, alike;
+    const auto take_alike = [&] {
+      for (const Mark& mark : in_order(std::exchange(alike, {}), axis + 1)) ordered.push_back(mark);
+    };
+    for (const Mark& mark : marks) {
+      if (!alike.empty()) {
+        const Slope &from = alike.front().slope[axis], &to = mark.slope[axis];
+        if (to.value - from.value > from.error + to.error) take_alike();
+      }
+      alike.push_back(mark);
+    }
+    take_alike();
+    return ordered;
   }
 
   /// Cuts a segment at all places inside it, so that cells which overlap come in the order of depth, too.

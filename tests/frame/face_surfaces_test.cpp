@@ -159,6 +159,32 @@ TEST(BoundarySurface, OfCellsThatOverlapIsInTheOrderOfDepth) {
   EXPECT_NEAR(truth.g, green, 1e-12);
 }
 
+TEST(BoundarySurface, ThatTouchesItselfIsTheLimitOfShiftedRays) {
+  const TransferFunction fog = grey_fog();
+  scene::Surfaces surfaces;
+  surfaces.boundary = {{glm::dvec3(1, 0, 0), 0.6}};
+  scene::TetMesh all = datasets::cube(2, 0);
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Random random(seed);
+    std::vector<std::uint32_t> some;
+    for (std::uint32_t t = 0; t < all.tets.size(); ++t)
+      if (random.chance(0.4)) some.push_back(t);
+    const scene::TetMesh mesh = scene::subset(all, some);
+    // Centres of pixels lie on edges and corners of the lattice.
+    scene::Camera camera = view(ProjectionKind::orthographic, {0, 0, 4});
+    camera.parallel_scale = 17.0 / 16;
+    const scene::ImageSize size{17, 17};
+    const auto image = Renderer(mesh, exact(surfaces)).render(camera, size, fog);
+    scene::TetMesh shifted = mesh;
+    const double pixel = 2 * camera.parallel_scale / size.height;
+    for (glm::dvec3& p : shifted.positions) p.x -= 1e-6 * pixel, p.y += 1e-9 * pixel;
+    const auto limit = Renderer(shifted, exact(surfaces)).render(camera, size, fog);
+    for (std::size_t i = 0; i < image.rgba.size(); ++i) ASSERT_NEAR(image.rgba[i], limit.rgba[i], 1e-5) << seed;
+    const reference::Reference truth(mesh, camera, size, fog, scene::Emission::absorption, surfaces);
+    EXPECT_LE(reference::judge(image, truth, promised_error).max_error_not_excused, promised_error) << seed;
+  }
+}
+
 TEST(TriangleSurface, ThatCoincidesWithTheBoundaryComesFirstHoweverNearTheEyeItIs) {
   scene::Surfaces surfaces;
   surfaces.light = even_light;
