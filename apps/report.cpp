@@ -201,6 +201,7 @@ Json frame_json(const RenderOptions& options, const FilmFrame& frame, const Fram
     json["arithmetic"] = statistics.on_lattice ? "lattice" : "double";
     json["integrator"] = statistics.integrator;
     json["backend"] = statistics.composited_on.empty() ? "cpu" : statistics.composited_on;
+    json["overlapping"] = statistics.overlapping;
   }
   if (record->verification) json["verify"] = analysis::verification_json(*record->verification);
   return json;
@@ -307,6 +308,7 @@ std::string run_line(const RenderOptions& options, const Description& data, cons
                         statistics.instruction_set, time_words(record.frame_ms.front()));
     if (!options.settings.mesh.device.backends.empty())
       line += fmt::format("; composited by {}", statistics.composited_on);
+    if (statistics.overlapping) line += "; ray segments exchanged, for cells of several ranks overlap";
   }
   if (const std::size_t steps = frames.back().step + 1; is_series(options.plan))
     line += first.camera ? fmt::format("; {} time steps", steps)

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -70,7 +72,7 @@ class RunMerger final : public TileMerger {
       for (Stream& stream : streams_)
         if (stream.header.pixel == p) take_here(stream);
       if (here_.empty() && (!all || pixels_.empty())) continue;
-      MergedPixel pixel = pixels_.empty() ? MergedPixel{} : pixels_[p];
+      Pixel pixel = pixels_.empty() ? Pixel{} : pixels_[p];
       for (std::size_t left = composite(final_depth, pixel); left < here_.size(); ++left) push(p, here_[left]);
       if (all)
         pixel.write(image_, p);
@@ -91,6 +93,12 @@ class RunMerger final : public TileMerger {
     double front;
     float thickness, red, green, blue, opacity;
     std::uint32_t next = none;
+  };
+
+  /// What is composited so far, and the end of its farthest run.
+  struct Pixel : MergedPixel {
+    double reach = -std::numeric_limits<double>::infinity();
+    float opacity_to_reach = 0;
   };
 
   /// An ascending part, read pixel by pixel beside the others. Its single segments are not read here.
@@ -162,7 +170,7 @@ class RunMerger final : public TileMerger {
   }
 
   /// The pixel's runs before `final_depth`, front to back. Leaves all of them ordered; returns the first that is not.
-  std::size_t composite(double final_depth, MergedPixel& pixel) {
+  std::size_t composite(double final_depth, Pixel& pixel) {
     // By all a run holds: equal runs are interchangeable, so the order of arrival shows nowhere.
     const auto before = [](const Run& a, const Run& b) {
       if (a.front != b.front) return a.front < b.front;
@@ -180,11 +188,27 @@ class RunMerger final : public TileMerger {
     for (; at < here_.size() && here_[at].front < final_depth; ++at) {
       const Run& run = here_[at];
       if (!pixel.open) continue;
+      note_overlap(run, pixel);
       if (run.opacity > 0) pixel.first_depth = std::min(pixel.first_depth, run.front);
       pixel.add(run.red, run.green, run.blue, run.opacity);
       pixel.open = (1 - pixel.opacity) * weight_ >= termination_error_;
     }
     return at;
+  }
+
+  /// Cells overlap if a run begins before one ends: no order of the two is right then. Wrong order changes no pixel by
+  /// more than the product of their opacities.
+  void note_overlap(const Run& run, Pixel& pixel) const {
+    constexpr double negligible = 1e-7, rounding = 0x1p-20;
+    // Ends on the lattice are some steps apart where one of two cells was projected in double precision.
+    const double steps =
+        context_.lattice != nullptr ? 2 * projection::back_end_steps * context_.lattice->depth_unit : 0;
+    const double within = steps + rounding * run.thickness + 0x1p-40 * std::abs(run.front);
+    const double back = run.front + run.thickness - within;  // at least
+    if (run.front < pixel.reach && run.front < back && run.opacity * pixel.opacity_to_reach * weight_ > negligible &&
+        context_.overlapping != nullptr)
+      *context_.overlapping = true;
+    if (back > pixel.reach) pixel.reach = back, pixel.opacity_to_reach = run.opacity;
   }
 
   /// Runs of one segment, with the bits that their projector would have found.
@@ -236,7 +260,7 @@ class RunMerger final : public TileMerger {
   std::uint64_t budget_;
   scene::PixelRect rect_;
   double weight_, termination_error_;
-  std::vector<MergedPixel> pixels_;      ///< once something was composited before the last
+  std::vector<Pixel> pixels_;            ///< once something was composited before the last
   std::vector<std::uint32_t> first_of_;  ///< by pixel: its last run that came, which has the others' numbers
   std::vector<Run> runs_;
   std::vector<Run> here_;  ///< one pixel's

@@ -45,8 +45,10 @@ struct MergeContext {
   /// Not null: where the device fails the CPU takes over, and this is set.
   std::atomic<bool>* device_failed = nullptr;
   std::atomic<std::uint64_t>* segments = nullptr;  ///< grows by those that the device makes of cells; null: nobody asks
-  const scene::SurfaceSet* surfaces = nullptr;     ///< in the volume; null: none
-  const MatterLight* light = nullptr;              ///< on the matter of a mesh, by the CPU; null: none
+  /// Set where runs of a pixel overlap, so that no order of them is right; null: nobody asks.
+  std::atomic<bool>* overlapping = nullptr;
+  const scene::SurfaceSet* surfaces = nullptr;  ///< in the volume; null: none
+  const MatterLight* light = nullptr;           ///< on the matter of a mesh, by the CPU; null: none
 
   /// What may still come behind a pixel of transmittance 1.
   [[nodiscard]] double opacity_weight() const {

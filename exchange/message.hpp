@@ -21,7 +21,7 @@ namespace tessera::exchange {
 static_assert(std::endian::native == std::endian::little, "messages are little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 27;        ///< the next one whenever a message changes
+inline constexpr std::uint16_t wire_version = 28;        ///< the next one whenever a message changes
 
 /// All kinds, by channel, and what follows the header.
 enum class MessageKind : std::uint16_t {
@@ -72,7 +72,7 @@ enum class MessageKind : std::uint16_t {
   tet_count = 27,        ///< u64
   tet_table = 28,        ///< list of u64: a rank's tets, or messages, for each projector
   longest_edge = 29,     ///< f32
-  frames_complete = 30,  ///< u64
+  frames_complete = 30,  ///< u64; of a mesh also u64: 1: the rest has to be rendered once more
   sink_failed = 31,      ///< u8
   cell_totals = 32,      ///< f64 lowest, f64 highest, u64 blank samples
   row_costs = 33,        ///< i32 x0, y0, x1, y1 of the map's region, list of u64
@@ -84,7 +84,6 @@ enum class MessageKind : std::uint16_t {
   arguments = 58,        ///< list of bytes: what the sender was started with (first_contact.cpp)
   field_samples = 39,    ///< list of scene::FieldSample: of a rank's part (frame/field_samples.cpp)
   open_faces = 47,       ///< list of OpenFace (frame/boundary_faces.cpp): that one tet of a rank's part has alone
-  speed = 50,            ///< f64 samples a second of the last frame, 0: unknown
   ray_tets = 48,         ///< list of RayTet (frame/probe.cpp): those of a rank's part that a ray meets
   curved_part = 40,  ///< frame/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
   fill_tally = 62,   ///< scene::FillTally: of a rank's part of a field (frame/dataset.cpp)

@@ -124,8 +124,9 @@ struct FrameEnd {
   std::uint64_t on_lattice = 0;      ///< 1: the projector's segments are on the integer lattice
   std::uint64_t failed_devices = 0;  ///< compositors whose device failed and that went on with the CPU
   std::uint64_t stopped = 0;         ///< projectors and compositors that left something out, being stopped
+  std::uint64_t overlapping = 0;     ///< compositors that were sent runs which overlap
 };
-static_assert(sizeof(FrameEnd) == sizeof(scene::FrameCounters) + 24);
+static_assert(sizeof(FrameEnd) == sizeof(scene::FrameCounters) + 32);
 /// Two processes' counts put together.
 FrameEnd sum(const FrameEnd& a, const FrameEnd& b);
 

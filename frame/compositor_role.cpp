@@ -69,6 +69,7 @@ struct Frame {
   scene::Lattice units;                       ///< on a device: the table's
   double start_us = 0;
   std::atomic<std::uint64_t> segments = 0;  ///< of cells that the device rasterized
+  std::atomic<bool> overlapping = false;    ///< cells of several projectors do
   std::atomic<bool> stopped = false;        ///< from now on tiles lack fragments, and are not sent
 
   struct Merge {
@@ -202,6 +203,7 @@ class CompositorLoop {
       sums.failed_devices += run_.device.failed ? 1 : 0;
       sums.counters.segments += first.segments;
       sums.stopped += first.stopped ? 1 : 0;
+      sums.overlapping += first.overlapping ? 1 : 0;
       first.sender.end(sums);
       if (trace_ != nullptr) trace_->add_frame(static_cast<std::int32_t>(first.number), first.start_us);
       frames_.erase(frames_.begin());
@@ -234,6 +236,7 @@ class CompositorLoop {
     context.frame = of.number;
     context.device_failed = run_.device.may_fail ? &run_.device.failed : nullptr;
     context.segments = &of.segments;
+    context.overlapping = &of.overlapping;
     context.surfaces = of.surfaces.empty() ? nullptr : &of.surfaces;
     context.light = of.light ? &*of.light : nullptr;
     return context;
@@ -360,6 +363,7 @@ std::exception_ptr run_assembler(const DistributedRun& run, const DistributedCal
     if (sums.failed_devices > 0)
       statistics.composited_on += fmt::format(", of which {} failed and left the rest to the CPU", sums.failed_devices);
     finished.stopped = sums.stopped > 0;
+    finished.overlapping = sums.overlapping > 0;
     ++left;
     guarded([&] { callbacks.frame(std::move(finished)); });
   }

@@ -59,6 +59,7 @@ struct FinishedFrame {
   FrameStatistics statistics;  ///< of all ranks
   double frame_ms;             ///< since the frame before it was complete, or since all ranks were ready
   bool stopped = false;        ///< the image lacks tiles
+  bool overlapping = false;    ///< runs were sent that overlap: the image may be wrong
 };
 
 /// What the assembling rank's caller is told, from any thread, one call at a time. An exception stops the run on all

@@ -130,32 +130,56 @@ class MeshOnRanks final : public Session::State {
   std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
                      Sink& sink, const std::stop_token& stop) override {
     const bool deep = settings.deep || settings.peel;
-    const Exchange exchange = exchange_of(this->settings(), deep);
-    check_exchange(exchange);
-    renderer_->set_deep(deep, settings.deep_accuracy, settings.peel, exchange);
+    Part part;
+    do {
+      const Exchange exchange = overlapping_ ? Exchange::segments : exchange_of(this->settings(), deep);
+      check_exchange(exchange);
+      renderer_->set_deep(deep, settings.deep_accuracy, settings.peel, exchange);
+      part = render_from(part.complete, views, function, settings, sink, stop);
+      overlapping_ |= part.overlapping != 0;
+    } while (part.overlapping != 0);
+    if (!assembles() && part.complete < views.size()) sink.frame(stopped_frame(part.complete));
+    return part.complete;
+  }
+
+  [[nodiscard]] bool assembles() const override { return transport_->rank() == distributed_.roles.assembler(); }
+
+ private:
+  /// How many frames are complete, on every rank, and whether the next one has to be made of segments.
+  struct Part {
+    std::uint64_t complete = 0, overlapping = 0;
+  };
+  /// Thrown where a frame's runs overlap: ends the frames on all ranks in order.
+  struct Overlap {};
+
+  Part render_from(std::size_t first, std::span<const View> views, const TransferFunction& function,
+                   const FrameSettings& settings, Sink& sink, const std::stop_token& stop) {
     std::vector<frame::FrameJob> jobs;
-    for (const View& view : views) jobs.push_back({view.camera, view.size, 0});
-    std::size_t complete = 0;
+    for (const View& view : views.subspan(first)) jobs.push_back({view.camera, view.size, 0});
+    Part part{first, 0};
     bool ended = false;
     frame::DistributedCallbacks callbacks;
     callbacks.frame = [&](frame::FinishedFrame finished) {
       if (ended) return;
+      if (finished.overlapping && !finished.stopped) throw Overlap();
+      finished.frame += first;
       if (finished.stopped) {
         ended = true;
         frame::call_sink([&] { sink.frame(stopped_frame(finished.frame)); });
         return;
       }
-      ++complete;
+      ++part.complete;
       RenderedFrame frame;
       frame.number = finished.frame;
       frame.image = std::move(finished.image);
       frame.statistics = statistics_of(finished.statistics, finished.frame_ms);
-      if (deep) frame::put_deep(std::move(finished.deep), settings, frame);
+      frame.statistics.overlapping = overlapping_;
+      if (settings.deep || settings.peel) frame::put_deep(std::move(finished.deep), settings, frame);
       frame::call_sink([&] { sink.frame(std::move(frame)); });
     };
     if (sink.wants_tiles())
       callbacks.tile = [&](std::size_t number, const PixelRect& rect, const Image& image) {
-        frame::call_sink([&] { sink.tile({number, rect, image}); });
+        frame::call_sink([&] { sink.tile({first + number, rect, image}); });
       };
     callbacks.memory = [&](ImageSize size) {
       Image memory;
@@ -167,17 +191,15 @@ class MeshOnRanks final : public Session::State {
       renderer_->render(jobs, function, callbacks, stop);
     } catch (const frame::SinkFailure& failure) {
       thrown = failure.cause;  // the others have ended in order too
+    } catch (const Overlap&) {
+      part.overlapping = 1;
     }
-    complete = exchange::broadcast_value(*transport_, distributed_.roles.assembler(),
-                                         exchange::MessageKind::frames_complete, std::uint64_t{complete});
+    part = exchange::broadcast_value(*transport_, distributed_.roles.assembler(),
+                                     exchange::MessageKind::frames_complete, part);
     if (thrown) std::rethrow_exception(thrown);
-    if (!assembles() && complete < views.size()) sink.frame(stopped_frame(complete));
-    return complete;
+    return part;
   }
 
-  [[nodiscard]] bool assembles() const override { return transport_->rank() == distributed_.roles.assembler(); }
-
- private:
   /// Raw segments are sent with the number of their tet, in 32 bits.
   void check_exchange(Exchange exchange) const {
     if (exchange == Exchange::segments && data().facts.tets > 0xffffffffull)
@@ -235,6 +257,7 @@ class MeshOnRanks final : public Session::State {
 
   frame::DistributedSettings distributed_;
   std::shared_ptr<exchange::Transport> transport_;
+  bool overlapping_ = false;  ///< cells of several ranks overlap: from now on segments are exchanged
   std::optional<Trace> projecting_, compositing_;  ///< faces of the caller's trace
   std::optional<frame::DistributedRenderer> renderer_;
 };

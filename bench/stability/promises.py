@@ -17,6 +17,7 @@ import array
 import importlib
 import json
 import math
+import os
 import pathlib
 import random
 import subprocess
@@ -25,6 +26,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 CASES = pathlib.Path(__file__).resolve().parent / "promise_cases"
+ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 METHODS = [["--integrator", "exact"], ["--accuracy", "1e-4"], ["--accuracy", "1e-5"]]
 
 
@@ -52,7 +54,7 @@ class Case:
         if made.get("camera"):
             (folder / "camera.txt").write_text(made["camera"])
 
-    def render(self, words, verify=True, name="picture.pfm"):
+    def render(self, words, verify=True, name="picture.pfm", ranks=1):
         """(status, the frame's report or None, what the program said, the picture's path)."""
         picture, report = self.folder / name, self.folder / "report.json"
         report.unlink(missing_ok=True)
@@ -62,8 +64,10 @@ class Case:
         command += [*self.made.get("args", []), *words, "-o", picture, "--report", report, "--quiet", "--threads", self.threads]
         if verify:
             command += ["--verify", "100000000"]
+        if ranks > 1:
+            command = ["mpirun", "--oversubscribe", "-n", ranks, *command]
         self.command = [str(w) for w in command]
-        done = subprocess.run(self.command, capture_output=True, text=True, timeout=600)
+        done = subprocess.run(self.command, capture_output=True, text=True, timeout=600, env=ENVIRONMENT)
         frame = json.loads(report.read_text())["frames"][0] if report.exists() else None
         return done.returncode, frame, (done.stderr or done.stdout).strip(), picture
 

@@ -26,7 +26,8 @@ enum class Rasterizer {
 
 /// What projectors send to compositors (meshes on several ranks).
 enum class Exchange {
-  runs,      ///< segments that touch, composited; of a projector that has all cells, pixels. 2e-6 from `segments`
+  runs,      ///< segments that touch, composited; of a projector that has all cells, pixels. 2e-6 from `segments`,
+             ///< which take their place where cells of several ranks overlap (FrameStatistics::overlapping)
   segments,  ///< raw ray segments, as Juliachs et al. 2007: the bits of a single process whatever the job's shape, on
              ///< machines of one instruction set (scanline: up to the order of equal keys, of which the paper has many)
 };
@@ -133,8 +134,8 @@ struct RankSettings {
   /// Grids: of the cost map, map pixels an image pixel along each axis; `learned` splits by 0.25 at most.
   double balance_resolution = 0.5;
   std::vector<double> balance_weights{};  ///< grids: how much of the work each rank should get; empty: equal
-  /// Grids: each rank gets as much as its speed in the frames before says (samples a second of wall clock), in place of
-  /// weights; equal parts in the first frame.
+  /// Grids: in place of weights, ranks whose threads took more CPU time than the mean in the frames before get less of
+  /// the next one; equal parts in the first frame.
   bool balance_measured = false;
 };
 

@@ -24,6 +24,7 @@ struct FrameStatistics {
   std::string instruction_set;  ///< of the kernels that ran
   std::string integrator;       ///< what `automatic` chose
   std::string composited_on;    ///< meshes on several ranks, or on a device
+  bool overlapping = false;     ///< meshes: cells of several ranks overlap, so Exchange::segments took runs' place
   double milliseconds = 0;      ///< from when all ranks were ready to the picture in memory
   /// Grids, of each rank: its rectangle of the picture (vertical edges may step by 4 pixels), pieces, CPU seconds.
   std::vector<PixelRect> rectangles;

@@ -89,6 +89,38 @@ TEST_F(Mpirun, DuplicateCellsAreCountedAndDroppedAsInOneProcess) {
   }
 }
 
+TEST_F(Mpirun, CellsThatOverlapHaveTheBytesOfOneProcess) {
+  const Folder folder;
+  const std::string cube = folder.cube(), once = folder / "piece.vtu", moved = folder / "moved.vtu";
+  ASSERT_EQ(tessera({"convert", cube, once, "--quiet"}).status, 0);
+  ASSERT_EQ(tessera({"convert", cube, moved, "--scale", "0.8,0.9,1.1", "--quiet"}).status, 0);
+  const std::string list =
+      folder.file("both.pvtu",
+                  "<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid>"
+                  "<Piece Source=\"piece.vtu\"/><Piece Source=\"moved.vtu\"/></PUnstructuredGrid></VTKFile>");
+  const auto film = [&](const std::string& name, std::vector<std::string> others) {
+    std::vector<std::string> all{"render",  list, "-o",       folder / (name + "_%d.pfm"), "--size", "40x30",
+                                 "--orbit", "4",  "--report", folder / (name + ".json")};
+    all.insert(all.end(), others.begin(), others.end());
+    return all;
+  };
+  ASSERT_EQ(tessera(film("one", {"--quiet"})).status, 0);
+  for (const std::vector<std::string>& exchange : {std::vector<std::string>{}, {"--exchange", "runs"}}) {
+    std::vector<std::string> words = film("ranks", exchange);
+    for (const char* more : {"--without", "sharing", "--partition", "random", "--threads", "1"})
+      words.emplace_back(more);
+    const Outcome outcome = mpirun(3, words);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find("ray segments exchanged, for cells of several ranks overlap"), std::string::npos)
+        << outcome.err;
+    for (int n = 0; n < 4; ++n)
+      EXPECT_EQ(contents(folder / fmt::format("ranks_{}.pfm", n)), contents(folder / fmt::format("one_{}.pfm", n)))
+          << n;
+    const nlohmann::json report = nlohmann::json::parse(contents(folder / "ranks.json"));
+    for (const nlohmann::json& frame : report.at("frames")) EXPECT_TRUE(frame.at("overlapping").get<bool>());
+  }
+}
+
 TEST_F(Mpirun, ADeepPictureHasTheBytesOfOneProcess) {
   const Folder folder;
   const std::string mesh = folder.cube();

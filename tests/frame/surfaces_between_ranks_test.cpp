@@ -7,6 +7,7 @@
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
 #include "exchange/loopback_transport.hpp"
+#include "frame/boundary_faces.hpp"
 #include "frame/distributed.hpp"
 #include "scene/mesh_facts.hpp"
 
@@ -58,8 +59,10 @@ void expect_those_of_one_process(const scene::TetMesh& mesh, DistributedSettings
     EXPECT_EQ(segments[0].image.rgba, expected.rgba) << "segments";
     EXPECT_EQ(segments[0].image.depth, expected.depth);
     settings.exchange = Exchange::runs;
+    const auto runs = render(parts, settings, job, function);
     // Runs are rounded to float: 6e-8 of their light each.
-    EXPECT_LT(difference(render(parts, settings, job, function).at(0).image, expected), 2e-6);
+    EXPECT_LT(difference(runs.at(0).image, expected), 2e-6);
+    EXPECT_FALSE(runs.at(0).overlapping);
   }
 }
 
@@ -119,6 +122,62 @@ TEST(SurfacesBetweenRanks, OfFacesAreThoseOfOneProcess) {
         SCOPED_TRACE(::testing::Message() << "cells " << cells << ", perspective " << perspective);
         expect_those_of_one_process(mesh, settings, job, function);
       }
+  }
+}
+
+/// The boundary once more as triangles of a surface, every other one turned round.
+std::shared_ptr<TriangleMesh> skin_of(const scene::TetMesh& mesh) {
+  auto skin = std::make_shared<TriangleMesh>(boundary_faces(mesh).mesh);
+  for (std::size_t t = 0; t < skin->triangles.size(); t += 2) std::swap(skin->triangles[t][0], skin->triangles[t][1]);
+  return skin;
+}
+
+TEST(SurfacesBetweenRanks, ThatCoincideAreInOneProcesssOrder) {
+  const scene::TransferFunction function({{0, {0.2, 0.4, 0.9}, 0.5}, {1, {1, 0.4, 0.2}, 0.5}});
+  FrameJob job{{}, {31, 31}, 0};
+  for (const bool regular : {true, false}) {
+    const scene::TetMesh mesh = datasets::cube(3, regular ? 0.0 : 0.2);
+    DistributedSettings settings;
+    settings.render.integrator.kind = scene::IntegratorKind::exact;
+    settings.render.threads = 1;
+    settings.render.memory_bytes = 256ull << 20;
+    settings.render.surfaces.boundary = {{glm::dvec3(1, 0, 0), 0.5}};
+    settings.render.surfaces.triangles = {{skin_of(mesh), glm::dvec3(0, 0, 1), 0.5}, {skin_of(mesh), {}, 0.3}};
+    settings.render.surfaces.iso = {{0.5, {}, 0.4}};
+    for (const glm::dvec3 eye : {glm::dvec3(3.1, 2.3, 4.2), glm::dvec3(0, 0, 5)}) {
+      job.camera.position = eye;
+      job.camera.projection = scene::ProjectionKind::orthographic;
+      job.camera.parallel_scale = 1.6;
+      SCOPED_TRACE(::testing::Message() << "regular " << regular << ", eye at z " << eye.z);
+      expect_those_of_one_process(mesh, settings, job, function);
+    }
+  }
+}
+
+TEST(RunsBetweenRanks, SayWhereCellsOverlap) {
+  const scene::TransferFunction function({{0, {0.2, 0.4, 0.9}, 0.5}, {1, {1, 0.4, 0.2}, 0.5}});
+  const auto cube_at = [](double x) {
+    scene::TetMesh mesh = datasets::cube(3, 0.2);
+    for (glm::dvec3& p : mesh.positions) p.x += x;
+    return mesh;
+  };
+  FrameJob job{{}, {31, 31}, 0};
+  job.camera.position = {3.1, 2.3, 4.2};
+  for (const double apart : {0.0, 0.5, 1.9, 2.5}) {
+    for (const bool lattice : {true, false}) {
+      DistributedSettings settings;
+      settings.exchange = Exchange::runs;
+      settings.share_memory = false;  // ranks of one machine have all cells of a tile else
+      settings.render.use.lattice = lattice;
+      std::vector<scene::TetMesh> parts{cube_at(0), cube_at(apart)};
+      std::uint32_t number = 0;
+      for (scene::TetMesh& part : parts) {
+        part.original_cell.resize(part.tets.size());
+        for (auto& cell : part.original_cell) cell = number++;
+      }
+      EXPECT_EQ(render(parts, settings, job, function).at(0).overlapping, apart < 2)
+          << apart << ", lattice " << lattice;
+    }
   }
 }
 

@@ -1,0 +1,80 @@
+"""Surfaces on several ranks, of which each composites its own runs: they lie in one process's order, whoever has them.
+
+Some tets of a lattice, each with its boundary's triangles once more as a surface from a file, in either direction, and of
+other colors; seen from anywhere. Every rank's share of cells and triangles is another one's, so the order at one depth is
+that of several processes. The picture must be one process's, to what the rounding of runs may change.
+"""
+import array
+import itertools
+
+from promise_cases.files import split_box, write_vtu
+from promise_cases.plateau_meshes import camera
+
+TOLERANCE = 2e-6
+
+
+def boundary_of(tets):
+    faces = {}
+    for tet in tets:
+        for face in itertools.combinations(tet, 3):
+            faces.setdefault(tuple(sorted(face)), []).append(face)
+    return [found[0] for found in faces.values() if len(found) == 1]
+
+
+def write_triangles(path, points, triangles):
+    lines = ["# vtk DataFile Version 3.0", "triangles", "ASCII", "DATASET POLYDATA", f"POINTS {len(points)} double"]
+    lines += [" ".join(repr(float(x)) for x in p) for p in points]
+    lines.append(f"POLYGONS {len(triangles)} {4 * len(triangles)}")
+    lines += [f"3 {a} {b} {c}" for a, b, c in triangles]
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def case(r, folder, tessera):
+    points, tets = split_box([r.randint(1, 3) for _ in range(3)])
+    share = r.choice((0.3, 0.7, 1.0))
+    tets = [t for t in tets if r.random() < share] or tets[:1]
+    scalars = [r.uniform(-1, 1) for _ in points]
+    mesh = write_vtu(folder / "mesh.vtu", points, tets, scalars)
+    args, surfaces = [], r.sample(("boundary", "skin", "skin again"), r.choice((1, 2, 2, 3)))
+    for surface in surfaces:
+        name = "boundary"
+        if surface != "boundary":
+            triangles = [f if r.random() < 0.5 else f[::-1] for f in boundary_of(tets)]
+            name = write_triangles(folder / f"{surface.replace(' ', '_')}.vtk", points, triangles)
+        args += ["--surface", f"{name}:{r.choice(('red', 'blue', 'green'))}:{r.choice((0.3, 0.5, 1.0))}"]
+    if r.random() < 0.3:
+        args += ["--iso", f"{r.uniform(-0.5, 0.5)!r}:yellow:0.4"]
+    extinction = r.choice((0.0, 0.5))
+    knots = [(-1.0, 1.0, 0.3, 0.1, extinction), (1.0, 0.1, 0.5, 1.0, extinction)]
+    return {"input": [mesh], "function": knots, "camera": camera(r, 24), "args": args, "ranks": r.choice((2, 3)),
+            "partition": r.choice(("file", "curve", "random")), "methods": [["--integrator", "exact"]],
+            "words": f"{len(tets)} tets, {', '.join(surfaces)}, extinction {extinction}"}
+
+
+def check(case, methods, tally):
+    """One process's picture against the reference, and that of ranks against it."""
+    made, broken = case.made, []
+    for words in methods:
+        status, frame, said, path = case.render(words)
+        if status not in (0, 4) or frame is None:
+            return False, f"{' '.join(words)}: status {status}: {said}"
+        verify = frame["verify"]
+        tally["pixels"] += verify["pixels"]
+        tally["excused"] += verify["excused"]
+        tally["frames"] += 1
+        tally["double"] += frame.get("arithmetic") == "double"
+        if verify["max_error_not_excused"] is None or not verify["max_error_not_excused"] <= verify["bound"]:
+            if made.get("verified", True):
+                broken.append(f"one process: {verify['max_error_not_excused']} from the reference")
+        alone = array.array("f", path.read_bytes().split(b"\n", 3)[3])
+        words = [*words, "--partition", made["partition"], "--without", "sharing"]
+        status, frame, said, path = case.render(words, verify=False, name="ranks.pfm", ranks=made["ranks"])
+        if status != 0 or frame is None:
+            return False, f"{made['ranks']} ranks: status {status}: {said}"
+        together = array.array("f", path.read_bytes().split(b"\n", 3)[3])
+        error = max(abs(a - b) for a, b in zip(alone, together))
+        tally["worst"] = max(tally["worst"], error / TOLERANCE)
+        if not error <= TOLERANCE:
+            broken.append(f"{made['ranks']} ranks: {error:.3g} from one process")
+    return not broken, "; ".join(broken)
