@@ -321,12 +321,13 @@ class PacketCast {
     const MF met = surfaces_.met(low, high, live);
     const WindowPlace place = place_of(n);
     const Window window(place.front, place.back, chunk_.block.pitch);
-    add_surfaces(path_of(lanes_, n, slabs_.i_window[n], slabs_.j_window[n]), window, met);
+    add_surfaces(path_of(lanes_, n, slabs_.i_window[n], slabs_.j_window[n]), window, rest_at(place), met);
     return HN::AndNot(met, live);
   }
-  HWY_INLINE void add_surfaces(const SlabPath& path, const Window& window, MF lanes) {
+  HWY_INLINE RestOfSamples rest_at(const WindowPlace& place) const { return {chunk_.block, place.front, place.back}; }
+  HWY_INLINE void add_surfaces(const SlabPath& path, const Window& window, const RestOfSamples& rest, MF lanes) {
     SurfaceCast<Lookup>(frame_, chunk_.axes, lookup_, lanes_, current_, surfaces_, progress_, notes_, counts_)
-        .cast(path, window, lanes);
+        .cast(path, window, rest, lanes);
   }
 
   /// A slab in which lanes begin or end, cell data, shaded.
@@ -345,7 +346,7 @@ class PacketCast {
     if constexpr (has_surfaces) {
       if (!meets_none) {
         const MF there = HN::Gt(path.to, path.from);
-        add_surfaces(path, window, there);
+        add_surfaces(path, window, rest_at(place), there);
         if (HWY_UNLIKELY(frame_.shading == nullptr && frame_.error_bound != nullptr && frame_.error_bound->ends))
           note_ends(*frame_.error_bound, lookup_, part_line(lanes_, path, window), path, there, lanes_.length, before,
                     light, progress_, notes_);
@@ -353,7 +354,7 @@ class PacketCast {
       }
     }
     if (cell_data || frame_.shading != nullptr) {
-      cast_voxels<cell_data>(frame_, chunk_.axes, lookup_, lanes_, path, window,
+      cast_voxels<cell_data>(frame_, chunk_.axes, lookup_, lanes_, path, window, rest_at(place),
                              uniform ? &current_.uniform() : nullptr, HN::Gt(path.to, path.from), progress_, notes_,
                              counts_);
       return;
@@ -367,7 +368,7 @@ class PacketCast {
         apart = cast_mixed(frame_, lookup_, line, there, HN::Add(path.from, path.k), length, current_, progress_,
                            notes_, counts_);
       if (!HN::AllFalse(d, apart))
-        cast_voxels<false>(frame_, chunk_.axes, lookup_, lanes_, path, window,
+        cast_voxels<false>(frame_, chunk_.axes, lookup_, lanes_, path, window, rest_at(place),
                            uniform && has_steps_ ? &current_.uniform() : nullptr, apart, progress_, notes_, counts_);
       if (HWY_UNLIKELY(frame_.error_bound != nullptr && frame_.error_bound->ends))
         note_ends(*frame_.error_bound, lookup_, line, path, there, lanes_.length, before, light, progress_, notes_);

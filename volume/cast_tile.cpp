@@ -90,6 +90,7 @@ HWY_INLINE bool lay_out(const FrameView& frame, const RayAxes& axes, const Reach
     block.rows =
         std::max<std::ptrdiff_t>(block.rows, std::max(block.slab_j_last[a], block.slab_j_last[b]) - block.low_j[s] + 1);
   }
+  block.has_rest = frame.has_rest;
   block.reserve();
   return true;
 }

@@ -55,14 +55,16 @@ HWY_INLINE HN::Vec<DD> load_doubles(const T* p) {
   }
 }
 
-/// LaneSamples::lane() of `count` samples, to the bit. So many as `readable` from `from` on may be read, and as many
-/// floats as a vector holds from `to` on be written over with what they hold.
+/// LaneSamples::lane() of `count` samples, to the bit, and what of them it rounds off, unless `rest` is null. So many
+/// as `readable` from `from` on may be read, and as many floats as a vector holds from `to` on be written over with
+/// what they hold.
 template <class T>
-HWY_INLINE void convert(const T* from, std::int64_t count, std::int64_t readable, const LaneSamples& lanes, float* to) {
+HWY_INLINE void convert(const T* from, std::int64_t count, std::int64_t readable, const LaneSamples& lanes, float* to,
+                        float* rest) {
   std::int64_t i = 0;
   if constexpr (std::is_same_v<T, float> || sizeof(T) <= 2) {
     // A power of two and no shift: single precision rounds the same.
-    if (lanes.scales_floats) {
+    if (lanes.scales_floats && rest == nullptr) {
       const HN::ScalableTag<float> df;
       const auto scale = HN::Set(df, static_cast<float>(lanes.factor));
       const auto wide = static_cast<std::int64_t>(HN::Lanes(df));
@@ -92,19 +94,23 @@ HWY_INLINE void convert(const T* from, std::int64_t count, std::int64_t readable
   const DD d;
   const auto factor = HN::Set(d, lanes.factor), term = HN::Set(d, lanes.term), lift = HN::Set(d, lanes.lift);
   const auto n = static_cast<std::int64_t>(HN::Lanes(d));
-  const auto some = [&](const T* p, float* out) HWY_ATTR {
+  const auto some = [&](const T* p, float* out, float* rounded_off) HWY_ATTR {
     const auto sample = load_doubles(p);
     const auto exact = HN::MulAdd(HN::Mul(sample, lift), factor, term), lane = lanes.whole ? HN::Round(exact) : exact;
     // inf - inf and NaN - NaN are NaN, x - x is 0: blanks become NaN.
-    HN::StoreU(HN::DemoteTo(DFH(), HN::Add(lane, HN::Sub(sample, sample))), DFH(), out);
+    const auto rounded = HN::DemoteTo(DFH(), HN::Add(lane, HN::Sub(sample, sample)));
+    HN::StoreU(rounded, DFH(), out);
+    if (rounded_off != nullptr)
+      HN::StoreU(HN::DemoteTo(DFH(), HN::Sub(exact, HN::PromoteTo(d, rounded))), DFH(), rounded_off);
   };
-  for (; i + n <= count; i += n) some(from + i, to + i);
+  for (; i + n <= count; i += n) some(from + i, to + i, rest == nullptr ? nullptr : rest + i);
   if (i >= count) return;
   T last[HN::MaxLanes(DD())] = {};
-  float out[HN::MaxLanes(DD())];
+  float out[HN::MaxLanes(DD())], out_rest[HN::MaxLanes(DD())];
   for (std::int64_t l = 0; l < n && i + l < count; ++l) last[l] = from[i + l];
-  some(last, out);
+  some(last, out, rest == nullptr ? nullptr : out_rest);
   for (std::int64_t l = 0; l < n && i + l < count; ++l) to[i + l] = out[l];
+  for (std::int64_t l = 0; rest != nullptr && l < n && i + l < count; ++l) rest[i + l] = out_rest[l];
 }
 
 /// Calls f with a number of the samples' type.
@@ -132,10 +138,10 @@ HWY_INLINE void with_type(scene::SampleType type, const F& f) {
 
 /// Samples [first, first + count) of a brick of `samples`.
 HWY_INLINE void convert_any(const std::byte* from, scene::SampleType type, std::int64_t first, std::int64_t count,
-                            std::int64_t samples, const LaneSamples& lanes, float* to) {
+                            std::int64_t samples, const LaneSamples& lanes, float* to, float* rest) {
   with_type(type, [&](auto kind) HWY_ATTR {
     using T = decltype(kind);
-    convert(reinterpret_cast<const T*>(from) + first, count, samples - first, lanes, to);
+    convert(reinterpret_cast<const T*>(from) + first, count, samples - first, lanes, to, rest);
   });
 }
 
@@ -259,6 +265,7 @@ class BlockFill {
                              end = a == cells[ia] - 1 ? columns : std::min(columns, (a + 1) * side - block_.low_i[s]);
           const float value = has_blanks ? std::numeric_limits<float>::quiet_NaN() : hidden[stride[ia] * a];
           std::fill(to + i, to + end, value);
+          if (float* const rest = block_.rest_of(to + i)) std::fill_n(rest, end - i, 0.0f);
           i = end;
         }
       }
@@ -291,12 +298,14 @@ class BlockFill {
   HWY_INLINE void repeat_last() const {
     for (int n = box_.first_slab; n < slices_; ++n) {
       const std::int64_t columns = columns_of(n), rows = rows_of(n);
-      float* const slice = block_.slice(n);
-      for (std::int64_t j = 0; j < rows && columns < block_.pitch; ++j)
-        std::fill(slice + j * block_.pitch + columns, slice + (j + 1) * block_.pitch,
-                  slice[j * block_.pitch + columns - 1]);
-      for (std::int64_t j = rows; j < block_.rows; ++j)
-        std::copy_n(slice + (rows - 1) * block_.pitch, block_.pitch, slice + j * block_.pitch);
+      for (float* const slice : {block_.slice(n), block_.rest_of(block_.slice(n))}) {
+        if (slice == nullptr) continue;
+        for (std::int64_t j = 0; j < rows && columns < block_.pitch; ++j)
+          std::fill(slice + j * block_.pitch + columns, slice + (j + 1) * block_.pitch,
+                    slice[j * block_.pitch + columns - 1]);
+        for (std::int64_t j = rows; j < block_.rows; ++j)
+          std::copy_n(slice + (rows - 1) * block_.pitch, block_.pitch, slice + j * block_.pitch);
+      }
     }
   }
 
@@ -358,7 +367,7 @@ class BlockFill {
       target_.rows_in(
           from, to, [&](std::int64_t x, std::int64_t y, std::int64_t z, std::int64_t count, float* out) HWY_ATTR {
             const std::int64_t at = ((z - brick.low[2]) * room[1] + (y - brick.low[1])) * room[0] + (x - brick.low[0]);
-            convert(samples + at, count, in_brick - at, frame_.lanes, out);
+            convert(samples + at, count, in_brick - at, frame_.lanes, out, block_.rest_of(out));
           });
     });
     frame_.bricks->release(layout.number(place));
@@ -385,13 +394,16 @@ class BlockFill {
           const std::int64_t row_start = ((z - brick.low[2]) * room[1] + (y - brick.low[1])) * room[0] - brick.low[0];
           if (axes_.k != 0) {
             target_.row(y, z, x, end, [&](std::int64_t xa, std::int64_t xb, float* out) HWY_ATTR {
-              convert_any(bytes, type, row_start + xa, xb - xa + 1, in_brick, frame_.lanes, out);
+              convert_any(bytes, type, row_start + xa, xb - xa + 1, in_brick, frame_.lanes, out, block_.rest_of(out));
             });
           } else {
-            row_memory.resize(static_cast<std::size_t>(end - x + 1));
-            convert_any(bytes, type, row_start + x, end - x + 1, in_brick, frame_.lanes, row_memory.data());
+            const auto count = static_cast<std::size_t>(end - x + 1);
+            row_memory.resize(2 * count);
+            convert_any(bytes, type, row_start + x, end - x + 1, in_brick, frame_.lanes, row_memory.data(),
+                        block_.has_rest ? row_memory.data() + count : nullptr);
             target_.row(y, z, x, end, [&](std::int64_t xa, std::int64_t, float* out) HWY_ATTR {
               *out = row_memory[static_cast<std::size_t>(xa - x)];
+              if (block_.has_rest) *block_.rest_of(out) = row_memory[count + static_cast<std::size_t>(xa - x)];
             });
           }
           x = end + 1;

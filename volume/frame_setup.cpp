@@ -35,6 +35,9 @@ std::pair<float, float> lane_range(const CellRanges& ranges) {
           integrals::lane_scalar(ranges.range.high, ranges.lanes.origin, ranges.lanes.unit)};
 }
 
+/// Lanes are below 2^29, so that a float leaves 2^5 at most, of which another leaves 2^-19; a gradient has two.
+constexpr float noise_of_rest = 0x1p-18f;
+
 ShadingView shading_view(const scene::Shading& s, const scene::Camera& camera, const scene::GridGeometry& geometry,
                          double voxel_side) {
   ShadingView view{s.ambient, s.diffuse, s.specular, s.shininess, voxel_side, {}, {}, {}};
@@ -85,8 +88,11 @@ FrameSetup::FrameSetup(RendererState& state, const scene::Camera& camera, scene:
   view_.piece_tolerance = static_cast<float>(state.accuracy() / 64);
   view_.largest_color = static_cast<float>(std::max(1e-30, function.max_color()));
   view_.lanes = state.ranges.lanes;
-  // Surfaces of small values ask for them as they are.
-  view_.lanes.whole = state.in_steps() || (!table_.has_steps && !surfaces_.any());
+  // Surfaces of small values, and gradients, ask for them as they are.
+  const bool wants_gradients = !view_.cell_data && (state.settings.shading || surfaces_.any());
+  view_.lanes.whole = state.in_steps() || (!table_.has_steps && !wants_gradients);
+  view_.has_rest = wants_gradients && !view_.lanes.exact && !state.in_steps();
+  if (view_.has_rest) view_.rest_noise = noise_of_rest;
   view_.tally = tally;
   // A thousand packets or more, whatever the picture's size.
   const double tiles_in_picture = static_cast<double>(size.width) * size.height / (TileRays::side * TileRays::side);

@@ -58,6 +58,8 @@ struct FrameView {
   const integrals::LaneTable* table;
   const CellRanges* ranges;
   LaneSamples lanes;                  ///< of samples: `ranges->lanes`, which keeps fractions where steps ask for them
+  bool has_rest = false;              ///< gradients are wanted, of samples that lanes round
+  float rest_noise = 0;               ///< then: what of a gradient's components, lane units, may be rounding
   const std::uint8_t* visible;        ///< by cell of `ranges`
   bool some_hidden;                   ///< whether some cell is not visible
   bool some_clear;                    ///< whether the transfer function shows nothing of some value in the volume

@@ -10,6 +10,9 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "volume/frame_view.hpp"
 #include "volume/ray_piece-inl.h"
 #include "volume/tile_rays.hpp"
@@ -21,13 +24,15 @@ namespace HWY_NAMESPACE {
 /// What the field's own colour is multiplied by, and the white light added for each unit of opacity.
 struct Lit {
   VF own, white;
+  VF error;  ///< of light for each unit of opacity, as the gradient is rounded
 };
 
 /// From the gradient along (i, j, k) of the ray's axes. Its length in the world and its products with light and view
 /// need no world vectors: the light's come from ShadingView, the view's is the field's change along the ray.
-/// `slope_k` is that change per k, `per_length` the shading's unit over the ray's length per k.
+/// `slope_k` is that change per k, `per_length` the shading's unit over the ray's length per k. `noise`: what rounding
+/// makes of the gradient's components.
 HWY_INLINE Lit shade(const ShadingView& shading, const RayAxes& axes, VF g_i, VF g_j, VF g_k, VF slope_k, VF per_length,
-                     VF light_view) {
+                     VF light_view, float noise) {
   const DF d;
   const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f);
   const float flip = axes.mirrored ? -1.0f : 1.0f;
@@ -49,8 +54,13 @@ HWY_INLINE Lit shade(const ShadingView& shading, const RayAxes& axes, VF g_i, VF
   const VF shine = HN::Exp(d, HN::Mul(HN::Set(d, static_cast<float>(shading.shininess)), HN::Log(d, n_h)));
   const VF own = HN::MulAdd(HN::Abs(n_l), HN::Set(d, static_cast<float>(shading.diffuse)),
                             HN::Set(d, static_cast<float>(shading.ambient)));
+  // A unit normal turns by no more than the noise's part of the gradient, and light changes by this much a turn.
+  const double turn = shading.diffuse + shading.specular * std::max(1.0, shading.shininess);
+  const float world_noise =
+      noise * static_cast<float>(turn * std::sqrt(shading.metric[0][0] + shading.metric[1][1] + shading.metric[2][2]));
   return {HN::IfThenElse(flat, one, own),
-          HN::IfThenElseZero(HN::Not(flat), times(shine, static_cast<float>(shading.specular)))};
+          HN::IfThenElseZero(HN::Not(flat), times(shine, static_cast<float>(shading.specular))),
+          HN::IfThenElse(flat, HN::Set(d, noise > 0 ? 1e3f : 0.0f), times(per_norm, world_noise))};
 }
 
 /// Puts a stretch, integrated by itself, behind what there is.

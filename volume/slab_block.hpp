@@ -54,7 +54,18 @@ struct SlabBlock {
   std::array<int, slabs> slab_i, slab_i_last, slab_j, slab_j_last;
   std::ptrdiff_t pitch = 0, rows = 0;
   FloatRoom samples;
+  /// What floats leave of the samples, as lane scalars too, in the same places: where gradients are wanted of samples
+  /// that no float holds. Empty without.
+  bool has_rest = false;
+  FloatRoom rest;
 
+  /// The rest of a sample in the block; null without.
+  [[nodiscard]] float* rest_of(const float* sample) {
+    return has_rest ? rest.data() + (sample - samples.data()) : nullptr;
+  }
+  [[nodiscard]] const float* rest_of(const float* sample) const {
+    return has_rest ? rest.data() + (sample - samples.data()) : nullptr;
+  }
   [[nodiscard]] float* slice(int n) { return samples.data() + margin + n * pitch * rows; }
   [[nodiscard]] const float* slice(int n) const { return samples.data() + margin + n * pitch * rows; }
   [[nodiscard]] const float* at(int n, int i, int j) const {
@@ -65,6 +76,7 @@ struct SlabBlock {
   void reserve() {
     const auto size = static_cast<std::size_t>(2 * margin + slices * pitch * rows);
     samples.make_room(size);
+    if (has_rest) rest.make_room(size);
   }
 };
 

@@ -54,6 +54,10 @@ struct VoxelStretch {
   VF begin, extent;  ///< of the slab
   Piece piece;
   Cubic cubic;
+  // Of the slab's path, and what floats leave of its samples.
+  const SlabPath& path;
+  const Stretch& place;
+  const RestOfSamples& rest;
 };
 
 /// A packet, where its lanes meet surfaces.
@@ -77,7 +81,7 @@ class SurfaceCast {
 
   /// The lanes that are `wanted` through a slab.
   template <class Window>
-  HWY_NOINLINE void cast(const SlabPath& path, const Window& window, MF wanted) {
+  HWY_NOINLINE void cast(const SlabPath& path, const Window& window, const RestOfSamples& rest, MF wanted) {
     const DF d;
     const VF half = HN::Set(d, 0.5f), zero = HN::Zero(d), one = HN::Set(d, 1.0f);
     for (const Stretch& s : path.stretches) {
@@ -85,8 +89,15 @@ class SurfaceCast {
       const MF there = HN::And(wanted, HN::Gt(extent, zero));
       if (HN::AllFalse(d, there)) continue;
       const Corners corners = window.corners(window_index(window, path, s));
-      VoxelStretch stretch{
-          VoxelField(corners, HN::Sub(path.x, s.i), HN::Sub(path.y, s.j)), corners, s.begin, extent, {}, {}};
+      VoxelStretch stretch{VoxelField(corners, HN::Sub(path.x, s.i), HN::Sub(path.y, s.j)),
+                           corners,
+                           s.begin,
+                           extent,
+                           {},
+                           {},
+                           path,
+                           s,
+                           rest};
       const VoxelField& field = stretch.field;
       Piece& piece = stretch.piece;
       piece.s_0 = field.at(s.begin, lanes_.bx, lanes_.by);
@@ -247,12 +258,16 @@ class SurfaceCast {
     const VF low = HN::MulAdd(v, stretch.extent, stretch.begin), high = HN::MulAdd(turn, stretch.extent, stretch.begin);
     Place place;
     place.u = HN::MulAdd(at, stretch.extent, stretch.begin);
-    const VF height = from_level.at(place.u, lanes_.bx, lanes_.by);
-    from_level.gradient(place.u, lanes_.bx, lanes_.by, place.g_i, place.g_j, place.g_k);
-    place.slope = HN::MulAdd(lanes_.bx, place.g_i, HN::MulAdd(lanes_.by, place.g_j, place.g_k));
-    // find_crossing() is near enough for the field's slopes, not for its place. Where it is level that may be anything.
-    const VF next = HN::Sub(place.u, HN::Div(height, place.slope));
-    place.u = HN::IfThenElse(HN::And(HN::Ge(next, low), HN::Le(next, high)), next, place.u);
+    // find_crossing() goes by values that are rounded beside their level: two steps by differences to it, of which the
+    // first is near enough for the field's slopes. Where it is level that may be anything.
+    for (int n = 0; n < 2; ++n) {
+      const VF height = from_level.at(place.u, lanes_.bx, lanes_.by);
+      from_level.gradient(place.u, lanes_.bx, lanes_.by, place.g_i, place.g_j, place.g_k);
+      stretch.rest.add(stretch.path, stretch.place, lanes_, place.u, place.g_i, place.g_j, place.g_k);
+      place.slope = HN::MulAdd(lanes_.bx, place.g_i, HN::MulAdd(lanes_.by, place.g_j, place.g_k));
+      const VF next = HN::Sub(place.u, HN::Div(height, place.slope));
+      place.u = HN::IfThenElse(HN::And(HN::Ge(next, low), HN::Le(next, high)), next, place.u);
+    }
     const VF in_stretch = HN::Div(HN::Sub(place.u, stretch.begin), stretch.extent);
     place.at = HN::Min(HN::Max(in_stretch, v), turn);
     return place;
@@ -295,6 +310,13 @@ class SurfaceCast {
              shine = HN::Mul(HN::Set(d, view_.specular), power_of(cosine));
     const VF before = progress_.transmittance;
     const VF hidden = HN::IfThenElseZero(crosses, HN::Mul(before, row(view_.opacity)));
+    if (HWY_UNLIKELY(frame_.has_rest)) {
+      const float turn = view_.diffuse + view_.specular * std::max(1.0f, view_.shininess);
+      const float noise = frame_.rest_noise * turn *
+                          static_cast<float>(std::sqrt(view_.metric[0][0] + view_.metric[1][1] + view_.metric[2][2]));
+      notes_.error_bound = HN::MulAdd(
+          hidden, HN::IfThenElse(flat, HN::Set(d, 1e3f), HN::Div(HN::Set(d, noise), steepness)), notes_.error_bound);
+    }
     const auto add = [&](const std::vector<float>& color, VF& sum)
                          HWY_ATTR { sum = HN::MulAdd(hidden, HN::MulAdd(row(color), matte, shine), sum); };
     add(view_.red, progress_.red);
@@ -332,7 +354,11 @@ class SurfaceCast {
     const VF values =
         HN::MulAdd(HN::Set(d, 0x1p-24f), range.width, HN::Mul(HN::Set(d, view_.value_noise), range.largest));
     const VF noise = HN::MulAdd(aside, range.width, values);
-    const VF off = HN::Div(noise, HN::Max(HN::Abs(place.slope), HN::Set(d, 1e-30f)));
+    const VF per_slope = HN::Div(HN::Set(d, 1.0f), HN::Max(HN::Abs(place.slope), HN::Set(d, 1e-30f)));
+    // What two steps of Newton's method leave of the error of the place that they begin at.
+    const VF guess = HN::Mul(HN::Mul(HN::Set(d, 0x1p-22f), range.largest), per_slope);
+    const VF ratio = HN::Min(HN::Mul(HN::Mul(guess, bend), per_slope), HN::Set(d, 1.0f));
+    const VF off = HN::MulAdd(noise, per_slope, HN::Mul(guess, HN::Mul(ratio, HN::Mul(ratio, ratio))));
     const VF tilt = HN::MulAdd(bend, HN::Add(off, aside), values);
     const VF angle = HN::Min(HN::Div(HN::Mul(tilt, HN::Set(d, view_.stretched)), steepness), HN::Set(d, 4.0f));
     const VF error =
@@ -401,11 +427,16 @@ class SurfaceCast {
 
   HWY_NOINLINE void put_lit(const VoxelStretch& stretch, VF middle, MF there, const Progress& part, VF begin) {
     VF g_i, g_j, g_k;
-    stretch.field.gradient(HN::MulAdd(middle, stretch.extent, stretch.begin), lanes_.bx, lanes_.by, g_i, g_j, g_k);
+    const VF u = HN::MulAdd(middle, stretch.extent, stretch.begin);
+    stretch.field.gradient(u, lanes_.bx, lanes_.by, g_i, g_j, g_k);
+    stretch.rest.add(stretch.path, stretch.place, lanes_, u, g_i, g_j, g_k);
     const auto kept = [&](VF v) HWY_ATTR { return HN::IfThenElseZero(HN::And(there, HN::Eq(v, v)), v); };
     g_i = kept(g_i), g_j = kept(g_j), g_k = kept(g_k);
     const VF slope = HN::MulAdd(lanes_.bx, g_i, HN::MulAdd(lanes_.by, g_j, g_k));
-    put_behind(part, shade(*frame_.shading, axes_, g_i, g_j, g_k, slope, per_length_, lanes_.light_view), progress_);
+    const Lit lit =
+        shade(*frame_.shading, axes_, g_i, g_j, g_k, slope, per_length_, lanes_.light_view, frame_.rest_noise);
+    notes_.error_bound = HN::MulAdd(HN::Mul(progress_.transmittance, part.alpha), lit.error, notes_.error_bound);
+    put_behind(part, lit, progress_);
     note_first_light(progress_, begin, notes_);
   }
 

@@ -146,11 +146,35 @@ HWY_NOINLINE void note_planes(const LaneErrorBound& bound, const Lookup& lookup,
   notes.error_bound = HN::Add(notes.error_bound, HN::IfThenElseZero(good, noted));
 }
 
+/// What floats leave of a slab's samples (SlabBlock::rest), for gradients.
+class RestOfSamples {
+ public:
+  /// Of a window that begins at `front` and `back`.
+  HWY_INLINE RestOfSamples(const SlabBlock& block, const float* front, const float* back)
+      : there_(block.has_rest), window_(block.rest_of(front), block.rest_of(back), block.pitch) {}
+
+  /// Adds the share that it has in a gradient.
+  HWY_INLINE void add(const SlabPath& path, const Stretch& stretch, const Lanes& lanes, VF u, VF& g_i, VF& g_j,
+                      VF& g_k) const {
+    if (HWY_LIKELY(!there_)) return;
+    const VoxelField rest(window_.corners(window_index(window_, path, stretch)), HN::Sub(path.x, stretch.i),
+                          HN::Sub(path.y, stretch.j));
+    VF r_i, r_j, r_k;
+    rest.gradient(u, lanes.bx, lanes.by, r_i, r_j, r_k);
+    g_i = HN::Add(g_i, r_i), g_j = HN::Add(g_j, r_j), g_k = HN::Add(g_k, r_k);
+  }
+
+ private:
+  bool there_;
+  GatherWindow window_;
+};
+
 /// Voxel by voxel, for the lanes that are `wanted`.
 template <bool cell_data, class Window, class Lookup>
 HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const Lookup& lookup, const Lanes& lanes,
-                              const SlabPath& path, const Window& window, const UniformLookup* uniform, MF wanted,
-                              Progress& progress, RayNotes& notes, TileCounts& counts) {
+                              const SlabPath& path, const Window& window, const RestOfSamples& rest,
+                              const UniformLookup* uniform, MF wanted, Progress& progress, RayNotes& notes,
+                              TileCounts& counts) {
   const DF d;
   const VF half = HN::Set(d, 0.5f), zero = HN::Zero(d), one = HN::Set(d, 1.0f);
   const bool lit_part = frame.shading != nullptr && !cell_data;
@@ -161,7 +185,7 @@ HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const
     if (voxels == 0) continue;
     const VI index = window_index(window, path, stretch);
     Piece piece;
-    Lit lit{one, zero};
+    Lit lit{one, zero, zero};
     piece.begin = HN::Add(stretch.begin, path.k);
     piece.extent = extent;
     piece.length = HN::IfThenElseZero(there, HN::Mul(extent, lanes.length));
@@ -176,13 +200,15 @@ HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const
       piece.p_3 = HN::Mul(HN::Mul(field.cij, lanes.bends), HN::Mul(extent, HN::Mul(extent, extent)));
       if (lit_part) {
         VF g_i, g_j, g_k;
-        field.gradient(HN::Mul(half, HN::Add(stretch.begin, stretch.end)), lanes.bx, lanes.by, g_i, g_j, g_k);
+        const VF middle = HN::Mul(half, HN::Add(stretch.begin, stretch.end));
+        field.gradient(middle, lanes.bx, lanes.by, g_i, g_j, g_k);
+        rest.add(path, stretch, lanes, middle, g_i, g_j, g_k);
         const auto kept = [&](VF v) HWY_ATTR { return HN::IfThenElseZero(HN::And(there, HN::Eq(v, v)), v); };
         g_i = kept(g_i), g_j = kept(g_j), g_k = kept(g_k);
         const VF slope = HN::MulAdd(lanes.bx, g_i, HN::MulAdd(lanes.by, g_j, g_k));
         const VF per_length =
             HN::Div(HN::Set(d, static_cast<float>(frame.shading->unit / frame.length_unit)), lanes.length);
-        lit = shade(*frame.shading, axes, g_i, g_j, g_k, slope, per_length, lanes.light_view);
+        lit = shade(*frame.shading, axes, g_i, g_j, g_k, slope, per_length, lanes.light_view, frame.rest_noise);
       }
     }
     Progress part{zero, one, zero, zero, zero, zero};
@@ -204,6 +230,8 @@ HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const
       note_planes(*frame.error_bound, lookup, lanes, path, static_cast<int>(&stretch - path.stretches), piece, there,
                   before, progress, notes);
     if (lit_part) {
+      if (HWY_UNLIKELY(frame.has_rest))
+        notes.error_bound = HN::MulAdd(HN::Mul(before, part.alpha), lit.error, notes.error_bound);
       put_behind(part, lit, progress);
       // Within the stretch light is measured from its own front.
       note_first_light(progress, piece.begin, notes);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/glm.hpp>
@@ -40,9 +41,14 @@ class VoxelShading {
     const glm::dvec3 slope(between(v[1] - v[0], v[3] - v[2], v[5] - v[4], v[7] - v[6], p.y, p.z),
                            between(v[2] - v[0], v[3] - v[1], v[6] - v[4], v[7] - v[5], p.x, p.z),
                            between(v[4] - v[0], v[5] - v[1], v[6] - v[2], v[7] - v[3], p.x, p.y));
-    const glm::dvec3 gradient = to_world_gradient_ * (slope / s.side);
+    // Where values differ by no more than rounding, of whatever made them, nothing is told of a direction.
+    constexpr double rounding = 1e-12;
+    double largest = 0;
+    for (const double value : v) largest = std::max(largest, std::abs(value));
+    const glm::dvec3 local = slope / s.side;
+    if (!(glm::length(local) * std::min({s.side.x, s.side.y, s.side.z}) > rounding * largest)) return {};
+    const glm::dvec3 gradient = to_world_gradient_ * local;
     const double steepness = glm::length(gradient);
-    if (!(steepness > 0)) return {};
     const glm::dvec3 normal = gradient / steepness, half = to_light_ - glm::normalize(direction_ * step);
     const double width = glm::length(half), n_h = width > 1e-12 ? std::abs(glm::dot(normal, half)) / width : 0;
     return {shading_.ambient + shading_.diffuse * std::abs(glm::dot(normal, to_light_)),

@@ -1,11 +1,13 @@
 // Blank samples, constant volumes, and plateaus of the field at the value of a step of the transfer function: what
 // lanes of floats round must not move a sample, or a voxel, to the wrong side. Every pixel against the reference in
 // double precision.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <random>
+#include <string>
 
 #include "reference/grid_reference.hpp"
 #include "reference/judge.hpp"
@@ -328,6 +330,50 @@ TEST(PlateauGrid, RaysInALatticePlaneStayOnOneSide) {
                 << axis << ' ' << side << ' ' << turned << ' ' << perspective << ", worst at " << judgement.worst_x
                 << ' ' << judgement.worst_y;
           }
+}
+
+/// Light goes by the direction of the gradient, however small that is: differences of values that floats do not hold.
+void expect_lit_right(const scene::SampleSource& source, const std::string& what) {
+  const scene::TransferFunction grey({{0, {0.6, 0.2, 0.4}, 1}, {1, {0.6, 0.2, 0.4}, 1}});
+  const scene::ImageSize size{24, 24};
+  Surfaces surfaces;
+  surfaces.iso = {{0.5, glm::dvec3(0, 0.5, 1), 0.4}};
+  const scene::Shading shading{0.2, 0.7, 0.3, 20, {0.4, -0.3, 0.8}, true};
+  int number = 0;
+  for (const scene::Camera& camera : views_of(source, size))
+    for (const bool has_surface : {false, true}) {
+      const Surfaces& shown = has_surface ? surfaces : Surfaces();
+      volume::RenderSettings settings;
+      settings.method = volume::Method::exact;
+      settings.threads = 2;
+      settings.shading = shading;
+      settings.surfaces = shown;
+      const reference::GridReference truth(source, camera, size, grey, scene::Emission::absorption, shading, {}, shown);
+      const scene::Image image = volume::Renderer(source, settings).render(camera, size, grey);
+      EXPECT_LE(reference::judge(image, truth, 1e-5, {}, 2).max_error_not_excused, 1e-5)
+          << what << ", view " << number++ << ", surface " << has_surface;
+    }
+}
+
+TEST(PlateauGrid, IsLitByTheDirectionOfSmallGradients) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(-1, 1);
+  for (const double differences : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14}) {
+    const auto level = [&](double, double, double z) {
+      return z < -0.9 ? 0 : z > 0.9 ? 1 : 0.5 + differences * any(random);
+    };
+    expect_lit_right(*volume_of<double>(grid_of(6), level), fmt::format("doubles, {}", differences));
+    if (differences > 1e-7)
+      expect_lit_right(*volume_of<float>(grid_of(6), level), fmt::format("floats, {}", differences));
+  }
+  // Whole numbers whose scale makes fractions of them, as medical files have.
+  scene::Grid grid = grid_of(6);
+  grid.scale = 1 / 65535.0, grid.shift = 0.1;
+  expect_lit_right(*volume_of<std::uint16_t>(grid,
+                                             [&](double, double, double z) {
+                                               return z < -0.9 ? 0 : z > 0.9 ? 65535 : 26214 + 3 * any(random);
+                                             }),
+                   "scaled numbers");
 }
 
 }  // namespace
