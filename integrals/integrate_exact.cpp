@@ -68,6 +68,13 @@ HWY_INLINE V thin_zeroth(V a, V b) {
                     hn::MulAdd(q3, number(-1.0 / 6), hn::MulAdd(q2, number(0.5), hn::Sub(number(1.0), q1))));
 }
 
+/// Of a segment: a piece in each interval, and those that thick ones are cut into, few of which leave nothing.
+template <class Table>
+std::size_t most_pieces(const Table& table) {
+  constexpr std::size_t thick = 64;
+  return table.base.size() + thick;
+}
+
 /// One number of each lane's interval. `in_register`: the whole table fits one vector of lanes.
 template <bool in_register>
 HWY_INLINE V lookup(const std::vector<double>& table, VI interval) {
@@ -157,7 +164,7 @@ void exact(const PiecewiseTable& table, scene::Emission emission, const ExactPie
     V scalar = front, left = length;
     V color[3] = {zero, zero, zero}, transmittance = one, optical_depth = zero;
     auto active = hn::Gt(length, zero);
-    while (!hn::AllFalse(d, active)) {
+    for (std::size_t pieces = most_pieces(table); pieces > 0 && !hn::AllFalse(d, active); --pieces) {
       const V knot =
           hn::IfThenElse(up, lookup<in_register>(table.above, interval), lookup<in_register>(table.below, interval));
       V target = hn::IfThenElse(up, hn::Min(knot, back), hn::Max(knot, back));

@@ -135,7 +135,8 @@ HWY_NOINLINE inline Passage take_thick_steps(MF thick, bool independent, Passage
   const auto cut = [&](VF& x, VF rest) HWY_ATTR { x = HN::IfThenElse(thick, rest, x); };
   cut(p.rest.depth_front, HN::Min(p.rest.depth_front, most));
   cut(p.rest.depth_back, HN::Min(p.rest.depth_back, most));
-  while (!HN::AllFalse(d, thick)) {
+  constexpr int most_steps = 64;  // each lets exp(-1) through at most, so that 21 leave nothing
+  for (int n = 0; n < most_steps && !HN::AllFalse(d, thick); ++n) {
     // With depths halved q(u) = 2 a u + (e - a) u^2; the root u of q(u) = bound in the form without cancellation.
     Stretch& s = p.rest;
     const VF a = s.depth_front, rise = HN::Sub(s.depth_back, a);
@@ -250,7 +251,7 @@ template <class Lookup>
 HWY_NOINLINE Progress go_far(const Lookup& table, Walk walk, Progress so_far) {
   const DF d;
   const VF zero = HN::Zero(d);
-  do {
+  for (std::size_t pieces = 0; pieces <= table.most_pieces && !HN::AllFalse(d, walk.active); pieces += pieces_a_fold) {
     Progress since{zero, HN::Set(d, 1.0f), zero, zero, zero, zero};
     walk.go_on(table, pieces_a_fold, since);
     const VF t = so_far.transmittance;
@@ -258,7 +259,7 @@ HWY_NOINLINE Progress go_far(const Lookup& table, Walk walk, Progress so_far) {
               HN::Add(so_far.optical_depth, since.optical_depth), HN::MulAdd(t, since.red, so_far.red),
               HN::MulAdd(t, since.green, so_far.green),           HN::MulAdd(t, since.blue, so_far.blue)};
     walk.active = HN::And(walk.active, HN::Lt(so_far.optical_depth, HN::Set(d, opaque_depth)));
-  } while (!HN::AllFalse(d, walk.active));
+  }
   return so_far;
 }
 

@@ -52,7 +52,7 @@ void partial(const PiecewiseTable& table, const PsiTable& psi, SegmentBatch& bat
     V scalar = front, left = length;
     V color[3] = {zero, zero, zero}, transmittance = one, optical_depth = zero;
     auto active = hn::Gt(length, zero);
-    while (!hn::AllFalse(d, active)) {
+    for (std::size_t pieces = table.above.size(); pieces > 0 && !hn::AllFalse(d, active); --pieces) {
       const auto lookup = [&](const std::vector<double>& column)
                               HWY_ATTR { return hn::GatherIndex(d, column.data(), interval); };
       const V knot = hn::IfThenElse(up, lookup(table.above), lookup(table.below));

@@ -61,7 +61,8 @@ HWY_INLINE VI truncated(VF v) {
 /// Numbers of intervals by lane. Every form offers:
 ///   locate(s, up)   the interval in which a ray at s goes on: the knots at or below s where `up`, else those below s;
 ///   index(i, active) makes intervals ready for look-ups, of which those of active lanes must be right;
-///   at(column, index), and edge(i, index, upper) where intervals end: their upper edges where `upper` is 1 or true.
+///   at(column, index), and edge(i, index, upper) where intervals end: their upper edges where `upper` is 1 or true;
+///   most_pieces     of a segment.
 template <TableForm form>
 class Lookup;
 
@@ -125,7 +126,10 @@ class Lookup<TableForm::one_vector> {
  public:
   using Index = HN::Vec<DI>;
   explicit HWY_INLINE Lookup(const LaneTable& table)
-      : independent(table.emission == scene::Emission::independent), has_clear(table.has_clear), landmarks_(table) {
+      : independent(table.emission == scene::Emission::independent),
+        has_clear(table.has_clear),
+        most_pieces(table.knot_count + 2),
+        landmarks_(table) {
     const DF d;
     const DI di;
     for (int c = 0; c < LaneTable::column_count; ++c) rows_[c] = HN::LoadU(d, table.column(c));
@@ -161,6 +165,7 @@ class Lookup<TableForm::one_vector> {
   HWY_INLINE VF edge(VI, const Index& i, MF upper) const { return at(LaneTable::edge, count_if(upper, i)); }
 
   bool independent, has_clear;
+  std::size_t most_pieces;
 
  private:
   Landmarks landmarks_;
@@ -175,7 +180,10 @@ class Lookup<TableForm::two_vectors> {
  public:
   using Index = HN::Vec<DI>;
   explicit HWY_INLINE Lookup(const LaneTable& table)
-      : independent(table.emission == scene::Emission::independent), has_clear(table.has_clear), landmarks_(table) {
+      : independent(table.emission == scene::Emission::independent),
+        has_clear(table.has_clear),
+        most_pieces(table.knot_count + 2),
+        landmarks_(table) {
     const DF d;
     for (int c = 0; c < LaneTable::column_count; ++c) {
       low_[c] = HN::LoadU(d, table.column(c));
@@ -193,6 +201,7 @@ class Lookup<TableForm::two_vectors> {
   HWY_INLINE VF edge(VI, const Index& i, MF upper) const { return at(LaneTable::edge, count_if(upper, i)); }
 
   bool independent, has_clear;
+  std::size_t most_pieces;
 
  private:
   Landmarks landmarks_;
@@ -211,7 +220,10 @@ class Lookup<TableForm::many> {
     bool windowed;
   };
   explicit HWY_INLINE Lookup(const LaneTable& table)
-      : independent(table.emission == scene::Emission::independent), has_clear(table.has_clear), table_(table) {}
+      : independent(table.emission == scene::Emission::independent),
+        has_clear(table.has_clear),
+        most_pieces(table.knot_count + 2),
+        table_(table) {}
   HWY_INLINE VI locate(VF s, MF up) const {
     const DF d;
     const DI di;
@@ -249,6 +261,7 @@ class Lookup<TableForm::many> {
   }
 
   bool independent, has_clear;
+  std::size_t most_pieces;
 
  private:
   HWY_INLINE VF look_up(int column, const Index& i, VI interval, VI in_window) const {

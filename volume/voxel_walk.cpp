@@ -17,6 +17,7 @@ constexpr std::int64_t cell_side = 8;
 
 /// s over u in [0, 1], degree three.
 struct VoxelWalk::FieldCubic {
+  static constexpr double last_places = 0x1p-51;
   std::array<double, 4> c;
 
   [[nodiscard]] double at(double u) const { return ((c[3] * u + c[2]) * u + c[1]) * u + c[0]; }
@@ -24,12 +25,21 @@ struct VoxelWalk::FieldCubic {
     const double m = (u0 + u1) / 2, h = (u1 - u0) / 2;
     return at(m) + (c[2] + 3 * c[3] * m) * h * h / 3;
   }
-  /// Where the cubic, monotone from u0 to u1, takes a value between those at the ends.
+  [[nodiscard]] double slope(double u) const { return (3 * c[3] * u + 2 * c[2]) * u + c[1]; }
+  /// Where the cubic, monotone from u0 to u1, takes a value between those at the ends, or just behind: by Newton's
+  /// method between two places that close in on it, and by halves where that leads out of them or is slow.
   [[nodiscard]] double crossing(double u0, double u1, double value) const {
-    const bool rising = at(u1) > at(u0);
-    for (int n = 0; n < 60; ++n) {
-      const double middle = (u0 + u1) / 2;
-      ((at(middle) < value) == rising ? u0 : u1) = middle;
+    const double s_0 = at(u0), s_1 = at(u1);
+    const bool rising = s_1 > s_0;
+    double u = u0 + (u1 - u0) * ((value - s_0) / (s_1 - s_0));
+    for (int n = 0; n < 60 && u1 - u0 > last_places * u1; ++n) {
+      if (!(u0 < u && u < u1) || n % 8 == 7) u = (u0 + u1) / 2;
+      const double above = at(u) - value;
+      const bool before = (above < 0) == rising;
+      (before ? u0 : u1) = u;
+      // A little beyond the place, so that the other end closes in as well.
+      const double step = above / slope(u), beyond = std::abs(step) * 0x1p-8 + last_places / 2 * u1;
+      u -= before ? step - beyond : step + beyond;
     }
     return u1;
   }
