@@ -82,6 +82,7 @@ SortFirstSettings sort_first_settings(const Settings& s) {
   settings.resolution = s.ranks.balance_resolution;
   settings.weights = s.ranks.balance_weights;
   settings.measured = s.ranks.balance_measured;
+  settings.threads = s.threads;
   return settings;
 }
 

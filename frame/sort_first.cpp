@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numeric>
@@ -96,7 +95,6 @@ class SortFirst::State {
     }();
     const std::vector<PixelRect> mine = split.parts(transport_.rank());
     const double cpu_before = process_cpu_seconds();
-    const auto render_begin = std::chrono::steady_clock::now();
     volume::RenderStatistics statistics;
     std::vector<float> error_bounds;
     std::vector<volume::TileTime> times;
@@ -111,7 +109,7 @@ class SortFirst::State {
     }
     const double cpu = process_cpu_seconds() - cpu_before;
     if (settings_.balance == Balance::previous) share_times(cpu);
-    if (settings_.measured) learn_speed(static_cast<double>(statistics.samples), render_begin, stopped);
+    if (settings_.measured) learn_speed(cpu, stopped);
     last_split_ = split;
     last_size_ = job.size;
     VolumePart part;
@@ -301,19 +299,16 @@ class SortFirst::State {
 
   void share_times(double cpu) { times_ = exchange::gather_values(transport_, MessageKind::seconds, cpu); }
 
-  /// Weights by what ranks did a second, half of it of this frame: one that was disturbed is not all that counts.
-  /// Collective.
-  void learn_speed(double samples, std::chrono::steady_clock::time_point begin, bool stopped) {
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    const double speed = stopped || !(seconds > 0) ? 0 : samples / seconds;
-    std::vector<double> speeds = exchange::gather_values(transport_, MessageKind::speed, speed);
+  /// Weights by the CPU time that the last frame took each rank, a thread of it: who took longer than the mean gets
+  /// less of the next one. Half of the way, for costs are estimates. Collective.
+  void learn_speed(double cpu_seconds, bool stopped) {
+    const double own = stopped ? 0 : cpu_seconds / scene::threads_for(settings_.threads);
+    const std::vector<double> seconds = exchange::gather_values(transport_, MessageKind::seconds, own);
     // Who had next to nothing to do says nothing of its speed.
-    const double most = *std::max_element(speeds.begin(), speeds.end());
-    if (!std::all_of(speeds.begin(), speeds.end(), [&](double s) { return s > 0.01 * most; })) return;
-    const double sum = std::accumulate(speeds.begin(), speeds.end(), 0.0);
-    const auto ranks = static_cast<double>(speeds.size());
-    for (std::size_t rank = 0; rank < speeds.size(); ++rank)
-      weights_[rank] = 0.5 * weights_[rank] + 0.5 * ranks * speeds[rank] / sum;
+    const double most = *std::max_element(seconds.begin(), seconds.end());
+    if (!std::ranges::all_of(seconds, [&](double t) { return t > 0.01 * most; })) return;
+    const double mean = std::accumulate(seconds.begin(), seconds.end(), 0.0) / static_cast<double>(seconds.size());
+    for (std::size_t rank = 0; rank < seconds.size(); ++rank) weights_[rank] *= std::sqrt(mean / seconds[rank]);
   }
 
   /// The times of the last frame, each spread over its rectangle.
