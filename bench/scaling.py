@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
-"""Juliachs et al. 2007, Table 1 and Figure 9: how rendering scales with nodes, of the printed method and of ours.
+"""Juliachs et al. 2007, Table 1 and Figure 9: how rendering scales with nodes.
 
     bench/scaling.py --tessera PROGRAM --work FOLDER [--results docs/SCALING.md] [--frames 50] [--nodes 2,4,8] [--millions 15.7,51.1]
-                     [--method preset|default] [--preset-size 256] [--preset-frames 3]
 
 Cubes of as many tetrahedra are generated and kept in --work; each node has a projector and a compositor process, as printed, of one
 thread each. Every run leaves a file of figures in --work, and what is there is not run again: so a run that was ended goes on, and
@@ -12,8 +11,6 @@ What is measured, from the traces of all ranks (`render --timing`): CPU time a r
 rank, imbalance. Where there is a core for each rank, wall time too. Where there are fewer, the time of a frame is a *stated model's*
 (model_of): processes have a core each, and work on several frames at once, so a frame takes as long as whatever is slowest: a projector, a
 compositor, or what a node's link carries in one direction. What it leaves out (contention, waiting, the last tile) makes it a lower bound.
-The preset takes minutes a frame on few cores, so its picture is smaller, and what is done pixel by pixel counts as many times as there are
-fewer pixels (`factor`).
 Only Python's standard library.
 """
 import argparse
@@ -34,7 +31,6 @@ SIZE = 1024
 LINK = 1.25e9  # bytes a second and direction: 10 Gbit
 STAGES = {"projector": ("transform", "cull", "bin", "project", "sort", "integrate", "composite", "pack", "send", "other"),
           "compositor": ("receive", "sort", "integrate", "composite", "assemble", "write", "send", "other")}
-BY_TET = ("transform", "cull", "bin")  # stages that smaller pictures do not shorten
 COLOURS = ("#4e79a7", "#f28e2b", "#e15759", "#76b7b2", "#59a14f", "#edc948", "#b07aa1", "#ff9da7", "#9c755f", "#bab0ac", "#1b9e77", "#a6761d", "#7570b3")
 
 
@@ -82,31 +78,29 @@ def figures_of(trace, ranks):
     return [{"role": one["role"], "frames": [dict(one["frames"][k]) for k in sorted(one["frames"])]} for one in of_rank]
 
 
-def run(args, million, nodes, method):
+def run(args, million, nodes):
     """One run's figures, from its file where it has been run."""
-    kept = args.work / f"{million}-{nodes}-{method}.json"
+    kept = args.work / f"{million}-{nodes}.json"
     if kept.exists():
         return json.loads(kept.read_text())
     side = round((million * 1e6 / 6) ** (1 / 3))
     mesh = args.work / f"cube-{side}.tets"
     if not mesh.exists():
         subprocess.run([args.tessera, "generate", "cube", mesh, f"n={side}", "--quiet"], check=True)
-    size, frames = (args.preset_size, args.preset_frames) if method == "preset" else (SIZE, args.frames)
     ranks = 2 * nodes
     scratch = args.work / "scratch"
     scratch.mkdir(exist_ok=True)
     for old in scratch.iterdir():
         old.unlink()
-    words = ["render", mesh, "--size", f"{size}x{size}", "--orbit", str(frames), "-o", scratch / "frame_%04d.png", "--threads", "1",
-             "--timing", scratch / "trace.json", "--report", scratch / "report.json", "--quiet"]
-    words += ["--preset", "juliachs-2007"] if method == "preset" else ["--without", "sharing", "--projectors", str(nodes), "--compositors", str(nodes)]
-    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                       LP_NUM_THREADS="0")  # OpenGL in software works in the thread that asks, so that its CPU time is seen
+    words = ["render", mesh, "--size", f"{SIZE}x{SIZE}", "--orbit", str(args.frames), "-o", scratch / "frame_%04d.png", "--threads", "1",
+             "--timing", scratch / "trace.json", "--report", scratch / "report.json", "--quiet",
+             "--without", "sharing", "--projectors", str(nodes), "--compositors", str(nodes)]
+    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     begin, load = time.monotonic(), os.getloadavg()[0]
     subprocess.run(["mpirun", "--oversubscribe", "-n", str(ranks), sys.executable, __file__, "--as-rank", scratch, args.tessera, *words],
                    check=True, env=environment, stdin=subprocess.DEVNULL)
     report = json.loads((scratch / "report.json").read_text())
-    figures = {"million": million, "nodes": nodes, "method": method, "tets": report["mesh"]["tets"], "size": size, "frames": frames,
+    figures = {"million": million, "nodes": nodes, "tets": report["mesh"]["tets"], "frames": args.frames,
                "commit": results_file.commit(), "load": load, "wall": time.monotonic() - begin,
                "ranks": figures_of(scratch / "trace.json", ranks),
                "memory": [int((scratch / f"memory-{r}").read_text()) for r in range(ranks)],
@@ -116,16 +110,8 @@ def run(args, million, nodes, method):
     return figures
 
 
-def factor(figures):
-    return (SIZE / figures["size"]) ** 2
-
-
 def busy(frame):
     return sum(v for k, v in frame.items() if not k.startswith(("bytes", "messages")))
-
-
-def of_whole_picture(frame, times):
-    return {k: v if k in BY_TET else times * v for k, v in frame.items()}
 
 
 def model_of(figures):
@@ -134,7 +120,7 @@ def model_of(figures):
     frames = range(1, figures["frames"])
     parts = collections.Counter()
     for f in frames:
-        at = [of_whole_picture(one["frames"][f] if f < len(one["frames"]) else {}, factor(figures)) for one in ranks]
+        at = [one["frames"][f] if f < len(one["frames"]) else {} for one in ranks]
         parts["a projector"] += max(busy(a) for a, one in zip(at, ranks) if one["role"] == "projector")
         parts["a compositor"] += max(busy(a) for a, one in zip(at, ranks) if one["role"] == "compositor")
         for way in ("send", "receive"):
@@ -166,17 +152,17 @@ def table_1(runs, has_cores):
     for million in sorted({r["million"] for r in runs}):
         lines += [f"### {million} M tetrahedra", "",
                   "| | " + " | ".join(f"{n} nodes" for n in sorted({r['nodes'] for r in runs})) + " |", "|---|" + "---:|" * len({r["nodes"] for r in runs})]
-        for method in ("printed", "preset", "default"):
+        for method in ("printed", "default"):
             speed, efficiency, limit = [], [], []
             first = None
             for nodes in sorted({r["nodes"] for r in runs}):
-                found = [r for r in runs if (r["million"], r["nodes"], r["method"]) == (million, nodes, method)]
+                found = [r for r in runs if (r["million"], r["nodes"]) == (million, nodes)]
                 if method == "printed":
                     printed = PRINTED.get(million, {}).get(nodes)
                     speed.append(f"{printed[0]}" if printed else "-"), efficiency.append(f"{printed[1]:.2f}" if printed else "-")
                 elif found:
                     seconds, slowest, _ = model_of(found[0])
-                    if has_cores and factor(found[0]) == 1:
+                    if has_cores:
                         seconds, slowest = sum(found[0]["frame_ms"][1:]) / (found[0]["frames"] - 1) * 1e-3, "wall time"
                     rate = found[0]["tets"] / seconds / 1e3
                     first = first or (rate, nodes)
@@ -193,46 +179,42 @@ def table_1(runs, has_cores):
 
 def figure_9(runs):
     lines = []
-    for method in ("preset", "default"):
-        for role in ("projector", "compositor"):
-            some = sorted((r for r in runs if r["method"] == method), key=lambda r: (r["million"], r["nodes"]))
-            if not some:
-                continue
-            shown = [s for s in STAGES[role] if any(sums(r, role)[0][s] >= 5e-5 for r in some)]
-            lines += [f"### {method}, {role}s: CPU time a frame [ms], average (worst rank)", "",
-                      "| M tets | nodes | " + " | ".join(shown) + " | all | imbalance |", "|---:|---:|" + "---:|" * (len(shown) + 2)]
-            for r in some:
-                average, worst, totals = sums(r, role)
-                cells = [f"{1e3 * average[s]:.1f} ({1e3 * worst[s]:.1f})" for s in shown]
-                all_of = [busy(t) for t in totals]
-                mean = sum(all_of) / len(all_of)
-                lines.append(f"| {r['million']} | {r['nodes']} | " + " | ".join(cells) +
-                             f" | {1e3 * mean:.1f} ({1e3 * max(all_of):.1f}) | {max(all_of) / mean:.2f} |")
-            lines.append("")
+    for role in ("projector", "compositor"):
+        some = sorted(runs, key=lambda r: (r["million"], r["nodes"]))
+        shown = [s for s in STAGES[role] if any(sums(r, role)[0][s] >= 5e-5 for r in some)]
+        lines += [f"### {role}s: CPU time a frame [ms], average (worst rank)", "",
+                  "| M tets | nodes | " + " | ".join(shown) + " | all | imbalance |", "|---:|---:|" + "---:|" * (len(shown) + 2)]
+        for r in some:
+            average, worst, totals = sums(r, role)
+            cells = [f"{1e3 * average[s]:.1f} ({1e3 * worst[s]:.1f})" for s in shown]
+            all_of = [busy(t) for t in totals]
+            mean = sum(all_of) / len(all_of)
+            lines.append(f"| {r['million']} | {r['nodes']} | " + " | ".join(cells) +
+                         f" | {1e3 * mean:.1f} ({1e3 * max(all_of):.1f}) | {max(all_of) / mean:.2f} |")
+        lines.append("")
     return lines
 
 
 def traffic(runs):
-    lines = ["| method | M tets | nodes | MB a frame, all | MB a frame, busiest rank, sent / received | messages a frame | largest memory of a rank [MiB] | picture, frames | load | commit |",
-             "|---|---:|---:|---:|---:|---:|---:|---|---:|---|"]
-    for r in sorted(runs, key=lambda r: (r["method"], r["million"], r["nodes"])):
+    lines = ["| M tets | nodes | MB a frame, all | MB a frame, busiest rank, sent / received | messages a frame | largest memory of a rank [MiB] | frames | load | commit |",
+             "|---:|---:|---:|---:|---:|---:|---:|---:|---|"]
+    for r in sorted(runs, key=lambda r: (r["million"], r["nodes"])):
         totals = sums(r, "projector")[2] + sums(r, "compositor")[2]
         sent, received = ([t.get("bytes " + way, 0) / 1e6 for t in totals] for way in ("send", "receive"))
-        lines.append(f"| {r['method']} | {r['million']} | {r['nodes']} | {sum(sent):.1f} | {max(sent):.1f} / {max(received):.1f} | "
-                     f"{sum(t.get('messages', 0) for t in totals):.0f} | {max(r['memory']) / 2**20:.0f} | {r['size']}^2, {r['frames']} | {r['load']:.1f} | {r['commit']} |")
+        lines.append(f"| {r['million']} | {r['nodes']} | {sum(sent):.1f} | {max(sent):.1f} / {max(received):.1f} | "
+                     f"{sum(t.get('messages', 0) for t in totals):.0f} | {max(r['memory']) / 2**20:.0f} | {r['frames']} | {r['load']:.1f} | {r['commit']} |")
     return lines
 
 
 def draw(runs, path):
-    """Figure 9 as stacked bars: for each method and role a group of nodes."""
-    groups = [(m, role) for m in ("preset", "default") for role in ("projector", "compositor") if any(r["method"] == m for r in runs)]
+    """Figure 9 as stacked bars: for each role a group of nodes."""
     million = min(r["million"] for r in runs)
     bar, gap, height, top = 34, 14, 220, 40
     parts, x = [], 20
-    for method, role in groups:
-        some = sorted((r for r in runs if r["method"] == method and r["million"] == million), key=lambda r: r["nodes"])
+    for role in ("projector", "compositor"):
+        some = sorted((r for r in runs if r["million"] == million), key=lambda r: r["nodes"])
         most = max(sum(sums(r, other)[0].values()) for r in some for other in STAGES) or 1
-        parts.append(f'<text x="{x}" y="{top - 18}" font-weight="bold">{method}, {role}s</text><text x="{x}" y="{top - 4}">scale {1e3 * most:.0f} ms</text>')
+        parts.append(f'<text x="{x}" y="{top - 18}" font-weight="bold">{role}s</text><text x="{x}" y="{top - 4}">scale {1e3 * most:.0f} ms</text>')
         for r in some:
             y = top + height
             for stage in STAGES[role]:
@@ -258,16 +240,12 @@ def main():
     parser.add_argument("--work", type=pathlib.Path, required=True)
     parser.add_argument("--results", type=pathlib.Path)
     parser.add_argument("--frames", type=int, default=50)
-    parser.add_argument("--preset-frames", type=int, default=3)
-    parser.add_argument("--preset-size", type=int, default=256)
     parser.add_argument("--nodes", default="2,4,8")
     parser.add_argument("--millions", default="15.7,51.1")
-    parser.add_argument("--method", choices=["preset", "default"])
     args = parser.parse_args()
     args.tessera, args.work = args.tessera.resolve(), args.work.resolve()
     args.work.mkdir(parents=True, exist_ok=True)
-    runs = [run(args, float(m), int(n), method) for m in args.millions.split(",") for n in args.nodes.split(",")
-            for method in ([args.method] if args.method else ["default", "preset"])]
+    runs = [run(args, float(m), int(n)) for m in args.millions.split(",") for n in args.nodes.split(",")]
     has_cores = os.cpu_count() >= max(2 * r["nodes"] for r in runs)
     text = [*table_1(runs, has_cores), *figure_9(runs), *traffic(runs)]
     print("\n".join(text))
