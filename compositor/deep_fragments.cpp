@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "compositor/deep_pieces.hpp"
+#include "scene/error_budget.hpp"
 
 namespace tessera::compositor {
 namespace {
@@ -59,7 +60,7 @@ void DeepMerger::add(const DeepSample& given, std::vector<DeepSample>& samples, 
     absorbs_ = absorbs;
     sample_ = piece;
     last_depth_ = 0;
-    light_error_ = accuracy_ / 4 / std::max(transmittance_, 1e-300);
+    light_error_ = scene::error_budget::deep_merging(accuracy_) / std::max(transmittance_, 1e-300);
     most_ratio_ = absorbs ? std::max(1.0, 2 * most_light / alpha(piece.optical_depth)) : 0;
     most_depth_ = most_optical_depth(accuracy_, transmittance_, most_ratio_);
     transmittance_error_ = light_error_ / (1 + most_ratio_);

@@ -4,11 +4,14 @@
 #include <cmath>
 #include <utility>
 
+#include "scene/error_budget.hpp"
+
 namespace tessera::compositor {
 
 double most_optical_depth(double accuracy, double transmittance, double ratio) {
   constexpr double alpha_rounding = 0x1p-24;
-  return 1 + std::log(std::max(1.0, accuracy / (16 * alpha_rounding * (1 + ratio) * std::max(transmittance, 1e-300))));
+  const double share = scene::error_budget::deep_alpha(accuracy);
+  return 1 + std::log(std::max(1.0, share / (alpha_rounding * (1 + ratio) * std::max(transmittance, 1e-300))));
 }
 
 PieceCutter::PieceCutter(const scene::TransferFunction& function, scene::Emission emission, double accuracy)
@@ -51,7 +54,7 @@ void PieceCutter::cut_linear(const DeepPiece& stretch, const Optics& a, const Op
   double x = 0;
   auto [front, scalar_front] = at(x);
   while (x < 1) {
-    const double allowed = accuracy_ / 2 / std::max(transmittance, 1e-300);
+    const double allowed = scene::error_budget::deep_pieces(accuracy_) / std::max(transmittance, 1e-300);
     double step = 1 - x;
     if (hidden > allowed) {
       double h = steepness > 0 ? std::sqrt(allowed / steepness) : 1;

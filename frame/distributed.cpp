@@ -16,6 +16,7 @@
 #include "frame/run_error.hpp"
 #include "frame/stop_relay.hpp"
 #include "scene/error.hpp"
+#include "scene/error_budget.hpp"
 #include "scene/start_thread.hpp"
 
 namespace tessera::frame {
@@ -84,6 +85,13 @@ void check(const DistributedSettings& settings) {
   if (settings.deep && settings.exchange == Exchange::runs)
     throw scene::bad_input(fmt::format("`exchange` runs: {} needs the segments that runs are made of; use segments",
                                        settings.render.peel ? "`peel`" : "a deep picture"));
+  const scene::Integrator& integrator = settings.render.integrator;
+  if (settings.exchange == Exchange::runs && integrator.kind == scene::IntegratorKind::automatic &&
+      !scene::error_budget::runs_keep(integrator.accuracy))
+    throw scene::bad_input(
+        fmt::format("`exchange` runs: `accuracy` {} leaves no room for the {} that runs may err; use "
+                    "`exchange` segments",
+                    integrator.accuracy, scene::error_budget::runs));
   check_device_rasterizer(settings.render, settings.compositing_on);
   const auto& backends = settings.compositing_on.backends;
   const bool on_device = std::any_of(backends.begin(), backends.end(), [](Backend b) { return b != Backend::cpu; });

@@ -7,16 +7,24 @@
 #include <limits>
 
 #include "projection/lattice_rasterizer.hpp"
+#include "scene/error_budget.hpp"
 
 namespace tessera::frame {
 namespace {
 
+namespace budget = scene::error_budget;
+
 constexpr double most_optical_depth = 2000;
-constexpr double promised_of_exact = 2e-5, always_enough = 2e-5;  // of a pixel
-/// What scalars' rounding may change a pixel by: most of what was promised, the rest is for depths and integrals.
+/// What scalars' rounding may change a pixel by.
 double most_error_of(const scene::Integrator& integrator) {
   const bool automatic = integrator.kind == scene::IntegratorKind::automatic;
-  return std::min(always_enough, 0.75 * (automatic ? integrator.accuracy : promised_of_exact));
+  return automatic ? budget::lattice_scalars(integrator.accuracy) : budget::lattice_scalars_of_exact;
+}
+/// Whether float lanes are near enough, where a ray may be as bright as that.
+bool lanes_suffice(const scene::Integrator& integrator, double brightest) {
+  return integrator.kind == scene::IntegratorKind::automatic
+             ? budget::mesh_on_lattice(integrator.accuracy, brightest) <= integrator.accuracy
+             : budget::exact_mesh_on_lattice(brightest) <= budget::exact_mesh;
 }
 // Extinction wrong by at most D where the scalar is in a piece of the function changes light and opacity by at most
 // D int T dt over what the ray spends there, times the most that can lie behind. Transmittance T falls by exp(-sigma t)
@@ -80,6 +88,7 @@ std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, co
   const bool independent = settings.emission == scene::Emission::independent;
   const double most_error = most_error_of(settings.integrator);
   const double brightest = std::max(1.0, function.max_color() * (independent ? length : 1));
+  if (!lanes_suffice(settings.integrator, brightest)) return std::nullopt;
   for (std::size_t i = 1; i < knots.size(); ++i) {
     const scene::Knot &a = knots[i - 1], &b = knots[i];
     if (a.value == b.value || b.value < low || a.value > high) continue;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "scene/error.hpp"
+#include "scene/error_budget.hpp"
 
 namespace tessera::frame {
 namespace {
@@ -30,8 +31,10 @@ namespace tessera {
 
 Exchange exchange_of(const Settings& settings, bool deep) {
   if (settings.ranks.exchange) return *settings.ranks.exchange;
+  const bool is_near = settings.integrator.kind == IntegratorKind::automatic &&
+                       !scene::error_budget::runs_keep(settings.integrator.accuracy);
   const bool wants_segments =
-      settings.mesh.rasterizer == Rasterizer::scanline || deep || !settings.mesh.device.backends.empty();
+      settings.mesh.rasterizer == Rasterizer::scanline || deep || !settings.mesh.device.backends.empty() || is_near;
   return wants_segments ? Exchange::segments : Exchange::runs;
 }
 

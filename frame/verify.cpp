@@ -14,6 +14,7 @@
 #include "reference/image_suspicion.hpp"
 #include "reference/mesh_suspicion.hpp"
 #include "reference/reference.hpp"
+#include "scene/error_budget.hpp"
 #include "scene/threads.hpp"
 #include "volume/image_sink.hpp"
 #include "volume/voxel_cast.hpp"
@@ -106,7 +107,7 @@ std::optional<double> promised_error(const RenderSettings& settings) {
   const scene::Integrator& integrator = settings.integrator;
   switch (integrator.kind) {
     case scene::IntegratorKind::exact:
-      return 2e-5;
+      return scene::error_budget::exact_mesh;
     case scene::IntegratorKind::automatic:
       return integrator.accuracy;
     case scene::IntegratorKind::sampled:
@@ -119,7 +120,7 @@ std::optional<double> promised_error(const RenderSettings& settings) {
 
 std::optional<double> promised_error(const volume::RenderSettings& settings) {
   if (settings.method == volume::Method::automatic) return settings.accuracy;
-  if (settings.method == volume::Method::exact) return 1e-5;
+  if (settings.method == volume::Method::exact) return scene::error_budget::exact_grid;
   return std::nullopt;
 }
 
@@ -160,7 +161,10 @@ reference::Suspects suspects(const scene::Image& image, const scene::SampleSourc
   return found;
 }
 
-double layer_bound(const std::optional<double>& promised) { return std::min(promised.value_or(1e-5), 1e-5); }
+double layer_bound(const std::optional<double>& promised) {
+  constexpr double most = scene::error_budget::exact_layers;
+  return std::min(promised.value_or(most), most);
+}
 
 namespace {
 

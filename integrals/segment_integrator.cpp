@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "scene/error.hpp"
+#include "scene/error_budget.hpp"
 
 namespace tessera::integrals {
 
@@ -33,9 +34,8 @@ SegmentIntegrator::SegmentIntegrator(const scene::TransferFunction& function, co
       psi_ = std::make_shared<PsiTable>();
       break;
     case scene::IntegratorKind::automatic:
-      if (!(integrator.accuracy > 0))
-        throw scene::bad_input(fmt::format("`accuracy` {}: it must be positive", integrator.accuracy));
-      termination_error_ = std::min(0.25 * integrator.accuracy, 1e-2);
+      scene::check_accuracy(integrator.accuracy);
+      termination_error_ = scene::error_budget::ended(integrator.accuracy);
       if (emission == scene::Emission::absorption)
         pieces_ = ExactPieces::within(std::min(integrator.accuracy, 4e-2), function.max_color());
       break;
@@ -44,11 +44,11 @@ SegmentIntegrator::SegmentIntegrator(const scene::TransferFunction& function, co
 }
 
 ExactPieces ExactPieces::within(double accuracy, double max_color) {
-  const double share = accuracy / (64 * std::max(1.0, max_color));
+  const double brightest = std::max(1.0, max_color);
   ExactPieces pieces;
   for (const auto& [optical_depth, error] : {std::pair{2, 4e-8}, {3, 5e-7}, {4, 3e-6}, {6, 3e-5}})
-    if (error <= share) pieces.optical_depth = optical_depth;
-  pieces.transmittance = std::max(pieces.transmittance, share);
+    if (error <= scene::error_budget::thick_pieces(accuracy) / brightest) pieces.optical_depth = optical_depth;
+  pieces.transmittance = std::max(pieces.transmittance, scene::error_budget::dark_pieces(accuracy) / brightest);
   return pieces;
 }
 

@@ -27,7 +27,7 @@ namespace tessera::integrals {
 ///     6e-10, 4e-8, 5e-7, 3e-6, 3e-5 times 1 - exp(-D) for D = 1, 2, 3, 4, 6. What rays gather along their way of
 ///     1 - exp(-D) is at most 1, so that all pieces of a ray err by that number times the largest colour.
 ///   - Behind transmittance t there is light of at most t times the largest colour, and opacity of at most t.
-/// Each may take a 64th of the accuracy.
+/// scene/error_budget.hpp says what each may take.
 struct ExactPieces {
   double optical_depth = 1;      ///< of a piece, at most
   double transmittance = 1e-10;  ///< of a segment, from which on the rest is left out

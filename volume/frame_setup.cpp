@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 #include <utility>
 
+#include "scene/error_budget.hpp"
 #include "volume/tile_rays.hpp"
 
 namespace tessera::volume {
@@ -85,7 +86,7 @@ FrameSetup::FrameSetup(RendererState& state, const scene::Camera& camera, scene:
   view_.cell_data = geometry.association == scene::Association::cell;
   view_.length_unit = state.length_unit;
   view_.least_transmittance = state.least_transmittance(function);
-  view_.piece_tolerance = static_cast<float>(state.accuracy() / 64);
+  view_.piece_tolerance = static_cast<float>(scene::error_budget::grid_piece(state.accuracy()));
   view_.largest_color = static_cast<float>(std::max(1e-30, function.max_color()));
   view_.lanes = state.ranges.lanes;
   // Surfaces of small values, and gradients, ask for them as they are.
@@ -147,12 +148,14 @@ void FrameSetup::set_up_method(const RendererState& state, const scene::Transfer
   if (state.in_steps()) {
     view_.step = state.settings.step * state.voxel_side / state.length_unit;
   } else if (view_.tally == nullptr) {
-    view_.error_tolerance = static_cast<float>(std::max(state.accuracy(), 1e-5) / 2 / state.settings.parts);
+    const double noted = scene::error_budget::noted(std::max(state.accuracy(), scene::error_budget::exact_grid));
+    view_.error_tolerance = static_cast<float>(noted / state.settings.parts);
     error_bound_ =
         LaneErrorBound(function, table_, state.ranges,
                        {view_.cell_data, view_.largest_color, state.brightest(function), view_.error_tolerance,
                         longest_in_voxel(state.source.geometry()) / state.length_unit, state.length_unit});
     if (error_bound_.any()) view_.error_bound = &error_bound_;
+    if (!state.lanes_suffice(function)) view_.error_tolerance = -1;  // all rays again, in double precision
   }
   if (state.settings.method != Method::preintegrated || view_.tally != nullptr) return;
   const auto [low, high] = lane_range(state.ranges);

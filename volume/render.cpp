@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "scene/error.hpp"
+#include "scene/error_budget.hpp"
 #include "scene/surface_set.hpp"
 #include "scene/threads.hpp"
 #include "volume/cell_ranges.hpp"
@@ -28,8 +29,7 @@ namespace {
 void check(const RenderSettings& settings, const scene::GridGeometry& geometry) {
   if (settings.brick_size < 2 || settings.brick_size > 1 << 16)
     throw scene::bad_input(fmt::format("`brick_size` {}: it must be 2 to 65536 voxels", settings.brick_size));
-  if (!(settings.accuracy > 0) || !std::isfinite(settings.accuracy))
-    throw scene::bad_input(fmt::format("`accuracy` {}: it must be positive", settings.accuracy));
+  scene::check_accuracy(settings.accuracy);
   if (!(settings.step > 0) || !std::isfinite(settings.step))
     throw scene::bad_input(fmt::format("`step` {}: it must be positive, in voxels", settings.step));
   if (settings.threads < 0 || settings.threads > 4096)

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "integrals/lane_table.hpp"
+#include "scene/error_budget.hpp"
 #include "volume/brick_cache.hpp"
 #include "volume/cell_ranges.hpp"
 #include "volume/grid_surfaces.hpp"
@@ -58,7 +59,8 @@ struct RendererState {
   [[nodiscard]] float least_transmittance(const scene::TransferFunction& function) const {
     if (!settings.use.termination) return 0;
     if (settings.method == Method::sampled || settings.method == Method::preintegrated) return 1e-6f;
-    return static_cast<float>(std::min(0.25, accuracy() / 4 / std::max(1.0, brightest(function))));
+    return static_cast<float>(
+        std::min(0.25, scene::error_budget::ended(accuracy()) / std::max(1.0, brightest(function))));
   }
   /// Light that may come along a ray.
   [[nodiscard]] double brightest(const scene::TransferFunction& function) const {
@@ -74,12 +76,22 @@ struct RendererState {
   [[nodiscard]] VoxelCastSettings voxel_settings(const scene::TransferFunction& function,
                                                  std::span<const std::uint8_t> visible,
                                                  const GridSurfaces* surfaces) const {
-    return {{settings.emission, WalkSettings().tolerance, static_cast<double>(least_transmittance(function)), visible},
+    return {{settings.emission, scene::error_budget::precise_piece(accuracy()),
+             static_cast<double>(least_transmittance(function)), visible},
             settings.shading,
             settings.clip,
             surfaces->any() ? surfaces : nullptr};
   }
-  [[nodiscard]] double accuracy() const { return settings.method == Method::exact ? 2e-6 : settings.accuracy; }
+  [[nodiscard]] double accuracy() const {
+    return settings.method == Method::exact ? scene::error_budget::casting_of_exact_grid : settings.accuracy;
+  }
+  /// Whether float lanes are near enough for such a function.
+  [[nodiscard]] bool lanes_suffice(const scene::TransferFunction& function) const {
+    const double light = std::max(1.0, brightest(function));
+    return settings.method == Method::exact
+               ? scene::error_budget::exact_grid_in_lanes(light) <= scene::error_budget::exact_grid
+               : scene::error_budget::grid_in_lanes(settings.accuracy, light) <= settings.accuracy;
+  }
 
   /// By cell: what a cast in double precision of a whole frame has to walk through.
   [[nodiscard]] std::vector<std::uint8_t> visible_to_walks(const integrals::LaneTable& table) const {

@@ -20,7 +20,7 @@ enum class IntegratorKind {
 struct Integrator {
   IntegratorKind kind = IntegratorKind::automatic;
   int samples = 0;         ///< sampled only, >= 1
-  double accuracy = 1e-4;  ///< automatic only: largest error in linear RGBA
+  double accuracy = 1e-4;  ///< automatic only: largest error in linear RGBA, 1e-6 at least
   int table_size = 128;    ///< preintegrated only, 8 to 512
   bool terminates = true;  ///< rays end where what is left is below the accuracy; false: they never do
 };

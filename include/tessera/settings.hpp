@@ -142,8 +142,8 @@ struct RankSettings {
 struct Settings;
 
 /// What projectors send: RankSettings::exchange, or where that says nothing runs, but segments with the scanline
-/// rasterizer (whose segments do not touch), with deep pictures (whose samples are cut within segments) and with a
-/// device (which would find runs composited already).
+/// rasterizer (whose segments do not touch), with deep pictures (whose samples are cut within segments), with a device
+/// (which would find runs composited already) and where Integrator::accuracy has no room for what runs err.
 TESSERA_EXPORT Exchange exchange_of(const Settings& settings, bool deep);
 
 /// Which ranks project and which composite a mesh. The first compositor assembles the pictures.

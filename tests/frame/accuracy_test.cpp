@@ -153,6 +153,33 @@ TEST_P(Accuracy, RaysHitTheMeshWhereTheReferenceDoesAndAreAsLongInIt) {
   }
 }
 
+TEST(AccuracyOfLanes, WhatTheyCannotTellIsRenderedInDoublePrecision) {
+  const scene::TetMesh mesh = datasets::cube(6, 0.2);
+  const Camera camera = view(ProjectionKind::orthographic, 1.4, {2.2, 1.4, 3}, {0, 0, 0});
+  const auto expect_kept = [&](double accuracy, const TransferFunction& function, Emission emission,
+                               const scene::Surfaces& surfaces) {
+    RenderSettings settings;
+    settings.integrator.accuracy = accuracy;
+    settings.emission = emission;
+    settings.surfaces = surfaces;
+    FrameStatistics statistics;
+    const auto image = Renderer(mesh, settings).render(camera, size, function, &statistics);
+    EXPECT_FALSE(statistics.on_lattice) << accuracy;
+    const reference::Reference truth(mesh, camera, size, function, emission, surfaces);
+    EXPECT_LE(reference::judge(image, truth, accuracy).max_error_not_excused, accuracy) << accuracy;
+  };
+  const TransferFunction ramp({{0, {0.1, 0.2, 0.9}, 0.2}, {1, {1, 0.6, 0.1}, 3}});
+  scene::Surfaces surface;
+  surface.iso = {{0.505, glm::dvec3(1, 0, 0), 0.4}};
+  for (const double accuracy : {1e-6, 3e-6}) {
+    expect_kept(accuracy, ramp, Emission::absorption, {});
+    expect_kept(accuracy, ramp, Emission::absorption, surface);
+  }
+  // Light of hundreds, of which lanes keep 5e-7.
+  const TransferFunction bright({{0, {20, 40, 180}, 0.2}, {1, {200, 120, 20}, 0.3}});
+  expect_kept(1e-4, bright, Emission::independent, {});
+}
+
 TEST(AccuracyAtSurfaces, AnEyeExactlyOnAVertexEdgeOrFaceSeesAllCells) {
   RenderSettings settings;
   settings.integrator.kind = scene::IntegratorKind::exact;

@@ -96,6 +96,31 @@ TEST(VolumeCaster, AutomaticMeetsItsAccuracyInNoise) {
   }
 }
 
+scene::TransferFunction bright_function(double light) {
+  const scene::TransferFunction smooth = smooth_function();
+  std::vector<scene::Knot> knots(smooth.knots().begin(), smooth.knots().end());
+  for (scene::Knot& knot : knots) knot.color *= light, knot.extinction = 0.1;
+  return scene::TransferFunction(std::move(knots));
+}
+
+TEST(VolumeCaster, WhatFloatLanesCannotTellIsCastInDoublePrecision) {
+  const Volume v = make_volume({13, 11, 9}, Field::noise);
+  const auto expect_kept = [&](double accuracy, const scene::TransferFunction& function, scene::Emission emission) {
+    volume::RenderSettings s;
+    s.accuracy = accuracy;
+    s.emission = emission;
+    volume::RenderStatistics statistics;
+    const scene::Image image = render(v, view("oblique"), function, s, &statistics);
+    EXPECT_LT(error_of(image, v, view("oblique"), function, emission), accuracy) << accuracy;
+    EXPECT_GT(statistics.pixels_again, 0u) << accuracy;
+  };
+  for (const double accuracy : {1e-6, 4e-6})
+    for (const auto& function : {smooth_function(), sharp_function()})
+      expect_kept(accuracy, function, scene::Emission::absorption);
+  // Light of hundreds, of which lanes keep 1e-6.
+  expect_kept(1e-4, bright_function(200), scene::Emission::independent);
+}
+
 TEST(VolumeCaster, EveryInstructionSetIsWithin1e5) {
   const Volume v = make_volume({21, 18, 17}, Field::noise);
   tests::for_each_instruction_set([&](const char* name) {

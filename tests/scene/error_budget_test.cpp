@@ -1,0 +1,49 @@
+#include "scene/error_budget.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scene/error.hpp"
+
+namespace tessera::scene {
+namespace {
+
+namespace budget = error_budget;
+
+TEST(ErrorBudget, NoWayToAPictureSpendsMoreThanWasPromised) {
+  for (double exponent = -6; exponent <= 0; exponent += 1.0 / 64) {
+    const double accuracy = std::max(budget::least_accuracy, std::pow(10, exponent));
+    // A mesh is on the lattice where that is near enough, a grid in float lanes; double precision always is.
+    EXPECT_LE(budget::mesh_in_double(accuracy), accuracy) << accuracy;
+    EXPECT_LE(budget::grid_in_double(accuracy), accuracy) << accuracy;
+    EXPECT_LE(budget::deep(accuracy), accuracy) << accuracy;
+    const double lattice = budget::mesh_on_lattice(accuracy);
+    const double mesh = lattice <= accuracy ? lattice : budget::mesh_in_double(accuracy);
+    if (budget::runs_keep(accuracy)) {
+      EXPECT_LE(mesh + budget::runs, accuracy) << accuracy;
+    }
+  }
+  EXPECT_LE(budget::exact_mesh_on_lattice() + budget::runs, budget::exact_mesh);
+  EXPECT_LE(budget::exact_grid_in_lanes(), budget::exact_grid);
+}
+
+TEST(ErrorBudget, LanesAreForTheDefaultAndFarBelow) {
+  EXPECT_LE(budget::mesh_on_lattice(1e-5), 1e-5);
+  EXPECT_GT(budget::mesh_on_lattice(2e-6), 2e-6);
+  EXPECT_LE(budget::grid_in_lanes(1e-5), 1e-5);
+  EXPECT_GT(budget::grid_in_lanes(5e-6), 5e-6);
+  EXPECT_TRUE(budget::runs_keep(1e-4));
+  EXPECT_FALSE(budget::runs_keep(1e-5));
+  // As bright as that a picture's last place is too much.
+  EXPECT_GT(budget::mesh_on_lattice(1e-4, 1000), 1e-4);
+}
+
+TEST(ErrorBudget, AnAccuracyThatPicturesDoNotHaveIsRefused) {
+  EXPECT_NO_THROW(check_accuracy(1e-6));
+  for (const double accuracy : {0.0, -1.0, 9e-7, 1e-9, HUGE_VAL, std::nan("")})
+    EXPECT_THROW(check_accuracy(accuracy), Error) << accuracy;
+}
+
+}  // namespace
+}  // namespace tessera::scene
