@@ -109,7 +109,7 @@ class SortFirst::State {
     }
     const double cpu = process_cpu_seconds() - cpu_before;
     if (settings_.balance == Balance::previous) share_times(cpu);
-    if (settings_.measured) learn_speed(cpu, stopped);
+    if (settings_.measured && !goes_by_times()) learn_speed(cpu, stopped);
     last_split_ = split;
     last_size_ = job.size;
     VolumePart part;
@@ -130,7 +130,7 @@ class SortFirst::State {
   /// cost that is shown is to be the same in each run.
   [[nodiscard]] bool goes_by_times() const {
     return settings_.balance == Balance::learned && transport_.size() > 1 && settings_.weights.empty() &&
-           !settings_.measured && !settings_.keep_cost;
+           !settings_.keep_cost;
   }
 
   /// What rank 0 knows from the pictures before; where that is no split, maybe how much each rank should get of one.

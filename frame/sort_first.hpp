@@ -15,9 +15,10 @@ struct SortFirstSettings {
   Balance balance = Balance::learned;
   double resolution = 0.5;      ///< of the cost map, map pixels an image pixel along each axis; learned: 0.25 at most
   std::vector<double> weights;  ///< how much of the work each rank should get; empty: equal
-  bool measured = false;        ///< in place of weights: by the CPU time that frames before took each rank
-  int threads = 0;              ///< of this rank's renderer; 0: all cores
-  bool keep_cost = false;       ///< rank 0 finds the cost of the whole picture too, to be shown
+  bool measured =
+      false;        ///< in place of weights: by the CPU time that frames before took each rank, as learned does anyway
+  int threads = 0;  ///< of this rank's renderer; 0: all cores
+  bool keep_cost = false;  ///< rank 0 finds the cost of the whole picture too, to be shown
   bool keep_error_bounds =
       false;  ///< rank 0 gets each pixel's error bound (volume::Renderer::render) too; alike on all ranks
   scene::Trace* trace = nullptr;
