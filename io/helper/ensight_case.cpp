@@ -33,6 +33,11 @@ std::pair<int, bool> take_sets(std::vector<std::string>& words, std::size_t name
   return {time_set, in_sets};
 }
 
+int components_of(const std::string& kind) {
+  const auto has = [&](const char* word) { return kind.find(word) != std::string::npos; };
+  return has("scalar") ? 1 : has("vector") ? 3 : has("tensor symm") ? 6 : has("tensor asym") ? 9 : 0;
+}
+
 std::string without_quotes(std::string name) {
   if (name.size() > 1 && name.front() == '"' && name.back() == '"') name = name.substr(1, name.size() - 2);
   return name;
@@ -81,7 +86,7 @@ void EnsightCase::read_variable(const std::string& line) {
   const auto [time_set, in_sets] = take_sets(words, is_complex ? 3 : 2);
   const bool of_points = kind.find("per node") != std::string::npos;
   for (std::size_t k = 1; k < words.size() && k < (is_complex ? 3u : 2u); ++k)
-    named_.push_back({words.front(), without_quotes(words[k]), time_set, of_points, in_sets});
+    named_.push_back({words.front(), without_quotes(words[k]), time_set, of_points, in_sets, components_of(kind)});
 }
 
 void EnsightCase::read_time(const std::string& line, TimeSet*& set, std::string& list) {
@@ -131,6 +136,18 @@ std::vector<EnsightCase::Missing> EnsightCase::missing(double time) const {
       missing.push_back({named.variable, file, named.of_points});
   }
   return missing;
+}
+
+std::vector<EnsightCase::Values> EnsightCase::values(double time) const {
+  std::vector<Values> values;
+  for (const Named& named : named_) {
+    if (named.variable.empty() || named.in_sets || named.components == 0) continue;
+    const std::string file = file_of(named, time);
+    std::error_code unknown;
+    if (!file.empty() && std::filesystem::is_regular_file(folder_ / file, unknown))
+      values.push_back({named.variable, folder_ / file, named.components, named.of_points});
+  }
+  return values;
 }
 
 }  // namespace tessera::io::helper

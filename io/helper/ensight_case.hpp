@@ -23,6 +23,15 @@ class EnsightCase {
   /// hold several steps, whichever that is.
   [[nodiscard]] std::vector<Missing> missing(double time) const;
 
+  struct Values {
+    std::string variable;
+    std::filesystem::path file;
+    int components = 0;
+    bool of_points = false;
+  };
+  /// The variables' files of that time step; without those that hold several steps.
+  [[nodiscard]] std::vector<Values> values(double time) const;
+
  private:
   struct TimeSet {
     std::vector<double> times;
@@ -33,6 +42,7 @@ class EnsightCase {
     std::string variable, pattern;
     int time_set = 1;
     bool of_points = false, in_sets = false;
+    int components = 0;  ///< of one number in the file; 0: not known
   };
 
   void read_geometry(const std::string& line);

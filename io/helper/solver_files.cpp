@@ -5,6 +5,7 @@
 #include <vtkCellArray.h>
 #include <vtkCellType.h>
 #include <vtkCommand.h>
+#include <vtkDataArraySelection.h>
 #include <vtkDataObject.h>
 #include <vtkEnSightReader.h>
 #include <vtkFLUENTReader.h>
@@ -35,6 +36,7 @@
 
 #include "io/helper/cgns_zones.hpp"
 #include "io/helper/ensight_case.hpp"
+#include "io/helper/ensight_values.hpp"
 #include "io/helper/linear_only.hpp"
 #include "io/helper/odd_numbers.hpp"
 #include "io/helper/readers.hpp"
@@ -258,6 +260,77 @@ void leave_out_missing(vtkGenericEnSightReader& reader, const std::filesystem::p
   }
 }
 
+struct CutFile {
+  EnsightCase::Values values;
+  std::string place;
+};
+
+/// The variables whose files end too early, of which VTK's reader makes zeros (text) or an error without a name.
+std::vector<CutFile> cut_files(vtkGenericEnSightReader& reader, const std::filesystem::path& file,
+                               const nlohmann::json& request, vtkDataObject& data) {
+  std::vector<CutFile> found;
+  for (const EnsightCase::Values& values : EnsightCase(file).values(asked_time(reader, request, file.string())))
+    if (std::string place = where_values_end(reader, data, values); !place.empty())
+      found.push_back({values, std::move(place)});
+  return found;
+}
+
+std::string note_on(const CutFile& cut) {
+  return fmt::format("{} is left out: {} is truncated, it ends inside {}", cut.values.variable,
+                     cut.values.file.filename().string(), cut.place);
+}
+
+void require_not_asked_for(const std::vector<CutFile>& cut, const std::filesystem::path& file,
+                           const nlohmann::json& request) {
+  for (const CutFile& each : cut)
+    if (asks_for(request.value("field", ""), each.values.variable))
+      throw scene::bad_input(
+          fmt::format("{}: {} of that time step is in {}, which ends inside {}; copy it there again, or choose another "
+                      "`field` or `time_step`",
+                      file.string(), each.values.variable, each.values.file.filename().string(), each.place));
+}
+
+ForeignContents read_case(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  std::vector<std::string> notes;
+  std::vector<CutFile> cut;
+  const auto read = [&](bool has_variables) {
+    const vtkNew<vtkGenericEnSightReader> reader;
+    reader->SetCaseFileName(file.c_str());
+    reader->ReadAllVariablesOn();
+    const auto choose = [&] {
+      notes.clear();
+      leave_out_missing(*reader, file, request, notes);
+      for (const CutFile& each : cut)
+        each.values.of_points ? reader->SetPointArrayStatus(each.values.variable.c_str(), 0)
+                              : reader->SetCellArrayStatus(each.values.variable.c_str(), 0);
+      if (has_variables) return;
+      reader->GetPointDataArraySelection()->DisableAllArrays();
+      reader->GetCellDataArraySelection()->DisableAllArrays();
+    };
+    return read_by(holdings, *reader, file, request, "EnSight", choose, [&](vtkDataObject& data) {
+      if (cut.empty()) cut = cut_files(*reader, file, request, data);
+      for (const CutFile& each : cut) remove_values(data, each.values);
+    });
+  };
+  ForeignContents contents;
+  try {
+    contents = read(true);
+  } catch (const scene::Error&) {  // may be by a binary file that ends too early: the parts alone show which
+    try {
+      read(false);
+    } catch (const scene::Error&) {
+      cut.clear();
+    }
+    if (cut.empty()) throw;
+    require_not_asked_for(cut, file, request);
+    contents = read(true);
+  }
+  require_not_asked_for(cut, file, request);
+  std::move(notes.begin(), notes.end(), std::back_inserter(contents.notes));
+  std::ranges::transform(cut, std::back_inserter(contents.notes), note_on);
+  return contents;
+}
+
 }  // namespace
 
 ForeignContents read_ensight(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
@@ -268,13 +341,7 @@ ForeignContents read_ensight(Holdings& holdings, const std::filesystem::path& fi
     if (!std::filesystem::is_regular_file(each))
       throw scene::bad_input(fmt::format("{}: it lists {}, and there is no such file; put it there", file.string(),
                                          each.filename().string()));
-    vtkNew<vtkGenericEnSightReader> reader;
-    reader->SetCaseFileName(each.c_str());
-    reader->ReadAllVariablesOn();
-    std::vector<std::string> notes;
-    ForeignContents some =
-        read_by(holdings, *reader, each, request, "EnSight", [&] { leave_out_missing(*reader, each, request, notes); });
-    std::move(notes.begin(), notes.end(), std::back_inserter(some.notes));
+    ForeignContents some = read_case(holdings, each, request);
     if (std::string note = note_on_ensight6(each); !note.empty()) some.notes.push_back(std::move(note));
     if (cases.size() > 1)
       for (ForeignPart& part : some.parts)

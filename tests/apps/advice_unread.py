@@ -89,6 +89,8 @@ ROWS = [
         ENSIGHT),
     row("info m.case --field f", "f of that time step is in m.f, and there is no such file; put it there", None,
         without(ENSIGHT, "m.f"), ENSIGHT),
+    row("info m.case --field f", "which ends inside part 1; copy it there again", None,
+        {**ENSIGHT, "m.f": ENSIGHT["m.f"][:-13]}, ENSIGHT),
     row("info of", "and there is no such file; put it there", None, without(CASE, "of/constant/polyMesh/faces"), CASE),
     row("info a.vtm", "q.vtu: there is no such file", None, {"a.vtm": VTM, "p.vtu": TET}, {"q.vtu": TET}),
     # what is there is not what is needed
