@@ -48,6 +48,9 @@ constexpr std::array<std::uint8_t, 64> cgns_hexahedron64 = {
 constexpr std::array<std::uint8_t, 10> tetgen_tet10 = {0, 1, 2, 3, 6, 7, 9, 5, 8, 4};
 constexpr std::array<std::uint8_t, 15> tet15_with_centre_last = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 13, 11, 12, 14};
 
+constexpr std::array<std::uint8_t, 21> ioss_wedge21 = {0,  1, 2,  3,  4,  5,  6,  7,  8,  12, 13,
+                                                       14, 9, 10, 11, 15, 16, 20, 18, 19, 17};
+
 /// Of cells that have the first of another's nodes alone.
 template <std::size_t all>
 constexpr std::span<const std::uint8_t> first_of(const std::array<std::uint8_t, all>& order, std::size_t nodes) {
@@ -132,6 +135,8 @@ constexpr NodeOrder rows[] = {
 
 constexpr NodeOrder other_tet15 = {exodus, CurvedFamily::tet, 15, 71, tet15_with_centre_last};
 
+constexpr NodeOrder other_wedge21 = {exodus, CurvedFamily::wedge, 21, 73, ioss_wedge21};
+
 template <class Number>
 void exchange(std::span<Number> nodes, std::array<int, 3> degrees) {
   if (degrees[0] < 1 || degrees[1] < 1 || degrees[2] < 1)
@@ -154,6 +159,8 @@ const NodeOrder* find_node_order(NodeConvention convention, CurvedFamily shape, 
 std::span<const NodeOrder> all_node_orders() { return rows; }
 
 const NodeOrder& exodus_tet15_with_centre_last() { return other_tet15; }
+
+const NodeOrder& exodus_wedge21_of_ioss() { return other_wedge21; }
 
 void to_vtk_order(const NodeOrder& order, std::span<std::uint32_t> nodes) {
   if (order.from.empty()) return;

@@ -55,6 +55,10 @@ void to_vtk_order(const NodeOrder& order, std::span<std::uint32_t> nodes);
 /// those of the faces as in the manual. Files have both.
 const NodeOrder& exodus_tet15_with_centre_last();
 
+/// Exodus' wedges of 21 nodes as Ioss_Wedge21 has their faces: those of the triangles come before the node inside. The
+/// manual and the library's side sets have that first.
+const NodeOrder& exodus_wedge21_of_ioss();
+
 /// VTK 8 and files of VTK XML before version 2.1 have the nodes of the last two of a Lagrange hexahedron's edges the
 /// other way round (3-7 before 2-6). Exchanges them, from the one to the other; `degrees` are those of VTK's
 /// HigherOrderDegrees, or zero: then one along all axes, and cells that have not (n + 1)^3 nodes are left alone.

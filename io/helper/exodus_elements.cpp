@@ -6,14 +6,48 @@
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <initializer_list>
+#include <span>
 #include <string_view>
+#include <vector>
 
 namespace tessera::io::helper {
 namespace {
 
-/// VTK's Lagrange tetrahedron of 15 nodes, which no other of Exodus' elements becomes.
-bool is_tet15(const CellBlock& block, std::size_t cell) {
-  return block.types[cell] == 71 && block.offsets[cell + 1] - block.offsets[cell] == 15;
+struct Middle {
+  std::uint8_t node;
+  std::initializer_list<std::uint8_t> corners;
+};
+
+/// Cells of this VTK type and number of nodes, which no other of Exodus' elements becomes, whose middle nodes come in
+/// either of two orders.
+void settle(CellBlock& block, const NodeOrder& other, std::initializer_list<Middle> middles) {
+  const NodeOrder& manual = *find_node_order(other.convention, other.shape, other.nodes);
+  const auto far_from_middles = [&](std::span<const std::uint32_t> nodes) {
+    double far = 0;
+    for (const Middle& middle : middles) {
+      glm::dvec3 mean(0);
+      for (const std::uint8_t corner : middle.corners) mean += block.positions[nodes[corner]];
+      const glm::dvec3 d = block.positions[nodes[middle.node]] - mean / static_cast<double>(middle.corners.size());
+      far += glm::dot(d, d);
+    }
+    return far;
+  };
+  std::array<std::uint32_t, 64> buffer{};
+  const auto in_other_order = [&](std::span<const std::uint32_t> nodes) {
+    for (std::size_t k = 0; k < nodes.size(); ++k) buffer[manual.from[k]] = nodes[k];
+    to_vtk_order(other, std::span(buffer).first(nodes.size()));
+    return std::span<const std::uint32_t>(buffer).first(nodes.size());
+  };
+  std::vector<std::span<std::uint32_t>> cells;
+  double as_manual = 0, as_other = 0;
+  for (std::size_t c = 0; c < block.types.size(); ++c) {
+    if (block.types[c] != other.vtk_type || block.offsets[c + 1] - block.offsets[c] != other.nodes) continue;
+    cells.push_back(std::span(block.connectivity).subspan(block.offsets[c], other.nodes));
+    as_manual += far_from_middles(cells.back());
+    as_other += far_from_middles(in_other_order(cells.back()));
+  }
+  if (!(as_other < as_manual)) return;
+  for (const std::span<std::uint32_t> cell : cells) std::ranges::copy(in_other_order(cell), cell.begin());
 }
 
 }  // namespace
@@ -70,34 +104,9 @@ std::span<const std::uint8_t> exodus_side(const std::string& topology, std::int6
   return {};
 }
 
-void settle_exodus_tet15(CellBlock& block) {
-  const NodeOrder& other = exodus_tet15_with_centre_last();
-  const NodeOrder& manual = *find_node_order(other.convention, other.shape, other.nodes);
-  const auto nodes_of = [&](std::size_t c) { return std::span(block.connectivity).subspan(block.offsets[c], 15); };
-  const auto far = [&](std::uint32_t node, std::initializer_list<std::uint32_t> corners) {
-    glm::dvec3 mean(0);
-    for (const std::uint32_t corner : corners) mean += block.positions[corner];
-    const glm::dvec3 d = block.positions[node] - mean / static_cast<double>(corners.size());
-    return glm::dot(d, d);
-  };
-  // Which of the two is inside, the eleventh or the fifteenth, and which of a face.
-  double as_manual = 0, centre_last = 0;
-  for (std::size_t c = 0; c < block.types.size(); ++c) {
-    if (!is_tet15(block, c)) continue;
-    const auto n = nodes_of(c);
-    const std::uint32_t eleventh = n[14], fifteenth = n[11];
-    as_manual += far(eleventh, {n[0], n[1], n[2], n[3]}) + far(fifteenth, {n[0], n[1], n[3]});
-    centre_last += far(fifteenth, {n[0], n[1], n[2], n[3]}) + far(eleventh, {n[0], n[1], n[2]});
-  }
-  if (!(centre_last < as_manual)) return;
-  for (std::size_t c = 0; c < block.types.size(); ++c) {
-    if (!is_tet15(block, c)) continue;
-    std::array<std::uint32_t, 15> theirs{};
-    const auto n = nodes_of(c);
-    for (std::size_t k = 0; k < 15; ++k) theirs[manual.from[k]] = n[k];
-    std::ranges::copy(theirs, n.begin());
-    to_vtk_order(other, n);
-  }
+void settle_exodus_middles(CellBlock& block) {
+  settle(block, exodus_tet15_with_centre_last(), {{10, {0, 1, 2}}, {11, {0, 1, 3}}, {14, {0, 1, 2, 3}}});
+  settle(block, exodus_wedge21_of_ioss(), {{15, {0, 1, 2}}, {16, {3, 4, 5}}, {20, {0, 1, 2, 3, 4, 5}}});
 }
 
 }  // namespace tessera::io::helper

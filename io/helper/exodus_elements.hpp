@@ -27,8 +27,8 @@ ExodusElement exodus_element(const std::string& topology, std::int64_t nodes);
 /// none of other topologies, and of sides that it has not.
 std::span<const std::uint8_t> exodus_side(const std::string& topology, std::int64_t side);
 
-/// Of a block with its points, whose tetrahedra of 15 nodes are as the manual orders them: where all of them fit better
-/// with the node inside last, as others write them, they are put so.
-void settle_exodus_tet15(CellBlock& block);
+/// For a block with its points, whose tetrahedra of 15 nodes and wedges of 21 are in the manual's order: where all of
+/// one kind fit better in the order of the library's side sets or of Ioss, they are put into that.
+void settle_exodus_middles(CellBlock& block);
 
 }  // namespace tessera::io::helper

@@ -249,7 +249,7 @@ class Reading {
     choose_step(time_step);
     read_elements();
     read_points();
-    settle_exodus_tet15(block_);
+    settle_exodus_middles(block_);
     add_fields();
   }
 

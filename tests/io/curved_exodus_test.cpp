@@ -109,6 +109,8 @@ std::vector<ReferenceCell> manual_cells() {
           {"Wedge", wedge, together(wedge15, wedge_sides)},
           {"WEDGE20", wedge, together(wedge15, wedge_triangles, wedge_sides_after_triangles)},
           {"WEDGE21", wedge, together(wedge15, wedge_inside, wedge_triangles, wedge_sides_after_triangles)},
+          {"WEDGE", wedge,
+           together(wedge15, wedge_triangles, wedge_inside, wedge_sides_after_triangles)},  // as Ioss has it
           {"WEDGE24", wedge, cubic_edges(wedge_base, wedge_upright, wedge_top)},
           {"PYRAMID13", pyramid, pyramid_edges, CellSpace::linear},
           {"PYRAMID14", pyramid, together(pyramid_edges, pyramid_base)},
