@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
+#include <system_error>
 
 #include "io/block_choice.hpp"
 #include "io/file_beginnings.hpp"
@@ -37,6 +39,13 @@ constexpr std::array<std::string_view, 7> volumes = {"UnstructuredGrid", "Struct
                                                      "RectilinearGrid",  "PRectilinearGrid", "ImageData",
                                                      "PImageData"};
 
+void require_listed(const ListedPiece& piece) {
+  std::error_code unknown;
+  if (!std::filesystem::exists(piece.file, unknown) && !unknown)
+    throw scene::bad_input(
+        fmt::format("{}: there is no such file, which {} lists; put it there", piece.file.string(), piece.list));
+}
+
 void add_pieces_of_whole(const std::filesystem::path& file, const std::string& block, PieceList& list) {
   const std::string source = file.string();
   std::size_t count = 0;
@@ -55,6 +64,7 @@ void add_block(ListedPiece listed, const BlockChoice& choice, PieceList& list) {
     list.block_names.push_back(listed.block);
     return;
   }
+  require_listed(listed);
   listed.type = type_of(listed.file);
   const bool is_wanted = list.with_surfaces && listed.type == surfaces.front();
   if (is_any_of(listed.type, surfaces) && !is_wanted) {
@@ -148,6 +158,7 @@ MeshBlocks read_pieces(const PieceList& list, std::size_t first, std::size_t las
   for (std::size_t k = first; k < last; ++k) {
     const ListedPiece& piece = list.pieces[k];
     const bool of_whole = piece.type.empty();
+    if (of_whole) require_listed(piece);
     const std::string type = of_whole ? type_of(piece.file) : piece.type;
     if (of_whole) require_piece(piece, type);
     ForeignFile opened = open_piece(piece, type, list.with_surfaces, helper);

@@ -92,7 +92,7 @@ ROWS = [
     row("info m.case --field f", "which ends inside part 1; copy it there again", None,
         {**ENSIGHT, "m.f": ENSIGHT["m.f"][:-13]}, ENSIGHT),
     row("info of", "and there is no such file; put it there", None, without(CASE, "of/constant/polyMesh/faces"), CASE),
-    row("info a.vtm", "q.vtu: there is no such file", None, {"a.vtm": VTM, "p.vtu": TET}, {"q.vtu": TET}),
+    row("info a.vtm", "q.vtu: there is no such file, which a.vtm lists; put it there", None, {"a.vtm": VTM, "p.vtu": TET}, {"q.vtu": TET}),
     # what is there is not what is needed
     row("info a.vtm", "or one of the files itself", "info p.vtp",
         {"a.vtm": VTM.replace(".vtu", ".vtp"), "p.vtp": VTP, "q.vtp": VTP}),

@@ -1,4 +1,5 @@
 // What files of other programs lack or have otherwise is said as it is, and what is there is read.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -96,6 +97,14 @@ TEST_F(Messages, AMarkOfAnOpenFoamCaseMayBeEmptyByEitherName) {
   std::filesystem::remove(folder / "case/constant/polyMesh/faces");
   const std::string message = message_of([&] { read_mesh(folder / "case/a.foam"); });
   EXPECT_NE(message.find("polyMesh/faces, and there is no such file"), std::string::npos) << message;
+}
+
+TEST_F(Messages, AMissingBlockIsNamedWithItsList) {
+  const auto list = write("a.vtm",
+                          "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet>"
+                          "<DataSet index=\"0\" name=\"a\" file=\"gone.vtu\"/></vtkMultiBlockDataSet></VTKFile>");
+  EXPECT_EQ(message_of([&] { read_mesh(list); }), fmt::format("{}: there is no such file, which {} lists; put it there",
+                                                              (folder / "gone.vtu").string(), list.string()));
 }
 
 /// Two tets with a field of points, of which `odd` is a value of the second's.
