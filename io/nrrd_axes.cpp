@@ -189,6 +189,26 @@ AxisPlaces axis_places(const NrrdFields& fields, std::size_t axis, const std::ve
   return places;
 }
 
+/// The numbers of `space origin`, of time too if there are four.
+std::vector<double> space_origin_of(const std::string& field, const std::filesystem::path& file) {
+  return header_numbers(field, std::ranges::count(field, ',') == 3 ? 4 : 3, file, "space origin");
+}
+
+/// Of an axis whose direction in a space of four dimensions leads along the fourth alone.
+std::optional<AxisPlaces> places_in_time(const NrrdFields& fields, std::size_t axis,
+                                         const std::filesystem::path& file) {
+  const auto *directions = fields.find("spacedirections"), *place = fields.find("spaceorigin");
+  if (directions == nullptr) return std::nullopt;
+  const auto vectors = space_vectors_of(*directions, file);
+  if (axis >= vectors.size() || !vectors[axis] || leads_through_space(vectors[axis])) return std::nullopt;
+  AxisPlaces places{.spacing = vectors[axis]->w};
+  if (!std::isfinite(places.spacing) || places.spacing == 0) return std::nullopt;
+  if (place == nullptr) return places;
+  if (const auto origin = space_origin_of(*place, file); origin.size() == 4 && std::isfinite(origin[3]))
+    places.first = origin[3];
+  return places;
+}
+
 }  // namespace
 
 std::string nrrd_lower(std::string_view text) {
@@ -276,6 +296,8 @@ std::vector<double> nrrd_times(const NrrdFields& fields, const NrrdAxes& axes, c
       const auto* value = fields.find(name);
       return value != nullptr && std::isfinite(header_numbers(*value, sizes.size(), file, name)[a]);
     };
+    if (const auto places = places_in_time(fields, a, file))
+      return even_times(places->first, places->spacing, static_cast<std::uint64_t>(sizes[a]));
     if (!given("spacings") && !(given("axismins") && given("axismaxs"))) continue;
     const AxisPlaces places = axis_places(fields, a, sizes, file);
     return even_times(places.first, places.spacing, static_cast<std::uint64_t>(sizes[a]));
@@ -322,7 +344,7 @@ void set_nrrd_geometry(const NrrdFields& fields, const NrrdAxes& axes, const std
     }
   }
   if (const auto* place = fields.find("spaceorigin")) {
-    const auto o = header_numbers(*place, std::ranges::count(*place, ',') == 3 ? 4 : 3, file, "space origin");
+    const auto o = space_origin_of(*place, file);
     if (std::isfinite(o[0] + o[1] + o[2])) origin = {o[0], o[1], o[2]};
   }
   for (glm::dvec3& step : steps) step = space.to_world * step;

@@ -31,7 +31,8 @@ struct NrrdAxes {
 NrrdAxes nrrd_axes_of(const NrrdFields& fields, const std::vector<std::int64_t>& sizes,
                       const std::filesystem::path& file);
 
-/// Of the steps along an axis that has spacings, or both ends; else, and of lists, none.
+/// Of the steps along an axis that has spacings, both ends, or a direction along the fourth dimension of space, such as
+/// that of `-time` (whose origin is the fourth number of `space origin`); else, and of lists, none.
 std::vector<double> nrrd_times(const NrrdFields& fields, const NrrdAxes& axes, const std::vector<std::int64_t>& sizes,
                                const std::filesystem::path& file);
 

@@ -108,6 +108,19 @@ TEST_F(NrrdAxes, ImagesOfFourDimensionsAsItkWritesThemAreTimeSteps) {
   EXPECT_EQ(all_samples(*open_volume(write(vectors), {.field = "samples:1"}).source)[2], 5);
 }
 
+TEST_F(NrrdAxes, TimesOfASpaceWithTimeAreThoseOfTheFourthDimension) {
+  const auto times = [&](const std::string& about) {
+    return open_volume(write("dimension: 4\nsizes: 4 3 2 2\n" + about)).time_step.times;
+  };
+  const std::string directions = "space directions: (2,0,0,0) (0,3,0,0) (0,0,4,0) ";
+  for (const char* space : {"space: scanner-xyz-time\n", "space: RAST\n", "space dimension: 4\n"}) {
+    EXPECT_EQ(times(space + directions + "(0,0,0,0.25)\nspace origin: (10,20,30,1.5)"), (std::vector{1.5, 1.75}));
+    EXPECT_EQ(times(space + directions + "(0,0,0,0.25)"), (std::vector{0, 0.25}));
+    EXPECT_TRUE(times(space + directions + "none").empty());
+  }
+  EXPECT_TRUE(times("space: RAST\nkinds: space space space list\n" + directions + "(0,0,0,0.25)").empty());
+}
+
 TEST_F(NrrdAxes, KindsAndDirectionsTellListsComponentsAndTimeApartWhereverTheyAre) {
   const auto open = [&](const std::string& about, const VolumeOptions& options = {}) {
     return open_volume(write(about), options);
