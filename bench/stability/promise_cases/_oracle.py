@@ -1,0 +1,303 @@
+"""Rays through tetrahedra and voxels in double precision, for classes whose pictures are not judged by the program's reference
+alone: written for being read, from docs/ACCURACY.md. Places are parameters along a ray o + t d with d of length one."""
+import bisect
+import math
+
+from promise_cases.perspective_ties import cross, dot, plus, unit
+
+AMBIENT, DIFFUSE, SPECULAR, SHININESS = 0.2, 0.8, 0.2, 32
+NODES = ((-0.9602898564975363, 0.1012285362903763), (-0.7966664774136267, 0.2223810344533745),
+         (-0.5255324099163290, 0.3137066458778873), (-0.1834346424956498, 0.3626837833783620),
+         (0.1834346424956498, 0.3626837833783620), (0.5255324099163290, 0.3137066458778873),
+         (0.7966664774136267, 0.2223810344533745), (0.9602898564975363, 0.1012285362903763))
+
+
+class Camera:
+    """eye, focal point and up, with a parallel scale or a view angle (degrees); rows from the top."""
+
+    def __init__(self, eye, focal, view_up, width, height, scale=None, angle=None):
+        self.eye, self.focal, self.view_up, self.width, self.height = eye, focal, view_up, width, height
+        self.scale, self.angle = scale, angle
+        self.forward = unit(plus(focal, (-1, eye)))
+        self.right = unit(cross(self.forward, view_up))
+        self.up = cross(self.right, self.forward)
+
+    def text(self):
+        words = lambda v: " ".join(repr(float(x)) for x in v)
+        lens = f"parallel_scale {self.scale!r}" if self.angle is None else f"view_angle {self.angle!r}"
+        return (f"position {words(self.eye)}\nfocal_point {words(self.focal)}\nview_up {words(self.view_up)}\n{lens}\n"
+                f"size {self.width} {self.height}\n")
+
+    def ray(self, pixel):
+        """(origin, direction) through the centre of a pixel, counted row by row."""
+        per_pixel = 2 * (self.scale if self.angle is None else math.tan(math.radians(self.angle) / 2)) / self.height
+        x = (pixel % self.width + 0.5 - self.width / 2) * per_pixel
+        y = (self.height / 2 - pixel // self.width - 0.5) * per_pixel
+        if self.angle is None:
+            return plus(self.eye, (x, self.right), (y, self.up)), self.forward
+        return self.eye, unit(plus(self.forward, (x, self.right), (y, self.up)))
+
+
+class Function:
+    """The transfer function: knots (value, red, green, blue, extinction), ascending, without steps."""
+
+    def __init__(self, knots):
+        self.knots, self.values = knots, [k[0] for k in knots]
+
+    def at(self, s):
+        n = bisect.bisect_right(self.values, s)
+        if n == 0 or n == len(self.knots):
+            return self.knots[max(n - 1, 0)][1:]
+        a, b = self.knots[n - 1], self.knots[n]
+        u = (s - a[0]) / (b[0] - a[0])
+        return [p + (q - p) * u for p, q in zip(a[1:], b[1:])]
+
+    def between(self, s_0, s_1):
+        """Parts of the way from one value to another at which knots are passed, ascending."""
+        low, high = min(s_0, s_1), max(s_0, s_1)
+        inside = [v for v in self.values if low < v < high]
+        return sorted((v - s_0) / (s_1 - s_0) for v in inside)
+
+
+class Light:
+    """What a ray has gathered, front to back."""
+
+    def __init__(self):
+        self.rgb, self.through = [0.0, 0.0, 0.0], 1.0
+
+    def add_matter(self, function, s_0, s_1, length, lit=(1.0, 0.0)):
+        """A stretch along which the scalar is linear; `lit`: what colors are multiplied by, and white added."""
+        own, white = lit
+        ends = [0.0, *(function.between(s_0, s_1) if s_0 != s_1 else []), 1.0]
+        for a, b in zip(ends, ends[1:]):
+            # Within an interval of the function: parts of at most half an optical depth, by Gauss and Legendre.
+            scalar = lambda u: s_0 + (s_1 - s_0) * u
+            inside = (lambda u: min(max(u, a + 1e-12 * (b - a)), b - 1e-12 * (b - a)))
+            kappa = lambda u: function.at(scalar(inside(u)))[3]
+            depth = (kappa(a) + kappa(b)) / 2 * (b - a) * length
+            parts = max(1, math.ceil(2 * depth))
+            for n in range(parts):
+                u_0, u_1 = a + (b - a) * n / parts, a + (b - a) * (n + 1) / parts
+                k_0, half, middle = kappa(u_0), (u_1 - u_0) / 2, (u_0 + u_1) / 2
+                light = [0.0, 0.0, 0.0]
+                for x, weight in NODES:
+                    u = middle + half * x
+                    k = kappa(u)
+                    before = math.exp(-(k_0 + k) / 2 * (u - u_0) * length)
+                    color = function.at(scalar(inside(u)))[:3]
+                    light = [s + weight * half * length * k * before * (own * c + white) for s, c in zip(light, color)]
+                self.rgb = [s + self.through * x for s, x in zip(self.rgb, light)]
+                self.through *= math.exp(-(k_0 + kappa(u_1)) / 2 * (u_1 - u_0) * length)
+
+    def add_surface(self, color, opacity, cosine):
+        matte, shine = AMBIENT + DIFFUSE * cosine, SPECULAR * cosine ** SHININESS
+        self.rgb = [s + self.through * opacity * (c * matte + shine) for s, c in zip(self.rgb, color)]
+        self.through *= 1 - opacity
+
+
+def gradient_of(points, scalars):
+    """Of a field linear in a tet."""
+    e = [plus(p, (-1, points[0])) for p in points[1:]]
+    volume = dot(e[0], cross(e[1], e[2]))
+    change = [s - scalars[0] for s in scalars[1:]]
+    return [sum(c * n[i] for c, n in zip(change, (cross(e[1], e[2]), cross(e[2], e[0]), cross(e[0], e[1])))) / volume for i in range(3)]
+
+
+def cosine_of(normal, direction):
+    return min(abs(dot(unit(normal), direction)), 1.0) if any(normal) else 1.0
+
+
+class Mesh:
+    """Tets of positive volume that do not overlap, with one scalar a point or a cell."""
+
+    def __init__(self, points, tets, scalars, association):
+        self.points, self.tets, self.scalars, self.association = points, tets, scalars, association
+        self.inverse = []
+        faces = {}
+        for n, tet in enumerate(tets):
+            p = [points[v] for v in tet]
+            e = [plus(q, (-1, p[0])) for q in p[1:]]
+            volume = dot(e[0], cross(e[1], e[2]))
+            self.inverse.append([[x / volume for x in row] for row in (cross(e[1], e[2]), cross(e[2], e[0]), cross(e[0], e[1]))])
+            for corner in range(4):
+                faces.setdefault(tuple(sorted(tet[:corner] + tet[corner + 1:])), []).append((n, corner))
+        self.open = {where[0] for where in faces.values() if len(where) == 1}
+
+    def normal(self, n, face):
+        """Of the face opposite a corner, of any length."""
+        return self.inverse[n][face - 1] if face > 0 else [sum(row[i] for row in self.inverse[n]) for i in range(3)]
+
+    def corners(self, n):
+        return [self.scalars[n]] * 4 if self.association == "cell" else [self.scalars[v] for v in self.tets[n]]
+
+    def stretches(self, origin, direction, nearest=0.0):
+        """(front, back, tet, face that is entered, face that is left, its barycentric coordinates as lines) by front."""
+        found = []
+        for n, tet in enumerate(self.tets):
+            start = plus(origin, (-1, self.points[tet[0]]))
+            at = [dot(row, start) for row in self.inverse[n]]
+            slope = [dot(row, direction) for row in self.inverse[n]]
+            lines = [(1 - sum(at), -sum(slope)), *zip(at, slope)]
+            front, back, enters, leaves = -math.inf, math.inf, None, None
+            for corner, (a, b) in enumerate(lines):
+                if b == 0:
+                    if a < 0:
+                        front, back = 1.0, 0.0
+                elif b > 0:
+                    if -a / b > front:
+                        front, enters = -a / b, corner
+                elif -a / b < back:
+                    back, leaves = -a / b, corner
+            if front < nearest:
+                front, enters = nearest, None
+            if front < back:
+                found.append((front, back, n, enters, leaves, lines))
+        return sorted(found)
+
+
+def mesh_pixel(mesh, function, camera, pixel, iso=(), boundary=None, planes=(), shade=False):
+    """RGB. `iso`: (value, color, opacity) each; `boundary`: (color, opacity); `planes`: (point, normal) each, of which the
+    side that the normal points to is kept."""
+    origin, direction = camera.ray(pixel)
+    light = Light()
+    near, far, near_normal, far_normal = 0.0, math.inf, None, None
+    for point, normal in planes:
+        rise, height = dot(normal, direction), dot(normal, plus(origin, (-1, point)))
+        place = -height / rise
+        if rise > 0 and place > near:
+            near, near_normal = place, normal
+        elif rise < 0 and place < far:
+            far, far_normal = place, normal
+    for front, back, n, enters, leaves, lines in mesh.stretches(origin, direction):
+        is_cut_in, is_cut_out = front < near, back > far
+        front, back = max(front, near), min(back, far)
+        if not front < back:
+            continue
+        corners = mesh.corners(n)
+        scalar = lambda t: sum((a + b * t) * s for (a, b), s in zip(lines, corners))
+        points = [mesh.points[v] for v in mesh.tets[n]]
+        gradient = gradient_of(points, corners) if mesh.association == "point" else [0.0, 0.0, 0.0]
+        lit = (1.0, 0.0)
+        if shade and any(gradient):
+            cosine = cosine_of(gradient, camera.forward if camera.angle is None else direction)
+            toward = [-x for x in camera.forward]  # the light is at the camera, its direction the view's
+            normal = unit(gradient)
+            half = plus(toward, (-1, direction))
+            n_h = abs(dot(normal, unit(half)))
+            lit = (AMBIENT + DIFFUSE * abs(dot(normal, toward)), SPECULAR * n_h ** SHININESS)
+
+        def add_boundary(cut_by, face):
+            """Where the ray enters or leaves what is kept of the tet: a plane's cut, or a face that no other tet has."""
+            normal = cut_by or (mesh.normal(n, face) if (n, face) in mesh.open else None)
+            if boundary is not None and normal is not None:
+                light.add_surface(*boundary, cosine_of(normal, direction))
+
+        add_boundary(near_normal if is_cut_in else None, enters)
+        s_0, s_1 = scalar(front), scalar(back)
+        crossings = sorted(((v - s_0) / (s_1 - s_0), color, opacity) for v, color, opacity in iso if min(s_0, s_1) < v < max(s_0, s_1))
+        begin = 0.0
+        for u, color, opacity in crossings:
+            light.add_matter(function, s_0 + (s_1 - s_0) * begin, s_0 + (s_1 - s_0) * u, (back - front) * (u - begin), lit)
+            light.add_surface(color, opacity, cosine_of(gradient, direction))
+            begin = u
+        light.add_matter(function, s_0 + (s_1 - s_0) * begin, s_1, (back - front) * (1 - begin), lit)
+        add_boundary(far_normal if is_cut_out else None, leaves)
+    return light.rgb
+
+
+class Grid:
+    """Point data: counts, spacing, origin of a regular grid, and its values, x fastest."""
+
+    def __init__(self, counts, spacing, origin, values):
+        self.counts, self.spacing, self.origin, self.values = counts, spacing, origin, values
+
+    def stretches(self, origin, direction, near, far):
+        """(front, back, voxel) along the ray."""
+        start = [(o - p) / s for o, p, s in zip(origin, self.origin, self.spacing)]
+        slope = [d / s for d, s in zip(direction, self.spacing)]
+        places = set()
+        for a, b, n in zip(start, slope, self.counts):
+            if b == 0:
+                if not 0 < a < n - 1:
+                    return
+                continue
+            at = sorted((k - a) / b for k in range(n))
+            near, far = max(near, at[0]), min(far, at[-1])
+            places.update(at)
+        if not near < far:
+            return
+        ends = [near, *sorted(t for t in places if near < t < far), far]
+        for front, back in zip(ends, ends[1:]):
+            middle = [a + b * (front + back) / 2 for a, b in zip(start, slope)]
+            yield front, back, [min(max(int(m), 0), n - 2) for m, n in zip(middle, self.counts)]
+
+    def field(self, voxel, place):
+        """(value, gradient) of the trilinear field at a place in the world."""
+        x, y, z = ((p - o) / s - v for p, o, s, v in zip(place, self.origin, self.spacing, voxel))
+        nx, ny, _ = self.counts
+        v = [self.values[voxel[0] + i + nx * (voxel[1] + j + ny * (voxel[2] + k))] for k in (0, 1) for j in (0, 1) for i in (0, 1)]
+        mix = lambda d, p, q: (d[0] * (1 - p) + d[1] * p) * (1 - q) + (d[2] * (1 - p) + d[3] * p) * q
+        value = mix(v[:4], x, y) * (1 - z) + mix(v[4:], x, y) * z
+        return value, [mix((v[1] - v[0], v[3] - v[2], v[5] - v[4], v[7] - v[6]), y, z) / self.spacing[0],
+                       mix((v[2] - v[0], v[3] - v[1], v[6] - v[4], v[7] - v[5]), x, z) / self.spacing[1],
+                       mix((v[4] - v[0], v[5] - v[1], v[6] - v[2], v[7] - v[3]), x, y) / self.spacing[2]]
+
+
+def bracketed(f, a, b):
+    """The root of a function between two places at which it has other signs."""
+    rises = f(b) > 0
+    for _ in range(80):
+        middle = (a + b) / 2
+        a, b = (a, middle) if (f(middle) > 0) == rises else (middle, b)
+    return b
+
+
+def monotone_parts(f):
+    """[0, 1] cut where a cubic turns."""
+    at = [f(u) for u in (0, 1 / 3, 2 / 3, 1)]
+    c3 = 4.5 * (at[3] - 3 * at[2] + 3 * at[1] - at[0])
+    c2 = 4.5 * (at[0] - 2 * at[1] + at[2]) - c3
+    c1 = at[3] - at[0] - c2 - c3
+    square = c2 * c2 - 3 * c1 * c3
+    turns = []
+    if square > 0:
+        q = -(c2 + math.copysign(math.sqrt(square), c2))
+        turns = [u for u in ((q / (3 * c3)) if c3 else 2, (c1 / q) if q else 2) if 0 < u < 1]
+    return [0.0, *sorted(turns), 1.0]
+
+
+def grid_pixel(grid, function, camera, pixel, iso=(), planes=(), shade=False):
+    """RGB, as mesh_pixel(). The matter of a stretch in a voxel has the light of the gradient in its middle, between surfaces."""
+    origin, direction = camera.ray(pixel)
+    light = Light()
+    near, far = 0.0, math.inf
+    for point, normal in planes:
+        rise, place = dot(normal, direction), -dot(normal, plus(origin, (-1, point))) / dot(normal, direction)
+        near, far = (max(near, place), far) if rise > 0 else (near, min(far, place))
+    for front, back, voxel in grid.stretches(origin, direction, near, far):
+        at = lambda u: plus(origin, (front + (back - front) * u, direction))
+        value = lambda u: grid.field(voxel, at(u))[0]
+        parts = monotone_parts(value)
+        crossings = []
+        for level, color, opacity in iso:
+            for a, b in zip(parts, parts[1:]):
+                if (value(a) < level) != (value(b) < level):
+                    u = bracketed(lambda x: value(x) - level, a, b)
+                    crossings.append((u, color, opacity, cosine_of(grid.field(voxel, at(u))[1], direction)))
+        begin = 0.0
+        for u, *surface in [*sorted(crossings), (1.0, None)]:
+            lit = (1.0, 0.0)
+            gradient = grid.field(voxel, at((begin + u) / 2))[1]
+            if shade and any(gradient):
+                toward, normal = [-x for x in camera.forward], unit(gradient)
+                n_h = abs(dot(normal, unit(plus(toward, (-1, direction)))))
+                lit = (AMBIENT + DIFFUSE * abs(dot(normal, toward)), SPECULAR * n_h ** SHININESS)
+            bend = max(abs(value(begin + (u - begin) * x) - value(begin) - (value(u) - value(begin)) * x) for x in (0.25, 0.5, 0.75))
+            lines = min(400, 1 + math.ceil(math.sqrt(bend / 1e-6)))
+            for n in range(lines):
+                a, b = begin + (u - begin) * n / lines, begin + (u - begin) * (n + 1) / lines
+                light.add_matter(function, value(a), value(b), (back - front) * (b - a), lit)
+            if surface[0] is not None:
+                light.add_surface(*surface)
+            begin = u
+    return light.rgb

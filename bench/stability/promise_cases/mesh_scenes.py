@@ -1,0 +1,91 @@
+"""Meshes with everything that is drawn in them, at random: iso-surfaces, the boundary, clips, a threshold, light on the matter,
+point and cell data, any view, some on two or three ranks. Some pixels are held against _oracle.py, which knows nothing
+of the program's reference.
+"""
+import math
+
+from promise_cases import _oracle, files
+from promise_cases.plateau_meshes import direction, mesh
+from promise_cases.perspective_ties import dot, plus
+
+NAMES = {"red": (1.0, 0.0, 0.0), "blue": (0.0, 0.0, 1.0), "yellow": (1.0, 1.0, 0.0)}
+WORDS = lambda v: ",".join(repr(float(x)) for x in v)
+
+
+def any_camera(r, size):
+    towards, at = direction(r), [r.uniform(-0.3, 0.3) for _ in range(3)]
+    while True:
+        up = direction(r)
+        if abs(dot(up, towards)) < 0.9:
+            break
+    lens = {"scale": r.uniform(0.5, 1.6)} if r.random() < 0.5 else {"angle": r.uniform(20, 90)}
+    return _oracle.Camera(plus(at, (-r.uniform(2.5, 5), towards)), at, up, size, size, **lens)
+
+
+def case(r, folder, tessera):
+    points, tets = mesh(r)
+    association = "cell" if r.random() < 0.25 else "point"
+    scalars = [r.random() for _ in (points if association == "point" else tets)]
+    path = files.write_vtu(folder / "mesh.vtu", points, tets, scalars, association)
+    dense = 10 ** r.uniform(-1, 1)
+    values = sorted({0.0, 1.0, *(r.random() for _ in range(r.choice((0, 1, 4))))})
+    knots = [(v, r.random(), r.random(), r.random(), 0.0 if r.random() < 0.2 else dense * r.random()) for v in values]
+    args, scene, words = [], {}, []
+    if association == "point" and r.random() < 0.5:
+        scene["iso"] = [(r.uniform(0.1, 0.9), name, r.choice((0.3, 0.6, 1.0))) for name in r.sample(sorted(NAMES), r.randint(1, 3))]
+        args += [f"--iso={v!r}:{name}:{opacity}" for v, name, opacity in scene["iso"]]
+        scene["iso"] = [(v, NAMES[name], opacity) for v, name, opacity in scene["iso"]]
+        words.append(f"{len(scene['iso'])} surfaces")
+    if r.random() < 0.3:
+        scene["boundary"] = (NAMES["red"], 0.4)
+        args += ["--surface", "boundary:red:0.4"]
+        words.append("boundary")
+    if r.random() < 0.4:
+        scene["planes"] = [([r.uniform(-0.5, 0.5) for _ in range(3)], direction(r)) for _ in range(r.randint(1, 2))]
+        for point, normal in scene["planes"]:
+            args.append(f"--clip={WORDS([*point, *normal])}")
+        words.append(f"{len(scene['planes'])} clips")
+    if r.random() < 0.3:
+        low, high = sorted((r.uniform(0, 0.4), r.uniform(0.6, 1)))
+        kept = [n for n, t in enumerate(tets) if all(low <= s <= high for s in ([scalars[n]] if association == "cell" else [scalars[v] for v in t]))]
+        if kept:
+            scalars = [scalars[n] for n in kept] if association == "cell" else scalars
+            tets = [tets[n] for n in kept]
+            args += ["--threshold", f"{low!r},{high!r}"]
+            words.append("threshold")
+    if association == "point" and r.random() < 0.3:
+        scene["shade"] = True
+        args.append("--shade")
+        words.append("shaded")
+    size = 16
+    camera = any_camera(r, size)
+    return {"input": [path], "function": knots, "camera": camera.text(), "args": args, "oracle": (points, tets, scalars, association),
+            "view": camera, "scene": scene, "pixels": sorted(r.sample(range(size * size), 24)), "ranks": r.choice((1, 1, 1, 2, 3)),
+            "methods": [r.choice((["--integrator", "exact"], ["--accuracy", "1e-4"], ["--accuracy", "1e-5"]))],
+            "words": f"{len(tets)} tets, {association} data{''.join(', ' + w for w in words)}"}
+
+
+def check(case, methods, tally):
+    import promises  # the script that runs this
+
+    made = case.made
+    status, _, said, _ = case.render(methods[0], verify=False)
+    if status == 2 and "nothing is left to render" in said:
+        return True, ""
+    broken = promises.judged(case, methods, tally)
+    mesh_of_it, function = _oracle.Mesh(*made["oracle"]), _oracle.Function(made["function"])
+    for words in methods:
+        bound = 2e-5 if words[0] == "--integrator" else float(words[1])
+        more = ["--without", "sharing"] if made["ranks"] > 1 else []
+        status, _, said, path = case.render([*words, *more], verify=False, ranks=made["ranks"])
+        if status != 0:
+            return False, f"{made['ranks']} ranks: status {status}: {said}"
+        _, _, rgb = promises.pixels_of(path)
+        for n in made["pixels"]:
+            truth = _oracle.mesh_pixel(mesh_of_it, function, made["view"], n, **made["scene"])
+            error = max(abs(a - b) for a, b in zip(truth, rgb[3 * n:3 * n + 3]))
+            tally["worst"] = max(tally["worst"], error / bound)
+            if not error <= bound or math.isnan(error):
+                broken.append(f"{' '.join(words)}: pixel {n}: {error:.3g} of {bound:g} from the oracle")
+                break
+    return not broken, "; ".join(broken)
