@@ -88,7 +88,7 @@ std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, co
   const bool independent = settings.emission == scene::Emission::independent;
   const double most_error = most_error_of(settings.integrator);
   const double brightest = std::max(1.0, function.max_color() * (independent ? length : 1));
-  if (!lanes_suffice(settings.integrator, brightest)) return std::nullopt;
+  if (!lanes_suffice(settings.integrator, scene::most_light(function, settings.emission, length))) return std::nullopt;
   for (std::size_t i = 1; i < knots.size(); ++i) {
     const scene::Knot &a = knots[i - 1], &b = knots[i];
     if (a.value == b.value || b.value < low || a.value > high) continue;

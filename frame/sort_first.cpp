@@ -15,6 +15,7 @@
 #include "frame/reduce.hpp"
 #include "frame/split_by_times.hpp"
 #include "scene/error.hpp"
+#include "scene/threads.hpp"
 #include "volume/learned_work.hpp"
 
 namespace tessera::frame {

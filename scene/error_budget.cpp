@@ -8,6 +8,16 @@
 
 namespace tessera::scene {
 
+double most_light(const TransferFunction& function, Emission emission, double length) {
+  if (emission == Emission::absorption) return std::max(1.0, function.max_color());
+  double light = 0;
+  for (const Knot& knot : function.knots()) {
+    const double color = std::max({knot.color.x, knot.color.y, knot.color.z});
+    if (color > 0) light = std::max(light, color / knot.extinction);
+  }
+  return std::max(1.0, std::min(light, function.max_color() * length));
+}
+
 void check_accuracy(double accuracy) {
   if (!(accuracy > 0) || !std::isfinite(accuracy))
     throw bad_input(fmt::format("`accuracy` {}: it must be positive", accuracy));

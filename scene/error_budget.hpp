@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "scene/optical_model.hpp"
+#include "scene/transfer_function.hpp"
+
 /// What pixels may differ by from exact arithmetic, in linear RGBA, and which cause may take how much of it. All shares
 /// are given out here. On each way to a picture they add up to no more than what was promised
 /// (tests/scene/error_budget_test.cpp; docs/ACCURACY.md has the sums).
@@ -83,6 +86,10 @@ constexpr bool runs_keep(double accuracy) {
 }  // namespace tessera::scene::error_budget
 
 namespace tessera::scene {
+
+/// The most light that a ray can have over that length, or 1 if that is more. Of independent emission no more than
+/// color over extinction, which is the light in matter without end.
+double most_light(const TransferFunction& function, Emission emission, double length);
 
 /// Throws Error(bad_input) for an accuracy that cannot be kept.
 void check_accuracy(double accuracy);

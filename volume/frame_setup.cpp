@@ -148,8 +148,8 @@ void FrameSetup::set_up_method(const RendererState& state, const scene::Transfer
   if (state.in_steps()) {
     view_.step = state.settings.step * state.voxel_side / state.length_unit;
   } else if (view_.tally == nullptr) {
-    const double noted = scene::error_budget::noted(std::max(state.accuracy(), scene::error_budget::exact_grid));
-    view_.error_tolerance = static_cast<float>(noted / state.settings.parts);
+    const double promised = state.settings.method == Method::exact ? scene::error_budget::exact_grid : state.accuracy();
+    view_.error_tolerance = static_cast<float>(scene::error_budget::noted(promised) / state.settings.parts);
     error_bound_ =
         LaneErrorBound(function, table_, state.ranges,
                        {view_.cell_data, view_.largest_color, state.brightest(function), view_.error_tolerance,

@@ -87,7 +87,9 @@ struct RendererState {
   }
   /// Whether float lanes are near enough for such a function.
   [[nodiscard]] bool lanes_suffice(const scene::TransferFunction& function) const {
-    const double light = std::max(1.0, brightest(function));
+    const scene::Box box = scene::bounds(source.geometry());
+    const double surfaces = scene::SurfaceSet(settings.surfaces, function).max_color();
+    const double light = surfaces + scene::most_light(function, settings.emission, glm::length(box.high - box.low));
     return settings.method == Method::exact
                ? scene::error_budget::exact_grid_in_lanes(light) <= scene::error_budget::exact_grid
                : scene::error_budget::grid_in_lanes(settings.accuracy, light) <= settings.accuracy;

@@ -60,7 +60,7 @@ HWY_INLINE Lit shade(const ShadingView& shading, const RayAxes& axes, VF g_i, VF
       noise * static_cast<float>(turn * std::sqrt(shading.metric[0][0] + shading.metric[1][1] + shading.metric[2][2]));
   return {HN::IfThenElse(flat, one, own),
           HN::IfThenElseZero(HN::Not(flat), times(shine, static_cast<float>(shading.specular))),
-          HN::IfThenElse(flat, HN::Set(d, noise > 0 ? 1e3f : 0.0f), times(per_norm, world_noise))};
+          HN::IfThenElseZero(HN::Not(flat), times(per_norm, world_noise))};
 }
 
 /// Puts a stretch, integrated by itself, behind what there is.

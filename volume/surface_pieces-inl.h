@@ -314,8 +314,8 @@ class SurfaceCast {
       const float turn = view_.diffuse + view_.specular * std::max(1.0f, view_.shininess);
       const float noise = frame_.rest_noise * turn *
                           static_cast<float>(std::sqrt(view_.metric[0][0] + view_.metric[1][1] + view_.metric[2][2]));
-      notes_.error_bound = HN::MulAdd(
-          hidden, HN::IfThenElse(flat, HN::Set(d, 1e3f), HN::Div(HN::Set(d, noise), steepness)), notes_.error_bound);
+      const VF error = HN::IfThenElseZero(HN::Not(flat), HN::Div(HN::Set(d, noise), steepness));
+      notes_.error_bound = HN::MulAdd(hidden, error, notes_.error_bound);
     }
     const auto add = [&](const std::vector<float>& color, VF& sum)
                          HWY_ATTR { sum = HN::MulAdd(hidden, HN::MulAdd(row(color), matte, shine), sum); };

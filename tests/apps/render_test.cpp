@@ -135,12 +135,22 @@ TEST(Render, VerifyMeetsItsBoundAndReportsPixels) {
 
 TEST(Render, AnAccuracyThatCannotBeMetGivesStatusFourAndStillThePicture) {
   const Folder folder;
-  // Float pictures cannot be this right.
-  const auto run = tessera(
-      {"render", folder.cube(), "-o", folder / "a.pfm", "--size", "40x40", "--accuracy", "1e-15", "--verify", "400"});
+  // Of such light the last place of a float is more than the accuracy.
+  const std::string bright = folder.file("bright.txt", "0 1e5 2e5 3e5 0\n1 3e5 1e5 2e5 0\n");
+  const auto run = tessera({"render", folder.cube(), "-o", folder / "a.pfm", "--size", "40x40", "--transfer-function",
+                            bright, "--emission", "independent", "--accuracy", "1e-6", "--verify", "400"});
   EXPECT_EQ(run.status, 4) << run.err << run.out;
   EXPECT_NE(run.out.find("NOT met"), std::string::npos) << run.out;
-  EXPECT_EQ(folder.names(), (Names{"a.pfm", "cube.vtu"}));
+  EXPECT_EQ(folder.names(), (Names{"a.pfm", "bright.txt", "cube.vtu"}));
+}
+
+TEST(Render, AnAccuracyBelowThatOfPicturesIsRefused) {
+  const Folder folder;
+  const auto run = tessera({"render", folder.cube(), "-o", folder / "a.pfm", "--accuracy", "9e-7"});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_EQ(run.err,
+            "tessera: --accuracy 9e-07: pictures are of 32-bit numbers, which keep 1e-06 at best; give no less\n");
+  EXPECT_EQ(folder.names(), Names{"cube.vtu"});
 }
 
 TEST(Render, RepeatPrintsMedianAndMinimum) {

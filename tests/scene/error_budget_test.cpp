@@ -39,6 +39,15 @@ TEST(ErrorBudget, LanesAreForTheDefaultAndFarBelow) {
   EXPECT_GT(budget::mesh_on_lattice(1e-4, 1000), 1e-4);
 }
 
+TEST(ErrorBudget, LightOfEmissionAloneIsThatOfDenseMatterOrOfAllOfTheWay) {
+  const TransferFunction dense({{0, {2, 0.5, 0}, 4}, {1, {1, 3, 0}, 1}}), clear({{0, {2, 0, 0}, 0}, {1, {1, 0, 0}, 1}});
+  EXPECT_EQ(most_light(dense, Emission::absorption, 100), 3);
+  EXPECT_EQ(most_light(dense, Emission::independent, 100), 3);
+  EXPECT_EQ(most_light(dense, Emission::independent, 0.5), 1.5);
+  EXPECT_EQ(most_light(clear, Emission::independent, 100), 200);
+  EXPECT_EQ(most_light(clear, Emission::independent, 0.1), 1);
+}
+
 TEST(ErrorBudget, AnAccuracyThatPicturesDoNotHaveIsRefused) {
   EXPECT_NO_THROW(check_accuracy(1e-6));
   for (const double accuracy : {0.0, -1.0, 9e-7, 1e-9, HUGE_VAL, std::nan("")})
