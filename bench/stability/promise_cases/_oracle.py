@@ -301,3 +301,27 @@ def grid_pixel(grid, function, camera, pixel, iso=(), planes=(), shade=False):
                 light.add_surface(*surface)
             begin = u
     return light.rgb
+
+
+def check(case, methods, tally, exact, pixel):
+    """Whether a picture keeps its promise (`exact`: of that integrator) by the reference, and some of its pixels by
+    `pixel(number)`, an oracle's; on as many ranks as the case has."""
+    import promises  # the script that runs this
+
+    made = case.made
+    status, _, said, _ = case.render(methods[0], verify=False)
+    if status == 2 and "nothing is left" in said:
+        return True, ""
+    broken = promises.judged(case, methods, tally)
+    for words in methods:
+        bound = exact if words[0] == "--integrator" else float(words[1])
+        status, _, said, path = case.render([*words, *made["on_ranks"]], verify=False, ranks=made["ranks"])
+        if status != 0:
+            return False, f"{made['ranks']} ranks: status {status}: {said}"
+        _, _, rgb = promises.pixels_of(path)
+        errors = {n: max(abs(a - b) for a, b in zip(pixel(n), rgb[3 * n:3 * n + 3])) for n in made["pixels"]}
+        worst = max(errors, key=errors.get)
+        tally["worst"] = max(tally["worst"], errors[worst] / bound)
+        if not errors[worst] <= bound:
+            broken.append(f"{' '.join(words)}: pixel {worst}: {errors[worst]:.3g} of {bound:g} from the oracle")
+    return not broken, "; ".join(broken)

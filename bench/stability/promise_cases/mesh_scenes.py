@@ -2,8 +2,6 @@
 point and cell data, any view, some on two or three ranks. Some pixels are held against _oracle.py, which knows nothing
 of the program's reference.
 """
-import math
-
 from promise_cases import _oracle, files
 from promise_cases.plateau_meshes import direction, mesh
 from promise_cases.perspective_ties import dot, plus
@@ -61,31 +59,13 @@ def case(r, folder, tessera):
     camera = any_camera(r, size)
     return {"input": [path], "function": knots, "camera": camera.text(), "args": args, "oracle": (points, tets, scalars, association),
             "view": camera, "scene": scene, "pixels": sorted(r.sample(range(size * size), 24)), "ranks": r.choice((1, 1, 1, 2, 3)),
+            "on_ranks": ["--without", "sharing"],
             "methods": [r.choice((["--integrator", "exact"], ["--accuracy", "1e-4"], ["--accuracy", "1e-5"]))],
             "words": f"{len(tets)} tets, {association} data{''.join(', ' + w for w in words)}"}
 
 
 def check(case, methods, tally):
-    import promises  # the script that runs this
-
     made = case.made
-    status, _, said, _ = case.render(methods[0], verify=False)
-    if status == 2 and "nothing is left to render" in said:
-        return True, ""
-    broken = promises.judged(case, methods, tally)
     mesh_of_it, function = _oracle.Mesh(*made["oracle"]), _oracle.Function(made["function"])
-    for words in methods:
-        bound = 2e-5 if words[0] == "--integrator" else float(words[1])
-        more = ["--without", "sharing"] if made["ranks"] > 1 else []
-        status, _, said, path = case.render([*words, *more], verify=False, ranks=made["ranks"])
-        if status != 0:
-            return False, f"{made['ranks']} ranks: status {status}: {said}"
-        _, _, rgb = promises.pixels_of(path)
-        for n in made["pixels"]:
-            truth = _oracle.mesh_pixel(mesh_of_it, function, made["view"], n, **made["scene"])
-            error = max(abs(a - b) for a, b in zip(truth, rgb[3 * n:3 * n + 3]))
-            tally["worst"] = max(tally["worst"], error / bound)
-            if not error <= bound or math.isnan(error):
-                broken.append(f"{' '.join(words)}: pixel {n}: {error:.3g} of {bound:g} from the oracle")
-                break
-    return not broken, "; ".join(broken)
+    return _oracle.check(case, methods, tally, 2e-5,
+                         lambda n: _oracle.mesh_pixel(mesh_of_it, function, made["view"], n, **made["scene"]))
