@@ -45,7 +45,7 @@ struct MergeContext {
   /// Not null: where the device fails the CPU takes over, and this is set.
   std::atomic<bool>* device_failed = nullptr;
   std::atomic<std::uint64_t>* segments = nullptr;  ///< grows by those that the device makes of cells; null: nobody asks
-  /// Set where runs of a pixel overlap, so that no order of them is right; null: nobody asks.
+  /// Set to true if runs of a pixel overlap, so that no order of them is right; may be null.
   std::atomic<bool>* overlapping = nullptr;
   const scene::SurfaceSet* surfaces = nullptr;  ///< in the volume; null: none
   const MatterLight* light = nullptr;           ///< on the matter of a mesh, by the CPU; null: none

@@ -72,7 +72,7 @@ enum class MessageKind : std::uint16_t {
   tet_count = 27,        ///< u64
   tet_table = 28,        ///< list of u64: a rank's tets, or messages, for each projector
   longest_edge = 29,     ///< f32
-  frames_complete = 30,  ///< u64; of a mesh also u64: 1: the rest has to be rendered once more
+  frames_complete = 30,  ///< u64; of a mesh also u64, 1 if the other frames are to be rendered again
   sink_failed = 31,      ///< u8
   cell_totals = 32,      ///< f64 lowest, f64 highest, u64 blank samples
   row_costs = 33,        ///< i32 x0, y0, x1, y1 of the map's region, list of u64

@@ -68,7 +68,8 @@ HWY_INLINE V thin_zeroth(V a, V b) {
                     hn::MulAdd(q3, number(-1.0 / 6), hn::MulAdd(q2, number(0.5), hn::Sub(number(1.0), q1))));
 }
 
-/// Of a segment: a piece in each interval, and those that thick ones are cut into, few of which leave nothing.
+/// Upper bound of the pieces of a segment: one for each interval, and those that thick ones are cut into. Each of these
+/// lets at most exp(-1) through, so few are needed before nothing is left.
 template <class Table>
 std::size_t most_pieces(const Table& table) {
   constexpr std::size_t thick = 64;

@@ -38,11 +38,11 @@ constexpr double lattice_scalars_of_exact = 0.75 * exact_mesh;
 /// What grids' lanes note that steps, ramps and ends may err (volume/lane_error_bound.hpp); rays beyond it are cast
 /// again in double precision.
 constexpr double noted(double accuracy) { return accuracy / 2; }
-/// One stretch of a grid's ray that is taken for a line or a parabola in float lanes, and all of a ray together: where
-/// one errs as much others are behind it (bench/stability/).
+/// One stretch of a grid's ray that is taken for a line or a parabola in float lanes, and all of a ray together. The
+/// sum is an estimate that random scenes have not exceeded (bench/stability/), not a bound.
 constexpr double grid_piece(double accuracy) { return accuracy / 64; }
 constexpr double grid_pieces(double accuracy) { return accuracy / 8; }
-/// The same in double precision, of which a ray has a thousand at most that count.
+/// The same in double precision. The sum is that of a thousand stretches; rays with more that matter were not met.
 constexpr double precise_piece(double accuracy) { return std::min(2e-9, accuracy / 2048); }
 constexpr double precise_pieces(double accuracy) { return accuracy / 2; }
 /// What the formulas above take for the accuracy of a grid's `exact`, which promises more by as much as they leave out.

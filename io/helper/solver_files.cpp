@@ -265,7 +265,7 @@ struct CutFile {
   std::string place;
 };
 
-/// The variables whose files end too early, of which VTK's reader makes zeros (text) or an error without a name.
+/// The variables whose files end too early. VTK's reader fills them up with zeros (text), or fails without a name.
 std::vector<CutFile> cut_files(vtkGenericEnSightReader& reader, const std::filesystem::path& file,
                                const nlohmann::json& request, vtkDataObject& data) {
   std::vector<CutFile> found;
