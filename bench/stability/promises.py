@@ -121,6 +121,8 @@ def run_class(name, args, folder):
           f"largest error {tally['worst']:.3g} of what was promised; {tally['excused']} of {tally['pixels']} pixels excused"
           f"{', too many' if tally['too_many_excused'] else ''}; {tally['double']} of {tally['frames']} frames in double precision",
           flush=True)
+    if hasattr(module, "summary"):
+        print(f"{name}: {module.summary(tally)}", flush=True)
     return tally
 
 

@@ -95,6 +95,46 @@ class Light:
         self.through *= 1 - opacity
 
 
+class LayeredLight(Light):
+    """Light in layers: a ray is cut where its opacity, from the last cut on, reaches a threshold."""
+
+    def __init__(self, threshold, layers):
+        super().__init__()
+        self.threshold, self.most, self.done = threshold, layers, []
+
+    def is_full(self):
+        return len(self.done) < self.most - 1 and 1 - self.through >= self.threshold
+
+    def cut(self):
+        self.done.append((self.rgb, 1 - self.through))
+        self.rgb, self.through = [0.0, 0.0, 0.0], 1.0
+
+    def add_matter(self, function, s_0, s_1, length, lit=(1.0, 0.0)):
+        while length > 0:
+            before = list(self.rgb), self.through
+            super().add_matter(function, s_0, s_1, length, lit)
+            if not self.is_full():
+                return
+            low, high = 0.0, 1.0
+            for _ in range(50):
+                middle = (low + high) / 2
+                self.rgb, self.through = list(before[0]), before[1]
+                super().add_matter(function, s_0, s_0 + (s_1 - s_0) * middle, length * middle, lit)
+                low, high = (low, middle) if self.is_full() else (middle, high)
+            self.cut()
+            s_0, length = s_0 + (s_1 - s_0) * high, length * (1 - high)
+
+    def add_surface(self, color, opacity, cosine):
+        super().add_surface(color, opacity, cosine)
+        if self.is_full():
+            self.cut()
+
+    def layers(self):
+        """(RGB, opacity) of each."""
+        empty = [([0.0, 0.0, 0.0], 0.0)] * self.most
+        return ([*self.done, (self.rgb, 1 - self.through)] + empty)[:self.most]
+
+
 def gradient_of(points, scalars):
     """Of a field linear in a tet."""
     e = [plus(p, (-1, points[0])) for p in points[1:]]
@@ -155,11 +195,11 @@ class Mesh:
         return sorted(found)
 
 
-def mesh_pixel(mesh, function, camera, pixel, iso=(), boundary=None, planes=(), shade=False):
-    """RGB. `iso`: (value, color, opacity) each; `boundary`: (color, opacity); `planes`: (point, normal) each, of which the
+def mesh_pixel(mesh, function, camera, pixel, iso=(), boundary=None, planes=(), shade=False, light=None):
+    """RGB, also in `light`. `iso`: (value, color, opacity) each; `boundary`: (color, opacity); `planes`: (point, normal) each, of which the
     side that the normal points to is kept."""
     origin, direction = camera.ray(pixel)
-    light = Light()
+    light = light or Light()
     near, far, near_normal, far_normal = 0.0, math.inf, None, None
     for point, normal in planes:
         rise, height = dot(normal, direction), dot(normal, plus(origin, (-1, point)))
@@ -266,10 +306,10 @@ def monotone_parts(f):
     return [0.0, *sorted(turns), 1.0]
 
 
-def grid_pixel(grid, function, camera, pixel, iso=(), planes=(), shade=False):
+def grid_pixel(grid, function, camera, pixel, iso=(), planes=(), shade=False, light=None):
     """RGB, as mesh_pixel(). The matter of a stretch in a voxel has the light of the gradient in its middle, between surfaces."""
     origin, direction = camera.ray(pixel)
-    light = Light()
+    light = light or Light()
     near, far = 0.0, math.inf
     for point, normal in planes:
         rise, place = dot(normal, direction), -dot(normal, plus(origin, (-1, point))) / dot(normal, direction)

@@ -1,0 +1,68 @@
+"""Meshes and grids with everything that is drawn in them, in layers of --peel. Every layer is held against the reference by
+--verify; composited they are the picture; and some pixels' layers are held against _oracle.py, which cuts rays itself.
+"""
+from promise_cases import _exr, _oracle, grid_scenes, mesh_scenes
+
+TOLERANCE = 1e-5
+
+
+def case(r, folder, tessera):
+    made = (mesh_scenes if r.random() < 0.6 else grid_scenes).case(r, folder, tessera)
+    threshold, layers = r.choice((0.3, 0.5, 0.9, r.uniform(0.05, 0.95))), r.randint(1, 5)
+    made["peel"] = (threshold, layers)
+    made["pixels"] = made["pixels"][:6]
+    made["methods"] = [["--peel", f"{threshold!r}:{layers}"]]
+    made["words"] += f", {layers} layers of {threshold:.3g}, {made['ranks']} ranks"
+    return made
+
+
+def layers_of(made, number):
+    """[(rgb, opacity)] of a pixel, by the oracle."""
+    light = _oracle.LayeredLight(*made["peel"])
+    scene, function = made["scene"], _oracle.Function(made["function"])
+    if made["input"][0].suffix == ".vti":
+        _oracle.grid_pixel(_oracle.Grid(*made["oracle"]), function, made["view"], number, light=light, **scene)
+    else:
+        _oracle.mesh_pixel(_oracle.Mesh(*made["oracle"]), function, made["view"], number, light=light, **scene)
+    return light.layers()
+
+
+def check(case, methods, tally):
+    import promises
+
+    made = case.made
+    threshold, count = made["peel"]
+    words = [*methods[0], *made["on_ranks"]]
+    status, frame, said, path = case.render(words, name="picture.exr", ranks=made["ranks"])
+    if status == 2 and "nothing is left" in said:
+        return True, ""
+    if status not in (0, 4) or frame is None:
+        return False, f"status {status}: {said}"
+    broken = []
+    error = frame["verify"]["max_error_not_excused"]
+    tally["pixels"] += frame["verify"]["pixels"]
+    tally["excused"] += frame["verify"]["excused"]
+    tally["frames"] += 1
+    tally["double"] += frame.get("arithmetic") == "double"
+    if status == 4 or not error <= frame["verify"]["bound"]:
+        broken.append(f"{error} from the reference")
+    _, _, whole = _exr.read(path)
+    layers = [_exr.read(path.with_name(f"picture.layer{n + 1}.exr"))[2] for n in range(count)]
+    worst = 0.0
+    for n in range(len(whole["R"])):
+        through, flat = 1.0, [0.0] * 4
+        for layer in layers:
+            values = [layer[c][n][0] for c in "RGBA"]
+            flat = [a + through * b for a, b in zip(flat, values)]
+            through *= 1 - values[3]
+        worst = max(worst, *(abs(a - whole[c][n][0]) for a, c in zip(flat, "RGBA")))
+    if not worst <= 2 * TOLERANCE:  # the picture's own and the layers' bound
+        broken.append(f"layers composited are {worst:.3g} from the picture")
+    for n in made["pixels"]:
+        for k, (rgb, opacity) in enumerate(layers_of(made, n)):
+            got = [layers[k][c][n][0] for c in "RGBA"]
+            off = max(abs(a - b) for a, b in zip((*rgb, opacity), got))
+            tally["worst"] = max(tally["worst"], off / TOLERANCE)
+            if not off <= TOLERANCE:
+                broken.append(f"pixel {n}, layer {k + 1}: {off:.3g} from the oracle")
+    return not broken, "; ".join(broken[:4])
