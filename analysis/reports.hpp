@@ -28,7 +28,7 @@ struct Description {
   std::vector<std::string> notes, warnings, blocks;
   MeshCounts counts;  ///< meshes
   HigherOrderCells higher_order;
-  double higher_order_pixels = 0;  ///< Dataset::higher_order_error(), where a transfer function is known
+  double higher_order_pixels = 0;  ///< HigherOrderRead::pixel_error, where a picture is made
   GridGeometry geometry;           ///< grids, and so on
   SampleType type{};
   double scale = 1, shift = 0;

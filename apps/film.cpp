@@ -259,13 +259,11 @@ class Film final : public Sink {
     if (writes_ && !warning.empty()) output_.warn(options_, warning);
   }
 
-  /// Higher-order cells as finely as --accuracy needs. What is right for the first step is taken for all.
+  /// Higher-order cells as finely as --accuracy needs. What is right for the first picture is taken for all.
   void come_near_enough() {
     if (data_->higher_order_cells().divided == 0) return;
-    const auto accuracy =
-        options_.fixed_higher_order ? std::nullopt : std::optional(options_.settings.integrator.accuracy);
     const HigherOrderRead near = read_for_accuracy(
-        read_, accuracy,
+        read_, options_.higher_order_accuracy,
         [this, is_open = true](const ReadOptions& read) mutable {
           if (!std::exchange(is_open, false) || read.higher_order_tolerance != read_.higher_order_tolerance)
             open(frames_.front(), read);
@@ -275,7 +273,13 @@ class Film final : public Sink {
           find_function();
           return loaded_.function;
         },
+        [this](const Dataset& data) {
+          const FilmFrame& frame = frames_.front();
+          return View{frame.view(data.bounds(), options_.projection, options_.view, data.body_axes()), frame.size};
+        },
         settings_, job_.communicator());
+    data_ = near.dataset;
+    find_function();
     read_ = near.options;
     higher_order_pixels_ = near.pixel_error;
   }
@@ -297,11 +301,11 @@ class Film final : public Sink {
     analysis::Description data = described(*data_);
     if (series_) data.notes.push_back(series_note(*series_, frames_.back().step + 1, data_->field_name()));
     if (data_->higher_order_cells().divided == 0) return data;
-    const double error = higher_order_pixels_, accuracy = options_.settings.integrator.accuracy;
-    data.higher_order_pixels = error;
+    data.higher_order_pixels = higher_order_pixels_;
     // Of cells drawn by their corners there is a warning already.
-    if (error > accuracy && data.higher_order.by_corners == 0)
-      data.warnings.push_back(higher_order_warning(error, accuracy));
+    if (data.higher_order.by_corners > 0) return data;
+    const double error = higher_order_pixels_, accuracy = options_.higher_order_accuracy.value_or(error);
+    (error > accuracy ? data.warnings : data.notes).push_back(higher_order_note(error, accuracy));
     return data;
   }
 

@@ -47,9 +47,12 @@ void set_common(const RenderWords& words, RenderOptions& options) {
   Settings& settings = options.settings;
   if (!options.is_grid()) {
     settings.integrator = mesh_integrator(words);
-    // At first as coarsely as read_for_accuracy() begins.
-    if (!options.fixed_higher_order)
-      options.read.higher_order_tolerance = first_higher_order_tolerance(settings.integrator.accuracy);
+    if (words.higher_order_tolerance.empty()) {
+      options.higher_order_accuracy =
+          words.accuracy.empty() ? default_higher_order_accuracy : settings.integrator.accuracy;
+      // At first as coarsely as read_for_accuracy() begins.
+      options.read.higher_order_tolerance = first_higher_order_tolerance(*options.higher_order_accuracy);
+    }
   }
   if (words.rasterizer == "scanline") settings.mesh.rasterizer = Rasterizer::scanline;
   if (words.rasterizer == "device") settings.mesh.rasterizer = Rasterizer::device;
@@ -310,7 +313,6 @@ RenderOptions render_options(const RenderWords& words, bool is_grid) {
   plan.inputs.insert(plan.inputs.end(), words.more_inputs.begin(), words.more_inputs.end());
   set_outputs(words, options);
   options.read = mesh_options(words);
-  options.fixed_higher_order = !words.higher_order_tolerance.empty();
 
   options.transfer_function = words.transfer_function;
   if (words.rescale && words.transfer_function.empty())

@@ -36,8 +36,8 @@ struct RenderOptions {
 
   std::vector<BlockSurfaceWord> block_surfaces;  ///< beside settings.surfaces, which has them once the input is read
 
-  bool no_shade = false;            ///< not even where the default transfer function asks for it
-  bool fixed_higher_order = false;  ///< higher-order cells are read as `read` says, whatever --accuracy is
+  bool no_shade = false;                        ///< not even where the default transfer function asks for it
+  std::optional<double> higher_order_accuracy;  ///< of read_for_accuracy(); none: `read` has the tolerance
 
   int repeat = 0;  ///< 0: render once and print no times
   int verify = 0;  ///< pixels a frame to check against the reference; 0: none

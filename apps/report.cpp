@@ -239,14 +239,12 @@ std::string cells_line(const MeshCounts& counts) {
   return line;
 }
 
-std::string higher_order_warning(double error, double accuracy) {
-  if (!std::isfinite(error))
-    return fmt::format(
-        "how far its higher-order cells' tets change pixels is not bounded, for the transfer function has steps");
-  return fmt::format(
-      "tets that stand for its higher-order cells may change pixels by {}, more than --accuracy {:g}; "
-      "--higher-order-tets allows more of them",
-      error < 1 ? fmt::format("{:.2g}", error) : "any amount", accuracy);
+std::string higher_order_note(double error, double accuracy) {
+  std::string note = fmt::format("tets that stand for its higher-order cells change pixels of the first picture by {}",
+                                 error < 1 ? fmt::format("about {:.2g}", error) : "any amount");
+  if (error > accuracy)
+    note += fmt::format(", more than {:.2g} (--accuracy); --higher-order-tets allows more of them", accuracy);
+  return note;
 }
 
 std::string view_line(const Camera& camera) {

@@ -25,8 +25,8 @@ struct FrameRecord {
 /// What lines and reports say of a data set: the notes in the program's words.
 analysis::Description described(const Dataset& data);
 
-/// That higher-order cells may change pixels by `error`, more than was asked for.
-std::string higher_order_warning(double error, double accuracy);
+/// By how much the tets of higher-order cells change pixels, and that it is more than `accuracy` if it is.
+std::string higher_order_note(double error, double accuracy);
 
 /// What the settings and command line chose but for data, view and transfer function.
 nlohmann::ordered_json method_json(const RenderOptions& options, int ranks);

@@ -168,15 +168,16 @@ class RenderScene final : public server::Scene {
       return Dataset::open(frame_.data.files, with, communicator, options().settings.ranks);
     };
     Dataset data = open_with(read);
-    if (options().fixed_higher_order || data.higher_order_cells().divided == 0) return data;
+    if (!options().higher_order_accuracy || data.higher_order_cells().divided == 0) return data;
     // As `render` comes near enough to higher-order cells.
     return read_for_accuracy(
-               read, options().settings.integrator.accuracy,
+               read, options().higher_order_accuracy,
                [&, is_open = true](const ReadOptions& with) mutable {
                  const bool is_same = with.higher_order_tolerance == read.higher_order_tolerance;
                  return std::exchange(is_open, false) && is_same ? std::move(data) : open_with(with);
                },
-               [&](const Dataset& each) { return function(each).function; }, options().settings, communicator)
+               [&](const Dataset& each) { return function(each).function; },
+               [&](const Dataset& each) { return view(each); }, options().settings, communicator)
         .dataset;
   }
 
@@ -405,8 +406,7 @@ class RenderSceneReader final : public server::SceneReader {
     if (!given.clip.clip.empty() && !given.surfaces.iso.empty()) parsed->data += Json(given.surfaces.iso).dump();
     parsed->field = given.field;
     parsed->shape = given.field.empty() && given.transfer_function.empty() && !is_grid_;
-    parsed->accuracy = fmt::format("{:a}", options.fixed_higher_order ? options.read.higher_order_tolerance
-                                                                      : options.settings.integrator.accuracy);
+    parsed->accuracy = fmt::format("{:a}", options.higher_order_accuracy.value_or(options.read.higher_order_tolerance));
     parsed->look = key_of(words, look_options);
     parsed->settings = key_of(words, settings_options);
     parsed->series_function = series_function(state);

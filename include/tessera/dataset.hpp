@@ -62,9 +62,10 @@ struct ReadOptions {
   /// thinner than 1:20, z is scaled, which a note says (Dataset::axis_scale() has what was taken).
   std::optional<glm::dvec3> axis_scale{};
 
-  /// Cells of second and higher order become tets that are this near to them: in position of the mesh's diagonal, in
-  /// value of the field's range. No more than about `higher_order_tets` are made of them, else the tolerance is larger;
-  /// Dataset::higher_order_cells() says what was reached. 0 tets: they are drawn by their corners, without a bound.
+  /// Cells of second and higher order become tets that are this near to them: in value of the field's range, in
+  /// position a quarter of it, of the mesh's diagonal. No more than about `higher_order_tets` are made of them, else
+  /// the tolerance is larger; Dataset::higher_order_cells() says what was reached. 0 tets: they are drawn by their
+  /// corners, without a bound.
   double higher_order_tolerance = default_higher_order_tolerance;
   std::uint64_t higher_order_tets = default_higher_order_tets;
 
@@ -229,12 +230,6 @@ class TESSERA_EXPORT Dataset {
   [[nodiscard]] std::uint64_t tet_count() const;
   [[nodiscard]] const MeshCounts& mesh_counts() const;
   [[nodiscard]] const HigherOrderCells& higher_order_cells() const;
-  /// A bound, to first order in what the cells are off by, on how far a pixel's colour or opacity is off because
-  /// higher-order cells are drawn as tets: by the function's steepest slopes within the field's range and its largest
-  /// extinction, for any view and emission by absorption. It leaves out rays that meet the mesh's surface at more than
-  /// 83 degrees from its normal, and takes those to cross it twice. Infinite where the function has a step in that
-  /// range, or where cells are drawn by their corners; 0 for meshes without such cells, and grids.
-  [[nodiscard]] double higher_order_error(const TransferFunction& function) const;
   /// The tets as they are rendered, on several ranks this one's: float64 points and scalars, uint32 tets, borrowed from
   /// this data set and kept by it. Throws Error(bad_input) for a grid.
   [[nodiscard]] MeshArrays mesh_arrays() const;

@@ -10,6 +10,7 @@
 #include "io/curved_meshes.hpp"
 #include "io/mesh_checks.hpp"
 #include "reference/curved_reference.hpp"
+#include "reference/curved_shapes.hpp"
 #include "reference/judge.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/higher_order.hpp"
@@ -42,6 +43,16 @@ TransferFunction random_function(Random& random, const std::array<double, 2>& ra
   return TransferFunction(knots);
 }
 
+/// Formats have cells without nodes in some faces or inside, of which no source defines functions; the reference has
+/// none.
+bool is_in_reference(const io::testing::Kind& kind) {
+  try {
+    return !reference::cell_shape(kind.type, kind.nodes, kind.degrees, "").nodes.empty();
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 struct Case {
   io::CellBlock block;
   std::string words;
@@ -49,9 +60,8 @@ struct Case {
 
 /// As smooth as a mesh has to be that so little error can be asked of: of few and nearly straight cells.
 Case random_case(Random& random, double accuracy) {
-  // No source defines the functions inside a pyramid of 18 nodes, and the reference has none.
   std::vector<io::testing::Kind> kinds = io::testing::kinds;
-  std::erase_if(kinds, [](const io::testing::Kind& k) { return k.type == 74 && k.nodes == 18; });
+  std::erase_if(kinds, [](const io::testing::Kind& k) { return !is_in_reference(k); });
   const io::testing::Kind& kind = kinds[static_cast<std::size_t>(random.below(static_cast<int>(kinds.size())))];
   const double rough = std::sqrt(accuracy), bend = random.uniform(0.1, 0.5) * rough,
                wave = random.uniform(0.5, 3) * rough;
@@ -110,13 +120,15 @@ TEST(CurvedPicture, IsWithinTheAccuracyAskedFor) {
     options.higher_order_tets = std::uint64_t{1} << 23;
     Dataset data = Dataset::open(file, options);
     const TransferFunction function = random_function(random, data.range());
+    const Camera camera = random_camera(random);
     HigherOrderRead read = read_for_accuracy(
         options, accuracy, [&](const ReadOptions& with) { return Dataset::open(file, with); },
-        [&](const Dataset&) { return function; });
+        [&](const Dataset&) { return function; },
+        [&](const Dataset&) {
+          return View{camera, size};
+        });
     data = std::move(read.dataset);
     const double stated = read.pixel_error;
-    EXPECT_LE(stated, data.higher_order_error(function));
-    const Camera camera = random_camera(random);
     Settings settings;
     settings.integrator.kind = IntegratorKind::exact;  // so that all error is the cells'
     const RenderedFrame frame = Session(data, settings).render({camera, size}, function);
@@ -128,7 +140,7 @@ TEST(CurvedPicture, IsWithinTheAccuracyAskedFor) {
         << accuracy << ", stated " << stated << ", " << data.higher_order_cells().tets << " tets";
     EXPECT_GT(judgement.pixels_checked, 0u);
     met += stated <= accuracy;
-    near += stated <= 10 * judgement.max_error_not_excused;
+    near += stated <= 4 * judgement.max_error_not_excused;
     worst = std::max(worst, judgement.max_error_not_excused / std::max(accuracy, stated));
     excused += judgement.excused, pixels += judgement.pixels_checked;
     tets += data.higher_order_cells().tets;

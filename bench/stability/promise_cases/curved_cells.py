@@ -13,7 +13,8 @@ from promise_cases import files
 from promise_cases.mesh_scenes import any_camera
 
 ACCURACY = 0.01
-CUTS = 40  # of each edge: the even tets are off by about a hundredth of what is asked of the others
+CUTS = 40  # of each edge; pixels that 20 change by a quarter of what is stated are no truth, and count as excused
+EXCUSABLE = 1e-3
 
 
 def powers(*degrees):
@@ -121,8 +122,8 @@ def case(r, folder, tessera):
     kind = r.choice(sorted(TYPES))
     places, monomials, part = TYPES[kind]
     if part not in EVEN:
-        EVEN[part] = pieces(part, CUTS)
-    even, tets = EVEN[part]
+        EVEN[part] = [pieces(part, cuts) for cuts in (CUTS // 2, CUTS)]
+    even = EVEN[part][0][0]
     while True:
         bend, rough, phase = r.uniform(0, 0.3), r.choice((0.0, r.uniform(0, 0.06))), [r.uniform(0, 6) for _ in range(3)]
         points = [[p[i] - 0.4 + bend * math.sin((2 + i) * p[(i + 1) % 3] + p[(i + 2) % 3] + phase[i]) + rough * r.uniform(-1, 1)
@@ -130,17 +131,19 @@ def case(r, folder, tessera):
         values = [p[0] + 0.5 * p[1] - p[2] + bend * 3 * math.sin(2 * p[0] + p[1] * 3 + phase[0]) + r.uniform(-0.1, 0.1) for p in places]
         matrix = [[math.prod(x ** n for x, n in zip(p, powers_of)) for powers_of in monomials] for p in places]
         coefficients = solved(matrix, [[*p, v] for p, v in zip(points, values)])
-        some = [determinants(p, coefficients, monomials) for p in even[::37]]
+        some = [determinants(p, coefficients, monomials) for p in even[::5]]
         if min(some) > 0.1 * max(some):  # else folded, or nearly so
             break
-    whole = []
-    for p in even:
-        value = [0.0] * 4
-        for c, n in zip(coefficients, monomials):
-            by = p[0] ** n[0] * p[1] ** n[1] * p[2] ** n[2]
-            value = [s + by * x for s, x in zip(value, c)]
-        whole.append(value)
-    truth = files.write_vtu(folder / "even.vtu", [v[:3] for v in whole], tets, [v[3] for v in whole])
+    truth = []
+    for even, tets in EVEN[part]:
+        whole = []
+        for p in even:
+            value = [0.0] * 4
+            for c, n in zip(coefficients, monomials):
+                by = p[0] ** n[0] * p[1] ** n[1] * p[2] ** n[2]
+                value = [s + by * x for s, x in zip(value, c)]
+            whole.append(value)
+        truth.append(files.write_vtu(folder / f"even{len(truth)}.vtu", [v[:3] for v in whole], tets, [v[3] for v in whole]))
     low, high = min(v[3] for v in whole), max(v[3] for v in whole)
     dense = 10 ** r.uniform(-0.5, 1)
     knots = [(low + (high - low) * k / 3, r.random(), r.random(), r.random(), dense * r.random()) for k in range(4)]
@@ -157,16 +160,23 @@ def check(case, methods, tally):
         mesh = json.loads((case.folder / "report.json").read_text())["mesh"]
         stated = mesh["higher_order"].get("pixel_error", 0.0)
         picture = promises.pixels_of(path)[2]
-        cell, made["input"] = made["input"], [made["truth"]]
-        status, _, said, path = case.render(["--integrator", "exact"], verify=False, name="even.pfm")
+        cell, pictures = made["input"], []
+        for name in ("even0.pfm", "even1.pfm"):
+            made["input"] = [made["truth"][len(pictures)]]
+            status, _, said, path = case.render(["--integrator", "exact"], verify=False, name=name)
+            if status != 0:
+                return False, f"even tets: status {status}: {said}"
+            pictures.append(promises.pixels_of(path)[2])
         made["input"] = cell
-        if status != 0:
-            return False, f"even tets: status {status}: {said}"
-        error = max(abs(a - b) for a, b in zip(picture, promises.pixels_of(path)[2]))
-        tally["pixels"] += len(picture) // 3
+        pixels = [[max(abs(a - b) for a, b in zip(one[n:n + 3], pictures[1][n:n + 3])) for n in range(0, len(picture), 3)]
+                  for one in (picture, pictures[0])]
+        known = [off for off, doubt in zip(*pixels) if doubt <= stated / 4]
+        error = max(known, default=0.0)
+        tally["pixels"] += len(pixels[0])
+        tally["excused"] += len(pixels[0]) - len(known)
         tally["frames"] += 1
         tally["worst"] = max(tally["worst"], error / stated if stated else math.inf if error > 1e-6 else 0.0)
-        tally.setdefault("stated", []).append(stated / error if error else math.inf)
+        tally.setdefault("stated", []).append(stated / max(pixels[0]) if any(pixels[0]) else math.inf)
         if not error <= stated or not (stated <= float(words[1]) or mesh["warnings"]):  # of too few tets
             broken.append(f"{' '.join(words)}: off by {error:.3g}, stated {stated:.3g}")
     return not broken, "; ".join(broken)

@@ -56,7 +56,7 @@ def check(case, methods, tally):
             flat = [a + through * b for a, b in zip(flat, values)]
             through *= 1 - values[3]
         worst = max(worst, *(abs(a - whole[c][n][0]) for a, c in zip(flat, "RGBA")))
-    if not worst <= 2 * TOLERANCE:  # the picture's own and the layers' bound
+    if not worst <= (count + 1) * TOLERANCE:  # each layer's bound, and the picture's own
         broken.append(f"layers composited are {worst:.3g} from the picture")
     for n in made["pixels"]:
         for k, (rgb, opacity) in enumerate(layers_of(made, n)):
