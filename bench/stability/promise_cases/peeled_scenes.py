@@ -62,7 +62,9 @@ def check(case, methods, tally):
         for k, (rgb, opacity) in enumerate(layers_of(made, n)):
             got = [layers[k][c][n][0] for c in "RGBA"]
             off = max(abs(a - b) for a, b in zip((*rgb, opacity), got))
-            tally["worst"] = max(tally["worst"], off / TOLERANCE)
-            if not off <= TOLERANCE:
+            # The oracle's grids are lines, off by 1e-7; light behind a cut is stretched by what the layer let through.
+            bound = TOLERANCE + (1e-7 / (1 - threshold) ** k if made["input"][0].suffix == ".vti" else 0)
+            tally["worst"] = max(tally["worst"], off / bound)
+            if not off <= bound:
                 broken.append(f"pixel {n}, layer {k + 1}: {off:.3g} from the oracle")
     return not broken, "; ".join(broken[:4])

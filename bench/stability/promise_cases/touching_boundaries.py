@@ -6,7 +6,7 @@ centres, seen along an axis or in perspective, with a boundary of any opacity, m
 reference is not asked which order is right, but must agree (--verify).
 """
 from promise_cases.files import split_box, write_vtu
-from promise_cases.perspective_ties import METHODS, SHIFTS, View, box_in_plane, check, plus, projective_lattice  # noqa: F401
+from promise_cases.perspective_ties import METHODS, SHIFTS, View, box_in_plane, check, dot, plus, projective_lattice  # noqa: F401
 
 
 class Along:
@@ -37,12 +37,16 @@ def some_tets(r, tets):
     return [t for t in tets if r.random() < share] or tets[:1]
 
 
-def box_before(r, view):
-    """A boundary through the eye itself is before it or behind by a rounding: no picture of it is right or wrong."""
+def in_perspective(r):
+    """A view, with points and tets that meet its pixels' centres: a boundary through the eye, and points so near to it that their
+    coordinates' rounding shows, are left out, since the ray is on either side of them."""
     while True:
-        points, tets, where = box_in_plane(r, view)
-        if where == "before":
-            return points, tets
+        view = View(r)
+        points, tets, where = (*projective_lattice(r, view), "before") if r.random() < 0.5 else box_in_plane(r, view)
+        off = max(2.0 ** -52 * max(map(abs, [*p, *view.eye])) * view.per_tangent / max(abs(dot(view.forward, plus(p, (-1, view.eye)))), 1e-300)
+                  for p in points)  # pixels
+        if where == "before" and off < 1e-10:
+            return view, points, tets
 
 
 def case(r, folder, tessera):
@@ -51,8 +55,7 @@ def case(r, folder, tessera):
         points, tets = split_box(counts, (0, 0, 0), counts)
         words = f"a lattice {'x'.join(map(str, counts))} along an axis"
     else:
-        view = View(r)
-        points, tets = projective_lattice(r, view) if r.random() < 0.5 else box_before(r, view)
+        view, points, tets = in_perspective(r)
         words = "a lattice in perspective"
     tets = some_tets(r, tets)
     scalars = [r.random() for _ in points]
