@@ -36,6 +36,7 @@ Camera random_camera(Random& random) {
 TransferFunction random_function(Random& random, const std::array<double, 2>& range) {
   std::vector<Knot> knots;
   const int count = 2 + random.below(4);
+  knots.reserve(static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k)
     knots.push_back({range[0] + (range[1] - range[0]) * k / (count - 1),
                      {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)},
@@ -123,7 +124,7 @@ TEST(CurvedPicture, IsWithinTheAccuracyAskedFor) {
     const Camera camera = random_camera(random);
     HigherOrderRead read = read_for_accuracy(
         options, accuracy, [&](const ReadOptions& with) { return Dataset::open(file, with); },
-        [&](const Dataset&) { return function; },
+        [&](const Dataset&) -> const TransferFunction& { return function; },
         [&](const Dataset&) {
           return View{camera, size};
         });
