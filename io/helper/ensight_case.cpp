@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <system_error>
 
@@ -23,14 +24,13 @@ bool is_count(const std::string& word) {
 }
 
 /// Takes the numbers of a time set and a file set away from the beginning of the words.
-std::pair<int, bool> take_sets(std::vector<std::string>& words, std::size_t names) {
-  int time_set = 1;
-  bool in_sets = false;
+std::pair<int, int> take_sets(std::vector<std::string>& words, std::size_t names) {
+  int time_set = 1, file_set = 0;
   for (int k = 0; k < 2 && words.size() > names && is_count(words.front()); ++k) {
-    k == 0 ? static_cast<void>(time_set = std::stoi(words.front())) : static_cast<void>(in_sets = true);
+    (k == 0 ? time_set : file_set) = std::stoi(words.front());
     words.erase(words.begin());
   }
-  return {time_set, in_sets};
+  return {time_set, file_set};
 }
 
 int components_of(const std::string& kind) {
@@ -50,6 +50,7 @@ EnsightCase::EnsightCase(const std::filesystem::path& file)
   std::ifstream text(file);
   std::string section, list;
   TimeSet* set = nullptr;
+  std::vector<InFileSet>* files = nullptr;
   constexpr std::size_t most_lines = 1 << 20;
   std::size_t lines = 0;
   for (std::string line; std::getline(text, line) && lines < most_lines; ++lines) {
@@ -57,12 +58,16 @@ EnsightCase::EnsightCase(const std::filesystem::path& file)
     if (words.empty() || words.front().starts_with('#')) continue;
     if (words.size() == 1 && std::ranges::all_of(words[0], [](char c) { return c >= 'A' && c <= 'Z'; }))
       section = words[0];
+    else if (section == "FORMAT")
+      is_gold_ = is_gold_ || line.find("gold") != std::string::npos;
     else if (section == "GEOMETRY")
       read_geometry(line);
     else if (section == "VARIABLE")
       read_variable(line);
     else if (section == "TIME")
       read_time(line, set, list);
+    else if (section == "FILE")
+      read_file_set(line, files);
   }
 }
 
@@ -70,8 +75,8 @@ void EnsightCase::read_geometry(const std::string& line) {
   const std::size_t colon = line.find(':');
   if (colon == std::string::npos || line.substr(0, colon).find("model") == std::string::npos) return;
   std::vector<std::string> words = words_of(line.substr(colon + 1));
-  const auto [time_set, in_sets] = take_sets(words, 1);
-  if (!words.empty()) named_.push_back({"", without_quotes(words.front()), time_set, false, in_sets});
+  const auto [time_set, file_set] = take_sets(words, 1);
+  if (!words.empty()) named_.push_back({"model", "", without_quotes(words.front()), time_set, file_set});
 }
 
 /// `scalar per node: [ts] [fs] NAME FILE`; of a complex one two files and a frequency; a constant has no file.
@@ -83,10 +88,11 @@ void EnsightCase::read_variable(const std::string& line) {
   if (kind.find("per node") == std::string::npos && kind.find("per element") == std::string::npos) return;
   if (kind.find("measured") != std::string::npos) return;
   std::vector<std::string> words = words_of(line.substr(colon + 1));
-  const auto [time_set, in_sets] = take_sets(words, is_complex ? 3 : 2);
+  const auto [time_set, file_set] = take_sets(words, is_complex ? 3 : 2);
   const bool of_points = kind.find("per node") != std::string::npos;
   for (std::size_t k = 1; k < words.size() && k < (is_complex ? 3u : 2u); ++k)
-    named_.push_back({words.front(), without_quotes(words[k]), time_set, of_points, in_sets, components_of(kind)});
+    named_.push_back(
+        {kind, words.front(), without_quotes(words[k]), time_set, file_set, of_points, components_of(kind)});
 }
 
 void EnsightCase::read_time(const std::string& line, TimeSet*& set, std::string& list) {
@@ -104,33 +110,57 @@ void EnsightCase::read_time(const std::string& line, TimeSet*& set, std::string&
     char* end = nullptr;
     const double number = std::strtod(word.c_str(), &end);
     if (end == word.c_str()) continue;
-    if (list.find("time values") != std::string::npos) set->times.push_back(number);
+    if (list.find("time values") != std::string::npos)
+      set->times.push_back(static_cast<float>(number));  // as VTK has them
     if (list.find("filename numbers") != std::string::npos) set->numbers.push_back(static_cast<long>(number));
     if (list.find("filename start number") != std::string::npos) set->start = static_cast<long>(number);
     if (list.find("filename increment") != std::string::npos) set->increment = static_cast<long>(number);
   }
 }
 
-std::string EnsightCase::file_of(const Named& named, double time) const {
+void EnsightCase::read_file_set(const std::string& line, std::vector<InFileSet>*& set) {
+  const std::size_t colon = line.find(':');
+  if (colon == std::string::npos) return;
+  const std::string key = line.substr(0, colon);
+  const std::vector<std::string> words = words_of(line.substr(colon + 1));
+  if (words.empty() || !is_count(words.front())) return;
+  const int number = std::stoi(words.front());
+  if (key.find("file set") != std::string::npos) set = &file_sets_[number];
+  if (set == nullptr) return;
+  if (key.find("filename index") != std::string::npos) set->push_back({number, 0});
+  if (key.find("number of steps") == std::string::npos) return;
+  if (set->empty()) set->push_back({});
+  set->back().steps = static_cast<std::size_t>(number);
+}
+
+EnsightCase::Place EnsightCase::place_of(const Named& named, double time) const {
   const std::size_t first = named.pattern.find('*');
-  if (first == std::string::npos) return named.pattern;
   const auto found = sets_.find(named.time_set);
-  if (found == sets_.end()) return "";
+  if (found == sets_.end()) return {first == std::string::npos ? named.pattern : "", 0};
   const TimeSet& set = found->second;
-  std::size_t step = 0;
-  while (step + 1 < set.times.size() && set.times[step + 1] <= time) ++step;
-  if (!set.numbers.empty() && step >= set.numbers.size()) return "";
-  const long number = set.numbers.empty() ? set.start + static_cast<long>(step) * set.increment : set.numbers[step];
+  Place place{named.pattern, 0};
+  while (place.step + 1 < set.times.size() && set.times[place.step + 1] <= time) ++place.step;
+  std::optional<long> number;
+  if (set.numbers.empty())
+    number = set.start + static_cast<long>(place.step) * set.increment;
+  else if (place.step < set.numbers.size())
+    number = set.numbers[place.step];
+  if (const auto files = file_sets_.find(named.file_set); files != file_sets_.end() && !files->second.empty()) {
+    auto file = files->second.begin();
+    for (; file + 1 != files->second.end() && place.step >= file->steps; ++file) place.step -= file->steps;
+    number = file->number;
+  }
+  if (first == std::string::npos) return place;
+  if (!number) return {};
   const std::size_t last = named.pattern.find_last_of('*');
-  return named.pattern.substr(0, first) + fmt::format("{:0{}}", number, last + 1 - first) +
-         named.pattern.substr(last + 1);
+  place.file.replace(first, last + 1 - first, fmt::format("{:0{}}", *number, last + 1 - first));
+  return place;
 }
 
 std::vector<EnsightCase::Missing> EnsightCase::missing(double time) const {
   std::vector<Missing> missing;
   for (const Named& named : named_) {
-    if (named.in_sets) continue;  // how many files a set has, only they say
-    const std::string file = file_of(named, time);
+    const std::string file = place_of(named, time).file;
     std::error_code unknown;
     if (!file.empty() && !std::filesystem::exists(folder_ / file, unknown) && !unknown)
       missing.push_back({named.variable, file, named.of_points});
@@ -138,16 +168,35 @@ std::vector<EnsightCase::Missing> EnsightCase::missing(double time) const {
   return missing;
 }
 
+std::vector<EnsightCase::Located> EnsightCase::located(double time) const {
+  std::vector<Located> located;
+  for (const Named& named : named_) {
+    const Place place = place_of(named, time);
+    const std::filesystem::path file = folder_ / place.file;
+    std::error_code unknown;
+    if (place.file.empty() || !std::filesystem::is_regular_file(file, unknown)) continue;
+    located.push_back({named.kind,
+                       {named.variable, file, file.filename().string(), named.components, named.of_points},
+                       place.step,
+                       named.file_set != 0});
+  }
+  return located;
+}
+
 std::vector<EnsightCase::Values> EnsightCase::values(double time) const {
   std::vector<Values> values;
-  for (const Named& named : named_) {
-    if (named.variable.empty() || named.in_sets || named.components == 0) continue;
-    const std::string file = file_of(named, time);
-    std::error_code unknown;
-    if (!file.empty() && std::filesystem::is_regular_file(folder_ / file, unknown))
-      values.push_back({named.variable, folder_ / file, named.components, named.of_points});
-  }
+  for (Located& each : located(time))
+    if (!each.values.variable.empty() && !each.in_set && each.values.components > 0)
+      values.push_back(std::move(each.values));
   return values;
+}
+
+std::vector<double> EnsightCase::times() const {
+  std::vector<double> times;
+  for (const auto& [number, set] : sets_) times.insert(times.end(), set.times.begin(), set.times.end());
+  std::ranges::sort(times);
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
 }
 
 }  // namespace tessera::io::helper

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "io/helper/ensight_case.hpp"
 
@@ -10,10 +11,19 @@ class vtkGenericEnSightReader;
 /// Variable files of EnSight that end too early, where VTK's reader gives zeros without an error.
 namespace tessera::io::helper {
 
-/// Where a file ends that has fewer numbers than the parts need that `reader` has read into `data`: "part 2", or "the
-/// nodes" of EnSight 6. Empty if it has them all, and for any layout but the plain one: partial and undefined values,
-/// several steps in a file, Fortran's records.
-std::string where_values_end(vtkGenericEnSightReader& reader, vtkDataObject& data, const EnsightCase::Values& values);
+struct EnsightValues {
+  /// Where a file ends that has fewer numbers than its parts need: "inside part 2", "inside the nodes" (EnSight 6),
+  /// "after part 1", "before its values". Empty if it has them all.
+  std::string end;
+  std::vector<std::string> absent;  ///< parts with solid cells that it has no values of, which Gold files may leave out
+};
+
+/// Of the parts that `reader` has read into `data`. Nothing for any layout but the plain one: several steps in a file,
+/// Fortran's records. Cells of types that the file has no values of become NaN in `data`.
+EnsightValues values_in(vtkGenericEnSightReader& reader, vtkDataObject& data, const EnsightCase::Values& values);
+
+/// Whether a file ends with the word `part`, of which VTK's reader of text crashes.
+bool ends_with_part(const EnsightCase::Values& values);
 
 /// Removes the variable from all parts.
 void remove_values(vtkDataObject& data, const EnsightCase::Values& values);

@@ -28,6 +28,7 @@
 #include <glm/vec3.hpp>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -36,6 +37,7 @@
 
 #include "io/helper/cgns_zones.hpp"
 #include "io/helper/ensight_case.hpp"
+#include "io/helper/ensight_step.hpp"
 #include "io/helper/ensight_values.hpp"
 #include "io/helper/linear_only.hpp"
 #include "io/helper/odd_numbers.hpp"
@@ -47,6 +49,7 @@
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
 #include "scene/error.hpp"
+#include "scene/quote.hpp"
 
 namespace tessera::io::helper {
 namespace {
@@ -241,10 +244,9 @@ bool asks_for(std::string_view field, const std::string& name) {
 }
 
 /// Leaves out what has no file at the step that is asked for; without the geometry there is nothing to read.
-void leave_out_missing(vtkGenericEnSightReader& reader, const std::filesystem::path& file,
-                       const nlohmann::json& request, std::vector<std::string>& notes) {
-  const std::string source = file.string();
-  for (const EnsightCase::Missing& gone : EnsightCase(file).missing(asked_time(reader, request, source))) {
+void leave_out_missing(vtkGenericEnSightReader& reader, const EnsightCase& described, double time,
+                       const std::string& source, const nlohmann::json& request, std::vector<std::string>& notes) {
+  for (const EnsightCase::Missing& gone : described.missing(time)) {
     if (gone.variable.empty())
       throw scene::bad_input(
           fmt::format("{}: it names {}, and there is no such file; put it there", source, gone.file));
@@ -266,18 +268,23 @@ struct CutFile {
 };
 
 /// The variables whose files end too early. VTK's reader fills them up with zeros (text), or fails without a name.
-std::vector<CutFile> cut_files(vtkGenericEnSightReader& reader, const std::filesystem::path& file,
-                               const nlohmann::json& request, vtkDataObject& data) {
+std::vector<CutFile> cut_files(vtkGenericEnSightReader& reader, const std::vector<EnsightCase::Values>& variables,
+                               vtkDataObject& data, std::vector<std::string>& notes) {
   std::vector<CutFile> found;
-  for (const EnsightCase::Values& values : EnsightCase(file).values(asked_time(reader, request, file.string())))
-    if (std::string place = where_values_end(reader, data, values); !place.empty())
-      found.push_back({values, std::move(place)});
+  for (const EnsightCase::Values& values : variables) {
+    EnsightValues in_file = values_in(reader, data, values);
+    if (!in_file.absent.empty())
+      notes.push_back(fmt::format("{} is blank in {} of the case's parts, such as {}: {} has no values for them",
+                                  values.variable, in_file.absent.size(), scene::quote(in_file.absent.front()),
+                                  values.file_name));
+    if (!in_file.end.empty()) found.push_back({values, std::move(in_file.end)});
+  }
   return found;
 }
 
 std::string note_on(const CutFile& cut) {
-  return fmt::format("{} is left out: {} is truncated, it ends inside {}", cut.values.variable,
-                     cut.values.file.filename().string(), cut.place);
+  return fmt::format("{} is left out: {} is truncated, it ends {}", cut.values.variable, cut.values.file_name,
+                     cut.place);
 }
 
 void require_not_asked_for(const std::vector<CutFile>& cut, const std::filesystem::path& file,
@@ -285,30 +292,61 @@ void require_not_asked_for(const std::vector<CutFile>& cut, const std::filesyste
   for (const CutFile& each : cut)
     if (asks_for(request.value("field", ""), each.values.variable))
       throw scene::bad_input(
-          fmt::format("{}: {} of that time step is in {}, which ends inside {}; copy it there again, or choose another "
+          fmt::format("{}: {} of that time step is in {}, which ends {}; copy it there again, or choose another "
                       "`field` or `time_step`",
-                      file.string(), each.values.variable, each.values.file.filename().string(), each.place));
+                      file.string(), each.values.variable, each.values.file_name, each.place));
 }
 
-ForeignContents read_case(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
-  std::vector<std::string> notes;
+/// The step of a case with file sets that is asked for.
+TimeStepRead step_in_file_sets(const EnsightCase& described, nlohmann::json& request, const std::string& source) {
+  std::optional<std::size_t> wish;
+  if (request.contains("time_step")) wish = request["time_step"].get<std::size_t>();
+  request.erase("time_step");
+  std::vector<double> times = described.times();
+  TimeStepRead read = chosen_step(wish, times.size(), source);
+  set_times(read, std::move(times));
+  return read;
+}
+
+ForeignContents read_case(Holdings& holdings, const std::filesystem::path& file, nlohmann::json request) {
+  const std::string source = file.string();
+  const EnsightCase described(file);
+  std::optional<TimeStepRead> step;
+  std::optional<EnsightStep> apart;
+  double time = 0;
+  if (described.has_file_sets()) {
+    step = step_in_file_sets(described, request, source);
+    if (step->step < step->times.size()) time = step->times[step->step];
+    apart.emplace(described, time, source);
+  }
+  const std::string case_file = apart ? apart->case_file().string() : source;
+  std::vector<std::string> notes, blank;
+  std::vector<EnsightCase::Values> variables;
   std::vector<CutFile> cut;
   const auto read = [&](bool has_variables) {
     const vtkNew<vtkGenericEnSightReader> reader;
-    reader->SetCaseFileName(file.c_str());
+    reader->SetCaseFileName(case_file.c_str());
     reader->ReadAllVariablesOn();
+    const auto leave_out = [&](const EnsightCase::Values& values) {
+      values.of_points ? reader->SetPointArrayStatus(values.variable.c_str(), 0)
+                       : reader->SetCellArrayStatus(values.variable.c_str(), 0);
+    };
     const auto choose = [&] {
       notes.clear();
-      leave_out_missing(*reader, file, request, notes);
-      for (const CutFile& each : cut)
-        each.values.of_points ? reader->SetPointArrayStatus(each.values.variable.c_str(), 0)
-                              : reader->SetCellArrayStatus(each.values.variable.c_str(), 0);
+      if (!apart) time = asked_time(*reader, request, source);
+      leave_out_missing(*reader, described, time, source, request, notes);
+      variables = apart ? apart->values() : described.values(time);
+      for (const CutFile& each : cut) leave_out(each.values);
+      for (const EnsightCase::Values& values : variables)
+        if (ends_with_part(values)) leave_out(values);
       if (has_variables) return;
       reader->GetPointDataArraySelection()->DisableAllArrays();
       reader->GetCellDataArraySelection()->DisableAllArrays();
     };
     return read_by(holdings, *reader, file, request, "EnSight", choose, [&](vtkDataObject& data) {
-      if (cut.empty()) cut = cut_files(*reader, file, request, data);
+      blank.clear();
+      std::vector<CutFile> found = cut_files(*reader, variables, data, blank);
+      if (cut.empty()) cut = std::move(found);
       for (const CutFile& each : cut) remove_values(data, each.values);
     });
   };
@@ -326,7 +364,9 @@ ForeignContents read_case(Holdings& holdings, const std::filesystem::path& file,
     contents = read(true);
   }
   require_not_asked_for(cut, file, request);
+  if (step) contents.time_step = *step;
   std::move(notes.begin(), notes.end(), std::back_inserter(contents.notes));
+  std::move(blank.begin(), blank.end(), std::back_inserter(contents.notes));
   std::ranges::transform(cut, std::back_inserter(contents.notes), note_on);
   return contents;
 }

@@ -1,4 +1,5 @@
-// EnSight's variable files that end too early are named, and their fields left out; whole ones of any layout are read.
+// EnSight's variable files that end too early are named, and their fields left out; whole ones of any layout are read,
+// also those of several time steps.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -161,6 +162,117 @@ TEST_F(EnsightValues, OnesThatEndInsideTheirNumbersAreLeftOutByName) {
   }
 }
 
+TEST_F(EnsightValues, OnesThatEndInsideTheirLastNumberAreLeftOutByName) {
+  TESSERA_VTK_OR_SKIP();
+  for (const Layout layout : {Layout::gold_text, Layout::six_text})
+    for (const auto& [name, variable] : {std::pair("a.f", "f"), std::pair("a.v", "v"), std::pair("a.g", "g")})
+      for (const std::size_t bytes : {2u, 5u, 8u}) {  // of `e+01`, of the digits before
+        SCOPED_TRACE(fmt::format("{} without {} bytes", name, bytes));
+        write_case(layout);
+        cut(name, bytes);
+        const std::vector<std::string> notes = left_out(read());
+        ASSERT_EQ(notes.size(), 1u);
+        EXPECT_NE(notes[0].find(fmt::format("{} is left out: {} is truncated, it ends inside ", variable, name)),
+                  std::string::npos)
+            << notes[0];
+      }
+}
+
+TEST_F(EnsightValues, NumbersNeedNoLineBreakAfterThem) {
+  TESSERA_VTK_OR_SKIP();
+  for (const Layout layout : {Layout::gold_text, Layout::six_text}) {
+    write_case(layout);
+    for (const char* name : {"a.f", "a.v", "a.g"}) cut(name, 1);
+    EXPECT_TRUE(left_out(read()).empty());
+  }
+  write_case(Layout::gold_text);
+  folder.write("a.f", "f\npart\n1\ncoordinates\n0.5\n1.25\n0.75\n2.5\npart\n2\ncoordinates\n0.25\n1\n3\n4");
+  EXPECT_TRUE(left_out(read()).empty());
+  EXPECT_EQ(read("f").mesh.scalars.back(), 4);
+}
+
+TEST_F(EnsightValues, OnesThatEndBeforeOrBetweenTheirNumbersAreLeftOutByName) {
+  TESSERA_VTK_OR_SKIP();
+  for (const Layout layout : layouts) {
+    SCOPED_TRACE(static_cast<int>(layout));
+    write_case(layout);
+    for (const std::string& begun : {std::string(), Content(layout).line("g").text}) {
+      folder.write("a.g", begun);
+      const std::vector<std::string> notes = left_out(read());
+      ASSERT_EQ(notes.size(), 1u);
+      EXPECT_NE(notes[0].find("g is left out: a.g is truncated, it ends before its values"), std::string::npos)
+          << notes[0];
+    }
+    const std::string whole = Content(layout).line("g").part(1).line("tetra4").real({10}).text;
+    for (const std::string& more :
+         {std::string("par"), Content(layout).part(2).text.substr(0, layout == Layout::gold_binary ? 82 : 5),
+          Content(layout).part(2).line("tetra4").text.substr(0, Content(layout).part(2).text.size() + 5)}) {
+      if (more.size() == 5 && !Content(layout).is_gold) continue;  // the number is in the part's line
+      SCOPED_TRACE(more);
+      folder.write("a.g", whole + more);
+      const std::vector<std::string> notes = left_out(read());
+      ASSERT_EQ(notes.size(), 1u) << more;
+      EXPECT_TRUE(notes[0].find("it ends after part 1") != std::string::npos ||
+                  notes[0].find("it ends inside part 2") != std::string::npos)
+          << notes[0];
+    }
+  }
+}
+
+TEST_F(EnsightValues, PartsWithoutValuesAreBlankAndNamed) {
+  TESSERA_VTK_OR_SKIP();
+  for (const Layout layout : {Layout::gold_text, Layout::gold_binary}) {
+    SCOPED_TRACE(static_cast<int>(layout));
+    write_case(layout);
+    folder.write("a.f", Content(layout).line("f").part(2).line("coordinates").real({4, 5, 6, 7}).text);
+    const MeshFile file = read("f");
+    EXPECT_EQ(file.mesh.tets.size(), 1u);
+    EXPECT_EQ(std::ranges::count(file.notes,
+                                 "f is blank in 1 of the case's parts, such as 'p1': a.f has no values for "
+                                 "them"),
+              1);
+  }
+}
+
+TEST_F(EnsightValues, CellsOfATypeWithoutValuesAreBlank) {
+  TESSERA_VTK_OR_SKIP();
+  for (const Layout layout : {Layout::gold_text, Layout::gold_binary}) {
+    SCOPED_TRACE(static_cast<int>(layout));
+    Content geometry(layout);
+    folder.write("a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: a.geo\nVARIABLE\nscalar per element: g a.g\n");
+    if (geometry.is_binary) geometry.line("C Binary");
+    geometry.line("made").line("here").line("node id off").line("element id off").part(1).line("p").line("coordinates");
+    geometry.whole({5}).real({0, 1, 0, 0, 1}).real({0, 0, 1, 0, 1}).real({0, 0, 0, 1, 1});
+    geometry.line("tetra4").whole({1}).whole({1, 2, 3, 4}).line("pyramid5").whole({1}).whole({1, 2, 5, 3, 4});
+    folder.write("a.geo", geometry.text);
+    folder.write("a.g", Content(layout).line("g").part(1).line("tetra4").real({20}).text);
+    const MeshFile file = read("g");
+    EXPECT_EQ(file.mesh.tets.size(), 1u);
+    for (const float value : file.mesh.scalars) EXPECT_EQ(value, 20);
+  }
+}
+
+TEST_F(EnsightValues, PartialAndUndefinedValuesCount) {
+  TESSERA_VTK_OR_SKIP();
+  for (const Layout layout : {Layout::gold_text, Layout::gold_binary}) {
+    SCOPED_TRACE(static_cast<int>(layout));
+    write_case(layout);
+    Content f(layout), v(layout);
+    f.line("f").part(1).line("coordinates undef").real({-9}).real({0, 1, 2, 3});
+    f.part(2).line("coordinates partial").whole({2});
+    for (const int node : {1, 3}) f.whole({node});
+    folder.write("a.f", f.real({4, 5}).text);
+    v.line("v").part(1).line("coordinates undef").real({-9}).real(std::vector<float>(12, 1));
+    folder.write("a.v", v.text);
+    EXPECT_TRUE(left_out(read()).empty());
+    const MeshFile file = read("f");
+    ASSERT_EQ(file.mesh.tets.size(), 1u);
+    for (const std::uint32_t v : file.mesh.tets[0]) EXPECT_LE(file.mesh.scalars[v], 3);
+    for (const char* name : {"a.f", "a.v"}) cut(name, layout == Layout::gold_binary ? 4 : 13);
+    EXPECT_EQ(left_out(read()).size(), 2u);
+  }
+}
+
 TEST_F(EnsightValues, WhatGoldFilesMayLeaveOutIsNotMissed) {
   TESSERA_VTK_OR_SKIP();
   for (const Layout layout : {Layout::gold_text, Layout::gold_binary}) {
@@ -207,6 +319,121 @@ TEST_F(EnsightValues, StructuredPartsCount) {
     for (const char* name : {"a.f", "a.g"}) cut(name, layout == Layout::gold_binary ? 4 : 13);
     EXPECT_EQ(left_out(read()).size(), 2u);
   }
+}
+
+/// One of three steps, at 0, 0.7 and 2: `f` of nodes is 10 times the step and 0 to 7.
+Content at_step(Content content, const std::vector<float>& numbers, float step) {
+  std::vector<float> values;
+  for (const float number : numbers) values.push_back(number + 10 * step);
+  return content.real(values);
+}
+
+/// write_case() with a file of three steps for `f`, files of one step each for `g`, and geometry and `v` that stay.
+class EnsightSteps : public EnsightValues {
+ protected:
+  void write_steps(Layout layout, const std::string& files) {
+    write_case(layout);
+    const bool is_gold = Content(layout).is_gold;
+    folder.write("a.case",
+                 fmt::format("FORMAT\ntype: ensight{}\nGEOMETRY\nmodel: a.geo\nVARIABLE\nscalar per node: 1 1 "
+                             "f {}\nvector per node: v a.v\nscalar per element: 2 g a.g**\nTIME\n"
+                             "time set: 1\nnumber of steps: 3\ntime values: 0 0.7 2\ntime set: 2\n"
+                             "number of steps: 3\nfilename numbers: 4 5 7\ntime values: 0 0.7 2\nFILE\n"
+                             "file set: 1\n{}",
+                             is_gold ? " gold" : "", files.empty() ? "a.f" : "a.f*",
+                             files.empty() ? "number of steps: 3\n" : files));
+    for (const int step : {0, 1, 2}) {
+      const auto time = static_cast<float>(step);
+      steps[step] = Content(layout).line("BEGIN TIME STEP").line("f").text;
+      if (is_gold)
+        for (const int part : {1, 2}) {
+          const float first = part == 1 ? 0 : 4;
+          steps[step] +=
+              at_step(Content(layout).part(part).line("coordinates"), {first, first + 1, first + 2, first + 3}, time)
+                  .text;
+        }
+      else
+        steps[step] +=
+            at_step(Content(layout), {0, 1, 2, 3, 4, 5, 6, 7, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, time)
+                .text;
+      steps[step] += Content(layout).line("END TIME STEP").text;
+      folder.write(fmt::format("a.g{:02}", step == 2 ? 7 : 4 + step), Content(layout)
+                                                                          .line("g")
+                                                                          .part(1)
+                                                                          .line("tetra4")
+                                                                          .real({time})
+                                                                          .part(2)
+                                                                          .line("tetra4")
+                                                                          .real({time + 0.5f})
+                                                                          .text);
+    }
+  }
+
+  float least_of_step(const std::string& field, std::size_t step) const {
+    MeshOptions options;
+    options.field = field;
+    options.time_step = step;
+    const MeshFile file = read_mesh(folder.path() / "a.case", options);
+    EXPECT_EQ(file.mesh.tets.size(), 2u);
+    EXPECT_TRUE(left_out(file).empty());
+    EXPECT_EQ(file.time_step.count, 3u);
+    EXPECT_EQ(file.time_step.times, (std::vector<double>{0, 0.7f, 2}));
+    return *std::ranges::min_element(file.mesh.scalars);
+  }
+
+  std::string steps[3];
+};
+
+TEST_F(EnsightSteps, StepsInOneFileGoWithGeometryThatStaysAndFilesOfOneStep) {
+  TESSERA_VTK_OR_SKIP();
+  for (const Layout layout : layouts) {
+    SCOPED_TRACE(static_cast<int>(layout));
+    write_steps(layout, "");
+    folder.write("a.f", steps[0] + steps[1] + steps[2]);
+    for (const std::size_t step : {0u, 1u, 2u}) {
+      EXPECT_EQ(least_of_step("f", step), static_cast<float>(10 * step));
+      EXPECT_EQ(least_of_step("g", step), static_cast<float>(step));
+    }
+  }
+}
+
+TEST_F(EnsightSteps, AFileSetMayHaveSeveralFiles) {
+  TESSERA_VTK_OR_SKIP();
+  for (const Layout layout : layouts) {
+    SCOPED_TRACE(static_cast<int>(layout));
+    write_steps(layout, "filename index: 3\nnumber of steps: 2\nfilename index: 9\nnumber of steps: 1\n");
+    folder.write("a.f3", steps[0] + steps[1]);
+    folder.write("a.f9", steps[2]);
+    for (const std::size_t step : {0u, 1u, 2u}) EXPECT_EQ(least_of_step("f", step), static_cast<float>(10 * step));
+  }
+}
+
+TEST_F(EnsightSteps, OnesThatAreNotThereAreLeftOutByName) {
+  TESSERA_VTK_OR_SKIP();
+  for (const Layout layout : layouts) {
+    SCOPED_TRACE(static_cast<int>(layout));
+    write_steps(layout, "");
+    const std::size_t half = steps[2].size() - Content(layout).line("END TIME STEP").text.size() - 2;
+    for (const std::string& last : {std::string(), steps[2].substr(0, half)}) {
+      folder.write("a.f", steps[0] + steps[1] + last);
+      const std::vector<std::string> notes = left_out(read());
+      ASSERT_EQ(notes.size(), 1u);
+      EXPECT_NE(notes[0].find("f is left out: a.f is truncated, it ends "), std::string::npos) << notes[0];
+      EXPECT_EQ(least_of_step("f", 1), 10);
+    }
+  }
+}
+
+TEST_F(EnsightSteps, TheFileOfAStepIsFoundByItsTimeAsFloat) {  // 0.7 as a float is less
+  TESSERA_VTK_OR_SKIP();
+  write_steps(Layout::gold_text, "");
+  folder.write("a.f", steps[0] + steps[1] + steps[2]);
+  std::filesystem::remove(folder.path() / "a.g05");
+  MeshOptions options;
+  options.time_step = 1;
+  const std::vector<std::string> notes = left_out(read_mesh(folder.path() / "a.case", options));
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_NE(notes[0].find("g is left out: a.g05 is missing"), std::string::npos) << notes[0];
 }
 
 }  // namespace
