@@ -4,6 +4,7 @@
 #include <vtkCellType.h>
 #include <vtkDataArray.h>
 #include <vtkDataObject.h>
+#include <vtkDataSet.h>
 #include <vtkDataSetReader.h>
 #include <vtkIdList.h>
 #include <vtkMultiBlockDataSet.h>
@@ -27,6 +28,7 @@
 #include "io/helper/extents.hpp"
 #include "io/helper/grid_pieces.hpp"
 #include "io/helper/legacy_byte_order.hpp"
+#include "io/helper/legacy_words.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/vtk_parts.hpp"
 #include "io/helper/vtk_session.hpp"
@@ -152,6 +154,28 @@ void add_strips(vtkPolyData& surface) {
   surface.SetPolys(polygons);
 }
 
+/// Legacy VTK. A word that does not belong there ends what VTK reads, not always with an error.
+vtkSmartPointer<vtkDataObject> read_legacy(const std::filesystem::path& file, std::string& warning) {
+  const std::string source = file.string();
+  const auto name_odd_word = [&] {
+    if (const std::string odd = odd_legacy_word(file); !odd.empty())
+      throw scene::bad_input(fmt::format("{}: {}; correct it, or have the file written again", source, odd));
+  };
+  vtkSmartPointer<vtkDataObject> data;
+  try {
+    warning = with_quiet_vtk(source, write_anew, [&] {
+      vtkNew<vtkDataSetReader> reader;
+      read_all_arrays(*reader, source);
+      data = reader->GetOutputDataObject(0);
+    });
+  } catch (const scene::Error&) {
+    name_odd_word();
+    throw;
+  }
+  if (auto* const set = vtkDataSet::SafeDownCast(data); set != nullptr && set->GetNumberOfCells() == 0) name_odd_word();
+  return data;
+}
+
 vtkSmartPointer<vtkDataObject> read_xml(const std::string& source, const std::string& type) {
   if (type == "ImageData") return read_structured<vtkXMLImageDataReader>(source);
   if (type == "RectilinearGrid") return read_structured<vtkXMLRectilinearGridReader>(source);
@@ -209,14 +233,9 @@ ForeignContents read_vtk_xml(Holdings& holdings, const std::filesystem::path& fi
 ForeignContents read_vtk_legacy(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json&) {
   allow_for(file);
   require_big_endian(file);
-  const std::string source = file.string();
-  vtkSmartPointer<vtkDataObject> data;
-  const std::string warning = with_quiet_vtk(source, write_anew, [&] {
-    vtkNew<vtkDataSetReader> reader;
-    read_all_arrays(*reader, source);
-    data = reader->GetOutputDataObject(0);
-  });
-  ForeignContents contents = contents_of_data(holdings, data, source, warning);
+  std::string warning;
+  const vtkSmartPointer<vtkDataObject> data = read_legacy(file, warning);
+  ForeignContents contents = contents_of_data(holdings, data, file.string(), warning);
   contents.format = fmt::format("legacy VTK ({})", data->GetClassName());
   return contents;
 }
@@ -270,11 +289,7 @@ ForeignContents read_vtk_surface(Holdings& holdings, const std::filesystem::path
   if (read_beginning(file, 5) == "# vtk") {
     allow_for(file);
     require_big_endian(file);
-    warning = with_quiet_vtk(source, write_anew, [&] {
-      vtkNew<vtkDataSetReader> reader;
-      read_all_arrays(*reader, source);
-      data = reader->GetOutputDataObject(0);
-    });
+    data = read_legacy(file, warning);
   } else {
     data = read_xml_file(file, "PolyData", warning);
   }

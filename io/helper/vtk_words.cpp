@@ -109,6 +109,12 @@ scene::Error error_of_vtk(const std::string& source, const std::string& words, c
           "{}: {}: NaN and infinite numbers in text are none to VTK's reader of OpenFOAM; write the case in "
           "binary (foamFormatConvert)",
           source, own));
+  constexpr std::string_view attribute = "attribute type: ";
+  if (const std::size_t at = own.find(attribute); at != std::string::npos && at + attribute.size() < own.size() &&
+                                                  std::isdigit(static_cast<unsigned char>(own[at + attribute.size()])))
+    return scene::bad_input(fmt::format(
+        "{}: a number, {}, is where the next array is expected, so one has more numbers than it states; {}", source,
+        own.substr(at + attribute.size(), own.find(' ', at + attribute.size()) - at - attribute.size()), remedy));
   if (proves_damage(own)) return scene::bad_input(fmt::format("{}: {}; {}", source, own, remedy));
   return scene::bad_input(
       fmt::format("{}: VTK's reader says: {}; see to that, or have it written in another format", source, own));

@@ -137,6 +137,7 @@ ROWS = [
     row("info a.sos", "put it there", None, {"a.sos": SERVERS}, ENSIGHT),
     damaged("a.sos", SERVERS, "casefile:", "file:", "write it anew", beside=ENSIGHT),
     damaged("a.vtk", LEGACY, "# vtk DataFile Version 3.0", "vtk", "check that it is a legacy VTK file"),
+    damaged("a.vtk", LEGACY, "SCALARS", "SCALRS", "correct it, or have the file written again"),
     damaged("a.vtk", LEGACY, "CELL_TYPES 1\n10", "CELL_TYPES 1\n64", "(ParaView: Tetrahedralize)"),
     row(
         "info a.vtk",

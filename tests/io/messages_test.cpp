@@ -248,5 +248,34 @@ TEST_F(Messages, OfVtkComeWithoutItsDebuggingAndCallDamagedOnlyWhatIs) {
     EXPECT_EQ(unknown.substr(unknown.find(": ")).find(words), std::string::npos) << unknown;
 }
 
+TEST_F(Messages, WordsThatLegacyFilesDoNotHaveThereAreNamedWithTheirLine) {
+  TESSERA_VTK_OR_SKIP();
+  const struct {
+    std::string old, other, words;
+  } cases[] = {
+      {"ASCII", "ASCI", "line 3: 'ASCI' is where ASCII or BINARY is expected"},
+      {"DATASET UNSTRUCTURED_GRID", "DATASET UNSTRUCTRED_GRID",
+       "line 4: 'UNSTRUCTRED_GRID' is where a kind of data set"},
+      {"POINTS 5 double", "POINTS 5 duble", "line 5: 'duble' is where a type of numbers is expected"},
+      {"POINTS 5 double", "POINTS five double", "line 5: 'five' is where a number is expected"},
+      {"\n0 1 0\n", "\n0 foo 0\n", "line 8: 'foo' is where a number is expected"},
+      {"4 1 2 3 4", "4 1 foo 3 4", "line 13: 'foo' is where a number is expected"},
+      {"CELL_TYPES", "CEL_TYPES", "line 14: 'CEL_TYPES' is where a number or a keyword of the format is expected"},
+      {"\n10\n10", "\n10\nten", "line 16: 'ten' is where a number or a keyword of the format is expected"},
+      {"POINT_DATA", "POINTS_DATA", "line 17: 'POINTS_DATA' is where"},
+      {"SCALARS", "SCALRS", "line 18: 'SCALRS' is where"},
+      {"LOOKUP_TABLE", "LOKUP_TABLE", "line 19: 'LOKUP_TABLE' is where"},
+      {"0 1 2 3 9", "0 1,5 2 3 9", "line 20: '1,5' is where a number is expected"},
+      {"4 5 6 7 9", "4 5 6 x 9", "line 23: 'x' is where a number is expected"},
+      {"0 1 2 3 9", "0 1 2 3 9 10.5", "a number, 10.5, is where the next array is expected"},
+  };
+  for (const auto& [old, other, words] : cases) {
+    std::string text = legacy("9");
+    text.replace(text.find(old), old.size(), other);
+    const std::string message = message_of([&] { read_mesh(write("a.vtk", text)); });
+    EXPECT_NE(message.find("a.vtk: " + words), std::string::npos) << message;
+  }
+}
+
 }  // namespace
 }  // namespace tessera::io::messages_test
