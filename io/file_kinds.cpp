@@ -225,6 +225,13 @@ bool is_vtk(const FormatRow& row) {
          row.kind == FileKind::vtk_surface;
 }
 
+/// Of those whose files are told by what the helper finds in them.
+bool may_be_hdf5(const FormatRow& row) {
+  return row.kind == FileKind::exodus || row.kind == FileKind::netcdf || row.kind == FileKind::minc ||
+         row.kind == FileKind::hdf5 || std::string_view(row.extensions) == ".cgns" ||
+         std::string_view(row.extensions) == ".vtkhdf";
+}
+
 const FormatRow& row_of_beginning(bool (*begins)(const FileBeginning&)) {
   return *std::find_if(rows.begin(), rows.end(), [&](const FormatRow& r) { return r.begins == begins; });
 }
@@ -265,7 +272,8 @@ const FormatRow* format_begun(const std::filesystem::path& file) {
   for (const FormatRow& row : rows)
     if (row.begins != nullptr && row.begins(beginning)) return &row;
   const FormatRow* const named = format_named(file);
-  if (named == nullptr && has_hdf5_behind_block(file)) return &row_of_beginning(begins_as_hdf5);
+  if ((named == nullptr || may_be_hdf5(*named)) && has_hdf5_behind_block(file))
+    return &row_of_beginning(begins_as_hdf5);
   // VTK XML of a kind that no row has: damaged, or its reader says what it holds.
   if (!begins_as_other_vtk_xml(beginning) || (named != nullptr && is_vtk(*named))) return nullptr;
   return &other_vtk_xml;

@@ -10,6 +10,7 @@
 #include "io/helper/readers.hpp"
 #include "io/helper/vtk_hdf_mesh.hpp"
 #include "io/inflated_file.hpp"
+#include "io/input_file.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
 
@@ -80,6 +81,9 @@ ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file,
               .c_str(),
           "save it as .vtu, .vtm, .vth or .vtp in ParaView");
     case Kind::cgns:
+      if (!read_beginning(file, 8).starts_with("\x89HDF"))
+        throw refuse("CGNS behind a user block, which its library does not open",
+                     "remove the block with HDF5's tools: h5unjam -i FILE -o OUT.cgns --delete");
       return read_cgns(holdings, file, request);
     case Kind::exodus:
       return read_exodus(holdings, file, request);

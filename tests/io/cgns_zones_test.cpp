@@ -5,6 +5,7 @@
 #include <vtk_cgns.h>
 
 #include VTK_CGNS(cgnslib.h)
+#include VTK_CGNS(cgns_io.h)
 
 #include <algorithm>
 #include <array>
@@ -132,6 +133,50 @@ class CgnsWriter {
   std::size_t points_ = 0, cells_ = 0;
 };
 
+/// Makes the file as CGNS before 3.4 wrote it: without ElementStartOffset. Sections of NGON_n and NFACE_n have the
+/// length of each element before its numbers instead.
+void make_old(const std::filesystem::path& file, const std::vector<std::string>& lengths_among_numbers,
+              const std::vector<std::string>& others = {}) {
+  static_assert(sizeof(cgsize_t) == 8);
+  int io = 0;
+  double root = 0;
+  require(cgio_open_file(file.c_str(), CGIO_MODE_MODIFY, CGIO_FILE_NONE, &io));
+  require(cgio_get_root_id(io, &root));
+  const auto node = [&](const std::string& path) {
+    double id = 0;
+    require(cgio_get_node_id(io, root, path.c_str(), &id));
+    return id;
+  };
+  const auto numbers_of = [&](double id) {
+    int dimensions = 0;
+    std::array<cgsize_t, 12> size{};
+    require(cgio_get_dimensions(io, id, &dimensions, size.data()));
+    Numbers numbers(static_cast<std::size_t>(size[0]));
+    require(cgio_read_all_data_type(io, id, "I8", numbers.data()));
+    return numbers;
+  };
+  const float version = 3.21f;
+  require(cgio_write_all_data(io, node("/CGNSLibraryVersion"), &version));
+  std::vector<std::string> sections = lengths_among_numbers;
+  sections.insert(sections.end(), others.begin(), others.end());
+  for (const std::string& name : sections) {
+    const std::string path = "/base/zone/" + name;
+    const double offsets_node = node(path + "/ElementStartOffset"), numbers_node = node(path + "/ElementConnectivity");
+    const Numbers offsets = numbers_of(offsets_node), numbers = numbers_of(numbers_node);
+    require(cgio_delete_node(io, node(path), offsets_node));
+    if (std::ranges::find(others, name) != others.end()) continue;
+    Numbers old;
+    for (std::size_t k = 0; k + 1 < offsets.size(); ++k) {
+      old.push_back(offsets[k + 1] - offsets[k]);
+      old.insert(old.end(), numbers.begin() + offsets[k], numbers.begin() + offsets[k + 1]);
+    }
+    const auto size = static_cast<cgsize_t>(old.size());
+    require(cgio_set_dimensions(io, numbers_node, "I8", 1, &size));
+    require(cgio_write_all_data(io, numbers_node, old.data()));
+  }
+  require(cgio_close_file(io));
+}
+
 /// `n` cubes along x, from x = `from` on.
 struct Row {
   explicit Row(int cubes, double from = 0) : n(cubes) {
@@ -252,13 +297,17 @@ TEST(CgnsZones, MixedSectionsHoldFacesAmongTheCells) {
   file.write(mixed, 7);
   file.write_values("cells", CGNS_ENUMV(CellCenter), {{"f", {0, 1, 1, 2}}});
   file.close();
-  const MeshFile mesh = read(folder / "a.cgns");
-  EXPECT_EQ(mesh.counts.cells_read, 4u);
-  EXPECT_NEAR(testing::volume(mesh.mesh), 3, 1e-12);
-  for (std::size_t t = 0; t < mesh.mesh.tets.size(); ++t) {
-    double x = 0;
-    for (const std::uint32_t v : mesh.mesh.tets[t]) x += 0.25 * mesh.mesh.positions[v].x;
-    EXPECT_EQ(mesh.mesh.scalars[t], std::floor(x));
+  for (const bool is_old : {false, true}) {
+    SCOPED_TRACE(is_old);
+    if (is_old) make_old(folder / "a.cgns", {}, {"section 1"});
+    const MeshFile mesh = read(folder / "a.cgns");
+    EXPECT_EQ(mesh.counts.cells_read, 4u);
+    EXPECT_NEAR(testing::volume(mesh.mesh), 3, 1e-12);
+    for (std::size_t t = 0; t < mesh.mesh.tets.size(); ++t) {
+      double x = 0;
+      for (const std::uint32_t v : mesh.mesh.tets[t]) x += 0.25 * mesh.mesh.positions[v].x;
+      EXPECT_EQ(mesh.mesh.scalars[t], std::floor(x));
+    }
   }
 }
 
@@ -309,9 +358,14 @@ TEST(CgnsZones, PolyhedraAreNumberedBeforeOrAfterTheirFaces) {
       if (!cells_first) file.write(cells, 3);
       file.write_values("cells", CGNS_ENUMV(CellCenter), {{"f", counted(3)}});
       file.close();
-      const MeshFile mesh = read(folder / "a.cgns");
-      EXPECT_EQ(mesh.counts.cells_polyhedra, 3u);
-      expect_row(mesh, 3);
+      for (const bool is_old : {false, true}) {
+        SCOPED_TRACE(is_old);
+        if (is_old)
+          make_old(folder / "a.cgns", {fmt::format("section {}", first_face), fmt::format("section {}", first_cell)});
+        const MeshFile mesh = read(folder / "a.cgns");
+        EXPECT_EQ(mesh.counts.cells_polyhedra, 3u);
+        expect_row(mesh, 3);
+      }
     }
 }
 
@@ -329,9 +383,26 @@ TEST(CgnsZones, PolyhedraAreThoseThatTheirFacesHaveAsParents) {
   file.write({CGNS_ENUMV(NGON_n), 1, faces.nodes, faces.offsets, parents}, count);
   file.write_values("cells", CGNS_ENUMV(CellCenter), {{"f", counted(3)}});
   file.close();
-  const MeshFile mesh = read(folder / "a.cgns");
-  EXPECT_EQ(mesh.counts.cells_polyhedra, 3u);
-  expect_row(mesh, 3);
+  for (const bool is_old : {false, true}) {
+    SCOPED_TRACE(is_old);
+    if (is_old) make_old(folder / "a.cgns", {"section 1"});
+    const MeshFile mesh = read(folder / "a.cgns");
+    EXPECT_EQ(mesh.counts.cells_polyhedra, 3u);
+    expect_row(mesh, 3);
+  }
+}
+
+TEST(CgnsZones, HDF5BehindAUserBlockIsNamed) {
+  const test::TemporaryFolder folder;
+  const Row row(3);
+  CgnsWriter file(folder / "a.cgns");
+  file.begin_zone("zone", row.points, 3);
+  file.write(cubes(row, 0, 3, 1), 3);
+  file.close();
+  folder.write("b.cgns", std::string(1024, 'u') + test::contents(folder / "a.cgns"));
+  const std::string message = testing::message_of([&] { read(folder / "b.cgns", ""); });
+  EXPECT_NE(message.find("CGNS behind a user block"), std::string::npos) << message;
+  EXPECT_NE(message.find("h5unjam -i FILE -o OUT.cgns --delete"), std::string::npos) << message;
 }
 
 TEST(CgnsZones, ZonesOfEveryKindAreBlocksAndShares) {

@@ -19,9 +19,9 @@ namespace tessera::io::exodus_steps_test {
 namespace {
 
 /// A unit cube at times 0.5, 0.75 and 4. Of each vector the nodes at x = 1 have (step, 0, 0), the others 0.
-void write_cube(const std::filesystem::path& file, const std::vector<std::string>& vectors) {
+void write_cube(const std::filesystem::path& file, const std::vector<std::string>& vectors, int mode = EX_CLOBBER) {
   int word = sizeof(double), stored = sizeof(double);
-  const int id = ex_create(file.c_str(), EX_CLOBBER, &word, &stored);
+  const int id = ex_create(file.c_str(), mode, &word, &stored);
   ASSERT_GE(id, 0);
   ex_put_init(id, "cube", 3, 8, 1, 1, 0, 0);
   const std::array<double, 8> x = {0, 1, 1, 0, 0, 1, 1, 0}, y = {0, 0, 1, 1, 0, 0, 1, 1}, z = {0, 0, 0, 0, 1, 1, 1, 1};
@@ -64,6 +64,18 @@ TEST(ExodusSteps, AreAtTheirTimes) {
   const Dataset first = Dataset::open(folder / "a.exo", {.time_step = 0});
   EXPECT_EQ(first.time(), 0.5);
   EXPECT_EQ(first.times().size(), 3u);
+}
+
+TEST(ExodusSteps, MayBeHdf5BehindAUserBlock) {
+  const test::TemporaryFolder folder;
+  write_cube(folder / "a.exo", {"v_"}, EX_CLOBBER | EX_NETCDF4);
+  for (const std::size_t block : {512u, 2048u}) {
+    folder.write("b.exo", std::string(block, 'u') + test::contents(folder / "a.exo"));
+    const MeshFile file = read_mesh(folder / "b.exo");
+    EXPECT_EQ(file.counts.cells_read, 1u);
+    EXPECT_EQ(file.time_step.times, (std::vector<double>{0.5, 0.75, 4}));
+    EXPECT_EQ(file.mesh.scalars, read_mesh(folder / "a.exo").mesh.scalars);
+  }
 }
 
 TEST(ExodusSteps, NodesMoveByDisplacementsOnly) {

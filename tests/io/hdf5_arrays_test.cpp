@@ -177,7 +177,8 @@ TEST(Hdf5Arrays, MayHaveALastDimensionOfOne) {
 TEST(Hdf5Arrays, MayLieBehindABlockOfTheUsers) {
   const test::TemporaryFolder folder;
   for (const hsize_t block : {512, 1024, 2048, 4096, 65536})
-    for (const char* name : {"a.h5", "a"}) {
+    for (const char* name : {"a.h5", "a", "a.nc", "a.e", "a.mnc", "a.vtkhdf", "a.cgns"}) {
+      SCOPED_TRACE(name);
       {
         const Hdf5Writer w(folder / name, block);
         w.array("v", H5T_IEEE_F32LE, {2, 3, 4}, ramp(24));

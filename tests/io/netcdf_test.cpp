@@ -103,6 +103,23 @@ TEST(NetcdfGrids, HaveTheirValuesAtTheirPlaces) {
   }
 }
 
+TEST(NetcdfGrids, MayBeHdf5BehindAUserBlock) {
+  const test::TemporaryFolder folder;
+  write_air(folder / "a.nc", NC_NETCDF4);
+  VolumeOptions options;
+  options.field = "P";
+  const std::vector<double> whole = all_samples(*open_volume(folder / "a.nc", options).source);
+  for (const std::size_t block : {512u, 2048u}) {
+    folder.write("b.nc", std::string(block, 'u') + test::contents(folder / "a.nc"));
+    const VolumeFile volume = open_volume(folder / "b.nc", options);
+    EXPECT_EQ(volume.format, "NetCDF");
+    const std::vector<double> samples = all_samples(*volume.source);
+    ASSERT_EQ(samples.size(), whole.size());
+    for (std::size_t k = 0; k < whole.size(); ++k)
+      EXPECT_TRUE(samples[k] == whole[k] || (std::isnan(samples[k]) && std::isnan(whole[k])));
+  }
+}
+
 TEST(NetcdfGrids, ArePackedOrOfOtherDimensionsByTheirField) {
   const test::TemporaryFolder folder;
   write_air(folder / "air.nc", 0);
