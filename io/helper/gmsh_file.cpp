@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string_view>
 
 #include "io/helper/gmsh_blocks.hpp"
 #include "io/helper/gmsh_view_names.hpp"
@@ -16,6 +18,7 @@
 #include "io/helper/unv_check.hpp"
 #include "io/helper_messages.hpp"
 #include "io/input_file.hpp"
+#include "io/mapped_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -86,6 +89,12 @@ void require_last_section(const std::filesystem::path& file) {
         "{}: it does not end with the end of a section, $End...; it is truncated, write it anew", file.string()));
 }
 
+bool has_values(const std::filesystem::path& file) {
+  const MappedFile mapped(file);
+  return mapped.text().find("\n$NodeData") != std::string_view::npos ||
+         mapped.text().find("\n$ElementData") != std::string_view::npos;
+}
+
 ForeignContents contents_of_model(Holdings& holdings, const std::string& source, const nlohmann::json& request,
                                   const char* format, const std::filesystem::path& listed) {
   ForeignContents contents;
@@ -115,9 +124,16 @@ ForeignContents read_gmsh(Holdings& holdings, const std::filesystem::path& file,
   if (!opened.is_open()) throw scene::bad_input(fmt::format("{}: it cannot be opened; check its permissions", source));
   if (Descriptor quoted = with_quoted_view_names(file); quoted.is_open()) opened = std::move(quoted);
   const auto path_of = [](const Descriptor& copy) { return fmt::format("/proc/self/fd/{}", copy.get()); };
-  if (!merge(path_of(opened), source, false)) {
-    if (Descriptor copy = without_partitions(path_of(opened)); copy.is_open()) opened = std::move(copy);
-    merge(path_of(opened), source);
+  try {
+    if (!merge(path_of(opened), source, false)) {
+      if (Descriptor copy = without_partitions(path_of(opened)); copy.is_open()) opened = std::move(copy);
+      merge(path_of(opened), source);
+    }
+  } catch (const std::bad_alloc&) {
+    if (!has_values(file)) throw;
+    throw memory_error(source,
+                       "its values take more memory than a file of its size can need: Gmsh's library takes some for "
+                       "each number up to the largest of a node or element; number these from 1");
   }
   return contents_of_model(holdings, source, request, "Gmsh", file);
 }

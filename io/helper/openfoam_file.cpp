@@ -92,16 +92,37 @@ bool has_wide_labels(const std::filesystem::path& folder) {
   return false;
 }
 
+/// The text that OpenFOAM itself writes has a list for each face.
+void refuse_compact_text(const std::filesystem::path& faces, const std::string& source) {
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(faces, unknown)) return;
+  std::string header = read_beginning(faces, 4096);
+  header.resize(std::min(header.size(), header.find('}')));
+  std::istringstream words(header);
+  bool is_text = false, is_compact = false;
+  for (std::string key, value; words >> key;) {
+    if (key == "format" && words >> value) is_text = value.starts_with("ascii");
+    if (key == "class" && words >> value) is_compact = value.starts_with("faceCompactList");
+  }
+  if (is_text && is_compact)
+    throw scene::bad_input(
+        fmt::format("{}: {} is a faceCompactList in text, which VTK's reader does not know; write the "
+                    "case again with foamFormatConvert",
+                    source, faces.lexically_normal().string()));
+}
+
 /// Throws if a file of a mesh is gone, which VTK's reader takes for a mesh that is not there, or for damage.
 void require_mesh_files(const std::filesystem::path& folder, const std::string& source) {
   std::error_code unknown;
   for (const char* part : {".", "processor0"})
-    for (const std::filesystem::path& mesh : meshes_of(folder / part))
+    for (const std::filesystem::path& mesh : meshes_of(folder / part)) {
       for (const char* name : {"points", "faces", "owner", "neighbour"})
         if (!std::filesystem::exists(mesh / name, unknown) &&
             !std::filesystem::exists(mesh / (std::string(name) + ".gz"), unknown))
           throw scene::bad_input(fmt::format("{}: its mesh needs {}, and there is no such file; put it there", source,
                                              (mesh / name).lexically_normal().string()));
+      refuse_compact_text(mesh / "faces", source);
+    }
 }
 
 bool is_case(const std::filesystem::path& folder) {

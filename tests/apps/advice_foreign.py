@@ -146,7 +146,7 @@ ROWS = [
         {"a.vtk": binary_legacy("<")},
         {"a.vtk": binary_legacy(">")},
     ),
-    damaged("a.vtk", LEGACY, "POINTS 4 float", "POINTS 4 flat", "or have it written in another format"),
+    damaged("a.vtk", LEGACY, "POINT_DATA 4", "POINT_DATA 5", "or have it written in another format"),
     # pieces and blocks
     row(
         "info a.pvtu",

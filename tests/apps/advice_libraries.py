@@ -48,6 +48,9 @@ def f_of(values):
     return XDMF.replace(item("1 2 3 4"), values)
 
 
+NODE_DATA = '$NodeData\n1\n"f"\n1\n0\n3\n0\n1\n4\n1 0\n2 1\n3 2\n4 3\n$EndNodeData\n'
+
+
 def msh(old, new, advice):
     return damaged("a.msh", GMSH, old, new, advice)
 
@@ -83,6 +86,13 @@ LFS_POINTER = f"version https://git-lfs.github.com/spec/v1\noid sha256:{'0' * 64
 ROWS = [
     # Gmsh
     msh("$EndElements\n", "", "it is truncated, write it anew"),
+    row(
+        "info a.msh",
+        "number these from 1",
+        None,
+        {"a.msh": (GMSH + NODE_DATA).replace("\n4 0 0 1\n", "\n1000000004 0 0 1\n").replace("2 3 4\n", "2 3 1000000004\n").replace("\n4 3\n", "\n1000000004 3\n")},
+        {"a.msh": GMSH + NODE_DATA},
+    ),
     msh("$MeshFormat", "$MashFormat", "it does not begin with $MeshFormat; write it anew"),
     msh("1 4 2 1 1 1 2 3 4", "1 4 2 1 1 1 2 3 9", "write it anew"),
     msh("1 4 2 1 1 1 2 3 4", "1 2 2 1 1 1 2 3", "give a mesh of tetrahedra, hexahedra, prisms or pyramids"),
@@ -307,7 +317,7 @@ ROWS = [
     ct("write it anew or leave it out", **{"2": dicom(2)[:-4]}),
     ct("may be missing", "info ct", None, {**SLICES, "ct/4.dcm": dicom(4)}, **{"4": dicom(5, position=5)}),
     ct(
-        "name one of its files for another",
+        "name a file of another to show those",
         "info ct",
         "info ct/9.dcm",
         {},

@@ -107,7 +107,10 @@ ROWS = [
         {**ENSIGHT, "m.case": ENSIGHT["m.case"].replace("model: m.geo", "model: m.geo\nmeasured: m.mea")}, ENSIGHT),
     row("info of", "write the case in binary (foamFormatConvert)", None, {**CASE, "of/0/p": P % "nan"},
         {"of/0/p": P % "1"}),
+    row("info of", "write the case again with foamFormatConvert", None,
+        {**CASE, "of/constant/polyMesh/faces": FOAM % ("faceCompactList", "faces")
+         + "5\n(\n0\n3\n6\n9\n12\n)\n12\n(\n0\n2\n1\n0\n1\n3\n1\n2\n3\n0\n3\n2\n)\n"}, CASE),
     cut("a.stl", STL, len(STL) - 40, "write it anew"),
-    damaged("a.vtk", LEGACY, "SCALARS f float 1", "SCALARS f quaternion 1", "or have it written in another format"),
+    damaged("a.vtk", LEGACY, "SCALARS f float 1", "SCALARS f quaternion 1", "correct it, or have the file written again"),
     damaged("a.inp", UCD, " tet ", " ball ", "or have it written in another format"),
 ]
