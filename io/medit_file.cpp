@@ -102,7 +102,7 @@ class MeditBinary {
     for (const auto& [unread, words] : unread_cells)
       if (unread == code && whole("count") > 0)
         throw scene::bad_input(
-            fmt::format("{}: it has {}, which are not read; write cells of order 1", source_, words));
+            fmt::format("{}: it has {}, which are not read; export first-order cells", source_, words));
   }
 
   void read_points(std::size_t begin) {
@@ -180,7 +180,7 @@ class MeditText {
     std::string_view list;  // that has just been read
     for (std::string_view word = next(); !word.empty() && word != "End"; word = next()) {
       if (!list.empty() && std::string_view("+-.0123456789").find(word[0]) != std::string_view::npos)
-        fail(fmt::format("'{}' follows the last of its {}, which are of more numbers than they should be",
+        fail(fmt::format("the number '{}' follows the last of the {}: each has more numbers than this keyword allows",
                          printable(std::string(word.substr(0, 40))), list));
       list = {};
       if (word == "Dimension") require_space(whole("a dimension"), source_);
@@ -188,7 +188,7 @@ class MeditText {
       for (const MeditCells& cells : medit_cells)
         if (word == cells.word) read_cells(cells), list = word;
       if (is_unread(word) && whole("a count") > 0)
-        throw scene::bad_input(fmt::format("{}: line {}: its {} are not read; write cells of order 1", source_, line_,
+        throw scene::bad_input(fmt::format("{}: line {}: its {} are not read; export first-order cells", source_, line_,
                                            printable(std::string(word))));
       // The numbers of other keywords are passed over one by one.
     }

@@ -65,8 +65,10 @@ std::vector<DicomSlice> chosen_group(std::vector<DicomSlice> slices, const std::
                     "dcm2niix FOLDER",
                     source));
   if (groups.size() > 1)
-    notes.push_back(fmt::format("of {} stacks of slices this is one of {}; name one of its files for another",
-                                groups.size(), chosen->size() * static_cast<std::size_t>(chosen->front().frames)));
+    notes.push_back(fmt::format(
+        "there are slices of {} series, sizes, spacings or directions; the {} of one are shown; name a file "
+        "of another to show those",
+        groups.size(), chosen->size() * static_cast<std::size_t>(chosen->front().frames)));
   return std::move(*chosen);
 }
 

@@ -19,6 +19,7 @@
 
 #include "io/helper/dicom_elements.hpp"
 #include "io/helper/dicom_frames.hpp"
+#include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
 #include "scene/error.hpp"
 
@@ -140,6 +141,18 @@ DicomSegments segments_of(const gdcm::DataSet& data) {
   return segments;
 }
 
+/// By the transfer syntax in the header, which is never deflated.
+bool is_deflated(const std::filesystem::path& file) {
+  return read_beginning(file, 1024).find("1.2.840.10008.1.2.1.99") != std::string::npos;
+}
+
+/// All but the samples, so that a file that ends in them still says what it is. In a deflated file nothing can be
+/// skipped: GDCM aborts.
+bool read_elements(gdcm::Reader& reader, std::ifstream& in, bool deflated) {
+  reader.SetStream(in);
+  return deflated ? reader.Read() : reader.ReadUpToTag(gdcm::Tag(0x7fe0, 0x0001), {gdcm::Tag(0x7fe0, 0x0010)});
+}
+
 }  // namespace
 
 glm::dvec3 DicomSlice::normal() const { return glm::normalize(glm::cross(row, column)); }
@@ -149,9 +162,8 @@ std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
   try {
     std::ifstream in(file, std::ios::binary);
     gdcm::Reader reader;
-    reader.SetStream(in);
-    // It skips the samples and stops there, so that a file that ends in them still says what it is.
-    if (!reader.ReadUpToTag(gdcm::Tag(0x7fe0, 0x0001), {gdcm::Tag(0x7fe0, 0x0010)})) return std::nullopt;
+    const bool deflated = is_deflated(file);
+    if (!read_elements(reader, in, deflated)) return std::nullopt;
     const gdcm::DataSet& data = reader.GetFile().GetDataSet();
     // Rows and columns; a DICOMDIR, a report or a plan has none.
     if (!data.FindDataElement(gdcm::Tag(0x0028, 0x0010)) || !data.FindDataElement(gdcm::Tag(0x0028, 0x0011)))
@@ -165,8 +177,7 @@ std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
     if (slice.unit.empty() && slice.modality == "RTDOSE") slice.unit = dicom_text(data, 0x3004, 0x0002);
     if (!set_samples(reader.GetFile(), slice)) return std::nullopt;
     slice.is_mosaic = dicom_text(data, 0x0008, 0x0008).find("\\MOSAIC") != std::string::npos;
-    if (reader.GetFile().GetHeader().GetDataSetTransferSyntax() != gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian)
-      slice.samples_end = static_cast<std::uint64_t>(std::max<std::streamoff>(in.tellg(), 0));
+    if (!deflated) slice.samples_end = static_cast<std::uint64_t>(std::max<std::streamoff>(in.tellg(), 0));
     set_place(reader.GetFile(), slice);
     slice.number = static_cast<std::int64_t>(std::clamp(dicom_number(data, 0x0020, 0x0013).value_or(0), -1e9, 1e9));
     slice.time = time_of(data);

@@ -1,6 +1,7 @@
 // DICOM series, written here byte by byte (PS3.5, explicit little-endian elements).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <cmath>
 #include <filesystem>
@@ -40,15 +41,31 @@ struct Slice {
   bool is_placed = true;
   std::vector<std::int16_t> samples{};
   std::vector<std::int16_t> padding{};  ///< none, a value, or a value and the limit of a range
-  bool is_wide = false;                 ///< samples are the upper halves of 32 bits without a sign, the lower ones 1
+  bool is_deflated = false;
+  bool is_wide = false;  ///< samples are the upper halves of 32 bits without a sign, the lower ones 1
 };
 
 constexpr const char* ct_storage = "1.2.840.10008.5.1.4.1.1.2";
 
+/// Without a header, of an even count of bytes (PS3.5, A.5).
+std::string deflated(const std::string& bytes) {
+  z_stream stream{};
+  EXPECT_EQ(deflateInit2(&stream, 9, Z_DEFLATED, -15, 8, Z_DEFAULT_STRATEGY), Z_OK);
+  std::string packed(deflateBound(&stream, bytes.size()), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = static_cast<uInt>(packed.size());
+  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+  packed.resize(stream.total_out + stream.total_out % 2);
+  deflateEnd(&stream);
+  return packed;
+}
+
 std::string dicom(const Slice& s) {
   const std::uint32_t bits = s.colours > 1 ? 8 : s.is_wide ? 32 : 16;
   const std::string about = element(2, 2, "UI", ct_storage) + element(2, 3, "UI", fmt::format("1.2.{}", s.number)) +
-                            element(2, 0x10, "UI", "1.2.840.10008.1.2.1");
+                            element(2, 0x10, "UI", s.is_deflated ? "1.2.840.10008.1.2.1.99" : "1.2.840.10008.1.2.1");
   std::string data = element(8, 8, "CS", s.image_type) + element(8, 0x16, "UI", ct_storage) +
                      element(8, 0x60, "CS", "CT") + element(0x18, 0x50, "DS", "2") +
                      element(0x20, 0xe, "UI", s.series) + element(0x20, 0x13, "IS", fmt::format("{}", s.number)) +
@@ -74,8 +91,9 @@ std::string dicom(const Slice& s) {
     samples.clear();
     for (const std::int16_t upper : s.samples) samples += little(1, 2) + little(static_cast<std::uint16_t>(upper), 2);
   }
+  data += element(0x7fe0, 0x10, "OW", samples);
   return std::string(128, '\0') + "DICM" + element(2, 0, "UL", little(static_cast<std::uint32_t>(about.size()), 4)) +
-         about + data + element(0x7fe0, 0x10, "OW", samples);
+         about + (s.is_deflated ? deflated(data) : data);
 }
 
 /// Samples first, first + 1, ...
@@ -121,6 +139,17 @@ TEST_F(Dicom, AFolderOfSlicesIsOneVolumeInTheOrderOfTheirPlaces) {
   }
 }
 
+TEST_F(Dicom, MayBeDeflated) {
+  for (int k = 0; k < 3; ++k)
+    write(fmt::format("{}.dcm", k), {.z = 2.0 * k, .number = k + 1, .samples = twelve(100 * k), .is_deflated = true});
+  for (const auto& name : {folder.path(), folder / "1.dcm"}) {
+    const VolumeFile volume = open_volume(name);
+    EXPECT_EQ(volume.source->geometry().points, (GridIndex{4, 3, 3}));
+    const std::vector<double> samples = all_samples(*volume.source);
+    for (std::size_t k = 0; k < 36; ++k) EXPECT_EQ(samples[k], 100.0 * (k / 12) + static_cast<double>(k % 12));
+  }
+}
+
 TEST_F(Dicom, WithoutPlacesAreAsFarApartAsTheyAreThick) {
   for (int k = 0; k < 3; ++k)
     write(fmt::format("{}.dcm", k), {.number = 3 - k, .is_placed = false, .samples = twelve(100 * (2 - k))});
@@ -137,7 +166,7 @@ TEST_F(Dicom, OfOtherSpacingsAreStacksOfTheirOwn) {
   const VolumeFile volume = open_volume(folder.path());
   EXPECT_EQ(volume.source->geometry().points, (GridIndex{4, 3, 3}));
   EXPECT_EQ(volume.source->geometry().spacing.x, 0.5);
-  EXPECT_TRUE(has_note(volume, "of 2 stacks of slices this is one of 3"));
+  EXPECT_TRUE(has_note(volume, "slices of 2 series, sizes, spacings or directions; the 3 of one are shown"));
 }
 
 TEST_F(Dicom, MosaicsAreNoSlices) {
@@ -196,7 +225,7 @@ TEST_F(Dicom, OfSeveralSeriesTheLargestOrTheNamedOneIsShown) {
   for (int k = 0; k < 9; ++k) write(fmt::format("rgb{}.dcm", k), {.z = 1.0 * k, .colours = 3, .samples = {}});
   const VolumeFile largest = open_volume(folder.path());
   EXPECT_EQ(largest.source->geometry().points, (GridIndex{4, 3, 3}));
-  EXPECT_TRUE(has_note(largest, "of 4 stacks of slices this is one of 3"));
+  EXPECT_TRUE(has_note(largest, "slices of 4 series, sizes, spacings or directions; the 3 of one are shown"));
   EXPECT_EQ(all_samples(*open_volume(folder / "4.dcm").source)[0], 3);
   expect_no_volume(folder / "rgb1.dcm", "coloured");
   expect_no_volume(folder / "scout.dcm", "single slice");

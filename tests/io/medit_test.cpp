@@ -225,8 +225,8 @@ TEST(MeditText, FaultsAreNamedWithTheirLine) {
     refuse("Tetrahedra", word, {fmt::format("its {} are not read", word)});
   refuse("Tetrahedra", "Triangles", {"no cells of volume"});
   // Numbers are left over: the count is too small, or cells have more nodes than their keyword takes.
-  refuse("Tetrahedra\n2", "Tetrahedra\n1", {"follows the last of its Tetrahedra"});
-  refuse("Vertices\n5", "Vertices\n4", {"follows the last of its Vertices"});
+  refuse("Tetrahedra\n2", "Tetrahedra\n1", {"follows the last of the Tetrahedra"});
+  refuse("Vertices\n5", "Vertices\n4", {"follows the last of the Vertices"});
 }
 
 }  // namespace
