@@ -103,13 +103,16 @@ class Walk {
   const Plot3dLayout& layout_;
 };
 
-bool grid_fits(std::ifstream& in, std::uint64_t size, Plot3dLayout& layout) {
+/// With `by_planes` each plane of a grid has a record.
+bool grid_fits(std::ifstream& in, std::uint64_t size, Plot3dLayout& layout, bool by_planes = false) {
   Walk walk(in, size, layout);
   layout.grids = walk.dimensions();
   const std::uint64_t point_bytes = (layout.double_precision ? 24 : 12) + (layout.iblank ? 4 : 0);
   for (const auto& n : layout.grids) {
     if (!walk.good) return false;
-    walk.record(walk.points(n) * point_bytes);
+    const std::uint64_t points = walk.points(n);
+    const auto records = static_cast<std::uint64_t>(by_planes ? n[2] : 1);
+    for (std::uint64_t k = 0; k < records && walk.good; ++k) walk.record(points / records * point_bytes);
   }
   return walk.at_end();
 }
@@ -135,6 +138,11 @@ Plot3dLayout detect_plot3d(const std::filesystem::path& grid_file) {
   for (unsigned bits = 0; bits < 32; ++bits) {
     Plot3dLayout layout{(bits & 1) == 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0, (bits & 16) != 0, {}};
     if (grid_fits(in, size, layout)) return layout;
+    if (layout.record_marks && grid_fits(in, size, layout, true))
+      throw scene::bad_input(
+          fmt::format("{}: it has a record for each plane of a grid (/PLANES), which is not read; write each grid as "
+                      "one record (/WHOLE)",
+                      grid_file.string()));
   }
   throw scene::bad_input(
       fmt::format("{}: no layout of a three-dimensional binary PLOT3D grid gives its {} bytes; it is "

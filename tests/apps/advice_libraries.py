@@ -51,6 +51,13 @@ def f_of(values):
 NODE_DATA = '$NodeData\n1\n"f"\n1\n0\n3\n0\n1\n4\n1 0\n2 1\n3 2\n4 3\n$EndNodeData\n'
 
 
+def record(numbers, kind="f"):
+    return struct.pack(f"<i{len(numbers)}{kind}i", 4 * len(numbers), *numbers, 4 * len(numbers))
+
+
+RECORDS_OF_PLANES = record((2, 2, 2), "i") + 2 * record(range(12))
+
+
 def msh(old, new, advice):
     return damaged("a.msh", GMSH, old, new, advice)
 
@@ -281,6 +288,7 @@ ROWS = [
         "info a.xyz",
         {"a.bin": b"\2\0\0\0" * 9, "a.xyz": PLOT3D},
     ),
+    row("info a.bin", "write each grid as one record (/WHOLE)", "info m.vtu", {"a.bin": RECORDS_OF_PLANES}),
     damaged("a.xyz", PLOT3D, "0 1 0", "0 1d0 0", "write it with E"),
     damaged("a.xyz", PLOT3D, "0 1 0", "2*0 1 0", "write each"),
     damaged("a.xyz", PLOT3D, "0 1 0", "0 one 0", "PLOT3D in text is numbers alone"),
