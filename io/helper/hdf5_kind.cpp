@@ -83,7 +83,7 @@ ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file,
     case Kind::cgns:
       if (!read_beginning(file, 8).starts_with("\x89HDF"))
         throw refuse("CGNS behind a user block, which its library does not open",
-                     "remove the block with HDF5's tools: h5unjam -i FILE -o OUT.cgns --delete");
+                     "remove the block with HDF5's tools: h5unjam -i FILE -u BLOCK -o OUT.cgns");
       return read_cgns(holdings, file, request);
     case Kind::exodus:
       return read_exodus(holdings, file, request);
