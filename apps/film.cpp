@@ -190,6 +190,12 @@ class Film final : public Sink {
     watched.progress = output_.line().listener();
     data_.emplace(Dataset::open(frame.data.files, watched, job_.communicator(), settings_.ranks));
     step_ = frame.step;
+    if (shows_shape_ && !data_->shows_shape())
+      throw bad_input(
+          fmt::format("{}: time step {} shows the field '{}', which no step varies in that the choice went "
+                      "by, and those before show the shape; choose it with --field, or steps with "
+                      "--time-step FIRST:LAST",
+                      frame.data.files.front().string(), step_, data_->field_name()));
     if (const auto time = data_->time(); time && !frame.data.has_time)
       for (FilmFrame& each : frames_)
         if (each.step == step_) each.data.time = *time, each.data.has_time = true;
@@ -320,6 +326,7 @@ class Film final : public Sink {
       come_near_enough();
       shade_by_default();
       if (writes_) check_annotation(options_.annotation, frame, *data_, loaded_.function);
+      shows_shape_ = data_->shows_shape();
       box_ = data_->bounds();
       axes_ = data_->body_axes();
       tets_ = data_->tet_count();
@@ -479,6 +486,7 @@ class Film final : public Sink {
   Trace trace_, compositing_;
   RunOutput output_;
 
+  bool shows_shape_ = false;        ///< the first step
   ReadOptions later_read_;          ///< of the steps after the first
   double higher_order_pixels_ = 0;  ///< HigherOrderRead::pixel_error of the first step
   std::optional<Dataset> data_;

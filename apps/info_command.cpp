@@ -78,7 +78,7 @@ void print_text(const std::filesystem::path& input, const analysis::Description&
   for (const auto& field : data.fields) {
     fmt::print("{:<9} {:<{}}  {:<5}  {:<7} x {}  {:.6g} to {:.6g}{}\n", title, field.name, widest,
                analysis::word(field.association), field.type, field.components, field.low, field.high,
-               field.nan_count > 0 ? fmt::format(", {} NaN", field.nan_count) : "");
+               field.nan_count > 0 ? fmt::format(", {} NaN or infinite", field.nan_count) : "");
     title = "";
   }
   if (data.blocks.size() > 1) {

@@ -223,7 +223,7 @@ std::string cells_line(const MeshCounts& counts) {
   const std::pair<std::uint64_t, std::string_view> reasons[] = {
       {counts.cells_ghost, "ghost dropped"},
       {counts.cells_hidden, "hidden dropped"},
-      {counts.cells_nan, "NaN dropped"},
+      {counts.cells_nan, "dropped for NaN, infinite or missing numbers"},
       {counts.cells_not_volumetric, "without volume by type skipped"},
       {counts.cells_zero_volume, "of zero volume kept"},
       {counts.cells_open, "not closed dropped"},

@@ -46,7 +46,7 @@ std::string method_line(const Integrator& integrator);
 /// Of grids: by steps of a length of their own.
 bool takes_steps(const Integrator& integrator);
 
-/// `18 kept of 20: 1 ghost and 1 NaN dropped`
+/// `18 of 20 cells kept as 36 tets, 1 ghost dropped, 1 tangled kept`
 std::string cells_line(const MeshCounts& counts);
 /// `256x256x128 uint8 samples, 12 blank`
 std::string samples_line(const analysis::Description& grid);

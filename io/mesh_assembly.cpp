@@ -313,10 +313,9 @@ std::vector<std::string> notes_on_cells(const MeshCounts& n, const HigherOrderCe
         fmt::format("{}: it holds no cells, nothing is left to render; check how it was written", source));
   if (n.tets_made == 0)
     throw scene::bad_input(fmt::format(
-        "{}: nothing is left to render: of {} cells {} are no volumes, {} ghosts, {} hidden, {} hold NaN or infinite "
-        "numbers, {} are polyhedra whose faces do not close, {} are collapsed to a point or face; give a mesh of "
-        "volume "
-        "cells or choose another field",
+        "{}: nothing is left to render: of {} cells {} are no volumes, {} ghosts, {} hidden, {} hold NaN, infinite or "
+        "missing numbers, {} are polyhedra whose faces do not close, {} are collapsed to a point or face; give a mesh "
+        "of volume cells or choose another field",
         source, n.cells_read, n.cells_not_volumetric, n.cells_ghost, n.cells_hidden, n.cells_nan, n.cells_open,
         n.cells_zero_volume));
   std::vector<std::string> notes;

@@ -152,6 +152,12 @@ ROWS = [
         "render t%d.vtu -o a%d.png --size 16x16 --time-step 1:2",
         {"t0.vtu": unstructured(), "t1.vtu": TETRAHEDRON, "t2.vtu": TETRAHEDRON},
     ),
+    row(
+        "render t%d.vtu -o a%d.png --size 16x16",
+        "choose it with --field, or steps with --time-step FIRST:LAST",
+        "render t%d.vtu -o a%d.png --size 16x16 --field f",
+        {**{f"t{k}.vtu": TETRAHEDRON.replace("0 250 500 1000", "0 0 0 0") for k in range(7)}, "t4.vtu": TETRAHEDRON},
+    ),
     row("convert s.series o.vtu", "give one of its meshes", "convert m.vtu o.vtu", {"s.series": SERIES}),
     row(
         "info s.series --time-step 2",

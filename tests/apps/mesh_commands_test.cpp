@@ -35,6 +35,28 @@ TEST(Info, SaysWhatTheFileHoldsForPeopleAndForMachines) {
   EXPECT_TRUE(json.at("renders").at("view").contains("parallel_scale"));
 }
 
+TEST(Info, CountsInfiniteNumbersAsSuch) {
+  const Folder folder;
+  const auto mesh = folder / "a.vtu";
+  const auto array = [](const std::string& type, const std::string& name, const std::string& numbers) {
+    return "<DataArray type=\"" + type + "\" Name=\"" + name + "\"" +
+           (name == "Points" ? " NumberOfComponents=\"3\"" : "") + " format=\"ascii\">" + numbers + "</DataArray>";
+  };
+  std::ofstream(mesh)
+      << "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\"><UnstructuredGrid>"
+         "<Piece NumberOfPoints=\"5\" NumberOfCells=\"2\"><PointData>"
+      << array("Float64", "f", "0 1 2 3 inf") << "</PointData><Points>"
+      << array("Float64", "Points", "0 0 0 1 0 0 0 1 0 0 0 1 1 1 1") << "</Points><Cells>"
+      << array("Int64", "connectivity", "0 1 2 3 4 2 1 3") << array("Int64", "offsets", "4 8")
+      << array("UInt8", "types", "10 10") << "</Cells></Piece></UnstructuredGrid></VTKFile>";
+  const auto text = tessera({"info", mesh});
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_NE(text.out.find("1 of 2 cells kept as 1 tets, 1 dropped for NaN, infinite or missing numbers"),
+            std::string::npos)
+      << text.out;
+  EXPECT_NE(text.out.find("0 to 3, 1 NaN or infinite"), std::string::npos) << text.out;
+}
+
 TEST(Info, ListsTheBlocksThatBlockChoosesFrom) {
   const Folder folder;
   const auto zone = [](int number, int x) {

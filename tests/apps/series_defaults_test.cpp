@@ -259,6 +259,19 @@ TEST_F(SeriesDefaults, NeverShowAFieldInSomeStepsAndTheShapeInOthers) {
   EXPECT_EQ(report_of(pvd).at("mesh").at("field").at("name"), "shape (depth)");
 }
 
+TEST_F(SeriesDefaults, AFieldOfOneStepThatWasNotLookedAtIsNotShownInColorsOfTheShape) {
+  std::vector<std::vector<Field>> steps(13, {{"p", times(0)}});
+  steps[8] = {{"p", times(4)}};  // looked at are 0, 3, 6, 9 and 12
+  write(steps);
+  const Outcome run = tessera(film(pvd));
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.err.find("s_8.vtu: time step 8 shows the field 'p'"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("choose it with --field"), std::string::npos) << run.err;
+  const Json chosen = report_of(pvd, {"--field", "p", "--range", "0,4"});
+  EXPECT_EQ(chosen.at("frames").size(), 13u);
+  EXPECT_EQ(chosen.at("mesh").at("field").at("name"), "p");
+}
+
 TEST_F(SeriesDefaults, CountAFieldAsIdsOnlyIfItIsInAllStepsInWhichItVaries) {
   // 24 points: 0, 1, ... in the first step, which no quantity is, and other values in the next.
   int n = 0;
