@@ -317,7 +317,10 @@ TEST(Plot3d, ListsOfFilesAreReadOneTimeEach) {
            {"[{\"xyz\": \"small.bin\"}, {\"q\": \"small_9.bin\"}]", "entry 1 of \"filenames\" has no \"xyz\""},
            {"[7]", "entry 0 of \"filenames\" is no object"}})
     test::expect_bad_input(
-        [&] { read_mesh(folder.write("b.p3d", "{\"filenames\": " + entries + ", \"of\": {\"xyz\": 1}}")); }, {words});
+        [&, entries = entries] {
+          read_mesh(folder.write("b.p3d", "{\"filenames\": " + entries + ", \"of\": {\"xyz\": 1}}"));
+        },
+        {words});
 }
 
 TEST(Plot3d, DamagedFilesAreTold) {
