@@ -123,7 +123,7 @@ class HigherOrderLevels {
       power_ =
           power_of(first.tolerance, middle.tolerance, last.tolerance,
                    difference(first.picture, middle.picture).root_mean_square, difference_of_last.root_mean_square);
-      by_chance = 1.5;
+      by_chance = 1.75;
     }
     const double apart = middle.tolerance / last.tolerance;
     error_ = apart > 1 ? by_chance * difference_of_last.largest / (std::pow(apart, power_) - 1) : infinite;

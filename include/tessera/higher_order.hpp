@@ -30,12 +30,11 @@ inline double first_higher_order_tolerance(double accuracy) { return accuracy < 
 /// Reads a mesh with a `higher_order_tolerance` for which its tets change pixels by about `accuracy` at most, and with
 /// no more tets than that takes. Without an accuracy the tolerance is that of `options`, and only the error is found.
 ///
-/// Method  The mesh is read with smaller and smaller tolerances, and pictures of the view are compared, of its own
-///         pixels, or of 65,536 if it has more; the last two are at most eight times apart. How they differ in the mean
-///         gives how the error falls: in proportion to the tolerance, or to its square root where many rays touch the
-///         surface; so the largest difference gives the error. One and a half times that is stated, since a pixel's
-///         error varies by chance from one tolerance to the next. Of two pictures alone it is taken to fall the slower
-///         way.
+/// Method  The mesh is read with smaller and smaller tolerances, and pictures of the view, of tolerances four times
+///         apart or more, are compared: of its own pixels, or of 65,536 if it has more. How they differ in the mean
+///         gives how the error falls, in proportion to the tolerance, or to its square root where many rays touch the
+///         surface; so the largest difference gives the error. 1.75 times that is stated, since a pixel's error varies
+///         by chance from one tolerance to the next. Of two pictures alone it is taken to fall the slower way.
 /// Limits  It is an estimate, of the volume's light alone: not of surfaces and shading, nor of other views. Where
 ///         `higher_order_tets` allows too few, it is that of the tets that there are.
 ///

@@ -97,7 +97,6 @@ TEST(Info, HigherOrderCellsAreWarnedOfInALineOfTheirOwn) {
 }
 
 TEST(Render, DividesHigherOrderCellsAsFinelyAsTheAccuracyNeeds) {
-  if (!io::has_reader(io::Reader::vtk)) GTEST_SKIP() << "tessera-read-vtk is not installed";
   const Folder folder;
   const auto mesh = folder.file("a.vtu", test::quadratic_tet_text(true));
   const auto report_of = [&](const std::vector<std::string>& more, Outcome& outcome) {
@@ -110,7 +109,7 @@ TEST(Render, DividesHigherOrderCellsAsFinelyAsTheAccuracyNeeds) {
   };
   Outcome outcome;
   std::uint64_t before = 0;
-  for (const auto& [words, accuracy] : {std::pair{"3e-1", 3e-1}, std::pair{"1e-1", 1e-1}, std::pair{"1e-2", 1e-2}}) {
+  for (const auto& [words, accuracy] : {std::pair{"1e-1", 1e-1}, std::pair{"1e-2", 1e-2}, std::pair{"1e-3", 1e-3}}) {
     const auto cells = report_of({"--accuracy", words}, outcome);
     EXPECT_LE(cells.at("pixel_error").get<double>(), accuracy);
     EXPECT_GT(cells.at("tets").get<std::uint64_t>(), before);
@@ -119,8 +118,8 @@ TEST(Render, DividesHigherOrderCellsAsFinelyAsTheAccuracyNeeds) {
   }
   const auto few = report_of({"--accuracy", "1e-2", "--higher-order-tets", "50"}, outcome);
   EXPECT_GT(few.at("pixel_error").get<double>(), 1e-2);
-  EXPECT_NE(outcome.err.find("more than --accuracy 0.01\n  --higher-order-tets allows more"), std::string::npos)
-      << outcome.err;
+  for (const char* words : {"--accuracy 0.01", "--higher-order-tets allows more"})  // a line's end may be between them
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
   const auto fixed = report_of({"--higher-order-tolerance", "0.05"}, outcome);
   EXPECT_EQ(fixed.at("tolerance"), 0.05);
 }

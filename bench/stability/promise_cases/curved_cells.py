@@ -14,7 +14,7 @@ from promise_cases.mesh_scenes import any_camera
 
 ACCURACY = 0.01
 CUTS = 40  # of each edge; pixels that 20 change by a quarter of what is stated are no truth, and count as excused
-EXCUSABLE = 1e-3
+EXCUSABLE = 3e-3
 
 
 def powers(*degrees):
