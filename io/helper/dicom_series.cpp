@@ -207,7 +207,7 @@ std::vector<DicomSlice> with_empty_slices(std::vector<DicomSlice> slices, const 
                       "{:.0f} slices; correct their positions",
                       source, gap(k), step, most_slices));
     const glm::dvec3 before = k > 0 ? slices[k - 1].position : slices[k].position;
-    for (double n = 1; n < steps; ++n) {
+    for (int n = 1; n < steps; ++n) {
       DicomSlice empty = filled.back();
       empty.position = before + (slices[k].position - before) * (n / steps);
       empty.joined.clear();
@@ -224,6 +224,7 @@ std::vector<DicomSlice> slices_of_segments(std::vector<DicomSlice> frames, std::
   const DicomSegments segments = frames.front().segments;
   const bool are_fractions = segments.type == "FRACTIONAL";
   std::vector<std::int64_t> numbers;
+  numbers.reserve(frames.size());
   for (const DicomSlice& frame : frames) numbers.push_back(frame.joined.front().segment);
   std::sort(numbers.begin(), numbers.end());
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());

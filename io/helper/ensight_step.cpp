@@ -48,6 +48,7 @@ EnsightStep::EnsightStep(const EnsightCase& described, double time, const std::s
   std::string geometry, variables;
   const std::vector<EnsightCase::Located> located = described.located(time);
   std::vector<std::filesystem::path> files;
+  files.reserve(located.size());
   for (const EnsightCase::Located& each : located) files.push_back(file_of(each, source));
   for (std::size_t k = 0; k < located.size(); ++k) {
     const EnsightCase::Values& values = located[k].values;

@@ -135,7 +135,7 @@ bool is_case(const std::filesystem::path& folder) {
 std::filesystem::path case_of(const std::filesystem::path& named) {
   std::error_code unknown;
   if (std::filesystem::is_directory(named, unknown)) return named;
-  const std::filesystem::path own = named.has_parent_path() ? named.parent_path() : std::filesystem::path(".");
+  std::filesystem::path own = named.has_parent_path() ? named.parent_path() : std::filesystem::path(".");
   std::filesystem::path folder = own;
   for (int level = 0; level < 4; ++level) {
     if (is_case(folder)) return folder;

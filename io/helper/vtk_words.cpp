@@ -56,10 +56,10 @@ std::string missing_file_in(std::string_view words, const std::string& source) {
   };
   // A name may have blanks in it: all that follows a colon, then word by word.
   for (std::size_t at = words.find(": "); at != std::string_view::npos; at = words.find(": ", at + 1))
-    if (const std::string name = is_missing(std::string(words.substr(at + 2)), true); !name.empty()) return name;
+    if (std::string name = is_missing(std::string(words.substr(at + 2)), true); !name.empty()) return name;
   for (std::size_t at = 0; at < words.size();) {
     const std::size_t end = std::min(words.find(' ', at), words.size());
-    if (const std::string name = is_missing(std::string(words.substr(at, end - at)), false); !name.empty()) return name;
+    if (std::string name = is_missing(std::string(words.substr(at, end - at)), false); !name.empty()) return name;
     at = end + 1;
   }
   return "";

@@ -64,6 +64,7 @@ class CgnsWriter {
     }
     for (int a = 0; a < 3; ++a) {
       std::vector<double> values;
+      values.reserve(points.size());
       for (const glm::dvec3& p : points) values.push_back(p[a]);
       const auto count = static_cast<cgsize_t>(values.size());
       require(grid.empty() ? cg_coord_write(id_, base_, zone_, CGNS_ENUMV(RealDouble),
@@ -503,6 +504,7 @@ TEST(CgnsZones, CellsOfSecondOrderHaveTheirNodesInVtksOrder) {
     file.write({CGNS_ENUMV(TRI_3), 1, {1, 2, 3}}, 1);
     file.write(cell, 1);
     std::vector<double> values;
+    values.reserve(points.size());
     for (const glm::dvec3& p : points) values.push_back(p.x + 2 * p.y + 3 * p.z);
     file.write_values("points", CGNS_ENUMV(Vertex), {{"f", values}});
     file.close();

@@ -99,6 +99,7 @@ std::string dicom(const Slice& s) {
 /// Samples first, first + 1, ...
 std::vector<std::int16_t> twelve(int first) {
   std::vector<std::int16_t> samples;
+  samples.reserve(12);
   for (int k = 0; k < 12; ++k) samples.push_back(static_cast<std::int16_t>(first + k));
   return samples;
 }
@@ -146,7 +147,7 @@ TEST_F(Dicom, MayBeDeflated) {
     const VolumeFile volume = open_volume(name);
     EXPECT_EQ(volume.source->geometry().points, (GridIndex{4, 3, 3}));
     const std::vector<double> samples = all_samples(*volume.source);
-    for (std::size_t k = 0; k < 36; ++k) EXPECT_EQ(samples[k], 100.0 * (k / 12) + static_cast<double>(k % 12));
+    for (std::size_t k = 0; k < 36; ++k) EXPECT_EQ(samples[k], static_cast<double>(k / 12 * 100 + k % 12));
   }
 }
 
@@ -207,7 +208,7 @@ TEST_F(Dicom, SlicesScaleEachByItsOwnHeader) {
 
 TEST_F(Dicom, SlicesOfOnePlaceAreTimeSteps) {
   for (int k = 0; k < 6; ++k)
-    write(fmt::format("{}.dcm", k), {.z = 1.0 * (k / 3), .number = k, .time = 1 + k % 3, .samples = twelve(100 * k)});
+    write(fmt::format("{}.dcm", k), {.z = static_cast<double>(k / 3), .number = k, .time = 1 + k % 3, .samples = twelve(100 * k)});
   const VolumeFile last = open_volume(folder.path());
   EXPECT_EQ(last.source->geometry().points, (GridIndex{4, 3, 2}));
   EXPECT_EQ(all_samples(*last.source)[0], 200);

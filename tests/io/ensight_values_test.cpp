@@ -324,6 +324,7 @@ TEST_F(EnsightValues, StructuredPartsCount) {
 /// One of three steps, at 0, 0.7 and 2: `f` of nodes is 10 times the step and 0 to 7.
 Content at_step(Content content, const std::vector<float>& numbers, float step) {
   std::vector<float> values;
+  values.reserve(numbers.size());
   for (const float number : numbers) values.push_back(number + 10 * step);
   return content.real(values);
 }
