@@ -146,13 +146,6 @@ bool is_deflated(const std::filesystem::path& file) {
   return read_beginning(file, 1024).find("1.2.840.10008.1.2.1.99") != std::string::npos;
 }
 
-/// All but the samples, so that a file that ends in them still says what it is. In a deflated file nothing can be
-/// skipped: GDCM aborts.
-bool read_elements(gdcm::Reader& reader, std::ifstream& in, bool deflated) {
-  reader.SetStream(in);
-  return deflated ? reader.Read() : reader.ReadUpToTag(gdcm::Tag(0x7fe0, 0x0001), {gdcm::Tag(0x7fe0, 0x0010)});
-}
-
 }  // namespace
 
 glm::dvec3 DicomSlice::normal() const { return glm::normalize(glm::cross(row, column)); }
@@ -160,10 +153,14 @@ glm::dvec3 DicomSlice::normal() const { return glm::normalize(glm::cross(row, co
 std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
   gdcm::Trace::WarningOff(), gdcm::Trace::ErrorOff(), gdcm::Trace::DebugOff();
   try {
+    if (is_deflated(file))  // GDCM aborts, or gives other samples where they end early
+      throw scene::bad_input(fmt::format(
+          "{}: its data set is deflated, which is not read; dcmtk's `dcmconv +te` writes it plainly", file.string()));
     std::ifstream in(file, std::ios::binary);
     gdcm::Reader reader;
-    const bool deflated = is_deflated(file);
-    if (!read_elements(reader, in, deflated)) return std::nullopt;
+    reader.SetStream(in);
+    // It skips the samples and stops there, so that a file that ends in them still says what it is.
+    if (!reader.ReadUpToTag(gdcm::Tag(0x7fe0, 0x0001), {gdcm::Tag(0x7fe0, 0x0010)})) return std::nullopt;
     const gdcm::DataSet& data = reader.GetFile().GetDataSet();
     // Rows and columns; a DICOMDIR, a report or a plan has none.
     if (!data.FindDataElement(gdcm::Tag(0x0028, 0x0010)) || !data.FindDataElement(gdcm::Tag(0x0028, 0x0011)))
@@ -177,7 +174,7 @@ std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
     if (slice.unit.empty() && slice.modality == "RTDOSE") slice.unit = dicom_text(data, 0x3004, 0x0002);
     if (!set_samples(reader.GetFile(), slice)) return std::nullopt;
     slice.is_mosaic = dicom_text(data, 0x0008, 0x0008).find("\\MOSAIC") != std::string::npos;
-    if (!deflated) slice.samples_end = static_cast<std::uint64_t>(std::max<std::streamoff>(in.tellg(), 0));
+    slice.samples_end = static_cast<std::uint64_t>(std::max<std::streamoff>(in.tellg(), 0));
     set_place(reader.GetFile(), slice);
     slice.number = static_cast<std::int64_t>(std::clamp(dicom_number(data, 0x0020, 0x0013).value_or(0), -1e9, 1e9));
     slice.time = time_of(data);
@@ -189,6 +186,8 @@ std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
     if (slice.frames > 1) set_frames(data, slice);
     return slice;
   } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const scene::Error&) {
     throw;
   } catch (const std::exception&) {
     return std::nullopt;
@@ -204,8 +203,8 @@ DicomSamples::DicomSamples(const DicomSlice& slice)
   // GDCM minds neither samples that end early nor packed ones without their last mark.
   {
     const MappedFile mapped(slice.file);
-    if (slice.samples_end > 0 && (slice.is_packed ? mapped.text().find("\xfe\xff\xdd\xe0") == std::string_view::npos
-                                                  : mapped.text().size() < std::max(slice.samples_end, slice.bytes)))
+    if (slice.is_packed ? mapped.text().find("\xfe\xff\xdd\xe0") == std::string_view::npos
+                        : mapped.text().size() < std::max(slice.samples_end, slice.bytes))
       throw refuse("it ends before its samples do");
   }
   if (slice.bits == 1) {

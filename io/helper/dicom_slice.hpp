@@ -47,7 +47,7 @@ struct DicomSlice {
   int components = 1;             ///< 3: colours
   bool is_packed = false;         ///< its samples are compressed
   bool is_mosaic = false;         ///< slices side by side in one picture, as Siemens writes them
-  std::uint64_t samples_end = 0;  ///< where they end in the file, if not packed; 0 if all of it is deflated
+  std::uint64_t samples_end = 0;  ///< where they end in the file, if not packed
   std::uint64_t bytes = 0;        ///< of its samples, unpacked
   int bits = 8;                   ///< of a sample, with those not used
   bool has_position = false;      ///< else by its number in the series

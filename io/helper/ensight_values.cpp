@@ -158,11 +158,12 @@ class ValuesText {
     return Found::all;
   }
 
-  /// Whether a number at the very end has fewer characters from its point on than all others, which have equally many.
+  /// Whether a number at the very end has fewer characters from its point on than all others, which have equally many
+  /// and an exponent: those of a width of their own, as EnSight has them.
   bool is_cut(std::string_view number) {
     const std::size_t length = number.size() - std::min(number.size(), number.find('.'));
     if (at_ == text_.size() && decimals_ && is_even_ && length < *decimals_) return true;
-    is_even_ = is_even_ && length == decimals_.value_or(length);
+    is_even_ = is_even_ && number.find_first_of("eE") != std::string_view::npos && length == decimals_.value_or(length);
     decimals_ = length;
     return false;
   }

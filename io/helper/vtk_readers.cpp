@@ -29,7 +29,6 @@
 #include "io/helper/grid_pieces.hpp"
 #include "io/helper/legacy_byte_order.hpp"
 #include "io/helper/legacy_words.hpp"
-#include "io/helper/plot3d_planes.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/vtk_parts.hpp"
 #include "io/helper/vtk_session.hpp"
@@ -263,13 +262,8 @@ ForeignContents read_plot3d(Holdings& holdings, const std::filesystem::path& fil
     reader->Update();
     data = reader->GetOutputDataObject(0);
   });
-  const PlaneOrder order =
-      request.at("iblank").get<bool>() || data == nullptr ? PlaneOrder::whole : order_planes(*data);
   ForeignContents contents = contents_of_data(holdings, data, source, "");
   contents.format = "PLOT3D";
-  if (order == PlaneOrder::planes) contents.notes.emplace_back("its grids are written plane by plane (/PLANES)");
-  if (order == PlaneOrder::none)
-    contents.notes.emplace_back("most of its cells have no volume or cross themselves: check the order of its numbers");
   return contents;
 }
 

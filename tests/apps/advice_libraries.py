@@ -353,6 +353,10 @@ ROWS = [
         {"f.dcm": segmentation((1, 2, 9))},
     ),
     ct("convert it: dcm2niix", **{str(k): dicom(k, about="ORIGINAL\\PRIMARY\\M\\MOSAIC") for k in (1, 2, 3)}),
+    ct(
+        "dcmtk's `dcmconv +te` writes it plainly",
+        **{"1": dicom(1).replace(b"\x14\x001.2.840.10008.1.2.1\0", b"\x16\x001.2.840.10008.1.2.1.99")},
+    ),
     ct("segimage2itkimage", **{str(k): packed(dicom(k, bits=1, pixels=FRAGMENTS)) for k in (1, 2, 3)}),
     ct("bits, which are not read; write 8, 16 or 32", **{str(k): dicom(k, bits=4) for k in (1, 2, 3)}),
     row("info a.dcm", "GDCM finds no pictures in it; give a folder or a file of slices", "info ct", {**SLICES, "a.dcm": "text"}),

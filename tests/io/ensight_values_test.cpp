@@ -186,7 +186,7 @@ TEST_F(EnsightValues, NumbersNeedNoLineBreakAfterThem) {
     EXPECT_TRUE(left_out(read()).empty());
   }
   write_case(Layout::gold_text);
-  folder.write("a.f", "f\npart\n1\ncoordinates\n0.5\n1.25\n0.75\n2.5\npart\n2\ncoordinates\n0.25\n1\n3\n4");
+  folder.write("a.f", "f\npart\n1\ncoordinates\n0.5\n1.5\n2.5\n3.5\npart\n2\ncoordinates\n4.5\n5.5\n6.5\n4");
   EXPECT_TRUE(left_out(read()).empty());
   EXPECT_EQ(read("f").mesh.scalars.back(), 4);
 }

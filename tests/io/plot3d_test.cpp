@@ -115,43 +115,6 @@ TEST(Plot3d, EveryLayoutIsFoundAndReadWithoutAnOption) {
   }
 }
 
-/// The numbers of a file without record marks, each grid's plane by plane: `head` bytes, then for each grid `skip`
-/// bytes and `components` numbers a point.
-std::string by_planes(const std::string& whole, const Plot3dLayout& layout, std::size_t head, std::size_t skip,
-                      std::size_t components) {
-  const std::size_t each = layout.double_precision ? 8 : 4;
-  std::string planes = whole.substr(0, head);
-  for (std::size_t at = head; const auto& n : layout.grids) {
-    planes += whole.substr(at, skip);
-    at += skip;
-    const std::size_t plane = each * static_cast<std::size_t>(n[0] * n[1]),
-                      component = plane * static_cast<std::size_t>(n[2]);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(n[2]); ++k)
-      for (std::size_t c = 0; c < components; ++c) planes += whole.substr(at + c * component + k * plane, plane);
-    at += components * component;
-  }
-  return planes;
-}
-
-TEST(Plot3d, NumbersPlaneByPlaneAreToldByTheirCells) {
-  for (const bool is_double : {false, true}) {
-    Plot3dLayout layout{false, false, true, is_double, false, {{4, 3, 5}, {2, 6, 3}}};
-    const test::TemporaryFolder folder;
-    const std::size_t head = 4 + 2 * 12, each = is_double ? 8 : 4;
-    const auto file = folder.write("gridxyz.bin", by_planes(grid_bytes(layout), layout, head, 0, 3));
-    folder.write("gridq.bin", by_planes(solution_bytes(layout), layout, head, 4 * each, 5));
-    for (const char* field : {"Density", "Momentum"}) {
-      MeshOptions options;
-      options.field = field;
-      const MeshFile read = read_mesh(file, options);
-      EXPECT_DOUBLE_EQ(testing::volume(read.mesh), 34);
-      EXPECT_EQ(std::ranges::count(read.notes, "its grids are written plane by plane (/PLANES)"), 1);
-      for (std::size_t v = 0; v < 60; ++v)
-        EXPECT_EQ(read.mesh.scalars[v], field[0] == 'D' ? read.mesh.positions[v].x : 3);
-    }
-  }
-}
-
 TEST(Plot3d, ARecordForEachPlaneIsNamed) {
   const Plot3dLayout layout{false, true, false, false, false, {{4, 3, 5}}};
   Writer w(layout);
