@@ -205,7 +205,7 @@ TEST_F(Dicom, SlicesScaleEachByItsOwnHeader) {
 TEST_F(Dicom, SlicesOfOnePlaceAreTimeSteps) {
   for (int k = 0; k < 6; ++k)
     write(fmt::format("{}.dcm", k),
-          {.z = static_cast<double>(k / 3), .number = k, .time = 1 + k % 3, .samples = twelve(100 * k)});
+          {.z = k < 3 ? 0.0 : 1.0, .number = k, .time = 1 + k % 3, .samples = twelve(100 * k)});
   const VolumeFile last = open_volume(folder.path());
   EXPECT_EQ(last.source->geometry().points, (GridIndex{4, 3, 2}));
   EXPECT_EQ(all_samples(*last.source)[0], 200);
