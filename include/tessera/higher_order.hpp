@@ -21,7 +21,7 @@ struct HigherOrderRead {
   double pixel_error = 0;
 };
 
-/// What render and serve ask for where nobody says how accurate: half a step of a picture of 8 bits.
+/// The accuracy that `render` and `serve` use if none is given: half a step of an 8-bit picture.
 inline constexpr double default_higher_order_accuracy = 1.0 / 512;
 
 /// The tolerance that read_for_accuracy() begins with: a mesh read so is not read twice.

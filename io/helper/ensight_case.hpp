@@ -41,7 +41,7 @@ class EnsightCase {
   /// A file that a line of the case names, at a time step.
   struct Located {
     std::string kind;  ///< `model`, `scalar per node`, ...
-    Values values;     ///< the geometry is no variable
+    Values values;     ///< of the geometry, file and file_name alone
     std::size_t step = 0;
     bool in_set = false;
   };

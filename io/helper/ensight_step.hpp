@@ -22,7 +22,7 @@ class EnsightStep {
   [[nodiscard]] const std::vector<EnsightCase::Values>& values() const { return values_; }
 
  private:
-  /// By which VTK's reader opens it: files without names, of which nothing is left whatever ends this process.
+  /// The path that VTK's reader opens: of a scratch file without a name, which is gone when this process ends.
   std::filesystem::path file_of(const EnsightCase::Located& located, const std::string& source);
 
   std::vector<std::unique_ptr<ScratchFile>> steps_;

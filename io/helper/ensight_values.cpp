@@ -108,7 +108,7 @@ class ValuesText {
 
   void skip_description() { is_binary_ ? static_cast<void>(at_ = std::min(text_.size(), at_ + 80)) : next_line(); }
 
-  /// A small number in a record of its own; 0 if there is none.
+  /// A small integer, in a line or record of its own; 0 if there is none.
   int number() {
     if (!is_binary_) return number_in(header().value_or(""));
     std::uint32_t number = 0;

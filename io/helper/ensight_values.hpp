@@ -22,7 +22,7 @@ struct EnsightValues {
 /// Fortran's records. Cells of types that the file has no values of become NaN in `data`.
 EnsightValues values_in(vtkGenericEnSightReader& reader, vtkDataObject& data, const EnsightCase::Values& values);
 
-/// Whether a file ends with the word `part`, of which VTK's reader of text crashes.
+/// Whether a file ends with the word `part`: VTK's text reader crashes on such files.
 bool ends_with_part(const EnsightCase::Values& values);
 
 /// Removes the variable from all parts.

@@ -44,8 +44,8 @@ TransferFunction random_function(Random& random, const std::array<double, 2>& ra
   return TransferFunction(knots);
 }
 
-/// Formats have cells without nodes in some faces or inside, of which no source defines functions; the reference has
-/// none.
+/// Some cells that formats have lack nodes in faces or inside. No source defines their shape functions, so the
+/// reference does not have them.
 bool is_in_reference(const io::testing::Kind& kind) {
   try {
     return !reference::cell_shape(kind.type, kind.nodes, kind.degrees, "").nodes.empty();
