@@ -77,7 +77,9 @@ void require_input(const std::filesystem::path& input) { io::require_input(input
 void require_grid(const std::filesystem::path& file) { io::require_volume(file); }
 void require_mesh(const std::filesystem::path& file) { io::require_mesh_file(file); }
 std::string read_text(const std::filesystem::path& file) { return io::read_beginning(file, io::require_file(file)); }
-void check_json(std::string_view text, const std::string& source) { io::parse_json(text, source); }
+void check_json(std::string_view text, const std::string& source, std::size_t most_values) {
+  io::parse_json(text, source, most_values);
+}
 std::optional<SampleType> sample_type_named(const std::string& name) { return io::parse_sample_type(name); }
 
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <set>
+#include <utility>
 #include <vector>
 
 #include "io/text_file.hpp"
@@ -12,6 +12,8 @@
 
 namespace tessera::io {
 namespace {
+
+using nlohmann::json;
 
 /// The part of nlohmann's message that says what is wrong, on one line and free of foreign bytes:
 /// "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while ... - WHAT; last read: '...'"
@@ -32,6 +34,74 @@ std::string place(std::string_view text, std::size_t byte) {
   return fmt::format("line {}, column {}", line, before.size() - begin_of_line + 1);
 }
 
+/// Builds the values of a text in linear time; the library's own parser with a callback takes quadratic time, as it
+/// walks through the whole array or object at the end of each of its members.
+class Builder final : public nlohmann::json_sax<nlohmann::json> {
+ public:
+  Builder(std::string_view text, const std::string& source, std::size_t most_values)
+      : text_(text), source_(source), most_values_(most_values) {}
+
+  [[nodiscard]] json take() { return std::move(root_); }
+
+  bool null() override { return add(nullptr); }
+  bool boolean(bool value) override { return add(value); }
+  bool number_integer(number_integer_t value) override { return add(value); }
+  bool number_unsigned(number_unsigned_t value) override { return add(value); }
+  bool number_float(number_float_t value, const string_t& /*text*/) override { return add(value); }
+  bool string(string_t& value) override { return add(std::move(value)); }
+  bool binary(binary_t& /*value*/) override { return false; }  // no JSON text has it
+  bool start_object(std::size_t /*elements*/) override { return open(json::object()); }
+  bool start_array(std::size_t /*elements*/) override { return open(json::array()); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+
+  bool key(string_t& name) override {
+    const auto [member, is_new] = open_.back()->get_ref<json::object_t&>().try_emplace(name);
+    if (!is_new)
+      throw scene::bad_input(fmt::format("{}: {} stands twice in one object; keep one", source_, quote(name)));
+    member_ = &member->second;
+    return true;
+  }
+
+  bool parse_error(std::size_t byte, const std::string& /*token*/, const nlohmann::detail::exception& error) override {
+    if (dynamic_cast<const json::parse_error*>(&error) != nullptr) throw not_json(text_, source_, byte, error.what());
+    throw scene::bad_input(
+        fmt::format("{}: not valid JSON ({}); mend it or export it again", source_, reason(error.what())));
+  }
+
+ private:
+  json& place(json&& value) {
+    if (++values_ > most_values_)
+      throw scene::bad_input(fmt::format("{}: has more than {} values; give fewer", source_, most_values_));
+    if (open_.empty()) return root_ = std::move(value);
+    if (open_.back()->is_object()) return *member_ = std::move(value);
+    return open_.back()->get_ref<json::array_t&>().emplace_back(std::move(value));
+  }
+  bool add(json&& value) {
+    place(std::move(value));
+    return true;
+  }
+  bool open(json&& value) {
+    constexpr std::size_t deepest = 64;
+    if (open_.size() == deepest)
+      throw scene::bad_input(
+          fmt::format("{}: nested more than {} levels deep; this is no file of ours", source_, deepest));
+    open_.push_back(&place(std::move(value)));  // stays where it is until it is closed
+    return true;
+  }
+  bool close() {
+    open_.pop_back();
+    return true;
+  }
+
+  std::string_view text_;
+  const std::string& source_;
+  std::size_t most_values_, values_ = 0;
+  json root_;
+  std::vector<json*> open_;  ///< arrays and objects, outermost first
+  json* member_ = nullptr;   ///< of the innermost object: whose value comes next
+};
+
 }  // namespace
 
 scene::Error not_json(std::string_view text, const std::string& source, std::size_t byte, const std::string& message) {
@@ -39,33 +109,10 @@ scene::Error not_json(std::string_view text, const std::string& source, std::siz
                                       place(text, byte), reason(message)));
 }
 
-nlohmann::json parse_json(std::string_view text, const std::string& source) {
-  using nlohmann::json;
-  constexpr int deepest = 64;
-  std::vector<std::set<std::string>> keys;  // of the objects that are open, outermost first
-  const auto watch = [&](int depth, json::parse_event_t event, json& parsed) {
-    if (depth > deepest)
-      throw scene::bad_input(
-          fmt::format("{}: nested more than {} levels deep; this is no file of ours", source, deepest));
-    if (event == json::parse_event_t::object_start) {
-      keys.emplace_back();
-    } else if (event == json::parse_event_t::object_end) {
-      keys.pop_back();
-    } else if (event == json::parse_event_t::key) {
-      const auto& key = parsed.get_ref<const std::string&>();
-      if (!keys.back().insert(key).second)
-        throw scene::bad_input(fmt::format("{}: {} stands twice in one object; keep one", source, quote(key)));
-    }
-    return true;
-  };
-  try {
-    return json::parse(text.begin(), text.end(), watch);
-  } catch (const json::parse_error& error) {
-    throw not_json(text, source, error.byte, error.what());
-  } catch (const json::exception& error) {
-    throw scene::bad_input(
-        fmt::format("{}: not valid JSON ({}); mend it or export it again", source, reason(error.what())));
-  }
+nlohmann::json parse_json(std::string_view text, const std::string& source, std::size_t most_values) {
+  Builder builder(text, source, most_values);
+  nlohmann::json::sax_parse(text.begin(), text.end(), &builder);
+  return builder.take();
 }
 
 }  // namespace tessera::io

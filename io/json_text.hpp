@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
@@ -8,10 +9,13 @@
 
 namespace tessera::io {
 
-/// Parses JSON, or throws Error(bad_input, "SOURCE: line L, column C: not valid JSON ..."). Refuses what would be read
-/// otherwise than meant or could not be held: a key twice in one object, numbers beyond double's range, more than 64
-/// levels of nesting.
-nlohmann::json parse_json(std::string_view text, const std::string& source);
+/// Many more than a useful file has; with them a file of a few MiB takes no more than a few GiB of memory.
+constexpr std::size_t most_json_values = 20'000'000;
+
+/// Parses JSON in linear time, or throws Error(bad_input, "SOURCE: line L, column C: not valid JSON ..."). Refuses what
+/// would be read otherwise than meant or could not be held: a key twice in one object, numbers beyond double's range,
+/// more than 64 levels of nesting, more than `most_values` values (objects and lists count too).
+nlohmann::json parse_json(std::string_view text, const std::string& source, std::size_t most_values = most_json_values);
 
 /// tessera::is_json_text().
 inline bool is_json_text(std::string_view file_or_json) {

@@ -10,8 +10,11 @@
 namespace tessera::server {
 namespace {
 
+/// A state of a page has a few hundred, one with a dense transfer function some ten thousands.
+constexpr std::size_t most_values = 100'000;
+
 Json parse_object(std::string_view text, const char* what) {
-  check_json(text, what);
+  check_json(text, what, most_values);
   Json json = Json::parse(text, nullptr, false);
   if (!json.is_object()) throw bad_input(fmt::format("{}: is no JSON object; send one", what));
   return json;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -30,7 +31,8 @@ TESSERA_EXPORT void require_mesh(const std::filesystem::path& file);
 TESSERA_EXPORT std::string read_text(const std::filesystem::path& file);
 
 /// Throws Error(bad_input, "SOURCE: line L, column C: ...") unless `text` is JSON that reads as it is meant: no key
-/// twice in one object, no number beyond double's range, at most 64 levels.
-TESSERA_EXPORT void check_json(std::string_view text, const std::string& source);
+/// twice in one object, no number beyond double's range, at most 64 levels and `most_values` values, of which objects
+/// and lists count too. Takes linear time.
+TESSERA_EXPORT void check_json(std::string_view text, const std::string& source, std::size_t most_values = 20'000'000);
 
 }  // namespace tessera

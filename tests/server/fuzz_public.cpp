@@ -8,7 +8,9 @@
 
 namespace tessera {
 
-void check_json(std::string_view text, const std::string& source) { io::parse_json(text, source); }
+void check_json(std::string_view text, const std::string& source, std::size_t most_values) {
+  io::parse_json(text, source, most_values);
+}
 bool is_json_text(std::string_view file_or_json) { return io::is_json_text(file_or_json); }
 std::vector<std::string> preset_names() { return {"cool-warm", "viridis"}; }
 

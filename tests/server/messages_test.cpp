@@ -36,6 +36,13 @@ TEST(Messages, AreRefusedInOneSentenceThatSaysWhatIsWrong) {
   }
 }
 
+TEST(Messages, HaveALimitOfValues) {
+  std::string text = R"({"type":"pause","a":[0)";
+  for (int i = 1; i < 99'997; ++i) text += ",0";
+  EXPECT_NO_THROW(parse_message(text + "]}"));
+  EXPECT_THROW(parse_message(text + ",0]}"), Error);
+}
+
 TEST(Messages, HaveNumbersWithinTheirLimits) {
   const Json body = parse_body(R"({"bins":16,"large":18446744073709551615,"small":-5,"half":0.5,"text":"1"})");
   EXPECT_EQ(whole_number(body, "bins", 1, 1, 100), 16);
