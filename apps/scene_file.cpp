@@ -4,8 +4,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <sstream>
 
+#include "apps/text_excerpt.hpp"
+#include "apps/toml_text.hpp"
 #include "tessera/error.hpp"
 #include "tessera/input_file.hpp"
 #include "tessera/nearest_name.hpp"
@@ -22,26 +23,19 @@ CLI::Option* option_of(CLI::App& render, const std::string& key) {
 }
 
 Error no_key(const CLI::App& render, const std::string& file, const std::string& key) {
+  if (key == "config") return bad_input(file + ": 'config' names another such file; leave it out");
   std::vector<std::string> names = {"input", "more"};
   for (const CLI::Option* option : render.get_options())
     names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
   const auto near = nearest_name(key, names);
-  return bad_input(near ? fmt::format("{}: '{}' is no option of render; did you mean {}?", file, key, *near)
-                        : fmt::format("{}: '{}' is no option of render; see tessera render --help-all", file, key));
+  return bad_input(
+      near ? fmt::format("{}: {} is no option of render; did you mean {}?", file, excerpt(key), *near)
+           : fmt::format("{}: {} is no option of render; see tessera render --help-all", file, excerpt(key)));
 }
 
 std::string key_of(const CLI::Option& option) {
   if (!option.get_positional()) return option.get_lnames().front();
   return option.get_name(true) == "INPUT" ? "input" : "more";
-}
-
-std::string quoted(const std::string& key, const std::string& value) {
-  const bool has_double = value.find('"') != std::string::npos;
-  if (value.find_first_of("\n\r#\\") != std::string::npos || (has_double && value.find('\'') != std::string::npos))
-    throw bad_input(fmt::format("--save-config: '{}' cannot be kept as {}; leave # \\ and mixed quotes out of it",
-                                CLI::detail::find_and_replace(value, "\n", " "), key));
-  const char quote = has_double ? '\'' : '"';
-  return quote + value + quote;
 }
 
 }  // namespace
@@ -63,19 +57,18 @@ std::vector<std::string> with_scene_file(const std::vector<std::string>& argumen
   }
   const std::string file = given.words.config;
   if (file.empty()) return arguments;
-  std::istringstream text(read_text(file));
   std::vector<std::string> options, positionals;
-  for (const CLI::ConfigItem& item : CLI::ConfigTOML().from_config(text)) {
-    const CLI::Option* option = item.parents.empty() ? option_of(*given.render, item.name) : nullptr;
-    if (option == nullptr || item.name == "config") throw no_key(*given.render, file, item.fullname());
+  for (const auto& [key, values] : parse_toml(read_text(file), file)) {
+    const CLI::Option* option = option_of(*given.render, key);
+    if (option == nullptr || key == "config") throw no_key(*given.render, file, key);
     if (option->count() > 0) continue;
-    for (const std::string& value : item.inputs) {
+    for (const std::string& value : values) {
       if (option->get_positional())
         positionals.push_back(value);
       else if (option->get_expected_min() > 0)
-        options.push_back("--" + item.name + "=" + value);
+        options.push_back("--" + key + "=" + value);
       else if (value != "false")
-        options.push_back("--" + item.name + (value == "true" ? "" : "=" + value));
+        options.push_back("--" + key + (value == "true" ? "" : "=" + value));
     }
   }
   std::vector<std::string> all = arguments;
@@ -94,7 +87,7 @@ void save_scene(const CLI::App& render, const std::filesystem::path& file) {
     if (key == "config" || key == "save-config") continue;
     const std::vector<std::string>& values = option->results();
     std::string list;
-    for (const std::string& value : values) list += (list.empty() ? "" : ", ") + quoted(key, value);
+    for (const std::string& value : values) list += (list.empty() ? "" : ", ") + toml_quoted(value);
     if (option->get_expected_min() == 0 && values.size() == 1 && values.front() == "true") list = "true";
     text += fmt::format("{} = {}\n", key, values.size() > 1 ? "[" + list + "]" : list);
   }

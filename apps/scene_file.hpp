@@ -17,8 +17,7 @@ std::vector<std::string> with_scene_file(const std::vector<std::string>& argumen
 /// Declares --config and --save-config.
 void add_scene_options(CLI::App& render, RenderWords& words);
 
-/// Writes what was given, but for --config and --save-config. Throws Error(bad_input) for a value with a line break, #
-/// or both kinds of quotes, which TOML as it is read here does not hold.
+/// Writes what was given, but for --config and --save-config.
 void save_scene(const CLI::App& render, const std::filesystem::path& file);
 
 }  // namespace tessera::apps

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "apps/surface_file_name.hpp"
+#include "apps/text_excerpt.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/error.hpp"
 #include "tessera/nearest_name.hpp"
@@ -85,15 +86,6 @@ constexpr std::array state_keys = {StateKey{"size", Kind::value},
 constexpr std::array<std::string_view, 9> view_options = {"camera", "view", "up",         "azimuth", "elevation",
                                                           "zoom",   "fit",  "projection", "orbit"};
 
-/// A key as it can stand in a message: it comes from anywhere.
-std::string shown(const std::string& name) {
-  constexpr std::size_t longest = 40;
-  std::string text = name.substr(0, longest);
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
-  return name.size() > longest ? text + "..." : text;
-}
-
 const StateKey& key_named(const std::string& name) {
   const auto* const found = std::ranges::find(state_keys, std::string_view(name), &StateKey::name);
   if (found != state_keys.end()) return *found;
@@ -101,8 +93,8 @@ const StateKey& key_named(const std::string& name) {
   names.reserve(state_keys.size());
   for (const StateKey& key : state_keys) names.emplace_back(key.name);
   if (const auto near = nearest_name(name, names))
-    throw bad_input(fmt::format("state: '{}' is no key; did you mean {}?", shown(name), *near));
-  throw bad_input(fmt::format("state: '{}' is no key; docs/SERVER.md has those there are", shown(name)));
+    throw bad_input(fmt::format("state: {} is no key; did you mean {}?", excerpt(name), *near));
+  throw bad_input(fmt::format("state: {} is no key; docs/SERVER.md has those there are", excerpt(name)));
 }
 
 Error wrong_kind(const std::string& name, const char* kind) {
@@ -231,9 +223,14 @@ Json state_of_words(const OptionWords& words) {
 
 std::vector<std::string> arguments_of(const OptionWords& words) {
   std::vector<std::string> arguments;
-  for (const auto& [name, values] : words)
+  for (const auto& [name, values] : words) {
+    const auto* const key = std::ranges::find(state_keys, std::string_view(name), &StateKey::name);
+    // Others are of the server's command line; flags among them have the value true alone.
+    const bool may_be_bare = key == state_keys.end() || key->kind == Kind::flag || key->kind == Kind::place;
     for (const std::string& value : values)
-      arguments.push_back(value == "true" ? fmt::format("--{}", name) : fmt::format("--{}={}", name, value));
+      arguments.push_back(may_be_bare && value == "true" ? fmt::format("--{}", name)
+                                                         : fmt::format("--{}={}", name, value));
+  }
   return arguments;
 }
 

@@ -138,10 +138,31 @@ ROWS = [
         R + "--config s.toml", "did you mean view?", None, {"s.toml": "veiw = 'left'\n"}, {"s.toml": "view = 'left'\n"}
     ),
     row(R + "--config s.toml", "see tessera render --help-all", "render --help-all", {"s.toml": "qqqqqqqqqq = 1\n"}),
+    row(R + "--config s.toml", "leave it out", R, {"s.toml": "config = 't.toml'\n"}),
     row(
-        R + "--annotate a#b --save-config s.toml",
-        "leave # \\ and mixed quotes out of it",
-        R + "--annotate ab --save-config s.toml",
+        R + "--config s.toml",
+        "save it as UTF-8",
+        None,
+        {"s.toml": "size = '8x8'\n".encode("utf-16")},
+        {"s.toml": "size = '8x8'\n"},
+    ),
+    *(
+        row(R + "--config s.toml", advice, None, {"s.toml": wrong}, {"s.toml": right})
+        for advice, wrong, right in (
+            ("end it with ]", "iso = ['0.5'\n", "iso = ['0.5']\n"),
+            ("end it with \"", 'size = "8x8\n', 'size = "8x8"\n'),
+            ("keep one, or give a list", "size = '8x8'\nsize = '9x9'\n", "size = '9x9'\n"),
+            ("write options alone, as in size", "[picture]\nsize = '8x8'\n", 'size = "800x600"\n'),
+            ("write an option as in size", "size 8x8\n", 'size = "800x600"\n'),
+            ("write one as in size", "the size = 8x8\n", 'size = "800x600"\n'),
+            ("put text in quotes", "annotate = two words\n", "annotate = 'two words'\n"),
+            ("put text in quotes", "annotate =\n", "annotate = ''\n"),
+            ("put a comma between values", "iso = ['0.5' '0.6']\n", "iso = ['0.5', '0.6']\n"),
+            ("write one list of texts", "iso = [['0.5']]\n", "iso = ['0.5']\n"),
+            ("write \\n for a line break", 'annotate = """a\nb"""\n', 'annotate = "a\\nb"\n'),
+            ("write \\\\, or put the text in single quotes", 'annotate = "a\\p"\n', "annotate = 'a\\p'\n"),
+            ("leave it out", "annotate = 'a\0b'\n", "annotate = 'ab'\n"),
+        )
     ),
     # standard streams
     row(

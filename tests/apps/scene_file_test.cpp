@@ -60,12 +60,37 @@ TEST(SceneFile, NamesWhatIsNoOption) {
   EXPECT_EQ(tessera({"render", "--config", folder / "none.toml"}).status, 2);
 }
 
-TEST(SceneFile, RefusesToSaveWhatWouldNotComeBack) {
+TEST(SceneFile, KeepsAnyCharacter) {
   const Folder folder;
-  const Outcome run = tessera(
-      {"render", folder.cube(), "-o", folder / "a.png", "--annotate", "# 1", "--save-config", folder / "s.toml"});
-  EXPECT_EQ(run.status, 2);
-  EXPECT_EQ(run.error_lines(), 1U) << run.err;
+  const std::string scene = folder / "s.toml", picture = folder / "a.png";
+  const std::vector<std::string> texts = {"# 1", R"(a\b "c" it's)", "two\nlines", "\xc3\xa9\t[x]", "true"};
+  std::vector<std::string> words = {"render", folder.cube(), "-o", picture, "--size", "32x24", "--save-config", scene};
+  for (const std::string& text : texts) words.insert(words.end(), {"--annotate", text});
+  const Outcome first = tessera(words);
+  ASSERT_EQ(first.status, 0) << first.err;
+  const std::string bytes = contents(picture), saved = contents(scene);
+  const Outcome second = tessera({"render", "--config", scene, "--save-config", scene});
+  ASSERT_EQ(second.status, 0) << second.err;
+  EXPECT_EQ(contents(picture), bytes);
+  EXPECT_EQ(contents(scene), saved);
+}
+
+TEST(SceneFile, RefusesAHostileOneInOneShortLine) {
+  const Folder folder;
+  const std::string mesh = folder.cube();
+  std::string sections = "[a";
+  for (int i = 0; i < 100'000; ++i) sections += ".a";
+  const std::string key(1'000'000, 'k');
+  for (const std::string& text :
+       {sections + "]\n", std::string(1'000'000, '['), "iso = " + std::string(1'000'000, '['), key, key + " = 1\n",
+        "size = \"" + key, "size = " + key, std::string("\xff\xfes\0=\0", 6), std::string("size\0 = 1", 9)}) {
+    const std::string scene = folder.file("hostile.toml", text);
+    const Outcome run = tessera({"render", mesh, "-o", folder / "a.png", "--config", scene});
+    EXPECT_EQ(run.status, 2) << text.substr(0, 40);
+    EXPECT_EQ(run.error_lines(), 1U) << text.substr(0, 40);
+    EXPECT_NE(run.err.find("hostile.toml"), std::string::npos) << run.err.substr(0, 200);
+    EXPECT_LT(run.err.size(), 400U) << text.substr(0, 40);
+  }
 }
 
 }  // namespace

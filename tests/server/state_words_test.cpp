@@ -31,6 +31,17 @@ TEST(StateWords, StandOverThoseTheServerWasStartedWith) {
   EXPECT_EQ(state_of_words(base), Json::parse(R"({"field":"p","log":true,"view":"front","zoom":"2"})"));
 }
 
+// As a bare option it would take the next one for its text.
+TEST(StateWords, HaveTextThatIsTrueAsText) {
+  const Json state = Json::parse(R"({"annotate":["true"],"color-bar-title":"true","field":"true","surface":["true"],
+    "transfer-function":"viridis","smooth":true,"scale-bar":true})");
+  EXPECT_EQ(arguments_of(state_words({}, state)),
+            (std::vector<std::string>{"--annotate=true", "--color-bar-title=true", "--field=true", "--scale-bar",
+                                      "--smooth", "--surface=true", "--transfer-function=viridis"}));
+  EXPECT_EQ(arguments_of({{"annotate", {"true"}}, {"half", {"true"}}}),
+            (std::vector<std::string>{"--annotate=true", "--half"}));
+}
+
 TEST(StateWords, NameNoFilesAndNoOtherOptions) {
   for (const char* text : {R"({"camera":"view.json"})",
                            R"({"transfer-function":"/etc/passwd"})",
