@@ -2,20 +2,56 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "frame/communicator.hpp"
 #include "frame/peel.hpp"
 #include "frame/session_state.hpp"
 #include "frame/uncut_mesh.hpp"
 #include "frame/verify.hpp"
+#include "scene/directions.hpp"
 #include "scene/error.hpp"
+#include "scene/pixel_view.hpp"
 
 namespace tessera {
 namespace {
+
+/// The view with pixels no smaller than 1e-60 of what they see: far below what positions are told apart by, so that the
+/// picture is the same, and products of pixel coordinates stay in a double's range.
+View within_range(View view, const Box& box) {
+  constexpr double least = 1e-60;
+  Camera& camera = view.camera;
+  if (camera.projection == ProjectionKind::perspective) {
+    camera.view_angle = std::max(camera.view_angle, least);
+  } else if (!box.empty()) {
+    const double reach =
+        std::max(scene::largest(box.low - camera.position), scene::largest(box.high - camera.position));
+    camera.parallel_scale = std::max(camera.parallel_scale, least * reach);
+  }
+  return view;
+}
+
+/// Whether products of pixel coordinates of all places in a box are numbers. They are linear in the place: its corners
+/// say it.
+bool has_coordinates(const View& view, const Box& box) {
+  const scene::PixelView seen(view.camera, view.size);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p((corner & 1) != 0 ? box.high.x : box.low.x, (corner & 2) != 0 ? box.high.y : box.low.y,
+                       (corner & 4) != 0 ? box.high.z : box.low.z);
+    const scene::PixelPlace place = seen.project(p);
+    // Of three of the first, of two depths.
+    if (!(std::max({std::abs(place.x), std::abs(place.y), std::abs(place.w)}) < 1e100)) return false;
+    if (!(std::abs(place.depth) < 1e150)) return false;
+  }
+  return true;
+}
 
 void check_view(const View& view) {
   try {
@@ -24,6 +60,12 @@ void check_view(const View& view) {
     throw Error(error.code(), std::string("view: ") + error.what());
   }
   validate(view.size);
+}
+
+void check_reach(const View& view, const Box& bounds) {
+  if (!bounds.empty() && !has_coordinates(view, bounds))
+    throw scene::bad_input(
+        "view: data and camera are so far apart that places in the picture are no numbers; move the camera nearer");
 }
 
 /// Gives a film of one frame to whoever asked for it alone.
@@ -99,11 +141,15 @@ std::size_t Session::render(std::span<const View> views, const TransferFunction&
                             const FrameSettings& settings, Sink& sink, const std::stop_token& stop) {
   if (transfer_function.knots().empty())
     throw scene::bad_input("transfer function: it has no knots; give at least one, or load a preset");
+  std::vector<View> seen;
+  seen.reserve(views.size());
   for (const View& view : views) {
     check_view(view);
+    seen.push_back(within_range(view, dataset().bounds()));
+    check_reach(seen.back(), dataset().bounds());
     if (settings.peel) frame::check_peel(*settings.peel, view.size, this->settings().memory_bytes);
   }
-  return state_->render(views, transfer_function, settings, sink, stop);
+  return state_->render(seen, transfer_function, settings, sink, stop);
 }
 
 bool Session::assembles() const { return state_->assembles(); }

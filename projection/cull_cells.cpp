@@ -169,8 +169,9 @@ struct Placed {
 
     const V width = hn::Set(d, view.width), height = hn::Set(d, view.height);
     columns = covered(b.x_low, b.x_high, width), rows = covered(b.y_low, b.y_high, height);
+    // A sum, which is no number where one of them is none.
     const V widest =
-        hn::Max(hn::Max(hn::Abs(b.x_low), hn::Abs(b.x_high)), hn::Max(hn::Abs(b.y_low), hn::Abs(b.y_high)));
+        hn::Add(hn::Add(hn::Abs(b.x_low), hn::Abs(b.x_high)), hn::Add(hn::Abs(b.y_low), hn::Abs(b.y_high)));
     tame = hn::Lt(widest, hn::Set(d, 1e30f));
     empty = hn::Or(columns.empty, rows.empty);
     covers = hn::AndNot(empty, hn::And(columns.sure, rows.sure));

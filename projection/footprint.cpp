@@ -17,6 +17,9 @@ bool beyond(const std::array<PixelVertex, 4>& corners, double PixelVertex::*coor
 /// lines of sight (edge_sign.hpp) included.
 std::array<int, 2> covered(double least, double most, int low, int high) {
   const double slack = 1e-7, relative = 1e-9;
+  // What lies beyond the window does so by more than its rounding; infinite positions stay comparable.
+  least = std::clamp(least, low - 2.0, high + 2.0);
+  most = std::clamp(most, low - 2.0, high + 2.0);
   const double first = std::ceil(least - 0.5 - (slack + relative * std::abs(least)));
   const double last = std::floor(most - 0.5 + (slack + relative * std::abs(most))) + 1;
   return {static_cast<int>(std::clamp(first, static_cast<double>(low), static_cast<double>(high))),

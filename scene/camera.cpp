@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <utility>
 
 #include "scene/directions.hpp"
 #include "scene/error.hpp"
@@ -20,14 +21,23 @@ using scene::rotated;
 using scene::unit;
 using std::numbers::pi;
 
+constexpr double least_scale = 1e-300, largest_number = 1e300;
+
+/// Whether a view's half height, in world units or as a tangent, leaves pixels sizes that a double holds in full.
+bool has_pixels(double half_height) { return half_height >= least_scale && half_height <= largest_number; }
+
+bool in_reach(const glm::dvec3& v) { return finite(v) && largest(v) <= largest_number; }
+
 }  // namespace
 
 void validate(const Camera& camera) {
-  if (!finite(camera.position)) throw bad_input("position is not finite; give three numbers");
-  if (!finite(camera.focal_point)) throw bad_input("focal_point is not finite; give three numbers");
-  if (!finite(camera.view_up)) throw bad_input("view_up is not finite; give three numbers");
+  for (const auto& [name, v] : {std::pair{"position", &camera.position}, std::pair{"focal_point", &camera.focal_point},
+                                std::pair{"view_up", &camera.view_up}}) {
+    if (!finite(*v)) throw bad_input(fmt::format("{} is not finite; give three numbers", name));
+    if (!in_reach(*v)) throw bad_input(fmt::format("{} has numbers beyond 1e300; give smaller ones", name));
+  }
   const glm::dvec3 direction = camera.focal_point - camera.position;
-  if (!(largest(direction) > 0) || !finite(direction))
+  if (!(largest(direction) > 0))
     throw bad_input("focal_point equals position, the camera has no direction; move one of them");
   if (!(largest(camera.view_up) > 0)) throw bad_input("view_up is zero; give the direction that points up");
   if (!(glm::length(glm::cross(unit(direction), unit(camera.view_up))) > 1e-9))
@@ -35,8 +45,14 @@ void validate(const Camera& camera) {
   if (camera.projection == ProjectionKind::orthographic) {
     if (!(camera.parallel_scale > 0) || !std::isfinite(camera.parallel_scale))
       throw bad_input(fmt::format("parallel_scale is {}; it must be positive", camera.parallel_scale));
+    if (!has_pixels(camera.parallel_scale))
+      throw bad_input(fmt::format("parallel_scale is {}; pixels of that size are no numbers, give 1e-300 to 1e300",
+                                  camera.parallel_scale));
   } else if (!(camera.view_angle > 0 && camera.view_angle < 180)) {
     throw bad_input(fmt::format("view_angle is {}; it must be above 0 and below 180 degrees", camera.view_angle));
+  } else if (!has_pixels(std::tan(camera.view_angle * (pi / 360)))) {
+    throw bad_input(
+        fmt::format("view_angle is {}; pixels of that size are no numbers, give at least 1e-297", camera.view_angle));
   }
   if (camera.clipping_range) {
     const auto [near_distance, far_distance] = *camera.clipping_range;

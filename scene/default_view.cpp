@@ -167,6 +167,11 @@ Camera zoomed(Camera camera, double zoom) {
     // By the tangent, so that sizes in the picture grow by `zoom` exactly; vtkCamera divides the angle.
     camera.view_angle = 2 * std::atan(std::tan(camera.view_angle / 2 * degree) / zoom) / degree;
   }
+  try {
+    validate(camera);
+  } catch (const Error& error) {
+    throw bad_input(fmt::format("`zoom` is {}: the view's {}", zoom, error.what()));
+  }
   return camera;
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "scene/error.hpp"
+#include "tessera/default_view.hpp"
 
 namespace tessera::scene {
 namespace {
@@ -43,6 +44,47 @@ TEST(Camera, RefusesWhatHasNoDirectionOrNoUp) {
   camera.position.x = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(validate(camera), Error);
   EXPECT_NO_THROW(validate(Camera{}));
+}
+
+TEST(Camera, RefusesPixelsWithoutASize) {
+  Camera camera;
+  for (const double scale : {5e-324, 1e-310, 1e-301, 1e301, 1e308}) {
+    camera.parallel_scale = scale;
+    EXPECT_THROW(validate(camera), Error) << scale;
+  }
+  for (const double scale : {1e-300, 1.0, 1e300}) {
+    camera.parallel_scale = scale;
+    EXPECT_NO_THROW(validate(camera)) << scale;
+  }
+  camera.projection = ProjectionKind::perspective;
+  for (const double angle : {5e-324, 1e-310, 1e-299}) {
+    camera.view_angle = angle;
+    EXPECT_THROW(validate(camera), Error) << angle;
+  }
+  for (const double angle : {1e-297, 30.0, 179.9999999}) {
+    camera.view_angle = angle;
+    EXPECT_NO_THROW(validate(camera)) << angle;
+  }
+  for (glm::dvec3 Camera::*place : {&Camera::position, &Camera::focal_point, &Camera::view_up}) {
+    Camera far;
+    (far.*place).x = 1e301;
+    EXPECT_THROW(validate(far), Error);
+  }
+}
+
+TEST(Camera, RefusesZoomsThatLeavePixelsNoSize) {
+  const Box box{glm::dvec3(0), glm::dvec3(1)};
+  for (const ProjectionKind projection : {ProjectionKind::orthographic, ProjectionKind::perspective})
+    for (const double zoom : {1e308, 1e302, 1e-302, 5e-324}) {
+      ViewRequest request;
+      request.zoom = zoom;
+      try {
+        static_cast<void>(view_of_box(box, {64, 64}, request, projection, BodyAxes::none, false));
+        ADD_FAILURE() << zoom;
+      } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("`zoom`"), std::string::npos) << error.what();
+      }
+    }
 }
 
 TEST(Camera, ImageSizesOutsideOneToTheLimitAreRefused) {
