@@ -21,11 +21,13 @@
 #include "frame/mesh_input.hpp"
 #include "frame/render.hpp"
 #include "frame/roles.hpp"
+#include "frame/same_files.hpp"
 #include "frame/scan_together.hpp"
 #include "frame/shared_volume.hpp"
 #include "frame/transfer_function_choice.hpp"
 #include "frame/uncut_mesh.hpp"
 #include "io/axis_scale.hpp"
+#include "io/files_read.hpp"
 #include "io/foreign_data.hpp"
 #include "io/mesh_assembly.hpp"
 #include "io/volume_reader.hpp"
@@ -96,6 +98,14 @@ void check_axis_scale(const std::optional<glm::dvec3>& scale) {
           fmt::format("`scale` is {} {} {}; each factor must be above 0", scale->x, scale->y, scale->z));
 }
 
+scene::MeshFacts facts_of(const scene::Grid& grid, const scene::ValueRange& range) {
+  return {scene::bounds(grid.geometry),
+          {range.low, range.high},
+          scene::mean_thickness(grid.geometry),
+          0,
+          grid.geometry.association};
+}
+
 std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, const ReadOptions& options,
                                             exchange::Transport& transport, scene::Trace* trace) {
   check_grid_options(file, options);
@@ -104,9 +114,7 @@ std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, c
     const scene::TraceScope timing(trace, "read");
     return frame::open_shared_volume(transport, file, volume_options(options), options.threads);
   }();
-  const auto& threshold = options.selection.threshold;
-  if (threshold)
-    volume.source = std::make_unique<scene::ThresholdSource>(std::move(volume.source), *threshold, file.string());
+  frame::require_same_files(transport);  // which it names
   state->axis_scale = io::chosen_scale(options.axis_scale, volume.beside_degrees,
                                        scene::bounds(volume.source->geometry()), volume.notes);
   if (state->axis_scale != glm::dvec3(1))
@@ -118,9 +126,16 @@ std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, c
         std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source, options.threads));
   }
   frame::note_byte_order(volume, options, state->ranges->range);
-  if (!threshold) frame::leave_fill_values_out(volume, file, options, transport, state->ranges);
+  frame::leave_fill_values_out(volume, file, options, transport, state->ranges);
   scene::ValueRange range = state->ranges->range;
-  if (threshold) {
+  if (const auto& threshold = options.selection.threshold) {
+    state->of_all = std::make_shared<const frame::FieldOfAll>(
+        frame::FieldOfAll{facts_of(volume.source->grid(), range), scene::sample_grid(*volume.source)});
+    volume.source = std::make_unique<scene::ThresholdSource>(std::move(volume.source), *threshold, file.string());
+    const scene::TraceScope timing(trace, "prepare");
+    state->ranges =
+        std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source, options.threads));
+    range = state->ranges->range;
     if (range.empty())
       throw scene::bad_input(fmt::format(
           "{}: no sample's value is in `threshold`, nothing is left to render; give a wider range", file.string()));
@@ -144,13 +159,8 @@ std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, c
 /// Facts of a grid whose samples and ranges are known.
 void complete_grid(Dataset::State& state) {
   const scene::Grid& grid = state.samples->grid();
-  const scene::ValueRange& range = state.ranges->range;
   state.field_name = grid.field_name;
-  state.facts = {scene::bounds(grid.geometry),
-                 {range.low, range.high},
-                 scene::mean_thickness(grid.geometry),
-                 0,
-                 grid.geometry.association};
+  state.facts = facts_of(grid, state.ranges->range);
 }
 
 void take_description(io::MeshFile&& file, Dataset::State& state) {
@@ -278,6 +288,8 @@ Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOp
     std::shared_ptr<State> state;
     if (files.empty()) throw scene::bad_input("input: no file is named; name one");
     check_axis_scale(options.axis_scale);
+    for (const auto& file : files) io::note_read(file);
+    frame::require_same_files(*transport);  // first of all: what ranks do together goes by them
     if (files.size() == 1 && opens_as_grid(files.front(), options)) {
       state = opened_grid(files.front(), options, *transport, options.trace);
       complete_grid(*state);
@@ -290,9 +302,11 @@ Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOp
       const Roles roles = assign_roles(transport->size(), ranks.projectors, ranks.compositors);
       frame::DistributedMesh mesh = frame::read_distributed(*transport, files, frame::mesh_options(options),
                                                             ranks.partition, roles.projectors, options.threads, trace);
+      frame::require_same_files(*transport);  // which they name
       take_description(std::move(mesh.description), *state);
       set_own_time(files.front(), state->time_step);
       state->facts = mesh.facts;
+      state->of_all = std::move(mesh.of_all);
       state->ranks = transport->size();
       state->global_tet = std::move(mesh.part.global_tet);
       keep(std::move(mesh.part.mesh), options, trace, *state);
@@ -385,7 +399,7 @@ Dataset Dataset::of_parts(const MeshArrays& part, const Communicator& communicat
 bool Dataset::is_mesh() const { return state_->samples == nullptr; }
 const Box& Dataset::bounds() const { return state_->facts.box; }
 const glm::dvec3& Dataset::axis_scale() const { return state_->axis_scale; }
-std::array<double, 2> Dataset::range() const { return state_->facts.scalar_range; }
+std::array<double, 2> Dataset::range() const { return state_->facts_of_all().scalar_range; }
 Association Dataset::association() const { return state_->facts.association; }
 const std::string& Dataset::field_name() const { return state_->field_name; }
 bool Dataset::shows_shape() const { return state_->shape; }
@@ -425,7 +439,7 @@ double Dataset::scale() const { return is_mesh() ? 1 : state_->samples->grid().s
 double Dataset::shift() const { return is_mesh() ? 0 : state_->samples->grid().shift; }
 std::uint64_t Dataset::blank_samples() const { return is_mesh() ? 0 : state_->ranges->range.blanks; }
 
-double Dataset::default_unit_distance() const { return frame::default_unit_distance(state_->facts); }
+double Dataset::default_unit_distance() const { return frame::default_unit_distance(state_->facts_of_all()); }
 
 Camera Dataset::default_camera(ImageSize size, ProjectionKind projection) const { return view({}, size, projection); }
 

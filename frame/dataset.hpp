@@ -5,11 +5,11 @@
 #include <optional>
 #include <vector>
 
+#include "frame/field_of_all.hpp"
 #include "frame/mesh_exchange.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/volume_tags.hpp"
 #include "projection/prepared_mesh.hpp"
-#include "scene/field_samples.hpp"
 #include "scene/mesh_facts.hpp"
 #include "scene/sample_source.hpp"
 #include "tessera/dataset.hpp"
@@ -26,6 +26,8 @@ struct TESSERA_HIDDEN Dataset::State {
   io::TimeStepRead time_step;
   glm::dvec3 axis_scale{1};  ///< that the file's axes were multiplied by
   scene::MeshFacts facts;    ///< of the whole; grids have no tets
+  /// What a selection (ReadOptions::selection) left out is in these; null: nothing was left out.
+  std::shared_ptr<const frame::FieldOfAll> of_all;
   MeshCounts counts;
   HigherOrderCells higher_order;
   /// Files that the whole mesh can be read from again, by one rank that verifies; none: arrays.
@@ -49,11 +51,15 @@ struct TESSERA_HIDDEN Dataset::State {
   /// All values of labels; empty: they are no labels, or too many; none: not looked at.
   std::optional<std::vector<double>> labels;
 
+  /// Colours and opacities go by these, so that a selection changes none.
+  [[nodiscard]] const scene::MeshFacts& facts_of_all() const { return of_all ? of_all->facts : facts; }
+
   /// The mesh prepared for projection, shared by sessions.
   [[nodiscard]] std::shared_ptr<const projection::PreparedMesh> prepared(int threads,
                                                                          scene::Trace* trace = nullptr) const;
 
-  /// Points of the field over the whole. Of a mesh in parts they have to be gathered by all ranks first.
+  /// Points of the field over the whole, what a selection left out included. Of a mesh in parts they have to be
+  /// gathered by all ranks first.
   [[nodiscard]] const scene::FieldSamples& field_samples() const;
   /// The whole's, of a mesh in parts. Collective.
   void gather_field_samples(exchange::Transport& transport);

@@ -8,9 +8,11 @@
 #include "frame/field_message.hpp"
 #include "frame/mesh_input.hpp"
 #include "frame/reduce.hpp"
+#include "frame/render.hpp"
 #include "frame/shared_repetitions.hpp"
 #include "io/block_choice.hpp"
 #include "io/mesh_parts.hpp"
+#include "io/mesh_selection.hpp"
 
 namespace tessera::frame {
 namespace {
@@ -104,12 +106,40 @@ io::MeshFile share_description(Transport& transport, std::span<const int> projec
   return description_in(reader);
 }
 
+/// Leaves of every rank's part what is selected; returns what the whole was before, null if that is all. Collective.
+std::shared_ptr<const FieldOfAll> select_part(Transport& transport, const io::MeshOptions& options,
+                                              const std::string& source, int threads, scene::TetMesh& part,
+                                              io::MeshCounts& counts) {
+  if (options.selection.all()) return nullptr;
+  auto all = std::make_shared<FieldOfAll>();
+  all->facts = agree_facts(transport, part, threads);
+  // Samples go by the order that renderers give to corners, so that they are those of the whole.
+  std::vector<scene::Tet> as_read = part.tets;
+  RenderSettings settings;
+  settings.threads = threads;
+  order_corners(part, settings);
+  all->samples = gather_field_samples(transport, part, numbered_by_rank(transport, part.tets.size()), all->facts);
+  part.tets = std::move(as_read);
+  io::select(part, options.selection, counts, source);
+  return all;
+}
+
+io::MeshOptions with_everything(io::MeshOptions options) {
+  options.selection.threshold.reset();
+  options.selection.clip.clear();
+  return options;
+}
+
 /// The whole by the first projector.
 DistributedMesh read_whole(Transport& transport, std::span<const std::filesystem::path> files,
-                           const io::MeshOptions& options, std::span<const int> projectors) {
+                           const io::MeshOptions& options, std::span<const int> projectors, int threads) {
   DistributedMesh result;
   io::MeshFile file;
-  if (transport.rank() == projectors.front()) file = read_input(files, options);
+  const bool reads = transport.rank() == projectors.front();
+  if (reads) file = read_input(files, with_everything(options));
+  const std::string source = files.front().string();
+  result.of_all = select_part(transport, options, source, threads, file.mesh, file.counts);
+  if (reads) io::require_selected(file.counts, source);
   result.description = share_description(transport, projectors, file);
   result.part.mesh = std::move(file.mesh);
   return result;
@@ -122,7 +152,8 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
   const bool reads = place != projectors.end();
   const auto part = static_cast<std::size_t>(place - projectors.begin());
   std::optional<io::MeshPartReading> reading;
-  if (reads) reading.emplace(input, options, static_cast<int>(part), static_cast<int>(projectors.size()));
+  if (reads)
+    reading.emplace(input, with_everything(options), static_cast<int>(part), static_cast<int>(projectors.size()));
 
   std::vector<std::vector<io::FieldTally>> tallies;
   std::vector<std::string> block_names;
@@ -146,6 +177,8 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
     own.summary.counts.cells_duplicate =
         count_shared_repetitions(transport, std::exchange(own.cell_keys, {}), projectors, threads);
 
+  DistributedMesh result;
+  result.of_all = select_part(transport, options, input.string(), threads, own.mesh, own.summary.counts);
   const io::PartSummary& s = own.summary;
   std::vector<io::PartSummary> summaries;
   std::uint64_t words = 0, first_tet = 0;
@@ -171,7 +204,6 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
   own.summary.used_points.resize(words, 0);
   summaries.front().used_points = reduce_all(transport, std::move(own.summary.used_points), Reduction::bit_or);
 
-  DistributedMesh result;
   io::MeshFile description;
   if (transport.rank() == projectors.front()) description = io::joined(own, summaries, input);
   description.axis_scale = options.axis_scale.value_or(glm::dvec3(1));
@@ -192,8 +224,12 @@ DistributedMesh read_distributed(Transport& transport, std::span<const std::file
   if (transport.size() == 1) {
     {
       const scene::TraceScope scope(trace, "read");
-      result.description = read_input(files, options);
+      result.description = read_input(files, with_everything(options));
     }
+    const std::string source = files.front().string();
+    result.of_all =
+        select_part(transport, options, source, threads, result.description.mesh, result.description.counts);
+    io::require_selected(result.description.counts, source);
     result.part.mesh = std::move(result.description.mesh);
     result.description.mesh = {};
     result.description.mesh.field_name = result.part.mesh.field_name;
@@ -210,7 +246,7 @@ DistributedMesh read_distributed(Transport& transport, std::span<const std::file
         in_parts = files.size() == 1 && io::readable_in_parts(files.front(), options) ? 1 : 0;
       in_parts = exchange::broadcast_value(transport, projectors.front(), MessageKind::read_in_parts, in_parts);
       result = in_parts != 0 ? read_parts(transport, files.front(), options, projectors, threads)
-                             : read_whole(transport, files, options, projectors);
+                             : read_whole(transport, files, options, projectors, threads);
     }
     result.facts = agree_facts(transport, result.part.mesh, threads);
     result.part = redistribute(transport, std::move(result.part), result.facts, partition, projectors, trace);

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <span>
 
 #include "exchange/transport.hpp"
+#include "frame/field_of_all.hpp"
 #include "frame/mesh_exchange.hpp"
 #include "io/mesh_reader.hpp"
 #include "projection/partition.hpp"
@@ -14,8 +16,9 @@ namespace tessera::frame {
 
 /// What one rank gets of a mesh that several read together.
 struct DistributedMesh {
-  MeshPart part;           ///< this rank's tets; none on ranks that do not project
-  scene::MeshFacts facts;  ///< of the whole
+  MeshPart part;                             ///< this rank's tets; none on ranks that do not project
+  scene::MeshFacts facts;                    ///< of the whole
+  std::shared_ptr<const FieldOfAll> of_all;  ///< null: the options select everything
   /// What io::read_mesh says of the whole, the same on every rank, but for the mesh: that has its field and association
   /// only.
   io::MeshFile description;

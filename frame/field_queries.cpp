@@ -52,7 +52,8 @@ struct Share {
 
 glm::dvec3 place_of(const Dataset::State& data, const scene::FieldSample& sample) {
   const glm::dvec3 at(sample.at[0], sample.at[1], sample.at[2]);
-  if (data.samples == nullptr) return data.facts.box.low + at * (data.facts.box.high - data.facts.box.low);
+  const scene::Box& box = data.facts_of_all().box;
+  if (data.samples == nullptr) return box.low + at * (box.high - box.low);
   const GridGeometry& g = data.samples->geometry();
   glm::dvec3 local;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -66,10 +67,11 @@ std::vector<Share> shares_of(const Dataset& dataset, const std::optional<View>& 
   const Dataset::State& data = dataset.state();
   std::optional<Window> window;
   if (seen) window.emplace(*seen);
-  // Cells of a mesh are cut already.
-  const bool clipped = data.samples != nullptr && !data.clip.empty();
+  const bool clipped = !data.clip.empty();
+  const auto [low, high] = data.facts.scalar_range;  // of what a selection has left
   std::vector<Share> shares;
   for (const scene::FieldSample& sample : data.field_samples().samples) {
+    if (data.of_all && !(sample.value >= low && sample.value <= high)) continue;
     if (window || clipped) {
       const glm::dvec3 p = place_of(data, sample);
       if (window && !window->holds(p)) continue;

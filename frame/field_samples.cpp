@@ -12,6 +12,7 @@ namespace tessera {
 using exchange::MessageKind;
 
 const scene::FieldSamples& Dataset::State::field_samples() const {
+  if (of_all) return of_all->samples;
   if (ranks == 1)
     std::call_once(sampled_, [&] {
       field_samples_ = samples != nullptr ? scene::sample_grid(*samples) : scene::sample_mesh(mesh, global_tet, facts);
@@ -20,20 +21,28 @@ const scene::FieldSamples& Dataset::State::field_samples() const {
 }
 
 void Dataset::State::gather_field_samples(exchange::Transport& transport) {
-  if (ranks == 1) return;
-  scene::FieldSamples part = scene::sample_mesh(mesh, global_tet, facts);
+  if (ranks > 1 && !of_all) field_samples_ = frame::gather_field_samples(transport, mesh, global_tet, facts);
+}
+
+namespace frame {
+
+scene::FieldSamples gather_field_samples(exchange::Transport& transport, const scene::TetMeshView& part,
+                                         std::span<const std::uint64_t> global_tet, const scene::MeshFacts& facts) {
+  const scene::FieldSamples own = scene::sample_mesh(part, global_tet, facts);
   exchange::Bytes message = exchange::begin_message(MessageKind::field_samples);
-  exchange::append_list(message, part.samples);
-  field_samples_ = {{}, part.sides, part.longest};
+  exchange::append_list(message, own.samples);
+  scene::FieldSamples all{{}, own.sides, own.longest};
   int from = 0;
   for (const exchange::Bytes& bytes : exchange::gather_all(transport, std::move(message))) {
     exchange::MessageReader reader(bytes, from++, MessageKind::field_samples);
     const auto count = reader.take<std::uint64_t>();
-    reader.take_onto(field_samples_.samples, count);
+    reader.take_onto(all.samples, count);
     reader.finish();
   }
   // A tet is on one rank, with all its samples: the order of one process.
-  std::ranges::stable_sort(field_samples_.samples, {}, &scene::FieldSample::tet);
+  std::ranges::stable_sort(all.samples, {}, &scene::FieldSample::tet);
+  return all;
 }
 
+}  // namespace frame
 }  // namespace tessera

@@ -39,6 +39,9 @@ Dataset selected_part(const std::shared_ptr<const Dataset::State>& from, const S
   state->mesh = *kept;
   state->owner = std::move(kept);
   state->facts = scene::facts_of(state->mesh, 0);
+  state->of_all =
+      from->of_all ? from->of_all
+                   : std::make_shared<const frame::FieldOfAll>(frame::FieldOfAll{from->facts, from->field_samples()});
   state->source = from->source, state->format = from->format, state->field_name = from->field_name;
   state->fields = from->fields, state->notes = from->notes, state->blocks = from->blocks,
   state->surfaces = from->surfaces;

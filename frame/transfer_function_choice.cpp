@@ -28,9 +28,9 @@ LoadedTransferFunction load(const std::string& file_or_preset, const colormaps::
 
 colormaps::TransferFunctionOptions loading_options(const Dataset::State& data, const TransferFunctionOptions& options) {
   colormaps::TransferFunctionOptions loading;
-  loading.field_range = data.facts.scalar_range;
+  loading.field_range = data.facts_of_all().scalar_range;
   loading.unit_distance = options.unit_distance;
-  loading.default_unit_distance = default_unit_distance(data.facts);
+  loading.default_unit_distance = default_unit_distance(data.facts_of_all());
   loading.display_colors = options.display_colors;
   loading.rescale = options.rescale;
   loading.opacity_scale = options.opacity_scale;
@@ -63,7 +63,7 @@ TransferFunction over_values(const TransferFunction& logarithmic) {
 }
 
 double smallest_positive(const Dataset::State& data) {
-  const auto [low, high] = data.facts.scalar_range;
+  const auto [low, high] = data.facts_of_all().scalar_range;
   if (!(high > 0))
     throw scene::bad_input(fmt::format("{}: `log`: the field {} has no positive value, it ends at {:.6g}; leave it out",
                                        data.source, data.field_name, high));
@@ -85,15 +85,15 @@ LoadedTransferFunction logarithmic(const Dataset::State& data, const std::string
   colormaps::TransferFunctionOptions loading = loading_options(data, options);
   const double least = smallest_positive(data);
   std::vector<std::string> warnings;
-  if (data.facts.scalar_range[0] <= 0)
+  if (data.facts_of_all().scalar_range[0] <= 0)
     warnings.push_back(
         fmt::format("values of 0 and below count as {:.6g}, the smallest positive one found, for `log`", least));
-  std::array<double, 2> span = options.range.value_or(std::array{least, data.facts.scalar_range[1]});
+  std::array<double, 2> span = options.range.value_or(std::array{least, data.facts_of_all().scalar_range[1]});
   if (!(span[1] > 0))
     throw scene::bad_input(fmt::format("`range` ends at {}, and `log` needs a positive value; give one", span[1]));
   span[0] = span[0] > 0 ? span[0] : std::min(least, span[1]);
   const auto exponent = [&](double value) { return std::log10(std::max(value, least)); };
-  loading.field_range = {exponent(data.facts.scalar_range[0]), exponent(data.facts.scalar_range[1])};
+  loading.field_range = {exponent(data.facts_of_all().scalar_range[0]), exponent(data.facts_of_all().scalar_range[1])};
   loading.rescale = true;
   if (options.range || !file_or_preset.empty()) loading.range = {{std::log10(span[0]), std::log10(span[1])}};
   if (loading.range && !((*loading.range)[0] < (*loading.range)[1])) loading.range.reset();
@@ -144,7 +144,7 @@ void warn_of_nothing(const Dataset::State& data, const std::string& file_or_pres
         fmt::format("the transfer function shows nothing: it is clear over the field's {:.6g} to {:.6g}; {}", low, high,
                     remedy_for_clear(loaded, options, {low, high}, emits)));
   } else if (chosen && !options.logarithmic && knots.size() > 1 &&
-             colormaps::is_far_off({knots.front().value, knots.back().value}, {low, high})) {
+             colormaps::is_far_off({knots.front().value, knots.back().value}, data.facts_of_all().scalar_range)) {
     loaded.warnings.push_back(fmt::format(
         "the transfer function shows next to nothing: its {:.6g} to {:.6g} holds hardly any of the field's "
         "{:.6g} to {:.6g}, or all in one place, so that nearly all has one colour and opacity; {}",

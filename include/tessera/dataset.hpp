@@ -54,8 +54,8 @@ struct ReadOptions {
   /// some. On several ranks one reads the file whole, with it; without it the warning counts what each finds in its
   /// share.
   bool drop_duplicates = false;
-  /// What of a mesh or grid is kept (tessera/selection.hpp). Bounds and default view are of that; so are a mesh's range
-  /// and transfer function.
+  /// What of a mesh or grid is kept (tessera/selection.hpp). Bounds and default view are of that; range, transfer
+  /// function and its unit distance are of the whole, so that a cut changes no colour.
   Selection selection{};
   /// What the axes of the world are multiplied by, each above 0, before anything else is done with places: clips, views
   /// and lengths are those of what is scaled. None: 1; but where x and y are degrees and z is a length, and the box is
