@@ -21,7 +21,7 @@ namespace tessera::exchange {
 static_assert(std::endian::native == std::endian::little, "messages are little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 28;        ///< the next one whenever a message changes
+inline constexpr std::uint16_t wire_version = 29;        ///< the next one whenever a message changes
 
 /// All kinds, by channel, and what follows the header.
 enum class MessageKind : std::uint16_t {
@@ -94,6 +94,7 @@ enum class MessageKind : std::uint16_t {
   tile_times = 59,   ///< u8: 1: the last frame was not stopped, u64 process, f64 its processor time, list of TileTime
   image_split = 60,  ///< u8: 1: it is known; then list of i32 rows, of each a list of i32 columns, of each one of steps
   volume_facts = 57,   ///< what the sender has read of a volume, and where its samples are (frame/shared_volume.cpp)
+  files_read = 64,     ///< until the end: text name, u64 bytes, u64 checksum (frame/same_files.cpp)
   volume_labels = 63,  ///< u8 whether values are labels, list of f64: these (frame/shared_labels.cpp)
   // Channel fragments, to oneself.
   wake = 56,  ///< nothing: all frames of the list are finished

@@ -17,6 +17,7 @@
 #include "exchange/one_line.hpp"
 #include "exchange/termination.hpp"
 #include "frame/communicator.hpp"
+#include "frame/same_files.hpp"
 #include "io/unfinished.hpp"
 
 namespace tessera {
@@ -72,6 +73,8 @@ void Job::agree_instruction_sets() {
   state_->meet();
   if (size() > 1) exchange::agree_instruction_sets(state_->transport());
 }
+
+void Job::require_same_files() { frame::require_same_files(state_->transport()); }
 
 std::vector<std::byte> Job::broadcast(int root, std::vector<std::byte> bytes) {
   constexpr auto kind = exchange::MessageKind::of_job;

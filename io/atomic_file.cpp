@@ -68,6 +68,7 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
     if (!S_ISREG(present.st_mode))
       throw OutputFault(ErrorCode::bad_input, target_, "is not a regular file",
                         "outputs are replaced as a whole, name a file");
+    check_not_read(target_);
   } else if (errno != ENOENT) {
     fail(errno, "cannot be written");
   }

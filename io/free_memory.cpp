@@ -1,11 +1,27 @@
 #include "io/free_memory.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <string>
 
 namespace tessera::io {
 
-std::uint64_t available_memory() {
+namespace {
+
+/// What the process's control group, a container's or a job's, may still take. Cached files make room.
+std::uint64_t left_in_group() {
+  std::uint64_t most = 0, used = 0, cached = 0;
+  // "max" is no number: there is no limit.
+  if (!(std::ifstream("/sys/fs/cgroup/memory.max") >> most) ||
+      !(std::ifstream("/sys/fs/cgroup/memory.current") >> used))
+    return UINT64_MAX;
+  std::ifstream facts("/sys/fs/cgroup/memory.stat");
+  for (std::string word; facts >> word && word != "file";) facts >> word;
+  facts >> cached;
+  return most + cached > used ? most + cached - used : 0;
+}
+
+std::uint64_t left_in_machine() {
   std::ifstream facts("/proc/meminfo");
   std::string word;
   while (facts >> word)
@@ -16,5 +32,9 @@ std::uint64_t available_memory() {
     }
   return UINT64_MAX;
 }
+
+}  // namespace
+
+std::uint64_t available_memory() { return std::min(left_in_group(), left_in_machine()); }
 
 }  // namespace tessera::io

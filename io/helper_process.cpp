@@ -20,6 +20,7 @@
 #include <string_view>
 #include <utility>
 
+#include "io/files_read.hpp"
 #include "io/spawn_plan.hpp"
 #include "io/unfinished.hpp"
 #include "scene/error.hpp"
@@ -235,6 +236,8 @@ Json content_of(const HelperMessage& reply, const std::string& subject) {
   int code = 0;
   try {
     json = Json::from_cbor(reply.bytes);
+    if (const auto opened = json.find("opened"); opened != json.end())
+      for (const Json& name : *opened) note_read(std::string(name.get_binary().begin(), name.get_binary().end()));
     if (const auto error = json.find("error"); error != json.end()) {
       line = error->at("line").get<std::string>();
       code = error->at("code").get<int>();

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "io/amrex_header.hpp"
+#include "io/files_read.hpp"
 #include "io/missing_file.hpp"
 #include "scene/error.hpp"
 
@@ -46,6 +47,7 @@ std::uint64_t require_file(const std::filesystem::path& file) {
     throw scene::bad_input(fmt::format("{}: it is empty; write it anew", file.string()));
   if (is_git_lfs_pointer(file, size))
     throw scene::bad_input(fmt::format("{}: a Git LFS pointer; `git lfs pull` brings the file itself", file.string()));
+  note_read(file);
   return size;
 }
 

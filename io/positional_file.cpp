@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "io/files_read.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -17,6 +18,7 @@ namespace tessera::io {
 PositionalFile::PositionalFile(const std::filesystem::path& file, std::string name)
     : name_(name.empty() ? file.string() : std::move(name)), descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
   if (descriptor_ < 0) fail("cannot be opened", errno);
+  note_read(file);
 }
 
 PositionalFile::~PositionalFile() { ::close(descriptor_); }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "io/files_read.hpp"
 #include "io/missing_file.hpp"
 #include "scene/error.hpp"
 
@@ -31,6 +32,7 @@ std::string read_text_file(const std::filesystem::path& file) {
   if (std::filesystem::is_directory(status)) throw scene::bad_input(file.string() + ": is a folder; name a file in it");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw scene::bad_input(file.string() + ": cannot be opened; check that you may read it");
+  note_read(file);
   // Read by pieces rather than by the size: a pipe has none.
   std::string text;
   std::vector<char> piece(1u << 16);

@@ -71,6 +71,10 @@ class TESSERA_EXPORT Job {
   /// `bytes` of rank `root`, on every rank. Collective. Throws the run's error.
   std::vector<std::byte> broadcast(int root, std::vector<std::byte> bytes);
 
+  /// Throws Error(bad_input) if ranks have read different files under one name so far; a data set's own are compared as
+  /// it is opened. Collective.
+  void require_same_files();
+
   /// Runs `work` on all ranks with a communicator that holds for as long as it runs, such as for opening a data set. An
   /// error of one rank is thrown on all of them and, unlike any other, leaves the job usable. Collective.
   void attempt(const std::function<void(const Communicator&)>& work);

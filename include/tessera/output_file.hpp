@@ -75,6 +75,12 @@ TESSERA_EXPORT void abandon_outputs() noexcept;
 /// Writes all of a text file, whole or not at all. Throws as AtomicFile.
 TESSERA_EXPORT void write_text(const std::filesystem::path& target, std::string_view text);
 
+/// From now on no output of this process replaces a file that it, or a reader program for it, has opened to read, also
+/// those that a file names: AtomicFile throws. For programs that do one job and end.
+TESSERA_EXPORT void protect_inputs();
+/// Throws Error(bad_input) if `target` has been read since protect_inputs(), by whatever name.
+TESSERA_EXPORT void check_not_read(const std::filesystem::path& target);
+
 /// Before a run: check_writable(), and `target` is not this input (empty: none). Throws Error(bad_input).
 TESSERA_EXPORT void check_output(const std::filesystem::path& target, const std::filesystem::path& input);
 /// That alone of it: throws if they are one file.

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "io/clean_errors.hpp"
+#include "io/helper/opened_files.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper_messages.hpp"
 #include "io/input_file.hpp"
@@ -133,6 +134,8 @@ bool answer(std::span<const Reader> readers, Holdings& holdings, Window& window,
     reply = error_json(
         scene::bad_input(fmt::format("{}: it cannot be read; have it written again, or in another format", source)));
   }
+  for (const std::string& name : take_opened_files())
+    reply["opened"].push_back(Json::binary(std::vector<std::uint8_t>(name.begin(), name.end())));
   return send_message(socket_to_caller, Json::to_cbor(reply), file.get());
 }
 

@@ -1,0 +1,63 @@
+#include "io/files_read.hpp"
+
+#include <sys/stat.h>
+
+#include <atomic>
+#include <mutex>
+#include <set>
+#include <utility>
+
+#include "tessera/error.hpp"
+#include "tessera/output_file.hpp"
+
+namespace tessera {
+namespace io {
+namespace {
+
+struct FilesRead {
+  std::mutex mutex;
+  std::set<std::pair<std::uint64_t, std::uint64_t>> identities;
+  std::set<std::string> names;
+};
+FilesRead& files_read() {
+  static FilesRead read;
+  return read;
+}
+
+std::atomic<bool> inputs_are_protected = false;
+
+}  // namespace
+
+void note_read(const std::filesystem::path& file) {
+  struct stat facts {};
+  if (file.native().starts_with("/proc/")) return;  // an open file of this process: no name of its own
+  if (::stat(file.c_str(), &facts) != 0 || !S_ISREG(facts.st_mode)) return;
+  const std::lock_guard lock(files_read().mutex);
+  files_read().identities.emplace(facts.st_dev, facts.st_ino);
+  files_read().names.insert(file.string());
+}
+
+bool was_read(std::uint64_t device, std::uint64_t number) {
+  if (!inputs_are_protected) return false;
+  const std::lock_guard lock(files_read().mutex);
+  return files_read().identities.contains({device, number});
+}
+
+std::vector<std::string> take_names_read() {
+  const std::lock_guard lock(files_read().mutex);
+  const std::set<std::string> names = std::exchange(files_read().names, {});
+  return {names.begin(), names.end()};
+}
+
+}  // namespace io
+
+void protect_inputs() { io::inputs_are_protected = true; }
+
+void check_not_read(const std::filesystem::path& target) {
+  struct stat present {};
+  if (::stat(target.c_str(), &present) == 0 && io::was_read(present.st_dev, present.st_ino))
+    throw Error(ErrorCode::bad_input, target.string(), "is an input of this run and would be overwritten",
+                "choose another name");
+}
+
+}  // namespace tessera
