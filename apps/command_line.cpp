@@ -6,6 +6,7 @@
 
 #include "apps/generate_command.hpp"
 #include "apps/help_pages.hpp"
+#include "apps/like_report.hpp"
 #include "apps/method_preset.hpp"
 #include "apps/scene_file.hpp"
 #include "tessera/version.hpp"
@@ -25,6 +26,7 @@ CommandLine::CommandLine()
   render = app.add_subcommand("render", "Render a mesh or a volume to pictures");
   render->set_help_all_flag("--help-all", "say every option and end");
   add_render_options(*render, words);
+  add_like_option(*render, words);
   add_method_preset_option(*render, words);
   add_stall_options(*render, stalls);
   add_scene_options(*render, words);

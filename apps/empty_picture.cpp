@@ -215,7 +215,6 @@ EmptyReason reason_of_empty(const RenderedFrame& frame, const Dataset& data, con
 
 void EmptyPictures::look_at(std::size_t frame, const RenderedFrame& rendered, const Dataset& data,
                             const TransferFunction& function, const RenderOptions& options) {
-  if (options.quiet) return;
   const EmptyReason reason = reason_of_empty(rendered, data, function, options);
   if (reason == EmptyReason::none) return;
   if (first_.reason == EmptyReason::none) {

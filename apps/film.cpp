@@ -23,6 +23,7 @@
 #include "apps/spare_images.hpp"
 #include "tessera/higher_order.hpp"
 #include "tessera/image_file.hpp"
+#include "tessera/output_file.hpp"
 #include "tessera/session.hpp"
 #include "tessera/statistics.hpp"
 #include "tessera/trace.hpp"
@@ -84,6 +85,7 @@ class Film final : public Sink {
   }
 
   ExitCode run() {
+    job_.require_same_files();  // which the plan goes by
     agree_on_finished_frames();
     for (std::size_t first = 0; first < frames_.size();) {
       // The frames of one step together: they share what is held.
@@ -153,18 +155,31 @@ class Film final : public Sink {
   void agree_on_finished_frames() {
     if (writes_) {
       check_annotation(options_.annotation);
-      std::vector<std::filesystem::path> more = options_.films;
-      if (!options_.report_to_standard_output) more.push_back(options_.report);
-      more.push_back(options_.timing);
       PictureWriter::check(options_, frames_);
       const std::array inputs = {options_.input(), options_.plan.cameras, options_.read.plot3d_q,
                                  std::filesystem::path(options_.transfer_function)};
-      check_film_outputs(frames_, more, inputs);
+      check_film_outputs(frames_, other_outputs(), inputs);
     }
     std::vector<std::byte> finished(frames_.size());
     for (std::size_t i = 0; i < frames_.size(); ++i) finished[i] = std::byte{frames_[i].finished};
     finished = job_.broadcast(writer_, std::move(finished));
     for (std::size_t i = 0; i < frames_.size(); ++i) frames_[i].finished = finished[i] != std::byte{0};
+  }
+
+  /// Those beside the frames' pictures; may be empty.
+  [[nodiscard]] std::vector<std::filesystem::path> other_outputs() const {
+    std::vector<std::filesystem::path> outputs = options_.films;
+    outputs.insert(outputs.end(), {options_.timing, options_.saved_scene});
+    if (!options_.report_to_standard_output) outputs.push_back(options_.report);
+    return outputs;
+  }
+
+  /// What the input's files name is known once they are read. Every rank asks: each has read its own part.
+  void check_outputs_are_no_inputs() const {
+    for (const FilmFrame& frame : frames_)
+      for (const auto& output : frame.outputs) check_not_read(output);
+    for (const auto& output : other_outputs())
+      if (!output.empty()) check_not_read(output);
   }
 
   void skip_to(std::size_t frame) {
@@ -208,6 +223,8 @@ class Film final : public Sink {
   /// Of the step at hand, with its field.
   void read_block_surfaces(const std::vector<std::filesystem::path>& files, ReadOptions read) {
     if (options_.block_surfaces.empty() && data_->axis_scale() == glm::dvec3(1)) return;
+    options_.block_surfaces = found_blocks(options_.block_surfaces, *data_);
+    if (writes_) output_.note("method", method_json(options_, job_.size()));
     settings_.surfaces =
         with_block_surfaces(options_.settings.surfaces, options_.block_surfaces, *data_, files, std::move(read));
   }
@@ -259,7 +276,7 @@ class Film final : public Sink {
 
   /// Of pictures that show nothing. What may show something is tried on all ranks, with the step that they hold.
   void warn_of_empty() {
-    if (options_.quiet || !box_) return;
+    if (!box_) return;
     const std::string warning =
         empty_.warning({job_, writer_, frames_, step_, options_, *data_, loaded_.function, *box_, axes_});
     if (writes_ && !warning.empty()) output_.warn(options_, warning);
@@ -323,6 +340,8 @@ class Film final : public Sink {
       else
         open(frames_.front(), read_);
       find_function();
+      check_outputs_are_no_inputs();
+      job_.require_same_files();  // the transfer function's
       come_near_enough();
       shade_by_default();
       if (writes_) check_annotation(options_.annotation, frame, *data_, loaded_.function);

@@ -38,7 +38,7 @@ constexpr std::array topics = {
     Topic{"Under mpirun", "",
           "projectors compositors exchange partition frames-in-flight seed distribution direct-send balance "
           "balance-resolution balance-weights show stall-timeout on-stall"},
-    Topic{"Settings in files", "config save-config", ""},
+    Topic{"Settings in files", "like config save-config", ""},
 };
 
 bool holds(std::string_view list, std::string_view word) {

@@ -1,17 +1,22 @@
 // The `tessera` program: subcommands over the libraries. Everything that goes wrong ends here, in one line on stderr
 // and an exit status (ExitCode).
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "apps/argument_values.hpp"
@@ -23,6 +28,7 @@
 #include "apps/generate_command.hpp"
 #include "apps/info_command.hpp"
 #include "apps/interruption.hpp"
+#include "apps/like_report.hpp"
 #include "apps/method_preset.hpp"
 #include "apps/parse_arguments.hpp"
 #include "apps/presets_command.hpp"
@@ -66,6 +72,7 @@ ExitCode run(int argc, char** argv, Job& job) {
   if (job.size() == 1 && !serves) answer_interruption();
   if (!serves) job.answer_termination();
   job.agree_instruction_sets();
+  protect_inputs();
 
   CommandLine line;
   RenderWords& words = line.words;
@@ -77,6 +84,7 @@ ExitCode run(int argc, char** argv, Job& job) {
     words.input = spool_standard_input().string();
   }
   if (*line.render) {
+    apply_like(*line.render, words);
     apply_method_preset(*line.render, job.size(), words);
     const RenderOptions options = render_options(words);
     if (const auto stalls = stall_settings(line.stalls, words.quiet)) job.watch_stalls(*stalls);
@@ -145,6 +153,25 @@ Error as_error() {
   std::_Exit(static_cast<int>(error.code()));
 }
 
+/// A file that this program opens must not take the number of a standard stream that its caller has closed: what is
+/// said there would go into it. What nobody reads is nowhere; a result for a closed standard output fails, as it ought.
+void fill_standard_descriptors() {
+  for (const auto& [descriptor, how] :
+       {std::pair{STDIN_FILENO, O_RDONLY}, std::pair{STDOUT_FILENO, O_RDONLY}, std::pair{STDERR_FILENO, O_WRONLY}})
+    if (::fcntl(descriptor, F_GETFD) < 0) static_cast<void>(::open("/dev/null", how));
+}
+
+/// Below this the first thread's stack may end in mid-frame, and the threads' with it.
+void require_stack() {
+  constexpr rlim_t least = 1 << 20;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= least) return;
+  limit.rlim_cur = std::min<rlim_t>(limit.rlim_max, 8 * least);
+  if (limit.rlim_cur < least || ::setrlimit(RLIMIT_STACK, &limit) != 0)
+    throw Error(ErrorCode::system_failure, "stack",
+                std::to_string(limit.rlim_cur / 1024) + " KiB are all that this process may have", "ulimit -s 8192");
+}
+
 /// The first thread's stack grows as it is used. Where address space is limited there may be no room when it does, and
 /// the system ends the process without a word; so it grows now, to more than rendering takes of it.
 [[gnu::noinline]] void grow_stack() {
@@ -156,10 +183,13 @@ Error as_error() {
 
 int main(int argc, char** argv) {
   using tessera::apps::fail;
-  grow_stack();
-  std::set_terminate(on_terminate);
+  fill_standard_descriptors();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error as any other
   std::optional<tessera::Job> job;
   try {
+    require_stack();
+    grow_stack();
+    std::set_terminate(on_terminate);
     constexpr auto remedy = "finished pictures stay, and the same command with --resume goes on from there";
     const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
     job.emplace(tessera::JobVoice{"tessera", remedy, [](const Error& error) { fail(error); }, arguments});

@@ -91,7 +91,7 @@ bool parse(CommandLine& line, int argc, const char* const* argv, bool says) {
                       of.remaining().front()));
     throw bad_input(fmt::format("arguments: {}; see {}", error.what(), help));
   }
-  if (*line.render && !line.words.save_config.empty() && says) save_scene(*line.render, line.words.save_config);
+  if (*line.render && !line.words.save_config.empty()) line.words.scene = scene_text(*line.render);
   if (*line.completion) return say(completion_script(line.shell));
   return *line.help ? say(help_page(line)) : true;
 }

@@ -119,7 +119,8 @@ std::optional<Warp> warp_of(const std::string& word) {
 /// Pictures that cannot be annotated.
 void refuse_unannotated(const RenderOptions& options) {
   if (options.show_balance) throw bad_input("--show balance: its pictures are not annotated; leave one of the two out");
-  if (options.annotation.layer.empty() && std::ranges::all_of(options.plan.outputs, is_deep_name))
+  if (options.annotation.layer.empty() && options.films.empty() && !options.to_standard_output &&
+      std::ranges::all_of(options.plan.outputs, is_deep_name))
     throw bad_input("deep picture: it is not annotated; name an .exr, .png or .pfm too, or an --annotation-layer");
 }
 
@@ -296,7 +297,7 @@ void add_render_options(CLI::App& command, RenderWords& words) {
       ->type_name("FILE");
   command.add_option("--timing", words.timing, "Chrome trace-event JSON file of stages and threads")->type_name("FILE");
   command.add_flag("--progress", words.progress, "a progress line (default: if stderr is a terminal)");
-  command.add_flag("--quiet", words.quiet, "nothing on stderr but errors");
+  command.add_flag("--quiet", words.quiet, "nothing on stderr but errors and warnings");
 }
 
 bool draws_grids(const RenderWords& words) {
@@ -371,6 +372,10 @@ RenderOptions render_options(const RenderWords& words, bool is_grid) {
   options.image = image_options(words);
   options.annotation = annotation_options(words.annotation, options.image);
   if (options.annotation.annotation) refuse_unannotated(options);
+  if (words.function.log && words.annotation.scale.empty() && options.annotation.annotation) {
+    auto& bar = options.annotation.annotation->color_bar;
+    if (bar) bar->logarithmic = !bar->range || (*bar->range)[0] > 0;
+  }
   settings.surfaces = surfaces_of(words.surfaces, options.block_surfaces);
   if (plan.grids && !options.block_surfaces.empty())
     throw bad_input("--surface: is for meshes, and the input is a volume; --iso VALUE shows a surface in one");
@@ -382,6 +387,8 @@ RenderOptions render_options(const RenderWords& words, bool is_grid) {
   options.frame.keep_uncertainty = plan.grids && options.verify > 0;
   options.report = words.report;
   options.timing = words.timing;
+  options.saved_scene = words.save_config;
+  options.scene = words.scene;
   options.quiet = words.quiet;
   options.progress = !words.quiet && (words.progress || isatty(STDERR_FILENO) == 1);
   return options;

@@ -41,7 +41,8 @@ struct RenderOptions {
 
   int repeat = 0;  ///< 0: render once and print no times
   int verify = 0;  ///< pixels a frame to check against the reference; 0: none
-  std::filesystem::path report, timing;
+  std::filesystem::path report, timing, saved_scene;
+  std::string scene;                         ///< text of saved_scene
   std::vector<std::filesystem::path> films;  ///< of all frames, beside the plan's pictures
   double frame_rate = 25;                    ///< of films
   bool to_standard_output = false;           ///< every picture as .png
@@ -68,7 +69,8 @@ struct RenderWords {
   std::string dims, type, spacing, origin, endian, skip, labels, step, brick_size, edge_bricks, cache, preload, light;
   std::string distribution, direct_send, balance, balance_resolution, balance_weights, show;
   std::string projectors, compositors, exchange, partition = "curve", frames_in_flight, seed;
-  std::string preset, config, save_config;
+  std::string like, preset, config, save_config;
+  std::string scene;  ///< text of save_config
   AnnotationWords annotation;
   ClipWords clip;
   ViewWords view;

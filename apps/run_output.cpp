@@ -48,7 +48,6 @@ void RunOutput::describe(const RenderOptions& options, analysis::Description dat
 }
 
 void RunOutput::warn(const RenderOptions& options, const std::string& warning) {
-  if (options.quiet) return;
   const auto away = StatusLine::away();
   say_lines(fmt::format("tessera: warning: {}: {}", options.input().string(), warning));
 }
@@ -94,6 +93,7 @@ ExitCode RunOutput::finish(const RenderOptions& options) {
     write_standard_output(with_stream_names(frame_reports_.text(report_)));
   else if (!options.report.empty())
     write_text(options.report, with_stream_names(frame_reports_.text(report_)));
+  if (!options.saved_scene.empty()) write_text(options.saved_scene, options.scene);
   return met_ ? ExitCode::complete : ExitCode::accuracy_not_met;
 }
 

@@ -10,7 +10,6 @@
 #include "tessera/error.hpp"
 #include "tessera/input_file.hpp"
 #include "tessera/nearest_name.hpp"
-#include "tessera/output_file.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -79,7 +78,7 @@ std::vector<std::string> with_scene_file(const std::vector<std::string>& argumen
   return all;
 }
 
-void save_scene(const CLI::App& render, const std::filesystem::path& file) {
+std::string scene_text(const CLI::App& render) {
   std::string text = "# tessera render --config FILE\n";
   for (const CLI::Option* option : render.get_options()) {
     if (option->count() == 0) continue;
@@ -91,7 +90,7 @@ void save_scene(const CLI::App& render, const std::filesystem::path& file) {
     if (option->get_expected_min() == 0 && values.size() == 1 && values.front() == "true") list = "true";
     text += fmt::format("{} = {}\n", key, values.size() > 1 ? "[" + list + "]" : list);
   }
-  write_text(file, text);
+  return text;
 }
 
 }  // namespace tessera::apps

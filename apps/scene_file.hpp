@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -17,7 +16,7 @@ std::vector<std::string> with_scene_file(const std::vector<std::string>& argumen
 /// Declares --config and --save-config.
 void add_scene_options(CLI::App& render, RenderWords& words);
 
-/// Writes what was given, but for --config and --save-config.
-void save_scene(const CLI::App& render, const std::filesystem::path& file);
+/// What was given as the text of such a file, but for --config and --save-config.
+std::string scene_text(const CLI::App& render);
 
 }  // namespace tessera::apps

@@ -211,9 +211,9 @@ class RenderScene final : public server::Scene {
     if (!parsed_->surfaces || parsed_->surfaces->first != field) {
       ReadOptions read = options().read;
       if (frame_.data.in_file) read.time_step = frame_.data.in_file;
-      parsed_->surfaces.emplace(std::move(field),
-                                with_block_surfaces(options().settings.surfaces, options().block_surfaces, data,
-                                                    frame_.data.files, std::move(read)));
+      parsed_->surfaces.emplace(std::move(field), with_block_surfaces(options().settings.surfaces,
+                                                                      found_blocks(options().block_surfaces, data),
+                                                                      data, frame_.data.files, std::move(read)));
     }
     return parsed_->surfaces->second;
   }

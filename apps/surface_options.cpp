@@ -59,18 +59,50 @@ std::size_t end_of_name(const std::string& word) {
   return std::min(word.find(':'), word.size());
 }
 
+BlockSurfaceWord unread_block(const std::string& word, const std::string& name) {
+  try {
+    const Look look = look_of("--surface", word, behind(word, name.size()));
+    return {word, name, look.color, look.opacity};
+  } catch (const Error&) {
+    return {word, word};
+  }
+}
+
+/// Whether a name means one of `names`, as ReadOptions::blocks has it.
+bool is_among(const std::string& name, std::span<const std::string> names) {
+  return std::ranges::any_of(names, [&](const std::string& each) {
+    return each == name || each.starts_with(name + '/') || each.ends_with('/' + name);
+  });
+}
+
+BlockSurfaceWord found_block(const BlockSurfaceWord& block, const Dataset& data) {
+  std::size_t end = block.word.size();
+  for (int colons = 0; colons <= 2 && end != std::string::npos && end > 0; ++colons) {
+    const std::string name = block.word.substr(0, end);
+    if (is_among(name, data.blocks()) || is_among(name, data.surfaces())) {
+      const Look look = look_of("--surface", block.word, behind(block.word, end));
+      return {block.word, name, look.color, look.opacity};
+    }
+    end = block.word.rfind(':', end - 1);
+  }
+  return block;
+}
+
 void add_surface(const std::string& word, Surfaces& surfaces, std::vector<BlockSurfaceWord>& blocks) {
   const std::size_t end = end_of_name(word);
   const std::string name = word.substr(0, end);
-  const Look look = look_of("--surface", word, behind(word, end));
   std::error_code unknown;
+  const bool is_file = std::filesystem::is_regular_file(name, unknown);
+  if (name != "boundary" && !is_file && !names_surface_file(name)) {
+    blocks.push_back(unread_block(word, name));
+    return;
+  }
+  const Look look = look_of("--surface", word, behind(word, end));
   if (name == "boundary")
     surfaces.boundary.push_back({look.color, look.opacity});
-  else if (std::filesystem::is_regular_file(name, unknown))
+  else if (is_file)
     surfaces.triangles.push_back(
         {std::make_shared<const TriangleMesh>(read_triangles(name)), look.color, look.opacity});
-  else if (!names_surface_file(name))
-    blocks.push_back({name, look.color, look.opacity});
   else
     throw bad_input(
         fmt::format("--surface: '{}' is neither boundary nor a file that is there; give one of the two, a file as "
@@ -107,6 +139,13 @@ std::vector<IsoSurface> iso_surfaces_of(const SurfaceWords& words) {
   std::vector<IsoSurface> surfaces;
   for (const std::string& word : words.iso) surfaces.push_back(iso_of(word));
   return surfaces;
+}
+
+std::vector<BlockSurfaceWord> found_blocks(std::span<const BlockSurfaceWord> words, const Dataset& data) {
+  std::vector<BlockSurfaceWord> found;
+  found.reserve(words.size());
+  for (const BlockSurfaceWord& word : words) found.push_back(found_block(word, data));
+  return found;
 }
 
 Surfaces with_block_surfaces(Surfaces surfaces, std::span<const BlockSurfaceWord> blocks, const Dataset& data,

@@ -19,9 +19,10 @@ struct SurfaceWords {
   std::vector<std::string> iso, surface;
 };
 
-/// `--surface NAME` of a block of the input, which is looked for once that is read.
+/// `--surface NAME[:COLOUR[:OPACITY]]` of a block of the input. Which of it is the name is known once that is read.
 struct BlockSurfaceWord {
-  std::string name;
+  std::string word;
+  std::string name;  ///< until then what stands before the first colon, or all if no colour follows
   std::optional<glm::dvec3> color{};
   double opacity = 1;
 };
@@ -33,6 +34,10 @@ void add_surface_options(CLI::App& command, SurfaceWords& words);
 Surfaces surfaces_of(const SurfaceWords& words, std::vector<BlockSurfaceWord>& blocks);
 /// Of them those of a value.
 std::vector<IsoSurface> iso_surfaces_of(const SurfaceWords& words);
+
+/// The blocks that words name in what was read: the longest name that there is, which may hold colons, and a look
+/// behind it. Throws Error(bad_input) for what is no look.
+std::vector<BlockSurfaceWord> found_blocks(std::span<const BlockSurfaceWord> words, const Dataset& data);
 
 /// `surfaces`, scaled as the data's axes are, with those of blocks of its files, coloured by its field where they have
 /// it. `read` is how the data were read. Throws Error(bad_input) for a block that is not there.

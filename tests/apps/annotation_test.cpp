@@ -90,6 +90,34 @@ TEST(Annotations, AreDrawnOnVolumesToo) {
   EXPECT_GT(contents(folder / "layer.png").size(), 500u);
 }
 
+TEST(Annotations, AreOnStandardOutputAsInAFile) {
+  const Folder folder;
+  const std::string mesh = folder.cube();
+  ASSERT_EQ(tessera({"render", mesh, "--size", "200x150", "-o", folder / "a.png", "--color-bar"}).status, 0);
+  ASSERT_EQ(tessera({"render", mesh, "--size", "200x150", "-o", folder / "bare.png"}).status, 0);
+  const Outcome run = tessera({"render", mesh, "--size", "200x150", "-o", "-", "--color-bar"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.out, contents(folder / "a.png"));
+  EXPECT_NE(run.out, contents(folder / "bare.png"));
+}
+
+TEST(Annotations, TheBarOfALogarithmIsLogarithmic) {
+  const Folder folder;
+  const std::string mesh = folder.cube();
+  const auto bytes = [&](const std::vector<std::string>& words) {
+    const Outcome run = tessera(joined(
+        {"render", mesh, "--size", "300x200", "-o", folder / "a.png", "--range", "0.01,1", "--log", "--color-bar"},
+        words));
+    EXPECT_EQ(run.status, 0) << run.err;
+    return contents(folder / "a.png");
+  };
+  const std::string by_default = bytes({});
+  EXPECT_EQ(by_default, bytes({"--color-bar-scale", "log"}));
+  EXPECT_NE(by_default, bytes({"--color-bar-scale", "linear"}));
+  // A range that has no logarithm is laid out as it can be.
+  EXPECT_EQ(bytes({"--color-bar-range", "0,1"}), bytes({"--color-bar-range", "0,1", "--color-bar-scale", "linear"}));
+}
+
 TEST(Annotations, TheReportListsWhatWasGiven) {
   const Folder folder;
   const auto run =

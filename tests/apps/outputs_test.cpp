@@ -42,6 +42,21 @@ TEST(Outputs, AFilmIsAllFramesInOneFile) {
   EXPECT_EQ(fs::file_size(folder / "a.mp4"), 3u * 20 * 10 * 3);
 }
 
+TEST(Outputs, AFilmAloneIsAnnotated) {
+  const Folder folder;
+  const std::string mesh = folder.cube();
+  const StandIn ffmpeg(folder, keeps);
+  const auto film = [&](const std::vector<std::string>& more) {
+    const Outcome run =
+        tessera(joined({"render", mesh, "-o", folder / "a.mp4", "--orbit", "2", "--size", "200x150"}, more));
+    EXPECT_EQ(run.status, 0) << run.err;
+    return contents(folder / "a.mp4");
+  };
+  const std::string bare = film({});
+  for (const char* option : {"--color-bar", "--axes", "--outline", "--scale-bar", "--annotate=top:text"})
+    EXPECT_NE(film({option}), bare) << option;
+}
+
 TEST(Outputs, AFilmThatFailsLeavesNothingAndSaysWhy) {
   const Folder folder;
   const std::string mesh = folder.cube();

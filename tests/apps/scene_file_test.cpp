@@ -69,10 +69,10 @@ TEST(SceneFile, KeepsAnyCharacter) {
   const Outcome first = tessera(words);
   ASSERT_EQ(first.status, 0) << first.err;
   const std::string bytes = contents(picture), saved = contents(scene);
-  const Outcome second = tessera({"render", "--config", scene, "--save-config", scene});
+  const Outcome second = tessera({"render", "--config", scene, "--save-config", folder / "t.toml"});
   ASSERT_EQ(second.status, 0) << second.err;
   EXPECT_EQ(contents(picture), bytes);
-  EXPECT_EQ(contents(scene), saved);
+  EXPECT_EQ(contents(folder / "t.toml"), saved);
 }
 
 TEST(SceneFile, RefusesAHostileOneInOneShortLine) {

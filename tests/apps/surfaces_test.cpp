@@ -1,6 +1,7 @@
 // Surfaces in the volume, as users ask for them.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "apps/program.hpp"
@@ -43,6 +44,29 @@ TEST(Surfaces, OfTheBoundaryAndOfFilesAreRenderedVerifiedAndReported) {
   EXPECT_NE(text.find(R"("what":"2 triangles")"), std::string::npos) << text;
 }
 
+TEST(Surfaces, OfBlocksMayHaveColonsInTheirNames) {
+  const Folder folder;
+  const std::string cube = std::filesystem::path(folder.cube()).filename();
+  const auto list = [&](const std::string& file, const std::string& name) {
+    return folder.file(file,
+                       "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet>"
+                       "<DataSet index=\"0\" name=\"" +
+                           name + "\" file=\"" + cube + "\"/></vtkMultiBlockDataSet></VTKFile>");
+  };
+  const auto picture = [&](const std::string& input, const std::string& surface) {
+    const Outcome run = tessera({"render", input, "-o", folder / "a.png", "--size", "64x64", "--surface", surface});
+    EXPECT_EQ(run.status, 0) << run.err;
+    return contents(folder / "a.png");
+  };
+  const std::string plain = list("plain.vtm", "block"), name = "links: Gehause/left #1: x";
+  const std::string odd = list("odd.vtm", name);
+  for (const char* look : {"", ":red", ":red:0.5", "::0.25"})
+    EXPECT_EQ(picture(odd, name + look), picture(plain, std::string("block") + look)) << look;
+  const Outcome wrong = tessera({"render", odd, "-o", folder / "a.png", "--surface", name + ":rde"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.err.find("'rde'"), std::string::npos) << wrong.err;
+}
+
 TEST(Surfaces, OfFacesAreRefusedInOneLineThatSaysWhy) {
   const Folder folder;
   const std::string mesh = folder.cube();
@@ -68,6 +92,16 @@ TEST(Surfaces, ThatTheFieldDoesNotReachAreWarnedOf) {
   const auto run = tessera({"render", folder.cube(), "-o", folder / "a.png", "--size", "8x8", "--iso", "5"});
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_NE(run.err.find("--iso 5: shows nothing, the field goes from 0.03"), std::string::npos) << run.err;
+}
+
+// It changes what the picture means.
+TEST(Surfaces, AWarningIsSaidQuietlyToo) {
+  const Folder folder;
+  const Outcome run =
+      tessera({"render", folder.cube(), "-o", folder / "a.png", "--size", "8x8", "--iso", "5000", "--quiet"});
+  EXPECT_EQ(run.status, 0);
+  ASSERT_EQ(run.error_lines(), 1u) << run.err;
+  EXPECT_NE(run.err.find("warning"), std::string::npos) << run.err;
 }
 
 TEST(Surfaces, AreRefusedInOneLineThatSaysWhy) {

@@ -1,0 +1,66 @@
+// What a caller has done to the process before it begins: closed streams, limits.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "program.hpp"
+
+namespace tessera::apps {
+namespace {
+
+/// Runs the program by a shell, which first does `before` and then has these redirections.
+Outcome by_shell(const std::string& before, const std::vector<std::string>& arguments,
+                 const std::string& redirections = "") {
+  std::vector<std::string> command = {"bash", "-c", before + " exec \"$0\" \"$@\" " + redirections, TESSERA_PROGRAM};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  return Running(command).wait();
+}
+
+// What was said on a closed stream went into the first file that took its number, once a pipe of the program's own,
+// which took letters for signals.
+TEST(Environment, ClosedStreamsChangeNothing) {
+  const Folder folder;
+  const std::string mesh = folder.cube();
+  const auto run = [&](const std::string& input, const std::string& redirections) {
+    return by_shell("", {"render", input, "-o", folder / "a.png", "--size", "16x16", "--report", folder / "r.json"},
+                    redirections);
+  };
+  ASSERT_EQ(run(mesh, "").status, 0);
+  const std::string picture = contents(folder / "a.png");
+  for (const char* closed : {"<&-", ">&-", "2>&-", "<&- >&-", "<&- 2>&-", ">&- 2>&-", "<&- >&- 2>&-"}) {
+    std::filesystem::remove(folder / "a.png");
+    const Outcome good = run(mesh, closed);
+    EXPECT_EQ(good.status, 0) << closed << good.err;
+    EXPECT_EQ(contents(folder / "a.png"), picture) << closed;
+    EXPECT_EQ(run(folder / "none.vtu", closed).status, 2) << closed;
+    EXPECT_EQ(by_shell("", {"render", mesh, "--zoom", "0", "-o", folder / "b.png"}, closed).status, 2) << closed;
+  }
+}
+
+TEST(Environment, AResultForAClosedStandardOutputFails) {
+  const Folder folder;
+  const Outcome run = by_shell("", {"info", folder.cube()}, ">&-");
+  EXPECT_EQ(run.status, 3);
+  EXPECT_EQ(run.error_lines(), 1u) << run.err;
+}
+
+TEST(Environment, AFileThatMayNotGrowIsSaid) {
+  const Folder folder;
+  const Outcome run = by_shell("ulimit -f 8;", {"render", folder.cube(), "-o", folder / "a.pfm", "--size", "200x200"});
+  EXPECT_EQ(run.status, 3) << run.err;
+  EXPECT_EQ(run.error_lines(), 1u) << run.err;
+  EXPECT_NE(run.err.find("a.pfm"), std::string::npos) << run.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.pfm"));
+}
+
+TEST(Environment, ASmallStackIsSaid) {
+  const Folder folder;
+  const Outcome run = by_shell("ulimit -s 256;", {"render", folder.cube(), "-o", folder / "a.png"});
+  EXPECT_EQ(run.status, 3) << run.err;
+  EXPECT_NE(run.err.find("ulimit -s"), std::string::npos) << run.err;
+  // A limit that may be raised is.
+  EXPECT_EQ(by_shell("ulimit -S -s 256;", {"render", folder.cube(), "-o", folder / "a.png"}).status, 0);
+}
+
+}  // namespace
+}  // namespace tessera::apps

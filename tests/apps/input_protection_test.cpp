@@ -1,0 +1,179 @@
+// No output replaces what the run reads: what is named on the command line, and what those files name.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "program.hpp"
+
+namespace tessera::apps {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+/// A run that reads these files, named in one folder.
+struct Case {
+  Words input;  ///< words of render, without outputs
+  Words files;  ///< names of all that it reads
+};
+
+std::string raw_samples() {
+  std::string bytes;
+  for (int i = 0; i < 5 * 5 * 5; ++i) bytes += static_cast<char>(i);
+  return bytes;
+}
+
+void write(const std::string& file, const std::string& text) { std::ofstream(file) << text; }
+
+/// EnSight Gold in text: a tetrahedron.
+void write_ensight(const Folder& folder) {
+  write(folder / "e.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: e.geo\nVARIABLE\nscalar per node: p e.scl\n");
+  write(folder / "e.geo",
+        "one\ntet\nnode id assign\nelement id assign\npart\n         1\nbody\ncoordinates\n         4\n 0.00000e+00\n"
+        " 1.00000e+00\n 0.00000e+00\n 0.00000e+00\n 0.00000e+00\n 0.00000e+00\n 1.00000e+00\n 0.00000e+00\n"
+        " 0.00000e+00\n 0.00000e+00\n 0.00000e+00\n 1.00000e+00\ntetra4\n         1\n         1         2"
+        "         3         4\n");
+  write(folder / "e.scl", "p\npart\n         1\ncoordinates\n 0.00000e+00\n 1.00000e+00\n 2.00000e+00\n 3.00000e+00\n");
+}
+
+std::vector<Case> cases_in(const Folder& folder) {
+  const std::string mesh = folder.cube();
+  EXPECT_EQ(tessera({"convert", mesh, folder / "p.pvtu", "--pieces", "2", "--quiet"}).status, 0);
+  write(folder / "d.mhd",
+        "ObjectType = Image\nNDims = 3\nDimSize = 5 5 5\nElementType = MET_UCHAR\nElementDataFile = d.raw\n");
+  write(folder / "d.raw", raw_samples());
+  write(folder / "n.nhdr", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 5 5 5\nencoding: raw\ndata file: n.raw\n");
+  write(folder / "n.raw", raw_samples());
+  write(folder / "cam.json", R"({"position":[0.5,0.5,9],"focal_point":[0.5,0.5,0.5],"parallel_scale":1})");
+  write(folder / "tf.json", R"({"knots":[[0,1,0,0,1],[1,0,0,1,1]]})");
+  write(folder / "c.toml", "opacity = 2\n");
+  write(folder / "s.pvd",
+        "<?xml version=\"1.0\"?><VTKFile type=\"Collection\"><Collection><DataSet timestep=\"0\" file=\"" +
+            fs::path(mesh).filename().string() + "\"/></Collection></VTKFile>");
+  write(folder / "m.vtm",
+        "<?xml version=\"1.0\"?><VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet>"
+        "<DataSet index=\"0\" name=\"a\" file=\"" +
+            fs::path(mesh).filename().string() + "\"/></vtkMultiBlockDataSet></VTKFile>");
+  write(folder / "t.stl",
+        "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+        "endsolid t\n");
+  write_ensight(folder);
+  const std::string cube = fs::path(mesh).filename();
+  return {{{mesh, "--camera", folder / "cam.json", "--transfer-function", folder / "tf.json", "--config",
+            folder / "c.toml", "--surface", folder / "t.stl"},
+           {cube, "cam.json", "tf.json", "c.toml", "t.stl"}},
+          {{folder / "p.pvtu"}, {"p.pvtu", "p_0000.vtu", "p_0001.vtu"}},
+          {{folder / "d.mhd"}, {"d.mhd", "d.raw"}},
+          {{folder / "n.nhdr"}, {"n.nhdr", "n.raw"}},
+          {{folder / "s.pvd"}, {"s.pvd", cube}},
+          {{folder / "m.vtm"}, {"m.vtm", cube}},
+          {{folder / "e.case"}, {"e.case", "e.geo", "e.scl"}}};
+}
+
+std::map<std::string, std::string> all_bytes(const Folder& folder) {
+  std::map<std::string, std::string> bytes;
+  for (const std::string& name : folder.names())
+    if (fs::is_regular_file(folder / name)) bytes[name] = contents(folder / name);
+  return bytes;
+}
+
+Words operator+(Words a, const Words& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+void expect_refused(const Folder& folder, const Words& command) {
+  const auto before = all_bytes(folder);
+  const Outcome run = tessera(command);
+  std::string text;
+  for (const std::string& word : command) text += word + ' ';
+  EXPECT_EQ(run.status, 2) << text << run.err;
+  EXPECT_EQ(run.error_lines(), 1u) << text << run.err;
+  EXPECT_NE(run.err.find("would be overwritten"), std::string::npos) << text << run.err;
+  EXPECT_EQ(all_bytes(folder), before) << text;
+}
+
+TEST(InputProtection, NoOutputReplacesWhatIsRead) {
+  const Folder folder, elsewhere;
+  const std::vector<Case> cases = cases_in(folder);
+  fs::create_directory_symlink(folder / "", elsewhere / "folder");
+  std::size_t collisions = 0;
+  for (const Case& each : cases) {
+    const Words render = Words{"render"} + each.input + Words{"--size", "8x8"};
+    const Outcome works = tessera(render + Words{"-o", elsewhere / "works.png"});
+    if (works.status == 2 && works.err.find("is not installed") != std::string::npos) continue;  // not installed
+    ASSERT_EQ(works.status, 0) << works.err;
+    for (const std::string& file : each.files) {
+      const std::string link = elsewhere / ("link-" + file), hard = folder / ("hard-" + file);
+      fs::remove(link);
+      fs::create_symlink(folder / file, link);
+      fs::create_hard_link(folder / file, hard);
+      for (const std::string& name : {folder / file, link, elsewhere / ("folder/" + file), hard})
+        for (const char* option : {"--report", "--timing", "--save-config"}) {
+          expect_refused(folder, render + Words{"-o", elsewhere / "a.png", option, name});
+          ++collisions;
+        }
+      fs::remove(hard);
+      const std::string picture = elsewhere / "link.png";
+      fs::remove(picture);
+      fs::create_symlink(folder / file, picture);
+      expect_refused(folder, render + Words{"-o", picture});
+      ++collisions;
+    }
+  }
+  EXPECT_GE(collisions, 100u);
+}
+
+TEST(InputProtection, ConversionReplacesNoPartOfItsInput) {
+  const Folder folder;
+  static_cast<void>(cases_in(folder));
+  expect_refused(folder, {"convert", folder / "p.pvtu", folder / "p_0001.vtu"});
+  expect_refused(folder, {"convert", folder / "p.pvtu", folder / "p.pvtu", "--pieces", "2"});
+  expect_refused(folder, {"convert", folder / "d.mhd", folder / "d.raw"});
+  expect_refused(folder, {"convert", folder / "n.nhdr", folder / "n.raw"});
+  expect_refused(folder, {"convert", folder / "m.vtm", folder.cube()});
+}
+
+// Some earlier version wrote it before it had looked at anything.
+TEST(InputProtection, NothingIsWrittenByARunThatIsRefused) {
+  const Folder folder;
+  const std::string mesh = folder.cube();
+  const auto before = all_bytes(folder);
+  for (const Words& wrong : {Words{"--zoom", "0"}, Words{"--size", "0x0"}, Words{"--field", "none"},
+                             Words{"--camera", folder / "none.json"}, Words{"--transfer-function", "none"}}) {
+    const Outcome run = tessera(Words{"render", mesh, "-o", folder / "a.png", "--save-config", folder / "s.toml",
+                                      "--report", folder / "r.json"} +
+                                wrong);
+    EXPECT_EQ(run.status, 2) << run.err;
+    EXPECT_EQ(all_bytes(folder), before) << wrong.front();
+  }
+}
+
+TEST(InputProtection, OneFileByTwoNamesIsOneOutput) {
+  const Folder folder;
+  fs::create_directory_symlink(folder / "", folder / "here");
+  const Outcome run =
+      tessera({"render", folder.cube(), "-o", folder / "a.png", "-o", folder / "here/a.png", "--size", "8x8"});
+  EXPECT_EQ(run.status, 2) << run.err;
+  EXPECT_NE(run.err.find("named twice"), std::string::npos) << run.err;
+}
+
+// What a run has written itself is no input of the next.
+TEST(InputProtection, OutputsOfAnEarlierRunAreReplaced) {
+  const Folder folder;
+  const Words run = {
+      "render",          folder.cube(), "-o",  folder / "a.png", "--report",      folder / "r.json", "--timing",
+      folder / "t.json", "--size",      "8x8", "--quiet",        "--save-config", folder / "s.toml"};
+  ASSERT_EQ(tessera(run).status, 0);
+  const auto before = all_bytes(folder);
+  const Outcome again = tessera(run);
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(all_bytes(folder).size(), before.size());
+  EXPECT_EQ(contents(folder / "a.png"), before.at("a.png"));
+}
+
+}  // namespace
+}  // namespace tessera::apps
