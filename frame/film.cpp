@@ -132,7 +132,7 @@ std::vector<FilmFrame> plan_film(const FilmPlan& plan) {
     for (auto& frame : frames)
       frame.finished = std::all_of(frame.outputs.begin(), frame.outputs.end(), [](const auto& output) {
         std::error_code ignored;  // unreadable folder: not finished, and the check of outputs says why
-        return std::filesystem::is_regular_file(output, ignored);
+        return std::filesystem::is_regular_file(output, ignored) && std::filesystem::file_size(output, ignored) > 0;
       });
   // A film should not end at its last step for want of a file. The first step is looked at for all others.
   if (is_series(plan))

@@ -127,6 +127,10 @@ fs::path AtomicFile::named_part() {
 }
 
 void AtomicFile::commit() {
+  // What was private stays so; where the file system knows no permissions there are none to keep.
+  struct stat present {};
+  if (::stat(target_.c_str(), &present) == 0 && S_ISREG(present.st_mode))
+    static_cast<void>(::fchmod(descriptor_, present.st_mode & 0777));
   // Without fsync a machine that goes down after the rename may keep the name and lose the bytes. EINVAL: a file system
   // that has no such thing.
   if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(errno, "cannot be written");

@@ -109,6 +109,16 @@ TEST(AtomicFile, IsRemovedUnderItsTemporaryNameByASignalsHandlerToo) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"b"});
 }
 
+TEST(AtomicFile, KeepsThePermissionsOfTheFileThatItReplaces) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("a", "old");
+  const auto own = std::filesystem::perms::owner_read | std::filesystem::perms::owner_write;
+  std::filesystem::permissions(file, own);
+  write_text(file, "new");
+  EXPECT_EQ(contents(file), "new");
+  EXPECT_EQ(std::filesystem::status(file).permissions(), own);
+}
+
 TEST(AtomicFile, ReplacesAnOldFileAsAWholeOrLeavesIt) {
   const TemporaryFolder folder;
   folder.write("out", "old");
