@@ -15,14 +15,18 @@ using scene::bad_input;
 
 bool emits(const Knot& k) { return k.color.x > 0 || k.color.y > 0 || k.color.z > 0; }
 
+/// Far beyond anything that shows: light and optical depth stay finite along rays of any length, in single precision.
+constexpr double most_color = 1e30, most_extinction = 1e100;
+
 void check(const Knot& knot, std::size_t number) {
   if (!std::isfinite(knot.value)) throw bad_input(fmt::format("knot {}: the value is not finite", number));
   for (int i = 0; i < 3; ++i)
-    if (!(knot.color[i] >= 0) || !std::isfinite(knot.color[i]))
+    if (!(knot.color[i] >= 0 && knot.color[i] <= most_color))
       throw bad_input(
-          fmt::format("knot {}: colour component {}; it must be finite and not negative", number, knot.color[i]));
-  if (!(knot.extinction >= 0) || !std::isfinite(knot.extinction))
-    throw bad_input(fmt::format("knot {}: extinction {}; it must be finite and not negative", number, knot.extinction));
+          fmt::format("knot {}: colour component {}; it must be 0 to {}", number, knot.color[i], most_color));
+  if (!(knot.extinction >= 0 && knot.extinction <= most_extinction))
+    throw bad_input(
+        fmt::format("knot {}: extinction {}; it must be 0 to {}", number, knot.extinction, most_extinction));
 }
 
 }  // namespace

@@ -24,8 +24,8 @@ struct Knot {
 ///
 /// Steps: two knots at one value make a step; there the function is right-continuous, its value is the upper (later)
 /// knot's. Holds: at least one knot, values finite and not decreasing, at most two knots at one value (more are merged
-/// to first and last; values less than 2.2e-308 apart are one), colours and extinctions finite and >= 0. A single knot
-/// is a constant function.
+/// to first and last; values less than 2.2e-308 apart are one), colours 0 to 1e30, extinctions 0 to 1e100. A single
+/// knot is a constant function.
 class TESSERA_EXPORT TransferFunction {
  public:
   TransferFunction() = default;

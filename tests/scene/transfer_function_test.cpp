@@ -49,6 +49,9 @@ TEST(TransferFunction, RefusesNegativeUnsortedAndNotFiniteKnots) {
   EXPECT_THROW(TransferFunction(std::vector<Knot>{}), Error);
   EXPECT_THROW(TransferFunction({{0, {0, 0, 0}, -1}}), Error);
   EXPECT_THROW(TransferFunction({{0, {0, -1, 0}, 1}}), Error);
+  EXPECT_THROW(TransferFunction({{0, {0, 1e31, 0}, 1}}), Error);
+  EXPECT_THROW(TransferFunction({{-1e308, {0, 0, 0}, 1e308}, {1e308, {1, 1, 1}, 1e308}}), Error);
+  EXPECT_NO_THROW(TransferFunction({{-1e308, {0, 0, 0}, 1e100}, {1e308, {1e30, 1, 1}, 0}}));
   EXPECT_THROW(TransferFunction({{1, {0, 0, 0}, 1}, {0, {0, 0, 0}, 1}}), Error);
   EXPECT_THROW(TransferFunction({{std::numeric_limits<double>::infinity(), {0, 0, 0}, 1}}), Error);
 }
