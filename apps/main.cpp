@@ -56,6 +56,9 @@ int fail(const Error& error) {
   for (const char c : with_stream_names(with_options(error.what())))
     line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
   while (line.ends_with(' ')) line.pop_back();
+  // A name or a value from a file may be as long as the file.
+  constexpr std::size_t longest = 3000, half = 1000;
+  if (line.size() > longest) line = line.substr(0, half) + " ... " + line.substr(line.size() - half);
   Job::say_once(line);
   return static_cast<int>(error.code());
 }
@@ -92,6 +95,7 @@ ExitCode run(int argc, char** argv, Job& job) {
     return render(options, job);
   }
   if (*line.serve) {
+    if (const auto stalls = stall_settings(line.stalls, false)) job.watch_stalls(*stalls);
     serve(words, line.serve_words, *line.serve, job);
     return ExitCode::complete;
   }
