@@ -42,8 +42,10 @@ void set_outputs(const RenderWords& words, RenderOptions& options) {
     if (options.films.empty())
       throw bad_input("--frame-rate: is for films; name one with -o FILE.mp4, or leave it out");
     options.frame_rate = parse_positive("--frame-rate", words.frame_rate);
-    if (options.frame_rate > 1000)
-      throw bad_input(fmt::format("--frame-rate: {} is above 1000; give fewer", words.frame_rate));
+    if (options.frame_rate > most_film_rate)
+      throw bad_input(fmt::format("--frame-rate: {} is above {}; give fewer", words.frame_rate, most_film_rate));
+    if (options.frame_rate < least_film_rate)
+      throw bad_input(fmt::format("--frame-rate: {} is below {}; give more", words.frame_rate, least_film_rate));
   }
 }
 

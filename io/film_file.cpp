@@ -13,6 +13,8 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -189,6 +191,7 @@ void FilmFile::State::start(const std::filesystem::path& program) {
   ::posix_spawn_file_actions_adddup2(&plan.files, err.get(), STDERR_FILENO);
   ::posix_spawn_file_actions_addopen(&plan.files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   ::posix_spawn_file_actions_adddup2(&plan.files, out.get(), output);
+  ::posix_spawn_file_actions_addclosefrom_np(&plan.files, output + 1);  // sockets of a server, say
   plan.set_own_group();  // Ctrl-C is for this program, whose end it hears of
   const int failed = plan.start(program, ffmpeg_words(*kind_of(file), size, options, output), environ, process);
   if (failed != 0) {
@@ -240,8 +243,9 @@ void check_film_file(const std::filesystem::path& file) {
 FilmFile::FilmFile(std::filesystem::path file, ImageSize size, const FilmFileOptions& options) {
   require_kind(file);
   const std::filesystem::path program = require_ffmpeg(file);
-  if (!(options.frames_per_second > 0 && options.frames_per_second <= 1000))
-    throw bad_input(fmt::format("`frame_rate` {:g}: it must be above 0 and at most 1000", options.frames_per_second));
+  if (!(options.frames_per_second >= least_film_rate && options.frames_per_second <= most_film_rate))
+    throw bad_input(fmt::format("`frame_rate` {:g}: it must be {} to {}", options.frames_per_second, least_film_rate,
+                                most_film_rate));
   scene::validate(size);
   state_ = std::make_unique<State>(std::move(file), size, options);
   state_->start(program);
@@ -271,6 +275,15 @@ void FilmFile::add(const Image& image) {
       left -= static_cast<std::size_t>(sent);
     }
   }
+}
+
+std::string FilmFile::take() {
+  state_->end();
+  std::ifstream film(fmt::format("/proc/self/fd/{}", state_->target.descriptor()), std::ios::binary);
+  std::ostringstream bytes;
+  bytes << film.rdbuf();
+  if (!film || !bytes) state_->fail("it cannot be read back");
+  return std::move(bytes).str();
 }
 
 void FilmFile::commit() {

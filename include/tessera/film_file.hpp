@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "tessera/export.hpp"
 #include "tessera/image.hpp"
@@ -11,8 +12,11 @@ namespace tessera {
 
 struct FilmFileOptions {
   ImageFileOptions image;         ///< background and encode_srgb count: films have 8 bits and no alpha
-  double frames_per_second = 25;  ///< above 0, at most 1000
+  double frames_per_second = 25;  ///< least_film_rate to most_film_rate
 };
+
+/// What ffmpeg and players of films take.
+inline constexpr double least_film_rate = 0.01, most_film_rate = 1000;
 
 /// Whether a film is written by this name: .mp4 .mov .mkv .webm or .gif, upper or lower case.
 TESSERA_EXPORT bool is_film_name(const std::filesystem::path& file);
@@ -37,6 +41,8 @@ class TESSERA_EXPORT FilmFile {
   void add(const Image& image);
   /// Throws Error(system_failure) as add().
   void commit();
+  /// In place of commit(): the film itself. No file appears. Throws Error(system_failure) as add().
+  std::string take();
 
  private:
   struct State;

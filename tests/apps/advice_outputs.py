@@ -82,6 +82,13 @@ ROWS = [
         env=FFMPEG,
     ),
     row(
+        "render m.vtu -o a.gif --size 16x16 --frame-rate 1e-300",
+        "is below 0.01; give more",
+        "render m.vtu -o a.gif --size 16x16 --frame-rate 0.01",
+        STAND_IN,
+        env=FFMPEG,
+    ),
+    row(
         "render m.vtu -o a.gif --camera cc.json",
         "use --size",
         "render m.vtu -o a.gif --camera cc.json --size 16x16",
