@@ -33,6 +33,7 @@ CommandLine::CommandLine()
 
   serve = app.add_subcommand("serve", "Show a mesh or a volume in a browser, as it is turned and changed");
   add_serve_options(*serve, words, serve_words);
+  add_stall_options(*serve, stalls);
 
   info = app.add_subcommand("info", "Say what a mesh or volume holds and how it would be rendered");
   add_mesh_options(*info, words);

@@ -65,10 +65,14 @@ void serve(const RenderWords& words, const ServeWords& serve_words, const CLI::A
     std::fflush(stdout);
     if (shows_progress(false)) fmt::print(stderr, "Open this address in a browser; Ctrl-C ends the server.\n");
   };
-  events.ended_while_reading = [] {
+  events.ended_at_work = [] {
     abandon_outputs();
     std::fflush(stdout);
     std::_Exit(0);
+  };
+  events.hurried = [](int signal) {
+    abandon_outputs();
+    std::_Exit(128 + signal);
   };
   events.rank_lost = [] {
     abandon_outputs();

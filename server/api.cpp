@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "server/access.hpp"
-#include "server/finished_picture.hpp"
 #include "server/frame_message.hpp"
 #include "server/messages.hpp"
 #include "tessera/error.hpp"
@@ -26,10 +25,6 @@ constexpr std::array routes = {
     Route{"api/verify", false, true}, Route{"api/check", true, true},      Route{"api/progress", true, false},
     Route{"picture", true, true},     Route{"film", false, true}};
 
-Response json_response(const Json& json) {
-  return {200, "application/json", std::make_shared<const std::string>(text_of(json))};
-}
-
 /// Of a GET, the body that a POST would have.
 Json body_of(const Request& request) {
   if (request.method == "POST") return parse_body(request.body);
@@ -39,38 +34,14 @@ Json body_of(const Request& request) {
   return body;
 }
 
-PictureFormat picture_format(const Json& body) {
-  const auto found = body.find("format");
-  const std::string word = found == body.end() ? "png" : found->is_string() ? found->get<std::string>() : "";
-  if (word == "png") return PictureFormat::png;
-  if (word == "exr") return PictureFormat::exr;
-  if (word == "jpg") return PictureFormat::jpeg;
-  throw bad_input("format: is none of a picture; use png, exr or jpg");
-}
-
-/// A picture as `tessera render` writes it. Nothing if nobody waits for it any more.
-Response picture_answer(const ApiContext& context, const OpenScene& open, PictureFormat format,
-                        const std::stop_token& gone) {
-  const View view = open.scene->view(open.held->data);
-  RenderedFrame rendered = context.stage.render(open.state, *open.scene, *open.held, view, {}, nullptr, gone);
-  if (rendered.stopped) return error_response(500, "Nobody waits for the picture.");
-  const auto& function = context.stage.function(*open.held, *open.scene).function;
-  Response response{200, media_type(format),
-                    finished_picture(std::move(rendered.image), format, *open.scene, view, open.held->data, function)};
-  response.file_name = format == PictureFormat::png   ? "picture.png"
-                       : format == PictureFormat::exr ? "picture.exr"
-                                                      : "picture.jpg";
-  return response;
-}
-
 class PlainWork final : public ApiWork {
  public:
-  PlainWork(Request request, const ApiContext& context, std::stop_token gone)
-      : request_(std::move(request)), context_(context), gone_(std::move(gone)) {}
+  PlainWork(Request request, const ApiContext& context, std::stop_token stop)
+      : request_(std::move(request)), context_(context), stop_(std::move(stop)) {}
 
   ApiResult turn() override {
     try {
-      return film_ ? film_->turn() : answer();
+      return long_ ? long_->turn() : answer();
     } catch (...) {
       return {response_to(std::current_exception(), context_)};
     }
@@ -80,10 +51,7 @@ class PlainWork final : public ApiWork {
   ApiResult answer() {
     if (!body_) body_ = body_of(request_);
     const std::string& path = request_.path;
-    if (path == "film") {
-      film_ = make_film_work(*body_, context_, gone_);
-      return film_->turn();
-    }
+    if (path == "film" && !film_) film_.emplace(*body_);  // what it has wrong is said before data are waited for
     const bool is_of_base = !body_->contains("state") && (path == "api/data" || path == "api/check");
     if (is_of_base) (*body_)["state"] = context_.reader.base();
     const Json& state = state_of(*body_);
@@ -91,8 +59,18 @@ class PlainWork final : public ApiWork {
     OpenScene open{state, context_.reader.scene(state), nullptr};
     open.held = context_.stage.data(state, open.scene);
     if (!open.held) return wait();
-    if (path == "picture") return {picture_answer(context_, open, picture_format(*body_), gone_)};
+    long_ = long_work(open);
+    if (long_) return {.is_long = true};
     return {json_response(json_answer(open))};
+  }
+
+  std::unique_ptr<ApiWork> long_work(const OpenScene& open) {
+    const std::string& path = request_.path;
+    if (path == "picture") return make_picture_work(context_, open, *body_, stop_);
+    if (path == "film") return make_film_work(context_, open, std::move(*film_), stop_);
+    if (path == "api/verify") return make_verify_work(context_, open, *body_, stop_);
+    if (path == "api/check") return make_check_work(open);
+    return nullptr;
   }
 
   Json json_answer(const OpenScene& open) {
@@ -101,9 +79,7 @@ class PlainWork final : public ApiWork {
     if (path == "api/histogram") return histogram_answer(context_, open, *body_);
     if (path == "api/function") return function_answer(context_, open);
     if (path == "api/camera") return camera_answer(open, *body_);
-    if (path == "api/probe") return probe_answer(context_, open, *body_);
-    if (path == "api/verify") return verify_answer(context_, open, *body_);
-    return check_answer(open);
+    return probe_answer(context_, open, *body_);
   }
 
   /// Who asks what data there is hears that it is being read; others wait.
@@ -121,25 +97,32 @@ class PlainWork final : public ApiWork {
 
   Request request_;
   ApiContext context_;
-  std::stop_token gone_;
+  std::stop_token stop_;
   std::optional<Json> body_;
-  std::unique_ptr<ApiWork> film_;
+  std::optional<FilmPlan> film_;
+  std::unique_ptr<ApiWork> long_;
 };
 
 }  // namespace
 
-void FilmProgress::set(std::optional<double> fraction) {
+Response json_response(const Json& json) {
+  return {200, "application/json", std::make_shared<const std::string>(text_of(json))};
+}
+
+Response stopped_response() { return error_response(503, "It was stopped: the server ends, or nobody waits for it."); }
+
+void LongProgress::set(std::optional<double> fraction) {
   const std::lock_guard lock(mutex_);
   fraction_ = fraction;
 }
 
-std::optional<double> FilmProgress::get() const {
+std::optional<double> LongProgress::get() const {
   const std::lock_guard lock(mutex_);
   return fraction_;
 }
 
-std::unique_ptr<ApiWork> make_api_work(Request request, const ApiContext& context, const std::stop_token& gone) {
-  return std::make_unique<PlainWork>(std::move(request), context, gone);
+std::unique_ptr<ApiWork> make_api_work(Request request, const ApiContext& context, std::stop_token stop) {
+  return std::make_unique<PlainWork>(std::move(request), context, std::move(stop));
 }
 
 std::optional<Response> answer_at_once(const Request& request, const ApiContext& context) {
@@ -151,9 +134,10 @@ std::optional<Response> answer_at_once(const Request& request, const ApiContext&
   if ((!is_get && !is_post) || (is_get && !route->get) || (is_post && !route->post))
     return error_response(405, fmt::format("Ask for {} by {}.", route->path, route->get ? "GET" : "POST"));
   if (request.path != "api/progress") return std::nullopt;
-  const auto film = context.progress.get();
+  const auto film = context.film.get(), picture = context.picture.get();
   const auto reading = context.stage.reading();
   return json_response({{"film", film ? Json(*film) : Json()},
+                        {"picture", picture ? Json(*picture) : Json()},
                         {"reading", reading.has_value()},
                         {"stage", reading ? Json(reading->stage) : Json()},
                         {"fraction", reading && reading->fraction ? Json(*reading->fraction) : Json()}});

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "analysis/reports.hpp"
 #include "server/api.hpp"
 #include "server/messages.hpp"
 #include "tessera/error.hpp"
@@ -206,27 +205,5 @@ Json camera_answer(const OpenScene& open, const Json& body) {
   }
   return json_of(data.view(request, view.size, projection));
 }
-
-Json verify_answer(const ApiContext& context, const OpenScene& open, const Json& body) {
-  const auto pixels = static_cast<std::size_t>(whole_number(body, "pixels", 1000, 1, 100'000));
-  const View view = open.scene->view(open.held->data);
-  FrameSettings settings;
-  settings.keep_uncertainty = open.held->data.is_grid();
-  const RenderedFrame rendered = context.stage.render(open.state, *open.scene, *open.held, view, settings, nullptr, {});
-  const Verification found =
-      context.stage.session(open.state, *open.scene, *open.held)
-          .verify(rendered, view, context.stage.function(*open.held, *open.scene).function, pixels);
-  return {{"pixels", found.pixels_checked},
-          {"largest_error", found.max_error_not_excused},
-          {"largest_error_of_all", found.max_error},
-          {"promised", found.bound ? Json(*found.bound) : Json()},
-          {"excused", found.excused},
-          {"over_bound", found.over_bound},
-          {"rms", found.rms_error},
-          {"met", found.met},
-          {"worst", {found.worst_x, found.worst_y}}};
-}
-
-Json check_answer(const OpenScene& open) { return Json::parse(analysis::check_json(open.held->data.check()).dump()); }
 
 }  // namespace tessera::server

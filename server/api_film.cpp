@@ -1,13 +1,10 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <glm/geometric.hpp>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -22,27 +19,6 @@ namespace {
 
 constexpr std::int64_t most_frames = 10'000, most_views = 1000;
 constexpr std::array<std::string_view, 3> film_formats = {"mp4", "webm", "gif"};
-
-/// A folder of its own, gone with this.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "tessera-film-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr)
-      throw Error(ErrorCode::system_failure, "film", "no temporary folder can be made", "make room, or set TMPDIR");
-    path_ = name;
-  }
-  ~ScratchFolder() {
-    std::error_code none;
-    std::filesystem::remove_all(path_, none);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// Between two directions, along the great circle; opposite ones have none, and are left at the first until half way.
 glm::dvec3 turned(const glm::dvec3& from, const glm::dvec3& to, double t) {
@@ -80,34 +56,23 @@ std::vector<Camera> views_of(const Json& body) {
 
 class FilmWork final : public ApiWork {
  public:
-  FilmWork(Json body, const ApiContext& context, std::stop_token gone)
-      : body_(std::move(body)), context_(context), gone_(std::move(gone)) {
-    const auto format = body_.find("format");
-    if (format != body_.end()) format_ = format->is_string() ? format->get<std::string>() : "";
-    if (std::ranges::find(film_formats, format_) == film_formats.end())
-      throw bad_input("format: is none of a film; use mp4, webm or gif");
-    if (const auto rate = body_.find("rate"); rate != body_.end()) {
-      if (!rate->is_number() || !(rate->get<double>() > 0) || rate->get<double>() > 1000)
-        throw bad_input("rate: is no number of frames a second above 0, at most 1000; send one");
-      rate_ = rate->get<double>();
-    }
-    if (body_.contains("views") == body_.contains("orbit"))
-      throw bad_input("film: it has an orbit or views, one of the two; send orbit, a number of frames, or views");
-    if (body_.contains("views")) {
-      views_ = views_of(body_);
-      frames_ = whole_number(body_, "frames", static_cast<std::int64_t>(views_.size()), 1, most_frames);
-    } else {
-      frames_ = whole_number(body_, "orbit", 0, 1, most_frames);
-    }
-  }
-  ~FilmWork() override { context_.progress.set(std::nullopt); }
+  FilmWork(const ApiContext& context, const OpenScene& open, FilmPlan plan, std::stop_token stop)
+      : context_(context),
+        scene_(open.scene),
+        held_(open.held),
+        plan_(std::move(plan)),
+        first_(open.scene->view(open.held->data)),
+        frames_(context.stage.frames(open.state, open.scene, open.held, first_.size)),
+        stop_(std::move(stop)),
+        name_(std::filesystem::temp_directory_path() / ("tessera-film." + plan_.format)) {}
+  ~FilmWork() override { context_.film.set(std::nullopt); }
 
   ApiResult turn() override {
     try {
       return make_frame();
     } catch (const Error& error) {
-      // A client knows nothing of the scratch file, nor of names that would do instead.
-      if (!error.subject().starts_with(scratch_.path().native())) throw;
+      // A client knows nothing of the temporary folder, nor of names that would do instead.
+      if (!error.subject().starts_with(name_.native())) throw;
       throw Error(error.code(), "film", error.problem(),
                   "see that ffmpeg works on the server's machine (Debian: apt install ffmpeg)");
     }
@@ -115,55 +80,32 @@ class FilmWork final : public ApiWork {
 
  private:
   ApiResult make_frame() {
-    const Json& state = state_of(body_);
-    const OpenScene open{state, scene(state), context_.stage.data(state, scene(state))};
-    if (!open.held) return {std::nullopt, true};
-    const View first = open.scene->view(open.held->data);
-    if (!film_) {
-      const auto file = scratch_.path() / ("film." + format_);
-      film_.emplace(file, first.size, FilmFileOptions{open.scene->image_options(), rate_});
-    }
-    const View view{camera(first.camera), first.size};
-    RenderedFrame rendered = context_.stage.render(state, *open.scene, *open.held, view, {}, nullptr, gone_);
-    if (rendered.stopped) return {error_response(500, "Nobody waits for the film.")};
-    const auto& function = context_.stage.function(*open.held, *open.scene).function;
-    if (open.scene->explains()) open.scene->explain(rendered.image, view, open.held->data, function);
+    // A file that never gets its name: nothing is left of it, however this process ends.
+    if (!film_) film_.emplace(name_, first_.size, FilmFileOptions{scene_->image_options(), plan_.rate});
+    const View view{plan_.camera(made_, first_.camera), first_.size};
+    YieldingSink sink(context_.precedence, stop_, [](const Tile& /*tile*/) {});
+    RenderedFrame rendered = frames_->render(view, {}, &sink, stop_);
+    if (rendered.stopped) return {stopped_response()};
+    if (scene_->explains()) scene_->explain(rendered.image, view, held_->data, frames_->function().function);
     film_->add(rendered.image);
-    context_.progress.set(1.0 * ++made_ / static_cast<double>(frames_));
-    if (made_ < frames_) return {};
-    film_->commit();
-    context_.progress.set(std::nullopt);  // before anybody has the film
-    std::ifstream file(scratch_.path() / ("film." + format_), std::ios::binary);
-    auto bytes =
-        std::make_shared<const std::string>(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
-    Response response{200, format_ == "gif" ? "image/gif" : "video/" + format_, std::move(bytes)};
-    response.file_name = "film." + format_;
+    context_.film.set(1.0 * static_cast<double>(++made_) / static_cast<double>(plan_.frames));
+    if (made_ < plan_.frames) return {};
+    Response response{200, plan_.format == "gif" ? "image/gif" : "video/" + plan_.format,
+                      std::make_shared<const std::string>(film_->take())};
+    response.file_name = "film." + plan_.format;
+    context_.film.set(std::nullopt);  // before anybody has the film
     return {std::move(response)};
   }
 
-  std::shared_ptr<const Scene> scene(const Json& state) {
-    if (!scene_) scene_ = context_.reader.scene(state);
-    return scene_;
-  }
-
-  [[nodiscard]] Camera camera(const Camera& first) const {
-    const auto at = static_cast<double>(made_), count = static_cast<double>(frames_);
-    if (views_.empty()) return orbit(first, at / count);
-    if (views_.size() == 1 || frames_ == 1) return views_.front();
-    const double place = at / (count - 1) * static_cast<double>(views_.size() - 1);
-    const auto from = std::min(static_cast<std::size_t>(place), views_.size() - 2);
-    return between(views_[from], views_[from + 1], place - static_cast<double>(from));
-  }
-
-  Json body_;
   ApiContext context_;
-  std::stop_token gone_;
-  std::string format_ = "mp4";
-  double rate_ = 25;
-  std::vector<Camera> views_;
-  std::int64_t frames_ = 0, made_ = 0;
   std::shared_ptr<const Scene> scene_;
-  ScratchFolder scratch_;
+  std::shared_ptr<HeldData> held_;
+  FilmPlan plan_;
+  std::int64_t made_ = 0;
+  View first_;
+  std::unique_ptr<SceneFrames> frames_;
+  std::stop_token stop_;
+  std::filesystem::path name_;
   std::optional<FilmFile> film_;
 };
 
@@ -183,8 +125,39 @@ Json films_json() {
   return {{"formats", std::move(made)}, {"problem", std::move(problem)}};
 }
 
-std::unique_ptr<ApiWork> make_film_work(Json body, const ApiContext& context, const std::stop_token& gone) {
-  return std::make_unique<FilmWork>(std::move(body), context, gone);
+FilmPlan::FilmPlan(const Json& body) {
+  if (const auto found = body.find("format"); found != body.end())
+    format = found->is_string() ? found->get<std::string>() : "";
+  if (std::ranges::find(film_formats, format) == film_formats.end())
+    throw bad_input("format: is none of a film; use mp4, webm or gif");
+  if (const auto found = body.find("rate"); found != body.end()) {
+    rate = found->is_number() ? found->get<double>() : 0;
+    if (!(rate >= least_film_rate && rate <= most_film_rate))
+      throw bad_input(fmt::format("rate: is no number of frames a second from {} to {}; send one", least_film_rate,
+                                  most_film_rate));
+  }
+  if (body.contains("views") == body.contains("orbit"))
+    throw bad_input("film: it has an orbit or views, one of the two; send orbit, a number of frames, or views");
+  if (body.contains("views")) {
+    views = views_of(body);
+    frames = whole_number(body, "frames", static_cast<std::int64_t>(views.size()), 1, most_frames);
+  } else {
+    frames = whole_number(body, "orbit", 0, 1, most_frames);
+  }
+}
+
+Camera FilmPlan::camera(std::int64_t number, const Camera& first) const {
+  const auto at = static_cast<double>(number), count = static_cast<double>(frames);
+  if (views.empty()) return orbit(first, at / count);
+  if (views.size() == 1 || frames == 1) return views.front();
+  const double place = at / (count - 1) * static_cast<double>(views.size() - 1);
+  const auto from = std::min(static_cast<std::size_t>(place), views.size() - 2);
+  return between(views[from], views[from + 1], place - static_cast<double>(from));
+}
+
+std::unique_ptr<ApiWork> make_film_work(const ApiContext& context, const OpenScene& open, FilmPlan plan,
+                                        std::stop_token stop) {
+  return std::make_unique<FilmWork>(context, open, std::move(plan), std::move(stop));
 }
 
 }  // namespace tessera::server

@@ -5,6 +5,7 @@
 #include <boost/asio/bind_executor.hpp>
 #include <boost/asio/dispatch.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/thread_pool.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
@@ -168,11 +169,18 @@ class Socket final : public std::enable_shared_from_this<Socket> {
   void read() {
     stream_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t /*bytes*/) {
       if (error) return self->drop();
-      if (self->stream_.got_text())
+      if (!self->stream_.got_text()) return self->read_next();
+      // The next one is read when this one is handled: so a client has one at a time.
+      boost::asio::post(self->network_.parsing, [self] {
         self->network_.service.message(*self->client_, beast::buffers_to_string(self->buffer_.data()));
-      self->buffer_.consume(self->buffer_.size());
-      if (!self->closed_) self->read();
+        boost::asio::post(self->stream_.get_executor(), [self] { self->read_next(); });
+      });
     });
+  }
+
+  void read_next() {
+    buffer_.consume(buffer_.size());
+    if (!closed_) read();
   }
 
   void write() {
@@ -219,18 +227,25 @@ class Socket final : public std::enable_shared_from_this<Socket> {
 };
 
 /// HTTP requests of one connection, one after the other.
-class Connection final : public std::enable_shared_from_this<Connection> {
+class Connection final : public Stranger, public std::enable_shared_from_this<Connection> {
  public:
   Connection(ByteStream stream, Network& network)
       : stream_(std::move(stream)), network_(network), buffer_(network.limits.header_bytes + (64u << 10)) {
-    ++network_.connections;
+    if (network_.strangers.size() >= network_.limits.strangers) network_.strangers.front()->turn_away();
+    stranger_ = network_.strangers.insert(network_.strangers.end(), this);
   }
-  ~Connection() {
-    if (!is_socket_) --network_.connections;  // else the socket counts as it
+  ~Connection() override {
+    forget_stranger();
+    if (is_client_ && !is_socket_) --network_.connections;  // else the socket counts as it
     gone_.request_stop();
   }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
+
+  void turn_away() override {
+    forget_stranger();
+    tcp().close();
+  }
 
   void start() {
     tcp().expires_after(network_.limits.request);
@@ -241,6 +256,20 @@ class Connection final : public std::enable_shared_from_this<Connection> {
 
  private:
   beast::tcp_stream& tcp() { return stream_.tcp(); }
+
+  void forget_stranger() {
+    if (stranger_) network_.strangers.erase(*stranger_);
+    stranger_.reset();
+  }
+
+  /// Of a connection that has shown the token. False: there are too many.
+  bool admit() {
+    if (is_client_) return true;
+    if (network_.connections >= network_.limits.connections) return false;
+    forget_stranger();
+    ++network_.connections;
+    return is_client_ = true;
+  }
 
   void read() {
     parser_.emplace();
@@ -278,9 +307,18 @@ class Connection final : public std::enable_shared_from_this<Connection> {
     const auto path = decoded(raw_path.starts_with('/') ? raw_path.substr(1) : raw_path, false);
     if (!path || !raw_path.starts_with('/'))
       return send(make_response(request_, error_response(400, "The address cannot be read.")));
-    if (const auto refusal = network_.access.refusal(credentials_of(request_, query)))
-      return send(make_response(
-          request_, is_api(*path) ? error_response(403, *refusal) : page_response(403, sentence_page(*refusal))));
+    // Whoever stands between, such as a proxy, may go by the other one.
+    if (request_.count(http::field::host) > 1)
+      return send(make_response(request_, error_response(400, "The request has more than one Host.")));
+    const auto refused = [&](int status, const std::string& sentence) {
+      send(make_response(
+          request_, is_api(*path) ? error_response(status, sentence) : page_response(status, sentence_page(sentence))));
+    };
+    if (const auto refusal = network_.access.refusal(credentials_of(request_, query))) return refused(403, *refusal);
+    if (!admit()) {
+      request_.keep_alive(false);
+      return refused(503, "The server has as many connections as it takes; close other pages of it.");
+    }
     if (*path == "socket" && websocket::is_upgrade(request_)) return become_socket();
     if (is_api(*path))
       return ask_service({std::string(view_of(request_.method_string())), *path, std::string(query), request_.body()});
@@ -378,7 +416,8 @@ class Connection final : public std::enable_shared_from_this<Connection> {
   std::optional<HttpResponse> response_;
   std::optional<http::response_serializer<SharedBody>> serializer_;
   std::stop_source gone_;
-  bool waiting_ = false, is_socket_ = false;
+  std::optional<std::list<Stranger*>::iterator> stranger_;  ///< its place among them
+  bool waiting_ = false, is_client_ = false, is_socket_ = false;
 };
 
 }  // namespace

@@ -2,25 +2,42 @@
 
 #include <cstddef>
 #include <functional>
+#include <list>
 #include <memory>
-#include <set>
 
 #include "server/access.hpp"
 #include "server/listener.hpp"
 #include "server/service.hpp"
 
+namespace boost::asio {
+class thread_pool;
+}
+
 namespace tessera::server {
 
 class Bytes;
+
+/// A connection that has not shown the token.
+class Stranger {
+ public:
+  Stranger() = default;
+  Stranger(const Stranger&) = delete;
+  Stranger& operator=(const Stranger&) = delete;
+  virtual ~Stranger() = default;
+  /// Closes it, without an answer, and takes it out of Network::strangers.
+  virtual void turn_away() = 0;
+};
 
 /// What all connections share. Of the network's thread alone.
 struct Network {
   const Access& access;
   Service& service;
   NetworkLimits limits;
+  boost::asio::thread_pool& parsing;  ///< messages of sockets are handled there, as a long one takes a while
   bool secure = false;
-  std::size_t connections = 0;
-  std::size_t writing = 0;  ///< responses and messages that are on their way
+  std::size_t connections = 0;       ///< of clients that have shown the token
+  std::list<Stranger*> strangers{};  ///< the oldest first
+  std::size_t writing = 0;           ///< responses and messages that are on their way
 };
 
 /// Takes care of a connection until it ends: HTTP requests one after the other, or a WebSocket.

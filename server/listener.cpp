@@ -8,6 +8,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/asio/thread_pool.hpp>
 #include <thread>
 
 #include "server/byte_stream.hpp"
@@ -23,7 +24,7 @@ using boost::system::error_code;
 
 struct Listener::State {
   State(const NetworkOptions& options, const Access& access, Service& service)
-      : network{access, service, options.limits} {
+      : network{access, service, options.limits, parsing} {
     if (!options.certificate.empty()) {
       tls = tls_context(options.certificate, options.key);
       network.secure = true;
@@ -36,6 +37,8 @@ struct Listener::State {
   ~State() {
     io.stop();
     thread.join();
+    parsing.stop();
+    parsing.join();
   }
 
   State(const State&) = delete;
@@ -70,18 +73,15 @@ struct Listener::State {
         return;
       }
       error_code none;
-      if (network.connections >= network.limits.connections) {
-        socket.close(none);
-      } else {
-        socket.set_option(tcp::no_delay(true), none);
-        start_connection(tls ? tls_bytes(std::move(socket), *tls) : plain_bytes(std::move(socket)), network);
-      }
+      socket.set_option(tcp::no_delay(true), none);
+      start_connection(tls ? tls_bytes(std::move(socket), *tls) : plain_bytes(std::move(socket)), network);
       accept();
     });
   }
 
   Network network;  // outlives the connections, which end with what runs them
   asio::io_context io{1};
+  asio::thread_pool parsing{1};  // ends before `io`, whose sockets its work has
   asio::executor_work_guard<asio::io_context::executor_type> until_stopped{io.get_executor()};
   std::shared_ptr<asio::ssl::context> tls;
   tcp::acceptor acceptor{io};

@@ -15,7 +15,8 @@ namespace tessera::server {
 /// What a connection may take. Whoever is over a limit is answered with an error where that is possible, and closed.
 struct NetworkLimits {
   std::size_t header_bytes = 16u << 10, body_bytes = 1u << 20, message_bytes = 1u << 20;
-  std::size_t connections = 256;                                 ///< more are closed as they come
+  std::size_t connections = 256;                                 ///< of clients with the token; more are refused
+  std::size_t strangers = 64;                                    ///< without it; for one more the oldest is closed
   std::size_t waiting_messages = 64;                             ///< of a client that does not read
   std::chrono::milliseconds request = std::chrono::seconds(10);  ///< for a whole request, from the first wait for it on
   std::chrono::milliseconds write = std::chrono::seconds(30);    ///< without a byte that the other side takes

@@ -1,7 +1,12 @@
 #include "server/renderer.hpp"
 
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
 #include <algorithm>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <thread>
 #include <utility>
 
 #include "server/api.hpp"
@@ -54,20 +59,30 @@ class FrameProgress final : public Sink {
 };
 
 /// A request, until it is answered.
-class ApiTask final : public Task {
+class ApiTask final : public Task, public std::enable_shared_from_this<ApiTask> {
  public:
-  ApiTask(Request request, std::stop_token gone, Service::Reply reply, ApiContext context)
-      : work_(make_api_work(std::move(request), context, gone)), reply_(std::move(reply)), gone_(std::move(gone)) {}
+  /// `long_queue`: where long work goes on; null: here.
+  ApiTask(Request request, const std::stop_token& gone, Service::Reply reply, const ApiContext& context,
+          WorkQueue* long_queue)
+      : work_(make_api_work(std::move(request), context, stop_.get_token())),
+        reply_(std::move(reply)),
+        long_queue_(long_queue),
+        on_gone_(gone, [this] { stop(); }) {}
 
   Turn turn() override {
-    if (gone_.stop_requested()) return answer(error_response(500, "Nobody waits for the answer."));
-    const ApiResult result = work_->turn();
+    if (stop_.stop_requested()) return answer(stopped_response());
+    ApiResult result = work_->turn();
     if (result.response) return answer(*result.response);
+    if (result.is_long && long_queue_ != nullptr) {
+      std::exchange(long_queue_, nullptr)->add(shared_from_this());  // which may have its turn at once
+      return Turn::done;
+    }
     return result.waits_for_data ? Turn::waits_for_data : Turn::again;
   }
   void abandon() override {
     if (reply_) answer(error_response(503, "The server ends, or has too much to do."));
   }
+  void stop() override { stop_.request_stop(); }
 
  private:
   Turn answer(const Response& response) {
@@ -75,9 +90,39 @@ class ApiTask final : public Task {
     return Turn::done;
   }
 
+  std::stop_source stop_;
   std::unique_ptr<ApiWork> work_;
   Service::Reply reply_;
-  std::stop_token gone_;
+  WorkQueue* long_queue_;
+  std::stop_callback<std::function<void()>> on_gone_;
+};
+
+/// Does long work, on a thread of its own, until the queue ends.
+class LongThread {
+ public:
+  explicit LongThread(WorkQueue& queue)
+      : queue_(queue),
+        more_workers_(tbb::global_control::max_allowed_parallelism,
+                      2 * static_cast<std::size_t>(tbb::info::default_concurrency())),
+        thread_([&queue] {
+          while (auto work = queue.next()) {
+            auto& task = std::get<std::shared_ptr<Task>>(*work);
+            const Task::Turn turn = task->turn();
+            queue.finish(std::move(task), turn);
+          }
+        }) {}
+  ~LongThread() {
+    queue_.end();
+    thread_.join();
+  }
+  LongThread(const LongThread&) = delete;
+  LongThread& operator=(const LongThread&) = delete;
+
+ private:
+  WorkQueue& queue_;
+  // Workers that stand still in Precedence::pass() do no work of others: there are as many more for views.
+  tbb::global_control more_workers_;
+  std::thread thread_;
 };
 
 }  // namespace
@@ -90,6 +135,7 @@ Renderer::Renderer(SceneReader& reader, Job& job, const RendererSettings& settin
     : reader_(reader),
       settings_(settings),
       queue_(settings.latency_ms),
+      long_queue_(settings.latency_ms),
       stage_(
           reader, job, settings.memory_bytes, [this] { data_came(); },
           [this](const Reading& reading) { say_reading(reading); }) {}
@@ -110,9 +156,11 @@ void Renderer::say_reading(const Reading& reading) {
 }
 
 void Renderer::answer(Request request, std::stop_token gone, Reply reply) {
-  const ApiContext context{reader_, stage_, settings_.threads, progress_};
+  const ApiContext context{reader_, stage_, settings_.threads, film_, picture_, precedence_};
   if (auto response = answer_at_once(request, context)) return reply(std::move(*response));
-  queue_.add(std::make_shared<ApiTask>(std::move(request), std::move(gone), std::move(reply), context));
+  // The other ranks work for one thread of the first.
+  WorkQueue* const long_queue = stage_.ranks() == 1 ? &long_queue_ : nullptr;
+  queue_.add(std::make_shared<ApiTask>(std::move(request), gone, std::move(reply), context, long_queue));
 }
 
 ClientId Renderer::join(std::shared_ptr<Channel> channel) {
@@ -148,8 +196,11 @@ void Renderer::read_first() {
 }
 
 void Renderer::run() {
+  std::optional<LongThread> long_thread;
+  if (stage_.ranks() == 1) long_thread.emplace(long_queue_);
   read_first();
   while (auto work = queue_.next()) {
+    if (long_thread) precedence_.begin_short(Clock::now());
     if (auto* order = std::get_if<FrameOrder>(&*work)) {
       queue_.finish(*order, render(*order));
     } else {
@@ -157,8 +208,15 @@ void Renderer::run() {
       const Task::Turn turn = task->turn();
       queue_.finish(std::move(task), turn);
     }
+    if (long_thread) precedence_.end_short(Clock::now());
   }
+  long_thread.reset();
   stage_.end();
+}
+
+void Renderer::end() {
+  queue_.end();
+  long_queue_.end();
 }
 
 void Renderer::say_end(const std::string& reason) { queue_.tell_all(text_of({{"type", "ended"}, {"error", reason}})); }

@@ -21,7 +21,8 @@ struct RendererSettings {
   int threads = 0;
 };
 
-/// Renders for all clients of a server, on the thread that calls run().
+/// Renders for all clients of a server, on the thread that calls run(); pictures, films and other long work, where
+/// there is one rank, on a second one, so that views have their turn at any time.
 class Renderer final : public Service {
  public:
   Renderer(SceneReader& reader, Job& job, const RendererSettings& settings);
@@ -30,7 +31,7 @@ class Renderer final : public Service {
   /// Until end() is called, and on several ranks all have come to their end. Throws what ends the run of all ranks.
   void run();
   /// From any thread: run() returns soon.
-  void end() { queue_.end(); }
+  void end();
   /// Tells clients why the server ends.
   void say_end(const std::string& reason);
   [[nodiscard]] bool is_reading() { return stage_.reading().has_value(); }
@@ -50,9 +51,10 @@ class Renderer final : public Service {
 
   SceneReader& reader_;
   RendererSettings settings_;
-  WorkQueue queue_;
+  WorkQueue queue_, long_queue_;
   Stage stage_;
-  FilmProgress progress_;
+  Precedence precedence_;
+  LongProgress film_, picture_;
   std::atomic<bool> first_came_ = false;
   std::uint64_t frames_ = 0;
   Clock::time_point told_reading_;

@@ -23,8 +23,9 @@ std::string web_host(const std::string& address) {
   return address.find(':') == std::string::npos ? address : "[" + address + "]";
 }
 
-/// Calls `late` unless the ranks come to their end together within `patience` after hurry(). A launcher sends all ranks
-/// the same signal when its user ends the job and when a rank has died, and a rank that has died does not answer.
+/// Calls `late` unless the run comes to its end within `patience` after hurry(): some work cannot be stopped. And a
+/// launcher sends all ranks the same signal when its user ends the job and when a rank has died, which then does not
+/// answer.
 class EndWatch {
  public:
   explicit EndWatch(std::function<void()> late) : late_(std::move(late)) {}
@@ -60,7 +61,7 @@ void follow(const ServeOptions& options, SceneReader& reader, Job& job, const Se
   Stage stage(
       reader, job, options.renderer.memory_bytes, [] {}, [](const Reading& /*reading*/) {});
   EndWatch watch([&] { events.rank_lost(); });
-  const Signals signals([&] { watch.hurry(); });
+  const Signals signals([&] { watch.hurry(); }, events.hurried);
   stage.follow();
 }
 
@@ -72,15 +73,17 @@ void serve(const ServeOptions& options, SceneReader& reader, Job& job, const Ser
   Renderer renderer(reader, job, options.renderer);
   Listener listener(options.network, access, renderer);
   EndWatch watch([&] {
-    if (job.size() == 1) return;
-    if (!renderer.is_reading()) renderer.say_end("A rank of the server was lost; start it again.");
+    const bool is_lost = job.size() > 1 && !renderer.is_reading();
+    renderer.say_end(is_lost ? "A rank of the server was lost; start it again." : "The server was ended.");
     listener.finish();
-    renderer.is_reading() ? events.ended_while_reading() : events.rank_lost();
+    is_lost ? events.rank_lost() : events.ended_at_work();
   });
-  const Signals signals([&] {
-    renderer.end();
-    watch.hurry();
-  });
+  const Signals signals(
+      [&] {
+        renderer.end();
+        watch.hurry();
+      },
+      events.hurried);
   events.listening(fmt::format("{}://{}:{}/?token={}", options.network.certificate.empty() ? "http" : "https",
                                web_host(options.network.address), listener.port(), access.token()));
   try {
@@ -93,7 +96,7 @@ void serve(const ServeOptions& options, SceneReader& reader, Job& job, const Ser
   }
   renderer.say_end("The server was ended.");
   listener.finish();
-  if (renderer.is_reading()) events.ended_while_reading();
+  if (renderer.is_reading()) events.ended_at_work();
 }
 
 }  // namespace tessera::server

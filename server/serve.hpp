@@ -21,14 +21,17 @@ struct ServeOptions {
 struct ServeEvents {
   /// Where a browser finds it, with its token; on the first rank.
   std::function<void(const std::string& url)> listening;
-  /// It ended while a file was read, which nobody can stop: to leave the process, or return and wait for it.
-  std::function<void()> ended_while_reading;
+  /// It ended while something is in work that cannot be stopped, such as the reading of a file: to leave the process,
+  /// or return and wait for it. From any thread.
+  std::function<void()> ended_at_work;
+  /// A signal came after the one that ends it: to leave the process at once. On any rank, from any thread.
+  std::function<void(int signal)> hurried;
   /// Of several ranks one is gone: to say so, and to leave the process. On any rank, from any thread.
   std::function<void()> rank_lost;
 };
 
-/// Serves pictures until SIGINT or SIGTERM comes, on all ranks of the job; the first one speaks with clients. Throws
-/// Error for options that cannot be, and what ends the run of all ranks.
+/// Serves pictures until SIGINT, SIGTERM or SIGHUP comes, on all ranks of the job; the first one speaks with clients.
+/// Throws Error for options that cannot be, and what ends the run of all ranks.
 void serve(const ServeOptions& options, SceneReader& reader, Job& job, const ServeEvents& events);
 
 }  // namespace tessera::server

@@ -47,7 +47,7 @@ class Channel {
 
 using ClientId = std::uint64_t;
 
-/// Who answers. The network calls it from one thread, so every call has to be quick.
+/// Who answers. The network calls it from one thread, so every call but message() has to be quick.
 class Service {
  public:
   using Reply = std::function<void(Response)>;
@@ -61,7 +61,7 @@ class Service {
   virtual void answer(Request request, std::stop_token gone, Reply reply) = 0;
 
   virtual ClientId join(std::shared_ptr<Channel> channel) = 0;
-  /// A text message of a client, as it came.
+  /// A text message of a client, as it came. From another thread; a client's messages one after the other.
   virtual void message(ClientId client, const std::string& text) = 0;
   virtual void leave(ClientId client) = 0;
 };

@@ -9,9 +9,14 @@
 namespace tessera::server {
 
 struct Signals::State {
-  explicit State(std::function<void()> heard_) : heard(std::move(heard_)) {
+  State(std::function<void()> heard_, std::function<void(int)> again_)
+      : heard(std::move(heard_)), again(std::move(again_)) {
+    struct sigaction present {};
+    if (::sigaction(SIGHUP, nullptr, &present) == 0 && present.sa_handler != SIG_IGN) signals.add(SIGHUP);
     signals.async_wait([this](const boost::system::error_code& error, int /*signal*/) {
-      if (!error) heard();
+      if (error) return;
+      await_another();
+      heard();
     });
     thread = std::thread([this] { io.run(); });
   }
@@ -22,13 +27,23 @@ struct Signals::State {
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
+  void await_another() {
+    signals.async_wait([this](const boost::system::error_code& error, int signal) {
+      if (error) return;
+      await_another();
+      again(signal);
+    });
+  }
+
   std::function<void()> heard;
+  std::function<void(int)> again;
   boost::asio::io_context io{1};
   boost::asio::signal_set signals{io, SIGINT, SIGTERM};
   std::thread thread;
 };
 
-Signals::Signals(std::function<void()> heard) : state_(std::make_unique<State>(std::move(heard))) {}
+Signals::Signals(std::function<void()> heard, std::function<void(int)> again)
+    : state_(std::make_unique<State>(std::move(heard), std::move(again))) {}
 Signals::~Signals() = default;
 
 }  // namespace tessera::server

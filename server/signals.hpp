@@ -5,10 +5,11 @@
 
 namespace tessera::server {
 
-/// While it lives the first SIGINT or SIGTERM of this process calls `heard`, on a thread of its own.
+/// While it lives the first SIGINT, SIGTERM or SIGHUP of this process calls `heard`, any further one `again` with its
+/// number, on a thread of its own. A SIGHUP that the caller has had ignored (nohup) stays ignored.
 class Signals {
  public:
-  explicit Signals(std::function<void()> heard);
+  Signals(std::function<void()> heard, std::function<void(int signal)> again);
   ~Signals();
   Signals(const Signals&) = delete;
   Signals& operator=(const Signals&) = delete;

@@ -35,6 +35,45 @@ const char* stage_words(ReadProgress::Stage stage) {
   }
 }
 
+/// By a session of their own.
+class OwnFrames final : public SceneFrames {
+ public:
+  OwnFrames(std::shared_ptr<HeldData> held, Settings settings, LoadedTransferFunction function)
+      : SceneFrames(std::move(function)), held_(std::move(held)), settings_(std::move(settings)) {}
+  RenderedFrame render(const View& view, const FrameSettings& settings, Sink* sink,
+                       const std::stop_token& stop) override {
+    return session().render(view, function().function, settings, sink, stop);
+  }
+  Session& session() override {
+    if (!session_) session_.emplace(held_->data, settings_);
+    return *session_;
+  }
+
+ private:
+  std::shared_ptr<HeldData> held_;
+  Settings settings_;
+  std::optional<Session> session_;
+};
+
+/// By the stage, with the other ranks.
+class StageFrames final : public SceneFrames {
+ public:
+  StageFrames(Stage& stage, Json state, std::shared_ptr<const Scene> scene, LoadedTransferFunction function)
+      : SceneFrames(std::move(function)), stage_(stage), state_(std::move(state)), scene_(std::move(scene)) {}
+  RenderedFrame render(const View& view, const FrameSettings& settings, Sink* sink,
+                       const std::stop_token& stop) override {
+    held_ = stage_.data(state_, scene_);  // the other ranks may have dropped it since the last frame
+    return stage_.render(state_, *scene_, *held_, view, settings, sink, stop);
+  }
+  Session& session() override { return stage_.session(state_, *scene_, *held_); }
+
+ private:
+  Stage& stage_;
+  Json state_;
+  std::shared_ptr<const Scene> scene_;
+  std::shared_ptr<HeldData> held_;
+};
+
 }  // namespace
 
 Stage::Stage(SceneReader& reader, Job& job, std::uint64_t memory_bytes, std::function<void()> came,
@@ -255,9 +294,25 @@ bool Stage::has_stand_in(const Json& state, const std::shared_ptr<HeldData>& hel
   return false;
 }
 
+Settings Stage::session_settings(const Scene& scene, HeldData& held) {
+  Settings settings = scene.settings(held.data, function(held, scene));
+  // Of a process alone there is one more, of long work.
+  const std::size_t most = ranks() > 1 ? 1 : most_sessions + 1;
+  if (held.data.is_grid()) settings.memory_bytes = std::max(settings.memory_bytes / most, std::uint64_t{1} << 20);
+  return settings;
+}
+
+std::unique_ptr<SceneFrames> Stage::frames(const Json& state, const std::shared_ptr<const Scene>& scene,
+                                           const std::shared_ptr<HeldData>& held, ImageSize size) {
+  check_size(size);
+  const LoadedTransferFunction& loaded = function(*held, *scene);
+  if (ranks() > 1) return std::make_unique<StageFrames>(*this, state, scene, loaded);
+  return std::make_unique<OwnFrames>(held, session_settings(*scene, *held), loaded);
+}
+
 Session& Stage::session(const Json& /*state*/, const Scene& scene, HeldData& held) {
   const LoadedTransferFunction& loaded = function(held, scene);
-  Settings settings = scene.settings(held.data, loaded);
+  Settings settings = session_settings(scene, held);
   const std::string key = scene.settings_key() + (loaded.shaded ? " shaded" : "");
   for (auto kept = sessions_.begin(); kept != sessions_.end(); ++kept) {
     if (kept->key != key || &kept->session->dataset().state() != &held.data.state()) continue;
@@ -267,7 +322,6 @@ Session& Stage::session(const Json& /*state*/, const Scene& scene, HeldData& hel
   // Sessions of several ranks share the job's messages, so there is one at a time.
   const std::size_t most = ranks() > 1 ? 1 : most_sessions;
   while (sessions_.size() >= most) sessions_.pop_back();
-  if (held.data.is_grid()) settings.memory_bytes = std::max(settings.memory_bytes / most, std::uint64_t{1} << 20);
   auto trace = std::make_unique<Trace>();
   settings.trace = trace.get();
   auto session = std::make_unique<Session>(held.data, settings, job_.communicator());

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "server/scene_reader.hpp"
 #include "tessera/error.hpp"
@@ -29,6 +30,24 @@ struct HeldData {
   bool stand_in_tried = false;
   std::unique_ptr<Session> stand_in_session;
   std::string stand_in_key;
+};
+
+/// Frames of one scene, for work that takes long.
+class SceneFrames {
+ public:
+  explicit SceneFrames(LoadedTransferFunction function) : function_(std::move(function)) {}
+  virtual ~SceneFrames() = default;
+  SceneFrames(const SceneFrames&) = delete;
+  SceneFrames& operator=(const SceneFrames&) = delete;
+
+  virtual RenderedFrame render(const View& view, const FrameSettings& settings, Sink* sink,
+                               const std::stop_token& stop) = 0;
+  /// The session of the last frame.
+  virtual Session& session() = 0;
+  [[nodiscard]] const LoadedTransferFunction& function() const { return function_; }
+
+ private:
+  LoadedTransferFunction function_;
 };
 
 /// How far the reading of data is.
@@ -58,6 +77,11 @@ class Stage {
   /// A picture of the scene, in a size that may be another than the scene's. Collective.
   RenderedFrame render(const Json& state, const Scene& scene, HeldData& held, const View& view,
                        const FrameSettings& settings, Sink* sink, const std::stop_token& stop);
+  /// Frames that a process alone renders by a session of their own, on whichever thread asks for them, while the stage
+  /// does other work; on several ranks they are the stage's and of its thread. Throws Error(bad_input) for a size that
+  /// takes too much memory.
+  std::unique_ptr<SceneFrames> frames(const Json& state, const std::shared_ptr<const Scene>& scene,
+                                      const std::shared_ptr<HeldData>& held, ImageSize size);
   /// Of that picture, how long each stage took: its share of the frame's time. Of several ranks of this one.
   std::map<std::string, double> stage_times(double frame_ms);
   /// Whether there is a stand-in for the scene's data; making one begins with the first question. On several ranks all
@@ -100,6 +124,7 @@ class Stage {
   std::shared_ptr<HeldData> find(const Scene& scene);
   void keep(const Scene& scene, Dataset data);
   void drop(const std::string& key);
+  [[nodiscard]] Settings session_settings(const Scene& scene, HeldData& held);
   void read_in_background(std::shared_ptr<const Scene> scene);
   void make_stand_in_together(const Json& state, HeldData& held);
   /// Throws Error(bad_input) for what takes too much memory.

@@ -123,6 +123,7 @@ std::optional<WorkQueue::Work> WorkQueue::next() {
       if (task && !tasks_.empty()) {
         auto first = std::move(tasks_.front());
         tasks_.pop_front();
+        working_ = first;
         return first;
       }
       if (task) continue;
@@ -164,6 +165,7 @@ void WorkQueue::finish(const FrameOrder& order, const FrameOutcome& outcome) {
 void WorkQueue::finish(std::shared_ptr<Task> task, Task::Turn turn) {
   {
     const std::lock_guard lock(mutex_);
+    working_.reset();
     if (turn == Task::Turn::done) return;
     if (!ended_) {
       const bool waits = turn == Task::Turn::waits_for_data && wakes_ == wakes_before_turn_;
@@ -208,9 +210,11 @@ void WorkQueue::tell_waiting(const std::string& text) {
 
 void WorkQueue::end() {
   std::deque<std::shared_ptr<Task>> abandoned;
+  std::shared_ptr<Task> working;
   {
     const std::lock_guard lock(mutex_);
     ended_ = true;
+    working = working_;
     for (auto& [id, client] : clients_)
       if (client.working) client.working->request_stop();
     abandoned.swap(tasks_);
@@ -219,6 +223,7 @@ void WorkQueue::end() {
     changed_.notify_one();
   }
   for (const auto& task : abandoned) task->abandon();
+  if (working) working->stop();
 }
 
 bool WorkQueue::ended() {

@@ -47,6 +47,8 @@ class Task {
   virtual Turn turn() = 0;
   /// No turn follows: the server ends.
   virtual void abandon() = 0;
+  /// The turn at hand is to end soon; from any thread.
+  virtual void stop() {}
 };
 
 /// What became of a frame.
@@ -62,7 +64,7 @@ struct FrameOutcome {
 /// state at rest; one of a state that moves is left to finish, for else who moves on and on would see none, unless it
 /// takes more than twice its budget.
 ///
-/// One thread renders: next(), finish() and overdue() are its own. All else may be called from any thread.
+/// One thread does the work: next(), finish() and overdue() are its own. All else may be called from any thread.
 class WorkQueue {
  public:
   explicit WorkQueue(double latency_ms) : latency_ms_(latency_ms) {}
@@ -127,6 +129,7 @@ class WorkQueue {
   std::map<ClientId, Client> clients_;
   ClientId last_client_ = 0, served_ = 0;
   std::deque<std::shared_ptr<Task>> tasks_, waiting_;
+  std::shared_ptr<Task> working_;                    ///< that has its turn
   std::uint64_t wakes_ = 0, wakes_before_turn_ = 0;  ///< data may come while somebody decides to wait for it
   bool tasks_turn_ = false, ended_ = false;
 };

@@ -143,6 +143,25 @@ TEST(WorkQueue, StopsWhatIsForAClientThatLeaves) {
   EXPECT_TRUE(is_idle(queue));
 }
 
+TEST(WorkQueue, StopsTheTaskAtHandWhenItEnds) {
+  class Stopped final : public Task {
+   public:
+    Turn turn() override { return Turn::again; }
+    void abandon() override { abandoned = true; }
+    void stop() override { stopped = true; }
+    bool stopped = false, abandoned = false;
+  };
+  WorkQueue queue(100);
+  const auto task = std::make_shared<Stopped>();
+  queue.add(task);
+  auto work = queue.next();
+  queue.end();
+  EXPECT_TRUE(task->stopped);
+  EXPECT_FALSE(task->abandoned);  // its turn may answer
+  queue.finish(std::get<std::shared_ptr<Task>>(*work), Task::Turn::again);
+  EXPECT_TRUE(task->abandoned);
+}
+
 TEST(WorkQueue, EndsAtOnceAndAbandonsItsTasks) {
   class Waiting final : public Task {
    public:
