@@ -17,7 +17,7 @@ constexpr std::string_view setting_names =
     "egl_device "
     "elevation emission endian exchange field field_unit figure fit frame_rate framebuffer frames_in_flight "
     "half help help_all higher_order_tets higher_order_tolerance integrator iso json labels latency length_unit "
-    "light log max_volume memory no_shade on_stall opacity opacity_points opacity_scale orbit origin "
+    "light like log max_volume memory no_shade on_stall opacity opacity_points opacity_scale orbit origin "
     "outline output partition peel peer pieces pixels png_bits port preload preset progress projection "
     "projectors q quiet range rasterizer repeat report rescale resume save_config scale scale_bar seed shade show "
     "size skip smooth spacing stall_timeout step subdivide surface threads threshold tile_size time_step "

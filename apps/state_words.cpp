@@ -140,12 +140,19 @@ std::vector<std::string> list_of(const std::string& name, const Json& value) {
   return texts;
 }
 
-std::vector<std::string> surfaces_of(const std::string& name, const Json& value) {
+/// `started`: the words that the server was started with, or null; their files may be shown again.
+std::vector<std::string> surfaces_of(const std::string& name, const Json& value,
+                                     const std::vector<std::string>* started) {
   std::vector<std::string> texts = list_of(name, value);
+  const auto is_started = [started](const std::string& file) {
+    return started != nullptr && std::ranges::any_of(*started, [&](const std::string& word) {
+             return word == file || word.starts_with(file + ":");
+           });
+  };
   for (const std::string& text : texts) {
     // The longest name first: a file's may have colons.
     for (std::size_t end = text.size(); end != std::string::npos && end > 0; end = text.rfind(':', end - 1))
-      if (names_surface_file(text.substr(0, end)))
+      if (const std::string file = text.substr(0, end); names_surface_file(file) && !is_started(file))
         throw bad_input(
             fmt::format("state: '{}' takes no files from a page; send boundary or a block of the mesh, like "
                         "boundary:COLOR:OPACITY",
@@ -154,7 +161,8 @@ std::vector<std::string> surfaces_of(const std::string& name, const Json& value)
   return texts;
 }
 
-std::vector<std::string> values_of(const StateKey& key, const std::string& name, const Json& value) {
+std::vector<std::string> values_of(const StateKey& key, const std::string& name, const Json& value,
+                                   const OptionWords& base) {
   if (value == true && (key.kind == Kind::flag || key.kind == Kind::place)) return {"true"};
   switch (key.kind) {
     case Kind::flag:
@@ -162,7 +170,7 @@ std::vector<std::string> values_of(const StateKey& key, const std::string& name,
     case Kind::list:
       return list_of(name, value);
     case Kind::surfaces:
-      return surfaces_of(name, value);
+      return surfaces_of(name, value, find_words(base, name));
     case Kind::camera:
       return {camera_text(name, value)};
     case Kind::function:
@@ -190,7 +198,7 @@ OptionWords state_words(const OptionWords& base, const Json& state) {
   for (const auto& [name, value] : state.items()) {
     const StateKey& key = key_named(name);
     if (value.is_null() || value == false) continue;
-    std::vector<std::string> values = values_of(key, name, value);
+    std::vector<std::string> values = values_of(key, name, value, base);
     if (!values.empty()) words.emplace_back(name, std::move(values));
   }
   std::ranges::sort(words, {}, &OptionWords::value_type::first);
@@ -204,15 +212,12 @@ Json state_of_words(const OptionWords& words) {
     if (key == state_keys.end() || values.empty()) continue;
     const std::string& first = values.front();
     const bool is_flag = key->kind == Kind::flag || (key->kind == Kind::place && first == "true");
-    const bool names_file = (key->kind == Kind::camera || key->kind == Kind::function || key->kind == Kind::surfaces);
-    if (names_file) {
+    if (key->kind == Kind::camera || key->kind == Kind::function) {
       try {
-        state[name] = key->kind == Kind::surfaces ? Json(surfaces_of(name, values))
-                      : key->kind == Kind::camera ? Json(camera_text(name, first))
-                                                  : Json(function_text(name, first));
+        state[name] = key->kind == Kind::camera ? Json(camera_text(name, first)) : Json(function_text(name, first));
       } catch (const Error&) {  // a file: states that say nothing have it all the same
       }
-    } else if (key->kind == Kind::list) {
+    } else if (key->kind == Kind::list || key->kind == Kind::surfaces) {
       state[name] = values;
     } else {
       state[name] = is_flag ? Json(true) : Json(first);

@@ -6,7 +6,7 @@
 #include <vector>
 
 /// States of `tessera serve` as words of `tessera render`. States come from the network: only options of the table are
-/// taken, none that reads or writes a file.
+/// taken, none that reads or writes a file; but the surface files that the server was started with may be named again.
 namespace tessera::apps {
 
 /// Options by their long names, each with its values; "true" of a bare flag.

@@ -71,6 +71,8 @@ Json histogram_answer(const ApiContext& context, const OpenScene& open, const Js
 Json function_answer(const ApiContext& context, const OpenScene& open);
 Json camera_answer(const OpenScene& open, const Json& body);
 Json probe_answer(const ApiContext& context, const OpenScene& open, const Json& body);
+/// Whether colors go by the logarithm: as the state has it, else as the server was started.
+bool is_logarithmic(const ApiContext& context, const OpenScene& open);
 
 // Work that takes long.
 

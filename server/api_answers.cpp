@@ -86,7 +86,8 @@ Json resolved(const ApiContext& context, const OpenScene& open) {
   const Dataset& data = open.held->data;
   const LoadedTransferFunction& loaded = context.stage.function(*open.held, *open.scene);
   const View view = open.scene->view(data);
-  Json state = open.state;
+  Json state = context.reader.base();
+  state.update(open.state);
   state["camera"] = server::json_of(view.camera);
   for (const char* view_word : {"view", "up", "azimuth", "elevation", "zoom", "fit", "projection", "orbit"})
     state.erase(view_word);
@@ -124,6 +125,11 @@ ProjectionKind projection_of(const Json& body, ProjectionKind otherwise) {
 }  // namespace
 
 Json json_of(const Camera& camera) { return Json::parse(camera_json({camera, std::nullopt})); }
+
+bool is_logarithmic(const ApiContext& context, const OpenScene& open) {
+  const auto said = open.state.find("log");
+  return said == open.state.end() ? context.reader.fixes("log") : *said == true;
+}
 
 Json data_answer(const ApiContext& context, const OpenScene& open) {
   const Dataset& data = open.held->data;
@@ -180,7 +186,7 @@ Json function_answer(const ApiContext& context, const OpenScene& open) {
           {"colors", std::move(colors)},
           {"opacities", std::move(opacities)},
           {"unit_distance", distance},
-          {"log", open.state.contains("log") && open.state["log"] == true},
+          {"log", is_logarithmic(context, open)},
           {"json", Json::parse(transfer_function_json(loaded.function))},
           {"paraview", Json::parse(paraview_json(loaded.function, distance, data.field_name()))},
           {"warnings", loaded.warnings}};

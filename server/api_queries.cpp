@@ -32,7 +32,7 @@ Json histogram_answer(const ApiContext& context, const OpenScene& open, const Js
   options.bins = static_cast<std::size_t>(whole_number(body, "bins", 256, 1, 4096));
   const auto visible = body.find("visible");
   if (visible != body.end() && *visible == true) options.seen = open.scene->view(open.held->data);
-  options.logarithmic = open.state.contains("log") && open.state["log"] == true;
+  options.logarithmic = is_logarithmic(context, open);
   const LoadedTransferFunction& loaded = context.stage.function(*open.held, *open.scene);
   if (loaded.range && (*loaded.range)[0] < (*loaded.range)[1] && body.contains("of_function"))
     options.range = loaded.range;

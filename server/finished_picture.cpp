@@ -8,6 +8,10 @@ namespace tessera::server {
 SharedBytes finished_picture(Image image, PictureFormat format, const Scene& scene, const View& view,
                              const Dataset& data, const TransferFunction& function) {
   if (scene.explains()) scene.explain(image, view, data, function);
+  return bare_picture(image, format, scene);
+}
+
+SharedBytes bare_picture(const Image& image, PictureFormat format, const Scene& scene) {
   const ImageFileOptions options = scene.image_options();
   const auto bytes = format == PictureFormat::png    ? png_bytes(image, options)
                      : format == PictureFormat::jpeg ? jpeg_bytes(image, options)

@@ -15,6 +15,9 @@ enum class PictureFormat { png, jpeg, exr };
 SharedBytes finished_picture(Image image, PictureFormat format, const Scene& scene, const View& view,
                              const Dataset& data, const TransferFunction& function);
 
+/// The same without the annotation.
+SharedBytes bare_picture(const Image& image, PictureFormat format, const Scene& scene);
+
 const char* media_type(PictureFormat format);
 
 }  // namespace tessera::server

@@ -168,6 +168,7 @@ ClientId Renderer::join(std::shared_ptr<Channel> channel) {
                               {"version", protocol_version},
                               {"tessera", version()},
                               {"latency", settings_.latency_ms},
+                              {"base", reader_.base()},
                               {"ready", first_came_.load()}}));
   if (const auto reading = stage_.reading()) channel->send_text(reading_text(*reading));
   return queue_.join(channel);
@@ -260,8 +261,10 @@ FrameOutcome Renderer::make_frame(const FrameOrder& order) {
   }
   const auto rendered_at = Clock::now();
   const PictureFormat format = order.level == Level::moving ? PictureFormat::jpeg : PictureFormat::png;
-  const SharedBytes bytes =
-      finished_picture(std::move(rendered.image), format, *scene, view, held->data, loaded.function);
+  // A smaller picture is enlarged, and its annotation would be with it: text has a least size.
+  const SharedBytes bytes = order.level == Level::moving ? bare_picture(rendered.image, format, *scene)
+                                                         : finished_picture(std::move(rendered.image), format, *scene,
+                                                                            view, held->data, loaded.function);
   const auto range = held->data.range();
   Json header = {
       {"type", "frame"},

@@ -72,7 +72,7 @@ class SceneReader {
   [[nodiscard]] virtual std::string worded(const std::string& message) const = 0;
   /// The command line that makes a state's picture. Throws as scene().
   virtual std::string command(const Json& state) = 0;
-  /// What the server was started with, as a state.
+  /// What the server was started with, as a state. From any thread.
   [[nodiscard]] virtual Json base() const = 0;
   /// Whether a state that says nothing of an option has it all the same, from there.
   [[nodiscard]] virtual bool fixes(const std::string& option) const = 0;

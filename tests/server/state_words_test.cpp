@@ -42,6 +42,22 @@ TEST(StateWords, HaveTextThatIsTrueAsText) {
             (std::vector<std::string>{"--annotate=true", "--half"}));
 }
 
+TEST(StateWords, HaveTextsThatLookLikeFlags) {
+  const Json state = Json::parse(R"({"annotate":["true"],"color-bar":true,"color-bar-title":"true","field":"true"})");
+  EXPECT_EQ(arguments_of(state_words({}, state)),
+            (std::vector<std::string>{"--annotate=true", "--color-bar", "--color-bar-title=true", "--field=true"}));
+}
+
+TEST(StateWords, NameFilesOfSurfacesThatTheServerWasStartedWith) {
+  const OptionWords base = {{"surface", {"a:b.stl:red", "boundary"}}};
+  EXPECT_EQ(state_of_words(base), Json::parse(R"({"surface":["a:b.stl:red","boundary"]})"));
+  const Json allowed = Json::parse(R"({"surface":["a:b.stl:blue:0.5"]})");
+  EXPECT_EQ(arguments_of(state_words(base, allowed)), (std::vector<std::string>{"--surface=a:b.stl:blue:0.5"}));
+  for (const char* text :
+       {R"({"surface":["b.stl"]})", R"({"surface":["a:b.stl.stl"]})", R"({"surface":["a:b.stl:c.ply:red"]})"})
+    EXPECT_THROW(state_words(base, Json::parse(text)), Error) << text;
+}
+
 TEST(StateWords, NameNoFilesAndNoOtherOptions) {
   for (const char* text : {R"({"camera":"view.json"})",
                            R"({"transfer-function":"/etc/passwd"})",
