@@ -4,7 +4,6 @@
 #include <sys/random.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 
 #include "tessera/error.hpp"
@@ -104,17 +103,23 @@ std::optional<std::string> query_value(std::string_view query, std::string_view 
   return std::nullopt;
 }
 
-Access::Access(const std::string& bound, const std::vector<std::string>& allowed_hosts)
-    : Access(random_hex(16), random_hex(4), bound, allowed_hosts) {}
-
-Access::Access(std::string token, const std::string& run, const std::string& bound,
-               const std::vector<std::string>& allowed_hosts)
-    : token_(std::move(token)), cookie_name_("tessera_" + run), bound_(lowered(bound)) {
-  for (const std::string& host : allowed_hosts) allowed_.push_back(lowered(host));
+bool lists_word(std::string_view list, std::string_view word) {
+  while (!list.empty()) {
+    std::string_view item = list.substr(0, list.find(','));
+    list.remove_prefix(std::min(item.size() + 1, list.size()));
+    while (item.starts_with(' ')) item.remove_prefix(1);
+    while (item.ends_with(' ')) item.remove_suffix(1);
+    if (same(item, word)) return true;
+  }
+  return false;
 }
 
-std::string Access::cookie(bool secure) const {
-  return fmt::format("{}={}; HttpOnly; SameSite=Strict{}", cookie_name_, token_, secure ? "; Secure" : "");
+Access::Access(const std::string& bound, const std::vector<std::string>& allowed_hosts)
+    : Access(random_hex(16), bound, allowed_hosts) {}
+
+Access::Access(std::string token, const std::string& bound, const std::vector<std::string>& allowed_hosts)
+    : token_(std::move(token)), bound_(lowered(bound)) {
+  for (const std::string& host : allowed_hosts) allowed_.push_back(lowered(host));
 }
 
 bool Access::allowed(std::string_view name) const {
@@ -126,32 +131,32 @@ bool Access::has_token(const Credentials& credentials) const {
   constexpr std::string_view bearer = "Bearer ";
   if (credentials.authorization.starts_with(bearer) && same(credentials.authorization.substr(bearer.size()), token_))
     return true;
-  std::string_view cookies = credentials.cookie;
-  while (!cookies.empty()) {
-    std::string_view pair = cookies.substr(0, cookies.find(';'));
-    cookies.remove_prefix(std::min(pair.size() + 1, cookies.size()));
-    while (pair.starts_with(' ')) pair.remove_prefix(1);
-    const std::size_t equals = pair.find('=');
-    if (equals != std::string_view::npos && pair.substr(0, equals) == cookie_name_ &&
-        same(pair.substr(equals + 1), token_))
-      return true;
-  }
-  return false;
+  return lists_word(credentials.protocols, "token." + token_);
+}
+
+std::optional<std::string> Access::page_refusal(std::string_view host) const {
+  const std::string name = host_name(host);
+  if (name.empty()) return "The request names no host; open the address that `tessera serve` printed.";
+  if (allowed(name)) return std::nullopt;
+  return fmt::format("This server does not answer to the name {0}; start it with --allow-host {0} to allow it.", name);
 }
 
 std::optional<std::string> Access::refusal(const Credentials& credentials) const {
-  const std::string name = host_name(credentials.host);
-  if (name.empty() || !allowed(name))
-    return "This server is not called so; start it with --allow-host and the name in the address to allow it.";
+  if (auto refusal = page_refusal(credentials.host)) return refusal;
   if (!credentials.origin.empty()) {
     const std::size_t scheme = credentials.origin.find("://");
     const std::string_view authority =
         scheme == std::string_view::npos ? std::string_view() : credentials.origin.substr(scheme + 3);
     const std::string_view port = credentials.origin.starts_with("https:") ? ":443" : ":80";
     const bool own = !authority.empty() && plain_authority(authority, port) == plain_authority(credentials.host, port);
-    const std::string origin_name = host_name(authority);
-    const bool named = !origin_name.empty() && std::ranges::find(allowed_, origin_name) != allowed_.end();
-    if (!own && !named) return "The request comes from a page of another server, which may not use this one.";
+    const std::string name = host_name(authority);
+    const bool named = !name.empty() && std::ranges::find(allowed_, name) != allowed_.end();
+    if (!own && !named && name.empty()) return "The request comes from a page without an address, which is refused.";
+    if (!own && !named)
+      return fmt::format(
+          "The page's address, {}, is not this server's, {}; if a proxy leads from one to the other, start the server "
+          "with --allow-host {}.",
+          authority, credentials.host, name);
   }
   if (!has_token(credentials))
     return "The token is missing or of another run; open the whole address that `tessera serve` printed.";

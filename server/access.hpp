@@ -7,39 +7,46 @@
 
 namespace tessera::server {
 
-/// What of a request decides whether it is answered, as it came.
+/// The headers and the query that decide whether a request is answered, as they came.
 struct Credentials {
-  std::string_view host, origin, cookie, authorization, query;
+  std::string_view host, origin, authorization, protocols, query;  ///< protocols: Sec-WebSocket-Protocol
 };
 
-/// Who may speak to the server: who has the token of this run, from a page that this server gave.
+/// The subprotocol of the WebSocket. A page offers it together with the token, which it cannot send in another header.
+constexpr std::string_view socket_protocol = "tessera";
+
+/// Who may use the server: who has the token of this run, from a page that this server gave.
 ///
-/// Token   128 random bits as hex. In the query (`?token=`), the cookie, or `Authorization: Bearer`.
+/// Token   128 random bits as hex: `Authorization: Bearer T`, `?token=T` in the query, or for a WebSocket the
+///         subprotocol `token.T`. Not a cookie: browsers send those to every port of the same machine.
 /// Host    a loopback name with any port (as behind an SSH tunnel), the address bound to, or an allowed name. Else a
 ///         page of another site, whose name was made to lead here, could speak to us as its own server.
-/// Origin  if there is one, the Host's, or of an allowed name: so that pages of other servers cannot use the cookie.
+/// Origin  if there is one, the Host's, or of an allowed name.
 class Access {
  public:
   /// Of a new run. `bound` is the address listened at.
   Access(const std::string& bound, const std::vector<std::string>& allowed_hosts);
-  /// With a token and a run's word of the caller's.
-  Access(std::string token, const std::string& run, const std::string& bound,
-         const std::vector<std::string>& allowed_hosts);
+  /// With the caller's token.
+  Access(std::string token, const std::string& bound, const std::vector<std::string>& allowed_hosts);
 
   [[nodiscard]] const std::string& token() const { return token_; }
-  /// `Set-Cookie`'s value. Without a path, so that it holds below whatever prefix a proxy adds.
-  [[nodiscard]] std::string cookie(bool secure) const;
 
   /// Why it is not answered, one sentence; nothing if it is.
   [[nodiscard]] std::optional<std::string> refusal(const Credentials& credentials) const;
+  /// The same for the files of the page. They are public: the page loads before it can send the token, and explains
+  /// itself what is refused.
+  [[nodiscard]] std::optional<std::string> page_refusal(std::string_view host) const;
 
  private:
   [[nodiscard]] bool allowed(std::string_view name) const;
   [[nodiscard]] bool has_token(const Credentials& credentials) const;
 
-  std::string token_, cookie_name_, bound_;
+  std::string token_, bound_;
   std::vector<std::string> allowed_;
 };
+
+/// Whether a comma-separated list of a header has this word.
+bool lists_word(std::string_view list, std::string_view word);
 
 /// The name of `name:port`, `[::1]:port` or a name alone, in small letters; empty if it is none of them.
 std::string host_name(std::string_view host);

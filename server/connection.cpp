@@ -54,7 +54,7 @@ using HttpResponse = http::response<SharedBody>;
 
 Credentials credentials_of(const HttpRequest& request, std::string_view query) {
   return {view_of(request[http::field::host]), view_of(request[http::field::origin]),
-          view_of(request[http::field::cookie]), view_of(request[http::field::authorization]), query};
+          view_of(request[http::field::authorization]), view_of(request[http::field::sec_websocket_protocol]), query};
 }
 
 /// Path and query of a target.
@@ -109,6 +109,10 @@ class Socket final : public std::enable_shared_from_this<Socket> {
     stream_.read_message_max(network_.limits.message_bytes);
     stream_.auto_fragment(false);
     request_ = std::move(request);
+    if (lists_word(view_of(request_[http::field::sec_websocket_protocol]), socket_protocol))
+      stream_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
+        response.set(http::field::sec_websocket_protocol, socket_protocol.data());
+      }));
     stream_.async_accept(request_, [self = shared_from_this()](error_code error) {
       if (!error) self->open();
     });
@@ -314,8 +318,12 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
       send(make_response(
           request_, is_api(*path) ? error_response(status, sentence) : page_response(status, sentence_page(sentence))));
     };
-    if (const auto refusal = network_.access.refusal(credentials_of(request_, query))) return refused(403, *refusal);
-    if (!admit()) {
+    const Credentials credentials = credentials_of(request_, query);
+    const auto refusal = network_.access.refusal(credentials);
+    // The files of the page are public.
+    if (const auto why = is_api(*path) ? refusal : network_.access.page_refusal(credentials.host))
+      return refused(403, *why);
+    if (!refusal && !admit()) {
       request_.keep_alive(false);
       return refused(503, "The server has as many connections as it takes; close other pages of it.");
     }
@@ -327,12 +335,9 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
       return send(make_response(request_, page_response(404, sentence_page("There is no such page."))));
     if (request_.method() != http::verb::get && request_.method() != http::verb::head)
       return send(make_response(request_, error_response(405, "Pages are read by GET.")));
-    HttpResponse response = make_response(
-        request_, {200, std::string(file->type),
-                   std::make_shared<const std::string>(request_.method() == http::verb::head ? "" : file->text)});
-    if (path->empty() && query_value(query, "token"))
-      response.set(http::field::set_cookie, network_.access.cookie(network_.secure));
-    send(std::move(response));
+    send(make_response(request_,
+                       {200, std::string(file->type),
+                        std::make_shared<const std::string>(request_.method() == http::verb::head ? "" : file->text)}));
   }
 
   void become_socket() {

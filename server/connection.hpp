@@ -34,7 +34,6 @@ struct Network {
   Service& service;
   NetworkLimits limits;
   boost::asio::thread_pool& parsing;  ///< messages of sockets are handled there, as a long one takes a while
-  bool secure = false;
   std::size_t connections = 0;       ///< of clients that have shown the token
   std::list<Stranger*> strangers{};  ///< the oldest first
   std::size_t writing = 0;           ///< responses and messages that are on their way

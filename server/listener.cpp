@@ -25,10 +25,7 @@ using boost::system::error_code;
 struct Listener::State {
   State(const NetworkOptions& options, const Access& access, Service& service)
       : network{access, service, options.limits, parsing} {
-    if (!options.certificate.empty()) {
-      tls = tls_context(options.certificate, options.key);
-      network.secure = true;
-    }
+    if (!options.certificate.empty()) tls = tls_context(options.certificate, options.key);
     listen_at(options.address, options.port);
     accept();
     thread = std::thread([this] { io.run(); });

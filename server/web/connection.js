@@ -10,7 +10,8 @@
  * @property {(header: FrameHeader, image: Uint8Array<ArrayBuffer>) => void} frame
  */
 import { back_off, decoded_frame } from "./frames.js";
-import { ask, Refused, StillReading } from "./requests.js";
+import { ask, ask_about, Refused, StillReading } from "./requests.js";
+import { token } from "./token.js";
 import { in_page_words } from "./wording.js";
 
 /** Where the socket is, beside the page. */
@@ -42,8 +43,13 @@ export class Connection {
   }
 
   open() {
+    if (!token()) {
+      this.listeners.status("refused", { sentence: "This tab has no token of the server." });
+      return;
+    }
     this.listeners.status("connecting", {});
-    const socket = new WebSocket(socket_address());
+    // A socket can send no header of its own but its protocols, and addresses are kept in logs.
+    const socket = new WebSocket(socket_address(), ["tessera", `token.${token()}`]);
     this.socket = socket;
     socket.binaryType = "arraybuffer";
     socket.onopen = () => {
@@ -119,8 +125,8 @@ export class Connection {
     this.asked_at = 0;
     // A socket does not say why it was not opened; a request does.
     try {
-      // A server that was started anew has another token, and says so.
-      if (!this.ended || this.tries > 0) await ask("api/data", AbortSignal.timeout(this.answer_time));
+      // A server that was started again has another token, and says so. By POST, which names the page's own address.
+      if (!this.ended || this.tries > 0) await ask_about("api/data", {}, AbortSignal.timeout(this.answer_time));
     } catch (error) {
       if (error instanceof Refused) {
         this.listeners.status("refused", { sentence: error.message });

@@ -69,7 +69,7 @@ export class DataPanel {
     this.blocks.hidden = names.length < 2;
     this.block_boxes = names.map((name) => ({ name, ...checkbox(name, () => this.#set_blocks()) }));
     this.blocks.replaceChildren(element("legend", {}, "Blocks"), ...this.block_boxes.map((b) => b.label),
-      element("div", { class: "buttons" }, button("All", () => this.page.history.change({ block: undefined }))));
+      element("div", { class: "buttons" }, button("All", () => this.page.set_option("block", undefined))));
   }
 
   #set_blocks() {
@@ -79,7 +79,7 @@ export class DataPanel {
       this.update();
       return;
     }
-    this.page.history.change({ block: chosen.length === this.block_boxes?.length ? undefined : chosen });
+    this.page.set_option("block", chosen.length === this.block_boxes?.length ? undefined : chosen);
   }
 
   update() {

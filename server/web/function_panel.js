@@ -44,6 +44,7 @@ export class FunctionPanel {
     this.editor = new FunctionEditor({
       edit: (edited, moving) => this.#edit(edited, moving),
       range: (range, moving) => this.#set_range(range, moving),
+      cancel: () => this.#cancel(),
       select: () => this.#show_selection(),
     });
     this.editor.log_opacity = preference("log-opacity", "no") === "yes";
@@ -220,12 +221,19 @@ export class FunctionPanel {
     this.#show_selection();
   }
 
+  /** What says the function: the state, or what the server was started with; undefined: the server chooses. @returns {any} */
+  get #word() {
+    const { history, started } = this.page;
+    return history.state["transfer-function"] ?? started["transfer-function"];
+  }
+
   /** Names of colours and opacities that are a preset's. @returns {[string | undefined, string | undefined]} */
   #words() {
-    const word = this.page.history.state["transfer-function"];
+    const word = this.#word;
     if (typeof word === "string") {
       const [name, shape] = word.split(":");
-      return [name, shape ?? this.page.data.opacities[0]];
+      const has_points = this.page.option("opacity-points");
+      return [name, has_points ? undefined : (shape ?? this.page.data.opacities[0])];
     }
     const { edited } = this.editor, shape = this.chosen_shape;
     const has_shape = edited && shape && same(edited.opacities.map(rounded), shape.opacities.map(rounded));
@@ -238,12 +246,12 @@ export class FunctionPanel {
    */
   async #choose(colors, shape) {
     const [name, old_shape] = this.#words();
-    const word = this.page.history.state["transfer-function"];
+    const word = this.#word;
     // The server's own function keeps its range, which a word would not.
     if (typeof word === "string" || (word !== undefined && colors === undefined && name !== undefined) || this.editor.edited === undefined) {
       const both = `${colors ?? name ?? "cool-warm"}:${shape ?? old_shape ?? "ramp"}`;
       if (both !== word) this.#hold(true); // what is drawn is the function before, until the server has answered
-      this.page.history.change({ "transfer-function": both });
+      this.page.history.change({ "transfer-function": both, ...(shape ? { "opacity-points": this.page.unset("opacity-points") } : {}) });
       return;
     }
     const state = { ...this.page.full_state(), opacity: null, "transfer-function": `${colors ?? "gray"}:${shape ?? "ramp"}`, range: this.editor.edited.range.join(",") };
@@ -262,6 +270,12 @@ export class FunctionPanel {
   #edit(edited, moving) {
     this.editor.edited = edited;
     this.page.history.change(functions.state_of(edited), { moving, name: "function" });
+    this.#show();
+  }
+
+  /** A drag that was taken away. */
+  #cancel() {
+    this.page.history.cancel();
     this.#show();
   }
 
@@ -302,8 +316,7 @@ export class FunctionPanel {
   /** @param {boolean} on */
   #set_bar(on) {
     const { page } = this;
-    const others = on ? {} : Object.fromEntries(["color-bar-title", "color-bar-range", "field-unit"].map((word) => [word, page.unset(word)]));
-    page.history.change({ "color-bar": on ? true : page.unset("color-bar"), ...others, ...this.#bar_scale(on, page.option("log") === true) });
+    page.history.change({ "color-bar": on ? page.switched_on("color-bar") : page.unset("color-bar"), ...this.#bar_scale(on, page.option("log") === true) });
   }
 
   /** @param {boolean} on */
@@ -312,10 +325,10 @@ export class FunctionPanel {
     const log = on ? true : this.page.unset("log");
     if (!edited) return;
     // A range that begins at or below zero has no logarithm: the server begins at the smallest positive value.
-    const range = on && !(edited.range[0] > 0) ? undefined : edited.range.join(",");
+    const range = on && !(edited.range[0] > 0) ? this.page.unset("range") : edited.range.join(",");
     const own = typeof this.page.history.state["transfer-function"] === "object";
     const points = own ? { "transfer-function": functions.state_of({ ...edited, log: on })["transfer-function"] } : {};
-    this.page.history.change({ log, ...this.#bar_scale(Boolean(this.page.option("color-bar")), on), ...points, ...(own || this.page.history.state.range ? { range } : {}) });
+    this.page.history.change({ log, ...this.#bar_scale(Boolean(this.page.option("color-bar")), on), ...points, ...(own || this.page.history.state.range || this.page.started.range ? { range } : {}) });
   }
 
   /** @param {boolean} moving */
@@ -338,7 +351,7 @@ export class FunctionPanel {
     const distance = parsed_number(text);
     if (!(distance > 0) && text.trim() !== "") return false;
     const own = this.page.history.state["transfer-function"];
-    const points = typeof own === "object" && distance > 0 ? { "transfer-function": { ...own, ScalarOpacityUnitDistance: distance }, "unit-distance": undefined }
+    const points = typeof own === "object" && distance > 0 ? { "transfer-function": { ...own, ScalarOpacityUnitDistance: distance }, "unit-distance": this.page.unset("unit-distance") }
       : { "unit-distance": distance > 0 ? String(distance) : undefined };
     this.page.history.change(points);
     return true;
@@ -410,7 +423,8 @@ export class FunctionPanel {
     const text = await chosen.text();
     this.file.value = "";
     const taken = await this.page.messages.of(Promise.resolve().then(() => functions.imported_function(text)), "import");
-    if (taken) this.page.history.change({ "transfer-function": taken, range: undefined, log: undefined });
+    const { page } = this;
+    if (taken) page.history.change({ "transfer-function": taken, range: page.unset("range"), log: page.unset("log") });
   }
 
   #export() {

@@ -21,11 +21,15 @@ import { dark, Page } from "./page.js";
 import { PicturePanel } from "./picture_panel.js";
 import { PictureView } from "./picture_view.js";
 import { ProbePanel } from "./probe_panel.js";
-import { LatestQuestion, Refused, StillReading } from "./requests.js";
+import { LatestQuestion, Refused, StillReading, Unfit } from "./requests.js";
 import { same, StateHistory } from "./state.js";
 import { StatusLine } from "./status_line.js";
+import { find_token, set_token } from "./token.js";
 import { ViewPanel } from "./view_panel.js";
+import { sentence_of } from "./wording.js";
 
+by_id("not-loaded").remove();
+find_token();
 const history = new StateHistory();
 const messages = new Messages();
 const view = new PictureView();
@@ -73,8 +77,17 @@ by_id("panel").append(
 const undo = icon_button("undo", "Undo (Ctrl Z)", () => history.undo(), { disabled: true });
 const redo = icon_button("redo", "Redo (Ctrl Shift Z)", () => history.redo(), { disabled: true });
 const panel_toggle = icon_button("panel", "Settings", () => show_panel(document.body.classList.contains("panel-closed")), { id: "panel-toggle", "aria-controls": "panel" });
-by_id("tools").append(undo, redo, icon_button("link", "Copy link (L)", () => void picture_panel.copy_link()), icon_button("command", "Copy command (C)", () => void picture_panel.copy_command()),
-  icon_button("save", "Save the picture", () => void picture_panel.save()), icon_button("help", "Keys (?)", show_help), panel_toggle);
+const picture_tools = [icon_button("link", "Copy link (L)", () => void picture_panel.copy_link()), icon_button("command", "Copy command (C)", () => void picture_panel.copy_command()),
+  icon_button("save", "Save the picture", () => void picture_panel.save())];
+by_id("tools").append(undo, redo, ...picture_tools, icon_button("help", "Keys (?)", show_help), panel_toggle);
+for (const tool of picture_tools) tool.disabled = true;
+
+/** There is something that controls can act on. */
+function wake_controls() {
+  for (const id of ["panel", "view-tools", "status"]) by_id(id).inert = false;
+  by_id("axes").removeAttribute("hidden");
+  for (const tool of picture_tools) tool.disabled = false;
+}
 
 /** @param {boolean} open */
 function show_panel(open) {
@@ -188,6 +201,7 @@ const connection = new Connection({
   status: show_connection,
   frame: (header, image) => void show_frame(header, image),
   message: (message) => {
+    if (message.type === "welcome" && !page.ready) page.take_start(message.base);
     if (message.type === "welcome" || message.type === "data") void load_data();
     else if (message.type === "reading") show_reading(message);
     else if (message.type === "progress") show_progress(message);
@@ -202,7 +216,7 @@ function show_connection(state, detail) {
   document.body.dataset.connection = state;
   clearInterval(countdown);
   if (state === "open") {
-    if (!banner.hidden) {
+    if (!banner.hidden && page.ready) {
       messages.clear_errors();
       messages.tell("The connection is back.");
     }
@@ -213,11 +227,9 @@ function show_connection(state, detail) {
     sender.closed();
     end_reading();
     const again = element("span");
-    const retry = button("Try now", () => connection.retry());
-    const refusal = detail.sentence ?? "The server refuses this page.";
-    const text = state === "refused" ? `${refusal}${/open the/i.test(refusal) ? "" : " Open the address that tessera serve printed."}`
+    const text = state === "refused" ? detail.sentence ?? "The server refuses this page."
       : state === "ended" ? `The server has ended. ${/^the server (was|has) ended/i.test(detail.sentence ?? "") ? "" : detail.sentence ?? ""}` : "The connection to the server is lost; the picture stays, and changes are shown once it is back.";
-    banner.replaceChildren(element("span", {}, text), " ", again, ...(state === "refused" ? [] : [retry]));
+    banner.replaceChildren(element("span", {}, text), " ", again, ...(state === "refused" ? refused_controls(text) : [button("Try now", () => connection.retry())]));
     banner.hidden = false;
     if (detail.retry_at !== undefined) {
       const tell = () => { again.textContent = `Next try in ${Math.max(0, Math.ceil((/** @type {number} */ (detail.retry_at) - performance.now()) / 1000))} s.`; };
@@ -227,6 +239,24 @@ function show_connection(state, detail) {
   }
 }
 let countdown = 0;
+
+/** What a page does that the server refuses: it takes another token, where that is the reason. @param {string} reason */
+function refused_controls(reason) {
+  const try_again = () => {
+    if (address && address.value.trim() !== "" && !set_token(address.value)) {
+      messages.complain("This is neither an address with a token nor a token; copy the line that tessera serve printed.", { about: "token" });
+      return;
+    }
+    messages.clear("token");
+    if (connection.is_open) void load_data();
+    else connection.retry();
+  };
+  const address = /token/.test(reason) && element("input", {
+    type: "text", autocomplete: "off", spellcheck: "false", "aria-label": "Address that tessera serve printed", placeholder: "the address that tessera serve printed",
+    on_keydown: (/** @type {KeyboardEvent} */ event) => event.key === "Enter" && try_again(),
+  });
+  return [address || "", button("Try again", try_again)];
+}
 
 let reading_delay = 0;
 
@@ -264,7 +294,8 @@ async function load_data() {
   try {
     const data = await page.ask_data();
     end_reading();
-    messages.clear("data");
+    if (start_error) messages.complain(`${start_error} The picture is made without that.`, { about: "data" });
+    else messages.clear("data");
     begin(data);
   } catch (error) {
     if (error instanceof StillReading) {
@@ -272,12 +303,20 @@ async function load_data() {
       reading_timer = window.setTimeout(() => void load_data(), 1000);
     } else if (error instanceof Refused) {
       show_connection("refused", { sentence: error.message });
+    } else if (error instanceof Unfit && !page.ready && page.leave_out_of_start()) {
+      start_error ||= sentence_of(error.message);
+      void load_data();
     } else {
       end_reading();
-      messages.complain(error instanceof Error ? error.message : String(error), { about: "data" });
+      const sentence = start_error || (error instanceof Error ? error.message : String(error));
+      if (!page.ready) page.take_start(page.whole_start);
+      start_error = "";
+      messages.complain(sentence, { about: "data", action: { text: "Try again", act: () => void load_data() } });
     }
   }
 }
+/** Why the file cannot be shown as the server was started; empty: it can. */
+let start_error = "";
 
 /** @param {import("./types.js").Data} data */
 function begin(data) {
@@ -299,6 +338,7 @@ function begin(data) {
     messages.complain(error instanceof Error ? error.message : String(error), { about: "link" });
   }
   page.ready = true;
+  wake_controls();
   history.begin(state);
   framing.begin();
   for (const panel of panels) panel.begin();
@@ -309,7 +349,6 @@ function begin(data) {
 
 const write_address = debounced(() => {
   const url = new URL(location.href);
-  url.searchParams.delete("token");
   url.hash = fragment_of(history.state);
   window.history.replaceState(null, "", url);
 }, 250);
@@ -445,11 +484,10 @@ document.addEventListener("keydown", (event) => {
 Object.assign(window, {
   tessera: {
     state: () => history.state, full_state: () => page.full_state(), shown: () => view.shown, bytes: () => view.bytes, latencies: (/** @type {boolean | undefined} */ stand_in) => status.latencies(stand_in),
-    change: (/** @type {import("./types.js").State} */ state) => history.change(state), link: () => picture_panel.link(), copied: () => picture_panel.copied, sent: () => sender.number,
+    change: (/** @type {import("./types.js").State} */ state) => history.change(state), undo: () => history.undo(), link: () => picture_panel.link(), copied: () => picture_panel.copied, sent: () => sender.number,
     connection, is_answered: () => functions.is_answered,
     at_rest: () => page.ready && !history.moving && !sender.waiting && sender.number > 0 && document.body.dataset.shown === `${sender.number} exact final`,
   },
 });
 
-by_id("reading").hidden = false;
 connection.open();

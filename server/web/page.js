@@ -8,6 +8,7 @@
  */
 import { save_file } from "./dom.js";
 import { short_bytes } from "./numbers.js";
+import { sent_state } from "./options.js";
 import { ask_about, LatestQuestion } from "./requests.js";
 import { length, subtract } from "./vector.js";
 
@@ -24,6 +25,10 @@ export class Page {
     /** Whether `data` is there. */
     this.ready = false;
     this.data = /** @type {Data} */ (/** @type {unknown} */ (undefined));
+    /** What the server was started with; null: left out, for with it nothing can be shown. @type {State} */
+    this.started = {};
+    /** All of it. @type {State} */
+    this.whole_start = {};
     /** Ranges of fields without threshold and cuts, by the options that say which field. @type {Map<string, [number, number]>} */
     this.whole_ranges = new Map();
     /** The box of all of the data, whatever is cut away. @type {[Vector, Vector]} */
@@ -32,20 +37,46 @@ export class Page {
     this.edited_function = () => undefined;
   }
 
-  /** An option as it is in force: the state's, else what the server began with. @param {string} word @returns {any} */
+  /** An option as it is in force: the state's, else what the server was started with, or chose. @param {string} word @returns {any} */
   option(word) {
-    const own = this.history.state[word];
-    return own !== undefined ? own : this.data?.defaults[word];
+    return [this.history.state, this.started, this.data?.defaults ?? {}].find((options) => options[word] !== undefined)?.[word];
   }
 
-  /** What the state says so that an option is off: nothing, or null where the server began with it on. @param {string} word */
+  /** What the state says so that an option is off: nothing, or null where the server was started with it. @param {string} word */
   unset(word) {
-    return this.data?.defaults[word] ? null : undefined;
+    return this.started[word] ? null : undefined;
+  }
+
+  /** What the state says so that an option is drawn: nothing where the server was started with it, perhaps with a place. @param {string} word */
+  switched_on(word) {
+    return this.started[word] ? undefined : true;
   }
 
   /** @param {string} word @param {any} value undefined: off */
   set_option(word, value) {
     this.history.change({ [word]: value === undefined ? this.unset(word) : value });
+  }
+
+  /** Of the server's start, as states take it away. @returns {State} */
+  get #left_out() {
+    return Object.fromEntries(Object.entries(this.started).filter(([, value]) => value === null));
+  }
+
+  /** Whether the first picture is shaded though nothing says so. */
+  get #is_shaded_unasked() {
+    return this.data?.defaults.shade === true && !this.started.shade;
+  }
+
+  get is_shaded() {
+    const { state } = this.history;
+    const unlit = state["no-shade"] !== undefined ? state["no-shade"] : this.started["no-shade"];
+    return !unlit && this.option("shade") === true;
+  }
+
+  /** @param {boolean} on */
+  shade(on) {
+    this.history.change(on ? { shade: this.#is_shaded_unasked ? undefined : this.switched_on("shade"), "no-shade": this.unset("no-shade") }
+      : { shade: this.unset("shade"), "no-shade": this.#is_shaded_unasked ? true : undefined });
   }
 
   /** @returns {Camera} */
@@ -60,7 +91,8 @@ export class Page {
 
   /** All that makes the picture. @returns {State} */
   full_state() {
-    return { ...this.history.state, background: this.background, camera: this.camera, size: size_word(this.view.size()) };
+    const state = { ...this.#left_out, ...this.history.state, background: this.background, camera: this.camera, size: size_word(this.view.size()) };
+    return sent_state(state, this.started, { shaded: this.#is_shaded_unasked });
   }
 
   /** Length of the data's diagonal, world units. */
@@ -98,7 +130,25 @@ export class Page {
 
   /** What there is, and what the server began with, its view framed for this window. @returns {Promise<Data>} */
   ask_data() {
-    return ask_about("api/data", { state: { size: size_word(this.view.size()) } });
+    return ask_about("api/data", { state: { ...this.#left_out, size: size_word(this.view.size()) } });
+  }
+
+  /** @param {State} options that the server was started with */
+  take_start(options) {
+    this.started = { ...options };
+    this.whole_start = options;
+  }
+
+  /**
+   * Leaves out what the server was started with and a file may be without: the field, then all that says what of the
+   * data is drawn.
+   * @returns {boolean} whether there was such an option
+   */
+  leave_out_of_start() {
+    const there = (/** @type {string} */ word) => this.started[word] !== undefined && this.started[word] !== null;
+    const words = there("field") ? ["field"] : ["time-step", "block", "smooth", "threshold", "clip"].filter(there);
+    for (const word of words) this.started[word] = null;
+    return words.length > 0;
   }
 
   /** A named view, by the server's code; "default" is what the server began with. @param {string} view */
@@ -118,7 +168,8 @@ export class Page {
   /** Another field; what was said in the values of the one before goes. @param {string | undefined} field undefined: the one that the server began with */
   set_field(field) {
     const own = this.history.state["transfer-function"];
-    this.history.change({ field, range: undefined, threshold: undefined, iso: undefined, "transfer-function": typeof own === "string" ? own : undefined });
+    const in_values = Object.fromEntries(["range", "threshold", "iso", "color-bar-range"].map((word) => [word, field === undefined ? undefined : this.unset(word)]));
+    this.history.change({ field, ...in_values, "transfer-function": typeof own === "string" ? own : undefined });
   }
 }
 

@@ -139,7 +139,7 @@ export class PicturePanel {
   }
 
   async copy_link() {
-    await this.#copy(this.link(), "Link copied. It opens for who has opened this server's own address once.");
+    await this.#copy(this.link(), "Link copied, without the token: another tab or browser is asked for the address that tessera serve printed.");
   }
 
   async copy_command() {

@@ -3,6 +3,7 @@
  *
  * @typedef {import("./types.js").State} State
  */
+import { token } from "./token.js";
 import { in_page_words } from "./wording.js";
 
 /** The data is still being read. */
@@ -14,8 +15,11 @@ export class StillReading extends Error {
   }
 }
 
-/** The token is not this server's. */
+/** The server refuses the page: the token is not its own, or the page's address is not. */
 export class Refused extends Error {}
+
+/** What was asked for is not in the data, or is wrong. */
+export class Unfit extends Error {}
 
 export const unreachable = "The server cannot be reached.";
 
@@ -23,7 +27,9 @@ export const unreachable = "The server cannot be reached.";
 async function answered(path, options) {
   let response;
   try {
-    response = await fetch(path, { credentials: "same-origin", ...options });
+    const headers = { Authorization: `Bearer ${token()}`, ...options?.headers };
+    // Cookies are a proxy's, where the page came through one.
+    response = await fetch(path, { credentials: "same-origin", ...options, headers });
   } catch (error) {
     if (error instanceof DOMException && error.name === "AbortError") throw error;
     throw new Error(unreachable);
@@ -32,7 +38,8 @@ async function answered(path, options) {
   const said = await response.json().catch(() => ({}));
   if (response.status === 503 && said.reading) throw new StillReading(said);
   const sentence = said.error ? in_page_words(said.error) : `The server answered ${response.status} to ${path}.`;
-  throw response.status === 403 ? new Refused(sentence) : new Error(sentence);
+  const Kind = response.status === 403 ? Refused : response.status === 400 ? Unfit : Error;
+  throw new Kind(sentence);
 }
 
 /** @param {string} path @param {AbortSignal} [signal] @returns {Promise<any>} */

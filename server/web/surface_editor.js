@@ -4,40 +4,53 @@
  * @typedef {import("./page.js").Page} Page
  * @typedef {{what: string, color?: string, opacity: number}} Surface what: a value of the field, "boundary", a name of a block or of a surface
  */
+import { hex_of } from "./colors.js";
 import { button, checkbox, choice, element, icon_button, show_value, typed } from "./dom.js";
 import { fraction_of, parsed_number, short_number } from "./numbers.js";
 import { color_at, hex_color } from "./transfer_function.js";
 
-/** @param {string} word @returns {Surface} */
-export function parsed_surface(word) {
-  // A block's name may hold colons; a colour and an opacity are known by their looks.
-  const [, what, color, opacity] = /^(.*?)(?::(#[0-9a-fA-F]{3,8}|[a-z]+)(?::([0-9.eE-]+))?)?$/s.exec(word) ?? ["", word];
-  return { what, color, opacity: opacity === undefined ? 1 : Number(opacity) };
+/**
+ * A name may hold colons, so of `names` the longest that the word begins with is its name. Of any other word a colour
+ * and an opacity are known by their looks.
+ * @param {string} word @param {string[]} [names] @returns {Surface}
+ */
+export function parsed_surface(word, names = []) {
+  const known = names.filter((name) => word === name || word.startsWith(`${name}:`)).sort((a, b) => b.length - a.length);
+  for (const what of [...known, undefined]) {
+    const rest = what === undefined ? word : word.slice(what.length);
+    const found = what === undefined ? look.exec(rest) : bare_look.exec(rest);
+    if (found) return { what: what ?? found.groups?.what ?? word, color: found.groups?.color, opacity: found.groups?.opacity === undefined ? 1 : Number(found.groups.opacity) };
+  }
+  return { what: word, opacity: 1 };
 }
+const colour_and_opacity = "(?::(?<color>#[0-9a-fA-F]{3,8}|[a-z]+|[0-9.eE+-]+(?:,[0-9.eE+-]+){2})?(?::(?<opacity>[0-9.eE-]+))?)?$";
+const bare_look = new RegExp(`^${colour_and_opacity}`, "s"), look = new RegExp(`^(?<what>.*?)${colour_and_opacity}`, "s");
 
 /** @param {Surface} surface */
-export const surface_word = ({ what, color, opacity }) => (color === undefined ? what : `${what}:${color}${opacity < 1 ? `:${opacity}` : ""}`);
+export const surface_word = ({ what, color, opacity }) => `${what}${color !== undefined || opacity < 1 ? `:${color ?? ""}` : ""}${opacity < 1 ? `:${opacity}` : ""}`;
 
-/** @param {any} value @returns {Surface[]} */
-const listed = (value) => (value ? [value].flat().map((word) => parsed_surface(String(word))) : []);
+/** @param {any} value @param {string[]} names @returns {Surface[]} */
+const listed = (value, names) => (value ? [value].flat().map((word) => parsed_surface(String(word), names)) : []);
 
 /** Surfaces of one option, a row each. */
 class SurfaceList {
   /**
    * @param {Page} page @param {"iso"|"surface"} option @param {(index: number, change: (what: string) => void) => HTMLInputElement | HTMLSelectElement} make_what
    * @param {(control: any, what: string) => void} show_what @param {(what: string) => string} own_color where none is said
+   * @param {() => string[]} [names] of what there is
    */
-  constructor(page, option, make_what, show_what, own_color) {
+  constructor(page, option, make_what, show_what, own_color, names = () => []) {
     this.page = page;
     this.option = option;
     this.make_what = make_what;
     this.show_what = show_what;
     this.own_color = own_color;
+    this.names = names;
     this.element = element("div", { class: "group" });
   }
 
   get surfaces() {
-    return listed(this.page.option(this.option));
+    return listed(this.page.option(this.option), this.names());
   }
 
   /** @param {Surface[]} surfaces @param {boolean} moving */
@@ -49,11 +62,7 @@ class SurfaceList {
   #change(index, change, moving) {
     const { surfaces } = this;
     if (!change) surfaces.splice(index, 1);
-    else {
-      surfaces[index] = { ...surfaces[index], ...change };
-      // An opacity is said behind a colour.
-      if (surfaces[index].opacity < 1) surfaces[index].color ??= this.own_color(surfaces[index].what);
-    }
+    else surfaces[index] = { ...surfaces[index], ...change };
     this.set(surfaces, moving);
   }
 
@@ -64,7 +73,7 @@ class SurfaceList {
     surfaces.forEach((surface, i) => {
       const [what, color, opacity] = this.element.children[i].querySelectorAll("input, select");
       this.show_what(what, surface.what);
-      show_value(/** @type {HTMLInputElement} */ (color), surface.color?.match(/^#[0-9a-f]{6}$/i) ? surface.color : this.own_color(surface.what));
+      show_value(/** @type {HTMLInputElement} */ (color), (surface.color && hex_of(surface.color)) || this.own_color(surface.what));
       show_value(/** @type {HTMLInputElement} */ (opacity), String(surface.opacity));
     });
   }
@@ -94,8 +103,12 @@ export class SurfaceEditor {
       return true;
     }), (input, what) => show_value(input, short_number(Number(what), 6)), (what) => this.#function_color(Number(what)));
     this.others = new SurfaceList(page, "surface", (_, change) => choice("", change, this.#names().map((name) => [name, name])),
-      (select, what) => { select.value = what; }, () => "#cccccc");
-    this.shade = checkbox("Shade the volume", (on) => page.set_option("shade", on ? true : undefined), "Lit by a light at the eye");
+      (select, what) => {
+        // A file that the server was started with has no name in the data.
+        if (![...select.options].some((option) => option.value === what)) select.append(element("option", { value: what }, what));
+        select.value = what;
+      }, () => "#cccccc", () => this.#names());
+    this.shade = checkbox("Shade the volume", (on) => page.shade(on), "Lit by a light at the eye");
     this.add_other = button("Add a surface", () => this.#add_other(), { title: "The mesh's boundary, a surface that the file names, or a block" });
     this.unseen = element("p", { class: "warning", role: "status", hidden: true });
     this.element = element("div", { class: "surfaces" }, this.isos.element, this.unseen, this.others.element,
@@ -110,7 +123,7 @@ export class SurfaceEditor {
   }
 
   #names() {
-    return [...new Set(["boundary", ...(this.page.data.surfaces ?? []), ...(this.page.data.blocks ?? [])])];
+    return [...new Set(["boundary", ...(this.page.data?.surfaces ?? []), ...(this.page.data?.blocks ?? [])])];
   }
 
   /** A surface at a value of the field. @param {number} [value] default: the middle of the function's range */
@@ -146,6 +159,6 @@ export class SurfaceEditor {
     this.isos.update();
     this.#tell_unseen();
     this.others.update();
-    this.shade.input.checked = this.page.option("shade") === true;
+    this.shade.input.checked = this.page.is_shaded;
   }
 }

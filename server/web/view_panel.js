@@ -5,6 +5,7 @@
  * @typedef {import("./types.js").Vector} Vector
  */
 import { is_perspective, rolled, with_angle, with_projection } from "./camera.js";
+import { hex_of } from "./colors.js";
 import { button, checkbox, choice, element, icon_button, row, show_value, typed } from "./dom.js";
 import { parsed_number, parsed_numbers, short_number } from "./numbers.js";
 
@@ -28,7 +29,7 @@ export class ViewPanel {
     const turn = (/** @type {number} */ degrees) => history.change({ camera: rolled(page.camera, (degrees * Math.PI) / 180) }, { name: "roll" });
     this.axes = choice("", (word) => page.set_option("axes", word === "none" ? undefined : word === "triad" ? true : word), [["none", "none"], ["triad", "directions"], ["box", "box"], ["both", "directions and box"]]);
     this.outline = checkbox("Outline", (on) => page.set_option("outline", on ? true : undefined), "The box of the data");
-    this.scale_bar = checkbox("Scale bar", (on) => page.set_option("scale-bar", on ? true : undefined));
+    this.scale_bar = checkbox("Scale bar", (on) => history.change({ "scale-bar": on ? page.switched_on("scale-bar") : page.unset("scale-bar") }));
     this.background = element("input", { type: "color", on_input: () => history.change({ background: this.background.value }, { moving: true }), on_change: () => history.change({ background: this.background.value }) });
     this.numbers = Object.fromEntries(["position", "focal_point", "view_up"].map((word) => [word, typed("", (text) => this.#type_vector(word, text))]));
     this.scale = typed("", (text) => this.#type_scale(text));
@@ -58,8 +59,8 @@ export class ViewPanel {
     this.axes.value = !axes ? "none" : axes === true ? "triad" : axes;
     this.outline.input.checked = Boolean(page.option("outline"));
     this.scale_bar.input.checked = Boolean(page.option("scale-bar"));
-    const background = page.background ?? "";
-    if (/^#[0-9a-f]{6}$/i.test(background)) show_value(this.background, background);
+    const background = hex_of(String(page.background ?? ""));
+    if (background) show_value(this.background, background);
     for (const [word, input] of Object.entries(this.numbers))
       show_value(input, /** @type {Vector} */ (camera[/** @type {"position"} */ (word)]).map((v) => short_number(v, 6)).join(", "));
     const line = this.scale.parentElement;

@@ -9,23 +9,27 @@ namespace {
 
 const std::string token = "0123456789abcdef0123456789abcdef";
 
-Access at_loopback(std::vector<std::string> allowed = {}) { return {token, "cafe", "127.0.0.1", std::move(allowed)}; }
+Access at_loopback(std::vector<std::string> allowed = {}) { return {token, "127.0.0.1", std::move(allowed)}; }
 
 /// Of a request that has the token and nothing odd.
 Credentials good() { return {"127.0.0.1:8080", "", "", "", "token=0123456789abcdef0123456789abcdef"}; }
 
-TEST(Access, TakesTheTokenFromQueryCookieOrHeaderAndNothingElse) {
+TEST(Access, TakesTheTokenFromQueryHeaderOrSubprotocolAndNothingElse) {
   const Access access = at_loopback();
   EXPECT_FALSE(access.refusal(good()));
   Credentials c = good();
   c.query = "";
   EXPECT_TRUE(access.refusal(c));
-  const std::string cookie = "other=1; tessera_cafe=" + token + "; more=2", wrong_run = "tessera_beef=" + token;
-  c.cookie = cookie;
-  EXPECT_FALSE(access.refusal(c));
-  c.cookie = wrong_run;
-  EXPECT_TRUE(access.refusal(c));
-  c.cookie = "";
+  for (const std::string& protocols : {"token." + token, "tessera, token." + token, " token." + token + " ,tessera"}) {
+    c.protocols = protocols;
+    EXPECT_FALSE(access.refusal(c)) << protocols;
+  }
+  for (const std::string& protocols : {std::string("tessera"), std::string("token."), "token." + token + "0",
+                                       "token." + token.substr(1), "xtoken." + token, token}) {
+    c.protocols = protocols;
+    EXPECT_TRUE(access.refusal(c)) << protocols;
+  }
+  c.protocols = "";
   const std::string bearer = "Bearer " + token;
   c.authorization = bearer;
   EXPECT_FALSE(access.refusal(c));
@@ -74,13 +78,29 @@ TEST(Access, RefusesPagesOfOtherServers) {
   EXPECT_FALSE(access.refusal(c));
 }
 
+TEST(Access, GivesThePageToWhoeverCallsTheServerByItsName) {
+  const Access access = at_loopback({"viz.example.org"});
+  for (const char* host : {"127.0.0.1:8080", "localhost", "viz.example.org"}) {
+    EXPECT_FALSE(access.page_refusal(host)) << host;
+  }
+  EXPECT_TRUE(access.page_refusal(""));
+}
+
+TEST(Access, NamesTheOptionThatAllowsAnAddress) {
+  const Access access = at_loopback();
+  Credentials c = good();
+  c.origin = "https://viz.example.org:8443";
+  EXPECT_NE(access.refusal(c).value_or("").find("--allow-host viz.example.org."), std::string::npos);
+  c.origin = "";
+  c.host = "Viz.example.org:80";
+  EXPECT_NE(access.refusal(c).value_or("").find("--allow-host viz.example.org "), std::string::npos);
+  EXPECT_EQ(access.refusal(c), access.page_refusal(c.host));
+}
+
 TEST(Access, MakesAnotherTokenOf128BitsEachTime) {
   const Access a("127.0.0.1", {}), b("127.0.0.1", {});
   EXPECT_EQ(a.token().size(), 32u);
   EXPECT_NE(a.token(), b.token());
-  EXPECT_NE(a.cookie(false), b.cookie(false));
-  EXPECT_NE(a.cookie(true).find("; HttpOnly; SameSite=Strict; Secure"), std::string::npos);
-  EXPECT_EQ(a.cookie(false).find("Path"), std::string::npos);
 }
 
 TEST(Access, DecodesQueries) {

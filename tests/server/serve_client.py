@@ -111,6 +111,8 @@ class WebSocket:
             self.rest += self._some()
         head, self.rest = self.rest.split(b"\r\n\r\n", 1)
         self.status = int(head.split()[1])
+        fields = [line.split(":", 1) for line in head.decode().split("\r\n")[1:]]
+        self.protocol = {name.lower(): value.strip() for name, value in fields}.get("sec-websocket-protocol")
 
     def _some(self):
         data = self.stream.recv(1 << 16)

@@ -125,6 +125,44 @@ def defaults_are_the_first_picture(file):
         check(said == unsaid, f"{file.name}: the defaults make another picture")
 
 
+def defaults_hold_the_start(file):
+    """What the server was started with is in the first picture's state, whoever asks for it, and in the welcome."""
+    words = ["--transfer-function", "viridis:rise", "--range", "0.2,0.9", "--opacity", "2", "--log", "--clip", "0,0,0,1,0,0",
+             "--iso", "0.5", "--background", "navy", "--color-bar=left", "--axes=both", "--outline", "--view", "front"]
+    with Server(options.tessera, file, *words) as server:
+        server.data()
+        with server.socket() as client:
+            base = client.receive()["base"]
+        check(base["background"] == "navy" and base["color-bar"] == "left" and base["view"] == "front", base)
+        for state in ({"size": "90x90"}, {"size": "90x90", "color-bar": None, "clip": ["0,0,0,0,1,0"]}):
+            _, _, unsaid = server.ask("POST", "/picture", {"state": state})  # which waits for the data
+            defaults = server.json("POST", "/api/data", {"state": state})["defaults"]
+            for word in set(base) - {"view"}:
+                check(defaults[word] == state.get(word, base[word]), f"{word}: {defaults}")
+            _, _, said = server.ask("POST", "/picture", {"state": defaults})
+            check(said == unsaid, f"{file.name}: the defaults make another picture")
+        function = server.json("POST", "/api/function", {"state": {"size": "90x90"}})
+        histogram = server.json("POST", "/api/histogram", {"state": {"size": "90x90"}})
+        check(function["log"] is True and histogram["log"] is True, "the logarithm is not known")
+        plain = server.json("POST", "/api/function", {"state": {"size": "90x90", "log": None}})
+        check(plain["log"] is False, "a logarithm that was taken away")
+
+
+def moving_frames_are_bare(file):
+    """What moves is shown small and enlarged, which nothing that explains the picture should be."""
+    with Server(options.tessera, file) as server:
+        state = dict(server.data()["defaults"], size="300x200")
+        shown = {"color-bar": True, "axes": "both", "outline": True, "scale-bar": True, "annotate": ["text"]}
+        pictures = []
+        for moving in (state, dict(state, **shown)):
+            with server.socket() as client:
+                client.state(1, moving, moving=True)
+                header, image = client.frame()
+                check(header["level"] == "moving", header)
+                pictures.append((header["width"], image))
+        check(pictures[0] == pictures[1], "a moving frame is annotated")
+
+
 def answers(file):
     with Server(options.tessera, file) as server:
         data = server.data()
@@ -265,6 +303,9 @@ def part_pictures():
     for file in files():
         pictures_of(file)
         defaults_are_the_first_picture(file)
+        moving_frames_are_bare(file)
+        if file.name != "cells.vtu":  # which has no iso-surface
+            defaults_hold_the_start(file)
         answers(file)
         if not options.without_mpi and file.name != "cells.vtu":
             pictures_of(file, MPIRUN)
@@ -285,14 +326,13 @@ def part_refusals():
     file = files()[0]
     with Server(options.tessera, file) as server:
         server.data()
-        paths = ["/", "/index.html", "/api/data", "/picture", "/socket", "/none"]
-        for path in paths:
+        for path in ("/api/data", "/picture", "/socket"):
             for headers, query in (({}, ""), ({"Authorization": "Bearer " + "0" * 32}, ""), ({}, "?token=" + "0" * 32),
-                                   ({"Cookie": "tessera_0=" + server.token}, "")):
+                                   ({"Cookie": "tessera=" + server.token}, ""),
+                                   ({"Sec-WebSocket-Protocol": "tessera, token." + "0" * 32}, "")):
                 status, answer, text = server.ask("GET", path + query, headers=headers, token=False)
                 check(status == 403, f"{path} {headers} {query}: {status}")
-                is_json = path not in ("/", "/index.html", "/none")
-                check(answer["Content-Type"].startswith("application/json" if is_json else "text/html"), answer)
+                check(answer["Content-Type"].startswith("application/json"), answer)
                 check(b"token" in text and server.token.encode() not in text, text)
             for headers in ({"Host": "evil.example"}, {"Host": f"127.0.0.1.evil.example:{server.port}"},
                             {"Origin": "http://evil.example"}, {"Origin": "null"},
@@ -302,15 +342,20 @@ def part_refusals():
                     check(server.socket(headers=headers).status == 403, headers)
         check(server.socket(token=False).status == 403, "a socket without a token")
         check(server.socket(headers={"Origin": f"http://127.0.0.1:{server.port}"}).status == 101, "our own page")
-        # The page's address gives a cookie that the rest is asked with.
-        status, headers, _ = server.ask("GET", f"/?token={server.token}", token=False)
-        cookie = headers["Set-Cookie"]
-        check(status == 200 and "HttpOnly" in cookie and "SameSite=Strict" in cookie and "Path" not in cookie, cookie)
-        for name, value in (("Cache-Control", "no-store"), ("X-Content-Type-Options", "nosniff"),
-                            ("Referrer-Policy", "no-referrer")):
-            check(headers[name] == value, headers)
-        check("default-src 'self'" in headers["Content-Security-Policy"], headers)
-        check(server.ask("GET", "/api/data", headers={"Cookie": cookie.split(";")[0]}, token=False)[0] == 200, "cookie")
+        offered = {"Sec-WebSocket-Protocol": f"tessera, token.{server.token}"}
+        with server.socket(token=False, headers=offered) as client:
+            check(client.status == 101 and client.protocol == "tessera" and client.receive()["type"] == "welcome", client.protocol)
+        # The page is public, and sets no cookie.
+        for path in ("/", f"/?token={server.token}", "/index.html", "/main.js"):
+            status, headers, text = server.ask("GET", path, headers={"Origin": "http://evil.example"}, token=False)
+            check(status == 200 and "Set-Cookie" not in headers and server.token.encode() not in text, f"{path}: {status} {headers}")
+            for name, value in (("Cache-Control", "no-store"), ("X-Content-Type-Options", "nosniff"),
+                                ("Referrer-Policy", "no-referrer")):
+                check(headers[name] == value, headers)
+            check("default-src 'self'" in headers["Content-Security-Policy"], headers)
+            status, _, text = server.ask("GET", path, headers={"Host": "evil.example"}, token=False)
+            check(status == 403 and b"--allow-host evil.example" in text, f"{path}: {status} {text}")
+        check(server.ask("GET", "/none", token=False)[0] == 404, "a page that there is none of")
         check(server.ask("GET", "/..%2f..%2fetc/passwd")[0] == 404, "a file that is none of the page")
         check(server.ask("DELETE", "/")[0] == 405, "a page deleted")
     with Server(options.tessera, file, "--allow-host", "viz.example.org") as server:
@@ -347,8 +392,6 @@ def part_tls():
         check(server.ask("GET", "/api/data", token=False)[0] == 403, "without the token")
         check(server.socket(headers={"Origin": f"https://127.0.0.1:{server.port}"}).status == 101, "our own page")
         check(server.socket(headers={"Origin": f"https://127.0.0.1:{server.port ^ 1}"}).status == 403, "another page")
-        _, headers, _ = server.ask("GET", f"/?token={server.token}", token=False)
-        check("Secure" in headers["Set-Cookie"], headers["Set-Cookie"])
         # Nothing is answered in the clear, nor by an old protocol, nor to who does not trust it; and it goes on.
         with socket.create_connection((server.host, server.port), timeout=HANG) as plain:
             plain.sendall(f"GET /?token={server.token} HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".encode())

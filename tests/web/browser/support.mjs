@@ -1,6 +1,7 @@
 // The server that is tested, a proxy that loses connections when told, and a browser that looks at them.
 import { spawn } from "node:child_process";
 import { existsSync } from "node:fs";
+import http from "node:http";
 import { createRequire } from "node:module";
 import net from "node:net";
 import { join } from "node:path";
@@ -82,6 +83,39 @@ export async function make_proxy(port) {
       server.close();
     },
   };
+}
+
+/**
+ * An HTTP proxy that puts a server below a path and names itself to it as the server's own host, as nginx's proxy_pass
+ * does unless it is told otherwise.
+ * @param {number} port @param {string} path like "/p", which is passed on with and without a slash behind it
+ */
+export async function make_rewriting_proxy(port, path = "") {
+  const target = ({ url }) => (url === path ? "/" : url.startsWith(`${path}/`) || url.startsWith(`${path}?`) ? url.slice(path.length).replace(/^\?/, "/?") : undefined);
+  const passed_on = (request) => ({ port, host: "127.0.0.1", path: target(request), method: request.method, headers: { ...request.headers, host: `127.0.0.1:${port}` } });
+  const server = http.createServer((request, response) => {
+    if (target(request) === undefined) return response.writeHead(404).end();
+    request.pipe(http.request(passed_on(request), (answer) => answer.pipe(response.writeHead(answer.statusCode, answer.headers))).on("error", () => response.destroy()));
+  });
+  server.on("upgrade", (request, socket, begun) => {
+    socket.on("error", () => {});
+    const asked = http.request(passed_on(request));
+    const head = (answer) => `HTTP/1.1 ${answer.statusCode} ${answer.statusMessage}\r\n${Object.entries(answer.headers).map(([name, value]) => `${name}: ${value}\r\n`).join("")}\r\n`;
+    asked.on("upgrade", (answer, other, first) => {
+      other.on("error", () => socket.destroy());
+      other.write(begun);
+      socket.write(head(answer));
+      socket.write(first);
+      other.pipe(socket).pipe(other);
+    });
+    asked.on("response", (answer) => {
+      socket.write(head(answer));
+      answer.pipe(socket);
+    });
+    asked.on("error", () => socket.destroy()).end();
+  });
+  await new Promise((done) => server.listen(0, "127.0.0.1", done));
+  return { port: server.address().port, end: () => (server.closeAllConnections(), server.close()) };
 }
 
 /** A page at rest: the latest state's exact picture is painted. @param {any} page */

@@ -1,0 +1,25 @@
+/** Colours of options as the browser's own controls have them. */
+
+/** sRGB of linear light, both 0 to 1. @param {number} linear */
+const encoded = (linear) => (linear <= 0.0031308 ? 12.92 * linear : 1.055 * linear ** (1 / 2.4) - 0.055);
+
+/**
+ * "#rrggbb" of an option's colour: that, a name of CSS, or R,G,B in linear light, where more than 1 is 1. Undefined for
+ * another word.
+ * @param {string} word @param {(name: string) => string | undefined} [named]
+ */
+export function hex_of(word, named = hex_of_name) {
+  if (/^#[0-9a-f]{6}$/i.test(word)) return word.toLowerCase();
+  const channels = word.split(",").map((text) => (text.trim() === "" ? Number.NaN : Number(text)));
+  if (channels.length === 3 && channels.every((c) => c >= 0))
+    return `#${channels.map((c) => Math.round(255 * encoded(Math.min(1, c))).toString(16).padStart(2, "0")).join("")}`;
+  return /^[a-z]+$/.test(word) ? named(word) : undefined;
+}
+
+/** By the browser. @param {string} name */
+function hex_of_name(name) {
+  if (!CSS.supports("color", name)) return undefined;
+  const context = /** @type {CanvasRenderingContext2D} */ (document.createElement("canvas").getContext("2d"));
+  context.fillStyle = name;
+  return /^#[0-9a-f]{6}$/.test(context.fillStyle) ? context.fillStyle : undefined;
+}
