@@ -9,9 +9,11 @@
  * @typedef {object} Wishes
  * @property {(edited: EditedFunction, moving: boolean) => void} edit
  * @property {(range: [number, number], moving: boolean) => void} range
+ * @property {() => void} cancel what moved goes back to where it rested
  * @property {(selection: Selection | undefined) => void} select
  */
 import { svg } from "./dom.js";
+import { nearest_handle } from "./handles.js";
 import { fraction_of, linear_ticks, log_ticks, opacity_at_height, opacity_height, short_number, value_of } from "./numbers.js";
 import * as functions from "./transfer_function.js";
 
@@ -42,7 +44,12 @@ export class FunctionEditor {
       class: "function-editor", role: "group",
       "aria-label": "Transfer function: opacity over the field's value. Points are moved with the arrow keys, added with Enter, removed with Delete.",
       on_dblclick: (/** @type {MouseEvent} */ e) => this.#add(e), on_keydown: (/** @type {KeyboardEvent} */ e) => this.#key(e),
+      on_pointerdown: (/** @type {PointerEvent} */ e) => this.#press(e),
     });
+    // A finger on a handle moves it; next to one it scrolls the panel. `touch-action` does not hold for parts of a drawing.
+    this.element.addEventListener("touchstart", (event) => {
+      if (event.touches.length === 1 && this.#handle_at(this.#place(event.touches[0]))) event.preventDefault();
+    }, { passive: false });
     new ResizeObserver(() => {
       // The drawing's unit is a pixel where the page's text has its usual size, and grows with that.
       const unit = Number.parseFloat(getComputedStyle(document.documentElement).fontSize) / usual_text;
@@ -202,7 +209,7 @@ export class FunctionEditor {
 
   /** @param {EditedFunction} edited */
   #outside(edited) {
-    const [left, right] = edited.range.map((v) => Math.max(margin.left, Math.min(this.width - margin.right, this.x_of(v))));
+    const [left, right] = edited.range.map((v) => this.#inside(this.x_of(v)));
     const shade = (/** @type {number} */ from, /** @type {number} */ to) =>
       svg("rect", { class: "outside", x: from, y: margin.top, width: Math.max(0, to - from), height: this.plot_height });
     return [shade(margin.left, left), shade(right, this.width - margin.right)];
@@ -224,7 +231,6 @@ export class FunctionEditor {
         "aria-valuetext": `${functions.hex_color(rgb)} at ${short_number(functions.value_at(edited, t))}`,
         on_focus: () => this.#selected("color", index) || (this.select({ kind: "color", index }), this.draw()),
       });
-      this.#drag(handle, { kind: "color", index });
       return handle;
     })];
   }
@@ -240,7 +246,6 @@ export class FunctionEditor {
         "aria-valuemin": 0, "aria-valuemax": 1, "aria-valuenow": opacity, "aria-valuetext": `opacity ${short_number(opacity)} at ${short_number(value)}`,
         on_focus: () => this.#selected("opacity", index) || (this.select({ kind: "opacity", index }), this.draw()),
       }, svg("circle", { r: 13, class: "reach" }), svg("circle", { r: 6, class: "dot", fill: functions.hex_color(functions.color_at(edited, t)) }));
-      this.#drag(group, { kind: "opacity", index });
       return group;
     });
   }
@@ -248,13 +253,12 @@ export class FunctionEditor {
   /** @param {EditedFunction} edited */
   #range_handles(edited) {
     return edited.range.map((value, end) => {
-      const x = Math.max(margin.left, Math.min(this.width - margin.right, this.x_of(value)));
+      const x = this.#inside(this.x_of(value));
       const group = svg("g", {
         class: "range-handle", tabindex: 0, role: "slider", "data-handle": `range-${end}`, transform: `translate(${x.toFixed(2)} 0)`,
         "aria-label": end === 0 ? "Low end of the range" : "High end of the range", "aria-valuenow": value, "aria-valuetext": short_number(value),
       }, svg("line", { y1: 10, y2: margin.top + this.plot_height }), svg("path", { d: end === 0 ? "M0 1h9v8h-3l-6 6z" : "M0 1h-9v8h3l6 6z" }),
       svg("rect", { x: end === 0 ? -4 : -14, y: -2, width: 18, height: 20, class: "reach" }));
-      this.#drag_range(group, end);
       return group;
     });
   }
@@ -268,60 +272,99 @@ export class FunctionEditor {
     return `${kind}-handle${this.#selected(kind, index) ? " selected" : ""}`;
   }
 
-  /** A place in the drawing. @param {MouseEvent} event */
+  /** A place in the drawing. @param {{clientX: number, clientY: number}} event */
   #place(event) {
     const box = this.element.getBoundingClientRect();
     return { x: ((event.clientX - box.left) / box.width) * this.width, y: ((event.clientY - box.top) / box.height) * height };
   }
 
+  /** All that can be taken hold of, where it is drawn. @returns {import("./handles.js").Handle[]} */
+  #handles() {
+    const { edited } = this;
+    if (!edited) return [];
+    const foot = margin.top + this.plot_height;
+    const points = edited.opacities.map(([t, opacity], i) => ({ name: `opacity-${i}`, x: this.x_of(functions.value_at(edited, t)), y: this.y_of(opacity), reach: 13 }));
+    const colors = edited.colors.map(([t], i) => ({ name: `color-${i}`, x: this.x_of(functions.value_at(edited, t)), y: foot + strip_height + 24, reach: 9 }));
+    const ends = edited.range.flatMap((value, end) => {
+      const x = this.#inside(this.x_of(value)), name = `range-${end}`;
+      return [{ name, x: x + (end === 0 ? 5 : -5), y: 6, reach: 13 }, { name, x, y: 10, foot, reach: 4, behind: 6 }];
+    });
+    return [...points, ...colors, ...ends].filter(({ name }) => this.element.querySelector(`[data-handle="${name}"]`));
+  }
+
+  /** @param {number} x */
+  #inside(x) {
+    return Math.max(margin.left, Math.min(this.width - margin.right, x));
+  }
+
+  /** @param {{x: number, y: number}} place */
+  #handle_at(place) {
+    const selected = this.selection && `${this.selection.kind}-${this.selection.index}`;
+    return nearest_handle(this.#handles(), place, selected)?.name;
+  }
+
+  /** @param {PointerEvent} event */
+  #press(event) {
+    const name = event.button === 0 && !this.dragging && this.#handle_at(this.#place(event));
+    if (!name) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const [kind, number] = name.split("-");
+    const index = Number(number);
+    if (kind === "opacity" || kind === "color") this.select({ kind, index });
+    const show = () => {
+      this.draw();
+      /** @type {SVGElement | null} */ (this.element.querySelector(`[data-handle="${name}"]`))?.focus({ preventScroll: true });
+    };
+    // A finger's touchstart comes after this, to what was pressed, which a drawing made again does not hold any more.
+    if (event.pointerType !== "touch") show();
+    this.#follow(event, show, (place, moving) => this.#pull(kind, index, place, moving));
+  }
+
   /**
-   * Follows a pointer that was pressed on `handle`, over redraws.
-   * @param {SVGElement} handle @param {(place: {x: number, y: number}, moving: boolean) => void} follow
+   * Follows a pointer that was pressed, over redraws.
+   * @param {PointerEvent} pressed @param {() => void} show what is held
+   * @param {(place: {x: number, y: number}, moving: boolean) => void} follow
    */
-  #follow(handle, follow) {
-    handle.addEventListener("pointerdown", (event) => {
-      if (event.button !== 0) return;
-      event.preventDefault();
-      event.stopPropagation();
-      handle.focus({ preventScroll: true });
-      this.dragging = true;
-      let moved = false;
-      const move = (/** @type {PointerEvent} */ e) => {
-        if (e.pointerId !== event.pointerId || (!moved && Math.hypot(e.clientX - event.clientX, e.clientY - event.clientY) < 2)) return;
-        moved = true;
-        follow(this.#place(e), true);
-      };
-      const end = (/** @type {PointerEvent} */ e) => {
-        if (e.pointerId !== event.pointerId) return;
-        window.removeEventListener("pointermove", move);
-        window.removeEventListener("pointerup", end);
-        window.removeEventListener("pointercancel", end);
-        this.dragging = false;
-        if (moved) follow(this.#place(e), false);
-        this.#choose_domain();
-        this.draw();
-      };
-      window.addEventListener("pointermove", move);
-      window.addEventListener("pointerup", end);
-      window.addEventListener("pointercancel", end);
-    });
+  #follow(pressed, show, follow) {
+    const begun = this.edited;
+    this.dragging = true;
+    let moved = false;
+    const move = (/** @type {PointerEvent} */ e) => {
+      if (e.pointerId !== pressed.pointerId || (!moved && Math.hypot(e.clientX - pressed.clientX, e.clientY - pressed.clientY) < 2)) return;
+      if (!moved) show();
+      moved = true;
+      follow(this.#place(e), true);
+    };
+    const end = (/** @type {PointerEvent} */ e) => {
+      if (e.pointerId !== pressed.pointerId) return;
+      window.removeEventListener("pointermove", move);
+      window.removeEventListener("pointerup", end);
+      window.removeEventListener("pointercancel", end);
+      this.dragging = false;
+      if (!moved && e.type === "pointerup") show();
+      // A drag that the browser took away has no place of its end.
+      if (moved && e.type === "pointercancel") {
+        this.edited = begun;
+        this.wishes.cancel();
+      } else if (moved) {
+        follow(this.#place(e), false);
+      }
+      this.#choose_domain();
+      this.draw();
+    };
+    window.addEventListener("pointermove", move);
+    window.addEventListener("pointerup", end);
+    window.addEventListener("pointercancel", end);
   }
 
-  /** @param {SVGElement} handle @param {Selection} selection */
-  #drag(handle, selection) {
-    this.#follow(handle, ({ x, y }, moving) => {
-      if (!this.edited) return;
-      const t = this.fraction_at(x), { kind, index } = selection;
-      const edited = kind === "opacity" ? functions.with_opacity(this.edited, index, t, this.opacity_at(y))
-        : functions.with_color(this.edited, index, t, this.edited.colors[index].slice(1));
-      this.#edit(edited, moving);
-    });
-    handle.addEventListener("pointerdown", () => this.select(selection));
-  }
-
-  /** @param {SVGElement} handle @param {number} end */
-  #drag_range(handle, end) {
-    this.#follow(handle, ({ x }, moving) => this.#move_end(end, this.value_at(Math.max(margin.left, Math.min(this.width - margin.right, x))), moving));
+  /** A handle to a place. @param {string} kind @param {number} index @param {{x: number, y: number}} place @param {boolean} moving */
+  #pull(kind, index, { x, y }, moving) {
+    if (!this.edited) return;
+    if (kind === "range") return this.#move_end(index, this.value_at(this.#inside(x)), moving);
+    const t = this.fraction_at(x);
+    this.#edit(kind === "opacity" ? functions.with_opacity(this.edited, index, t, this.opacity_at(y))
+      : functions.with_color(this.edited, index, t, this.edited.colors[index].slice(1)), moving);
   }
 
   /** @param {number} end @param {number} value @param {boolean} moving */
@@ -345,8 +388,8 @@ export class FunctionEditor {
 
   /** A point at a place of the drawing, or on its strip a colour. @param {MouseEvent} event */
   #add(event) {
-    if (!this.edited || (event.target instanceof Element && event.target.closest("[data-handle]"))) return;
     const { x, y } = this.#place(event);
+    if (!this.edited || this.#handle_at({ x, y })) return;
     const t = this.fraction_at(x);
     if (!(t > 0 && t < 1)) return;
     if (y > margin.top + this.plot_height + 3) this.add_color(t);

@@ -7,7 +7,7 @@
  * @property {State} state
  * @property {State} before
  * @property {boolean} moving more of it is to come
- * @property {"change"|"undo"|"redo"|"load"|"adjust"} cause
+ * @property {"change"|"cancel"|"undo"|"redo"|"load"|"adjust"} cause
  */
 
 /** Steps kept. */
@@ -67,6 +67,15 @@ export class StateHistory {
     this.moving = false;
     this.#remember(name);
     this.#tell({ state: this.state, before: this.state, moving: false, cause: "change" });
+  }
+
+  /** What moved goes back to where it rested. */
+  cancel() {
+    if (!this.moving) return;
+    const before = this.state;
+    this.state = this.at_rest;
+    this.moving = false;
+    this.#tell({ state: this.state, before, moving: false, cause: "cancel" });
   }
 
   /** Another state from outside, as one step. @param {State} state */

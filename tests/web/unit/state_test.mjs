@@ -52,6 +52,19 @@ test("undo in the middle of a drag goes back to before it", () => {
   assert.deepEqual(history.state, { x: 0 });
 });
 
+test("what moved and is cancelled goes back to where it rested, and is no step", () => {
+  const history = new StateHistory({ x: 0 });
+  history.change({ x: 1 });
+  const heard = [];
+  history.listen(({ state, moving, cause }) => heard.push([state.x, moving, cause]));
+  history.cancel();
+  history.change({ x: 5 }, { moving: true });
+  history.cancel();
+  assert.deepEqual(heard, [[5, true, "change"], [1, false, "cancel"]]);
+  history.undo();
+  assert.deepEqual(history.state, { x: 0 });
+});
+
 test("changes of one name at once are one step, later ones another", () => {
   let now = 0;
   const history = new StateHistory({ x: 0 }, () => now);
