@@ -2,9 +2,12 @@
  * What the file holds, what of it is drawn, and whether the mesh is sound.
  *
  * @typedef {import("./page.js").Page} Page
+ * @typedef {import("./mesh_check.js").Place} Place
  */
+import { centred } from "./camera.js";
 import { button, element } from "./dom.js";
-import { counted, short_number } from "./numbers.js";
+import { check_rows, check_sentence, place_name } from "./mesh_check.js";
+import { counted, short_number, short_place } from "./numbers.js";
 import { ask_about } from "./requests.js";
 import { in_page_words } from "./wording.js";
 
@@ -15,13 +18,13 @@ export class InformationPanel {
     this.facts = element("dl", { class: "facts" });
     this.notes = element("ul", { class: "notes" });
     this.check_button = button("Check the mesh", () => void this.#check(), { title: "As tessera info --check" });
-    this.result = element("dl", { class: "facts", "aria-live": "polite" });
+    this.result = element("div", { class: "group", "aria-live": "polite" });
     this.element = element("div", { class: "panel-body" }, this.facts, this.notes, element("div", { class: "buttons" }, this.check_button), this.result);
   }
 
   begin() {
     const { data } = this.page;
-    const vector = (/** @type {number[]} */ v) => v.map((n) => short_number(n, 4)).join(", ");
+    const vector = (/** @type {number[]} */ v) => v.map((n) => short_place(n, this.page.extent)).join(", ");
     const left_out = Object.entries(data.counts ?? {}).filter(([name, count]) => name !== "read" && count > 0);
     const lines = [
       ["File", data.file], ["Format", data.format], [data.kind === "mesh" ? "Cells" : "Samples", counted(data.cells ?? 0)],
@@ -44,23 +47,19 @@ export class InformationPanel {
 
   async #check() {
     this.check_button.disabled = true;
-    this.result.replaceChildren(element("dt", {}, "…"), element("dd", {}, "checking"));
+    this.result.replaceChildren(element("p", { class: "hint" }, "Checking …"));
     const reply = await this.page.messages.of(ask_about("api/check", { state: this.page.full_state() }), "check");
     this.check_button.disabled = false;
-    this.result.replaceChildren(...flattened(reply ?? {}).flatMap(([name, value]) => [element("dt", {}, name.replaceAll("_", " ")), element("dd", {}, value)]));
+    this.result.replaceChildren(...(reply ? [element("p", { class: "verdict", "data-clean": String(reply.clean) }, check_sentence(reply)), this.#table(reply)] : []));
+  }
+
+  /** What was found, a row each, and below it the first places. @param {Record<string, any>} reply */
+  #table(reply) {
+    const { page } = this;
+    const place = (/** @type {string} */ name, /** @type {Place} */ found) => element("tr", { class: "place" },
+      element("td", {}, button(place_name(name, found), () => page.history.change({ camera: centred(page.camera, found.at) }), { class: "plain", title: "Centre the view there" })),
+      element("td", {}, found.at.map((v) => short_place(v, page.extent)).join(", "), found.value !== undefined && ` (${short_number(found.value, 3)}:1)`));
+    return element("div", { class: "scrolled", tabindex: 0, role: "group", "aria-label": "What the check found" }, element("table", { class: "check" }, element("tbody", {}, ...check_rows(reply).flatMap(({ name, title, text, places }) =>
+      [element("tr", {}, element("th", { scope: "row" }, title), element("td", {}, text)), ...places.map((found) => place(name, found))]))));
   }
 }
-
-/** Names and values of what a reply holds, lists shortened. @param {any} value @param {string} [name] @returns {[string, string][]} */
-export function flattened(value, name = "") {
-  if (Array.isArray(value)) {
-    const simple = value.every((v) => typeof v !== "object" || v === null);
-    if (simple) return [[name, value.length > 0 ? value.slice(0, 8).map(text_of).join(", ") + (value.length > 8 ? ", …" : "") : "none"]];
-    return value.slice(0, 8).flatMap((v, i) => flattened(v, `${name} ${i + 1}`));
-  }
-  if (typeof value === "object" && value !== null) return Object.entries(value).flatMap(([word, v]) => flattened(v, name ? `${name}, ${word}` : word));
-  return [[name, text_of(value)]];
-}
-
-/** @param {any} value */
-const text_of = (value) => (typeof value === "number" ? (Number.isInteger(value) ? counted(value) : short_number(value, 5)) : value === true ? "yes" : value === false ? "no" : value === null ? "–" : String(value));

@@ -12,6 +12,16 @@ export function short_number(value, digits = 4) {
   return String(Number(value.toPrecision(digits)));
 }
 
+/**
+ * A coordinate to a hundred-thousandth of the data's size, wherever they lie.
+ * @param {number} value @param {number} extent length of the data's diagonal
+ */
+export function short_place(value, extent) {
+  if (Math.abs(value) < 1e-9 * extent) return "0";
+  const digits = Math.ceil(Math.log10(Math.abs(value) / extent)) + 5;
+  return short_number(value, Math.max(1, Math.min(15, digits)));
+}
+
 /** A count with thin spaces between thousands. @param {number} count */
 export const counted = (count) => String(Math.round(count)).replace(/\B(?=(\d{3})+$)/g, "\u202f");
 

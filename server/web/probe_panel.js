@@ -6,7 +6,7 @@
  */
 import { centred, project } from "./camera.js";
 import { button, by_id, element, svg } from "./dom.js";
-import { linear_ticks, short_number } from "./numbers.js";
+import { linear_ticks, short_number, short_place } from "./numbers.js";
 import { LatestQuestion } from "./requests.js";
 
 const plot = { width: 320, height: 150, left: 40, right: 30, top: 8, bottom: 24 };
@@ -64,7 +64,7 @@ export class ProbePanel {
   #show(reply, pixel) {
     this.point = reply.hit ? reply.point : undefined;
     this.value = reply.hit ? reply.value : undefined;
-    const vector = (/** @type {Vector} */ v) => v.map((n) => short_number(Math.abs(n) < 1e-9 * this.page.extent ? 0 : n, 5)).join(", ");
+    const vector = (/** @type {Vector} */ v) => v.map((n) => short_place(n, this.page.extent)).join(", ");
     const lines = reply.hit
       ? [["Value", short_number(reply.value, 6)], ["Point", vector(reply.point)], ["Depth", short_number(reply.depth, 5)],
         reply.half_value !== undefined && reply.half_value !== null && ["Half-way value", short_number(reply.half_value, 6)],

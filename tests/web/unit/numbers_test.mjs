@@ -13,6 +13,15 @@ test("numbers are short and keep their value", () => {
   assert.equal(numbers.counted(1234567), "1\u202f234\u202f567");
 });
 
+test("places are told apart within the data, wherever they lie", () => {
+  assert.equal(numbers.short_place(311335.843, 5000), "311335.8");
+  assert.equal(numbers.short_place(7479123.456, 50), "7479123.456");
+  assert.equal(numbers.short_place(-2062.4321, 5000), "-2062.4");
+  assert.equal(numbers.short_place(0.5, 2), "0.5");
+  assert.equal(numbers.short_place(1e-12, 2), "0");
+  assert.equal(numbers.short_place(1 / 3, 1), "0.33333");
+});
+
 test("times have their unit", () => {
   assert.equal(numbers.short_time(4.25), "4.3 ms");
   assert.equal(numbers.short_time(212.4), "212 ms");
