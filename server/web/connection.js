@@ -44,7 +44,7 @@ export class Connection {
 
   open() {
     if (!token()) {
-      this.listeners.status("refused", { sentence: "This tab has no token of the server." });
+      this.listeners.status("refused", { sentence: "This tab does not have the server's token; open the address that tessera serve printed, or paste it here." });
       return;
     }
     this.listeners.status("connecting", {});

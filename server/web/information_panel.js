@@ -56,10 +56,10 @@ export class InformationPanel {
   /** What was found, a row each, and below it the first places. @param {Record<string, any>} reply */
   #table(reply) {
     const { page } = this;
-    const place = (/** @type {string} */ name, /** @type {Place} */ found) => element("tr", { class: "place" },
-      element("td", {}, button(place_name(name, found), () => page.history.change({ camera: centred(page.camera, found.at) }), { class: "plain", title: "Centre the view there" })),
-      element("td", {}, found.at.map((v) => short_place(v, page.extent)).join(", "), found.value !== undefined && ` (${short_number(found.value, 3)}:1)`));
-    return element("div", { class: "scrolled", tabindex: 0, role: "group", "aria-label": "What the check found" }, element("table", { class: "check" }, element("tbody", {}, ...check_rows(reply).flatMap(({ name, title, text, places }) =>
+    const place = (/** @type {string} */ name, /** @type {Place} */ found) => element("tr", { class: "place" }, element("td", { colspan: 2 },
+      button(place_name(name, found), () => page.history.change({ camera: centred(page.camera, found.at) }), { class: "plain", title: "Centre the view there" }),
+      ` at ${found.at.map((v) => short_place(v, page.extent)).join(", ")}`, found.value !== undefined && `; ${short_number(found.value, 3)}:1`));
+    return element("div", { class: "scrolled", tabindex: 0, role: "group", "aria-label": "What the check found" }, element("table", { class: "findings" }, element("tbody", {}, ...check_rows(reply).flatMap(({ name, title, text, places }) =>
       [element("tr", {}, element("th", { scope: "row" }, title), element("td", {}, text)), ...places.map((found) => place(name, found))]))));
   }
 }

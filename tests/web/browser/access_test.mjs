@@ -76,7 +76,7 @@ test("no request but the page's own address has the token in its address", async
 
 test("a page without the token asks for it, and takes an address that is typed", async () => {
   const page = await opened(address.origin);
-  const banner = page.getByRole("alert").filter({ hasText: "no token" });
+  const banner = page.getByRole("alert").filter({ hasText: "does not have the server's token" });
   const field = banner.getByLabel("Address that tessera serve printed");
   await field.fill("nonsense");
   await field.press("Enter");
@@ -163,6 +163,7 @@ test("with that option it works behind the proxy, below a path", async () => {
     const bare = await opened(`http://localhost:${proxy.port}/p${printed.search}`);
     await bare.getByText("the address has to end with a slash").waitFor();
     assert.ok(await bare.getByText("--allow-host").isVisible());
+    assert.ok((await bare.getByText("--allow-host").boundingBox()).y < 500, "it is seen at once");
     await bare.context().close();
   } finally {
     proxy.end();

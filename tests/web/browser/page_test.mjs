@@ -477,7 +477,7 @@ test("the mesh is checked on request", async () => {
   const information = await opened_section("Information");
   await information.getByRole("button", { name: "Check the mesh" }).click();
   await information.getByText(/^The mesh is sound/).waitFor();
-  assert.ok((await information.locator(".check tr").count()) > 5);
+  assert.ok((await information.locator(".findings tr").count()) > 5);
 });
 
 test("an error is a sentence on the page, and undo mends it", async () => {
