@@ -6,6 +6,7 @@
 import { button, checkbox, choice, element, fill_choice, icon, icon_button, row, show_value, typed } from "./dom.js";
 import { ClipEditor } from "./clip_editor.js";
 import { DoubleSlider } from "./double_slider.js";
+import { field_named, field_words, split_field } from "./fields.js";
 import { parsed_number, short_number } from "./numbers.js";
 import { SurfaceEditor } from "./surface_editor.js";
 
@@ -42,11 +43,8 @@ export class DataPanel {
 
   begin() {
     const { data } = this.page;
-    const twice = (/** @type {string} */ name) => data.fields.filter((f) => f.name === name).length > 1;
-    const fields = data.fields.map((f) => {
-      const word = twice(f.name) ? `${f.association}:${f.name}` : f.name;
-      return /** @type {[string, string]} */ ([word, `${f.name} (${f.association}${f.components > 1 ? `, ${f.components} components` : ""})`]);
-    });
+    const words = field_words(data.fields);
+    const fields = data.fields.map((f, i) => /** @type {[string, string]} */ ([words[i], `${f.name} (${f.association}${f.components > 1 ? `, ${f.components} components` : ""})`]));
     // A file without a field that says something is shown as a shape, until one is chosen.
     fill_choice(this.field, data.field === null ? [["", "none: the shape"], ...fields] : fields);
     this.field_row.hidden = data.fields.length === 0;
@@ -86,13 +84,13 @@ export class DataPanel {
     const { page } = this;
     const [name, part] = this.#field_words();
     this.field.value = name;
-    const components = page.data.fields.find((f) => f.name === name.replace(/^(cell|point):/, ""))?.components ?? 1;
+    const found = field_named(name, page.data.fields);
+    const components = found?.components ?? 1;
     this.part.hidden = components < 2;
     const letters = components <= 3 ? ["x", "y", "z"].slice(0, components) : Array.from({ length: components }, (_, i) => String(i));
     fill_choice(this.part, [["mag", "length"], ...letters.map((w) => /** @type {[string, string]} */ ([w, w]))]);
     this.part.value = part || "mag";
     this.smooth.input.checked = page.option("smooth") === true;
-    const found = page.data.fields.find((f) => (name.includes(":") ? `${f.association}:${f.name}` : f.name) === name);
     this.smooth.input.disabled = found?.association === "point" && !this.smooth.input.checked;
     const step = this.current_step;
     show_value(this.step, String(step));
@@ -113,17 +111,13 @@ export class DataPanel {
   /** The field's name as options have it, and its component. @returns {[string, string]} */
   #field_words() {
     const { page } = this;
-    const word = String(page.option("field") ?? page.data.field ?? "");
-    const names = [...this.field.options].map((o) => o.value);
-    const found = names.find((n) => n === word) ?? names.find((n) => word.startsWith(`${n}:`))
-      ?? names.find((n) => n.endsWith(`:${word}`)) ?? names.find((n) => word === `cell:${n}` || word === `point:${n}`) ?? word;
-    return [found, word.startsWith(`${found}:`) ? word.slice(found.length + 1) : ""];
+    return split_field(String(page.option("field") ?? page.data.field ?? ""), field_words(page.data.fields));
   }
 
   /** @param {string} name */
   #choose_field(name) {
     if (name === "") return this.page.set_field(undefined);
-    const components = this.page.data.fields.find((f) => f.name === name.replace(/^(cell|point):/, ""))?.components ?? 1;
+    const components = field_named(name, this.page.data.fields)?.components ?? 1;
     this.page.set_field(components > 1 ? `${name}:mag` : name);
   }
 

@@ -7,6 +7,7 @@
  * @typedef {import("./types.js").Vector} Vector
  */
 import { save_file } from "./dom.js";
+import { field_named } from "./fields.js";
 import { short_bytes } from "./numbers.js";
 import { sent_state } from "./options.js";
 import { ask_about, LatestQuestion } from "./requests.js";
@@ -123,8 +124,7 @@ export class Page {
   /** The field's range, or 0 to 1 where it is not known. @returns {[number, number]} */
   get field_range() {
     const word = String(this.option("field") ?? this.data.field ?? "");
-    const name = word.replace(/^(cell|point):/, "");
-    const range = this.whole_ranges.get(this.#field_key) ?? this.data.fields.find((f) => f.name === name)?.range ?? this.data.range;
+    const range = this.whole_ranges.get(this.#field_key) ?? field_named(word, this.data.fields)?.range ?? this.data.range;
     return range && range[0] < range[1] ? range : [0, 1];
   }
 

@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { write_flow_series, write_flow_with_inlet } from "./flow_series.mjs";
-import { answered, at_rest, hang, launch, missing, serve, shown_bytes } from "./support.mjs";
+import { answered, at_rest, hang, launch, missing, run_command, serve, shown_bytes } from "./support.mjs";
 
 const reason = missing();
 if (reason) {
@@ -16,6 +16,7 @@ if (reason) {
 const folder = mkdtempSync(join(tmpdir(), "tessera-start-"));
 const with_inlet = write_flow_with_inlet(folder), series = write_flow_series(folder);
 writeFileSync(join(folder, "flag.stl"), "solid flag\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0.5\nvertex 2 0 0.5\nvertex 0 1 0.5\nendloop\nendfacet\nendsolid flag\n");
+const grid = join(folder, "ripples.vti");
 let browser, server, page;
 
 /** A page of a server that was started with these words. */
@@ -41,7 +42,10 @@ async function end() {
   server = undefined;
 }
 
-before(async () => { browser = await launch(); }, { timeout: hang });
+before(async () => {
+  await run_command("tessera generate ripples ripples.vti n=16", folder);
+  browser = await launch();
+}, { timeout: hang });
 
 after(async () => {
   await end();
@@ -159,6 +163,18 @@ test("opacities that the server was started with give way to those that are edit
   assert.equal((await full_state())["opacity-points"], null);
   assert.equal((await texts(["Shape"])).Shape, "ends");
 });
+
+for (const [word, lit] of [["--shade", true], ["--no-shade", false]])
+  test(`light on a volume that the server was started with is switched: ${word}`, async () => {
+    await begin([grid, word]);
+    const shade = control("Shade the volume", "input[type=checkbox]");
+    assert.equal(await shade.isChecked(), lit);
+    const first = await shown_bytes(page);
+    await shade.setChecked(!lit);
+    assert.ok(!(await shown_bytes(page)).equals(first));
+    await shade.setChecked(lit);
+    assert.ok((await shown_bytes(page)).equals(first));
+  });
 
 test("blocks and surfaces that the file names are in the panel, and so is the background of a dark page", async () => {
   await begin([with_inlet, "--block", "fluid", "--surface", "inlet:gold:0.5", "--background", "0,0,0"]);
