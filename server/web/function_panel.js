@@ -219,6 +219,7 @@ export class FunctionPanel {
     this.warning.hidden = warnings.length === 0;
     this.warning.textContent = warnings.map((line) => sentence_of(in_page_words(line))).join(" ");
     this.#show_selection();
+    this.page.function_shown();
   }
 
   /** What says the function: the state, or what the server was started with; undefined: the server chooses. @returns {any} */

@@ -54,6 +54,7 @@ function set_mode(word) {
 const functions = new FunctionPanel(page);
 page.edited_function = () => functions.editor.edited;
 const data_panel = new DataPanel(page);
+page.function_shown = () => data_panel.surfaces.update();
 const view_panel = new ViewPanel(page, { mode: () => mode, set_mode });
 const picture_panel = new PicturePanel(page, () => offer(false));
 const probe = new ProbePanel(page, (value) => data_panel.surfaces.add(value));

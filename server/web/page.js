@@ -34,6 +34,8 @@ export class Page {
     this.whole_ranges = new Map();
     /** The box of all of the data, whatever is cut away. @type {[Vector, Vector]} */
     this.whole_bounds = [[0, 0, 0], [1, 1, 1]];
+    /** Called when a function is shown, for parts that show its colours. */
+    this.function_shown = () => {};
     /** The colours that are edited, for parts that show one of them. @type {() => import("./transfer_function.js").EditedFunction | undefined} */
     this.edited_function = () => undefined;
   }
@@ -106,13 +108,18 @@ export class Page {
     return JSON.stringify([this.option("field") ?? null, this.option("time-step") ?? null, this.option("smooth") ?? null]);
   }
 
-  /** What there is now. What is cut away by the state's own options goes on to be in reach. @param {Data} data */
+  /** What there is now. What is cut away by options goes on to be in reach, once it has been seen. @param {Data} data */
   take_data(data) {
-    const cut = ["threshold", "clip", "block"].some((word) => this.option(word));
+    const cut = ["threshold", "clip", "block"].some((word) => this.option(word)), is_first = !this.data;
     this.data = { ...data, defaults: this.data?.defaults ?? data.defaults };
-    if (cut && this.whole_ranges.size > 0) return;
+    if (cut && !is_first) {
+      const [low, high] = this.whole_bounds;
+      const ends = (/** @type {Vector} */ own, /** @type {Vector} */ other, /** @type {(a: number, b: number) => number} */ end) => /** @type {Vector} */ (own.map((v, i) => end(v, other[i])));
+      this.whole_bounds = [ends(low, data.bounds[0], Math.min), ends(high, data.bounds[1], Math.max)];
+      return;
+    }
     this.whole_bounds = data.bounds;
-    if (data.range) this.whole_ranges.set(this.#field_key, data.range);
+    if (!cut && data.range) this.whole_ranges.set(this.#field_key, data.range);
   }
 
   /** Offers bytes as a file, and says so. @param {Blob} blob @param {string} name @param {string} [shape] of the picture */

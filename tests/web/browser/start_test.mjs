@@ -164,6 +164,13 @@ test("opacities that the server was started with give way to those that are edit
   assert.equal((await texts(["Shape"])).Shape, "ends");
 });
 
+test("an iso-surface without a colour has the function's, and a threshold spans the whole field", async () => {
+  await begin([series, "--field", "pressure", "--transfer-function", "viridis", "--iso", "0.25", "--threshold=-0.5,0.5"]);
+  assert.match((await texts(["Colour of iso-surface 1"]))["Colour of iso-surface 1"], /^#(?!cccccc)[0-9a-f]{6}$/);
+  const slid = Number(await control("Values, low end", "input[type=range]").inputValue());
+  assert.ok(slid > 100 && slid < 500, `${slid} of 1000`);
+});
+
 for (const [word, lit] of [["--shade", true], ["--no-shade", false]])
   test(`light on a volume that the server was started with is switched: ${word}`, async () => {
     await begin([grid, word]);
