@@ -140,8 +140,8 @@ class Socket final : public std::enable_shared_from_this<Socket> {
   /// What the service holds of it: no more than a weak word.
   class ClientChannel final : public Channel {
    public:
-    explicit ClientChannel(std::shared_ptr<Socket> socket)
-        : executor_(socket->stream_.get_executor()), socket_(std::move(socket)) {}
+    explicit ClientChannel(const std::shared_ptr<Socket>& socket)
+        : executor_(socket->stream_.get_executor()), socket_(socket) {}
     void send_text(std::string text) override {
       post([text = std::move(text)](Socket& socket) mutable { socket.send(std::move(text), {}, {}); });
     }

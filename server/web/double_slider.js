@@ -30,6 +30,8 @@ export class DoubleSlider {
     const span = limits[1] - limits[0] || 1;
     this.sliders.forEach((slider, i) => show_value(slider, String(Math.round(((ends[i] - limits[0]) / span) * 1000))));
     this.texts.forEach((text, i) => show_value(text, short_number(ends[i], 5)));
+    // Where both handles meet, the one that can still move lies on top.
+    this.sliders[0].style.zIndex = ends[0] - limits[0] > span / 2 ? "1" : "";
     this.track.style.setProperty("--low", String((ends[0] - limits[0]) / span));
     this.track.style.setProperty("--high", String((ends[1] - limits[0]) / span));
   }

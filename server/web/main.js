@@ -202,7 +202,10 @@ const connection = new Connection({
   status: show_connection,
   frame: (header, image) => void show_frame(header, image),
   message: (message) => {
-    if (message.type === "welcome" && !page.ready) page.take_start(message.base);
+    if (message.type === "welcome" && !same(message.base, page.whole_start)) {
+      page.take_start(message.base);
+      update_soon();
+    }
     if (message.type === "welcome" || message.type === "data") void load_data();
     else if (message.type === "reading") show_reading(message);
     else if (message.type === "progress") show_progress(message);

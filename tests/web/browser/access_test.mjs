@@ -100,13 +100,14 @@ test("a server that was started again at the same place is reached with its new 
   await at_rest(page);
   first.child.kill("SIGTERM");
   await first.ended;
-  const second = start([file, "--port", printed.port]);
+  const second = start([file, "--port", printed.port, "--axes"]);
   const renewed = await second.address;
   const refused = page.getByRole("alert").filter({ hasText: "missing or of another run" });
   await refused.getByLabel("Address that tessera serve printed").fill(renewed.href);
   await refused.getByRole("button", { name: "Try again" }).click();
   await at_rest(page);
   assert.equal(await page.evaluate(() => window.tessera.state().outline), true);
+  await page.waitForFunction(() => [...document.querySelectorAll("label")].find((label) => label.textContent === "Axes").control.value === "triad");
   await page.context().close();
 });
 

@@ -171,6 +171,26 @@ test("a drag that the browser takes away goes back to where it began", async () 
   no_errors();
 });
 
+test("of two handles that meet at an end of their slider the one that can move is taken", async () => {
+  await page.evaluate(() => window.tessera.change({ clip: ["box:311006.9,7479000,0,311007,7479002.25,2.25"] }));
+  await at_rest(page);
+  const data = page.locator("details.section", { has: page.locator('summary:text-is("Data")') });
+  await data.evaluate((section) => { section.open = true; });
+  const slider = data.locator(".clip .double-slider").first();
+  await slider.scrollIntoViewIfNeeded();
+  const track = await slider.boundingBox();
+  await page.mouse.move(track.x + track.width - 8, track.y + track.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(track.x + 0.5 * track.width, track.y + track.height / 2, { steps: 5 });
+  await page.mouse.up();
+  await page.waitForFunction(() => {
+    const [low, , , high] = window.tessera.state().clip[0].slice(4).split(",").map(Number);
+    return low < 311005 && high === 311007;
+  });
+  await page.evaluate(() => window.tessera.change({ clip: undefined }));
+  await at_rest(page);
+});
+
 test("the check of a mesh is a sentence and a table, and its places are looked at", async () => {
   const information = page.locator("details.section", { has: page.locator('summary:text-is("Information")') });
   await information.evaluate((section) => { section.open = true; });
