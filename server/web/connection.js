@@ -10,9 +10,11 @@
  * @property {(header: FrameHeader, image: Uint8Array<ArrayBuffer>) => void} frame
  */
 import { back_off, decoded_frame } from "./frames.js";
-import { ask, ask_about, Refused, StillReading } from "./requests.js";
+import { ask, ask_about, Refused, StillReading, Unfit } from "./requests.js";
 import { token } from "./token.js";
 import { in_page_words } from "./wording.js";
+
+const no_upgrade = "The server answers, but no WebSocket to it opens. A proxy in front of it has to pass on the headers Upgrade and Connection.";
 
 /** Where the socket is, beside the page. */
 function socket_address() {
@@ -36,6 +38,8 @@ export class Connection {
     /** When the first state was sent that nothing has been heard since; 0: none. */
     this.asked_at = 0;
     this.checking = false;
+    /** Whether a socket has ever been open. */
+    this.was_open = false;
     /** Milliseconds of silence after a state that are looked into, and within which a server answers a request. */
     this.silence = 20000;
     this.answer_time = 10000;
@@ -55,6 +59,7 @@ export class Connection {
     socket.onopen = () => {
       this.tries = 0;
       this.ended = "";
+      this.was_open = true;
       this.listeners.status("open", {});
     };
     socket.onmessage = ({ data }) => {
@@ -123,20 +128,24 @@ export class Connection {
 
   async #lost() {
     this.asked_at = 0;
+    let answers = false;
     // A socket does not say why it was not opened; a request does.
     try {
       // A server that was started again has another token, and says so. By POST, which names the page's own address.
       if (!this.ended || this.tries > 0) await ask_about("api/data", {}, AbortSignal.timeout(this.answer_time));
+      answers = true;
     } catch (error) {
       if (error instanceof Refused) {
         this.listeners.status("refused", { sentence: error.message });
         return;
       }
       if (error instanceof StillReading) this.tries = Math.min(this.tries, 2);
+      answers = error instanceof StillReading || error instanceof Unfit;
     }
+    const sentence = this.ended || (answers && !this.was_open ? no_upgrade : "");
     const delay = back_off(this.ended ? this.tries + 3 : this.tries);
     this.tries += 1;
-    this.listeners.status(this.ended ? "ended" : "lost", { sentence: this.ended, retry_at: performance.now() + delay });
+    this.listeners.status(this.ended ? "ended" : "lost", { sentence, retry_at: performance.now() + delay });
     this.timer = window.setTimeout(() => this.open(), delay);
   }
 }

@@ -232,7 +232,7 @@ function show_connection(state, detail) {
     end_reading();
     const again = element("span");
     const text = state === "refused" ? detail.sentence ?? "The server refuses this page."
-      : state === "ended" ? `The server has ended. ${/^the server (was|has) ended/i.test(detail.sentence ?? "") ? "" : detail.sentence ?? ""}` : "The connection to the server is lost; the picture stays, and changes are shown once it is back.";
+      : state === "ended" ? `The server has ended. ${/^the server (was|has) ended/i.test(detail.sentence ?? "") ? "" : detail.sentence ?? ""}` : detail.sentence || "The connection to the server is lost; the picture stays, and changes are shown once it is back.";
     banner.replaceChildren(element("span", {}, text), again, ...(state === "refused" ? refused_controls(text) : [button("Try now", () => connection.retry())]));
     banner.hidden = false;
     if (detail.retry_at !== undefined) {

@@ -171,6 +171,20 @@ test("with that option it works behind the proxy, below a path", async () => {
   }
 });
 
+test("behind a proxy that passes no WebSocket on the page says so", async () => {
+  const allowing = start([file, "--allow-host", "localhost"]);
+  const printed = await allowing.address;
+  const proxy = await make_rewriting_proxy(Number(printed.port), "", false);
+  try {
+    const page = await opened(`http://localhost:${proxy.port}/${printed.search}`);
+    await page.getByRole("alert").filter({ hasText: "pass on the headers Upgrade and Connection" }).waitFor();
+    assert.deepEqual(page.errors, []);
+    await page.context().close();
+  } finally {
+    proxy.end();
+  }
+});
+
 /** Presses all that can be seen of the page's controls, by mouse and by keys. */
 async function press_everything(page) {
   const places = await page.evaluate(() => [...document.querySelectorAll("button, input, select, summary, [role=button]")].map((c) => c.getBoundingClientRect()).filter((box) => box.width > 0 && box.bottom < innerHeight)
