@@ -71,13 +71,7 @@ void check_mesh_options(const std::filesystem::path& file, const ReadOptions& op
 
 /// The same note on every rank.
 void note_fill_value(exchange::Transport& transport, Dataset::State& state) {
-  const auto [low, high] = state.facts.scalar_range;
-  if (!scene::may_be_fill(low) && !scene::may_be_fill(high)) return;
-  scene::FillTally part, whole;
-  for (const double value : state.mesh.scalars) part.add(value);
-  for (const scene::FillTally& each : exchange::gather_values(transport, exchange::MessageKind::fill_tally, part))
-    whole.add(each);
-  std::optional<scene::FillValue> fill = whole.found();
+  std::optional<scene::FillValue> fill = frame::find_fill_value(transport, state.mesh, state.facts);
   if (!fill) return;
   const bool of_points = state.facts.association == Association::point;
   if (of_points && transport.size() > 1) fill->count = 0;  // parts have the points between them in common

@@ -1,6 +1,7 @@
 #include "frame/distributed_mesh.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -115,11 +116,20 @@ std::shared_ptr<const FieldOfAll> select_part(Transport& transport, const io::Me
   all->facts = agree_facts(transport, part, threads);
   // Samples go by the order that renderers give to corners, so that they are those of the whole.
   std::vector<scene::Tet> as_read = part.tets;
+  std::vector<double> values;
+  if (const auto fill = find_fill_value(transport, part, all->facts);
+      fill && fill->is_outside(options.selection.threshold)) {
+    all->facts.scalar_range = {fill->others.low, fill->others.high};
+    values = part.scalars;
+    for (double& value : part.scalars)  // no sample lies beside one
+      if (std::ranges::binary_search(fill->values, value)) value = std::numeric_limits<double>::quiet_NaN();
+  }
   RenderSettings settings;
   settings.threads = threads;
   order_corners(part, settings);
   all->samples = gather_field_samples(transport, part, numbered_by_rank(transport, part.tets.size()), all->facts);
   part.tets = std::move(as_read);
+  if (!values.empty()) part.scalars = std::move(values);
   io::select(part, options.selection, counts, source);
   return all;
 }

@@ -26,6 +26,16 @@ void Dataset::State::gather_field_samples(exchange::Transport& transport) {
 
 namespace frame {
 
+std::optional<scene::FillValue> find_fill_value(exchange::Transport& transport, const scene::TetMeshView& part,
+                                                const scene::MeshFacts& facts) {
+  const auto [low, high] = facts.scalar_range;
+  if (!scene::may_be_fill(low) && !scene::may_be_fill(high)) return std::nullopt;
+  scene::FillTally own, whole;
+  for (const double value : part.scalars) own.add(value);
+  for (const scene::FillTally& each : exchange::gather_values(transport, MessageKind::fill_tally, own)) whole.add(each);
+  return whole.found();
+}
+
 scene::FieldSamples gather_field_samples(exchange::Transport& transport, const scene::TetMeshView& part,
                                          std::span<const std::uint64_t> global_tet, const scene::MeshFacts& facts) {
   const scene::FieldSamples own = scene::sample_mesh(part, global_tet, facts);

@@ -31,17 +31,19 @@ void leave_fill_values_out(io::VolumeFile& volume, const std::filesystem::path& 
                            exchange::Transport& transport, std::shared_ptr<const volume::CellRanges>& ranges) {
   std::optional<scene::FillValue> fill = scene::find_fill_value(*volume.source, ranges->range);
   if (!fill) return;
-  if (!fill->is_huge()) {
+  const auto& threshold = options.selection.threshold;
+  if (fill->is_huge()) {
+    volume.notes.push_back(fmt::format("{} samples have the value {:.7g}, a fill value: they are blank", fill->count,
+                                       fmt::join(fill->values, " or ")));
+  } else if (!fill->is_outside(threshold)) {
     volume.notes.push_back(scene::words_on(*fill, "samples"));
     return;
   }
-  volume.notes.push_back(fmt::format("{} samples have the value {:.7g}, a fill value: they are blank", fill->count,
-                                     fmt::join(fill->values, " or ")));
   volume.source = std::make_unique<scene::ThresholdSource>(
       std::move(volume.source), std::array{fill->others.low, fill->others.high}, file.string());
   ranges = std::make_shared<const volume::CellRanges>(scan_together(transport, *volume.source, options.threads));
   fill = scene::find_fill_value(*volume.source, ranges->range);
-  if (fill && !fill->is_huge()) volume.notes.push_back(scene::words_on(*fill, "samples"));
+  if (fill && !fill->is_huge() && !fill->is_outside(threshold)) volume.notes.push_back(scene::words_on(*fill, "samples"));
 }
 
 void note_byte_order(io::VolumeFile& volume, const ReadOptions& options, const scene::ValueRange& range) {

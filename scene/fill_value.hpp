@@ -24,6 +24,11 @@ struct FillValue {
   ValueRange others;             ///< of all other values
   std::vector<double> values{};  ///< all, ascending
 
+  /// Whether a threshold leaves them out.
+  [[nodiscard]] bool is_outside(const std::optional<std::array<double, 2>>& threshold) const {
+    return threshold && !(value >= (*threshold)[0] && value <= (*threshold)[1]);
+  }
+
   /// No quantity is likely to have it: it may be left out without asking.
   [[nodiscard]] bool is_huge() const { return std::abs(value) >= huge_value; }
 };

@@ -16,6 +16,15 @@ VIEW = (
 )
 CAMERAS = f"[{VIEW.format(16)}, {VIEW.format(32)}]"
 
+# As --report writes it, with what --like looks at.
+REPORT = (
+    '{"method": {"blend": "linear", "emission": "absorption", "shade": false},'
+    ' "mesh": {"field": {"name": "f", "association": "point"}, "fields": []},'
+    ' "transfer_function": {"knots": [[0, 1, 0, 0, 1], [1, 0, 0, 1, 2]]},'
+    ' "frames": [{"view": {"position": [0, 0, 9], "focal_point": [0, 0, 0], "view_up": [0, 1, 0],'
+    ' "parallel_scale": 2, "size": [16, 16]}}]}'
+)
+
 BROKEN = "#!/bin/sh\nexit 1\n"
 
 ROWS = [
@@ -42,6 +51,27 @@ ROWS = [
     row("convert v.vti a.png", "choose .vti, .vtr, .nrrd", "convert v.vti a.nrrd"),
     row("convert v.vti a.vti --clip 0,0,0,1,0,0", "leave it out", "convert v.vti a.vti"),
     row("convert m.vtu m.vtu", "choose another name", "convert m.vtu b.vtu"),
+    row(
+        R + "--config c.toml --report link.json",
+        "is an input of this run and would be overwritten; choose another name",
+        R + "--config c.toml --report r.json",
+        {"c.toml": "opacity = 2\n", "link.json": ("link", "c.toml")},
+    ),
+    row(
+        R + "--like like.json",
+        "give a file that --report has written",
+        R + "--like r.json",
+        {"like.json": '{"frames": 1}'},
+        {"r.json": REPORT},
+    ),
+    row(
+        R + "--like like.json",
+        "no frame was rendered; give another report",
+        R + "--like r.json",
+        {"like.json": REPORT.replace("[{", "[], \"more\": [{")},
+        {"r.json": REPORT},
+    ),
+    row(R, "ulimit -s 8192", R, {}, {"any": ""}, limits="ulimit -s 256"),
     row(
         "convert m.vtu b.pvtu --pieces 2 --partition best",
         "use curve, file or random",

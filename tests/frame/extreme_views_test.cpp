@@ -118,6 +118,51 @@ TEST(ExtremeViews, OfGridsAreDrawnOrRefused) {
   EXPECT_GT(draw_any(grid, settings, 5, 500), 100u);
 }
 
+/// A function in which some numbers are anything.
+TransferFunction any_function(Random& random) {
+  const auto number = [&](double usual) { return random.uniform() < 0.15 ? any_magnitude(random) : usual; };
+  std::vector<Knot> knots;
+  double value = number(random.uniform(-0.5, 0.5));
+  for (std::uint64_t i = 0, count = 1 + random.below(6); i < count; ++i) {
+    knots.push_back({value,
+                     {number(random.uniform()), number(random.uniform()), number(random.uniform())},
+                     std::abs(number(random.uniform(0, 5)))});
+    value += std::abs(number(random.uniform(0, 0.5)));
+  }
+  return TransferFunction(std::move(knots));
+}
+
+/// How many of `count` functions were drawn.
+std::size_t draw_any_function(const Dataset& data, const Settings& settings, std::uint64_t seed, std::size_t count) {
+  Random random(seed);
+  Session session(data, settings);
+  const View view{data.default_camera({33, 21}), {33, 21}};
+  std::size_t drawn = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    try {
+      const RenderedFrame frame = session.render(view, any_function(random), {});
+      ++drawn;
+      for (const float value : frame.image.rgba) {
+        EXPECT_TRUE(std::isfinite(value)) << "function " << i;
+        if (!std::isfinite(value)) return drawn;
+      }
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::bad_input) << "function " << i << ": " << error.what();
+    }
+  }
+  return drawn;
+}
+
+TEST(ExtremeFunctions, AreDrawnOrRefused) {
+  const Dataset grid = tests::grid_of(6, [](const glm::dvec3& p) { return 0.5 + 0.4 * std::sin(p.x + 2 * p.y * p.z); });
+  Settings independent;
+  independent.emission = Emission::independent;
+  for (const Settings& settings : {Settings(), independent}) {
+    EXPECT_GT(draw_any_function(mesh_scaled_by(1), settings, 6, 600), 30u);
+    EXPECT_GT(draw_any_function(grid, settings, 7, 600), 30u);
+  }
+}
+
 // A scale of a few subnormal numbers had pixels of infinite size, and tiles of no number.
 TEST(ExtremeViews, PixelsWithoutASizeAreRefused) {
   const Dataset mesh = mesh_scaled_by(1);

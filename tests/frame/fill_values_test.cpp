@@ -62,6 +62,9 @@ TEST(FillValues, UsualOnesAreNotedWithTheThresholdThatLeavesThemOut) {
   const Dataset without = Dataset::open(file, options);
   EXPECT_EQ(without.range(), (std::array<double, 2>{4, 63}));
   EXPECT_EQ(note_with(without, "fill value"), "");
+  // What it leaves out beside them changes no colour.
+  options.selection.threshold = {{20, 30}};
+  EXPECT_EQ(Dataset::open(file, options).range(), (std::array<double, 2>{4, 63}));
   EXPECT_EQ(note_with(Dataset::open(volume_with(folder, -70)), "fill value"), "");
 }
 
@@ -87,6 +90,10 @@ TEST(FillValues, OfMeshesAreNotedToo) {
   options.field = "p";
   const Dataset data = Dataset::open(folder.write("m.vtu", mesh_with_fill), options);
   EXPECT_NE(note_with(data, "1 tets have the value -9999, ").find("`threshold` 1.98,4.02 leaves"), std::string::npos);
+  for (const std::array<double, 2>& threshold : {std::array{1.98, 4.02}, std::array{2.5, 3.5}}) {
+    options.selection.threshold = threshold;
+    EXPECT_EQ(Dataset::open(folder / "m.vtu", options).range(), (std::array{2.0, 4.0}));
+  }
 }
 
 TEST(FillValues, OfMeshesInPartsAreNotedOnceForTheWhole) {
