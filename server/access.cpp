@@ -131,6 +131,7 @@ bool Access::has_token(const Credentials& credentials) const {
   constexpr std::string_view bearer = "Bearer ";
   if (credentials.authorization.starts_with(bearer) && same(credentials.authorization.substr(bearer.size()), token_))
     return true;
+  if (same(credentials.token, token_)) return true;
   return lists_word(credentials.protocols, "token." + token_);
 }
 

@@ -10,6 +10,7 @@ namespace tessera::server {
 /// The headers and the query that decide whether a request is answered, as they came.
 struct Credentials {
   std::string_view host, origin, authorization, protocols, query;  ///< protocols: Sec-WebSocket-Protocol
+  std::string_view token{};                                        ///< X-Tessera-Token
 };
 
 /// The subprotocol of the WebSocket. A page offers it together with the token, which it cannot send in another header.
@@ -17,8 +18,9 @@ constexpr std::string_view socket_protocol = "tessera";
 
 /// Who may use the server: who has the token of this run, from a page that this server gave.
 ///
-/// Token   128 random bits as hex: `Authorization: Bearer T`, `?token=T` in the query, or for a WebSocket the
-///         subprotocol `token.T`. Not a cookie: browsers send those to every port of the same machine.
+/// Token   128 random bits as hex: `Authorization: Bearer T`, `X-Tessera-Token: T` where a proxy uses Authorization
+///         itself, `?token=T` in the query, or for a WebSocket the subprotocol `token.T`. Not a cookie: browsers send
+///         those to every port of the same machine.
 /// Host    a loopback name with any port (as behind an SSH tunnel), the address bound to, or an allowed name. Else a
 ///         page of another site, whose name was made to lead here, could speak to us as its own server.
 /// Origin  if there is one, the Host's, or of an allowed name.

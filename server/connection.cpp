@@ -53,8 +53,12 @@ struct SharedBody {
 using HttpResponse = http::response<SharedBody>;
 
 Credentials credentials_of(const HttpRequest& request, std::string_view query) {
-  return {view_of(request[http::field::host]), view_of(request[http::field::origin]),
-          view_of(request[http::field::authorization]), view_of(request[http::field::sec_websocket_protocol]), query};
+  return {view_of(request[http::field::host]),
+          view_of(request[http::field::origin]),
+          view_of(request[http::field::authorization]),
+          view_of(request[http::field::sec_websocket_protocol]),
+          query,
+          view_of(request["X-Tessera-Token"])};
 }
 
 /// Path and query of a target.

@@ -23,13 +23,25 @@ export class Unfit extends Error {}
 
 export const unreachable = "The server cannot be reached.";
 
+/** A proxy that asks for a password of its own takes Authorization for itself. */
+let behind_password = false;
+
+/** @param {string} path @param {RequestInit} [options] @returns {Promise<Response>} */
+async function fetched(path, options) {
+  const headers = { ...(behind_password ? { "X-Tessera-Token": token() } : { Authorization: `Bearer ${token()}` }), ...options?.headers };
+  // Cookies and passwords are a proxy's, where the page came through one.
+  return fetch(path, { credentials: "same-origin", ...options, headers });
+}
+
 /** @param {string} path @param {RequestInit} [options] @returns {Promise<Response>} */
 async function answered(path, options) {
   let response;
   try {
-    const headers = { Authorization: `Bearer ${token()}`, ...options?.headers };
-    // Cookies are a proxy's, where the page came through one.
-    response = await fetch(path, { credentials: "same-origin", ...options, headers });
+    response = await fetched(path, options);
+    if (response.status === 401 && !behind_password) {
+      behind_password = true;
+      response = await fetched(path, options);
+    }
   } catch (error) {
     if (error instanceof DOMException && error.name === "AbortError") throw error;
     throw new Error(unreachable);

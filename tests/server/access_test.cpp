@@ -30,6 +30,11 @@ TEST(Access, TakesTheTokenFromQueryHeaderOrSubprotocolAndNothingElse) {
     EXPECT_TRUE(access.refusal(c)) << protocols;
   }
   c.protocols = "";
+  c.token = token;
+  EXPECT_FALSE(access.refusal(c));
+  c.token = "0123456789abcdef0123456789abcdee";
+  EXPECT_TRUE(access.refusal(c));
+  c.token = "";
   const std::string bearer = "Bearer " + token;
   c.authorization = bearer;
   EXPECT_FALSE(access.refusal(c));

@@ -171,10 +171,23 @@ test("with that option it works behind the proxy, below a path", async () => {
   }
 });
 
+test("behind a proxy that asks for a password it works", async () => {
+  const allowing = start([file, "--allow-host", "localhost"]);
+  const printed = await allowing.address;
+  const proxy = await make_rewriting_proxy(Number(printed.port), "", { password: "me:secret" });
+  try {
+    const page = await opened(`http://localhost:${proxy.port}/${printed.search}`, await browser.newContext({ httpCredentials: { username: "me", password: "secret" } }));
+    await at_rest(page);
+    await page.context().close();
+  } finally {
+    proxy.end();
+  }
+});
+
 test("behind a proxy that passes no WebSocket on the page says so", async () => {
   const allowing = start([file, "--allow-host", "localhost"]);
   const printed = await allowing.address;
-  const proxy = await make_rewriting_proxy(Number(printed.port), "", false);
+  const proxy = await make_rewriting_proxy(Number(printed.port), "", { upgrades: false });
   try {
     const page = await opened(`http://localhost:${proxy.port}/${printed.search}`);
     await page.getByRole("alert").filter({ hasText: "pass on the headers Upgrade and Connection" }).waitFor();

@@ -89,17 +89,20 @@ export async function make_proxy(port) {
  * An HTTP proxy that puts a server below a path and names itself to it as the server's own host, as nginx's proxy_pass
  * does unless it is told otherwise.
  * @param {number} port @param {string} path like "/p", which is passed on with and without a slash behind it
- * @param {boolean} upgrades whether it passes on WebSockets, which nginx does not by itself
+ * @param {{ upgrades?: boolean, password?: string }} [how] whether it passes on WebSockets, which nginx does not by itself; "user:password" that it asks for
  */
-export async function make_rewriting_proxy(port, path = "", upgrades = true) {
+export async function make_rewriting_proxy(port, path = "", { upgrades = true, password } = {}) {
+  const refuses = (request) => password !== undefined && request.headers.authorization !== `Basic ${Buffer.from(password).toString("base64")}`;
   const target = ({ url }) => (url === path ? "/" : url.startsWith(`${path}/`) || url.startsWith(`${path}?`) ? url.slice(path.length).replace(/^\?/, "/?") : undefined);
   const passed_on = (request) => ({ port, host: "127.0.0.1", path: target(request), method: request.method, headers: { ...request.headers, host: `127.0.0.1:${port}`, ...(upgrades ? {} : { connection: "close", upgrade: "" }) } });
   const server = http.createServer((request, response) => {
     if (target(request) === undefined) return response.writeHead(404).end();
+    if (refuses(request)) return response.writeHead(401, { "WWW-Authenticate": 'Basic realm="proxy"' }).end();
     request.pipe(http.request(passed_on(request), (answer) => answer.pipe(response.writeHead(answer.statusCode, answer.headers))).on("error", () => response.destroy()));
   });
   if (upgrades) server.on("upgrade", (request, socket, begun) => {
     socket.on("error", () => {});
+    if (refuses(request)) return socket.end('HTTP/1.1 401 Unauthorized\r\nWWW-Authenticate: Basic realm="proxy"\r\nConnection: close\r\nContent-Length: 0\r\n\r\n');
     const asked = http.request(passed_on(request));
     const head = (answer) => `HTTP/1.1 ${answer.statusCode} ${answer.statusMessage}\r\n${Object.entries(answer.headers).map(([name, value]) => `${name}: ${value}\r\n`).join("")}\r\n`;
     asked.on("upgrade", (answer, other, first) => {
