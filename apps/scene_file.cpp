@@ -64,6 +64,8 @@ std::vector<std::string> with_scene_file(const std::vector<std::string>& argumen
     for (const std::string& value : values) {
       if (option->get_positional())
         positionals.push_back(value);
+      else if (value.empty())
+        options.insert(options.end(), {"--" + key, value});  // after a mere = CLI11 takes the next argument
       else if (option->get_expected_min() > 0)
         options.push_back("--" + key + "=" + value);
       else if (value != "false")

@@ -17,8 +17,8 @@ struct ServeWords {
 
 void add_serve_options(CLI::App& command, RenderWords& words, ServeWords& serve);
 
-/// `tessera serve INPUT`: pictures in a browser, exact and as they change, until SIGINT or SIGTERM comes. Prints the
-/// address to open. Collective. Throws Error.
+/// `tessera serve INPUT`: pictures in a browser, exact and as they change, until SIGINT, SIGTERM or SIGHUP comes.
+/// Prints the address to open. Collective. Throws Error.
 void serve(const RenderWords& words, const ServeWords& serve_words, const CLI::App& command, Job& job);
 
 }  // namespace tessera::apps

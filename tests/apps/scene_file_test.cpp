@@ -63,7 +63,7 @@ TEST(SceneFile, NamesWhatIsNoOption) {
 TEST(SceneFile, KeepsAnyCharacter) {
   const Folder folder;
   const std::string scene = folder / "s.toml", picture = folder / "a.png";
-  const std::vector<std::string> texts = {"# 1", R"(a\b "c" it's)", "two\nlines", "\xc3\xa9\t[x]", "true"};
+  const std::vector<std::string> texts = {"# 1", R"(a\b "c" it's)", "two\nlines", "\xc3\xa9\t[x]", "true", ""};
   std::vector<std::string> words = {"render", folder.cube(), "-o", picture, "--size", "32x24", "--save-config", scene};
   for (const std::string& text : texts) words.insert(words.end(), {"--annotate", text});
   const Outcome first = tessera(words);

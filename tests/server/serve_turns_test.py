@@ -110,7 +110,7 @@ def ends_at_any_time(file):
             check(picture.status() in (0, 503), "the picture was made to its end")
     # What cannot be stopped does not keep it.
     with Server(options.tessera, file) as server:
-        state = dict(server.data()["defaults"], size="2000x2000")
+        state = dict(server.data()["defaults"], size="5000x5000")
         verified = Long(server, "/api/verify", {"state": state, "pixels": 100_000})
         server.json("POST", "/api/camera", {"state": state})
         status, errors = server.stop()
