@@ -36,20 +36,20 @@ class Precedence {
   static constexpr int earned = 3;  ///< by so many times as long as it did not
 };
 
-/// A frame's tiles are told to `heard`, and let short work go first.
+/// Calls `on_tile` with each tile of a frame, then lets short work go first.
 class YieldingSink final : public Sink {
  public:
-  YieldingSink(Precedence& precedence, std::stop_token stop, std::function<void(const Tile&)> heard)
-      : precedence_(precedence), stop_(std::move(stop)), heard_(std::move(heard)) {}
+  YieldingSink(Precedence& precedence, std::stop_token stop, std::function<void(const Tile&)> on_tile)
+      : precedence_(precedence), stop_(std::move(stop)), on_tile_(std::move(on_tile)) {}
   void tile(const Tile& tile) override {
-    heard_(tile);
+    on_tile_(tile);
     precedence_.pass(stop_);
   }
 
  private:
   Precedence& precedence_;
   std::stop_token stop_;
-  std::function<void(const Tile&)> heard_;
+  std::function<void(const Tile&)> on_tile_;
 };
 
 }  // namespace tessera::server
