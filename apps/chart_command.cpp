@@ -21,6 +21,7 @@
 #include "apps/setting_words.hpp"
 #include "tessera/film.hpp"
 #include "tessera/output_file.hpp"
+#include "tessera/printable.hpp"
 #include "tessera/statistics.hpp"
 
 namespace tessera::apps {
@@ -80,7 +81,7 @@ void print_table(const std::vector<analysis::ChartPoint>& points) {
     if (p.left_out == no_room)
       crowded += fmt::format("{}{}", crowded.empty() ? "" : ", ", p.name);
     else if (!p.left_out.empty())
-      fmt::print("  {:<{}}  left out: {}\n", p.name, widest, p.left_out);
+      fmt::print("  {:<{}}  left out: {}\n", p.name, widest, printable(p.left_out));
   }
   if (!crowded.empty()) fmt::print("  {}: {}\n", no_room, crowded);
 }
@@ -213,7 +214,7 @@ void chart(const RenderWords& words, const ChartWords& chart) {
                   truth.whole_image ? "every pixel" : fmt::format("{} random pixels", truth.pixels.size()));
   const std::string where = fmt::format("{}, {}, {:.0f} s and {:.0f} s for reading", transfer_function_line(loaded),
                                         instruction_set(), seconds_since(read), reading);
-  fmt::print("{}; {}\n", what, where);
+  fmt::print("{}; {}\n", printable(what), printable(where));
   print_table(points);
   fmt::print(
       "errors: largest, RMS and 99.9 % of differences in linear RGBA to the double-precision reference, over {};\n"

@@ -12,6 +12,7 @@
 #include "apps/report.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/presets.hpp"
+#include "tessera/printable.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -41,12 +42,14 @@ std::vector<std::string> names_in_file(const std::vector<std::string>& words, Na
     if (std::filesystem::file_size(word, unknown) > largest_read) return {};
     try {
       const analysis::Description data = described(Dataset::open(word, {}));
-      if (named == Named::blocks) return data.blocks;
       std::vector<std::string> names;
+      if (named == Named::blocks) names = data.blocks;
       for (const auto& field : data.fields)
-        if (named == Named::fields || (field.components == 3 && field.association == Association::point))
+        if (named == Named::fields ||
+            (named == Named::point_vectors && field.components == 3 && field.association == Association::point))
           names.push_back(field.name);
       if (named == Named::point_vectors) names.emplace_back("off");
+      std::erase_if(names, [](const std::string& name) { return printable(name) != name; });  // a line each
       return names;
     } catch (const std::exception&) {  // a picture's name, or a damaged file
       continue;

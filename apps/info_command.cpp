@@ -14,6 +14,7 @@
 #include "apps/report.hpp"
 #include "apps/series_choice.hpp"
 #include "tessera/error.hpp"
+#include "tessera/printable.hpp"
 #include "tessera/time_series.hpp"
 
 namespace tessera::apps {
@@ -61,23 +62,26 @@ std::string steps_line(const Steps& steps) {
 
 void print_text(const std::filesystem::path& input, const analysis::Description& data,
                 const LoadedTransferFunction& loaded, const Camera& view, const Steps& steps) {
-  fmt::print("file      {}\n", input.string());
-  fmt::print("format    {}\n", data.format);
+  fmt::print("file      {}\n", printable(input.string()));
+  fmt::print("format    {}\n", printable(data.format));
   if (steps.count > 1) fmt::print("steps     {}\n", steps_line(steps));
   if (data.is_mesh) {
     fmt::print("cells     {}\n", cells_line(data.counts));
     fmt::print("points    {}, {} of them in no cell kept\n", data.counts.points_read, data.counts.points_unused);
   } else {
     fmt::print("lattice   {}\n", lattice_line(data.geometry));
-    fmt::print("samples   {}\n", samples_line(data));
+    fmt::print("samples   {}\n", printable(samples_line(data)));
   }
   fmt::print("bounds    {} to {}, diagonal {:.6g}\n", triple(data.box.low), triple(data.box.high), diagonal(data.box));
   std::size_t widest = 0;
-  for (const auto& field : data.fields) widest = std::max(widest, field.name.size());
+  std::vector<std::string> names;
+  for (const auto& field : data.fields) names.push_back(printable(field.name));
+  for (const std::string& name : names) widest = std::max(widest, name.size());
   const char* title = "fields";
-  for (const auto& field : data.fields) {
-    fmt::print("{:<9} {:<{}}  {:<5}  {:<7} x {}  {:.6g} to {:.6g}{}\n", title, field.name, widest,
-               analysis::word(field.association), field.type, field.components, field.low, field.high,
+  for (std::size_t f = 0; f < names.size(); ++f) {
+    const auto& field = data.fields[f];
+    fmt::print("{:<9} {:<{}}  {:<5}  {:<7} x {}  {:.6g} to {:.6g}{}\n", title, names[f], widest,
+               analysis::word(field.association), printable(field.type), field.components, field.low, field.high,
                field.nan_count > 0 ? fmt::format(", {} NaN or infinite", field.nan_count) : "");
     title = "";
   }
@@ -85,15 +89,15 @@ void print_text(const std::filesystem::path& input, const analysis::Description&
     constexpr std::size_t most = 200;
     std::string list;
     for (const auto& name : std::span(data.blocks).first(std::min(data.blocks.size(), most)))
-      list += (list.empty() ? "" : ", ") + name;
+      list += (list.empty() ? "" : ", ") + printable(name);
     if (data.blocks.size() > most) list += fmt::format(" and {} more (--json has all)", data.blocks.size() - most);
     fmt::print("blocks    {}\n", list);
   }
   const std::array<double, 2> range = steps.range.value_or(data.range);
-  fmt::print("renders   field {}, {:.6g} to {:.6g}; {}; view {}\n", data.field_name, range[0], range[1],
-             transfer_function_line(loaded), view_line(view));
-  for (const auto& warning : data.warnings) fmt::print("warning   {}\n", warning);
-  for (const auto& note : data.notes) fmt::print("note      {}\n", note);
+  fmt::print("renders   field {}, {:.6g} to {:.6g}; {}; view {}\n", printable(data.field_name), range[0], range[1],
+             printable(transfer_function_line(loaded)), view_line(view));
+  for (const auto& warning : data.warnings) fmt::print("warning   {}\n", printable(warning));
+  for (const auto& note : data.notes) fmt::print("note      {}\n", printable(note));
 }
 
 void print_finding(const char* name, const MeshCheck::Finding& finding, const std::string& more = "",

@@ -43,6 +43,7 @@
 #include "tessera/input_file.hpp"
 #include "tessera/job.hpp"
 #include "tessera/output_file.hpp"
+#include "tessera/printable.hpp"
 #include "tessera/time_series.hpp"
 
 namespace tessera::apps {
@@ -52,9 +53,7 @@ namespace {
 /// run's line has been said. Settings are options in it.
 int fail(const Error& error) {
   yield_to_interruption();
-  std::string line = "tessera: ";
-  for (const char c : with_stream_names(with_options(error.what())))
-    line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
+  std::string line = "tessera: " + printable(with_stream_names(with_options(error.what())));
   while (line.ends_with(' ')) line.pop_back();
   // A name or a value from a file may be as long as the file.
   constexpr std::size_t longest = 3000, half = 1000;

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "tessera/printable.hpp"
+
 namespace tessera::apps {
 namespace {
 
@@ -31,8 +33,7 @@ LastLine& last_line() {
 /// As much as the terminal shows in a row, since what has wrapped could not be taken away. File names may hold
 /// anything.
 std::string one_row(std::string words) {
-  for (char& c : words)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  words = printable(words);
   winsize size{};
   const bool is_known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
   const std::size_t most = is_known ? size.ws_col - 1u : 79u;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/standard_streams.hpp"
+#include "tessera/printable.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -85,7 +86,7 @@ std::string in_lines(std::string_view statement) {
 }
 
 void say_lines(std::string_view statement) {
-  fmt::print(stderr, "{}\n", in_lines(with_stream_names(std::string(statement))));
+  fmt::print(stderr, "{}\n", in_lines(printable(with_stream_names(std::string(statement)))));
 }
 
 std::string time_words(double milliseconds) {

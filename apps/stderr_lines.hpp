@@ -14,7 +14,7 @@ inline constexpr std::size_t most_columns = 160;
 /// the end.
 std::string in_lines(std::string_view statement);
 
-/// Prints it so, standard input by its name.
+/// Prints it so, standard input by its name, and printable() whatever the files say that are named in it.
 void say_lines(std::string_view statement);
 
 /// `1.23 s` from a second on, else `45.6 ms`.

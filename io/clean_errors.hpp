@@ -7,15 +7,11 @@
 
 #include "io/mesh_reader.hpp"
 #include "scene/error.hpp"
+#include "tessera/printable.hpp"
 
 namespace tessera::io {
 
-/// `text` with blanks in place of control characters.
-inline std::string printable(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = ' ';
-  return text;
-}
+using tessera::printable;
 
 /// Runs one reading of a file: its errors come out in one line whatever they quote, with `source` as their subject
 /// where they begin with it, and memory that runs out as Error(system_failure).

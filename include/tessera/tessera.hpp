@@ -24,6 +24,7 @@
 #include "tessera/nearest_name.hpp"
 #include "tessera/output_file.hpp"
 #include "tessera/presets.hpp"
+#include "tessera/printable.hpp"
 #include "tessera/read_progress.hpp"
 #include "tessera/reference.hpp"
 #include "tessera/sample_source.hpp"

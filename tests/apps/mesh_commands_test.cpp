@@ -57,6 +57,53 @@ TEST(Info, CountsInfiniteNumbersAsSuch) {
   EXPECT_NE(text.out.find("0 to 3, 1 NaN or infinite"), std::string::npos) << text.out;
 }
 
+// A terminal would take them for orders.
+TEST(Info, ShowsNoControlCharactersOfNames) {
+  const Folder folder;
+  const auto mesh = folder / "a\x1b[2J\nb.vtu";
+  ASSERT_EQ(tessera({"generate", "cube", folder / "c.vtu", "n=2"}).status, 0);
+  std::ifstream made(folder / "c.vtu", std::ios::binary);
+  std::string text(std::istreambuf_iterator<char>(made), {});
+  const std::string name =
+      "\"\xc2\x9b"
+      "31m&#10;tessera: f\xe2\x80\xae\"";
+  for (std::size_t at = text.find("\"f\""); at != std::string::npos; at = text.find("\"f\"", at))
+    text.replace(at, 3, name);
+  ASSERT_NE(text.find(name), std::string::npos) << text.substr(0, 1000);
+  std::ofstream(mesh, std::ios::binary) << text;
+  const auto expect_plain = [](const std::string& printed) {
+    for (const char* const mark : {"\x1b", "\xc2\x9b", "\xe2\x80\xae", "\ntessera: f"})
+      EXPECT_EQ(printed.find(mark), std::string::npos) << printed;
+  };
+  const auto info = tessera({"info", mesh});
+  EXPECT_EQ(info.status, 0) << info.err;
+  EXPECT_NE(info.out.find("31m tessera: f"), std::string::npos) << info.out;
+  expect_plain(info.out);
+  const auto picture = tessera({"render", mesh, "-o", folder / "o.pfm", "--size", "16x16"});
+  EXPECT_EQ(picture.status, 0) << picture.err;
+  EXPECT_NE(picture.err.find("31m tessera: f"), std::string::npos) << picture.err;
+  expect_plain(picture.err);
+  const auto wrong = tessera({"render", mesh, "-o", folder / "o.pfm", "--size", "16x16", "--field", "none\xc2\x9b"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_EQ(wrong.error_lines(), 1u) << wrong.err;
+  expect_plain(wrong.err);
+  const auto json = tessera({"info", "--json", mesh});
+  EXPECT_EQ(nlohmann::json::parse(json.out).at("fields").at(0).at("name"),
+            "\xc2\x9b"
+            "31m\ntessera: f\xe2\x80\xae")
+      << "what is meant for programs has names as they are";
+}
+
+TEST(Info, CutsNamesOfMegabytesShort) {
+  const Folder folder;
+  const auto list = folder.file("p.pvtu", "<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid><Piece Source=\"" +
+                                              std::string(3'000'000, 'y') + "\"/></PUnstructuredGrid></VTKFile>");
+  const auto refused = tessera({"info", list});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_EQ(refused.error_lines(), 1u);
+  EXPECT_LT(refused.err.size(), 5000u);
+}
+
 TEST(Info, ListsTheBlocksThatBlockChoosesFrom) {
   const Folder folder;
   const auto zone = [](int number, int x) {
