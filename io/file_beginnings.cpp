@@ -1,5 +1,7 @@
 #include "io/file_beginnings.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -13,6 +15,7 @@
 #include "io/input_file.hpp"
 #include "io/medit_file.hpp"
 #include "io/volume_formats.hpp"
+#include "scene/error.hpp"
 
 namespace tessera::io {
 namespace {
@@ -75,7 +78,14 @@ bool is_legacy_of(const FileBeginning& file, std::initializer_list<std::string_v
 
 }  // namespace
 
+void require_no_utf16(const std::filesystem::path& file) {
+  if (const std::string beginning = read_beginning(file, 2); beginning == "\xff\xfe" || beginning == "\xfe\xff")
+    throw scene::bad_input(fmt::format("{}: it is text in UTF-16; save it in UTF-8", file.string()));
+}
+
 std::string vtk_xml_type(std::string_view text) {
+  if (constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF"; text.starts_with(byte_order_mark))
+    text.remove_prefix(byte_order_mark.size());
   const std::size_t element = text.find("<VTKFile");
   if (element == std::string_view::npos || !without_blanks(text.substr(0, element + 1)).starts_with('<')) return "";
   const std::size_t end = text.find('>', element);

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <filesystem>
+#include <string>
+#include <string_view>
+
 #include "io/file_kinds.hpp"
 
 /// Whether a file begins as one of a format does. None says yes to a file of another format of the table.
@@ -7,6 +11,10 @@ namespace tessera::io {
 
 /// The `type` of <VTKFile type="...">, or else empty.
 std::string vtk_xml_type(std::string_view beginning);
+
+/// For VTK XML: throws Error(bad_input) for a file in UTF-16, whose words are not those that are looked for.
+void require_no_utf16(const std::filesystem::path& file);
+
 /// The word after DATASET of legacy VTK, or else empty.
 std::string vtk_legacy_type(std::string_view beginning);
 

@@ -101,8 +101,10 @@ MeshBlocks blocks_of_solver(const ForeignFile& opened) {
 MeshBlocks read_vtk_xml(const std::filesystem::path& file, const MeshOptions& options) {
   const std::string source = file.string(), extension = lower_extension(file), type = xml_type(file);
   const XmlKind* const kind = kind_of(type);
-  if (type.empty())
+  if (type.empty()) {
+    require_no_utf16(file);
     throw scene::bad_input(fmt::format("{}: it does not begin as a VTK XML file does; check that it is one", source));
+  }
   if (type == "ImageData" || type == "PImageData")
     throw scene::bad_input(
         fmt::format("{}: it is a regular grid (image data), no mesh; give it alone or among volumes", source));

@@ -101,9 +101,11 @@ void add_blocks(const std::filesystem::path& file, const BlockChoice& choice, Pi
 
 void require_piece(const ListedPiece& piece, const std::string& type) {
   const std::string source = piece.file.string();
-  if (type.empty())
+  if (type.empty()) {
+    require_no_utf16(piece.file);
     throw scene::bad_input(fmt::format(
         "{}: it is a piece of {} and does not begin as a VTK XML file does; write it anew", source, piece.list));
+  }
   if (type != "UnstructuredGrid")
     throw scene::bad_input(
         fmt::format("{}: it is a piece of {} and its type is '{}', not 'UnstructuredGrid'; write both anew", source,

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "io/positional_file.hpp"
+#include "io/xml_elements.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -18,8 +19,13 @@ namespace {
 /// Passes a file to the parser tag by tag, so that it is known where each ends.
 class ElementWalk {
  public:
-  ElementWalk(const PositionalFile& file, const std::string& source)
-      : file_(file), source_(source), size_(file.size()), parser_(XML_ParserCreate(nullptr), &XML_ParserFree) {
+  /// Elements that are not kept are forgotten as the next one begins.
+  ElementWalk(const PositionalFile& file, const std::string& source, bool keeps)
+      : file_(file),
+        source_(source),
+        keeps_(keeps),
+        size_(file.size()),
+        parser_(XML_ParserCreate(nullptr), &XML_ParserFree) {
     if (!parser_) throw std::bad_alloc();
     XML_SetUserData(parser_.get(), this);
     XML_SetElementHandler(parser_.get(), on_start, on_end);
@@ -42,10 +48,10 @@ class ElementWalk {
       }
       const std::size_t end = view.find('>');
       const std::string_view part = view.substr(0, end == std::string_view::npos ? end : end + 1);
-      const std::size_t before = elements_.size();
+      is_new_ = false;
       parse(part, false);
       at_ += part.size();
-      if (elements_.size() > before) {
+      if (is_new_) {
         VtkXmlElement& element = elements_.back();
         element.text_at = element.text_end = at_;
         if (element.name == "AppendedData") return std::move(elements_);
@@ -62,10 +68,12 @@ class ElementWalk {
     ElementWalk& walk = *static_cast<ElementWalk*>(user);
     if (walk.fault_) return;
     try {
+      if (walk.depth_ >= most_nested) throw nested_too_deep(walk.source_);
       VtkXmlElement element{name, walk.depth_++};
+      if (!walk.keeps_) walk.elements_.clear();
       for (; *attributes != nullptr; attributes += 2) element.attributes.emplace(attributes[0], attributes[1]);
       walk.elements_.push_back(std::move(element));
-      walk.is_open_ = true;
+      walk.is_open_ = walk.is_new_ = true;
     } catch (...) {
       walk.fault_ = std::current_exception();
       XML_StopParser(walk.parser_.get(), XML_FALSE);
@@ -106,6 +114,7 @@ class ElementWalk {
 
   const PositionalFile& file_;
   const std::string& source_;
+  bool keeps_;
   std::uint64_t size_;
   std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser_;
   std::string text_;
@@ -113,6 +122,7 @@ class ElementWalk {
   std::vector<VtkXmlElement> elements_;
   std::size_t depth_ = 0;
   bool is_open_ = false;   ///< the last element, whose end has not come
+  bool is_new_ = false;    ///< it began in what was parsed last
   bool in_array_ = false;  ///< numbers are passed over up to a tag
   bool is_blank_ = false;  ///< none has come yet
   std::exception_ptr fault_;
@@ -126,7 +136,11 @@ std::string VtkXmlElement::word(const std::string& attribute, const std::string&
 }
 
 std::vector<VtkXmlElement> vtk_xml_elements(const PositionalFile& file, const std::string& source) {
-  return ElementWalk(file, source).walk();
+  return ElementWalk(file, source, true).walk();
+}
+
+void require_vtk_xml_form(const PositionalFile& file, const std::string& source) {
+  ElementWalk(file, source, false).walk();
 }
 
 }  // namespace tessera::io

@@ -28,6 +28,16 @@ const VtkXmlArray& points_of(const VtkXmlOpened& of, std::size_t piece) {
   return arrays[0];
 }
 
+/// Coordinates and corners of meshes are packed 2 to 50 times: throws if so many bytes of them cannot come from a file
+/// of this size, before memory is taken for them.
+void require_proportion(const VtkXmlOpened& of, std::uint64_t bytes, const char* what) {
+  constexpr std::uint64_t always = 64 << 20, times = 128;
+  if (const std::uint64_t size = of.file->size(); bytes > always && (bytes - always) / times > size)
+    throw scene::bad_input(fmt::format(
+        "{}: its {} are {} MiB, which is out of proportion to a file of {} bytes; export it again, without compression",
+        of.source, what, bytes >> 20, size));
+}
+
 /// Of all pieces; without any, or if they are of different types, nothing.
 std::optional<ForeignArray> hold_points(const VtkXmlOpened& of, bool& agree) {
   VtkXmlWhole whole;
@@ -42,6 +52,9 @@ std::optional<ForeignArray> hold_points(const VtkXmlOpened& of, bool& agree) {
   }
   if (whole.segments.empty() || !agree) return std::nullopt;
   const NumberType type = *whole.segments[0].array.type;
+  std::uint64_t numbers = 0;
+  for (const VtkXmlSegment& segment : whole.segments) numbers += segment.numbers;
+  require_proportion(of, numbers * size_of(type), "points");
   return hold_whole(of, std::move(whole), {.type = type});
 }
 
@@ -58,6 +71,7 @@ ForeignArray hold_connectivity(const VtkXmlOpened& of, VtuCells& cells) {
   for (std::size_t p = 0; p < of.grid.pieces.size(); first_point += of.grid.pieces[p++].points)
     if (cells.uses[p] > 0)
       uses.push_back({{topology_of(of.grid, p, "connectivity", of.source), cells.uses[p]}, first_point});
+  require_proportion(of, cells.offsets.back() * sizeof(std::uint32_t), "cells' corners");
   as.tuples = cells.offsets.back() / static_cast<std::uint64_t>(as.components);
   return of.arrays->hold(std::move(as), [file = of.file, uses, source = of.source](const ByteSink& use) {
     std::vector<std::uint32_t> narrow;
@@ -71,6 +85,10 @@ ForeignArray hold_connectivity(const VtkXmlOpened& of, VtuCells& cells) {
 }
 
 void hold_cells(const VtkXmlOpened& of, ForeignPart& part) {
+  std::uint64_t count = 0;
+  for (const VtkXmlPiece& piece : of.grid.pieces) count += piece.cells;
+  constexpr std::uint64_t type_and_offset = 9;
+  require_proportion(of, count * type_and_offset, "cells");
   VtuCells cells = read_vtu_cells(*of.file, of.grid, of.source);
   part.connectivity = hold_connectivity(of, cells);
   if (cells.are_tets) return;

@@ -17,6 +17,7 @@ namespace {
 /// stopped.
 struct Walk {
   XML_Parser parser;
+  const std::string& source;
   const std::function<void(const XmlElement&)>& visit;
   const std::function<void(std::string_view)>& visit_text;
   std::vector<std::string> parents{};
@@ -27,6 +28,7 @@ void XMLCALL on_start(void* user, const XML_Char* name, const XML_Char** attribu
   Walk& walk = *static_cast<Walk*>(user);
   if (walk.fault) return;
   try {
+    if (walk.parents.size() >= most_nested) throw nested_too_deep(walk.source);
     XmlElement element{name, walk.parents, {}};
     element.text_at = static_cast<std::size_t>(XML_GetCurrentByteIndex(walk.parser)) +
                       static_cast<std::size_t>(XML_GetCurrentByteCount(walk.parser));
@@ -58,6 +60,13 @@ void XMLCALL on_text(void* user, const XML_Char* text, int length) {
 
 }  // namespace
 
+scene::Error nested_too_deep(const std::string& source) {
+  return scene::bad_input(
+      fmt::format("{}: its elements are nested more than {} deep; the file is damaged, export it "
+                  "again",
+                  source, most_nested));
+}
+
 const std::string* XmlElement::find(const std::string& attribute) const {
   const auto found = attributes.find(attribute);
   return found == attributes.end() ? nullptr : &found->second;
@@ -68,7 +77,7 @@ void each_xml_element(std::string_view text, const std::string& source,
                       const std::function<void(std::string_view)>& visit_text) {
   const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr), &XML_ParserFree);
   if (!parser) throw std::bad_alloc();
-  Walk walk{parser.get(), visit, visit_text};
+  Walk walk{parser.get(), source, visit, visit_text};
   XML_SetUserData(parser.get(), &walk);
   XML_SetElementHandler(parser.get(), on_start, on_end);
   if (visit_text) XML_SetCharacterDataHandler(parser.get(), on_text);

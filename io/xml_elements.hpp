@@ -7,7 +7,13 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/error.hpp"
+
 namespace tessera::io {
+
+/// How deep elements may be nested. Files of data are 5 deep; parsers that call themselves end where their stack does.
+inline constexpr std::size_t most_nested = 256;
+scene::Error nested_too_deep(const std::string& source);
 
 /// One opening tag: its name, its parents' names from the root on, its attributes with entities resolved, and where in
 /// the text what is behind it begins.

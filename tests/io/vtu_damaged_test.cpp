@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <zlib.h>
 
 #include <cstring>
 #include <limits>
@@ -10,6 +11,7 @@
 #include "io/temporary_folder.hpp"
 #include "io/vtu_checks.hpp"
 #include "io/vtu_writing.hpp"
+#include "io/xml_elements.hpp"
 #include "support/some_cases.hpp"
 
 namespace tessera::io {
@@ -142,6 +144,48 @@ TEST_F(VtuDamaged, SmallBlocksCannotStateThatTheyAreLarge) {
                              "</AppendedData></VTKFile>";
     EXPECT_FALSE(is_read(text));
   }
+}
+
+TEST_F(VtuDamaged, GeometryOutOfProportionToTheFileIsRefusedBeforeItTakesMemory) {
+  // 60 million points of zeros in a file of half a megabyte.
+  constexpr std::size_t points = 60'000'000, block = 8 << 20, bytes = points * 12, blocks = (bytes + block - 1) / block;
+  std::string packed(::compressBound(block), '\0');
+  uLongf size = packed.size();
+  const std::string zeros(block, '\0');
+  ASSERT_EQ(
+      ::compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(zeros.data()), block),
+      Z_OK);
+  packed.resize(size);
+  std::string table;
+  const auto number = [&table](std::uint32_t value) {
+    table.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  number(blocks), number(block), number(bytes % block);
+  for (std::size_t k = 0; k < blocks; ++k) number(static_cast<std::uint32_t>(size));
+  const auto text = [&](std::size_t point_count, const std::string& appended) {
+    return fmt::format(
+        "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\" header_type=\"UInt32\" "
+        "compressor=\"vtkZLibDataCompressor\"><UnstructuredGrid><Piece NumberOfPoints=\"{}\" "
+        "NumberOfCells=\"1\"><Points>"
+        "<DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"appended\" "
+        "offset=\"0\"/></Points><Cells><DataArray "
+        "type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 2 3</DataArray><DataArray type=\"Int32\" "
+        "Name=\"offsets\" format=\"ascii\">4</DataArray><DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">10"
+        "</DataArray></Cells></Piece></UnstructuredGrid><AppendedData encoding=\"raw\">_{}</AppendedData></VTKFile>",
+        point_count, appended);
+  };
+  std::string all = table;
+  for (std::size_t k = 0; k < blocks; ++k) all += packed;
+  const auto file = folder.write("b.vtu", text(points, all));
+  test::expect_bad_input([&] { open_vtk_xml(file); }, {"its points are 686 MiB", "out of proportion"});
+}
+
+TEST_F(VtuDamaged, ElementsNestedWithoutEndAreRefused) {
+  std::string text = "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\">";
+  for (int k = 0; k < 1'000'000; ++k) text += "<a>";
+  const auto file = folder.write("d.vtu", text + "</VTKFile>");
+  test::expect_bad_input([&] { open_vtk_xml(file); }, {"nested more than 256 deep"});
+  test::expect_bad_input([&] { each_xml_element(text, "d.pvtu", [](const XmlElement&) {}); }, {"nested more than"});
 }
 
 TEST_F(VtuDamaged, MissingPartsAreRefused) {

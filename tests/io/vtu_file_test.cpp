@@ -10,6 +10,7 @@
 #include "io/mesh_assembly.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_formats.hpp"
+#include "io/mesh_reader.hpp"
 #include "io/polyhedral_meshes.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/vtu_checks.hpp"
@@ -495,6 +496,22 @@ TEST_F(Vtu, WhatIsNotKnownIsLeftToVtk) {
   left("0 0 0 1 0 0 0 1 0 0 0 1 ", "<![CDATA[0 0 0 1 0 0 0 1 0 0 0 1]]>");
   left("Name=\"p\"", "Name=\"p\" TimeStep=\"0\"");
   left("Name=\"p\" NumberOfComponents=\"1\"", "Name=\"p\" NumberOfComponents=\"-1\"");
+}
+
+TEST_F(Vtu, AByteOrderMarkIsPassedOverAndUtf16IsNamed) {
+  const std::string text = vtu_file_text({}, {sample_piece()});
+  const std::size_t cells = read_mesh(folder.write("plain.vtu", text)).counts.cells_read;
+  EXPECT_EQ(read_mesh(folder.write("mark.vtu", "\xEF\xBB\xBF" + text)).counts.cells_read, cells);
+  const std::string list =
+      "<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid><Piece "
+      "Source=\"mark.vtu\"/></PUnstructuredGrid></VTKFile>";
+  EXPECT_EQ(read_mesh(folder.write("mark.pvtu", "\xEF\xBB\xBF" + list)).counts.cells_read, cells);
+  std::string wide = "\xFF\xFE";
+  for (const char c : text) (wide += c) += '\0';
+  test::expect_bad_input([&] { read_mesh(folder.write("wide.vtu", wide)); },
+                         {"it is text in UTF-16; save it in UTF-8"});
+  EXPECT_NE(test::fault_of([&] { read_mesh(folder.write("wide.pvtu", wide)); }).message.find("UTF-16"),
+            std::string::npos);
 }
 
 }  // namespace
