@@ -2,9 +2,11 @@
 
 #include <dlfcn.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -36,6 +38,30 @@ std::filesystem::path own_file() {
 
 bool is_program(const std::filesystem::path& file) { return ::access(file.c_str(), X_OK) == 0; }
 
+/// Who owns a file, and whether everybody may change it.
+struct Ownership {
+  uid_t owner;
+  bool is_open_to_all;
+};
+std::optional<Ownership> ownership_of(const std::filesystem::path& file) {
+  struct stat facts {};
+  if (::stat(file.c_str(), &facts) != 0) return std::nullopt;
+  return Ownership{facts.st_uid, (facts.st_mode & S_IWOTH) != 0};
+}
+
+/// Whether a reader has not been put there by another user, as anybody can put /tmp/libexec: it and the folders in
+/// which it was found are root's, this user's, or those of who installed `own`, and no more open than that.
+bool is_trusted(const std::filesystem::path& program, const std::filesystem::path& own) {
+  const auto self = ownership_of(own);
+  const std::filesystem::path folder = program.parent_path();
+  for (const std::filesystem::path& each : {program, folder, folder.parent_path()}) {
+    const auto found = ownership_of(each);
+    if (!found || (found->is_open_to_all && !(self && self->is_open_to_all))) return false;
+    if (found->owner != 0 && found->owner != ::geteuid() && (!self || found->owner != self->owner)) return false;
+  }
+  return true;
+}
+
 /// What a user can do without the reader.
 std::string other_remedy(Reader reader, const FormatRow* row) {
   if (reader == Reader::tetgen) return "give a mesh of tetrahedra";
@@ -63,11 +89,14 @@ const ReaderProgram& reader_program(Reader reader) { return programs[static_cast
 std::filesystem::path find_reader(Reader reader) {
   const char* const name = reader_program(reader).program;
   std::error_code unknown;
-  for (std::filesystem::path start : {own_file(), std::filesystem::read_symlink("/proc/self/exe", unknown)})
+  for (const std::filesystem::path& own : {own_file(), std::filesystem::read_symlink("/proc/self/exe", unknown)}) {
+    std::filesystem::path start = own;
     for (int levels = 0; levels < 5 && start.has_relative_path(); ++levels) {
       start = start.parent_path();
-      if (std::filesystem::path file = start / "libexec/tessera" / name; is_program(file)) return file;
+      std::filesystem::path file = start / "libexec/tessera" / name;
+      if (is_program(file) && is_trusted(file, own)) return file;
     }
+  }
   const std::filesystem::path installed = std::filesystem::path(TESSERA_LIBEXEC) / name;
   return is_program(installed) ? installed : std::filesystem::path();
 }

@@ -25,7 +25,7 @@ std::span<const ReaderProgram> reader_programs();
 const ReaderProgram& reader_program(Reader reader);
 
 /// The program's file: libexec/tessera/PROGRAM in one of the five folders above the library or program that this code
-/// is in, else where it was to be installed. Empty if it is in none of them.
+/// is in, unless another user may have put it there; else where it was to be installed. Empty if it is in none of them.
 std::filesystem::path find_reader(Reader reader);
 
 bool has_reader(Reader reader);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 
 #include "apps/program.hpp"
@@ -75,6 +76,23 @@ TEST_F(WithoutReaders, RanksRefuseAFileInOneLine) {
       EXPECT_TRUE(line.starts_with("tessera: " + file + ": Exodus II files are read by tessera-read-vtk, ")) << line;
     }
   EXPECT_EQ(lines, 1) << outcome.err;
+}
+
+TEST_F(WithoutReaders, AProgramThatAnotherUserMayHavePutThereIsNotTaken) {
+  const std::string file = folder.file("bracket.ex2", "CDF\1num_nodes"), marker = folder / "it_ran";
+  const std::filesystem::path readers = folder / "alone/libexec/tessera", reader = readers / "tessera-read-vtk";
+  std::filesystem::create_directories(readers);
+  std::ofstream(reader) << "#!/bin/sh\ntouch '" << marker << "'\n";
+  using std::filesystem::perms;
+  std::filesystem::permissions(reader, perms::owner_all);
+  for (const std::filesystem::path& open : {reader, readers, readers.parent_path()}) {
+    std::filesystem::permissions(open, perms::others_write, std::filesystem::perm_options::add);
+    expect_refused(run({"info", file}), file + ": Exodus II files are read by tessera-read-vtk, ");
+    std::filesystem::permissions(open, perms::others_write, std::filesystem::perm_options::remove);
+  }
+  EXPECT_FALSE(std::filesystem::exists(marker));
+  EXPECT_EQ(run({"info", file}).status, 3) << "it is taken, and ends at once";
+  EXPECT_TRUE(std::filesystem::exists(marker));
 }
 
 TEST_F(WithoutReaders, FormatsMarksThem) {
