@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <filesystem>
 #include <map>
-#include <memory>
+#include <vector>
 
 #include "io/amrex_header.hpp"
-#include "io/mapped_file.hpp"
+#include "io/positional_file.hpp"
 #include "io/text_file.hpp"
+#include "io/whole_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -37,16 +39,46 @@ Word swapped(Word word, bool swap) {
   return std::bit_cast<Word>(bytes);
 }
 
-/// The numbers of one field of one box, in a mapped file.
+/// The numbers of one field of one box, in a file that is opened for each reading: there may be more files than a
+/// process may have open.
 struct FabNumbers {
-  std::shared_ptr<const MappedFile> file;
-  std::size_t offset = 0;
+  std::filesystem::path file;
+  std::uint64_t offset = 0;
   std::size_t bytes = 8;
   bool swap = false;
   AmrexBox box, stored;
 
-  [[nodiscard]] double at(std::size_t number) const {
-    const std::byte* const start = file->bytes().data() + offset + number * bytes;
+  /// The numbers of the box's cells, x first, of which there may be more around.
+  void read(std::size_t first, std::span<double> out) const {
+    const auto nx = static_cast<std::size_t>(box.cells(0)), ny = static_cast<std::size_t>(box.cells(1)),
+               row = static_cast<std::size_t>(stored.cells(0)), slice = row * static_cast<std::size_t>(stored.cells(1));
+    const auto dx = static_cast<std::size_t>(box.low[0] - stored.low[0]),
+               dy = static_cast<std::size_t>(box.low[1] - stored.low[1]),
+               dz = static_cast<std::size_t>(box.low[2] - stored.low[2]);
+    const auto place_of = [&](std::size_t cell) {
+      return cell % nx + dx + row * (cell / nx % ny + dy) + slice * (cell / nx / ny + dz);
+    };
+    const PositionalFile opened(file);
+    std::vector<std::byte> stored_bytes;
+    for (std::size_t n = 0; n < out.size();) {
+      // As far as what lies between the rows is not most of it.
+      std::size_t end = n + std::min(nx - (first + n) % nx, out.size() - n);
+      const std::size_t begin = place_of(first + n);
+      while (end < out.size()) {
+        const std::size_t further = std::min(end + nx, out.size());
+        if (place_of(first + further - 1) - begin > 2 * (further - n) || further - n > most_at_once) break;
+        end = further;
+      }
+      stored_bytes.resize((place_of(first + end - 1) - begin + 1) * bytes);
+      opened.read(offset + begin * bytes, stored_bytes.data(), stored_bytes.size());
+      for (; n < end; ++n) out[n] = number_at(stored_bytes.data() + (place_of(first + n) - begin) * bytes);
+    }
+  }
+
+ private:
+  static constexpr std::size_t most_at_once = 1 << 17;
+
+  [[nodiscard]] double number_at(const std::byte* start) const {
     if (bytes == 4) {
       std::uint32_t word = 0;
       std::memcpy(&word, start, sizeof word);
@@ -56,21 +88,6 @@ struct FabNumbers {
     std::memcpy(&word, start, sizeof word);
     return std::bit_cast<double>(swapped(word, swap));
   }
-
-  /// The numbers of the box's cells, x first, of which there may be more around.
-  void read(std::size_t first, std::span<double> out) const {
-    const auto nx = static_cast<std::size_t>(box.cells(0)), ny = static_cast<std::size_t>(box.cells(1)),
-               row = static_cast<std::size_t>(stored.cells(0)), slice = row * static_cast<std::size_t>(stored.cells(1));
-    const auto dx = static_cast<std::size_t>(box.low[0] - stored.low[0]),
-               dy = static_cast<std::size_t>(box.low[1] - stored.low[1]),
-               dz = static_cast<std::size_t>(box.low[2] - stored.low[2]);
-    for (std::size_t n = 0; n < out.size();) {
-      const std::size_t cell = first + n, i = cell % nx, j = cell / nx % ny, k = cell / nx / ny,
-                        start = i + dx + row * (j + dy) + slice * (k + dz), end = std::min(nx - i, out.size() - n);
-      for (std::size_t x = 0; x < end; ++x) out[n + x] = at(start + x);
-      n += end;
-    }
-  }
 };
 
 class PlotFile {
@@ -79,7 +96,7 @@ class PlotFile {
 
   OpenedAmr open() {
     const std::filesystem::path file = folder_ / "Header";
-    const MappedFile text(file);
+    const WholeFile text(file);
     header_ = parse_amrex_header(text.text(), file.string());
     opened_.format = "AMReX plot file";
     for (std::size_t level = 0; level < header_.levels.size(); ++level) add_level(level);
@@ -91,7 +108,7 @@ class PlotFile {
   void add_level(std::size_t number) {
     const AmrexLevel& level = header_.levels[number];
     const std::filesystem::path list = folder_ / (level.cells + "_H");
-    const MappedFile text(list);
+    const WholeFile text(list);
     std::vector<AmrexFab> fabs = parse_amrex_level(text.text(), header_.fields.size(), list.string());
     for (std::size_t n = 0; n < fabs.size(); ++n) {
       AmrexFab& fab = fabs[n];
@@ -134,19 +151,18 @@ class PlotFile {
 
   /// FAB, the format of numbers, the box and how many fields there are; then the numbers.
   FabNumbers numbers_of(AmrexFab& fab, const std::filesystem::path& file) {
-    std::shared_ptr<const MappedFile>& mapped = files_[file.string()];
-    if (mapped == nullptr) {
-      mapped = std::make_shared<const MappedFile>(file);
-      bytes_there_ += mapped->bytes().size();
-    }
+    const PositionalFile opened(file);
+    const auto [known_file, is_new] = files_.try_emplace(file.string(), opened.size());
+    const std::uint64_t size = known_file->second;
+    if (is_new) bytes_there_ += size;
     const auto refuse = [&](const std::string& what) {
       return scene::bad_input(fmt::format("{}: at byte {}: {}", file.string(), fab.offset, what));
     };
     constexpr std::size_t longest = 512;
-    const std::string_view all = mapped->text();
-    const std::string_view rest = all.substr(std::min<std::size_t>(fab.offset, all.size()));
-    std::string_view line = rest.substr(0, std::min(rest.find('\n'), longest));
-    const std::size_t begin = static_cast<std::size_t>(fab.offset) + line.size() + 1;
+    std::string beginning(std::min<std::uint64_t>(longest, size - std::min<std::uint64_t>(fab.offset, size)), '\0');
+    opened.read(fab.offset, reinterpret_cast<std::byte*>(beginning.data()), beginning.size());
+    std::string_view line = std::string_view(beginning).substr(0, beginning.find('\n'));
+    const std::uint64_t begin = fab.offset + line.size() + 1;
     if (!line.starts_with("FAB "))
       throw refuse("no values begin there with FAB; the file is truncated or damaged, write it anew");
     line.remove_prefix(4);
@@ -169,20 +185,20 @@ class PlotFile {
                         fab.stored.low[a], fab.stored.high[a], "xyz"[a], fab.box.low[a], fab.box.high[a]));
       if (__builtin_mul_overflow(bytes, static_cast<std::uint64_t>(fab.stored.cells(a)), &bytes)) bytes = UINT64_MAX;
     }
-    if (begin > all.size() || bytes > all.size() - begin)
+    if (begin > size || bytes > size - begin)
       throw refuse(fmt::format("{} bytes of values begin there, the file has {} bytes; it is truncated, write it anew",
-                               bytes, all.size()));
+                               bytes, size));
     bytes_used_ += bytes;
     if (bytes_used_ > bytes_there_)  // so that what is kept of each box is in proportion to the files
       throw refuse("boxes share their values; it is damaged, write it anew");
-    return {mapped,  begin,     format->bytes, format->big_endian != (std::endian::native == std::endian::big),
+    return {file,    begin,     format->bytes, format->big_endian != (std::endian::native == std::endian::big),
             fab.box, fab.stored};
   }
 
   std::filesystem::path folder_;
   AmrexHeader header_;
   OpenedAmr opened_;
-  std::map<std::string, std::shared_ptr<const MappedFile>> files_;
+  std::map<std::string, std::uint64_t> files_;  ///< their sizes
   std::uint64_t bytes_there_ = 0, bytes_used_ = 0;
 };
 

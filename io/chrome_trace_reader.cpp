@@ -8,9 +8,10 @@
 #include <unordered_map>
 
 #include "io/json_text.hpp"
-#include "io/mapped_file.hpp"
 #include "io/text_file.hpp"
+#include "io/whole_file.hpp"
 #include "scene/error.hpp"
+#include "tessera/printable.hpp"
 
 namespace tessera::io {
 namespace {
@@ -50,6 +51,7 @@ class EventReader final : public nlohmann::json_sax<nlohmann::json> {
   bool binary(nlohmann::json::binary_t&) override { return true; }
 
   bool string(std::string& value) override {
+    value = printable(value);  // `tessera timing` shows names
     if (here() == Place::event) {
       if (key_ == "name") event_.name = value;
       if (key_ == "cat") event_.category = value;
@@ -220,7 +222,7 @@ TraceFile parse_chrome_trace(std::string_view text, const std::string& source) {
 }
 
 TraceFile read_chrome_trace(const std::filesystem::path& file) {
-  const MappedFile mapped(file);
+  const WholeFile mapped(file);
   return parse_chrome_trace(mapped.text(), file.string());
 }
 

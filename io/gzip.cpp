@@ -74,14 +74,6 @@ std::vector<std::byte> inflate_beginning(std::span<const std::byte> stream, std:
   return out;
 }
 
-std::vector<std::byte> inflate(std::span<const std::byte> stream, std::uint64_t count, const std::string& source) {
-  require_possible(stream.size(), count, source);
-  std::vector<std::byte> out(count);
-  const std::size_t written = inflate_into(stream, out);
-  if (written != count) throw ends_early(written, count, source);
-  return out;
-}
-
 void inflate_parts(const std::filesystem::path& file, const InflatedRange& range, const std::string& source,
                    const std::function<void(std::span<const std::byte>)>& use) {
   const PositionalFile in(file, source);
@@ -124,41 +116,50 @@ bool inflate_block(std::span<const std::byte> packed, std::span<std::byte> out) 
          size == out.size();
 }
 
-std::uint64_t inflate_to(int file, std::span<const std::byte> stream, std::uint64_t most, const std::string& source) {
-  constexpr std::size_t most_in = std::numeric_limits<uInt>::max(), chunk = 1 << 20;
+std::uint64_t inflate_to(int file, const PositionalFile& packed, const InflateLimit& limit, std::uint64_t memory,
+                         const std::string& source) {
+  const std::uint64_t size = packed.size();
   const auto fail = [&](scene::ErrorCode code, const std::string& what, const char* remedy) {
     return scene::Error(code, source, what, remedy);
   };
   InflateState state;
   z_stream& z = state.z;
-  std::vector<std::byte> out(chunk);
-  std::uint64_t written = 0;
-  std::size_t at = 0;
-  bool ended = false;
-  // Members follow one another; what follows the last one is padding, as gzip itself takes it.
-  while (!ended || (at < stream.size() && stream[at] == std::byte{0x1f})) {
-    const auto in_now = static_cast<uInt>(std::min(most_in, stream.size() - at));
-    z.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(stream.data() + at));
-    z.avail_in = in_now;
+  std::vector<std::byte> in(256 << 10), out(1 << 20);
+  std::uint64_t written = 0, at = 0;
+  for (bool ended = false;;) {
+    if (z.avail_in == 0) {
+      const std::uint64_t now = std::min<std::uint64_t>(in.size(), size - at);
+      packed.read(at, in.data(), now);
+      at += now;
+      z.next_in = reinterpret_cast<Bytef*>(in.data());
+      z.avail_in = static_cast<uInt>(now);
+    }
+    // Members follow one another; what follows the last one is padding, as gzip itself takes it.
+    if (ended && (z.avail_in == 0 || *z.next_in != 0x1f)) return written;
     z.next_out = reinterpret_cast<Bytef*>(out.data());
-    z.avail_out = static_cast<uInt>(chunk);
+    z.avail_out = static_cast<uInt>(out.size());
     const int result = ::inflate(&z, Z_NO_FLUSH);
-    at += in_now - z.avail_in;
-    const std::size_t made = chunk - z.avail_out;
-    written += made;
-    if (written > most)
-      throw fail(scene::ErrorCode::system_failure, fmt::format("it holds more than {} bytes inflated", most),
+    const std::size_t made = out.size() - z.avail_out;
+    const bool is_over = made > limit.bytes - written;
+    if (is_over && !limit.stops)
+      throw fail(scene::ErrorCode::bad_input,
+                 fmt::format("its {} bytes hold more than {} MiB, as no such data do", size, limit.bytes >> 20),
+                 "unpack it with gunzip if it is what it should be");
+    const auto kept = static_cast<std::size_t>(std::min<std::uint64_t>(made, limit.bytes - written));
+    written += kept;
+    if (written > memory)
+      throw fail(scene::ErrorCode::system_failure, fmt::format("it holds more than {} bytes inflated", memory),
                  "inflate it to a disk, use a larger machine or a part of the data");
-    if (!write_all(file, out.data(), made))
+    if (!write_all(file, out.data(), kept))
       throw fail(scene::ErrorCode::system_failure, "memory ran out", "use a larger machine or a part of the data");
+    if (is_over) return written;
     ended = result == Z_STREAM_END;
     if (!ended && result != Z_OK)  // Z_BUF_ERROR where the stream ends
       throw fail(scene::ErrorCode::bad_input,
                  fmt::format("its compressed bytes end or break, {} come out of them", written),
                  "the file is truncated or damaged, write it anew");
-    if (ended && inflateReset(&z) != Z_OK) break;
+    if (ended && inflateReset(&z) != Z_OK) return written;
   }
-  return written;
 }
 
 }  // namespace tessera::io

@@ -27,17 +27,6 @@ bool receive_all(int socket, std::uint8_t* bytes, std::size_t count) {
 
 }  // namespace
 
-Descriptor::~Descriptor() {
-  if (number_ >= 0) ::close(number_);
-}
-
-Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
-  Descriptor old(std::exchange(number_, other.release()));
-  return *this;
-}
-
-int Descriptor::release() { return std::exchange(number_, -1); }
-
 bool send_message(int socket, std::span<const std::uint8_t> bytes, int file) {
   std::uint64_t count = bytes.size();
   iovec part{&count, sizeof count};

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "io/descriptor.hpp"
+
 namespace tessera::io {
 
 /// What goes over the socket between a process and its helper program: a count of bytes (uint64, this machine's order),
@@ -18,23 +20,6 @@ namespace tessera::io {
 
 /// Of the protocol. The helper says it first; another one's is refused.
 inline constexpr int helper_version = 6;
-
-/// Closes what it holds.
-class Descriptor {
- public:
-  Descriptor() = default;
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor();
-  Descriptor(Descriptor&& other) noexcept : number_(other.release()) {}
-  Descriptor& operator=(Descriptor&& other) noexcept;
-
-  [[nodiscard]] int get() const { return number_; }
-  [[nodiscard]] bool is_open() const { return number_ >= 0; }
-  int release();
-
- private:
-  int number_ = -1;
-};
 
 struct HelperMessage {
   std::vector<std::uint8_t> bytes;

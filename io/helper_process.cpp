@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -21,6 +22,7 @@
 #include <utility>
 
 #include "io/files_read.hpp"
+#include "io/idle_watch.hpp"
 #include "io/spawn_plan.hpp"
 #include "io/unfinished.hpp"
 #include "scene/error.hpp"
@@ -83,6 +85,13 @@ HelperDeath death_of(int status, bool known, bool has_begun, const HelperTask& t
   const std::string words = fmt::format("{} crashed ({})", task.words, ::strsignal(WTERMSIG(status)));
   if (is_limited()) return {system_failure, words + ", perhaps for want of memory; raise the limit of address space"};
   return {bad_input, fmt::format("{}; {}", words, task.remedy)};
+}
+
+HelperDeath waiting_death(const HelperTask& task) {
+  return {scene::ErrorCode::bad_input,
+          fmt::format("{} waits for something that does not come, such as a pipe that is named in it; have it name "
+                      "regular files alone",
+                      task.words)};
 }
 
 /// What the helper says of its course before it replies: how far it is, or which file it is at.
@@ -192,7 +201,7 @@ void HelperProcess::report_death(const std::string& subject) {
     pid_t ended = -1;
     while ((ended = ::waitpid(process_, &status, 0)) < 0 && errno == EINTR) {
     }
-    death_ = death_of(status, ended == process_, has_begun_, task_);
+    death_ = waits_ ? waiting_death(task_) : death_of(status, ended == process_, has_begun_, task_);
     process_ = -1;
   }
   throw scene::Error(death_->code, fmt::format("{}: {}", reading_.empty() ? subject : reading_, death_->words));
@@ -211,9 +220,24 @@ void HelperProcess::send(const Json& request, const std::string& subject, int fi
   if (!has_begun_ || !send_message(socket_.get(), Json::to_cbor(request), file)) report_death(subject);
 }
 
+std::optional<HelperMessage> HelperProcess::await() {
+  IdleWatch watch(process_);
+  pollfd socket{.fd = socket_.get(), .events = POLLIN, .revents = 0};
+  const auto step = std::min<std::chrono::milliseconds>(task_.patience / 4, std::chrono::seconds(1));
+  for (;;) {
+    const int ready = ::poll(&socket, 1, static_cast<int>(step.count()));
+    if (ready > 0) return receive_message(socket_.get());
+    if (ready == 0 && watch.look() > task_.patience) {
+      waits_ = true;
+      ::kill(process_, SIGKILL);
+      return std::nullopt;
+    }
+  }
+}
+
 HelperMessage HelperProcess::receive(const std::string& subject) {
   for (;;) {
-    std::optional<HelperMessage> reply = receive_message(socket_.get());
+    std::optional<HelperMessage> reply = await();
     if (!reply) report_death(subject);
     std::optional<Course> course = course_of(reply->bytes);
     if (!course) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -51,6 +52,8 @@ struct HelperTask {
   Reader reader = Reader::vtk;
   ReadProgressFunction progress{};  ///< hears how far it is; null: nobody
   std::string limit_remedy{};       ///< where it takes too long; empty: as ever
+  /// For how long it may wait for something else than the caller, without any processor time: for a pipe, say.
+  std::chrono::milliseconds patience = std::chrono::minutes(2);
 };
 
 /// What a helper died of, without the subject.
@@ -66,7 +69,8 @@ struct HelperDeath {
 /// Started  by posix_spawn: nothing of the caller's process is copied. It inherits no file and, of the environment,
 ///          nothing that MPI launchers set; what it prints goes nowhere.
 /// Limits   of memory and processor time, by the sizes of the files it opens or the surface it fills, which it sets
-///          itself.
+///          itself, as it gives up the right to change anything (helper/sandbox.hpp). One that waits for longer than
+///          HelperTask::patience is ended.
 /// Threads  calls wait for each other.
 class HelperProcess final : public ArraySource {
  public:
@@ -98,6 +102,8 @@ class HelperProcess final : public ArraySource {
   HelperMessage exchange(const nlohmann::json& request, const std::string& subject);
   void send(const nlohmann::json& request, const std::string& subject, int file = -1);
   HelperMessage receive(const std::string& subject);
+  /// Nothing if it is gone, or is ended for waiting too long.
+  std::optional<HelperMessage> await();
   void open_window(const std::string& subject);
   /// Before its end is waited for, after which its number may be another's.
   void forget() const;
@@ -110,6 +116,7 @@ class HelperProcess final : public ArraySource {
   SharedBytes window_;                     ///< of slots for stream(); empty until it is needed
   std::uint64_t expected_ = 0, came_ = 0;  ///< bytes of stream()
   bool has_begun_ = false;                 ///< it has said that it is there
+  bool waits_ = false;                     ///< it was ended for that
   std::string reading_;                    ///< the file that it is at, of several; empty: it has not said
   std::optional<HelperDeath> death_;       ///< once it is dead
 };

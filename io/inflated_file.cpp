@@ -5,21 +5,39 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdint>
 #include <new>
+#include <string_view>
 
 #include "io/free_memory.hpp"
-#include "io/gzip.hpp"
 #include "io/input_file.hpp"
-#include "io/mapped_file.hpp"
+#include "io/positional_file.hpp"
 
 namespace tessera::io {
 
-InflatedFile::InflatedFile(const std::filesystem::path& file)
-    : file_(file), descriptor_(::memfd_create("tessera", MFD_CLOEXEC)) {
+namespace {
+
+/// The name of the file without a name, which ends in the gzip file's size, so that helpers know it too.
+constexpr std::string_view name_begin = "tessera-gzip-";
+
+InflateLimit limit_of(const std::filesystem::path& packed, InflatedFile::Holds holds) {
+  constexpr std::uint64_t always = 64 << 20;
+  return {always + static_cast<std::uint64_t>(holds) * require_file(packed), false};
+}
+
+}  // namespace
+
+InflatedFile::InflatedFile(const std::filesystem::path& file, Holds holds)
+    : InflatedFile(file, PositionalFile(file), limit_of(file, holds)) {}
+
+InflatedFile::InflatedFile(const std::filesystem::path& file, std::uint64_t first)
+    : InflatedFile(file, PositionalFile(file), InflateLimit{first, true}) {}
+
+InflatedFile::InflatedFile(const std::filesystem::path& file, const PositionalFile& packed, const InflateLimit& limit)
+    : file_(file), descriptor_(::memfd_create(fmt::format("{}{}", name_begin, packed.size()).c_str(), MFD_CLOEXEC)) {
   if (!descriptor_.is_open()) throw std::bad_alloc();
-  const MappedFile mapped(file);
-  if (inflate_to(descriptor_.get(), mapped.bytes(), available_memory() / 10 * 9, file.string()) == 0)
+  if (inflate_to(descriptor_.get(), packed, limit, available_memory() / 10 * 9, file.string()) == 0)
     throw scene::bad_input(fmt::format("{}: it holds nothing; write it anew", file.string()));
   // By number, since the helper opens it too.
   path_ = fmt::format("/proc/{}/fd/{}", ::getpid(), descriptor_.get());
@@ -39,6 +57,15 @@ std::string InflatedFile::renamed(std::string line) const {
 bool is_inflated(const std::filesystem::path& file) {
   const std::string name = file.string();
   return name.starts_with("/proc/") && file.parent_path().filename() == "fd";
+}
+
+std::uint64_t packed_size(const std::filesystem::path& inflated) {
+  std::error_code unknown;
+  const std::string link = std::filesystem::read_symlink(inflated, unknown).string();
+  std::uint64_t size = 0;
+  if (const std::size_t at = link.find(name_begin); at != std::string::npos)
+    std::from_chars(link.data() + at + name_begin.size(), link.data() + link.size(), size);
+  return size;
 }
 
 void require_real_name(const std::filesystem::path& file) {

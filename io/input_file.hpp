@@ -6,7 +6,14 @@
 #include <string>
 #include <string_view>
 
+#include "io/descriptor.hpp"
+
 namespace tessera::io {
+
+/// Opens a regular file to be read. Throws Error(bad_input, "NAME: ...") for one that is not there, may not be read or
+/// is not regular: a pipe would be waited for without end. Error(system_failure) if this process or the machine has no
+/// descriptor or memory left, or the disk fails.
+Descriptor open_regular(const std::filesystem::path& file, const std::string& name);
 
 /// Whether a folder is an OpenFOAM case: system/controlDict or constant/polyMesh in it, or the latter in processor0.
 bool is_case_folder(const std::filesystem::path& folder);

@@ -7,12 +7,12 @@
 #include "io/clean_errors.hpp"
 #include "io/input_file.hpp"
 #include "io/listed_pieces.hpp"
-#include "io/mapped_file.hpp"
 #include "io/mesh_assembly.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/mesh_selection.hpp"
 #include "io/mesh_shares.hpp"
 #include "io/part_range.hpp"
+#include "io/positional_file.hpp"
 #include "io/tets_file.hpp"
 #include "io/warp.hpp"
 
@@ -54,22 +54,21 @@ struct MeshPartReading::State {
 
   void read_tets(int part, int parts) {
     const std::string source = file.string();
-    const MappedFile mapped(file);
-    const TetsLayout layout = tets_layout(mapped.bytes(), source);
-    TetsRange range = parse_tets_range(layout, first_of_part(layout.tets, part, parts),
-                                       first_of_part(layout.tets, part + 1, parts), source);
+    const PositionalFile opened(file);
+    const TetsBytes bytes(opened);
+    const TetsHeader header = tets_header(bytes, source);
+    TetsRange range = parse_tets_range(bytes, first_of_part(header.tets, part, parts),
+                                       first_of_part(header.tets, part + 1, parts), source);
     file_vertex = std::move(range.file_vertex);
-    file_vertices = layout.vertices;
+    file_vertices = header.vertices;
     counts_points = part == 0;
     // The tally is of all vertices, used or not: each part looks at its share.
-    const std::uint64_t first = first_of_part(layout.vertices, part, parts);
+    const std::uint64_t first = first_of_part(header.vertices, part, parts);
     BlockField share;
     share.name = "scalar";
     share.type = "float";
-    share.tuples = first_of_part(layout.vertices, part + 1, parts) - first;
-    share.read = [&](int, std::size_t from, std::span<double> out) {
-      for (std::size_t k = 0; k < out.size(); ++k) out[k] = layout.scalar_of(first + from + k);
-    };
+    share.tuples = first_of_part(header.vertices, part + 1, parts) - first;
+    share.read = [&](int, std::size_t from, std::span<double> out) { read_scalars(bytes, header, first + from, out); };
     CellBlock shares;
     shares.fields.push_back(std::move(share));
     tallies = tally_fields(std::span(&shares, 1));

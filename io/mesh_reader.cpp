@@ -12,7 +12,6 @@
 #include "io/gzip.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
-#include "io/mapped_file.hpp"
 #include "io/medit_file.hpp"
 #include "io/mesh_assembly.hpp"
 #include "io/mesh_formats.hpp"
@@ -21,6 +20,7 @@
 #include "io/tecplot_file.hpp"
 #include "io/tets_file.hpp"
 #include "io/warp.hpp"
+#include "io/whole_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -32,7 +32,7 @@ bool has_time_steps(const std::filesystem::path& file) {
 }
 
 MeshBlocks read_tecplot(const std::filesystem::path& file, std::optional<std::size_t> time_step) {
-  TecplotMesh read = parse_tecplot(MappedFile(file).text(), file.string(), time_step);
+  TecplotMesh read = parse_tecplot(WholeFile(file).text(), file.string(), time_step);
   MeshBlocks mesh{std::move(read.blocks), std::move(read.notes), "Tecplot (text)"};
   mesh.time_step = read.time_step;
   return mesh;
@@ -62,15 +62,15 @@ MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row,
     case FileKind::med:
       return read_med(file, options);
     case FileKind::medit_text:
-      return {parse_medit_text(MappedFile(file).text(), file.string()), {}, "Medit"};
+      return {parse_medit_text(WholeFile(file).text(), file.string()), {}, "Medit"};
     case FileKind::medit:
-      return {parse_medit_binary(MappedFile(file).bytes(), file.string()), {}, "Medit, binary"};
+      return {parse_medit_binary(WholeFile(file).bytes(), file.string()), {}, "Medit, binary"};
     case FileKind::nastran:
       return {read_nastran(file), {}, "Nastran"};
     case FileKind::tecplot:
       return read_tecplot(file, options.time_step);
     case FileKind::su2:
-      return {parse_su2(MappedFile(file).text(), file.string()), {}, "SU2"};
+      return {parse_su2(WholeFile(file).text(), file.string()), {}, "SU2"};
     case FileKind::plot3d:
       return read_plot3d(file, options);
     case FileKind::plot3d_list:
@@ -83,7 +83,7 @@ MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row,
     case FileKind::tetgen_surface:
       return read_surface(file, row.kind, options.max_volume, options.progress);
     case FileKind::tets:
-      return blocks_of_tets(parse_tets(MappedFile(file).bytes(), file.string()));
+      return blocks_of_tets(parse_tets(TetsBytes(PositionalFile(file)), file.string()));
     case FileKind::amr:
       return read_amr(file, row.reader, options);
     default:
@@ -116,7 +116,8 @@ MeshBlocks read_unscaled_blocks(const std::filesystem::path& file, const MeshOpt
   if (row == nullptr || row->kind == FileKind::unread) refuse_as_mesh(file);  // inflated, it has no name that tells
   if (std::filesystem::is_directory(file) || !looks_like_gzip(read_beginning(file, 2)))
     return warped(chosen_blocks(read_content(file, *row, options), options.blocks), options, file.string());
-  const InflatedFile inflated(file);
+  const InflatedFile inflated(
+      file, row->holds == FileHolds::grid_or_mesh ? InflatedFile::Holds::grid : InflatedFile::Holds::mesh);
   MeshBlocks read = inflated.read([&](const std::filesystem::path& content) {
     return warped(chosen_blocks(read_content(content, *row, options), options.blocks), options, file.string());
   });

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "io/inflated_file.hpp"
-#include "io/mapped_file.hpp"
+#include "io/whole_file.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
 
@@ -152,7 +152,7 @@ class NastranDeck {
     if (++depth_ > most_deep)
       throw scene::bad_input(
           fmt::format("{}: more than {} files include each other; give one file", file.string(), most_deep));
-    const MappedFile mapped(file);
+    const WholeFile mapped(file);
     std::string_view text = mapped.text();
     if (text.substr(0, 4096).find('\0') != std::string_view::npos)
       throw scene::bad_input(fmt::format("{}: it is not text; give a Nastran bulk data file", file.string()));

@@ -11,7 +11,6 @@
 
 #include "io/gzip.hpp"
 #include "io/input_file.hpp"
-#include "io/mapped_file.hpp"
 #include "io/time_step_read.hpp"
 #include "io/volume_formats.hpp"
 
@@ -21,9 +20,12 @@ namespace {
 constexpr std::size_t header_size_1 = 348, header_size_2 = 540;
 
 /// Up to 540 bytes, out of a gzip stream if it is one.
-std::vector<std::byte> header_bytes(const MappedFile& file) {
-  if (looks_like_gzip(file.text())) return inflate_beginning(file.bytes(), header_size_2);
-  const auto first = file.bytes().subspan(0, std::min(file.bytes().size(), header_size_2));
+std::vector<std::byte> header_bytes(const std::filesystem::path& file) {
+  constexpr std::size_t enough = 1 << 16;  // of a stream too: it names its file, and deflate expands nothing by much
+  const std::string beginning = read_beginning(file, enough);
+  const auto bytes = std::as_bytes(std::span(beginning));
+  if (looks_like_gzip(beginning)) return inflate_beginning(bytes, header_size_2);
+  const auto first = bytes.first(std::min(bytes.size(), header_size_2));
   return {first.begin(), first.end()};
 }
 
@@ -268,22 +270,16 @@ void set_nifti_payload(const NiftiHeader& header, const std::filesystem::path& f
 
 }  // namespace
 
-bool looks_like_nifti(const std::filesystem::path& file) {
-  const MappedFile mapped(file);
-  const auto bytes = mapped.bytes();
-  // A gzip file that is no volume is not worth inflating, but only its beginning tells.
-  return bytes.size() >= 20 && NiftiHeader(header_bytes(mapped)).version() != 0;
-}
+bool looks_like_nifti(const std::filesystem::path& file) { return NiftiHeader(header_bytes(file)).version() != 0; }
 
 bool looks_like_analyze(const std::filesystem::path& file) {
   const std::filesystem::path stem = lower_extension(file) == ".gz" ? file.stem() : file;
   if (lower_extension(stem) != ".hdr") return false;  // its bytes alone do not tell
-  return NiftiHeader(header_bytes(MappedFile(file))).is_analyze();
+  return NiftiHeader(header_bytes(file)).is_analyze();
 }
 
 StoredVolume read_nifti_header(const std::filesystem::path& file) {
-  const MappedFile mapped(file);
-  const NiftiHeader header(header_bytes(mapped));
+  const NiftiHeader header(header_bytes(file));
   if (header.version() == 0)
     throw damaged(file, "it does not begin with a whole NIfTI header (348 or 540 bytes with its magic word)");
   StoredVolume volume;
@@ -307,8 +303,7 @@ StoredVolume read_nifti_header(const std::filesystem::path& file) {
 
 StoredVolume read_analyze_header(const std::filesystem::path& file) {
   const std::filesystem::path header_file = header_beside(file);
-  require_file(header_file);
-  NiftiHeader header(header_bytes(MappedFile(header_file)));
+  NiftiHeader header(header_bytes(header_file));
   if (header.version() != 0) return read_nifti_header(header_file);
   if (!header.is_analyze())
     throw damaged(header_file, "it does not begin as an Analyze 7.5 or NIfTI header does (its size, 348, first)");

@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <bit>
 #include <utility>
+#include <vector>
 
 #include "io/header_text.hpp"
 #include "io/input_file.hpp"
-#include "io/mapped_file.hpp"
 #include "io/nrrd_axes.hpp"
+#include "io/positional_file.hpp"
 #include "io/text_file.hpp"
 #include "io/volume_formats.hpp"
 
@@ -65,14 +66,18 @@ const std::string& required_field(const NrrdFields& fields, const char* name, co
 /// Where the line after `lines` more of them begins.
 std::uint64_t after_lines(const std::filesystem::path& payload, std::uint64_t offset, std::int64_t lines) {
   if (lines == 0) return offset;
-  require_file(payload);
-  const MappedFile mapped(payload);
-  for (; lines > 0; --lines) {
-    const std::size_t end = offset < mapped.text().size() ? mapped.text().find('\n', offset) : std::string_view::npos;
-    if (end == std::string_view::npos) throw damaged(payload, "it has fewer lines than are to be skipped");
-    offset = end + 1;
+  const std::uint64_t size = require_file(payload);
+  const PositionalFile opened(payload);
+  std::vector<char> part(1 << 16);
+  while (offset < size) {
+    const std::uint64_t count = std::min<std::uint64_t>(part.size(), size - offset);
+    opened.read(offset, reinterpret_cast<std::byte*>(part.data()), count);
+    const std::string_view text(part.data(), count);
+    for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n', end + 1))
+      if (--lines == 0) return offset + end + 1;
+    offset += count;
   }
-  return offset;
+  throw damaged(payload, "it has fewer lines than are to be skipped");
 }
 
 /// Components and time steps.

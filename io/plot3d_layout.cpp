@@ -9,8 +9,8 @@
 #include <string>
 
 #include "io/input_file.hpp"
-#include "io/mapped_file.hpp"
 #include "io/plot3d_text.hpp"
+#include "io/whole_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -128,7 +128,7 @@ bool is_text(const std::filesystem::path& file) {
 Plot3dLayout detect_plot3d(const std::filesystem::path& grid_file) {
   const std::uint64_t size = require_file(grid_file);
   if (is_text(grid_file)) {
-    if (const auto layout = plot3d_text_layout(MappedFile(grid_file).text(), grid_file.string())) return *layout;
+    if (const auto layout = plot3d_text_layout(WholeFile(grid_file).text(), grid_file.string())) return *layout;
     throw scene::bad_input(fmt::format(
         "{}: no layout of a three-dimensional PLOT3D grid gives the numbers that are in it; it is truncated "
         "or of another kind (the solution goes with `q`)",
@@ -153,7 +153,7 @@ Plot3dLayout detect_plot3d(const std::filesystem::path& grid_file) {
 std::uint64_t check_plot3d_solution(const std::filesystem::path& q_file, const Plot3dLayout& layout) {
   const std::uint64_t size = require_file(q_file);
   if (layout.is_text) {
-    if (is_text(q_file)) return check_plot3d_text_solution(MappedFile(q_file).text(), layout, q_file.string());
+    if (is_text(q_file)) return check_plot3d_text_solution(WholeFile(q_file).text(), layout, q_file.string());
     throw scene::bad_input(
         fmt::format("{}: it is binary, and the grid file is text; give both in one form", q_file.string()));
   }

@@ -1,6 +1,5 @@
 #include "io/positional_file.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -11,21 +10,19 @@
 #include <utility>
 
 #include "io/files_read.hpp"
+#include "io/input_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
 
 PositionalFile::PositionalFile(const std::filesystem::path& file, std::string name)
-    : name_(name.empty() ? file.string() : std::move(name)), descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
-  if (descriptor_ < 0) fail("cannot be opened", errno);
+    : name_(name.empty() ? file.string() : std::move(name)), descriptor_(open_regular(file, name_)) {
   note_read(file);
 }
 
-PositionalFile::~PositionalFile() { ::close(descriptor_); }
-
 void PositionalFile::read(std::uint64_t at, std::byte* to, std::uint64_t count) const {
   while (count > 0) {
-    const ssize_t got = ::pread(descriptor_, to, std::min(count, std::uint64_t{1} << 30), static_cast<off_t>(at));
+    const ssize_t got = ::pread(descriptor_.get(), to, std::min(count, std::uint64_t{1} << 30), static_cast<off_t>(at));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail(fmt::format("cannot be read at byte {}", at), errno);
     if (got == 0) fail(fmt::format("has been shortened to {} bytes meanwhile", at), 0);
@@ -35,7 +32,7 @@ void PositionalFile::read(std::uint64_t at, std::byte* to, std::uint64_t count) 
 
 std::uint64_t PositionalFile::size() const {
   struct stat facts {};
-  if (::fstat(descriptor_, &facts) != 0) fail("cannot be asked for its size", errno);
+  if (::fstat(descriptor_.get(), &facts) != 0) fail("cannot be asked for its size", errno);
   return static_cast<std::uint64_t>(facts.st_size);
 }
 

@@ -5,28 +5,28 @@
 #include <filesystem>
 #include <string>
 
+#include "io/descriptor.hpp"
+
 namespace tessera::io {
 
 /// An open file that is read by position, by any number of threads. It needs its name no longer: files that are removed
 /// meanwhile can be read to the end.
 class PositionalFile {
  public:
-  /// `name` for messages; empty: the file's. Throws Error(system_failure) if it cannot be opened.
+  /// `name` for messages; empty: the file's. Throws as open_regular (input_file.hpp).
   explicit PositionalFile(const std::filesystem::path& file, std::string name = {});
-  ~PositionalFile();
-  PositionalFile(const PositionalFile&) = delete;
-  PositionalFile& operator=(const PositionalFile&) = delete;
 
   /// `count` bytes from byte `at` on. Throws Error(system_failure) if the file ends before, or the disk fails.
   void read(std::uint64_t at, std::byte* to, std::uint64_t count) const;
 
   [[nodiscard]] std::uint64_t size() const;
+  [[nodiscard]] int descriptor() const { return descriptor_.get(); }
 
  private:
   [[noreturn]] void fail(const std::string& what, int error_number) const;
 
   std::string name_;
-  int descriptor_;
+  Descriptor descriptor_;
 };
 
 }  // namespace tessera::io

@@ -8,8 +8,9 @@
 
 #include "io/gzip.hpp"
 #include "io/input_file.hpp"
-#include "io/mapped_file.hpp"
+#include "io/positional_file.hpp"
 #include "io/stored_samples.hpp"
+#include "io/whole_file.hpp"
 
 namespace tessera::io {
 namespace {
@@ -68,17 +69,22 @@ Wanted wanted_of(const StoredVolume& volume, std::size_t step, const std::string
   return volume.interleaved_steps ? Wanted{0, all, all} : Wanted{step * needed, needed, all};
 }
 
+VolumePayload kept(std::vector<std::byte> unpacked, std::uint64_t before) {
+  auto bytes = std::make_shared<const std::vector<std::byte>>(std::move(unpacked));
+  const auto wanted = std::span<const std::byte>(*bytes).subspan(before);
+  return {wanted, bytes, {}, wanted.size()};
+}
+
 VolumePayload payload_of_file(const StoredVolume& volume, const std::filesystem::path& file, const Wanted& wanted) {
   const std::string source = file.string();
   const std::uint64_t size = require_file(file), end = wanted.first + wanted.count;
-  auto mapped = std::make_shared<const MappedFile>(file);
-  const auto kept = [&](std::vector<std::byte> unpacked, std::uint64_t before) {
-    auto bytes = std::make_shared<const std::vector<std::byte>>(std::move(unpacked));
-    return VolumePayload{std::span<const std::byte>(*bytes).subspan(before), bytes};
-  };
   if (volume.compressed) {
-    const InflatedRange range = range_of(volume, file, wanted, size);
-    return kept(inflate(mapped->bytes().subspan(range.begin), range.first + range.count, source), range.first);
+    std::vector<std::byte> bytes;
+    inflate_parts(file, range_of(volume, file, wanted, size), source, [&](std::span<const std::byte> part) {
+      if (bytes.empty()) bytes.reserve(wanted.count);  // which so many compressed ones can hold
+      bytes.insert(bytes.end(), part.begin(), part.end());
+    });
+    return kept(std::move(bytes), 0);
   }
   if (volume.vtk_array) {
     std::vector<std::byte> bytes;
@@ -90,14 +96,15 @@ VolumePayload payload_of_file(const StoredVolume& volume, const std::filesystem:
   if (volume.coding != StoredVolume::Coding::binary) {
     if (volume.offset > size)
       throw damaged(file, fmt::format("its samples begin at byte {} of {}", volume.offset, size));
-    const std::string_view text = mapped->text().substr(volume.offset);
+    const WholeFile whole(file);
+    const std::string_view text = whole.text().substr(std::min<std::uint64_t>(volume.offset, whole.text().size()));
     return kept(volume.coding == StoredVolume::Coding::hex
                     ? bytes_of_hex(text, end, source)
                     : samples_of_text(text, end / scene::size_of(volume.number), volume.number, source),
                 wanted.first);
   }
   const auto lies_from = [&](std::uint64_t first_byte) {
-    return VolumePayload{mapped->bytes().subspan(first_byte, wanted.count), mapped, {{file, first_byte}}};
+    return VolumePayload{{}, nullptr, {{file, first_byte}}, wanted.count};
   };
   if (volume.at_end && wanted.all <= size) return lies_from(size - wanted.all + wanted.first);
   if (volume.offset > size || end > size - volume.offset || (volume.exact_size && end != size - volume.offset))
@@ -117,20 +124,32 @@ VolumePayload payload_of_slices(const StoredVolume& volume, const Wanted& wanted
   for (std::uint64_t k = wanted.first / part; k * part < wanted.first + wanted.count; ++k) {
     const std::uint64_t first = std::max(wanted.first, k * part) - k * part;
     const std::uint64_t last = std::min(wanted.first + wanted.count, (k + 1) * part) - k * part;
-    const VolumePayload slice = payload_of_file(volume, volume.slices[k], {first, last - first, part});
+    VolumePayload slice = payload_of_file(volume, volume.slices[k], {first, last - first, part});
     // All at once only where the files can hold it: text and gzip tell as they are read.
     if (k * part <= wanted.first && slice.in_file) bytes->reserve(std::min(wanted.count, files * part));
+    slice = in_memory(std::move(slice), volume.slices[k].string());
     bytes->insert(bytes->end(), slice.bytes.begin(), slice.bytes.end());
   }
-  return {std::span<const std::byte>(*bytes), bytes};
+  return {std::span<const std::byte>(*bytes), bytes, {}, bytes->size()};
 }
 
 }  // namespace
+
+VolumePayload in_memory(VolumePayload payload, const std::string& source) {
+  if (!payload.in_file) return payload;
+  std::vector<std::byte> bytes(payload.count);
+  PositionalFile(payload.in_file->file, source).read(payload.in_file->first_byte, bytes.data(), bytes.size());
+  return kept(std::move(bytes), 0);
+}
 
 VolumePayload payload_of(const StoredVolume& volume, std::size_t step, const std::string& source) {
   const Wanted wanted = wanted_of(volume, step, source);
   return volume.slices.empty() ? payload_of_file(volume, volume.payload, wanted)
                                : payload_of_slices(volume, wanted, source);
+}
+
+std::uint64_t payload_bytes(const StoredVolume& volume, const std::string& source) {
+  return bytes_needed(volume, source) * volume.steps;
 }
 
 bool comes_in_parts(const StoredVolume& volume) {
@@ -153,7 +172,7 @@ VolumePayload interleaved(const StoredVolume& volume, const VolumePayload& plana
   for (std::size_t k = 0; k < samples; ++k)
     for (std::size_t c = 0; c < components; ++c)
       std::memcpy(bytes->data() + (k * components + c) * width, planar.bytes.data() + c * plane + k * width, width);
-  return {std::span<const std::byte>(*bytes), bytes};
+  return {std::span<const std::byte>(*bytes), bytes, {}, bytes->size()};
 }
 
 }  // namespace tessera::io

@@ -8,12 +8,12 @@
 #include "io/free_memory.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
-#include "io/mapped_file.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/ply_file.hpp"
 #include "io/surface.hpp"
 #include "io/tetgen_files.hpp"
 #include "io/triangle_file.hpp"
+#include "io/whole_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -22,7 +22,7 @@ namespace {
 /// Tets that a surface is filled with when no largest volume is asked for: some 40 across, a second of TetGen's time.
 constexpr double default_tets = 30000;
 
-std::string text_of(const std::filesystem::path& file) { return std::string(MappedFile(file).text()); }
+std::string text_of(const std::filesystem::path& file) { return std::string(WholeFile(file).text()); }
 
 Surface read_poly(const std::filesystem::path& file, const std::string& source) {
   std::filesystem::path node_file = file;
@@ -77,7 +77,7 @@ SurfaceFile read_surface_file(const std::filesystem::path& file, FileKind kind) 
     result.notes = std::move(read.notes);
   } else if (kind == FileKind::ply) {
     result.words = "ply";
-    PlySurface ply = parse_ply(MappedFile(file).text(), source);
+    PlySurface ply = parse_ply(WholeFile(file).text(), source);
     surface = std::move(ply.surface);
     result.attribute_names = std::move(ply.attribute_names);
   } else {

@@ -44,6 +44,9 @@ std::string read_text_file(const std::filesystem::path& file) {
           fmt::format("{}: is larger than {} MiB, which no such text is; check that it is the right file",
                       file.string(), largest_file >> 20));
   }
+  // Files of the system's own, which have no size, refuse to be read; others fail with their disk.
+  if (stream.bad() && std::filesystem::file_size(file, error) == 0)
+    throw scene::bad_input(file.string() + ": it cannot be read as text; check that it is the right file");
   if (stream.bad())
     throw scene::Error(scene::ErrorCode::system_failure, file.string() + ": reading failed; check the disk");
   return text;

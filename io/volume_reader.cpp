@@ -91,13 +91,14 @@ TimeStepRead step_of(const StoredVolume& volume, const VolumeOptions& options, c
 VolumePayload usable_payload(StoredVolume& volume, std::size_t step, const std::string& source) {
   VolumePayload payload = payload_of(volume, step, source);
   if (volume.coding == StoredVolume::Coding::text) volume.swapped = false;
-  if (volume.planar && volume.components > 1) payload = interleaved(volume, payload);
+  if (volume.planar && volume.components > 1) payload = interleaved(volume, in_memory(std::move(payload), source));
   if (volume.wide != StoredVolume::Wide::no) {
     if (volume.coding != StoredVolume::Coding::text) {
+      payload = in_memory(std::move(payload), source);
       const bool is_signed = volume.wide == StoredVolume::Wide::int64;
       auto values =
           std::make_shared<const std::vector<double>>(doubles_of_int64(payload.bytes, is_signed, volume.swapped));
-      payload = {std::as_bytes(std::span<const double>(*values)), values};
+      payload = {std::as_bytes(std::span<const double>(*values)), values, {}, payload.count};
       volume.swapped = false;
     }
     volume.notes.emplace_back("64-bit integers are held as doubles");
@@ -180,6 +181,23 @@ VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const 
   result.notes.insert(result.notes.end(), choice.notes.begin(), choice.notes.end());
   result.fields.push_back(std::move(field));
   return result;
+}
+
+/// Where the samples end in a gzip file with such a header; nothing if that does not tell.
+std::optional<std::uint64_t> end_of_samples(const std::filesystem::path& file, VolumeKind kind) {
+  if (kind != VolumeKind::meta_image && kind != VolumeKind::nrrd) return std::nullopt;
+  constexpr std::uint64_t longest_header = 1 << 20;
+  const InflatedFile beginning(file, longest_header);
+  return beginning.read([&](const std::filesystem::path& content) -> std::optional<std::uint64_t> {
+    const StoredVolume volume = kind == VolumeKind::nrrd ? read_nrrd_header(content) : read_meta_image_header(content);
+    if (volume.compressed || volume.at_end || volume.coding != StoredVolume::Coding::binary) return std::nullopt;
+    return volume.offset + payload_bytes(volume, content.string());
+  });
+}
+
+InflatedFile inflated_as_needed(const std::filesystem::path& file, VolumeKind kind) {
+  if (const auto end = end_of_samples(file, kind)) return {file, *end};
+  return {file, InflatedFile::Holds::grid};
 }
 
 VolumeFile with_tag_note(VolumeFile volume) {
@@ -293,7 +311,7 @@ VolumeFile open_unscanned_volume(const std::filesystem::path& file, const Volume
         (kind == VolumeKind::none && !raw) || !looks_like_gzip(read_beginning(file, 2))) {
       volume = open(file);
     } else {
-      const InflatedFile inflated(file);
+      const InflatedFile inflated = inflated_as_needed(file, kind);
       volume = inflated.read(open);
       for (std::string& note : volume.notes) note = inflated.renamed(std::move(note));
       volume.format += ", gzip";

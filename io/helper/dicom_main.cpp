@@ -217,5 +217,5 @@ ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& file
 int main() {
   using namespace tessera::io::helper;
   constexpr Reader readers[] = {{"dicom", read_dicom}};
-  serve(readers);
+  serve(readers, MayFork::yes);  // each part of a folder is looked through in a process of its own (dicom_headers.cpp)
 }

@@ -20,7 +20,7 @@
 #include "io/helper/dicom_elements.hpp"
 #include "io/helper/dicom_frames.hpp"
 #include "io/input_file.hpp"
-#include "io/mapped_file.hpp"
+#include "io/whole_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -202,7 +202,7 @@ DicomSamples::DicomSamples(const DicomSlice& slice)
   };
   // GDCM minds neither samples that end early nor packed ones without their last mark.
   {
-    const MappedFile mapped(slice.file);
+    const WholeFile mapped(slice.file);
     if (slice.is_packed ? mapped.text().find("\xfe\xff\xdd\xe0") == std::string_view::npos
                         : mapped.text().size() < std::max(slice.samples_end, slice.bytes))
       throw refuse("it ends before its samples do");

@@ -9,6 +9,8 @@
 #include <sstream>
 #include <system_error>
 
+#include "scene/error.hpp"
+
 namespace tessera::io::helper {
 namespace {
 
@@ -73,10 +75,12 @@ EnsightCase::EnsightCase(const std::filesystem::path& file)
 
 void EnsightCase::read_geometry(const std::string& line) {
   const std::size_t colon = line.find(':');
-  if (colon == std::string::npos || line.substr(0, colon).find("model") == std::string::npos) return;
+  if (colon == std::string::npos) return;
   std::vector<std::string> words = words_of(line.substr(colon + 1));
   const auto [time_set, file_set] = take_sets(words, 1);
-  if (!words.empty()) named_.push_back({"model", "", without_quotes(words.front()), time_set, file_set});
+  if (words.empty()) return;
+  const bool is_model = line.substr(0, colon).find("model") != std::string::npos;
+  (is_model ? named_ : beside_).push_back({"model", "", without_quotes(words.front()), time_set, file_set});
 }
 
 /// `scalar per node: [ts] [fs] NAME FILE`; of a complex one two files and a frequency; a constant has no file.
@@ -161,11 +165,26 @@ std::vector<EnsightCase::Missing> EnsightCase::missing(double time) const {
   std::vector<Missing> missing;
   for (const Named& named : named_) {
     const std::string file = place_of(named, time).file;
-    std::error_code unknown;
-    if (!file.empty() && !std::filesystem::exists(folder_ / file, unknown) && !unknown)
+    std::error_code unknown;  // as of a loop of links, which is no file either
+    if (!file.empty() && !std::filesystem::is_regular_file(folder_ / file, unknown))
       missing.push_back({named.variable, file, named.of_points});
   }
   return missing;
+}
+
+void EnsightCase::require_regular_files(const std::string& source) const {
+  std::vector<double> all = times();
+  if (all.empty()) all.push_back(0);
+  std::vector<Named> everything = named_;
+  everything.insert(everything.end(), beside_.begin(), beside_.end());
+  for (const double time : all)
+    for (const Named& named : everything) {
+      const std::string file = place_of(named, time).file;
+      std::error_code unknown;
+      const auto status = std::filesystem::status(folder_ / file, unknown);
+      if (!file.empty() && std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+        throw scene::bad_input(fmt::format("{}: it names {}, which is no regular file; put one there", source, file));
+    }
 }
 
 std::vector<EnsightCase::Located> EnsightCase::located(double time) const {

@@ -22,6 +22,9 @@ class EnsightCase {
   /// The files that are not there, of the time step at `time`; of a case without time of the only one.
   [[nodiscard]] std::vector<Missing> missing(double time) const;
 
+  /// Throws Error(bad_input) if a file of any step is a folder, a pipe or another that is not regular.
+  void require_regular_files(const std::string& source) const;
+
   struct Values {
     std::string variable;
     std::filesystem::path file;
@@ -79,6 +82,7 @@ class EnsightCase {
   std::filesystem::path folder_;
   bool is_gold_ = false;
   std::vector<Named> named_;
+  std::vector<Named> beside_;  ///< measured particles and the like, which VTK's reader opens too
   std::map<int, TimeSet> sets_;
   std::map<int, std::vector<InFileSet>> file_sets_;
 };

@@ -2,14 +2,19 @@
 // file format"): each step is between the lines, or records of 80 bytes, BEGIN TIME STEP and END TIME STEP.
 #include "io/helper/ensight_step.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <new>
+#include <string>
 #include <system_error>
+#include <utility>
 
-#include "io/mapped_file.hpp"
+#include "io/helper_messages.hpp"
+#include "io/input_file.hpp"
+#include "io/whole_file.hpp"
 
 namespace tessera::io::helper {
 namespace {
@@ -44,12 +49,12 @@ StepText step_text(std::string_view text, std::size_t step, bool in_set) {
 
 }  // namespace
 
-EnsightStep::EnsightStep(const EnsightCase& described, double time, const std::string& source) {
+EnsightStep::EnsightStep(const EnsightCase& described, double time) {
   std::string geometry, variables;
   const std::vector<EnsightCase::Located> located = described.located(time);
   std::vector<std::filesystem::path> files;
   files.reserve(located.size());
-  for (const EnsightCase::Located& each : located) files.push_back(file_of(each, source));
+  for (const EnsightCase::Located& each : located) files.push_back(file_of(each));
   for (std::size_t k = 0; k < located.size(); ++k) {
     const EnsightCase::Values& values = located[k].values;
     std::string names = files[k].filename();
@@ -69,24 +74,30 @@ EnsightStep::EnsightStep(const EnsightCase& described, double time, const std::s
   }
   const char* const type = described.is_gold() ? "ensight gold" : "ensight";
   const std::string text = fmt::format("FORMAT\ntype: {}\nGEOMETRY\n{}VARIABLE\n{}", type, geometry, variables);
-  case_file_ = std::make_unique<ScratchFile>(source, text.size());
-  case_file_->write(text);
+  case_file_ = in_memory(text, {});
 }
 
-std::filesystem::path EnsightStep::file_of(const EnsightCase::Located& located, const std::string& source) {
+std::filesystem::path EnsightStep::keep(Descriptor opened) {
+  opened_.push_back(std::move(opened));
+  return fmt::format("/proc/{}/fd/{}", ::getpid(), opened_.back().get());
+}
+
+std::filesystem::path EnsightStep::in_memory(std::string_view before, std::string_view lines) {
+  Descriptor file(::memfd_create("tessera", MFD_CLOEXEC));
+  if (!file.is_open() || !write_all(file.get(), before.data(), before.size()) ||
+      !write_all(file.get(), lines.data(), lines.size()))
+    throw std::bad_alloc();
+  return keep(std::move(file));
+}
+
+std::filesystem::path EnsightStep::file_of(const EnsightCase::Located& located) {
   const std::filesystem::path& file = located.values.file;
-  const auto as_it_is = [&] {
-    opened_.emplace_back(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
-    return fmt::format("/proc/{}/fd/{}", ::getpid(), opened_.back().get());
-  };
+  const auto as_it_is = [&] { return keep(open_regular(file, file.string())); };
   if (std::error_code unknown; std::filesystem::file_size(file, unknown) == 0) return as_it_is();
-  const MappedFile mapped(file);
+  const WholeFile mapped(file);
   const StepText text = step_text(mapped.text(), located.step, located.in_set);
   if (text.before.size() == mapped.text().size()) return as_it_is();
-  steps_.push_back(std::make_unique<ScratchFile>(source, text.before.size() + text.lines.size()));
-  steps_.back()->write(text.before);
-  steps_.back()->write(text.lines);
-  return steps_.back()->path();
+  return in_memory(text.before, text.lines);
 }
 
 }  // namespace tessera::io::helper

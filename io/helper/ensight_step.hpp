@@ -1,13 +1,11 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
-#include <string>
+#include <string_view>
 #include <vector>
 
+#include "io/descriptor.hpp"
 #include "io/helper/ensight_case.hpp"
-#include "io/helper_messages.hpp"
-#include "io/scratch_file.hpp"
 
 namespace tessera::io::helper {
 
@@ -15,19 +13,20 @@ namespace tessera::io::helper {
 /// sets for one of several steps, and does not end where one is not, such as geometry that does not change.
 class EnsightStep {
  public:
-  EnsightStep(const EnsightCase& described, double time, const std::string& source);
+  EnsightStep(const EnsightCase& described, double time);
 
   /// For as long as this lives.
-  [[nodiscard]] std::filesystem::path case_file() const { return case_file_->path(); }
+  [[nodiscard]] std::filesystem::path case_file() const { return case_file_; }
   [[nodiscard]] const std::vector<EnsightCase::Values>& values() const { return values_; }
 
  private:
-  /// The path that VTK's reader opens: of a scratch file without a name, which is gone when this process ends.
-  std::filesystem::path file_of(const EnsightCase::Located& located, const std::string& source);
+  /// The path that VTK's reader opens: of the file itself, or of its step in memory.
+  std::filesystem::path file_of(const EnsightCase::Located& located);
+  std::filesystem::path in_memory(std::string_view before, std::string_view lines);
+  std::filesystem::path keep(Descriptor opened);
 
-  std::vector<std::unique_ptr<ScratchFile>> steps_;
-  std::vector<Descriptor> opened_;  ///< of one step
-  std::unique_ptr<ScratchFile> case_file_;
+  std::vector<Descriptor> opened_;
+  std::filesystem::path case_file_;
   std::vector<EnsightCase::Values> values_;
 };
 

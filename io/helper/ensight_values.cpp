@@ -32,7 +32,7 @@
 #include <system_error>
 #include <vector>
 
-#include "io/mapped_file.hpp"
+#include "io/whole_file.hpp"
 
 namespace tessera::io::helper {
 namespace {
@@ -328,13 +328,13 @@ EnsightValues values_in(vtkGenericEnSightReader& reader, vtkDataObject& data, co
   auto* const parts = vtkMultiBlockDataSet::SafeDownCast(&data);
   if (with_tables == nullptr || parts == nullptr) return {};
   if (std::error_code unknown; std::filesystem::file_size(values.file, unknown) == 0) return {"before its values", {}};
-  const MappedFile file(values.file);
+  const WholeFile file(values.file);
   return ValuesWalk(*with_tables, *parts, values, file.text()).walk();
 }
 
 bool ends_with_part(const EnsightCase::Values& values) {
   if (std::error_code unknown; std::filesystem::file_size(values.file, unknown) == 0) return false;
-  const MappedFile file(values.file);
+  const WholeFile file(values.file);
   const std::string_view text = file.text();
   const std::size_t end = text.find_last_not_of(std::string_view(" \t\r\n\0", 5));
   return end != std::string_view::npos && text.substr(0, end + 1).ends_with(part_word);

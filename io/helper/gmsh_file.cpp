@@ -18,7 +18,7 @@
 #include "io/helper/unv_check.hpp"
 #include "io/helper_messages.hpp"
 #include "io/input_file.hpp"
-#include "io/mapped_file.hpp"
+#include "io/whole_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -90,7 +90,7 @@ void require_last_section(const std::filesystem::path& file) {
 }
 
 bool has_values(const std::filesystem::path& file) {
-  const MappedFile mapped(file);
+  const WholeFile mapped(file);
   return mapped.text().find("\n$NodeData") != std::string_view::npos ||
          mapped.text().find("\n$ElementData") != std::string_view::npos;
 }

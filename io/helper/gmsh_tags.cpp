@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "io/helper/gmsh_types.hpp"
-#include "io/mapped_file.hpp"
+#include "io/whole_file.hpp"
 
 namespace tessera::io::helper {
 namespace {
@@ -150,7 +150,7 @@ std::optional<ElementList> element_list(std::string_view text) {
 }  // namespace
 
 Tags gmsh_element_tags(const std::filesystem::path& file) {
-  const MappedFile mapped(file);
+  const WholeFile mapped(file);
   const std::string_view text = mapped.text();
   if (const auto elements = after_line(text, "$ELM")) return text_tags(Words(*elements), 1);
   const std::optional<ElementList> list = element_list(text);

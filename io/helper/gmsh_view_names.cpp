@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "io/helper/gmsh_tags.hpp"
-#include "io/mapped_file.hpp"
+#include "io/whole_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -84,7 +84,7 @@ std::string with_two_tags(std::string_view line) {
 }  // namespace
 
 Descriptor with_quoted_view_names(const std::filesystem::path& file) {
-  const MappedFile mapped(file);
+  const WholeFile mapped(file);
   const std::string_view text = mapped.text();
   const std::vector<std::size_t> places = lacking_quotes(text);
   if (places.empty()) return {};
@@ -100,7 +100,7 @@ Descriptor with_quoted_view_names(const std::filesystem::path& file) {
 }
 
 Descriptor without_partitions(const std::filesystem::path& file) {
-  const MappedFile mapped(file);
+  const WholeFile mapped(file);
   const std::string_view text = mapped.text();
   if (const std::string binary = binary_without_partitions(text); !binary.empty()) {
     Descriptor copy(::memfd_create("tessera", MFD_CLOEXEC));

@@ -26,8 +26,8 @@
 #include "io/helper/extents.hpp"
 #include "io/helper/readers.hpp"
 #include "io/input_file.hpp"
-#include "io/mapped_file.hpp"
 #include "io/volume_formats.hpp"
+#include "io/whole_file.hpp"
 #include "io/xml_elements.hpp"
 
 namespace tessera::io::helper {
@@ -74,7 +74,7 @@ std::optional<std::array<T, count>> attribute_numbers(const std::string& text) {
 /// Reads the parallel file alone.
 WholeGrid read_whole(const std::filesystem::path& file, GridKind kind) {
   allow_for(file);
-  const MappedFile mapped(file);
+  const WholeFile mapped(file);
   WholeGrid whole;
   const auto extent_of = [&](const XmlElement& element, const char* name) {
     const std::string* text = element.find(name);

@@ -25,9 +25,9 @@ enum class GridKind { image, rectilinear, structured };
 vtkSmartPointer<vtkDataSet> read_grid_pieces(const std::filesystem::path& file, GridKind kind,
                                              std::vector<std::string>& notes);
 
-/// Throws Error(bad_input) for one of VTK's XML files that is cut short: VTK fills what it lacks with zeros, and says
-/// nothing.
-void require_xml_end(const std::filesystem::path& file);
+/// Throws Error(bad_input) for one of VTK's XML files that is cut short, which VTK fills up with zeros without a word,
+/// or is not well formed, or nested so deep that VTK's reader does not come out of it.
+void require_whole_xml(const std::filesystem::path& file);
 
 /// One of VTK's XML files, by the `type` of its <VTKFile>; not one in pieces. The pieces within it have to fill the
 /// whole. Throws Error(bad_input).

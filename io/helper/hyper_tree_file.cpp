@@ -277,7 +277,7 @@ vtkSmartPointer<vtkCellData> of_leaves(vtkCellData& all, const std::vector<std::
 ForeignContents read_hyper_trees(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json&) {
   allow_for(file);
   const std::string source = file.string();
-  require_xml_end(file);
+  require_whole_xml(file);
   ForeignContents contents;
   contents.format = "VTK XML HyperTreeGrid";
   const std::string warning = with_quiet_vtk(source, write_anew, [&] {

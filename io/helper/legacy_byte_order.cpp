@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/mapped_file.hpp"
+#include "io/whole_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -109,7 +109,7 @@ bool is_little_endian(std::string_view text) {
 }  // namespace
 
 void require_big_endian(const std::filesystem::path& file) {
-  const MappedFile mapped(file);
+  const WholeFile mapped(file);
   const std::string_view text = mapped.text();
   const std::size_t title = text.find('\n'), coding = std::min(text.find('\n', title + 1), text.size() - 1);
   if (title == std::string_view::npos || !text.substr(coding + 1).starts_with("BINARY") || !is_little_endian(text))

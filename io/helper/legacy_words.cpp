@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/mapped_file.hpp"
+#include "io/whole_file.hpp"
 #include "scene/quote.hpp"
 
 namespace tessera::io::helper {
@@ -95,7 +95,7 @@ std::string odd_word_in(const std::vector<std::string_view>& words) {
 }  // namespace
 
 std::string odd_legacy_word(const std::filesystem::path& file) {
-  const MappedFile mapped(file);
+  const WholeFile mapped(file);
   const std::string_view text = mapped.text();
   bool is_metadata = false;
   std::size_t number = 0;

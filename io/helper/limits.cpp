@@ -7,16 +7,12 @@
 #include <fstream>
 
 #include "io/helper/readers.hpp"
+#include "io/helper/sandbox.hpp"
+#include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 
 namespace tessera::io::helper {
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool is_sanitized = true;  // address space is what sanitizers need most of
-#else
-constexpr bool is_sanitized = false;
-#endif
 
 std::uint64_t address_space_in_use() {
   std::uint64_t pages = 0;
@@ -51,21 +47,33 @@ bool may_be_compressed(const std::filesystem::path& file) {
 
 /// More of both than is in use.
 void allow(std::uint64_t bytes, double seconds) {
+  // Address space is what sanitizers need most of.
   if (!is_sanitized) had_enough_memory = set_soft_limit(RLIMIT_AS, address_space_in_use() + bytes);
   set_soft_limit(RLIMIT_CPU, static_cast<std::uint64_t>(processor_seconds() + seconds * (is_sanitized ? 10 : 1)) + 1);
 }
 
+// Text of one digit and a blank becomes a double and an index, which readers hold twice; deflate packs 1032 to 1.
+constexpr double text_factor = 24, packed_factor = 1100;
+constexpr std::uint64_t base_bytes = 256ull << 20;
+// Slow readers take 2 MB/s of text; what is compressed, ten times as long.
+constexpr double base_seconds = 8, text_bytes_a_second = 2e6;
+
 /// Memory and time for so many bytes of files.
 void allow_for_bytes(std::uint64_t size, bool is_compressed) {
-  // Text of one digit and a blank becomes a double and an index, which readers hold twice; deflate packs 1032 to 1.
-  const std::uint64_t factor = is_compressed ? 1100 : 24;
-  // Slow readers take 2 MB/s of text; what is compressed, ten times as long.
-  allow((256ull << 20) + factor * size, 8 + static_cast<double>(size) / (is_compressed ? 2e5 : 2e6));
+  const double bytes = static_cast<double>(size) * (is_compressed ? packed_factor : text_factor);
+  allow(base_bytes + static_cast<std::uint64_t>(bytes),
+        base_seconds + static_cast<double>(size) / (is_compressed ? text_bytes_a_second / 10 : text_bytes_a_second));
 }
 
 }  // namespace
 
-void allow_for(const std::filesystem::path& file) { allow_for_bytes(require_file(file), may_be_compressed(file)); }
+void allow_for(const std::filesystem::path& file) {
+  if (!is_inflated(file)) return allow_for_bytes(require_file(file), may_be_compressed(file));
+  // As for what it holds, but together with that no more than a compressed file of its own size may take.
+  const double held = static_cast<double>(require_file(file)), packed = static_cast<double>(packed_size(file));
+  const double bytes = std::max(std::min(text_factor * held, packed_factor * packed - held), 2 * held);
+  allow(base_bytes + static_cast<std::uint64_t>(bytes), base_seconds + held / text_bytes_a_second);
+}
 
 void allow_for_files(std::span<const std::filesystem::path> files) {
   std::uint64_t bytes = 0;

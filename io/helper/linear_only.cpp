@@ -12,7 +12,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "io/mapped_file.hpp"
+#include "io/whole_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -44,7 +44,7 @@ void require_linear_gambit(const std::filesystem::path& file) {
                                                  {"wedge", 6},
                                                  {"tetrahedron", 4},
                                                  {"pyramid", 5}}};
-  const MappedFile mapped(file);
+  const WholeFile mapped(file);
   std::string_view text = mapped.text();
   const std::size_t title = text.find("ELEMENTS/CELLS");
   if (title == std::string_view::npos) return;
@@ -81,7 +81,7 @@ std::string note_on_ensight6(const std::filesystem::path& case_file) {
   std::error_code unknown;
   const std::filesystem::path geometry = case_file.parent_path() / model;
   if (is_gold || model.empty() || !std::filesystem::is_regular_file(geometry, unknown)) return {};
-  const MappedFile mapped(geometry);
+  const WholeFile mapped(geometry);
   for (const char* type : {"tetra10", "pyramid13", "penta15", "hexa20"})
     if (mapped.text().find(type) != std::string_view::npos)
       return fmt::format(

@@ -19,7 +19,7 @@
 #include <new>
 #include <string_view>
 
-#include "io/mapped_file.hpp"
+#include "io/whole_file.hpp"
 
 namespace tessera::io::helper {
 namespace {
@@ -95,7 +95,7 @@ void restore_one(vtkDataObject& data) {
 }  // namespace
 
 OddNumbers::OddNumbers(const std::filesystem::path& file) : file_(file) {
-  const MappedFile mapped(file);
+  const WholeFile mapped(file);
   const std::string_view text = mapped.text();
   const std::string_view beginning = text.substr(0, 4096);
   if (beginning.find('\0') != std::string_view::npos || beginning.find("\nBINARY") != std::string_view::npos) return;

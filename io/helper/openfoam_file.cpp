@@ -125,6 +125,19 @@ void require_mesh_files(const std::filesystem::path& folder, const std::string& 
     }
 }
 
+/// Throws if a file that VTK's reader may open is a pipe, which it would wait for. What lies in the folder of the case
+/// itself is not read.
+void require_regular_files(const std::filesystem::path& folder, const std::string& source) {
+  std::error_code unknown;
+  std::filesystem::recursive_directory_iterator entry(folder, unknown);
+  for (; !unknown && entry != std::filesystem::recursive_directory_iterator(); entry.increment(unknown)) {
+    std::error_code gone;
+    if (entry.depth() > 0 && entry->exists(gone) && !entry->is_regular_file(gone) && !entry->is_directory(gone))
+      throw scene::bad_input(
+          fmt::format("{}: {} is no regular file; remove it", source, entry->path().lexically_normal().string()));
+  }
+}
+
 bool is_case(const std::filesystem::path& folder) {
   std::error_code unknown;
   return is_case_folder(folder) || std::filesystem::exists(folder / "processor0", unknown) ||
@@ -214,6 +227,7 @@ ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::path& n
         "it into the folder of a case, or name that folder",
         source));
   require_mesh_files(folder, source);
+  require_regular_files(folder, source);
   reader->SetCaseType(is_decomposed ? vtkPOpenFOAMReader::DECOMPOSED_CASE : vtkPOpenFOAMReader::RECONSTRUCTED_CASE);
   reader->SetUse64BitLabels(has_wide_labels(folder));
   reader->CreateCellToPointOff();

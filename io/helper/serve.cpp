@@ -22,6 +22,7 @@
 #include "io/clean_errors.hpp"
 #include "io/helper/opened_files.hpp"
 #include "io/helper/readers.hpp"
+#include "io/helper/sandbox.hpp"
 #include "io/helper_messages.hpp"
 #include "io/input_file.hpp"
 #include "scene/error.hpp"
@@ -158,9 +159,10 @@ void report_reading(const std::filesystem::path& file) {
                    Json::to_cbor({{"reading", Json::binary(std::vector<std::uint8_t>(name.begin(), name.end()))}})));
 }
 
-void serve(std::span<const Reader> readers) {
+void serve(std::span<const Reader> readers, MayFork may_fork) {
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
+  give_up_rights(may_fork);
   try {
     std::thread(end_with_caller).detach();
   } catch (const std::system_error&) {  // without a thread for it, it ends with the request that it is at

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "io/helper/holdings.hpp"
+#include "io/helper/sandbox.hpp"
 
 namespace tessera::io::helper {
 
@@ -26,8 +27,9 @@ struct Reader {
 /// Failures  {"error": {"line", "code"}} instead.
 /// Before the answer to "open" any number of {"progress": how much of the file is read, 0 to 1} and, of formats that
 /// are many files, of {"reading": the one that is read from now on}, which a crash is then said of.
+/// Before the first request the process gives up its rights (sandbox.hpp).
 /// As soon as the caller is gone, killed perhaps, so is this process, whatever it is at.
-[[noreturn]] void serve(std::span<const Reader> readers);
+[[noreturn]] void serve(std::span<const Reader> readers, MayFork may_fork = MayFork::no);
 
 /// Says how much of the file is read, 0 to 1, if it has not been said for a tenth of a second. For readers.
 void report_progress(double done);

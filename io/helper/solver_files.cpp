@@ -47,7 +47,7 @@
 #include "io/helper/vtk_session.hpp"
 #include "io/helper/vtk_words.hpp"
 #include "io/input_file.hpp"
-#include "io/mapped_file.hpp"
+#include "io/whole_file.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
 
@@ -135,8 +135,10 @@ class FluentReader : public vtkFLUENTReader {
 
  protected:
   bool OpenDataFile(const char* file) override {
+    std::error_code unknown;  // a pipe of that name would be waited for
+    if (!std::filesystem::is_regular_file(fluent_values_of(file), unknown)) return false;
     if (!vtkFLUENTReader::OpenDataFile(file)) return false;
-    std::string spaced = spaced_fluent_values(MappedFile(fluent_values_of(file)).text());
+    std::string spaced = spaced_fluent_values(WholeFile(fluent_values_of(file)).text());
     if (spaced.empty()) return true;
     delete FluentDataFile;
     FluentDataFile = new std::istringstream(std::move(spaced));
@@ -311,13 +313,14 @@ TimeStepRead step_in_file_sets(const EnsightCase& described, nlohmann::json& req
 ForeignContents read_case(Holdings& holdings, const std::filesystem::path& file, nlohmann::json request) {
   const std::string source = file.string();
   const EnsightCase described(file);
+  described.require_regular_files(source);
   std::optional<TimeStepRead> step;
   std::optional<EnsightStep> apart;
   double time = 0;
   if (described.has_file_sets()) {
     step = step_in_file_sets(described, request, source);
     if (step->step < step->times.size()) time = step->times[step->step];
-    apart.emplace(described, time, source);
+    apart.emplace(described, time);
   }
   const std::string case_file = apart ? apart->case_file().string() : source;
   std::vector<std::string> notes, blank;

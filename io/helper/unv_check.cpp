@@ -13,7 +13,7 @@
 #include <tuple>
 #include <utility>
 
-#include "io/mapped_file.hpp"
+#include "io/whole_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -136,7 +136,7 @@ class Universal {
 }  // namespace
 
 void require_read_unv(const std::filesystem::path& file) {
-  const MappedFile mapped(file);
+  const WholeFile mapped(file);
   Universal(mapped.text(), file.string()).check();
 }
 

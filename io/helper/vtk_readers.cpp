@@ -34,8 +34,9 @@
 #include "io/helper/vtk_session.hpp"
 #include "io/helper/vtk_words.hpp"
 #include "io/input_file.hpp"
-#include "io/mapped_file.hpp"
 #include "io/node_orders.hpp"
+#include "io/positional_file.hpp"
+#include "io/vtk_xml_elements.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -195,18 +196,19 @@ ForeignContents contents_of_data(Holdings& holdings, vtkDataObject* data, const 
 
 }  // namespace
 
-void require_xml_end(const std::filesystem::path& file) {
-  const MappedFile mapped(file);
-  const std::string_view text = mapped.text(),
-                         end = text.substr(text.size() - std::min<std::size_t>(text.size(), 1024));
-  if (end.find("</VTKFile") == std::string_view::npos)
+void require_whole_xml(const std::filesystem::path& file) {
+  const PositionalFile opened(file);
+  std::string end(std::min<std::uint64_t>(opened.size(), 1024), '\0');
+  opened.read(opened.size() - end.size(), reinterpret_cast<std::byte*>(end.data()), end.size());
+  if (end.find("</VTKFile") == std::string::npos)
     throw scene::bad_input(fmt::format("{}: it does not end with </VTKFile>; {}", file.string(), write_anew));
+  require_vtk_xml_form(opened, file.string());
 }
 
 vtkSmartPointer<vtkDataObject> read_xml_file(const std::filesystem::path& file, const std::string& type,
                                              std::string& warning) {
   allow_for(file);
-  require_xml_end(file);
+  require_whole_xml(file);
   vtkSmartPointer<vtkDataObject> data;
   warning = with_quiet_vtk(file.string(), write_anew, [&] { data = read_xml(file.string(), type); });
   return data;

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/mapped_file.hpp"
+#include "io/whole_file.hpp"
 #include "io/xml_elements.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
@@ -143,7 +143,7 @@ std::optional<std::string> library_type(const std::string& number_type, const st
 }
 
 XdmfText check_xdmf_elements(const std::filesystem::path& file) {
-  const MappedFile mapped(file);
+  const WholeFile mapped(file);
   const std::string source = file.string();
   if (mapped.text().find("<!ENTITY") != std::string_view::npos)
     throw scene::bad_input(fmt::format("{}: it defines entities of its own; write it without", source));

@@ -12,7 +12,7 @@
 
 #include "io/helper/xdmf_elements.hpp"
 #include "io/helper/xdmf_references.hpp"
-#include "io/mapped_file.hpp"
+#include "io/whole_file.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
 
@@ -193,7 +193,7 @@ class Rewriting {
 std::string rewritten_xdmf(const std::filesystem::path& file) {
   const std::string source = file.string();
   xmlSetStructuredErrorFunc(nullptr, [](void*, xmlErrorPtr) {});  // else it writes to stderr
-  const MappedFile mapped(file);
+  const WholeFile mapped(file);
   const std::string_view text = mapped.text();
   const std::unique_ptr<xmlDoc, void (*)(xmlDoc*)> document(
       xmlReadMemory(text.data(), static_cast<int>(text.size()), nullptr, nullptr,

@@ -52,6 +52,11 @@ ROWS = [
     row(R + "--rescale", "name one, or leave it out", R),
     row(R + "--iso 7", "choose a value between", R + "--iso 0.5"),
     row(R + "--iso 0.5:red:3", "above 0 and at most 1", R + "--iso 0.5:red:0.5"),
+    row(
+        R + "--transfer-function /proc/self/mem",
+        "it cannot be read as text; check that it is the right file",
+        R + "--transfer-function viridis",
+    ),
     row(R + "--transfer-function coolwarm", "did you mean cool-warm?", R + "--transfer-function cool-warm"),
     row(R + "--transfer-function zzzz", "the presets are", R + "--transfer-function viridis"),
     # transfer functions as text

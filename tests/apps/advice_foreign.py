@@ -156,6 +156,15 @@ ROWS = [
         {"a.pvtu": PVTU},
     ),
     row("info a.pvtu", "there is no such file", None, {"a.pvtu": PVTU}, {"p.vtu": PIECE}),
+    row("info a.pvtu", "is no regular file; give one that", None, {"a.pvtu": PVTU, "p.vtu": ("link", "/dev/null")}, {"p.vtu": PIECE}),
+    row("info a.vtu", "it is text in UTF-16; save it in UTF-8", None, {"a.vtu": PIECE.encode("utf-16")}, {"a.vtu": PIECE}),
+    row(
+        "info a.vtu",
+        "nested more than 256 deep; the file is damaged, export it again",
+        None,
+        {"a.vtu": PIECE.replace("</VTKFile>", "<a>" * 300 + "</a>" * 300 + "</VTKFile>")},
+        {"a.vtu": PIECE},
+    ),
     row(
         "info a.pvtu",
         "does not begin as a VTK XML file does; write it anew",

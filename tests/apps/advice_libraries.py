@@ -265,6 +265,7 @@ ROWS = [
         {"case.foam": "", **FOAM, "case/case.foam": ""},
     ),
     row("info case.foam", "or name that folder", "info case", {"case.foam": "", **FOAM}),
+    row("info case", "is no regular file; remove it", None, {**FOAM, "case/0/x": ("link", "/dev/null")}, {"case/0/x": None}),
     row("info case", "write it anew", None, {**FOAM, "case/constant/polyMesh/owner": "nothing"}, FOAM),
     row(
         "info case",

@@ -87,6 +87,8 @@ ROWS = [
     # missing files
     row("info m.case", "it names m.geo, and there is no such file; put it there", None, without(ENSIGHT, "m.geo"),
         ENSIGHT),
+    row("info m.case", "it names m.geo, which is no regular file; put one there", None, {**ENSIGHT, "m.geo": ("link", "/dev/null")},
+        ENSIGHT),
     row("info m.case --field f", "f of that time step is in m.f, and there is no such file; put it there", None,
         without(ENSIGHT, "m.f"), ENSIGHT),
     row("info m.case --field f", "which ends inside part 1; copy it there again", None,

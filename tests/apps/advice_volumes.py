@@ -38,6 +38,7 @@ def nrrd_axes(axes, advice):
 DETACHED = NRRD.replace(b"encoding: raw\n\n" + SAMPLES, b"encoding: raw\ndata file: a%d.raw 0 1 1\n")
 PARTS = {"a0.raw": SAMPLES[:4], "a1.raw": SAMPLES[4:]}
 META_TEXT = META.replace(b"BinaryData = True", b"BinaryData = False").replace(SAMPLES, b"1 2 3 4 5 6 7 8")
+ROOMY = TETRAHEDRON.replace("</VTKFile>", " " * (100 << 20) + "</VTKFile>")  # blanks that gzip makes nothing of
 PACKED = NRRD.replace(b"raw", b"gzip").replace(SAMPLES, gzip.compress(SAMPLES, mtime=0))
 TEXT = NRRD.replace(b"raw", b"ascii").replace(SAMPLES, b"1 2 3 4 5 6 7 8")
 HEX = NRRD.replace(b"raw", b"hex").replace(SAMPLES, SAMPLES.hex().encode())
@@ -205,6 +206,13 @@ ROWS = [
         {"a.vtu.gz": gzip.compress(TETRAHEDRON.encode())},
     ),
     cut("a.nrrd.gz", gzip.compress(NRRD * 3), 90, "its compressed bytes end or break"),
+    row(
+        "info a.vtu.gz",
+        "hold more than 76 MiB, as no such data do; unpack it with gunzip",
+        "info a.vtu",
+        {"a.vtu.gz": gzip.compress(ROOMY.encode())},
+        {"a.vtu": ROOMY},
+    ),
     row(
         "info a.nrrd",
         "choose another field",

@@ -9,7 +9,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tessera;
   test::parse_or_refuse([&] {
-    const scene::TetMesh mesh = io::parse_tets(std::as_bytes(std::span(data, size)), "f");
+    const scene::TetMesh mesh = io::parse_tets(io::TetsBytes(std::as_bytes(std::span(data, size))), "f");
     for (const scene::Tet& tet : mesh.tets)
       for (const std::uint32_t v : tet) test::require(v < mesh.positions.size());
     test::require(mesh.scalars.size() == mesh.positions.size());

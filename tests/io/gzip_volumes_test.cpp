@@ -78,6 +78,33 @@ TEST_F(GzipVolumes, DamagedOnesAreRefusedByTheirOwnName) {
   expect_no_volume(write("text.gz", "no volume"), "does not begin");
 }
 
+TEST_F(GzipVolumes, NothingIsInflatedBehindTheSamplesThatTheHeaderStates) {
+  // What follows them takes no memory: a damaged stream there is not even noticed.
+  const std::string header = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n\n";
+  for (const auto& [name, begin] :
+       {std::pair{"b.nrrd.gz", header},
+        {"b.mha.gz",
+         std::string(
+             "ObjectType = Image\nNDims = 3\nDimSize = 4 4 4\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n")}}) {
+    const auto samples = counting<std::uint8_t>(64);
+    const std::string whole = test::contents(write(name, begin + bytes_of(samples) + std::string(100 << 20, '\0')));
+    const VolumeFile volume =
+        open_volume(folder.write(name, whole.substr(0, whole.size() / 2) + std::string(1000, 'x')));
+    EXPECT_EQ(all_samples(*volume.source), counting<double>(64)) << name;
+  }
+}
+
+TEST_F(GzipVolumes, WhatIsOutOfProportionToItsFileIsRefused) {
+  const auto zeros = [](int mib) { return std::string(static_cast<std::size_t>(mib) << 20, '\0'); };
+  for (const auto& [name, begin] :
+       {std::pair{"b.stl.gz", "solid x\n"}, {"b.tets.gz", "x"}, {"b.ply.gz", "ply\nformat ascii 1.0\n"}})
+    test::expect_bad_input([&] { read_mesh(write(name, begin + zeros(100))); }, {name, "hold more than", "gunzip"});
+  expect_no_volume(write("b_4x4x4_uint8.raw.gz", zeros(170)), "hold more than");
+  // A mask compresses hundreds of times.
+  const auto mask = write("m_256x256x1000_uint8.raw.gz", std::string(256 * 256 * 1000, '\1'));
+  EXPECT_EQ(open_volume(mask).source->geometry().points, (scene::GridIndex{256, 256, 1000}));
+}
+
 TEST_F(GzipVolumes, WhatGoesWithOtherFilesIsToBeUnpacked) {
   folder.write("d.raw", std::string(64, 'a'));
   const std::string nhdr = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\ndata file: d.raw\n";

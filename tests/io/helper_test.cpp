@@ -1,9 +1,11 @@
 // The helper program, from its caller's side: what it inherits, what its deaths become, what damaged files ask of it.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -13,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "io/foam_case.hpp"
 #include "io/foreign_file.hpp"
 #include "io/helper_process.hpp"
 #include "io/mesh_checks.hpp"
@@ -99,6 +102,24 @@ TEST(Helper, ItsDeathIsOneLineAboutTheFileAndStaysSo) {
     }
     EXPECT_EQ(helper->process(), -1) << "its process is left unreaped";
   }
+}
+
+TEST(Helper, IsEndedWhereItWaitsForAPipe) {
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  const auto cube = folder / "case", boundary = cube / "constant/polyMesh/boundary";
+  testing::write_foam(cube, testing::Cubes(1), [](int) { return true; });
+  testing::write_control(cube);
+  std::string text = test::contents(boundary);
+  text.insert(text.find('}') + 1, "\n#include \"../../../pipe\"\n");  // which VTK's reader opens
+  std::ofstream(boundary) << text;
+  HelperTask task;
+  task.patience = std::chrono::milliseconds(200);
+  const auto helper = std::make_shared<HelperProcess>(task);
+  const test::Fault fault = test::fault_of([&] { open_foreign(helper, cube, {{"reader", "openfoam"}}); });
+  EXPECT_EQ(fault.code, scene::ErrorCode::bad_input) << fault.message;
+  EXPECT_NE(fault.message.find("waits for something that does not come"), std::string::npos) << fault.message;
+  EXPECT_EQ(helper->process(), -1) << "its process is left";
 }
 
 TEST(Helper, TellsHowFarItIs) {

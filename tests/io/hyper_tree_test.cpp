@@ -192,7 +192,7 @@ TEST(HyperTrees, WhatIsNotReadIsToldInOneLine) {
   has(fault("NumberOfTuples=\"17\"", "NumberOfTuples=\"99999999999\""), "more than a file of its size holds");
   has(fault("NumberOfTuples=\"17\"", "NumberOfTuples=\"-17\""), "array 'Descriptors' has -17 numbers");
   has(fault("</VTKFile>", ""), "it does not end with </VTKFile>");
-  has(fault("<Trees>", "<Tress>"), "write it anew");
+  has(fault("<Trees>", "<Tress>"), "mismatched tag");
 }
 
 TEST(HyperTrees, ChangedBytesAreReadOrRefused) {

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <limits>
 
 #include "colormaps/presets.hpp"
+#include "io/text_file.hpp"
 #include "io/transfer_function_file.hpp"
 #include "temporary_folder.hpp"
 
@@ -13,6 +15,11 @@ using test::expect_bad_input;
 
 scene::TransferFunction parse_function(std::string_view text, const colormaps::TransferFunctionOptions& options = {}) {
   return parse_text_transfer_function(text, "tf.txt", options).function;
+}
+
+TEST(TextTransferFunction, AFileOfTheSystemsOwnThatCannotBeReadIsNone) {
+  if (!std::filesystem::exists("/proc/self/mem")) GTEST_SKIP() << "no /proc/self/mem";
+  test::expect_bad_input([] { read_text_file("/proc/self/mem"); }, {"cannot be read as text"});
 }
 
 TEST(TextTransferFunction, TakesNumbersAsTheyStand) {

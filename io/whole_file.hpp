@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+namespace tessera::io {
+
+/// A whole file in memory, for text and other files of which all is looked at. Throws as require_file
+/// (input_file.hpp), or Error(system_failure) if the file is shortened while it is read.
+///
+/// Read, and not mapped: a file that another program shortens would end the process with SIGBUS at any later time.
+class WholeFile {
+ public:
+  explicit WholeFile(const std::filesystem::path& file);
+  ~WholeFile();
+  WholeFile(const WholeFile&) = delete;
+  WholeFile& operator=(const WholeFile&) = delete;
+
+  [[nodiscard]] std::string_view text() const { return {static_cast<const char*>(start_), size_}; }
+  [[nodiscard]] std::span<const std::byte> bytes() const { return {static_cast<const std::byte*>(start_), size_}; }
+
+ private:
+  void* start_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+}  // namespace tessera::io
