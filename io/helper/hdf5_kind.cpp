@@ -7,6 +7,7 @@
 
 #include "io/helper/hdf5_file.hpp"
 #include "io/helper/hdf5_grid.hpp"
+#include "io/helper/hdf5_references.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/vtk_hdf_mesh.hpp"
 #include "io/inflated_file.hpp"
@@ -46,6 +47,7 @@ ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file,
     if (!opened.is_open())
       throw scene::bad_input(fmt::format(
           "{}: it begins as HDF5 and cannot be opened; it is truncated or damaged, write it anew", file.string()));
+    require_sound_references(file, ReferencesMay::lie_below);
     if (opened.has("VTKHDF")) {
       vtk_type = opened.text_of("VTKHDF", "Type");
       kind = vtk_type == "ImageData" ? Kind::vtk_image : Kind::vtk;

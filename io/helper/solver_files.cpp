@@ -39,6 +39,7 @@
 #include "io/helper/ensight_case.hpp"
 #include "io/helper/ensight_step.hpp"
 #include "io/helper/ensight_values.hpp"
+#include "io/helper/hdf5_references.hpp"
 #include "io/helper/linear_only.hpp"
 #include "io/helper/odd_numbers.hpp"
 #include "io/helper/readers.hpp"
@@ -401,6 +402,8 @@ ForeignContents read_ensight(Holdings& holdings, const std::filesystem::path& fi
 
 ForeignContents read_cgns(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   allow_for(file);
+  if (read_beginning(file, 8).starts_with("\x89HDF"))  // its links to files of other folders are everyday's
+    require_sound_references(file, ReferencesMay::lie_anywhere);
   if (auto contents = read_cgns_zones(holdings, file, request)) return std::move(*contents);
   vtkNew<vtkCGNSReader> reader;
   reader->SetFileName(file.c_str());
