@@ -94,7 +94,6 @@ Listener::~Listener() = default;
 std::uint16_t Listener::port() const { return state_->acceptor.local_endpoint().port(); }
 
 void Listener::finish() {
-  error_code none;
   asio::post(state_->io, [this] {
     error_code ignored;
     state_->acceptor.close(ignored);
