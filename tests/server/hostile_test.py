@@ -66,6 +66,8 @@ def number(rng):
 
 
 def scale(rng):
+    if rng.randrange(8) == 0:
+        return repr(max(rng.choice([5e-324, 1e-310, 1e-308, 1e308]), options.least_scale))
     exponent = rng.uniform(-310, 308)
     mantissa = 10 ** (exponent - int(exponent))
     value = float(f"{mantissa:.3f}e{int(exponent)}")
