@@ -64,12 +64,14 @@ std::vector<std::string> with_scene_file(const std::vector<std::string>& argumen
     for (const std::string& value : values) {
       if (option->get_positional())
         positionals.push_back(value);
+      else if (value.empty() && option->get_expected_min() == 0)
+        throw bad_input(fmt::format("{}: {} is empty; write true, or leave it out", file, excerpt(key)));
       else if (value.empty())
         options.insert(options.end(), {"--" + key, value});  // after a mere = CLI11 takes the next argument
       else if (option->get_expected_min() > 0)
-        options.push_back("--" + key + "=" + value);
+        options.push_back(fmt::format("--{}={}", key, value));
       else if (value != "false")
-        options.push_back("--" + key + (value == "true" ? "" : "=" + value));
+        options.push_back(value == "true" ? "--" + key : fmt::format("--{}={}", key, value));
     }
   }
   std::vector<std::string> all = arguments;

@@ -158,6 +158,7 @@ ROWS = [
             ("put text in quotes", "annotate = two words\n", "annotate = 'two words'\n"),
             ("put text in quotes", "annotate =\n", "annotate = ''\n"),
             ("put a comma between values", "iso = ['0.5' '0.6']\n", "iso = ['0.5', '0.6']\n"),
+            ("write true, or leave it out", "color-bar = ''\n", "color-bar = true\n"),
             ("write one list of texts", "iso = [['0.5']]\n", "iso = ['0.5']\n"),
             ("write \\n for a line break", 'annotate = """a\nb"""\n', 'annotate = "a\\nb"\n'),
             ("write \\\\, or put the text in single quotes", 'annotate = "a\\p"\n', "annotate = 'a\\p'\n"),
