@@ -210,7 +210,8 @@ TEST_F(EmptyPicture, OfAFilmAreCounted) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("3 of 3 pictures are empty, that of frame 1 because: "), std::string::npos) << outcome.err;
   const Outcome quiet = tessera({"render", mesh, "-o", folder / "q.png", "--size", "32x32", "--quiet"});
-  EXPECT_EQ(quiet.err, "");
+  EXPECT_NE(quiet.err.find("the picture is empty"), std::string::npos) << quiet.err;
+  EXPECT_EQ(quiet.error_lines(), 1u) << quiet.err;
 }
 
 }  // namespace

@@ -360,7 +360,7 @@ TEST(LaneIntegrator, ZeroLengthAndClearMatterGiveExactZeros) {
 TEST(LaneIntegrator, OverflowSaturates) {
   constexpr float largest = std::numeric_limits<float>::max(), smallest = std::numeric_limits<float>::denorm_min();
   const TransferFunction f(
-      {{-1000, {1, 0, 0.5}, 1e300}, {0, {0, 0, 1e20}, 0}, {1000, {1, 1e-40, 0}, 1e30}, {1e9, {1, 1, 0}, 0}});
+      {{-1000, {1, 0, 0.5}, 1e100}, {0, {0, 0, 1e20}, 0}, {1000, {1, 1e-40, 0}, 1e30}, {1e9, {1, 1, 0}, 0}});
   std::vector<Segment> segments;
   for (const float length : {smallest, 1e-30f, 1.0f, 1e20f, largest})
     for (const float front : {-0x1p30f, -1000.0f, -1.0f, 0.0f, 1.0f, 1000.0f, 0x1p30f})
@@ -385,7 +385,7 @@ TEST(LaneIntegrator, TinyAndHugeScenesAreTheSameScene) {
   const std::vector<Segment> segments{{0.5f, -0x1p27f, 0x1p28f}, {1.5f, 0x1p28f, -0x1p28f}, {0.125f, 0, 0}};
   for (const Emission emission : {Emission::absorption, Emission::independent}) {
     const auto expected = in_lanes(LaneTable(f, 0, 0x1p-28, 1, emission), segments);
-    for (const int power : {-130, 130}) {
+    for (const int power : {-90, 90}) {
       std::vector<Knot> knots(f.knots().begin(), f.knots().end());
       for (Knot& k : knots) {
         k.extinction = std::ldexp(k.extinction, -power);
