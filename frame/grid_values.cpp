@@ -43,7 +43,8 @@ void leave_fill_values_out(io::VolumeFile& volume, const std::filesystem::path& 
       std::move(volume.source), std::array{fill->others.low, fill->others.high}, file.string());
   ranges = std::make_shared<const volume::CellRanges>(scan_together(transport, *volume.source, options.threads));
   fill = scene::find_fill_value(*volume.source, ranges->range);
-  if (fill && !fill->is_huge() && !fill->is_outside(threshold)) volume.notes.push_back(scene::words_on(*fill, "samples"));
+  if (fill && !fill->is_huge() && !fill->is_outside(threshold))
+    volume.notes.push_back(scene::words_on(*fill, "samples"));
 }
 
 void note_byte_order(io::VolumeFile& volume, const ReadOptions& options, const scene::ValueRange& range) {

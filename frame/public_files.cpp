@@ -76,7 +76,12 @@ bool opens_as_mesh(const std::filesystem::path& file) { return io::is_mesh_file(
 void require_input(const std::filesystem::path& input) { io::require_input(input); }
 void require_grid(const std::filesystem::path& file) { io::require_volume(file); }
 void require_mesh(const std::filesystem::path& file) { io::require_mesh_file(file); }
-std::string read_text(const std::filesystem::path& file) { return io::read_beginning(file, io::require_file(file)); }
+std::string read_text(const std::filesystem::path& file) {
+  std::error_code unknown;
+  if (std::filesystem::is_directory(file, unknown))
+    throw scene::bad_input(file.string() + ": is a folder; name a file in it");
+  return io::read_beginning(file, io::require_file(file));
+}
 void check_json(std::string_view text, const std::string& source, std::size_t most_values) {
   io::parse_json(text, source, most_values);
 }

@@ -28,12 +28,17 @@ std::atomic<bool> inputs_are_protected = false;
 
 }  // namespace
 
-void note_read(const std::filesystem::path& file) {
+void note_named(const std::filesystem::path& file) {
   struct stat facts {};
-  if (file.native().starts_with("/proc/")) return;  // an open file of this process: no name of its own
   if (::stat(file.c_str(), &facts) != 0 || !S_ISREG(facts.st_mode)) return;
   const std::lock_guard lock(files_read().mutex);
   files_read().identities.emplace(facts.st_dev, facts.st_ino);
+}
+
+void note_read(const std::filesystem::path& file) {
+  if (file.native().starts_with("/proc/")) return;  // an open file of this process: no name of its own
+  note_named(file);
+  const std::lock_guard lock(files_read().mutex);
   files_read().names.insert(file.string());
 }
 

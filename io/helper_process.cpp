@@ -16,6 +16,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
@@ -23,6 +24,7 @@
 
 #include "io/files_read.hpp"
 #include "io/idle_watch.hpp"
+#include "io/input_file.hpp"
 #include "io/spawn_plan.hpp"
 #include "io/unfinished.hpp"
 #include "scene/error.hpp"
@@ -34,6 +36,11 @@ using Json = nlohmann::json;
 
 /// Of the window. One slot is used while the other is filled; both stay in the processor's cache.
 constexpr std::size_t slots = 2, slot_bytes = 2 << 20;
+
+bool is_picture(const std::filesystem::path& file) {
+  constexpr std::array<std::string_view, 7> extensions = {".png", ".exr", ".jpg", ".jpeg", ".tif", ".tiff", ".pfm"};
+  return std::ranges::find(extensions, lower_extension(file)) != extensions.end();
+}
 
 /// The caller's environment without what would have the helper take itself for a rank.
 std::vector<char*> helper_environment() {
@@ -261,7 +268,11 @@ Json content_of(const HelperMessage& reply, const std::string& subject) {
   try {
     json = Json::from_cbor(reply.bytes);
     if (const auto opened = json.find("opened"); opened != json.end())
-      for (const Json& name : *opened) note_read(std::string(name.get_binary().begin(), name.get_binary().end()));
+      for (const Json& name : *opened) {
+        const std::filesystem::path file(std::string(name.get_binary().begin(), name.get_binary().end()));
+        // Some look into every file of a folder: pictures of earlier runs are none of theirs.
+        if (!is_picture(file)) note_read(file);
+      }
     if (const auto error = json.find("error"); error != json.end()) {
       line = error->at("line").get<std::string>();
       code = error->at("code").get<int>();

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "io/files_read.hpp"
 #include "io/input_file.hpp"
 #include "io/json_text.hpp"
 #include "io/text_file.hpp"
@@ -183,7 +184,9 @@ bool is_time_series(const std::filesystem::path& input) {
   return io::pattern_of(input.filename().string()).has_value() && !std::filesystem::exists(input, absent);
 }
 
-std::vector<TimeStep> read_time_series(const std::filesystem::path& input) {
+namespace {
+
+std::vector<TimeStep> steps_of_series(const std::filesystem::path& input) {
   if (io::is_pvd(input)) return io::read_pvd(input);
   if (io::is_file_series(input)) {
     io::require_file(input);
@@ -194,6 +197,15 @@ std::vector<TimeStep> read_time_series(const std::filesystem::path& input) {
     throw scene::bad_input(fmt::format(
         "{}: is no time series; give a .pvd or .series, or a name with %04d for the number", input.string()));
   return io::read_pattern(input, *pattern);
+}
+
+}  // namespace
+
+std::vector<TimeStep> read_time_series(const std::filesystem::path& input) {
+  std::vector<TimeStep> steps = steps_of_series(input);
+  for (const TimeStep& step : steps)
+    for (const auto& file : step.files) io::note_named(file);
+  return steps;
 }
 
 std::optional<std::string> numbered_name(const std::string& pattern, int number) {

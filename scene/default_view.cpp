@@ -169,8 +169,8 @@ Camera zoomed(Camera camera, double zoom) {
   }
   try {
     validate(camera);
-  } catch (const Error& error) {
-    throw bad_input(fmt::format("`zoom` is {}: the view's {}", zoom, error.what()));
+  } catch (const Error&) {
+    throw bad_input(fmt::format("`zoom` is {}: pixels of that size are no numbers; give one nearer to 1", zoom));
   }
   return camera;
 }

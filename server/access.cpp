@@ -128,8 +128,9 @@ bool Access::allowed(std::string_view name) const {
 
 bool Access::has_token(const Credentials& credentials) const {
   if (const auto given = query_value(credentials.query, "token"); given && same(*given, token_)) return true;
-  constexpr std::string_view bearer = "Bearer ";
-  if (credentials.authorization.starts_with(bearer) && same(credentials.authorization.substr(bearer.size()), token_))
+  constexpr std::string_view bearer = "bearer ";  // RFC 9110, 11.1: in any case
+  if (lowered(std::string(credentials.authorization.substr(0, bearer.size()))) == bearer &&
+      same(credentials.authorization.substr(bearer.size()), token_))
     return true;
   if (same(credentials.token, token_)) return true;
   return lists_word(credentials.protocols, "token." + token_);

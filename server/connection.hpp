@@ -34,9 +34,9 @@ struct Network {
   Service& service;
   NetworkLimits limits;
   boost::asio::thread_pool& parsing;  ///< messages of sockets are handled there, as a long one takes a while
-  std::size_t connections = 0;       ///< of clients that have shown the token
-  std::list<Stranger*> strangers{};  ///< the oldest first
-  std::size_t writing = 0;           ///< responses and messages that are on their way
+  std::size_t connections = 0;        ///< of clients that have shown the token
+  std::list<Stranger*> strangers{};   ///< the oldest first
+  std::size_t writing = 0;            ///< responses and messages that are on their way
 };
 
 /// Takes care of a connection until it ends: HTTP requests one after the other, or a WebSocket.

@@ -15,6 +15,7 @@
 #include "io/helper/dicom_headers.hpp"
 #include "io/helper/dicom_series.hpp"
 #include "io/helper/holdings.hpp"
+#include "io/helper/opened_files.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/serve.hpp"
 #include "io/input_file.hpp"
@@ -90,6 +91,7 @@ struct DicomStack {
 
 /// As stored, and made into values as they are asked for.
 ForeignArray hold_samples(Holdings& holdings, const DicomVolume& volume, std::vector<std::string>& notes) {
+  static_cast<void>(take_opened_files());  // those that were looked at, to find the slices' among them
   const auto stack = std::make_shared<DicomStack>();
   stack->slices = volume.slices;
   constexpr std::size_t at_once = 1 << 15;

@@ -96,8 +96,5 @@ std::FILE* fopen(const char* name, const char* mode) { return tessera::io::helpe
 int open64(const char* name, int flags, ...) __attribute__((alias("open")));
 int openat64(int folder, const char* name, int flags, ...) __attribute__((alias("openat")));
 std::FILE* fopen64(const char* name, const char* mode) __attribute__((alias("fopen")));
-// What the C library's headers call in programs with _FORTIFY_SOURCE.
-int __open_2(const char* name, int flags) { return tessera::io::helper::open_noted(name, flags, 0); }
-int __open64_2(const char* name, int flags) __attribute__((alias("__open_2")));
 }
 #pragma GCC visibility pop

@@ -161,6 +161,45 @@ TEST(InputProtection, OneFileByTwoNamesIsOneOutput) {
   EXPECT_NE(run.err.find("named twice"), std::string::npos) << run.err;
 }
 
+// Steps of a list that this run does not draw are data all the same.
+TEST(InputProtection, StepsThatAreNotDrawnAreNotReplaced) {
+  const Folder folder;
+  const std::string mesh = folder.cube();
+  fs::copy_file(mesh, folder / "other.vtu");
+  write(folder / "s.pvd",
+        R"(<?xml version="1.0"?><VTKFile type="Collection"><Collection><DataSet timestep="0" file=")" +
+            fs::path(mesh).filename().string() +
+            R"("/><DataSet timestep="1" file="other.vtu"/></Collection></VTKFile>)");
+  const Words run = {"render", folder / "s.pvd", "--time-step", "0", "-o", folder / "a.png", "--size", "8x8"};
+  ASSERT_EQ(tessera(run).status, 0);
+  expect_refused(folder, run + Words{"--report", folder / "other.vtu"});
+}
+
+// A reader that looks into every file of a folder makes none of them an input by that.
+TEST(InputProtection, PicturesInAnInputFolderAreReplaced) {
+  const Folder folder;
+  fs::create_directories(folder / "case/constant/polyMesh");
+  fs::create_directories(folder / "case/system");
+  fs::create_directories(folder / "case/0");
+  const auto foam = [&](const std::string& name, const std::string& kind, const std::string& text) {
+    write(folder / ("case/" + name), "FoamFile { version 2.0; format ascii; class " + kind + "; object x; }\n" + text);
+  };
+  foam("system/controlDict", "dictionary", "application none;\nstartTime 0;\n");
+  foam("constant/polyMesh/points", "vectorField", "8 ((0 0 0)(1 0 0)(1 1 0)(0 1 0)(0 0 1)(1 0 1)(1 1 1)(0 1 1))\n");
+  foam("constant/polyMesh/faces", "faceList",
+       "6 (4(0 3 2 1) 4(4 5 6 7) 4(0 1 5 4) 4(3 7 6 2) 4(0 4 7 3) 4(1 2 6 5))\n");
+  foam("constant/polyMesh/owner", "labelList", "6 (0 0 0 0 0 0)\n");
+  foam("constant/polyMesh/neighbour", "labelList", "0 ()\n");
+  foam("constant/polyMesh/boundary", "polyBoundaryMesh", "1 (walls { type wall; nFaces 6; startFace 0; })\n");
+  foam("0/p", "volScalarField", "dimensions [0 0 0 0 0 0 0];\ninternalField uniform 1;\nboundaryField {}\n");
+  const Words run = {"render", folder / "case", "-o", folder / "case/0/a.png", "--size", "8x8"};
+  const Outcome first = tessera(run);
+  if (first.err.find("is not installed") != std::string::npos) GTEST_SKIP() << "the reader is not installed";
+  ASSERT_EQ(first.status, 0) << first.err;
+  const Outcome again = tessera(run);
+  EXPECT_EQ(again.status, 0) << again.err;
+}
+
 // What a run has written itself is no input of the next.
 TEST(InputProtection, OutputsOfAnEarlierRunAreReplaced) {
   const Folder folder;

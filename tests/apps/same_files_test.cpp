@@ -74,10 +74,12 @@ TEST_F(SameFiles, PiecesThatDifferAreTold) {
 TEST_F(SameFiles, VolumesThatDifferAreTold) {
   const std::string header = "NRRD0004\ntype: uint8\ndimension: 3\nencoding: raw\nsizes: ";
   for (const auto& [rank, n] : {std::pair{"0", 8}, std::pair{"1", 6}}) {
-    const std::string side = std::to_string(n);
-    write(std::string(rank) + "/v.nrrd", header + side + " " + side + " " + side + "\n\n" +
-                                             std::string(static_cast<std::size_t>(n * n * n / 2), '\1') +
-                                             std::string(static_cast<std::size_t>(n * n * n / 2), '\7'));
+    const auto half = static_cast<std::size_t>(n * n * n / 2);
+    std::string text = header;
+    for (int axis = 0; axis < 3; ++axis) text += std::to_string(n) + ' ';
+    text += "\n\n";
+    text.append(half, '\1').append(half, '\7');
+    write(std::string(rank) + "/v.nrrd", text);
   }
   expect_told({"render", "v.nrrd", "-o", "a_%02d.png", "--orbit", "3", "--size", "16x16"}, "v.nrrd");
 }
