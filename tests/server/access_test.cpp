@@ -36,8 +36,10 @@ TEST(Access, TakesTheTokenFromQueryHeaderOrSubprotocolAndNothingElse) {
   EXPECT_TRUE(access.refusal(c));
   c.token = "";
   const std::string bearer = "Bearer " + token;
-  c.authorization = bearer;
-  EXPECT_FALSE(access.refusal(c));
+  for (const std::string& right : {bearer, "bearer " + token}) {
+    c.authorization = right;
+    EXPECT_FALSE(access.refusal(c)) << right;
+  }
   for (const std::string& wrong : {bearer + "0", bearer.substr(0, 20), "Basic " + token, std::string("Bearer ")}) {
     c.authorization = wrong;
     EXPECT_TRUE(access.refusal(c)) << wrong;
