@@ -184,10 +184,6 @@ void AtomicFile::fail(int error_number, const char* doing) const {
     case EFBIG:
       remedy = "free some space or name another disk";
       break;
-    case EMFILE:
-    case ENFILE:
-      remedy = "close files, or raise `ulimit -n`";
-      break;
     default:
       break;
   }
