@@ -166,7 +166,7 @@ class Film final : public Sink {
     for (std::size_t i = 0; i < frames_.size(); ++i) frames_[i].finished = finished[i] != std::byte{0};
   }
 
-  /// Those beside the frames' pictures; may be empty.
+  /// Outputs other than the frames' pictures. Paths of those that were not asked for are empty.
   [[nodiscard]] std::vector<std::filesystem::path> other_outputs() const {
     std::vector<std::filesystem::path> outputs = options_.films;
     outputs.insert(outputs.end(), {options_.timing, options_.saved_scene});

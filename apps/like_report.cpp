@@ -26,7 +26,7 @@ Json views_of(const Json& report) {
   return views;
 }
 
-/// As --field has it; of data with one field alone there is no choice.
+/// The word for --field; none if the report's data have a single field.
 std::string field_of(const Json& data) {
   const Json &field = data.at("field"), &fields = data.at("fields");
   const auto name = field.at("name").get<std::string>();

@@ -5,7 +5,7 @@
 
 /// `render --like FILE`: another run's views, size, field and transfer function, as its report (--report) has them, so
 /// that two pictures can be compared: the same value has the same colour and the same extinction in both, whatever data
-/// they show. Options beside it win.
+/// they show. Options given on the command line take precedence.
 namespace tessera::apps {
 
 /// Declares --like.

@@ -156,8 +156,9 @@ Error as_error() {
   std::_Exit(static_cast<int>(error.code()));
 }
 
-/// A file that this program opens must not take the number of a standard stream that its caller has closed: what is
-/// said there would go into it. What nobody reads is nowhere; a result for a closed standard output fails, as it ought.
+/// Opens /dev/null for each standard stream that the caller has closed. Otherwise the next file that is opened would
+/// get the stream's number, and messages would be written into it. Standard output is opened to read, so that writing a
+/// result to it fails.
 void fill_standard_descriptors() {
   for (const auto& [descriptor, how] :
        {std::pair{STDIN_FILENO, O_RDONLY}, std::pair{STDOUT_FILENO, O_RDONLY}, std::pair{STDERR_FILENO, O_WRONLY}})

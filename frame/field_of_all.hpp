@@ -11,7 +11,8 @@
 
 namespace tessera::frame {
 
-/// What colours and opacities go by, of data before a selection.
+/// Facts and samples of a data set before anything was clipped or left out by a threshold. Transfer functions are
+/// chosen by these.
 struct FieldOfAll {
   scene::MeshFacts facts;
   scene::FieldSamples samples;

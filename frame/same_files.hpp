@@ -4,10 +4,11 @@
 
 namespace tessera::frame {
 
-/// Throws Error(bad_input) on a rank that has read another file than a rank before it under the same name, as where the
-/// nodes of a cluster have copies of which one is older: of all files read since the last call, and of those that other
-/// ranks read alone as the first rank sees them. Compared are the length and the bytes, of files above 1 MiB those of
-/// 64 places. Not the time: copies of one file may be of several. Collective.
+/// Checks that all ranks have read the same files, which they may not have where nodes of a cluster have copies of
+/// their own. Compares all files read since the last call; a file that only some ranks have read is compared with the
+/// one that the first rank finds under its name. Files up to 1 MiB are compared by length and content, larger ones by
+/// length and 16 KiB at 64 places; modification times are ignored, as copies may differ in them. Throws
+/// Error(bad_input), naming the file, on a rank that finds a difference. Collective.
 void require_same_files(exchange::Transport& transport);
 
 }  // namespace tessera::frame

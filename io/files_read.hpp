@@ -11,7 +11,7 @@ namespace tessera::io {
 /// it (tessera/output_file.hpp), and all ranks are to have the same (frame/same_files.hpp). From any thread.
 void note_read(const std::filesystem::path& file);
 
-/// The first alone: of a file that an input names, but this run need not open.
+/// Only protects it from outputs: for a file that an input names and this run may not open.
 void note_named(const std::filesystem::path& file);
 
 /// Whether the file of this device and number has been read.

@@ -74,7 +74,7 @@ std::vector<std::string> take_opened_files() {
 
 }  // namespace tessera::io::helper
 
-// A definition in the program itself comes before the C library's, for the libraries that it links as well.
+// The libraries that this program links call these definitions instead of the C library's.
 #pragma GCC visibility push(default)
 extern "C" {
 
