@@ -98,7 +98,8 @@ TEST_F(GzipVolumes, WhatIsOutOfProportionToItsFileIsRefused) {
   const auto zeros = [](int mib) { return std::string(static_cast<std::size_t>(mib) << 20, '\0'); };
   for (const auto& [name, begin] :
        {std::pair{"b.stl.gz", "solid x\n"}, {"b.tets.gz", "x"}, {"b.ply.gz", "ply\nformat ascii 1.0\n"}})
-    test::expect_bad_input([&] { read_mesh(write(name, begin + zeros(100))); }, {name, "hold more than", "gunzip"});
+    test::expect_bad_input([this, &zeros, name = name, begin = begin] { read_mesh(write(name, begin + zeros(100))); },
+                           {name, "hold more than", "gunzip"});
   expect_no_volume(write("b_4x4x4_uint8.raw.gz", zeros(170)), "hold more than");
   // A mask compresses hundreds of times.
   const auto mask = write("m_256x256x1000_uint8.raw.gz", std::string(256 * 256 * 1000, '\1'));
