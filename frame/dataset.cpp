@@ -79,7 +79,7 @@ void note_fill_value(exchange::Transport& transport, Dataset::State& state) {
 }
 
 /// Of a file of one step, what its field data state.
-void set_own_time(const std::filesystem::path& file, io::TimeStepRead& read) {
+void set_own_time(const std::filesystem::path& file, scene::TimeStepRead& read) {
   if (read.count > 1 || !read.times.empty()) return;
   if (const auto time = io::vtk_time_value(file)) read = {1, 0, {*time}};
 }
@@ -405,7 +405,7 @@ std::vector<std::string> Dataset::warnings() const {
 std::size_t Dataset::time_steps() const { return std::max<std::size_t>(state_->time_step.count, 1); }
 std::span<const double> Dataset::times() const { return state_->time_step.times; }
 std::optional<double> Dataset::time() const {
-  const io::TimeStepRead& read = state_->time_step;
+  const scene::TimeStepRead& read = state_->time_step;
   return read.step < read.times.size() ? std::optional(read.times[read.step]) : std::nullopt;
 }
 std::span<const std::string> Dataset::blocks() const { return state_->blocks; }
@@ -461,9 +461,9 @@ std::size_t time_steps_of(const std::filesystem::path& file, const ReadOptions& 
 }
 
 std::vector<double> times_of(const std::filesystem::path& file, const ReadOptions& options) {
-  const io::TimeStepRead read = opens_as_grid(file, options)
-                                    ? io::open_unscanned_volume(file, volume_options(options)).time_step
-                                    : io::time_steps_of_mesh(file, frame::mesh_options(options));
+  const scene::TimeStepRead read = opens_as_grid(file, options)
+                                       ? io::open_unscanned_volume(file, volume_options(options)).time_step
+                                       : io::time_steps_of_mesh(file, frame::mesh_options(options));
   if (!read.times.empty()) return read.times;
   std::vector<double> numbers(std::max<std::size_t>(read.count, 1));
   std::iota(numbers.begin(), numbers.end(), 0.0);

@@ -23,7 +23,7 @@ struct TESSERA_HIDDEN Dataset::State {
   std::string source, format, field_name;
   std::vector<FieldInfo> fields;
   std::vector<std::string> notes, blocks, surfaces;
-  io::TimeStepRead time_step;
+  scene::TimeStepRead time_step;
   glm::dvec3 axis_scale{1};  ///< that the file's axes were multiplied by
   scene::MeshFacts facts;    ///< of the whole; grids have no tets
   /// What a selection (ReadOptions::selection) left out is in these; null: nothing was left out.

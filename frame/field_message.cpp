@@ -61,14 +61,14 @@ std::vector<io::FieldSummary> take_fields(MessageReader& reader) {
   return fields;
 }
 
-void append_time_step(Bytes& message, const io::TimeStepRead& read) {
+void append_time_step(Bytes& message, const scene::TimeStepRead& read) {
   append(message, read.count);
   append(message, read.step);
   exchange::append_list(message, read.times);
 }
 
-io::TimeStepRead take_time_step(MessageReader& reader) {
-  io::TimeStepRead read;
+scene::TimeStepRead take_time_step(MessageReader& reader) {
+  scene::TimeStepRead read;
   read.count = reader.take<std::uint64_t>();
   read.step = reader.take<std::uint64_t>();
   read.times = reader.take_list<double>();

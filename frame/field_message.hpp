@@ -25,7 +25,7 @@ void append_fields(exchange::Bytes& message, const std::vector<io::FieldSummary>
 std::vector<io::FieldSummary> take_fields(exchange::MessageReader& reader);
 
 /// u64 steps, u64 step, list of f64 times.
-void append_time_step(exchange::Bytes& message, const io::TimeStepRead& read);
-io::TimeStepRead take_time_step(exchange::MessageReader& reader);
+void append_time_step(exchange::Bytes& message, const scene::TimeStepRead& read);
+scene::TimeStepRead take_time_step(exchange::MessageReader& reader);
 
 }  // namespace tessera::frame

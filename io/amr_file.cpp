@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string_view>
 
 #include "io/amr_leaves.hpp"
@@ -30,7 +31,7 @@ std::uint64_t product(const std::array<std::uint64_t, 3>& n) {
   return all;
 }
 
-void add_fields_of_image(const AmrBlock& block, CellBlock& fields, const std::string& source) {
+void add_fields_of_image(const OpenedAmrBlock& block, CellBlock& fields, const std::string& source) {
   const ForeignPart& part = *block.part;
   std::array<std::uint64_t, 3> points{}, cells{};
   for (std::size_t a = 0; a < 3; ++a) {
@@ -47,7 +48,7 @@ void add_fields_of_image(const AmrBlock& block, CellBlock& fields, const std::st
 }
 
 /// Fields, whose counts are compared with the block's extent, or its trees' leaves.
-CellBlock fields_of(const AmrBlock& block, const std::string& source) {
+CellBlock fields_of(const OpenedAmrBlock& block, const std::string& source) {
   const ForeignPart& part = *block.part;
   CellBlock fields;
   fields.name = part.name;
@@ -58,6 +59,43 @@ CellBlock fields_of(const AmrBlock& block, const std::string& source) {
   if (fields.fields.empty())  // so that no extent is larger than the file explains
     throw scene::bad_input(fmt::format("{}: it has no field; write all blocks with one", source));
   return fields;
+}
+
+/// The numbers of an array of T; none if it is another, or missing.
+template <class T>
+std::optional<std::vector<T>> numbers_as(const OpenedAmrBlock& block, const std::optional<ForeignArray>& array,
+                                         NumberType type, int components, const std::string& source) {
+  if (!array || array->type != type || array->components != components) return std::nullopt;
+  const std::vector<std::byte> bytes = block.file->arrays->copy(*array, source);
+  const auto* const first = reinterpret_cast<const T*>(bytes.data());
+  return std::vector<T>(first, first + bytes.size() / sizeof(T));
+}
+
+AmrBlock described(const OpenedAmrBlock& block, const std::string& source) {
+  const ForeignPart& part = *block.part;
+  AmrBlock amr{.name = part.name, .extent = part.extent};
+  amr.ghosts = [block](std::size_t cells) {
+    return block.file != nullptr ? ghost_bits(*block.file, block.part->cell_fields, cells)
+                                 : std::vector<std::uint8_t>();
+  };
+  amr.is_image = part.kind == ForeignPart::Kind::image;
+  amr.origin = part.origin, amr.spacing = part.spacing, amr.direction = part.direction;
+  if (part.kind != ForeignPart::Kind::trees) return amr;
+  amr.branching = part.branching, amr.levels = part.levels;
+  amr.coordinates = [block, source](std::size_t axis) {
+    if (block.part->coordinates.size() != 3) return std::vector<double>();
+    const ForeignArray& array = block.part->coordinates[axis];
+    std::vector<double> at(array.tuples);
+    read_tuples(block.file->arrays->copy(array, source), array.type, array.components, 0, 0, at);
+    return at;
+  };
+  amr.leaves = [block, source]() -> std::optional<AmrTreeLeaves> {
+    auto lows = numbers_as<std::int32_t>(block, block.part->points, NumberType::int32, 3, source);
+    auto levels = numbers_as<std::uint8_t>(block, block.part->types, NumberType::uint8, 1, source);
+    if (!lows || !levels) return std::nullopt;
+    return AmrTreeLeaves{std::move(*lows), std::move(*levels)};
+  };
+  return amr;
 }
 
 /// The chosen field's numbers of one block; none if it has not got it.
@@ -129,7 +167,7 @@ MeshBlocks mesh_of(const OpenedAmr& opened, const MeshOptions& options, const st
   if (opened.blocks.empty())
     throw scene::bad_input(fmt::format("{}: it holds no cells; check how it was written", source));
   std::vector<CellBlock> fields = opened.fields;
-  for (const AmrBlock& block : std::span(opened.blocks).subspan(fields.size()))
+  for (const OpenedAmrBlock& block : std::span(opened.blocks).subspan(fields.size()))
     fields.push_back(
         fields_of(block, block.part->name.empty() ? source : fmt::format("{}: block '{}'", source, block.part->name)));
   MeshBlocks result;
@@ -141,7 +179,10 @@ MeshBlocks mesh_of(const OpenedAmr& opened, const MeshOptions& options, const st
   result.notes.insert(result.notes.end(), choice.notes.begin(), choice.notes.end());
 
   const bool has_trees = !opened.blocks.empty() && opened.blocks.front().part->kind == ForeignPart::Kind::trees;
-  AmrLeaves amr = has_trees ? leaves_of_trees(opened.blocks, source) : leaves_of_blocks(opened.blocks, source);
+  std::vector<AmrBlock> blocks;
+  blocks.reserve(opened.blocks.size());
+  for (const OpenedAmrBlock& block : opened.blocks) blocks.push_back(described(block, source));
+  AmrLeaves amr = has_trees ? leaves_of_trees(blocks, source) : leaves_of_blocks(blocks, source);
   add_notes_on(fields, amr, choice, result);
   if (choice.association == Association::point) {
     if (options.smooth) result.notes.emplace_back("smoothing has no effect on point data");

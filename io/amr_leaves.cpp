@@ -31,22 +31,22 @@ struct Box {
 
 Box cell_box(const AmrIndex& low, std::int32_t size) { return {low, {low[0] + size, low[1] + size, low[2] + size}}; }
 
-std::string where(const ForeignPart& part, const std::string& source) {
+std::string where(const AmrBlock& part, const std::string& source) {
   return part.name.empty() ? source : fmt::format("{}: block '{}'", source, part.name);
 }
 
 /// Cells along an axis.
-std::int64_t cells_along(const ForeignPart& part, std::size_t axis) {
+std::int64_t cells_along(const AmrBlock& part, std::size_t axis) {
   return part.extent[2 * axis + 1] - part.extent[2 * axis];
 }
 
-double low_end(const ForeignPart& part, std::size_t axis) {
+double low_end(const AmrBlock& part, std::size_t axis) {
   return part.origin[axis] + part.spacing[axis] * static_cast<double>(part.extent[2 * axis]);
 }
 
-void require_block(const ForeignPart& part, const std::string& source) {
+void require_block(const AmrBlock& part, const std::string& source) {
   const std::string name = where(part, source);
-  if (part.kind != ForeignPart::Kind::image)
+  if (!part.is_image)
     throw scene::bad_input(fmt::format("{}: a block of an AMR mesh has to be image data; write it as such", name));
   constexpr std::array<double, 9> unturned{1, 0, 0, 0, 1, 0, 0, 0, 1};
   if (part.direction != unturned)
@@ -63,18 +63,18 @@ void require_block(const ForeignPart& part, const std::string& source) {
 }
 
 /// Spacings from the coarsest to the finest, each of one block.
-std::vector<const ForeignPart*> distinct_levels(std::span<const AmrBlock> blocks) {
-  std::vector<const ForeignPart*> levels;
-  for (const AmrBlock& block : blocks) levels.push_back(block.part);
+std::vector<const AmrBlock*> distinct_levels(std::span<const AmrBlock> blocks) {
+  std::vector<const AmrBlock*> levels;
+  for (const AmrBlock& block : blocks) levels.push_back(&block);
   std::stable_sort(levels.begin(), levels.end(),
-                   [](const ForeignPart* a, const ForeignPart* b) { return a->spacing[0] > b->spacing[0]; });
-  const auto same = [](const ForeignPart* a, const ForeignPart* b) { return b->spacing[0] > 0.9 * a->spacing[0]; };
+                   [](const AmrBlock* a, const AmrBlock* b) { return a->spacing[0] > b->spacing[0]; });
+  const auto same = [](const AmrBlock* a, const AmrBlock* b) { return b->spacing[0] > 0.9 * a->spacing[0]; };
   levels.erase(std::unique(levels.begin(), levels.end(), same), levels.end());
   return levels;
 }
 
 /// Sizes of the levels' cells on the finest one's lattice.
-std::vector<std::int32_t> level_sizes(std::span<const ForeignPart* const> levels, const std::string& source) {
+std::vector<std::int32_t> level_sizes(std::span<const AmrBlock* const> levels, const std::string& source) {
   std::vector<std::int32_t> size(levels.size(), 1);
   for (std::size_t l = levels.size() - 1; l-- > 0;) {
     const auto &coarse = levels[l]->spacing, &fine = levels[l + 1]->spacing;
@@ -102,7 +102,7 @@ scene::Error too_long(double cells, const std::string& source) {
 }
 
 /// Puts the blocks on the lattice.
-void place_blocks(std::span<const AmrBlock> blocks, AmrLeaves& amr, std::span<const ForeignPart* const> levels,
+void place_blocks(std::span<const AmrBlock> blocks, AmrLeaves& amr, std::span<const AmrBlock* const> levels,
                   const std::string& source) {
   glm::dvec3 anchor;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -112,9 +112,8 @@ void place_blocks(std::span<const AmrBlock> blocks, AmrLeaves& amr, std::span<co
   }
   std::array<std::int64_t, 3> first{}, last{};
   std::vector<std::array<std::int64_t, 3>> lows;
-  for (const AmrBlock& block : blocks) {
-    const ForeignPart& part = *block.part;
-    AmrLeaves::Part placed{block.file, &part};
+  for (const AmrBlock& part : blocks) {
+    AmrLeaves::Part placed{.name = part.name};
     while (part.spacing[0] <= 0.9 * levels[static_cast<std::size_t>(placed.level)]->spacing[0]) ++placed.level;
     const std::int32_t size = amr.size[static_cast<std::size_t>(placed.level)];
     std::array<std::int64_t, 3> low{};
@@ -275,9 +274,9 @@ bool AmrLeaves::leaves_out(std::uint8_t ghost) {
 }
 
 AmrLeaves leaves_of_blocks(std::span<const AmrBlock> blocks, const std::string& source) {
-  for (const AmrBlock& block : blocks) require_block(*block.part, source);
+  for (const AmrBlock& block : blocks) require_block(block, source);
   AmrLeaves amr;
-  const std::vector<const ForeignPart*> levels = distinct_levels(blocks);
+  const std::vector<const AmrBlock*> levels = distinct_levels(blocks);
   amr.size = level_sizes(levels, source);
   place_blocks(blocks, amr, levels, source);
   Coverage coverage(amr, source);
@@ -285,8 +284,7 @@ AmrLeaves leaves_of_blocks(std::span<const AmrBlock> blocks, const std::string& 
     const AmrIndex& n = amr.parts[p].cells;
     const std::size_t cells =
         static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(n[2]);
-    coverage.add_leaves(p, blocks[p].file != nullptr ? ghost_bits(*blocks[p].file, blocks[p].part->cell_fields, cells)
-                                                     : std::vector<std::uint8_t>());
+    coverage.add_leaves(p, blocks[p].ghosts(cells));
   }
   return amr;
 }

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
-
-#include "io/foreign_file.hpp"
 
 namespace tessera::io {
 
@@ -51,8 +52,7 @@ struct AmrLeaf {
 struct AmrLeaves {
   /// One block of the file.
   struct Part {
-    const ForeignFile* file;
-    const ForeignPart* part;
+    std::string name;
     std::int32_t level = 0;
     AmrIndex low{};
     AmrIndex cells{};  ///< along each axis
@@ -70,16 +70,33 @@ struct AmrLeaves {
 /// Of cells of the finest level along an axis: two of them at the far end, and their halves, are numbers of 32 bits.
 inline constexpr double most_amr_corners = 1 << 29;
 
-/// An image (kind image of foreign_data.hpp) of cells, or trees of them.
+/// The leaves of trees, each by its lowest corner on the part's own lattice and its level.
+struct AmrTreeLeaves {
+  std::vector<std::int32_t> lows;  ///< three each
+  std::vector<std::uint8_t> levels;
+};
+
+/// A block of cells along the axes, or trees of them, as a file describes it.
 struct AmrBlock {
-  const ForeignFile* file;  ///< null if no helper holds it; then it has no ghosts
-  const ForeignPart* part;
+  std::string name;                                                      ///< empty if it is the only one
+  std::array<std::int64_t, 6> extent{};                                  ///< first and last point along each axis
+  std::function<std::vector<std::uint8_t>(std::size_t cells)> ghosts{};  ///< bits of vtkGhostType, or empty
+
+  // Of a block.
+  bool is_image = false;
+  std::array<double, 3> origin{}, spacing{};
+  std::array<double, 9> direction{};
+
+  // Of trees.
+  int branching = 0, levels = 0;                                       ///< children along an axis; 0 levels: not trees
+  std::function<std::vector<double>(std::size_t axis)> coordinates{};  ///< of the coarsest cells' corners; or empty
+  std::function<std::optional<AmrTreeLeaves>()> leaves{};              ///< none: stored as other numbers
 };
 
 /// The leaves of blocks whose spacings tell their levels. Throws Error(bad_input) where levels do not nest.
 AmrLeaves leaves_of_blocks(std::span<const AmrBlock> blocks, const std::string& source);
 
-/// The leaves of trees (kind trees), in one part or several, which have one grid of coarsest cells and divide no cell
+/// The leaves of trees, in one part or several, which have one grid of coarsest cells and divide no cell
 /// of it twice. Cells that are ghosts are left out. Throws Error(bad_input) for others.
 AmrLeaves leaves_of_trees(std::span<const AmrBlock> trees, const std::string& source);
 

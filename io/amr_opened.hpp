@@ -5,16 +5,21 @@
 #include <string>
 #include <vector>
 
-#include "io/amr_leaves.hpp"
 #include "io/foreign_file.hpp"
 
 namespace tessera::io {
 
+/// An image (kind image of foreign_data.hpp) of cells, or trees of them.
+struct OpenedAmrBlock {
+  const ForeignFile* file;  ///< null if no reader program holds it; then it has no ghosts
+  const ForeignPart* part;
+};
+
 /// Everything of a file with levels of refinement but its numbers, which are with the helper, or mapped.
 struct OpenedAmr {
-  std::deque<ForeignFile> files;  ///< that the helper holds; stay where they are
-  std::deque<ForeignPart> parts;  ///< of a parser of ours; stay too
-  std::vector<AmrBlock> blocks;   ///< images, or trees, of one of these
+  std::deque<ForeignFile> files;       ///< that the helper holds; stay where they are
+  std::deque<ForeignPart> parts;       ///< of a parser of ours; stay too
+  std::vector<OpenedAmrBlock> blocks;  ///< images, or trees, of one of these
   std::vector<CellBlock> fields;  ///< of each block, and its name; no cells. Of the helper's empty: not asked for yet
   std::string format;
   std::vector<std::string> notes;

@@ -13,29 +13,25 @@
 namespace tessera::io {
 namespace {
 
-std::string piece_words(const ForeignPart& part, const std::string& source) {
+std::string piece_words(const AmrBlock& part, const std::string& source) {
   return part.name.empty() ? source : fmt::format("{}: piece '{}'", source, part.name);
 }
 
-scene::Error unfit(const ForeignPart& part, const std::string& source) {
+scene::Error unfit(const AmrBlock& part, const std::string& source) {
   return scene::bad_input(
       fmt::format("{}: its trees do not fit its grid; it is damaged, write it anew", piece_words(part, source)));
 }
 
-std::int64_t roots_along(const ForeignPart& part, std::size_t axis) { return part.extent[2 * axis + 1]; }
+std::int64_t roots_along(const AmrBlock& part, std::size_t axis) { return part.extent[2 * axis + 1]; }
 
 std::vector<double> coordinates_of(const AmrBlock& trees, std::size_t axis, const std::string& source) {
-  const ForeignPart& part = *trees.part;
-  if (part.coordinates.size() != 3) throw unfit(part, source);
-  const ForeignArray& array = part.coordinates[axis];
-  std::vector<double> at(array.tuples);
-  read_tuples(trees.file->arrays->copy(array, source), array.type, array.components, 0, 0, at);
-  if (at.size() < 2 || static_cast<std::int64_t>(at.size()) != roots_along(part, axis) + 1) throw unfit(part, source);
+  std::vector<double> at = trees.coordinates(axis);
+  if (at.size() < 2 || static_cast<std::int64_t>(at.size()) != roots_along(trees, axis) + 1) throw unfit(trees, source);
   return at;
 }
 
 /// Cells of the last level along one of the first.
-std::int32_t steps_of(const ForeignPart& part, int levels, const std::string& source) {
+std::int32_t steps_of(const AmrBlock& part, int levels, const std::string& source) {
   double steps = 1;
   for (int level = 1; level < levels && steps <= most_amr_corners; ++level) steps *= part.branching;
   for (std::size_t a = 0; a < 3; ++a)
@@ -64,17 +60,17 @@ class TreeLeaves {
  public:
   TreeLeaves(AmrLeaves& amr, bool several, const std::string& source) : amr_(amr), source_(source), several_(several) {}
 
-  void add(const AmrBlock& trees, const std::array<std::int64_t, 3>& grid) {
-    const ForeignPart& part = *trees.part;
-    const std::vector<std::int32_t> lows = numbers<std::int32_t>(trees, part.points, NumberType::int32, 3);
-    const std::vector<std::uint8_t> levels = numbers<std::uint8_t>(trees, part.types, NumberType::uint8, 1);
+  void add(const AmrBlock& part, const std::array<std::int64_t, 3>& grid) {
+    const std::optional<AmrTreeLeaves> read = part.leaves();
+    if (!read) throw unfit(part, source_);
+    const auto& [lows, levels] = *read;
     if (lows.size() != 3 * levels.size() || levels.size() > std::numeric_limits<std::uint32_t>::max())
       throw unfit(part, source_);
-    const std::vector<std::uint8_t> ghost = ghost_bits(*trees.file, part.cell_fields, levels.size());
+    const std::vector<std::uint8_t> ghost = part.ghosts(levels.size());
     // Other parts may have deeper trees.
     const std::int32_t scale = amr_.size[static_cast<std::size_t>(part.levels) - 1];
     const auto number = static_cast<std::uint32_t>(amr_.parts.size());
-    amr_.parts.push_back({trees.file, &part});
+    amr_.parts.push_back({.name = part.name});
     for (std::size_t l = 0; l < levels.size(); ++l) {
       if (!ghost.empty() && amr_.leaves_out(ghost[l])) continue;
       if (levels[l] >= part.levels) throw unfit(part, source_);
@@ -91,22 +87,13 @@ class TreeLeaves {
   }
 
  private:
-  template <class T>
-  std::vector<T> numbers(const AmrBlock& trees, const std::optional<ForeignArray>& array, NumberType type,
-                         int components) {
-    if (!array || array->type != type || array->components != components) throw unfit(*trees.part, source_);
-    const std::vector<std::byte> bytes = trees.file->arrays->copy(*array, source_);
-    const auto* const first = reinterpret_cast<const T*>(bytes.data());
-    return {first, first + bytes.size() / sizeof(T)};
-  }
-
   /// No two leaves begin at one place, and no tree is in two parts.
-  void require_new(const AmrLeaf& leaf, const std::array<std::int64_t, 3>& grid, const ForeignPart& part) {
+  void require_new(const AmrLeaf& leaf, const std::array<std::int64_t, 3>& grid, const AmrBlock& part) {
     if (several_) require_own_tree(leaf, grid, part);
     if (lows_.add(leaf.low) != amr_.leaves.size()) throw unfit(part, source_);
   }
 
-  void require_own_tree(const AmrLeaf& leaf, const std::array<std::int64_t, 3>& grid, const ForeignPart& part) {
+  void require_own_tree(const AmrLeaf& leaf, const std::array<std::int64_t, 3>& grid, const AmrBlock& part) {
     std::int64_t root = 0;
     for (std::size_t a = 3; a-- > 0;) root = root * grid[a] + leaf.low[a] / amr_.size[0];
     const auto [owner, is_new] = owners_.emplace(root, leaf.part);
@@ -114,7 +101,7 @@ class TreeLeaves {
       throw scene::bad_input(
           fmt::format("{}: cell {} of its grid is also in piece '{}'; write each tree once, or mark "
                       "ghosts by vtkGhostType",
-                      piece_words(part, source_), root, amr_.parts[owner->second].part->name));
+                      piece_words(part, source_), root, amr_.parts[owner->second].name));
   }
 
   AmrLeaves& amr_;
@@ -128,12 +115,10 @@ class TreeLeaves {
 
 AmrLeaves leaves_of_trees(std::span<const AmrBlock> trees, const std::string& source) {
   AmrLeaves amr;
-  const ForeignPart& first = *trees.front().part;
+  const AmrBlock& first = trees.front();
   int levels = 1;
-  for (const AmrBlock& block : trees) {
-    const ForeignPart& part = *block.part;
-    if (part.kind != ForeignPart::Kind::trees || part.levels < 1 || part.levels > 64 || part.branching < 2)
-      throw unfit(part, source);
+  for (const AmrBlock& part : trees) {
+    if (part.levels < 1 || part.levels > 64 || part.branching < 2) throw unfit(part, source);
     if (part.branching != first.branching || part.extent != first.extent)
       throw scene::bad_input(fmt::format("{}: it has not the grid of piece '{}'; write all pieces of one data set",
                                          piece_words(part, source), first.name));
@@ -152,7 +137,7 @@ AmrLeaves leaves_of_trees(std::span<const AmrBlock> trees, const std::string& so
         throw scene::bad_input(
             fmt::format("{}: its coordinates along {} are not those of piece '{}'; write all pieces "
                         "of one data set",
-                        piece_words(*trees[p].part, source), "xyz"[a], first.name));
+                        piece_words(trees[p], source), "xyz"[a], first.name));
   }
   TreeLeaves leaves(amr, trees.size() > 1, source);
   for (const AmrBlock& block : trees) leaves.add(block, grid);

@@ -89,29 +89,6 @@ class Words {
 
 }  // namespace
 
-bool looks_like_amrex(std::string_view beginning) {
-  const auto next = [&] {
-    const std::size_t end = std::min(beginning.find('\n'), beginning.size());
-    std::string_view line = beginning.substr(0, end);
-    beginning.remove_prefix(std::min(end + 1, beginning.size()));
-    const std::size_t first = line.find_first_not_of(header_blanks);
-    if (first == std::string_view::npos) return std::string_view();
-    return line.substr(first, line.find_last_not_of(header_blanks) + 1 - first);
-  };
-  const std::string_view version = next(), count = next();
-  if (version.empty() || version.find_first_of(" \t") != std::string_view::npos || version.find('\0') != version.npos)
-    return false;
-  std::int64_t fields = 0;
-  const auto [end, error] = std::from_chars(count.data(), count.data() + count.size(), fields);
-  if (error != std::errc() || end != count.data() + count.size() || fields < 1 || fields > most_fields) return false;
-  for (std::int64_t f = 0; f < fields; ++f) {
-    if (next().empty()) return false;
-    if (beginning.empty()) return version.ends_with("-V1.1");  // many fields: what follows is not among the first bytes
-  }
-  const std::string_view dimensions = next();
-  return dimensions == "1" || dimensions == "2" || dimensions == "3";
-}
-
 AmrexHeader parse_amrex_header(std::string_view text, const std::string& source) {
   AmrexHeader header;
   Words words(text, source);

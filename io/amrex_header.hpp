@@ -39,10 +39,6 @@ struct AmrexFab {
   std::uint64_t offset = 0;  ///< of its line
 };
 
-/// Whether a text begins as a Header does: a line without blanks, the number of fields, their names, of a plane 2, of
-/// space 3.
-bool looks_like_amrex(std::string_view beginning);
-
 /// These throw Error(bad_input) naming the line at fault.
 AmrexHeader parse_amrex_header(std::string_view text, const std::string& source);
 std::vector<AmrexFab> parse_amrex_level(std::string_view text, std::size_t fields, const std::string& source);

@@ -12,7 +12,7 @@
 #include "io/cell_block.hpp"
 #include "io/cell_split.hpp"
 #include "io/curved_cells.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh_options.hpp"
 #include "io/polyhedron_split.hpp"
 
 namespace tessera::io {

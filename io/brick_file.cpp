@@ -163,8 +163,6 @@ BrickHeader parse_brick_header(const std::string& text, const std::filesystem::p
 
 }  // namespace
 
-bool looks_like_bricks(std::string_view beginning) { return beginning.starts_with(brick_magic); }
-
 VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& options, const std::string& name) {
   const std::uint64_t size = require_file(file);
   std::uint64_t length = 0;

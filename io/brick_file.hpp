@@ -29,7 +29,6 @@ namespace tessera::io {
 ///
 /// `name`: in the messages of later reads; empty: the file's.
 VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& options, const std::string& name = {});
-bool looks_like_bricks(std::string_view beginning);
 
 /// Writes one with blocks of `side` samples (8 to 1024). Reads `source` once, one row of blocks at a time, on the
 /// threads of the caller's arena. Appears by rename. Throws Error(bad_input) for a side out of range,

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
+#include <filesystem>
 #include <new>
+#include <optional>
 #include <string>
 
-#include "io/mesh_reader.hpp"
 #include "scene/error.hpp"
 #include "tessera/printable.hpp"
 
@@ -26,6 +28,11 @@ auto with_clean_errors(const std::string& source, const Work& work) {
     throw scene::Error(scene::ErrorCode::system_failure, source, "memory ran out",
                        "use a larger machine or a part of the mesh");
   }
+}
+
+/// bad_input of a damaged file.
+inline scene::Error damaged(const std::filesystem::path& file, const std::string& what) {
+  return scene::bad_input(fmt::format("{}: {}; the file is truncated or damaged, write it anew", file.string(), what));
 }
 
 /// Throws Error(bad_input) if a time step is asked of a file that has none.

@@ -14,7 +14,7 @@
 #include "io/cell_block.hpp"
 #include "io/curved_lattice.hpp"
 #include "io/curved_split.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh_options.hpp"
 
 namespace tessera::io {
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 namespace tessera::io {
 
 /// A file descriptor that is closed with it.
@@ -18,5 +20,8 @@ class Descriptor {
  private:
   int number_ = -1;
 };
+
+/// Writes all of it; false if it cannot.
+bool write_all(int file, const void* bytes, std::size_t count);
 
 }  // namespace tessera::io

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "io/cell_block.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh_options.hpp"
 
 namespace tessera::io {
 

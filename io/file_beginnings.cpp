@@ -4,17 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <optional>
 #include <vector>
 
-#include "io/amrex_header.hpp"
-#include "io/brick_file.hpp"
 #include "io/input_file.hpp"
-#include "io/medit_file.hpp"
-#include "io/volume_formats.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -66,6 +63,18 @@ bool is_key(std::string_view line, std::string_view key, char after) {
   return rest.starts_with(after);
 }
 
+/// What a NIfTI or Analyze header gives as its own size, in either byte order: 348 or 540, and at least as many bytes
+/// follow; else 0.
+std::size_t nifti_header_size(std::string_view text) {
+  for (const std::size_t size : {348U, 540U}) {
+    const char low = static_cast<char>(size & 255), high = static_cast<char>(size >> 8);
+    const std::string_view first = text.substr(0, 4);
+    if (text.size() >= size && (first == std::string{low, high, 0, 0} || first == std::string{0, 0, high, low}))
+      return size;
+  }
+  return 0;
+}
+
 bool is_xml_of(const FileBeginning& file, std::initializer_list<std::string_view> types) {
   const std::string type = vtk_xml_type(file.text);
   return !type.empty() && std::find(types.begin(), types.end(), type) != types.end();
@@ -77,6 +86,57 @@ bool is_legacy_of(const FileBeginning& file, std::initializer_list<std::string_v
 }
 
 }  // namespace
+
+bool looks_like_dicom(std::string_view beginning) {
+  return beginning.size() >= 132 && beginning.substr(128, 4) == "DICM";
+}
+
+bool looks_like_amrex(std::string_view beginning) {
+  const auto next = [&] {
+    const std::size_t end = std::min(beginning.find('\n'), beginning.size());
+    std::string_view line = beginning.substr(0, end);
+    beginning.remove_prefix(std::min(end + 1, beginning.size()));
+    const std::size_t first = line.find_first_not_of(white_space);
+    if (first == std::string_view::npos) return std::string_view();
+    return line.substr(first, line.find_last_not_of(white_space) + 1 - first);
+  };
+  constexpr std::int64_t most_fields = 1 << 16;
+  const std::string_view version = next(), count = next();
+  if (version.empty() || version.find_first_of(" \t") != std::string_view::npos || version.find('\0') != version.npos)
+    return false;
+  std::int64_t fields = 0;
+  const auto [end, error] = std::from_chars(count.data(), count.data() + count.size(), fields);
+  if (error != std::errc() || end != count.data() + count.size() || fields < 1 || fields > most_fields) return false;
+  for (std::int64_t f = 0; f < fields; ++f) {
+    if (next().empty()) return false;
+    if (beginning.empty()) return version.ends_with("-V1.1");  // many fields: what follows is not among the first bytes
+  }
+  const std::string_view dimensions = next();
+  return dimensions == "1" || dimensions == "2" || dimensions == "3";
+}
+
+bool begins_as_medit_text(std::string_view beginning) {
+  const std::size_t first = beginning.find_first_not_of(" \t\r\n\v\f");
+  return first < 64 && beginning.substr(first).starts_with("MeshVersionFormatted");
+}
+
+bool begins_as_medit_binary(std::string_view beginning) {
+  constexpr char dimension_keyword = 3;
+  const auto has = [&](std::size_t at, char value, bool is_big) {
+    const std::array<char, 4> little = {value, 0, 0, 0}, big = {0, 0, 0, value};
+    return at + 4 <= beginning.size() &&
+           std::memcmp(beginning.data() + at, is_big ? big.data() : little.data(), 4) == 0;
+  };
+  // Other files begin with a 1 and a small number too, so the first keyword counts, which is the dimension.
+  for (const bool is_big : {false, true})
+    for (const char version : {'\1', '\2', '\3', '\4'}) {
+      const std::size_t dimension_at = version >= 3 ? 20 : 16;
+      if (has(0, 1, is_big) && has(4, version, is_big) && has(8, dimension_keyword, is_big) &&
+          (has(dimension_at, 2, is_big) || has(dimension_at, 3, is_big)))
+        return true;
+    }
+  return false;
+}
 
 void require_no_utf16(const std::filesystem::path& file) {
   if (const std::string beginning = read_beginning(file, 2); beginning == "\xff\xfe" || beginning == "\xfe\xff")
@@ -249,12 +309,31 @@ bool begins_as_ply(const FileBeginning& file) {
   return file.text.starts_with("ply\n") || file.text.starts_with("ply\r") || file.text.starts_with("ply ");
 }
 
-bool begins_as_brick_file(const FileBeginning& file) { return looks_like_bricks(file.text); }
-bool begins_as_nrrd(const FileBeginning& file) { return looks_like_nrrd(file.text); }
-bool begins_as_meta_image(const FileBeginning& file) { return looks_like_meta_image(file.text); }
-bool begins_as_nifti(const FileBeginning& file) { return looks_like_nifti(file.file); }
+bool begins_as_brick_file(const FileBeginning& file) { return file.text.starts_with("TESSBRK1"); }
+bool begins_as_nrrd(const FileBeginning& file) { return file.text.starts_with("NRRD000"); }
+bool begins_as_meta_image(const FileBeginning& file) {
+  return file.text.starts_with("ObjectType") || file.text.starts_with("NDims") ||
+         (file.text.starts_with("Comment") && file.text.find("NDims") != std::string_view::npos);
+}
+
+/// A header's size, in either byte order, and NIfTI's magic word.
+bool begins_as_nifti(const FileBeginning& file) {
+  const auto has_magic = [&](std::size_t at, std::string_view first, std::string_view second) {
+    const std::string_view magic = file.text.substr(at, 4);
+    return magic == first || magic == second;
+  };
+  const std::size_t size = nifti_header_size(file.text);
+  return (size == 348 && has_magic(344, {"n+1\0", 4}, {"ni1\0", 4})) ||
+         (size == 540 && has_magic(4, {"n+2\0", 4}, {"ni2\0", 4}));
+}
 bool begins_as_dicom(const FileBeginning& file) { return looks_like_dicom(file.text); }
-bool begins_as_analyze(const FileBeginning& file) { return looks_like_analyze(file.file); }
+/// Without a magic word, so that its name counts too.
+bool begins_as_analyze(const FileBeginning& file) {
+  const std::filesystem::path stem = lower_extension(file.file) == ".gz" ? file.file.stem() : file.file;
+  if (lower_extension(stem) != ".hdr" || begins_as_nifti(file) || nifti_header_size(file.text) != 348) return false;
+  const auto dimensions = [&](std::size_t low) { return file.text[low] >= 1 && file.text[low] <= 7; };
+  return (file.text[41] == 0 && dimensions(40)) || (file.text[40] == 0 && dimensions(41));
+}
 
 bool begins_as_xdmf(const FileBeginning& file) {
   return without_blanks(file.text).starts_with('<') && file.text.find("<Xdmf") != std::string_view::npos;

@@ -12,6 +12,20 @@ namespace tessera::io {
 /// The `type` of <VTKFile type="...">, or else empty.
 std::string vtk_xml_type(std::string_view beginning);
 
+/// Whether text begins as the Header of an AMReX plot file: a line without blanks, the number of fields, their names,
+/// and the dimensions.
+bool looks_like_amrex(std::string_view beginning);
+
+/// Whether a file begins as DICOM files do, with DICM after 128 bytes of anything.
+bool looks_like_dicom(std::string_view beginning);
+
+/// Whether a file begins as a binary Medit mesh (.meshb): a 1 of 32 bits in either byte order, a version of 1 to 4, and
+/// a dimension of 2 or 3.
+bool begins_as_medit_binary(std::string_view beginning);
+
+/// Whether a file begins as a Medit mesh in text (.mesh).
+bool begins_as_medit_text(std::string_view beginning);
+
 /// For VTK XML: throws Error(bad_input) for a file in UTF-16, whose words are not those that are looked for.
 void require_no_utf16(const std::filesystem::path& file);
 
@@ -60,9 +74,9 @@ bool begins_as_meta_image(const FileBeginning& file);
 bool begins_as_nifti(const FileBeginning& file);
 bool begins_as_dicom(const FileBeginning& file);
 bool begins_as_analyze(const FileBeginning& file);
+bool begins_as_xdmf(const FileBeginning& file);
 
 // Not read.
-bool begins_as_xdmf(const FileBeginning& file);
 bool begins_as_binary_tecplot(const FileBeginning& file);
 bool begins_as_abaqus(const FileBeginning& file);
 bool begins_as_mfem(const FileBeginning& file);

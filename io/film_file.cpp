@@ -21,8 +21,8 @@
 #include <vector>
 
 #include "io/atomic_file.hpp"
+#include "io/descriptor.hpp"
 #include "io/display_rows.hpp"
-#include "io/helper_messages.hpp"
 #include "io/spawn_plan.hpp"
 #include "io/unfinished.hpp"
 #include "scene/error.hpp"

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "io/number_tally.hpp"
-#include "io/time_step_read.hpp"
 #include "scene/grid.hpp"
+#include "scene/time_step_read.hpp"
 #include "tessera/array.hpp"
 
 namespace tessera::io {
@@ -110,7 +110,7 @@ struct ForeignContents {
   std::string modality{}, unit{};            ///< of a patient's picture, of its values; may be empty
   std::vector<std::string> block_names{};    ///< of all blocks, where parts are not the blocks; empty: of the parts
   std::vector<std::string> surface_names{};  ///< of surfaces beside the volume, where they are left out
-  TimeStepRead time_step{};
+  scene::TimeStepRead time_step{};
   bool labels = false;          ///< values are labels, whatever they are
   bool beside_degrees = false;  ///< x and y are degrees, z is a length
   bool has_levels = false;      ///< the parts, images, are blocks of several levels of refinement

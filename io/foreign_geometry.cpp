@@ -7,8 +7,6 @@
 #include <glm/vec3.hpp>
 #include <utility>
 
-#include "io/volume_formats.hpp"
-
 namespace tessera::io {
 namespace {
 
@@ -43,7 +41,7 @@ void set_image_geometry(const ForeignPart& image, scene::GridGeometry& g) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     steps[axis] =
         glm::dvec3(image.direction[axis], image.direction[3 + axis], image.direction[6 + axis]) * image.spacing[axis];
-  set_axes(g, steps);
+  scene::set_axes(g, steps);
   g.origin = {image.origin[0], image.origin[1], image.origin[2]};
   for (std::size_t axis = 0; axis < 3; ++axis)  // origin is that of index 0, which need not be in the extent
     if (image.extent[2 * axis] != 0) g.origin += steps[axis] * static_cast<double>(image.extent[2 * axis]);

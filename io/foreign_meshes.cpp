@@ -202,7 +202,7 @@ MeshBlocks read_plot3d(const std::filesystem::path& file, const MeshOptions& opt
 MeshBlocks read_plot3d_list(const std::filesystem::path& file, const MeshOptions& options) {
   require_beside_others(file);
   const std::vector<Plot3dStep> steps = parse_plot3d_list(read_text_file(file), file);
-  TimeStepRead chosen = chosen_step(options.time_step, steps.size(), file.string());
+  scene::TimeStepRead chosen = scene::chosen_step(options.time_step, steps.size(), file.string());
   for (const Plot3dStep& each : steps) chosen.times.push_back(each.time);
   const Plot3dStep& step = steps[chosen.step];
   MeshOptions of_step = options;

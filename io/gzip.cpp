@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "io/helper_messages.hpp"
+#include "io/descriptor.hpp"
 #include "io/positional_file.hpp"
 #include "scene/error.hpp"
 

@@ -6,9 +6,9 @@
 #include <charconv>
 #include <system_error>
 
+#include "io/clean_errors.hpp"
 #include "io/inflated_file.hpp"
 #include "io/text_file.hpp"
-#include "io/volume_formats.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {

@@ -86,16 +86,4 @@ std::optional<HelperMessage> receive_message(int socket) {
   return message;
 }
 
-bool write_all(int file, const void* bytes, std::size_t count) {
-  const char* at = static_cast<const char*>(bytes);
-  while (count > 0) {
-    const ssize_t written = ::write(file, at, std::min<std::size_t>(count, 1 << 30));
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    at += written;
-    count -= static_cast<std::size_t>(written);
-  }
-  return true;
-}
-
 }  // namespace tessera::io

@@ -32,7 +32,4 @@ bool send_message(int socket, std::span<const std::uint8_t> bytes, int file = -1
 /// Nothing if the other side is gone, or sends what is no message.
 std::optional<HelperMessage> receive_message(int socket);
 
-/// Writes all of it; false if it cannot.
-bool write_all(int file, const void* bytes, std::size_t count);
-
 }  // namespace tessera::io

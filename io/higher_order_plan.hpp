@@ -7,7 +7,7 @@
 #include "io/cell_block.hpp"
 #include "io/curved_cells.hpp"
 #include "io/field_choice.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh_options.hpp"
 #include "scene/camera.hpp"
 
 namespace tessera::io {

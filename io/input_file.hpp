@@ -4,25 +4,16 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <string_view>
 
-#include "io/descriptor.hpp"
+#include "io/regular_file.hpp"
 
 namespace tessera::io {
-
-/// Opens a regular file to be read. Throws Error(bad_input, "NAME: ...") for one that is not there, may not be read or
-/// is not regular: a pipe would be waited for without end. Error(system_failure) if this process or the machine has no
-/// descriptor or memory left, or the disk fails.
-Descriptor open_regular(const std::filesystem::path& file, const std::string& name);
 
 /// Whether a folder is an OpenFOAM case: system/controlDict or constant/polyMesh in it, or the latter in processor0.
 bool is_case_folder(const std::filesystem::path& folder);
 
 /// Whether a folder is an AMReX plot file: it has a Header that begins as theirs do.
 bool is_amrex_folder(const std::filesystem::path& folder);
-
-/// Whether a file begins as DICOM files do, with DICM after 128 bytes of anything.
-bool looks_like_dicom(std::string_view beginning);
 
 /// Whether a folder stands for a file: an OpenFOAM case, an AMReX plot file, or one with a DICOM file among its first
 /// thousand, at most four levels below.
@@ -34,8 +25,5 @@ std::uint64_t require_file(const std::filesystem::path& file);
 
 /// The first bytes of a file, at most `limit`. Throws as require_file.
 std::string read_beginning(const std::filesystem::path& file, std::size_t limit);
-
-/// Extension in lower case, with the dot.
-std::string lower_extension(const std::filesystem::path& file);
 
 }  // namespace tessera::io

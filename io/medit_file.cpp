@@ -284,28 +284,6 @@ class MeditText {
 
 }  // namespace
 
-bool begins_as_medit_text(std::string_view beginning) {
-  const std::size_t first = beginning.find_first_not_of(" \t\r\n\v\f");
-  return first < 64 && beginning.substr(first).starts_with("MeshVersionFormatted");
-}
-
-bool begins_as_medit_binary(std::string_view beginning) {
-  const auto has = [&](std::size_t at, char value, bool is_big) {
-    const std::array<char, 4> little = {value, 0, 0, 0}, big = {0, 0, 0, value};
-    return at + 4 <= beginning.size() &&
-           std::memcmp(beginning.data() + at, is_big ? big.data() : little.data(), 4) == 0;
-  };
-  // Other files begin with a 1 and a small number too, so the first keyword counts, which is the dimension.
-  for (const bool is_big : {false, true})
-    for (const char version : {'\1', '\2', '\3', '\4'}) {
-      const std::size_t dimension_at = version >= 3 ? 20 : 16;
-      if (has(0, 1, is_big) && has(4, version, is_big) && has(8, code_dimension, is_big) &&
-          (has(dimension_at, 2, is_big) || has(dimension_at, 3, is_big)))
-        return true;
-    }
-  return false;
-}
-
 std::vector<CellBlock> parse_medit_binary(std::span<const std::byte> bytes, const std::string& source) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (!begins_as_medit_binary(text.substr(0, 24)))

@@ -10,13 +10,6 @@
 
 namespace tessera::io {
 
-/// Whether a file begins as a binary Medit mesh (.meshb): a 1 of 32 bits in either byte order, a version of 1 to 4, and
-/// a dimension of 2 or 3.
-bool begins_as_medit_binary(std::string_view beginning);
-
-/// Whether a file begins as a Medit mesh in text (.mesh).
-bool begins_as_medit_text(std::string_view beginning);
-
 /// Parses a Medit mesh in text: numbers and keywords with any blanks and comments between, of the same cells as in
 /// binary, in the same blocks, refused for the same reasons. Version and Dimension may be on one line with the keyword
 /// or not, and the numbers of all other keywords are passed over.

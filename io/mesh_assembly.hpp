@@ -8,7 +8,7 @@
 #include "io/cell_block.hpp"
 #include "io/field_choice.hpp"
 #include "io/higher_order_plan.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh_blocks.hpp"
 
 namespace tessera::io {
 

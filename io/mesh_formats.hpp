@@ -10,29 +10,15 @@
 #include "io/block_choice.hpp"
 #include "io/cell_block.hpp"
 #include "io/file_kinds.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh_blocks.hpp"
+#include "io/mesh_options.hpp"
+#include "tessera/read_progress.hpp"
 
 namespace tessera::io {
 
 struct ForeignFile;
 
 // What programs under helper/ read throws missing_reader() where they are not installed.
-
-/// What a file holds before its cells are split. Readers that take a choice of blocks read no others.
-struct MeshBlocks {
-  std::vector<CellBlock> blocks;
-  std::vector<std::string> notes;
-  std::string format;
-  std::vector<std::string> block_names{};    ///< of all, those too that were not chosen; empty: of `blocks`
-  std::vector<std::string> surface_names{};  ///< of surfaces beside the volume, which are left out
-  std::vector<FieldSummary> fields{};  ///< of the file, where the blocks have the chosen one alone, as options ask
-  TimeStepRead time_step{};
-  bool beside_degrees = false;  ///< x and y are degrees, z is a length
-  glm::dvec3 axis_scale{1};     ///< that the points are multiplied by
-};
-
-/// Adds the notes that are not there yet: all pieces of a file may give rise to one.
-void add_notes(const std::vector<std::string>& more, std::vector<std::string>& notes);
 
 /// VTK's XML files: .vtu .pvtu .vts .pvts .vtr .pvtr, and lists of them (.vtm .vtpc). The pieces of a .pvtu are a block
 /// each, their points not merged.

@@ -160,7 +160,7 @@ MeshFilePart MeshPartReading::finish(const ExcessTally& excess_of_all) {
     part.summary.higher_order = assembled.higher_order;
     part.summary.cell_notes = std::move(assembled.notes);
     part.summary.time_step = state_->blocks.time_step;
-    if (auto note = note_on(part.summary.time_step, state_->options.time_step))
+    if (auto note = scene::note_on(part.summary.time_step, state_->options.time_step))
       part.summary.reading_notes.push_back(*std::move(note));
     add_notes(state_->blocks.notes, part.summary.reading_notes);
     part.summary.surfaces = distinct_names(std::move(state_->blocks.surface_names));

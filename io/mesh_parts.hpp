@@ -10,7 +10,7 @@
 #include "io/field_choice.hpp"
 #include "io/higher_order_plan.hpp"
 #include "io/mesh_reader.hpp"
-#include "io/time_step_read.hpp"
+#include "scene/time_step_read.hpp"
 
 /// A mesh file read by several processes, each a part of it. They have to agree three times: before they choose the
 /// field, on what arrays there are and where; on how finely higher-order cells are divided; and at the end on the
@@ -47,7 +47,7 @@ struct PartSummary {
   std::vector<std::uint64_t> used_points;
   std::vector<std::string> reading_notes, cell_notes, surfaces;  ///< surfaces: as MeshFile has them
   HigherOrderCells higher_order;
-  TimeStepRead time_step{};  ///< of a part without files, of one step
+  scene::TimeStepRead time_step{};  ///< of a part without files, of one step
 };
 
 struct MeshFilePart {

@@ -147,11 +147,6 @@ MeshOptions options_after(const MeshBlocks& read, MeshOptions options) {
 
 }  // namespace
 
-void add_notes(const std::vector<std::string>& more, std::vector<std::string>& notes) {
-  for (const std::string& note : more)
-    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
-}
-
 MeshBlocks blocks_of_tets(scene::TetMesh mesh) {
   CellBlock block;
   block.positions = std::move(mesh.positions);
@@ -201,12 +196,12 @@ MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options
     result.notes.insert(result.notes.begin(), read.notes.begin(), read.notes.end());
     result.time_step = read.time_step;
     result.axis_scale = read.axis_scale;
-    if (auto note = note_on(read.time_step, options.time_step)) result.notes.insert(result.notes.begin(), *note);
+    if (auto note = scene::note_on(read.time_step, options.time_step)) result.notes.insert(result.notes.begin(), *note);
     return result;
   });
 }
 
-TimeStepRead time_steps_of_mesh(const std::filesystem::path& file, const MeshOptions& options) {
+scene::TimeStepRead time_steps_of_mesh(const std::filesystem::path& file, const MeshOptions& options) {
   require_mesh_file(file);
   if (!has_time_steps(file)) return {};
   return with_clean_errors(file.string(), [&] { return read_blocks(file, options).time_step; });
@@ -229,7 +224,7 @@ MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptio
         if (block.source.empty()) block.source = source;
         all.blocks.push_back(std::move(block));
       }
-      if (auto note = note_on(read.time_step, options.time_step)) read.notes.insert(read.notes.begin(), *note);
+      if (auto note = scene::note_on(read.time_step, options.time_step)) read.notes.insert(read.notes.begin(), *note);
       all.time_step = read.time_step;
       all.axis_scale = read.axis_scale;
       add_notes(read.notes, all.notes);

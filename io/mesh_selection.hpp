@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "io/mesh_reader.hpp"
+#include "io/mesh_options.hpp"
 #include "scene/selection.hpp"
 #include "scene/tet_mesh.hpp"
 

@@ -109,7 +109,7 @@ void read_grid(const MetaHeader& header, std::size_t axes, const std::filesystem
       steps[axis] =
           glm::dvec3(m[axes * axis], m[axes * axis + 1], m[axes * axis + 2]) * spacing[static_cast<int>(axis)];
   }
-  set_axes(g, steps);
+  scene::set_axes(g, steps);
   // ITK writes it of every image, in a world of left, posterior and superior.
   if (const auto* value = header.find({"AnatomicalOrientation"}); value && value->find('?') == std::string::npos)
     volume.body_axes = BodyAxes::lps;
@@ -118,7 +118,7 @@ void read_grid(const MetaHeader& header, std::size_t axes, const std::filesystem
     g.origin = {o[0], o[1], o[2]};
     if (axes == 4) first_time = o[3];
   }
-  volume.times = even_times(first_time, time_step, volume.steps);
+  volume.times = scene::even_times(first_time, time_step, volume.steps);
   if (const auto* value = header.find({"ElementToIntensityFunctionSlope"}))
     volume.grid.scale = reals("ElementToIntensityFunctionSlope", *value, 1)[0];
   if (const auto* value = header.find({"ElementToIntensityFunctionOffset"}))
@@ -151,11 +151,6 @@ void read_payload(const MetaHeader& header, std::string_view lines, const std::f
 }
 
 }  // namespace
-
-bool looks_like_meta_image(std::string_view beginning) {
-  return beginning.starts_with("ObjectType") || beginning.starts_with("NDims") ||
-         (beginning.starts_with("Comment") && beginning.find("NDims") != std::string_view::npos);
-}
 
 StoredVolume read_meta_image_header(const std::filesystem::path& file) {
   constexpr std::size_t longest_header = 1 << 16;

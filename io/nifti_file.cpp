@@ -11,8 +11,8 @@
 
 #include "io/gzip.hpp"
 #include "io/input_file.hpp"
-#include "io/time_step_read.hpp"
 #include "io/volume_formats.hpp"
+#include "scene/time_step_read.hpp"
 
 namespace tessera::io {
 namespace {
@@ -169,12 +169,12 @@ void set_nifti_geometry(const NiftiHeader& header, const std::filesystem::path& 
     std::array<glm::dvec3, 3> steps;
     for (std::size_t column = 0; column < 3; ++column)
       steps[column] = {header.srow(0, column), header.srow(1, column), header.srow(2, column)};
-    set_axes(g, steps);
+    scene::set_axes(g, steps);
     g.origin = {header.srow(0, 3), header.srow(1, 3), header.srow(2, 3)};
     set_nifti_axes(header, header.sform_code(), volume);
     volume.notes.emplace_back("placed by its sform");
   } else if (header.qform_code() > 0) {
-    set_axes(g, quaternion_steps(header, spacing));
+    scene::set_axes(g, quaternion_steps(header, spacing));
     g.spacing = spacing;  // as it stands, without the quaternion's rounding
     g.origin = {header.quaternion(3), header.quaternion(4), header.quaternion(5)};
     set_nifti_axes(header, header.qform_code(), volume);
@@ -270,14 +270,6 @@ void set_nifti_payload(const NiftiHeader& header, const std::filesystem::path& f
 
 }  // namespace
 
-bool looks_like_nifti(const std::filesystem::path& file) { return NiftiHeader(header_bytes(file)).version() != 0; }
-
-bool looks_like_analyze(const std::filesystem::path& file) {
-  const std::filesystem::path stem = lower_extension(file) == ".gz" ? file.stem() : file;
-  if (lower_extension(stem) != ".hdr") return false;  // its bytes alone do not tell
-  return NiftiHeader(header_bytes(file)).is_analyze();
-}
-
 StoredVolume read_nifti_header(const std::filesystem::path& file) {
   const NiftiHeader header(header_bytes(file));
   if (header.version() == 0)
@@ -296,7 +288,7 @@ StoredVolume read_nifti_header(const std::filesystem::path& file) {
   set_nifti_geometry(header, file, volume);
   set_nifti_tags(header, volume);
   volume.times =
-      even_times(header.time_offset() * header.time_unit(), header.pixdim(4) * header.time_unit(), volume.steps);
+      scene::even_times(header.time_offset() * header.time_unit(), header.pixdim(4) * header.time_unit(), volume.steps);
   set_nifti_payload(header, file, volume);
   return volume;
 }

@@ -13,7 +13,7 @@
 
 #include "io/header_text.hpp"
 #include "io/text_file.hpp"
-#include "io/time_step_read.hpp"
+#include "scene/time_step_read.hpp"
 
 namespace tessera::io {
 namespace {
@@ -297,10 +297,10 @@ std::vector<double> nrrd_times(const NrrdFields& fields, const NrrdAxes& axes, c
       return value != nullptr && std::isfinite(header_numbers(*value, sizes.size(), file, name)[a]);
     };
     if (const auto places = places_in_time(fields, a, file))
-      return even_times(places->first, places->spacing, static_cast<std::uint64_t>(sizes[a]));
+      return scene::even_times(places->first, places->spacing, static_cast<std::uint64_t>(sizes[a]));
     if (!given("spacings") && !(given("axismins") && given("axismaxs"))) continue;
     const AxisPlaces places = axis_places(fields, a, sizes, file);
-    return even_times(places.first, places.spacing, static_cast<std::uint64_t>(sizes[a]));
+    return scene::even_times(places.first, places.spacing, static_cast<std::uint64_t>(sizes[a]));
   }
   return {};
 }
@@ -348,7 +348,7 @@ void set_nrrd_geometry(const NrrdFields& fields, const NrrdAxes& axes, const std
     if (std::isfinite(o[0] + o[1] + o[2])) origin = {o[0], o[1], o[2]};
   }
   for (glm::dvec3& step : steps) step = space.to_world * step;
-  set_axes(g, steps);
+  scene::set_axes(g, steps);
   g.origin = space.to_world * origin + 0.0;
 }
 

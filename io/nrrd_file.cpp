@@ -134,8 +134,6 @@ void set_nrrd_tags(const NrrdFields& fields, StoredVolume& volume) {
 
 }  // namespace
 
-bool looks_like_nrrd(std::string_view beginning) { return beginning.starts_with("NRRD000"); }
-
 StoredVolume read_nrrd_header(const std::filesystem::path& file) {
   constexpr std::size_t longest_nrrd_header = 1 << 20;
   const std::string text = read_beginning(file, longest_nrrd_header);

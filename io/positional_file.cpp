@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "io/files_read.hpp"
-#include "io/input_file.hpp"
+#include "io/regular_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {

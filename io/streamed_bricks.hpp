@@ -3,16 +3,13 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 
+#include "io/byte_sink.hpp"
 #include "io/scratch_file.hpp"
 #include "scene/sample_source.hpp"
 
 namespace tessera::io {
-
-/// Hears bytes in their order, in parts that may be cut anywhere.
-using ByteSink = std::function<void(std::span<const std::byte>)>;
 
 /// Samples that come in the order of their file and only once, as out of a stream that has to be unpacked.
 struct StreamedSamples {

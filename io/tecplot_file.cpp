@@ -258,8 +258,8 @@ TecplotMesh parse_tecplot(std::string_view text, const std::string& source, std:
   const std::array<std::size_t, 3> axes = tecplot_coordinates(header, source);
   TecplotMesh mesh;
   const std::vector<double> times = times_of(header);
-  mesh.time_step = chosen_step(time_step, times.size(), source);
-  set_times(mesh.time_step, times);
+  mesh.time_step = scene::chosen_step(time_step, times.size(), source);
+  scene::set_times(mesh.time_step, times);
   if (with_cells < header.zones.size())
     mesh.notes.push_back(fmt::format("{} of {} zones are lines or faces, which are left out",
                                      header.zones.size() - with_cells, header.zones.size()));

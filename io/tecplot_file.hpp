@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "io/cell_block.hpp"
-#include "io/time_step_read.hpp"
+#include "scene/time_step_read.hpp"
 
 namespace tessera::io {
 
@@ -16,7 +16,7 @@ namespace tessera::io {
 struct TecplotMesh {
   std::vector<CellBlock> blocks;
   std::vector<std::string> notes;
-  TimeStepRead time_step{};
+  scene::TimeStepRead time_step{};
 };
 
 /// Parses a Tecplot text file: ordered zones, bricks, tetrahedra and polyhedra, their values by points or in blocks, at

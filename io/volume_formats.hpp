@@ -1,16 +1,14 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "io/clean_errors.hpp"
 #include "io/plain_vtk_grid.hpp"
 #include "io/volume_reader.hpp"
 #include "io/vtk_array.hpp"
-#include "scene/error.hpp"
 
 namespace tessera::io {
 
@@ -67,19 +65,7 @@ VolumeFile read_xdmf_grid(const std::filesystem::path& file, const VolumeOptions
 /// DICOM: a folder of slices, or one of its files, or frames in one file.
 VolumeFile read_dicom(const std::filesystem::path& file, const VolumeOptions& options);
 
-/// Whether the beginning of a file is that of the format.
-bool looks_like_nifti(const std::filesystem::path& file);
-bool looks_like_analyze(const std::filesystem::path& file);
-bool looks_like_nrrd(std::string_view beginning);
-bool looks_like_meta_image(std::string_view beginning);
-
-/// Spacing and direction from what one step of the index along each axis is in the world.
-void set_axes(scene::GridGeometry& geometry, const std::array<glm::dvec3, 3>& steps);
-
 /// "float" for float32, "double" for float64, else the type's name: as meshes' fields are listed.
 std::string listed_type(scene::SampleType type);
-
-/// bad_input of a damaged file.
-scene::Error damaged(const std::filesystem::path& file, const std::string& what);
 
 }  // namespace tessera::io

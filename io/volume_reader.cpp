@@ -77,10 +77,10 @@ void list_range(const scene::ValueRange& range, FieldSummary& field) {
 }
 
 /// The step that is wanted.
-TimeStepRead step_of(const StoredVolume& volume, const VolumeOptions& options, const std::string& source) {
+scene::TimeStepRead step_of(const StoredVolume& volume, const VolumeOptions& options, const std::string& source) {
   if (volume.steps > 1) {
-    TimeStepRead read = chosen_step(options.time_step, volume.steps, source);
-    set_times(read, volume.times);
+    scene::TimeStepRead read = scene::chosen_step(options.time_step, volume.steps, source);
+    scene::set_times(read, volume.times);
     return read;
   }
   require_no_time_step(options.time_step, source);
@@ -253,25 +253,10 @@ VolumeFile open_described(const std::filesystem::path& file, VolumeKind kind, co
 
 }  // namespace
 
-scene::Error damaged(const std::filesystem::path& file, const std::string& what) {
-  return scene::bad_input(fmt::format("{}: {}; the file is truncated or damaged, write it anew", file.string(), what));
-}
-
 std::string listed_type(scene::SampleType type) {
   if (type == scene::SampleType::float32) return "float";
   if (type == scene::SampleType::float64) return "double";
   return scene::name_of(type);
-}
-
-void set_axes(scene::GridGeometry& geometry, const std::array<glm::dvec3, 3>& steps) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const glm::dvec3& step = steps[static_cast<std::size_t>(axis)];
-    const double length = glm::length(step);
-    geometry.spacing[axis] = length;
-    // Without a length validate() says so; the axis itself keeps the message to the point.
-    geometry.direction[axis] = glm::dvec3(axis == 0, axis == 1, axis == 2);
-    if (length > 0 && std::isfinite(length)) geometry.direction[axis] = step / length + 0.0;
-  }
 }
 
 bool is_volume(const std::filesystem::path& file) {
@@ -316,7 +301,8 @@ VolumeFile open_unscanned_volume(const std::filesystem::path& file, const Volume
       for (std::string& note : volume.notes) note = inflated.renamed(std::move(note));
       volume.format += ", gzip";
     }
-    if (auto note = note_on(volume.time_step, options.time_step)) volume.notes.insert(volume.notes.begin(), *note);
+    if (auto note = scene::note_on(volume.time_step, options.time_step))
+      volume.notes.insert(volume.notes.begin(), *note);
     return volume;
   });
 }

@@ -9,10 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh_reader.hpp"
+#include "io/mesh_options.hpp"
 #include "io/scratch_file.hpp"
 #include "io/volume_tags.hpp"
 #include "scene/sample_source.hpp"
+#include "scene/time_step_read.hpp"
 #include "tessera/default_view.hpp"
 
 namespace tessera::io {
@@ -52,7 +53,7 @@ struct VolumeFile {
   BodyAxes body_axes = BodyAxes::none;
   BodyAxes axes_if_ct = BodyAxes::none;  ///< set_range() makes them body_axes if the values are those of CT
   VolumeTags tags{};
-  TimeStepRead time_step{};
+  scene::TimeStepRead time_step{};
   bool beside_degrees = false;  ///< x and y are degrees, z is a length
 };
 

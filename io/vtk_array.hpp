@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "io/base64_text.hpp"
-#include "io/streamed_bricks.hpp"
+#include "io/byte_sink.hpp"
 #include "io/vtk_codec.hpp"
 
 namespace tessera::io {

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "io/streamed_bricks.hpp"
+#include "io/byte_sink.hpp"
 #include "io/vtk_text_numbers.hpp"
 #include "io/vtk_xml_grid.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "io/mesh_formats.hpp"
+#include "io/mesh_blocks.hpp"
 
 namespace tessera::io {
 

@@ -128,3 +128,18 @@ void validate(const Grid& grid, const std::string& source) {
 }
 
 }  // namespace tessera
+
+namespace tessera::scene {
+
+void set_axes(GridGeometry& geometry, const std::array<glm::dvec3, 3>& steps) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const glm::dvec3& step = steps[static_cast<std::size_t>(axis)];
+    const double length = glm::length(step);
+    geometry.spacing[axis] = length;
+    // Without a length validate() says so; the axis itself keeps the message to the point.
+    geometry.direction[axis] = glm::dvec3(axis == 0, axis == 1, axis == 2);
+    if (length > 0 && std::isfinite(length)) geometry.direction[axis] = step / length + 0.0;
+  }
+}
+
+}  // namespace tessera::scene

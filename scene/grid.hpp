@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <glm/vec3.hpp>
+
 #include "scene/camera.hpp"
 #include "scene/tet_mesh.hpp"
 #include "tessera/grid.hpp"
@@ -21,5 +24,8 @@ using tessera::size_of;
 using tessera::validate;
 using tessera::world_of_index;
 using tessera::world_to_local;
+
+/// Sets spacing and direction from the step in the world of one index along each axis.
+void set_axes(GridGeometry& geometry, const std::array<glm::dvec3, 3>& steps);
 
 }  // namespace tessera::scene

@@ -229,8 +229,8 @@ std::optional<ForeignContents> read_cgns_zones(Holdings& holdings, const std::fi
   if (namesakes.empty() && std::ranges::none_of(zones, needs_this)) return std::nullopt;
   ForeignContents contents;
   contents.format = "CGNS";
-  contents.time_step = chosen_step(wish, steps.count, source);
-  set_times(contents.time_step, std::move(steps.times));
+  contents.time_step = scene::chosen_step(wish, steps.count, source);
+  scene::set_times(contents.time_step, std::move(steps.times));
   const int part = request.value("part", 0), parts = request.value("parts", 1);
   const std::uint64_t first = first_of_part(zones.size(), part, parts);
   const std::uint64_t last = first_of_part(zones.size(), part + 1, parts);

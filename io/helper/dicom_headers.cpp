@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "io/helper_messages.hpp"
+#include "io/descriptor.hpp"
 
 namespace tessera::io::helper {
 namespace {

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "io/file_beginnings.hpp"
 #include "io/helper/dicom_headers.hpp"
 #include "io/helper/dicom_series.hpp"
 #include "io/helper/holdings.hpp"

@@ -158,7 +158,7 @@ std::vector<DicomSlice> slices_of_step(std::vector<DicomSlice> slices, std::opti
   }
   const std::size_t step = chosen_step(wish, least, source);
   volume.time_step = {least, step};
-  set_times(volume.time_step, times_of(places.front(), least));
+  scene::set_times(volume.time_step, times_of(places.front(), least));
   if (most > least)
     volume.notes.push_back(
         fmt::format("some places have {} slices, others {}; what is beyond is left out", most, least));

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "io/helper/dicom_slice.hpp"
-#include "io/time_step_read.hpp"
+#include "scene/time_step_read.hpp"
 
 namespace tessera::io::helper {
 
@@ -18,7 +18,7 @@ struct DicomVolume {
   std::array<glm::dvec3, 3> steps{};
   std::vector<double> places;  ///< of uneven slices along the last step, from 0; else empty
   std::vector<std::string> notes;
-  TimeStepRead time_step{};
+  scene::TimeStepRead time_step{};
 };
 
 /// The series that the named file is of, else the one with the most slices; of several times the chosen one, else the

@@ -12,7 +12,7 @@
 #include <system_error>
 #include <utility>
 
-#include "io/helper_messages.hpp"
+#include "io/descriptor.hpp"
 #include "io/input_file.hpp"
 #include "io/whole_file.hpp"
 

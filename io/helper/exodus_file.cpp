@@ -20,7 +20,7 @@
 #include "io/helper/readers.hpp"
 #include "io/helper/serve.hpp"
 #include "io/input_file.hpp"
-#include "io/mesh_formats.hpp"
+#include "io/mesh_blocks.hpp"
 #include "io/tuple_length.hpp"
 #include "scene/error.hpp"
 
@@ -264,10 +264,11 @@ class Reading {
   void choose_step(std::optional<std::size_t> wish) {
     const std::int64_t steps = std::max<std::int64_t>(ex_inquire_int(file_->id(), EX_INQ_TIME), 0);
     check_count("time steps", steps, 1);
-    result_.time_step = chosen_step(wish, static_cast<std::uint64_t>(steps), source_);
+    result_.time_step = scene::chosen_step(wish, static_cast<std::uint64_t>(steps), source_);
     if (steps > INT32_MAX) file_->fail(fmt::format("it promises {} time steps", steps));
     std::vector<double> times(static_cast<std::size_t>(steps));
-    if (steps > 0 && ex_get_all_times(file_->id(), times.data()) >= 0) set_times(result_.time_step, std::move(times));
+    if (steps > 0 && ex_get_all_times(file_->id(), times.data()) >= 0)
+      scene::set_times(result_.time_step, std::move(times));
     step_ = wish ? static_cast<int>(*wish) + 1 : static_cast<int>(steps);  // from 1; 0 if there are none
   }
 

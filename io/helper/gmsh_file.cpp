@@ -12,11 +12,11 @@
 #include <optional>
 #include <string_view>
 
+#include "io/descriptor.hpp"
 #include "io/helper/gmsh_blocks.hpp"
 #include "io/helper/gmsh_view_names.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/unv_check.hpp"
-#include "io/helper_messages.hpp"
 #include "io/input_file.hpp"
 #include "io/whole_file.hpp"
 #include "scene/error.hpp"

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "io/helper_messages.hpp"
+#include "io/descriptor.hpp"
 
 namespace tessera::io::helper {
 

@@ -111,12 +111,12 @@ std::size_t TagIndex::find(std::size_t tag) const {
 }
 
 std::vector<GmshView> gmsh_views(std::optional<std::size_t> time_step, const std::string& source,
-                                 std::vector<std::string>& notes, TimeStepRead& read) {
+                                 std::vector<std::string>& notes, scene::TimeStepRead& read) {
   const std::vector<KnownView> known = known_views();
   std::size_t steps = 0;
   for (const KnownView& view : known) steps = std::max(steps, view.steps);
-  read = chosen_step(time_step, steps, source);
-  if (steps > 1) set_times(read, times_of(known, steps));
+  read = scene::chosen_step(time_step, steps, source);
+  if (steps > 1) scene::set_times(read, times_of(known, steps));
   const std::size_t step = read.step;
   std::vector<GmshView> views;
   for (const KnownView& each : known) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/time_step_read.hpp"
+#include "scene/time_step_read.hpp"
 
 namespace tessera::io::helper {
 
@@ -39,6 +39,6 @@ struct GmshView {
 /// The views of what Gmsh has read at a time step counted from 0, or the last one. `read` says which it is, notes
 /// what is left out. Throws Error(bad_input) for a step that there is not.
 std::vector<GmshView> gmsh_views(std::optional<std::size_t> time_step, const std::string& source,
-                                 std::vector<std::string>& notes, TimeStepRead& read);
+                                 std::vector<std::string>& notes, scene::TimeStepRead& read);
 
 }  // namespace tessera::io::helper

@@ -22,11 +22,11 @@
 #include <optional>
 #include <sstream>
 
+#include "io/clean_errors.hpp"
 #include "io/file_beginnings.hpp"
 #include "io/helper/extents.hpp"
 #include "io/helper/readers.hpp"
 #include "io/input_file.hpp"
-#include "io/volume_formats.hpp"
 #include "io/whole_file.hpp"
 #include "io/xml_elements.hpp"
 

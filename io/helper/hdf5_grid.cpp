@@ -134,7 +134,7 @@ ForeignContents read_arrays(Holdings& holdings, const Hdf5File& file, const std:
   if (!request.value("look", false)) {
     const auto longest = std::max_element(chosen.begin(), chosen.end(),
                                           [](const GridArray& a, const GridArray& b) { return a.steps() < b.steps(); });
-    contents.time_step = chosen_step(step_wish(request), longest->steps(), source);
+    contents.time_step = scene::chosen_step(step_wish(request), longest->steps(), source);
     if (longest->steps() > 1)
       contents.notes.push_back(fmt::format("time steps are counted along the first of the dimensions of {}, {}",
                                            longest->array->path, fmt::join(longest->array->lengths, " x ")));
@@ -211,12 +211,14 @@ ForeignContents read_vtk_hdf_image(Holdings& holdings, const Hdf5File& file, con
   ForeignPart part = image_of(file, source);
   const bool only_look = request.value("look", false);
   const long steps = std::max(file.number_of("VTKHDF/Steps", "NSteps", 0), 0L);
-  if (!only_look) contents.time_step = chosen_step(step_wish(request), static_cast<std::uint64_t>(steps), source);
+  if (!only_look)
+    contents.time_step = scene::chosen_step(step_wish(request), static_cast<std::uint64_t>(steps), source);
   if (steps > 0 && !only_look)
     for (const Hdf5Array& array : file.arrays("VTKHDF/Steps"))
       if (array.path == "VTKHDF/Steps/Values" && array.lengths.size() == 1 &&
           array.lengths[0] == static_cast<std::size_t>(steps))
-        set_times(contents.time_step, file.read(array, std::array<std::size_t, 1>{0}, array.lengths).as_doubles());
+        scene::set_times(contents.time_step,
+                         file.read(array, std::array<std::size_t, 1>{0}, array.lengths).as_doubles());
   for (const bool of_points : {true, false}) {
     if (only_look) break;
     const std::string kind = of_points ? "PointData" : "CellData", group = "VTKHDF/" + kind;

@@ -122,7 +122,7 @@ std::vector<double> times_of(const MedFile& file, const FieldAt& field, std::siz
 }  // namespace
 
 void add_med_fields(const MedFile& file, std::optional<std::size_t> time_step, std::vector<MedMesh>& meshes,
-                    std::vector<std::string>& notes, TimeStepRead& read) {
+                    std::vector<std::string>& notes, scene::TimeStepRead& read) {
   const med_int count = MEDnField(file.id());
   file.require(count >= 0 && count < 100000, "the number of fields");
   std::size_t most_steps = 0;
@@ -155,8 +155,8 @@ void add_med_fields(const MedFile& file, std::optional<std::size_t> time_step, s
     for (MedMesh& mesh : meshes)
       if (mesh.block.name == field.mesh) add_field(file, field, mesh, notes);
   }
-  read = chosen_step(time_step, most_steps, file.source());
-  set_times(read, std::move(times));
+  read = scene::chosen_step(time_step, most_steps, file.source());
+  scene::set_times(read, std::move(times));
 }
 
 }  // namespace tessera::io::helper

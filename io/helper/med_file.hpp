@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "io/cell_block.hpp"
-#include "io/time_step_read.hpp"
+#include "scene/time_step_read.hpp"
 
 namespace tessera::io::helper {
 
@@ -55,6 +55,6 @@ std::vector<MedMesh> med_meshes(const MedFile& file, std::vector<std::string>& n
 /// Adds the fields of a mesh's nodes and cells at one time step, counted from 0, or the last; `read` says which. Values
 /// that the file has not are NaN. Throws Error(bad_input) for a step that no field has.
 void add_med_fields(const MedFile& file, std::optional<std::size_t> time_step, std::vector<MedMesh>& meshes,
-                    std::vector<std::string>& notes, TimeStepRead& read);
+                    std::vector<std::string>& notes, scene::TimeStepRead& read);
 
 }  // namespace tessera::io::helper

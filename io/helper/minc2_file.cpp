@@ -155,8 +155,9 @@ ForeignContents read_minc2(Holdings& holdings, const std::filesystem::path& file
   std::optional<std::size_t> wish;
   if (const auto step = request.find("time_step"); step != request.end()) wish = step->get<std::size_t>();
   const bool has_time = axes.front().name == "time", has_components = axes.back().name == "vector_dimension";
-  contents.time_step = chosen_step(wish, has_time ? axes.front().size : 1, source);
-  if (has_time) set_times(contents.time_step, even_times(axes.front().start, axes.front().step, axes.front().size));
+  contents.time_step = scene::chosen_step(wish, has_time ? axes.front().size : 1, source);
+  if (has_time)
+    scene::set_times(contents.time_step, scene::even_times(axes.front().start, axes.front().step, axes.front().size));
   const std::size_t step = contents.time_step.step;
   ForeignPart& part = contents.parts.emplace_back();
   part.kind = ForeignPart::Kind::image;

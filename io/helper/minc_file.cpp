@@ -54,7 +54,7 @@ std::vector<double> minc_times(const std::filesystem::path& file, std::size_t co
       if (nc_get_var_double(id, time, times.data()) != NC_NOERR) times.clear();
     } else if (dimensions == 0 && nc_get_att_double(id, time, "step", &step) == NC_NOERR) {
       if (nc_get_att_double(id, time, "start", &start) != NC_NOERR) start = 0;
-      times = even_times(start, step, count);
+      times = scene::even_times(start, step, count);
     }
   }
   nc_close(id);
@@ -142,8 +142,8 @@ ForeignContents read_minc(Holdings& holdings, const std::filesystem::path& file,
     reader->RescaleRealValuesOn();
     reader->UpdateInformation();
     const auto steps = static_cast<std::size_t>(std::max(reader->GetNumberOfTimeSteps(), 1));
-    contents.time_step = chosen_step(wish, steps, source);
-    set_times(contents.time_step, minc_times(file, steps));
+    contents.time_step = scene::chosen_step(wish, steps, source);
+    scene::set_times(contents.time_step, minc_times(file, steps));
     reader->SetTimeStep(static_cast<int>(contents.time_step.step));
     reader->Update();
   });

@@ -318,10 +318,10 @@ ForeignContents read_netcdf(Holdings& holdings, const std::filesystem::path& fil
     if (steps_of(field) > steps) steps = steps_of(field), with_steps = &field;
   std::optional<std::size_t> wish;
   if (const auto step = request.find("time_step"); step != request.end()) wish = step->get<std::size_t>();
-  contents.time_step = chosen_step(wish, steps, opened.source());
+  contents.time_step = scene::chosen_step(wish, steps, opened.source());
   if (with_steps != nullptr) {
     note_steps(opened, *with_steps, contents.notes);
-    set_times(contents.time_step, times_of(opened, *with_steps));
+    scene::set_times(contents.time_step, times_of(opened, *with_steps));
   }
   PlacedGrid placed = place_grid(holdings, opened, grid, contents.time_step.step, contents.notes);
   std::size_t done = 0;

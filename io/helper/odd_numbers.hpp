@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "io/helper_messages.hpp"
+#include "io/descriptor.hpp"
 
 class vtkDataObject;
 

@@ -20,7 +20,7 @@
 #include "io/helper/vtk_session.hpp"
 #include "io/helper/vtk_words.hpp"
 #include "io/input_file.hpp"
-#include "io/mesh_formats.hpp"
+#include "io/mesh_blocks.hpp"
 #include "io/part_range.hpp"
 #include "scene/error.hpp"
 

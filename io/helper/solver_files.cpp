@@ -301,13 +301,14 @@ void require_not_asked_for(const std::vector<CutFile>& cut, const std::filesyste
 }
 
 /// The step of a case with file sets that is asked for.
-TimeStepRead step_in_file_sets(const EnsightCase& described, nlohmann::json& request, const std::string& source) {
+scene::TimeStepRead step_in_file_sets(const EnsightCase& described, nlohmann::json& request,
+                                      const std::string& source) {
   std::optional<std::size_t> wish;
   if (request.contains("time_step")) wish = request["time_step"].get<std::size_t>();
   request.erase("time_step");
   std::vector<double> times = described.times();
-  TimeStepRead read = chosen_step(wish, times.size(), source);
-  set_times(read, std::move(times));
+  scene::TimeStepRead read = scene::chosen_step(wish, times.size(), source);
+  scene::set_times(read, std::move(times));
   return read;
 }
 
@@ -315,7 +316,7 @@ ForeignContents read_case(Holdings& holdings, const std::filesystem::path& file,
   const std::string source = file.string();
   const EnsightCase described(file);
   described.require_regular_files(source);
-  std::optional<TimeStepRead> step;
+  std::optional<scene::TimeStepRead> step;
   std::optional<EnsightStep> apart;
   double time = 0;
   if (described.has_file_sets()) {

@@ -44,11 +44,12 @@ class HdfMesh {
     const auto times = static_cast<long>(numbers("Steps/Values").size());
     const long steps = std::max(file_.number_of("VTKHDF/Steps", "NSteps", times), 0L);
     const auto wish = request.find("time_step");
-    contents.time_step = chosen_step(wish == request.end() ? std::nullopt : std::optional(wish->get<std::size_t>()),
-                                     static_cast<std::uint64_t>(steps), source_);
+    contents.time_step =
+        scene::chosen_step(wish == request.end() ? std::nullopt : std::optional(wish->get<std::size_t>()),
+                           static_cast<std::uint64_t>(steps), source_);
     if (steps > 0) {
       step_ = contents.time_step.step;
-      set_times(contents.time_step, numbers("Steps/Values"));
+      scene::set_times(contents.time_step, numbers("Steps/Values"));
     }
     const std::vector<Part> parts = parts_of_step();
     for (std::size_t p = 0; p < parts.size(); ++p) {

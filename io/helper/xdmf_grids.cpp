@@ -143,17 +143,17 @@ class Walk {
 }  // namespace
 
 std::vector<XdmfBlock> blocks_at(const boost::shared_ptr<XdmfDomain>& domain, std::optional<std::size_t> time_step,
-                                 const std::string& source, TimeStepRead& read) {
+                                 const std::string& source, scene::TimeStepRead& read) {
   const std::vector<Grid> grids = children_of(*domain);
   const Timeline timeline(grids);
   if (timeline.count() == 0 && time_step.value_or(0) > 0)
     throw scene::bad_input(
         fmt::format("{}: there is no time step {}, the file has none; leave it out", source, *time_step));
-  read = chosen_step(time_step, timeline.count(), source);
+  read = scene::chosen_step(time_step, timeline.count(), source);
   Walk walk(timeline, read.step);
   for (const Grid& grid : grids) walk.visit(grid, grids.size() > 1 ? grid->getName() : "");
   merge_same_meshes(walk.blocks);
-  set_times(read, timeline.times());
+  scene::set_times(read, timeline.times());
   if (timeline.count() == 0)
     for (const Grid& grid : grids)
       if (const auto time = time_of(grid); time && read.times.empty()) read = {1, 0, {*time}};

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/time_step_read.hpp"
+#include "scene/time_step_read.hpp"
 
 class XdmfDomain;
 class XdmfGrid;
@@ -24,6 +24,6 @@ struct XdmfBlock {
 /// differ in length, steps are all their times, and each shows what it has had last by then. `read` says which step it
 /// is. Throws Error(bad_input) for a step that there is not.
 std::vector<XdmfBlock> blocks_at(const boost::shared_ptr<XdmfDomain>& domain, std::optional<std::size_t> time_step,
-                                 const std::string& source, TimeStepRead& read);
+                                 const std::string& source, scene::TimeStepRead& read);
 
 }  // namespace tessera::io::helper

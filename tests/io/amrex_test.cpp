@@ -7,6 +7,7 @@
 
 #include "io/amr_files.hpp"
 #include "io/amrex_header.hpp"
+#include "io/file_beginnings.hpp"
 #include "io/file_kinds.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"

@@ -55,7 +55,7 @@ double volume_of(const std::filesystem::path& file, const std::optional<Warp>& w
 TEST(ExodusSteps, AreAtTheirTimes) {
   const test::TemporaryFolder folder;
   write_cube(folder / "a.exo", {"v_"});
-  const TimeStepRead steps = time_steps_of_mesh(folder / "a.exo");
+  const scene::TimeStepRead steps = time_steps_of_mesh(folder / "a.exo");
   EXPECT_EQ(steps.times, (std::vector<double>{0.5, 0.75, 4}));
   EXPECT_EQ(times_of(folder / "a.exo"), steps.times);
   const MeshFile last = read_mesh(folder / "a.exo");

@@ -204,7 +204,7 @@ TEST(NetcdfGrids, OfOneTimeHaveIt) {
       w.put(vtime, {6.5});
       w.put(v, ramp(8 * members, 0));
     }
-    const TimeStepRead read = open_volume(folder / "one").time_step;
+    const scene::TimeStepRead read = open_volume(folder / "one").time_step;
     EXPECT_EQ(read.count, members);
     EXPECT_EQ(read.times, members == 1 ? std::vector{6.5} : std::vector<double>());  // members are steps too
   }

@@ -13,7 +13,7 @@
 
 #include "scene/error.hpp"
 
-namespace tessera::io {
+namespace tessera::scene {
 
 /// Which of a file's time steps was read.
 struct TimeStepRead {
@@ -25,8 +25,7 @@ struct TimeStepRead {
 /// Of so many steps the one that is asked for, the last if none is. Throws Error(bad_input) if it is not there.
 inline TimeStepRead chosen_step(std::optional<std::size_t> wish, std::uint64_t count, const std::string& source) {
   if (wish && *wish >= std::max<std::uint64_t>(count, 1))
-    throw scene::bad_input(
-        fmt::format("{}: there is no time step {}, the file has {}; count from 0", source, *wish, count));
+    throw bad_input(fmt::format("{}: there is no time step {}, the file has {}; count from 0", source, *wish, count));
   return {count, wish.value_or(count == 0 ? 0 : count - 1), {}};
 }
 
@@ -55,4 +54,4 @@ inline std::optional<std::string> note_on(const TimeStepRead& read, std::optiona
                      wish ? "" : ", the last by default; `time_step` all shows them as a film");
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::scene

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+
+namespace tessera::io {
+
+/// Receives bytes in order, in pieces of any size.
+using ByteSink = std::function<void(std::span<const std::byte>)>;
+
+}  // namespace tessera::io
