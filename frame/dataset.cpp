@@ -27,7 +27,6 @@
 #include "frame/transfer_function_choice.hpp"
 #include "frame/uncut_mesh.hpp"
 #include "io/axis_scale.hpp"
-#include "io/files_read.hpp"
 #include "io/foreign_data.hpp"
 #include "io/mesh_assembly.hpp"
 #include "io/volume_reader.hpp"
@@ -37,6 +36,7 @@
 #include "scene/scaled_source.hpp"
 #include "scene/threads.hpp"
 #include "scene/threshold_source.hpp"
+#include "system/files_read.hpp"
 #include "tessera/input_file.hpp"
 
 namespace tessera {

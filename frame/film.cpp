@@ -8,7 +8,7 @@
 #include <string>
 
 #include "io/field_choice.hpp"
-#include "io/free_memory.hpp"
+#include "system/free_memory.hpp"
 #include "tessera/error.hpp"
 #include "tessera/image_file.hpp"
 #include "tessera/input_file.hpp"

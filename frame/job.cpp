@@ -18,7 +18,7 @@
 #include "exchange/termination.hpp"
 #include "frame/communicator.hpp"
 #include "frame/same_files.hpp"
-#include "io/unfinished.hpp"
+#include "system/unfinished.hpp"
 
 namespace tessera {
 

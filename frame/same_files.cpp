@@ -12,8 +12,8 @@
 #include <string>
 
 #include "exchange/collectives.hpp"
-#include "io/files_read.hpp"
 #include "scene/error.hpp"
+#include "system/files_read.hpp"
 
 namespace tessera::frame {
 namespace {

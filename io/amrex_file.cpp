@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "io/amrex_header.hpp"
-#include "io/positional_file.hpp"
 #include "io/text_file.hpp"
 #include "io/whole_file.hpp"
 #include "scene/error.hpp"
+#include "system/positional_file.hpp"
 
 namespace tessera::io {
 namespace {

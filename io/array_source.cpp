@@ -1,6 +1,6 @@
 #include "io/array_source.hpp"
 
-#include "io/large_vector.hpp"
+#include "system/large_vector.hpp"
 
 namespace tessera::io {
 

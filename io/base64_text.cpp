@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstring>
 
-#include "io/positional_file.hpp"
+#include "system/positional_file.hpp"
 
 namespace tessera::io {
 namespace {

@@ -9,16 +9,16 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "io/atomic_file.hpp"
 #include "io/brick_layout.hpp"
 #include "io/field_choice.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/json_text.hpp"
-#include "io/positional_file.hpp"
 #include "io/text_file.hpp"
 #include "io/volume_formats.hpp"
 #include "scene/error.hpp"
+#include "system/atomic_file.hpp"
+#include "system/positional_file.hpp"
 
 namespace tessera::io {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <string_view>
 
-#include "io/scratch_file.hpp"
 #include "io/streamed_bricks.hpp"
 #include "io/volume_reader.hpp"
 #include "scene/sample_source.hpp"
+#include "system/scratch_file.hpp"
 
 namespace tessera::io {
 

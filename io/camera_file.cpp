@@ -5,11 +5,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "io/atomic_file.hpp"
 #include "io/camera_words.hpp"
 #include "io/json_text.hpp"
 #include "io/text_file.hpp"
 #include "scene/error.hpp"
+#include "system/atomic_file.hpp"
 
 namespace tessera::io {
 namespace {

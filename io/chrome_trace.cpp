@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "io/atomic_file.hpp"
+#include "system/atomic_file.hpp"
 
 namespace tessera::io {
 namespace {

@@ -6,7 +6,7 @@
 #include <exception>
 #include <string>
 
-#include "io/atomic_file.hpp"
+#include "system/atomic_file.hpp"
 
 namespace tessera::io {
 

@@ -6,9 +6,9 @@
 #include <array>
 
 #include "io/file_beginnings.hpp"
-#include "io/gzip.hpp"
 #include "io/input_file.hpp"
 #include "scene/error.hpp"
+#include "system/gzip.hpp"
 
 namespace tessera::io {
 namespace {

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include "io/positional_file.hpp"
 #include "scene/sample_source.hpp"
+#include "system/positional_file.hpp"
 
 namespace tessera::io {
 

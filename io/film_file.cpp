@@ -20,13 +20,13 @@
 #include <utility>
 #include <vector>
 
-#include "io/atomic_file.hpp"
-#include "io/descriptor.hpp"
 #include "io/display_rows.hpp"
-#include "io/spawn_plan.hpp"
-#include "io/unfinished.hpp"
 #include "scene/error.hpp"
 #include "scene/image.hpp"
+#include "system/atomic_file.hpp"
+#include "system/descriptor.hpp"
+#include "system/spawn_plan.hpp"
+#include "system/unfinished.hpp"
 
 namespace tessera {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "io/block_choice.hpp"
 #include "io/foreign_file.hpp"
-#include "io/large_vector.hpp"
 #include "scene/error.hpp"
+#include "system/large_vector.hpp"
 
 namespace tessera::io {
 namespace {

@@ -8,7 +8,6 @@
 #include "io/file_beginnings.hpp"
 #include "io/file_kinds.hpp"
 #include "io/foreign_mixed.hpp"
-#include "io/gzip.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/listed_pieces.hpp"
@@ -19,6 +18,7 @@
 #include "io/text_file.hpp"
 #include "io/vtk_xml_file.hpp"
 #include "scene/error.hpp"
+#include "system/gzip.hpp"
 
 namespace tessera::io {
 namespace {

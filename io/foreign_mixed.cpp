@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "io/foreign_grids.hpp"
-#include "io/gzip.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
+#include "system/gzip.hpp"
 
 namespace tessera::io {
 namespace {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "io/descriptor.hpp"
+#include "system/descriptor.hpp"
 
 namespace tessera::io {
 

@@ -22,12 +22,12 @@
 #include <string_view>
 #include <utility>
 
-#include "io/files_read.hpp"
-#include "io/idle_watch.hpp"
 #include "io/input_file.hpp"
-#include "io/spawn_plan.hpp"
-#include "io/unfinished.hpp"
 #include "scene/error.hpp"
+#include "system/files_read.hpp"
+#include "system/idle_watch.hpp"
+#include "system/spawn_plan.hpp"
+#include "system/unfinished.hpp"
 
 namespace tessera::io {
 namespace {

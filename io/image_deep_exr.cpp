@@ -16,9 +16,9 @@
 #include <utility>
 #include <vector>
 
-#include "io/atomic_file.hpp"
 #include "io/exr_stream.hpp"
 #include "scene/error.hpp"
+#include "system/atomic_file.hpp"
 
 namespace tessera::io {
 namespace {

@@ -19,11 +19,11 @@
 #include <utility>
 #include <vector>
 
-#include "io/atomic_file.hpp"
 #include "io/exr_stream.hpp"
 #include "io/image_formats.hpp"
 #include "scene/error.hpp"
 #include "scene/threads.hpp"
+#include "system/atomic_file.hpp"
 
 namespace tessera::io {
 namespace {

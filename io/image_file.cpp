@@ -7,10 +7,10 @@
 #include <new>
 #include <string>
 
-#include "io/atomic_file.hpp"
 #include "io/image_formats.hpp"
-#include "io/missing_file.hpp"
 #include "scene/error.hpp"
+#include "system/atomic_file.hpp"
+#include "system/missing_file.hpp"
 
 namespace tessera::io {
 namespace {

@@ -9,10 +9,10 @@
 #include <cstdlib>
 #include <vector>
 
-#include "io/atomic_file.hpp"
 #include "io/display_rows.hpp"
 #include "io/image_formats.hpp"
 #include "scene/error.hpp"
+#include "system/atomic_file.hpp"
 
 namespace tessera::io {
 namespace {

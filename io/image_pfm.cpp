@@ -7,10 +7,10 @@
 #include <fstream>
 #include <vector>
 
-#include "io/atomic_file.hpp"
 #include "io/image_formats.hpp"
 #include "io/text_file.hpp"
 #include "scene/error.hpp"
+#include "system/atomic_file.hpp"
 
 namespace tessera::io {
 

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "io/atomic_file.hpp"
 #include "io/display_rows.hpp"
 #include "io/image_formats.hpp"
 #include "io/picture_strips.hpp"
 #include "scene/error.hpp"
+#include "system/atomic_file.hpp"
 
 namespace tessera::io {
 namespace {

@@ -10,9 +10,9 @@
 #include <new>
 #include <string_view>
 
-#include "io/free_memory.hpp"
 #include "io/input_file.hpp"
-#include "io/positional_file.hpp"
+#include "system/free_memory.hpp"
+#include "system/positional_file.hpp"
 
 namespace tessera::io {
 

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <string>
 
-#include "io/descriptor.hpp"
-#include "io/gzip.hpp"
 #include "scene/error.hpp"
+#include "system/descriptor.hpp"
+#include "system/gzip.hpp"
 
 namespace tessera::io {
 

@@ -6,10 +6,10 @@
 #include <system_error>
 
 #include "io/file_beginnings.hpp"
-#include "io/files_read.hpp"
-#include "io/missing_file.hpp"
-#include "io/regular_file.hpp"
 #include "scene/error.hpp"
+#include "system/files_read.hpp"
+#include "system/missing_file.hpp"
+#include "system/regular_file.hpp"
 
 namespace tessera::io {
 namespace {

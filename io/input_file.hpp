@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "io/regular_file.hpp"
+#include "system/regular_file.hpp"
 
 namespace tessera::io {
 

@@ -12,9 +12,9 @@
 #include "io/mesh_selection.hpp"
 #include "io/mesh_shares.hpp"
 #include "io/part_range.hpp"
-#include "io/positional_file.hpp"
 #include "io/tets_file.hpp"
 #include "io/warp.hpp"
+#include "system/positional_file.hpp"
 
 namespace tessera::io {
 namespace {

@@ -9,7 +9,6 @@
 #include "io/axis_scale.hpp"
 #include "io/clean_errors.hpp"
 #include "io/file_kinds.hpp"
-#include "io/gzip.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/medit_file.hpp"
@@ -22,6 +21,7 @@
 #include "io/warp.hpp"
 #include "io/whole_file.hpp"
 #include "scene/error.hpp"
+#include "system/gzip.hpp"
 
 namespace tessera::io {
 namespace {

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <limits>
 
-#include "io/atomic_file.hpp"
 #include "io/mesh_reader.hpp"
 #include "scene/error.hpp"
+#include "system/atomic_file.hpp"
 
 namespace tessera::io {
 namespace {

@@ -9,10 +9,10 @@
 #include <cstring>
 #include <glm/geometric.hpp>
 
-#include "io/gzip.hpp"
 #include "io/input_file.hpp"
 #include "io/volume_formats.hpp"
 #include "scene/time_step_read.hpp"
+#include "system/gzip.hpp"
 
 namespace tessera::io {
 namespace {

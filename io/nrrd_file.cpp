@@ -10,9 +10,9 @@
 #include "io/header_text.hpp"
 #include "io/input_file.hpp"
 #include "io/nrrd_axes.hpp"
-#include "io/positional_file.hpp"
 #include "io/text_file.hpp"
 #include "io/volume_formats.hpp"
+#include "system/positional_file.hpp"
 
 namespace tessera::io {
 namespace {

@@ -16,11 +16,11 @@
 
 #include "io/foreign_geometry.hpp"
 #include "io/input_file.hpp"
-#include "io/positional_file.hpp"
 #include "io/volume_formats.hpp"
 #include "io/vtk_array.hpp"
 #include "io/vtk_xml_grid.hpp"
 #include "io/xml_elements.hpp"
+#include "system/positional_file.hpp"
 
 namespace tessera::io {
 namespace {

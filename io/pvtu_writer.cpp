@@ -5,9 +5,9 @@
 
 #include <system_error>
 
-#include "io/atomic_file.hpp"
 #include "io/mesh_reader.hpp"
 #include "scene/error.hpp"
+#include "system/atomic_file.hpp"
 
 namespace tessera::io {
 namespace {

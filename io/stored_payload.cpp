@@ -6,11 +6,11 @@
 #include <cstring>
 #include <vector>
 
-#include "io/gzip.hpp"
 #include "io/input_file.hpp"
-#include "io/positional_file.hpp"
 #include "io/stored_samples.hpp"
 #include "io/whole_file.hpp"
+#include "system/gzip.hpp"
+#include "system/positional_file.hpp"
 
 namespace tessera::io {
 namespace {

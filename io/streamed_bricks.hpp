@@ -5,9 +5,9 @@
 #include <memory>
 #include <string>
 
-#include "io/byte_sink.hpp"
-#include "io/scratch_file.hpp"
 #include "scene/sample_source.hpp"
+#include "system/byte_sink.hpp"
+#include "system/scratch_file.hpp"
 
 namespace tessera::io {
 

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "io/foreign_surfaces.hpp"
-#include "io/free_memory.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/mesh_formats.hpp"
@@ -15,6 +14,7 @@
 #include "io/triangle_file.hpp"
 #include "io/whole_file.hpp"
 #include "scene/error.hpp"
+#include "system/free_memory.hpp"
 
 namespace tessera::io {
 namespace {

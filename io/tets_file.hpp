@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "io/positional_file.hpp"
 #include "scene/tet_mesh.hpp"
+#include "system/positional_file.hpp"
 
 namespace tessera::io {
 

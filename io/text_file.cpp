@@ -7,9 +7,9 @@
 #include <cmath>
 #include <fstream>
 
-#include "io/files_read.hpp"
-#include "io/missing_file.hpp"
 #include "scene/error.hpp"
+#include "system/files_read.hpp"
+#include "system/missing_file.hpp"
 
 namespace tessera::io {
 namespace {

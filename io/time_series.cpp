@@ -7,13 +7,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "io/files_read.hpp"
 #include "io/input_file.hpp"
 #include "io/json_text.hpp"
 #include "io/text_file.hpp"
 #include "io/vtk_field_words.hpp"
 #include "io/xml_elements.hpp"
 #include "scene/error.hpp"
+#include "system/files_read.hpp"
 
 namespace tessera::io {
 namespace {

@@ -12,9 +12,9 @@
 #include "colormaps/presets.hpp"
 #include "io/json_text.hpp"
 #include "io/json_transfer_function.hpp"
-#include "io/missing_file.hpp"
 #include "io/text_file.hpp"
 #include "scene/error.hpp"
+#include "system/missing_file.hpp"
 #include "tessera/nearest_name.hpp"
 
 namespace tessera::io {

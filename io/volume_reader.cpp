@@ -12,13 +12,13 @@
 #include "io/field_choice.hpp"
 #include "io/file_kinds.hpp"
 #include "io/file_source.hpp"
-#include "io/gzip.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/stored_payload.hpp"
 #include "io/stored_samples.hpp"
 #include "io/volume_formats.hpp"
 #include "io/vtk_field_words.hpp"
+#include "system/gzip.hpp"
 
 namespace tessera::io {
 namespace {

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "io/mesh_options.hpp"
-#include "io/scratch_file.hpp"
 #include "io/volume_tags.hpp"
 #include "scene/sample_source.hpp"
 #include "scene/time_step_read.hpp"
+#include "system/scratch_file.hpp"
 #include "tessera/default_view.hpp"
 
 namespace tessera::io {

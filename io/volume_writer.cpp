@@ -7,11 +7,11 @@
 #include <array>
 #include <cstring>
 
-#include "io/atomic_file.hpp"
 #include "io/brick_file.hpp"
 #include "io/input_file.hpp"
 #include "io/xml_elements.hpp"
 #include "scene/error.hpp"
+#include "system/atomic_file.hpp"
 
 namespace tessera::io {
 namespace {

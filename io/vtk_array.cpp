@@ -11,8 +11,8 @@
 #include <memory>
 #include <optional>
 
-#include "io/positional_file.hpp"
 #include "scene/error.hpp"
+#include "system/positional_file.hpp"
 
 namespace tessera::io {
 namespace {

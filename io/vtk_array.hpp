@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "io/base64_text.hpp"
-#include "io/byte_sink.hpp"
 #include "io/vtk_codec.hpp"
+#include "system/byte_sink.hpp"
 
 namespace tessera::io {
 

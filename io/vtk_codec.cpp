@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "io/gzip.hpp"
+#include "system/gzip.hpp"
 
 namespace tessera::io {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "io/positional_file.hpp"
+#include "system/positional_file.hpp"
 
 namespace tessera::io {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "io/array_source.hpp"
-#include "io/byte_sink.hpp"
+#include "system/byte_sink.hpp"
 #include "tessera/read_progress.hpp"
 
 namespace tessera::io {

@@ -9,9 +9,9 @@
 #include <new>
 #include <string_view>
 
-#include "io/positional_file.hpp"
 #include "io/xml_elements.hpp"
 #include "scene/error.hpp"
+#include "system/positional_file.hpp"
 
 namespace tessera::io {
 namespace {

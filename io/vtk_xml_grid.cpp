@@ -9,9 +9,9 @@
 #include <string_view>
 #include <utility>
 
-#include "io/positional_file.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
+#include "system/positional_file.hpp"
 
 namespace tessera::io {
 namespace {

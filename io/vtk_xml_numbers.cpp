@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cstring>
 
-#include "io/large_vector.hpp"
-#include "io/positional_file.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
+#include "system/large_vector.hpp"
+#include "system/positional_file.hpp"
 
 namespace tessera::io {
 namespace {

@@ -9,9 +9,9 @@
 #include <variant>
 #include <vector>
 
-#include "io/byte_sink.hpp"
 #include "io/vtk_text_numbers.hpp"
 #include "io/vtk_xml_grid.hpp"
+#include "system/byte_sink.hpp"
 
 namespace tessera::io {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "io/positional_file.hpp"
 #include "io/vtk_xml_arrays.hpp"
 #include "io/vtk_xml_grid.hpp"
 #include "io/vtk_xml_numbers.hpp"
+#include "system/positional_file.hpp"
 
 namespace tessera::io {
 

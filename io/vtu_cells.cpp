@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "io/large_vector.hpp"
 #include "io/node_orders.hpp"
 #include "io/vtk_xml_numbers.hpp"
 #include "io/vtu_faces.hpp"
 #include "scene/error.hpp"
+#include "system/large_vector.hpp"
 
 namespace tessera::io {
 namespace {

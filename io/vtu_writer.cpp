@@ -9,9 +9,9 @@
 #include <new>
 #include <vector>
 
-#include "io/atomic_file.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/xml_elements.hpp"
+#include "system/atomic_file.hpp"
 
 namespace tessera::io {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
-#include "io/positional_file.hpp"
+#include "system/positional_file.hpp"
 
 namespace tessera::io {
 

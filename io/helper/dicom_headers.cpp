@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "io/descriptor.hpp"
+#include "system/descriptor.hpp"
 
 namespace tessera::io::helper {
 namespace {

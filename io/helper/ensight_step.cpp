@@ -12,9 +12,9 @@
 #include <system_error>
 #include <utility>
 
-#include "io/descriptor.hpp"
 #include "io/input_file.hpp"
 #include "io/whole_file.hpp"
+#include "system/descriptor.hpp"
 
 namespace tessera::io::helper {
 namespace {

@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "io/descriptor.hpp"
 #include "io/helper/ensight_case.hpp"
+#include "system/descriptor.hpp"
 
 namespace tessera::io::helper {
 

@@ -12,7 +12,6 @@
 #include <optional>
 #include <string_view>
 
-#include "io/descriptor.hpp"
 #include "io/helper/gmsh_blocks.hpp"
 #include "io/helper/gmsh_view_names.hpp"
 #include "io/helper/readers.hpp"
@@ -20,6 +19,7 @@
 #include "io/input_file.hpp"
 #include "io/whole_file.hpp"
 #include "scene/error.hpp"
+#include "system/descriptor.hpp"
 
 namespace tessera::io::helper {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "io/descriptor.hpp"
+#include "system/descriptor.hpp"
 
 namespace tessera::io::helper {
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "io/descriptor.hpp"
+#include "system/descriptor.hpp"
 
 class vtkDataObject;
 

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "io/block_choice.hpp"
-#include "io/gzip.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/time_steps.hpp"
 #include "io/helper/vtk_parts.hpp"
@@ -23,6 +22,7 @@
 #include "io/mesh_blocks.hpp"
 #include "io/part_range.hpp"
 #include "scene/error.hpp"
+#include "system/gzip.hpp"
 
 namespace tessera::io::helper {
 namespace {

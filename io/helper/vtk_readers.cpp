@@ -35,9 +35,9 @@
 #include "io/helper/vtk_words.hpp"
 #include "io/input_file.hpp"
 #include "io/node_orders.hpp"
-#include "io/positional_file.hpp"
 #include "io/vtk_xml_elements.hpp"
 #include "scene/error.hpp"
+#include "system/positional_file.hpp"
 
 namespace tessera::io::helper {
 namespace {

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "apps/program.hpp"
-#include "io/free_memory.hpp"
 #include "support/some_cases.hpp"
+#include "system/free_memory.hpp"
 
 namespace tessera::apps {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/atomic_file.hpp"
+#include "system/atomic_file.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include <cstring>
 
 #include "io/image_file.hpp"
-#include "io/unfinished.hpp"
+#include "system/unfinished.hpp"
 #include "temporary_folder.hpp"
 
 namespace tessera::io {

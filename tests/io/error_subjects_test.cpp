@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "io/atomic_file.hpp"
 #include "io/camera_file.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/transfer_function_file.hpp"
 #include "io/volume_reader.hpp"
+#include "system/atomic_file.hpp"
 
 namespace tessera::io {
 namespace {

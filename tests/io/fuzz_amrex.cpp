@@ -5,6 +5,7 @@
 
 #include "fuzz_check.hpp"
 #include "io/amrex_header.hpp"
+#include "io/file_beginnings.hpp"
 
 namespace {
 

@@ -14,17 +14,17 @@
 #include "io/amr_files.hpp"
 #include "io/amrex_file.hpp"
 #include "io/foam_case.hpp"
-#include "io/idle_watch.hpp"
 #include "io/input_file.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
-#include "io/positional_file.hpp"
 #include "io/reader_programs.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/tets_file.hpp"
 #include "io/time_series.hpp"
 #include "io/volume_reader.hpp"
 #include "io/whole_file.hpp"
+#include "system/idle_watch.hpp"
+#include "system/positional_file.hpp"
 
 namespace tessera::io {
 namespace {

@@ -1,5 +1,5 @@
 // Samples that wait in files: where they lie, or in a file that others read too.
-#include "io/scratch_file.hpp"
+#include "system/scratch_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -1,4 +1,4 @@
-#include "io/regular_file.hpp"
+#include "system/regular_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -10,8 +10,8 @@
 #include <cerrno>
 #include <system_error>
 
-#include "io/missing_file.hpp"
 #include "scene/error.hpp"
+#include "system/missing_file.hpp"
 
 namespace tessera::io {
 namespace {

@@ -1,8 +1,8 @@
-#include "io/spawn_plan.hpp"
+#include "system/spawn_plan.hpp"
 
 #include <csignal>
 
-#include "io/unfinished.hpp"
+#include "system/unfinished.hpp"
 
 namespace tessera::io {
 

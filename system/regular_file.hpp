@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "io/descriptor.hpp"
+#include "system/descriptor.hpp"
 
 namespace tessera::io {
 

@@ -1,4 +1,4 @@
-#include "io/idle_watch.hpp"
+#include "system/idle_watch.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "io/scratch_file.hpp"
+#include "system/scratch_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "io/files_read.hpp"
+#include "system/files_read.hpp"
 
 #include <sys/stat.h>
 

@@ -1,4 +1,4 @@
-#include "io/gzip.hpp"
+#include "system/gzip.hpp"
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "io/descriptor.hpp"
-#include "io/positional_file.hpp"
 #include "scene/error.hpp"
+#include "system/descriptor.hpp"
+#include "system/positional_file.hpp"
 
 namespace tessera::io {
 namespace {

@@ -11,7 +11,7 @@
 namespace tessera::io {
 
 /// How a program is to be started: its descriptors, `files`, are the caller's to plan. All its signals are at their
-/// defaults, and it is abandoned with this process's outputs (io/unfinished.hpp).
+/// defaults, and it is abandoned with this process's outputs (system/unfinished.hpp).
 class SpawnPlan {
  public:
   /// Signals that it is deaf to.

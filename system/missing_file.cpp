@@ -1,4 +1,4 @@
-#include "io/missing_file.hpp"
+#include "system/missing_file.hpp"
 
 #include <fmt/format.h>
 

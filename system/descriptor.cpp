@@ -1,4 +1,4 @@
-#include "io/descriptor.hpp"
+#include "system/descriptor.hpp"
 
 #include <sys/types.h>
 #include <unistd.h>

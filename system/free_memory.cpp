@@ -1,4 +1,4 @@
-#include "io/free_memory.hpp"
+#include "system/free_memory.hpp"
 
 #include <algorithm>
 #include <fstream>

@@ -1,4 +1,4 @@
-#include "io/positional_file.hpp"
+#include "system/positional_file.hpp"
 
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -9,9 +9,9 @@
 #include <system_error>
 #include <utility>
 
-#include "io/files_read.hpp"
-#include "io/regular_file.hpp"
 #include "scene/error.hpp"
+#include "system/files_read.hpp"
+#include "system/regular_file.hpp"
 
 namespace tessera::io {
 

@@ -1,4 +1,4 @@
-#include "io/unfinished.hpp"
+#include "system/unfinished.hpp"
 
 #include <unistd.h>
 

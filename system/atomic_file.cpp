@@ -1,4 +1,4 @@
-#include "io/atomic_file.hpp"
+#include "system/atomic_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <system_error>
 
-#include "io/unfinished.hpp"
+#include "system/unfinished.hpp"
 
 namespace tessera {
 namespace {
