@@ -79,7 +79,7 @@ enum class MessageKind : std::uint16_t {
   column_costs = 34,     ///< the same, a list of u64 for each map row that was asked for
   seconds = 35,          ///< f64 processor time of the last frame
   of_job = 36,           ///< list of bytes: the caller's own (tessera/job.hpp)
-  higher_order = 37,     ///< u64[128]: tets by how far they are off (io/higher_order_plan.hpp)
+  higher_order = 37,     ///< u64[128]: tets by how far they are off (cells/curved/higher_order_plan.hpp)
   process_on_host = 38,  ///< exchange/one_line.cpp
   arguments = 58,        ///< list of bytes: what the sender was started with (first_contact.cpp)
   field_samples = 39,    ///< list of scene::FieldSample: of a rank's part (frame/field_samples.cpp)

@@ -7,9 +7,9 @@
 #include <cstring>
 #include <type_traits>
 
-#include "io/cell_block.hpp"
-#include "io/duplicate_cells.hpp"
-#include "io/mesh_assembly.hpp"
+#include "cells/cell_block.hpp"
+#include "cells/duplicate_cells.hpp"
+#include "cells/mesh_assembly.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::frame {

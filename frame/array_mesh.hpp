@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "io/mesh_assembly.hpp"
+#include "cells/mesh_assembly.hpp"
 #include "io/mesh_reader.hpp"
 #include "scene/tet_mesh.hpp"
 #include "tessera/dataset.hpp"

@@ -5,10 +5,10 @@
 #include <numeric>
 #include <vector>
 
+#include "cells/curved/higher_order_plan.hpp"
+#include "cells/duplicate_cells.hpp"
 #include "exchange/collectives.hpp"
 #include "frame/shared_repetitions.hpp"
-#include "io/duplicate_cells.hpp"
-#include "io/higher_order_plan.hpp"
 
 namespace tessera::frame {
 namespace {

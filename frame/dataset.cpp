@@ -8,6 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include "cells/axis_scale.hpp"
+#include "cells/mesh_assembly.hpp"
 #include "colormaps/presets.hpp"
 #include "exchange/collectives.hpp"
 #include "exchange/message.hpp"
@@ -26,9 +28,7 @@
 #include "frame/shared_volume.hpp"
 #include "frame/transfer_function_choice.hpp"
 #include "frame/uncut_mesh.hpp"
-#include "io/axis_scale.hpp"
 #include "io/foreign_data.hpp"
-#include "io/mesh_assembly.hpp"
 #include "io/volume_reader.hpp"
 #include "io/vtk_field_words.hpp"
 #include "scene/error.hpp"

@@ -5,15 +5,15 @@
 #include <numeric>
 #include <utility>
 
+#include "cells/block_choice.hpp"
+#include "cells/mesh_selection.hpp"
 #include "exchange/collectives.hpp"
 #include "frame/field_message.hpp"
 #include "frame/mesh_input.hpp"
 #include "frame/reduce.hpp"
 #include "frame/render.hpp"
 #include "frame/shared_repetitions.hpp"
-#include "io/block_choice.hpp"
 #include "io/mesh_parts.hpp"
-#include "io/mesh_selection.hpp"
 
 namespace tessera::frame {
 namespace {

@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "io/field_choice.hpp"
+#include "cells/field_choice.hpp"
 #include "system/free_memory.hpp"
 #include "tessera/error.hpp"
 #include "tessera/image_file.hpp"

@@ -12,6 +12,7 @@
 #include <unordered_set>
 
 #include "frame/box_tree.hpp"
+#include "scene/position_order.hpp"
 
 namespace tessera::frame {
 namespace {
@@ -180,10 +181,7 @@ class Check {
     result_.points = order.size();
     const auto less = [&](std::uint32_t a, std::uint32_t b) {
       const glm::dvec3 &p = mesh_.positions[a], &q = mesh_.positions[b];
-      if (p.x != q.x) return p.x < q.x;
-      if (p.y != q.y) return p.y < q.y;
-      if (p.z != q.z) return p.z < q.z;
-      return a < b;
+      return p != q ? scene::is_before(p, q) : a < b;
     };
     std::sort(order.begin(), order.end(), less);
     name_.assign(mesh_.positions.size(), none);

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "cells/mesh_selection.hpp"
 #include "exchange/transport.hpp"
 #include "frame/communicator.hpp"
 #include "frame/dataset.hpp"
@@ -11,7 +12,6 @@
 #include "frame/mesh_input.hpp"
 #include "frame/reduce.hpp"
 #include "frame/uncut_mesh.hpp"
-#include "io/mesh_selection.hpp"
 #include "scene/error.hpp"
 
 namespace tessera {

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "cells/duplicate_cells.hpp"
 #include "exchange/message.hpp"
-#include "io/duplicate_cells.hpp"
 
 namespace tessera::frame {
 

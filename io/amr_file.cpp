@@ -7,12 +7,12 @@
 #include <optional>
 #include <string_view>
 
-#include "io/amr_leaves.hpp"
+#include "cells/amr/amr_leaves.hpp"
+#include "cells/amr/amr_values.hpp"
+#include "cells/field_choice.hpp"
 #include "io/amr_opened.hpp"
-#include "io/amr_values.hpp"
 #include "io/amrex_file.hpp"
 #include "io/clean_errors.hpp"
-#include "io/field_choice.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/reader_programs.hpp"
 #include "scene/error.hpp"

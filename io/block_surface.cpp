@@ -8,11 +8,11 @@
 #include <iterator>
 #include <optional>
 
-#include "io/cell_split.hpp"
+#include "cells/cell_split.hpp"
+#include "cells/field_choice.hpp"
+#include "cells/polygon_triangles.hpp"
 #include "io/clean_errors.hpp"
-#include "io/field_choice.hpp"
 #include "io/mesh_formats.hpp"
-#include "io/polygon_triangles.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cells/field_choice.hpp"
 #include "io/brick_layout.hpp"
-#include "io/field_choice.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/json_text.hpp"

@@ -6,7 +6,7 @@
 #include <limits>
 #include <mutex>
 
-#include "io/block_choice.hpp"
+#include "cells/block_choice.hpp"
 #include "io/foreign_file.hpp"
 #include "scene/error.hpp"
 #include "system/large_vector.hpp"

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "io/cell_block.hpp"
-#include "io/tuple_length.hpp"
+#include "cells/cell_block.hpp"
+#include "cells/tuple_length.hpp"
 
 namespace tessera::io {
 namespace {

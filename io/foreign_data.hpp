@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "io/number_tally.hpp"
+#include "cells/number_tally.hpp"
 #include "scene/grid.hpp"
 #include "scene/time_step_read.hpp"
 #include "tessera/array.hpp"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "cells/cell_block.hpp"
 #include "io/array_source.hpp"
-#include "io/cell_block.hpp"
 #include "io/foreign_data.hpp"
 #include "io/helper_process.hpp"
 

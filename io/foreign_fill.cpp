@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 
+#include "cells/surface.hpp"
 #include "io/foreign_numbers.hpp"
-#include "io/surface.hpp"
 #include "io/surface_message.hpp"
 
 namespace tessera::io {

@@ -8,8 +8,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "cells/field_choice.hpp"
 #include "io/brick_file.hpp"
-#include "io/field_choice.hpp"
 #include "io/foreign_geometry.hpp"
 #include "io/input_file.hpp"
 #include "io/volume_formats.hpp"

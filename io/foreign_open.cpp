@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "io/block_choice.hpp"
+#include "cells/block_choice.hpp"
 #include "io/foreign_file.hpp"
 #include "scene/error.hpp"
 

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "io/block_choice.hpp"
+#include "cells/block_choice.hpp"
 #include "io/file_beginnings.hpp"
 #include "io/foreign_file.hpp"
 #include "io/inflated_file.hpp"

@@ -10,7 +10,7 @@
 #include <limits>
 #include <utility>
 
-#include "io/block_groups.hpp"
+#include "cells/block_groups.hpp"
 #include "io/clean_errors.hpp"
 #include "scene/error.hpp"
 

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "io/block_choice.hpp"
-#include "io/cell_block.hpp"
+#include "cells/block_choice.hpp"
+#include "cells/cell_block.hpp"
+#include "cells/mesh_blocks.hpp"
+#include "cells/mesh_options.hpp"
 #include "io/file_kinds.hpp"
-#include "io/mesh_blocks.hpp"
-#include "io/mesh_options.hpp"
 #include "tessera/read_progress.hpp"
 
 namespace tessera::io {
@@ -31,7 +31,7 @@ MeshBlocks blocks_of_tets(scene::TetMesh mesh);
 MeshBlocks read_vtk_legacy(const std::filesystem::path& file, const MeshOptions& options);
 
 /// Exodus II: all element blocks, nodal and element variables at one time step (default the last). Nodes are where
-/// they began (io/warp.hpp). Variables NAME_x NAME_y NAME_z become one vector NAME.
+/// they began (cells/warp.hpp). Variables NAME_x NAME_y NAME_z become one vector NAME.
 MeshBlocks read_exodus(const std::filesystem::path& file, const MeshOptions& options);
 
 /// A file of a solver, by the name of a reader in helper/vtk_main.cpp: all blocks, all arrays, one time step, by

@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <bit>
 
-#include "io/axis_scale.hpp"
+#include "cells/axis_scale.hpp"
+#include "cells/mesh_assembly.hpp"
+#include "cells/mesh_selection.hpp"
+#include "cells/part_range.hpp"
+#include "cells/warp.hpp"
 #include "io/clean_errors.hpp"
 #include "io/input_file.hpp"
 #include "io/listed_pieces.hpp"
-#include "io/mesh_assembly.hpp"
 #include "io/mesh_formats.hpp"
-#include "io/mesh_selection.hpp"
 #include "io/mesh_shares.hpp"
-#include "io/part_range.hpp"
 #include "io/tets_file.hpp"
-#include "io/warp.hpp"
 #include "system/positional_file.hpp"
 
 namespace tessera::io {

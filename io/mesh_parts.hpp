@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "io/field_choice.hpp"
-#include "io/higher_order_plan.hpp"
+#include "cells/curved/higher_order_plan.hpp"
+#include "cells/field_choice.hpp"
 #include "io/mesh_reader.hpp"
 #include "scene/time_step_read.hpp"
 
@@ -26,7 +26,7 @@
 ///     MeshFile whole = joined(own.summary of all parts, in part order, ...)
 ///
 /// The tets of all parts, one part after the other, are those that read_mesh gives, in its order; `joined` gives
-/// read_mesh's counts, fields and notes, if each key (io/duplicate_cells.hpp) is looked at by one part alone.
+/// read_mesh's counts, fields and notes, if each key (cells/duplicate_cells.hpp) is looked at by one part alone.
 namespace tessera::io {
 
 /// Whether the file can be read in parts: .pvtu, whose pieces are divided over the parts, VTK's lists of blocks (.vtm

@@ -6,19 +6,19 @@
 #include <array>
 #include <memory>
 
-#include "io/axis_scale.hpp"
+#include "cells/axis_scale.hpp"
+#include "cells/mesh_assembly.hpp"
+#include "cells/warp.hpp"
 #include "io/clean_errors.hpp"
 #include "io/file_kinds.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/medit_file.hpp"
-#include "io/mesh_assembly.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/nastran_file.hpp"
 #include "io/su2_file.hpp"
 #include "io/tecplot_file.hpp"
 #include "io/tets_file.hpp"
-#include "io/warp.hpp"
 #include "io/whole_file.hpp"
 #include "scene/error.hpp"
 #include "system/gzip.hpp"

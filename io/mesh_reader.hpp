@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <span>
 
-#include "io/mesh_blocks.hpp"
-#include "io/mesh_options.hpp"
+#include "cells/mesh_blocks.hpp"
+#include "cells/mesh_options.hpp"
 #include "scene/tet_mesh.hpp"
 
 namespace tessera::io {

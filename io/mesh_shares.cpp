@@ -9,10 +9,10 @@
 #include <optional>
 #include <string_view>
 
+#include "cells/part_range.hpp"
 #include "io/foreign_file.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
-#include "io/part_range.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {

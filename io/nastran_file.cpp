@@ -9,10 +9,10 @@
 #include <span>
 #include <utility>
 
-#include "io/block_groups.hpp"
+#include "cells/block_groups.hpp"
+#include "cells/curved/node_orders.hpp"
 #include "io/nastran_deck.hpp"
 #include "io/nastran_systems.hpp"
-#include "io/node_orders.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/surface.hpp"
+#include "cells/surface.hpp"
 
 namespace tessera::io {
 

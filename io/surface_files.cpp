@@ -4,12 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "cells/surface.hpp"
 #include "io/foreign_surfaces.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/ply_file.hpp"
-#include "io/surface.hpp"
 #include "io/tetgen_files.hpp"
 #include "io/triangle_file.hpp"
 #include "io/whole_file.hpp"

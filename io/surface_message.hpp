@@ -2,7 +2,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "io/surface.hpp"
+#include "cells/surface.hpp"
 
 namespace tessera::io {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/cell_block.hpp"
+#include "cells/cell_block.hpp"
 #include "scene/time_step_read.hpp"
 
 namespace tessera::io {

@@ -9,7 +9,7 @@
 #include <span>
 #include <system_error>
 
-#include "io/node_orders.hpp"
+#include "cells/curved/node_orders.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {

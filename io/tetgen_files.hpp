@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "io/cell_block.hpp"
-#include "io/surface.hpp"
+#include "cells/cell_block.hpp"
+#include "cells/surface.hpp"
 
 namespace tessera::io {
 

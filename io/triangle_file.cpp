@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "cells/polygon_triangles.hpp"
 #include "io/input_file.hpp"
-#include "io/polygon_triangles.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {

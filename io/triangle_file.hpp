@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "cells/surface.hpp"
 #include "io/file_kinds.hpp"
-#include "io/surface.hpp"
 #include "tessera/surfaces.hpp"
 
 namespace tessera::io {

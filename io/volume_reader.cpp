@@ -7,9 +7,9 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "cells/field_choice.hpp"
 #include "io/brick_file.hpp"
 #include "io/clean_errors.hpp"
-#include "io/field_choice.hpp"
 #include "io/file_kinds.hpp"
 #include "io/file_source.hpp"
 #include "io/inflated_file.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh_options.hpp"
+#include "cells/mesh_options.hpp"
 #include "io/volume_tags.hpp"
 #include "scene/sample_source.hpp"
 #include "scene/time_step_read.hpp"

@@ -6,7 +6,7 @@
 #include <array>
 #include <utility>
 
-#include "io/cell_block.hpp"
+#include "cells/cell_block.hpp"
 
 namespace tessera::io {
 namespace {

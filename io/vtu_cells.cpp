@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/node_orders.hpp"
+#include "cells/curved/node_orders.hpp"
 #include "io/vtk_xml_numbers.hpp"
 #include "io/vtu_faces.hpp"
 #include "scene/error.hpp"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "io/cell_block.hpp"
+#include "cells/cell_block.hpp"
 #include "io/vtk_xml_numbers.hpp"
 #include "scene/error.hpp"
 

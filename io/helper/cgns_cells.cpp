@@ -11,7 +11,7 @@
 #include <span>
 #include <utility>
 
-#include "io/node_orders.hpp"
+#include "cells/curved/node_orders.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {

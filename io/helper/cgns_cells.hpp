@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/cell_block.hpp"
+#include "cells/cell_block.hpp"
 #include "io/helper/cgns_library.hpp"
 
 namespace tessera::io::helper {

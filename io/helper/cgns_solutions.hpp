@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/cell_block.hpp"
+#include "cells/cell_block.hpp"
 #include "io/helper/cgns_cells.hpp"
 
 namespace tessera::io::helper {

@@ -15,10 +15,10 @@
 #include <utility>
 #include <vector>
 
+#include "cells/part_range.hpp"
 #include "io/helper/cgns_zones.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/serve.hpp"
-#include "io/part_range.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {

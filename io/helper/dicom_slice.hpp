@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "cells/number_tally.hpp"
 #include "io/foreign_data.hpp"
 #include "io/helper/dicom_elements.hpp"
-#include "io/number_tally.hpp"
 
 namespace tessera::io::helper {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <string>
 
-#include "io/cell_block.hpp"
-#include "io/node_orders.hpp"
+#include "cells/cell_block.hpp"
+#include "cells/curved/node_orders.hpp"
 
 namespace tessera::io::helper {
 

@@ -12,7 +12,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "io/block_choice.hpp"
+#include "cells/block_choice.hpp"
+#include "cells/mesh_blocks.hpp"
+#include "cells/tuple_length.hpp"
 #include "io/helper/exodus_elements.hpp"
 #include "io/helper/exodus_faces.hpp"
 #include "io/helper/exodus_sets.hpp"
@@ -20,8 +22,6 @@
 #include "io/helper/readers.hpp"
 #include "io/helper/serve.hpp"
 #include "io/input_file.hpp"
-#include "io/mesh_blocks.hpp"
-#include "io/tuple_length.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {

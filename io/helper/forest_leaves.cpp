@@ -9,7 +9,7 @@
 namespace tessera::io::helper {
 namespace {
 
-/// Of the deepest cells along an axis: what the library's lattice holds (io/amr_leaves.cpp).
+/// Of the deepest cells along an axis: what the library's lattice holds (cells/amr/amr_leaves.cpp).
 constexpr std::int64_t most_cells = 1 << 29;
 
 constexpr const char* remedy = "it is damaged, write it anew";

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "io/block_choice.hpp"
-#include "io/cell_block.hpp"
+#include "cells/block_choice.hpp"
+#include "cells/cell_block.hpp"
 #include "io/helper/gmsh_views.hpp"
 
 namespace tessera::io::helper {

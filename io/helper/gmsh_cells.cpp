@@ -6,7 +6,7 @@
 #include <numeric>
 #include <optional>
 
-#include "io/curved_lattice.hpp"
+#include "cells/curved/curved_lattice.hpp"
 
 namespace tessera::io::helper {
 namespace {

@@ -8,10 +8,10 @@
 #include <span>
 #include <tuple>
 
+#include "cells/mix_bits.hpp"
 #include "io/helper/gmsh_tags.hpp"
 #include "io/helper/gmsh_types.hpp"
 #include "io/helper/gmsh_views.hpp"
-#include "io/mix_bits.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {

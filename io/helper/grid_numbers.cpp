@@ -4,7 +4,7 @@
 #include <cstring>
 #include <utility>
 
-#include "io/cell_block.hpp"
+#include "cells/cell_block.hpp"
 
 namespace tessera::io::helper {
 

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "io/cell_block.hpp"
+#include "cells/cell_block.hpp"
 #include "scene/time_step_read.hpp"
 
 namespace tessera::io::helper {
 
-/// Cells of volume that MED and VTK both know; io/node_orders.hpp has the order of their nodes.
+/// Cells of volume that MED and VTK both know; cells/curved/node_orders.hpp has the order of their nodes.
 struct MedCellKind {
   med_geometry_type med;
   std::uint8_t vtk;

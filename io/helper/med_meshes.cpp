@@ -11,9 +11,9 @@
 #include <string_view>
 #include <system_error>
 
+#include "cells/curved/node_orders.hpp"
 #include "io/helper/med_file.hpp"
 #include "io/input_file.hpp"
-#include "io/node_orders.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {

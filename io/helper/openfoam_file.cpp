@@ -12,15 +12,15 @@
 #include <string_view>
 #include <vector>
 
-#include "io/block_choice.hpp"
+#include "cells/block_choice.hpp"
+#include "cells/mesh_blocks.hpp"
+#include "cells/part_range.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/time_steps.hpp"
 #include "io/helper/vtk_parts.hpp"
 #include "io/helper/vtk_session.hpp"
 #include "io/helper/vtk_words.hpp"
 #include "io/input_file.hpp"
-#include "io/mesh_blocks.hpp"
-#include "io/part_range.hpp"
 #include "scene/error.hpp"
 #include "system/gzip.hpp"
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
+#include "cells/surface.hpp"
 #include "io/foreign_data.hpp"
 #include "io/helper/holdings.hpp"
-#include "io/surface.hpp"
 #include "scene/error.hpp"
 
 /// What the helper reads, each with the words of a request beside its file. All throw Error(bad_input) in one line.
@@ -72,7 +72,7 @@ ForeignContents read_gambit(Holdings& holdings, const std::filesystem::path& fil
 ForeignContents read_flash(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 ForeignContents read_enzo(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
-/// Fills a surface by TetGen (io/surface.hpp).
+/// Fills a surface by TetGen (cells/surface.hpp).
 ForeignContents fill_surface(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
 /// More memory and time for a file that is about to be read.

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/surface.hpp"
+#include "cells/surface.hpp"
 
 namespace tessera::io::helper {
 

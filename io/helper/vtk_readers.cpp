@@ -25,6 +25,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "cells/curved/node_orders.hpp"
 #include "io/helper/extents.hpp"
 #include "io/helper/grid_pieces.hpp"
 #include "io/helper/legacy_byte_order.hpp"
@@ -34,7 +35,6 @@
 #include "io/helper/vtk_session.hpp"
 #include "io/helper/vtk_words.hpp"
 #include "io/input_file.hpp"
-#include "io/node_orders.hpp"
 #include "io/vtk_xml_elements.hpp"
 #include "scene/error.hpp"
 #include "system/positional_file.hpp"

@@ -19,7 +19,7 @@
 #include <optional>
 #include <set>
 
-#include "io/block_choice.hpp"
+#include "cells/block_choice.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/serve.hpp"
 #include "io/helper/xdmf_arrays.hpp"

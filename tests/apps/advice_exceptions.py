@@ -22,7 +22,7 @@ SERVER = "said by a server, which does not end; server/serve_test.py and server/
 TIME = "takes minutes: a limit of time or of tets that sound files do not come near"
 
 EXCEPTIONS = {
-    r"apps/main\.cpp:\d+: standard input: only one process has it|^io/scratch_file\.cpp:\d+: ": (2, RANKS),
+    r"apps/main\.cpp:\d+: standard input: only one process has it|^system/scratch_file\.cpp:\d+: ": (2, RANKS),
     r"this build leaves (out|\.(jpg|tif) out); build with": (6, OTHER_BUILD),
     r"this build has no server; configure": (1, OTHER_BUILD),
     r"^apps/state_words\.cpp:\d+: state|^apps/serve_scene\.cpp:\d+": (11, SERVER),
@@ -43,7 +43,7 @@ EXCEPTIONS = {
         LIBRARY,
     ),
     r"^io/image_(exr\.cpp:\d+: \{\}: (is|has)|file\.cpp:\d+: background|pfm|png|tiff)": (9, LIBRARY),
-    r"^io/amr_(file|trees)\.cpp:\d+: \{\}: its (points|trees)|^io/amr_leaves\.cpp:\d+: \{\}: a block of an AMR": (
+    r"^io/amr_(file|trees)\.cpp:\d+: \{\}: its (points|trees)|^cells/amr/amr_leaves\.cpp:\d+: \{\}: a block of an AMR": (
         3,
         ANSWER,
     ),
@@ -73,7 +73,7 @@ EXCEPTIONS = {
         TIME,
     ),
     r"^io/helper/vtk_words\.cpp:\d+: \{\}: VTK's reader does not get over it and": (1, RARE),
-    r"points in one block; split it$|^io/gzip\.cpp:\d+: it holds more than": (2, HUGE),
+    r"points in one block; split it$|^system/gzip\.cpp:\d+: it holds more than": (2, HUGE),
 }
 
 # Descriptions of options and formats, lines of reports and tables, and notes that only say what was done.

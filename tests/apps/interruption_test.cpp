@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "apps/program.hpp"
+#include "cells/surface.hpp"
 #include "io/reader_programs.hpp"
-#include "io/surface.hpp"
 #include "support/await.hpp"
 
 namespace tessera::apps {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/program.hpp"
-#include "io/axis_scale.hpp"
+#include "cells/axis_scale.hpp"
 #include "scene/scaled_source.hpp"
 
 namespace tessera::apps::scale_test {

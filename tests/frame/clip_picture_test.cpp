@@ -4,6 +4,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "cells/mesh_selection.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
 #include "datasets/transfer_functions.hpp"
@@ -12,7 +13,6 @@
 #include "frame/render.hpp"
 #include "frame/shared_meshes.hpp"
 #include "io/mesh_reader.hpp"
-#include "io/mesh_selection.hpp"
 #include "reference/grid_reference.hpp"
 #include "reference/judge.hpp"
 #include "reference/reference.hpp"

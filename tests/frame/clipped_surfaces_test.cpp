@@ -4,12 +4,12 @@
 
 #include <glm/geometric.hpp>
 
+#include "cells/mesh_selection.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/transfer_functions.hpp"
 #include "frame/random_cases.hpp"
 #include "frame/random_clips.hpp"
 #include "frame/render.hpp"
-#include "io/mesh_selection.hpp"
 #include "reference/judge.hpp"
 
 namespace tessera::frame::clipped_surfaces_test {

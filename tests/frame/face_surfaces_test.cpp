@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <memory>
 
+#include "cells/mesh_selection.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
 #include "datasets/shapes.hpp"
@@ -18,7 +19,6 @@
 #include "frame/shared_meshes.hpp"
 #include "frame/surface_scenes.hpp"
 #include "io/mesh_reader.hpp"
-#include "io/mesh_selection.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
 #include "support/deep_pixels.hpp"

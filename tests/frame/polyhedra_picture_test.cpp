@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <glm/vec3.hpp>
 
+#include "cells/mesh_assembly.hpp"
 #include "frame/random_cases.hpp"
 #include "frame/render.hpp"
-#include "io/mesh_assembly.hpp"
 #include "io/polyhedral_meshes.hpp"
 #include "reference/judge.hpp"
 #include "reference/small_meshes.hpp"

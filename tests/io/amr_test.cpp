@@ -8,8 +8,8 @@
 #include <optional>
 #include <random>
 
+#include "cells/amr/amr_values.hpp"
 #include "io/amr_files.hpp"
-#include "io/amr_values.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"

@@ -1,5 +1,5 @@
 // Blocks of a file by their names.
-#include "io/block_choice.hpp"
+#include "cells/block_choice.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "io/cell_split.hpp"
+#include "cells/cell_split.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numeric>
 #include <random>
 
-#include "io/mesh_assembly.hpp"
+#include "cells/mesh_assembly.hpp"
 #include "io/mesh_checks.hpp"
 
 namespace tessera::io {

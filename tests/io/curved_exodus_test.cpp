@@ -7,9 +7,9 @@
 #include <tuple>
 #include <vector>
 
+#include "cells/mesh_assembly.hpp"
 #include "io/block_surface.hpp"
 #include "io/curved_reference.hpp"
-#include "io/mesh_assembly.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"

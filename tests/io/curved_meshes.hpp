@@ -7,8 +7,8 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "io/cell_block.hpp"
-#include "io/curved_lattice.hpp"
+#include "cells/cell_block.hpp"
+#include "cells/curved/curved_lattice.hpp"
 
 /// Meshes of higher-order cells for tests.
 namespace tessera::io::testing {

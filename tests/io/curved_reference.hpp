@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/curved_lattice.hpp"
+#include "cells/curved/curved_lattice.hpp"
 #include "io/mesh_reader.hpp"
 
 /// Curved cells as formats' manuals describe them, with their exact volumes and integrals.

@@ -1,5 +1,5 @@
 // Higher-order cells: their functions, that neighbours divide what they share alike, and that errors keep their bounds.
-#include "io/curved_split.hpp"
+#include "cells/curved/curved_split.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -14,10 +14,10 @@
 #include <random>
 #include <utility>
 
-#include "io/curved_cell.hpp"
+#include "cells/curved/curved_cell.hpp"
+#include "cells/curved/higher_order_plan.hpp"
+#include "cells/mesh_assembly.hpp"
 #include "io/curved_meshes.hpp"
-#include "io/higher_order_plan.hpp"
-#include "io/mesh_assembly.hpp"
 #include "io/mesh_checks.hpp"
 #include "support/some_cases.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/curved_lattice.hpp"
+#include "cells/curved/curved_lattice.hpp"
 #include "io/curved_reference.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"

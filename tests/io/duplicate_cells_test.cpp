@@ -1,5 +1,5 @@
 // Cells that are in a mesh twice: counted, and drawn once if that is asked for.
-#include "io/duplicate_cells.hpp"
+#include "cells/duplicate_cells.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh_assembly.hpp"
+#include "cells/mesh_assembly.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_parts.hpp"
 #include "io/mesh_reader.hpp"

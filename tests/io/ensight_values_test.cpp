@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh_assembly.hpp"
+#include "cells/mesh_assembly.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"

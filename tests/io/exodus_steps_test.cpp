@@ -9,10 +9,10 @@
 #include <tuple>
 #include <vector>
 
+#include "cells/warp.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
-#include "io/warp.hpp"
 #include "tessera/dataset.hpp"
 
 namespace tessera::io::exodus_steps_test {

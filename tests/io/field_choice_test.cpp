@@ -1,4 +1,4 @@
-#include "io/field_choice.hpp"
+#include "cells/field_choice.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "io/mesh_assembly.hpp"
+#include "cells/mesh_assembly.hpp"
 
 #include <gtest/gtest.h>
 

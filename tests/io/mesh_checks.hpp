@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/cell_block.hpp"
+#include "cells/cell_block.hpp"
 #include "io/temporary_folder.hpp"
 #include "scene/tet_mesh.hpp"
 

@@ -1,4 +1,4 @@
-#include "io/mesh_selection.hpp"
+#include "cells/mesh_selection.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <random>
 
 #include "../datasets/conformity.hpp"
+#include "cells/mesh_assembly.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
-#include "io/mesh_assembly.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::mesh_selection_test {

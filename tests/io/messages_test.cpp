@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "cells/mesh_assembly.hpp"
 #include "io/file_kinds.hpp"
 #include "io/foam_case.hpp"
-#include "io/mesh_assembly.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "io/block_choice.hpp"
-#include "io/duplicate_cells.hpp"
+#include "cells/block_choice.hpp"
+#include "cells/duplicate_cells.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/mesh_parts.hpp"
 

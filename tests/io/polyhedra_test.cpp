@@ -7,8 +7,8 @@
 #include <set>
 #include <span>
 
-#include "io/cell_split.hpp"
-#include "io/mesh_assembly.hpp"
+#include "cells/cell_split.hpp"
+#include "cells/mesh_assembly.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/polyhedral_meshes.hpp"
 

@@ -18,7 +18,7 @@
 #include <map>
 #include <vector>
 
-#include "io/mesh_assembly.hpp"
+#include "cells/mesh_assembly.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/polyhedral_meshes.hpp"
 

@@ -9,7 +9,7 @@
 #include <random>
 #include <set>
 
-#include "io/mesh_assembly.hpp"
+#include "cells/mesh_assembly.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/polyhedral_meshes.hpp"

@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "io/cell_split.hpp"
+#include "cells/cell_split.hpp"
 
 namespace tessera::io::testing {
 namespace {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "io/cell_block.hpp"
+#include "cells/cell_block.hpp"
 
 /// Meshes of polyhedra that fill the unit box.
 namespace tessera::io::testing {

@@ -1,4 +1,4 @@
-#include "io/polyhedron_split.hpp"
+#include "cells/polyhedron_split.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <random>
 #include <set>
 
-#include "io/mesh_assembly.hpp"
+#include "cells/mesh_assembly.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/polyhedral_meshes.hpp"
 

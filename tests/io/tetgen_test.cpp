@@ -4,11 +4,11 @@
 
 #include <numbers>
 
+#include "cells/surface.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/reader_programs.hpp"
-#include "io/surface.hpp"
 #include "io/tetgen_files.hpp"
 
 namespace tessera::io {

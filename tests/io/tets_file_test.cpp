@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "io/mesh_assembly.hpp"
+#include "cells/mesh_assembly.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/vtk_or_skip.hpp"

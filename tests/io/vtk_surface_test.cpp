@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "cells/surface.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/reader_programs.hpp"
-#include "io/surface.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/vtk_or_skip.hpp"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "io/cell_block.hpp"
+#include "cells/cell_block.hpp"
 #include "io/foreign_file.hpp"
 #include "io/vtk_xml_file.hpp"
 

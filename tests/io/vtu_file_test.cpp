@@ -7,7 +7,7 @@
 #include <limits>
 #include <map>
 
-#include "io/mesh_assembly.hpp"
+#include "cells/mesh_assembly.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/mesh_reader.hpp"

@@ -1,0 +1,61 @@
+#include "cells/axis_scale.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+
+namespace tessera::io {
+namespace {
+
+constexpr double thinnest = 1.0 / 20;
+
+/// 1, 2 or 5 times a power of ten, not above `number`.
+double round_factor(double number) {
+  const double unit = std::pow(10.0, std::floor(std::log10(number)));
+  const double digits = number / unit;
+  return (digits >= 5 ? 5 : digits >= 2 ? 2 : 1) * unit;
+}
+
+}  // namespace
+
+glm::dvec3 scale_beside_degrees(const Box& box) {
+  const glm::dvec3 side = box.high - box.low;
+  const double wide = std::max(side.x, side.y), narrow = std::min(side.x, side.y);
+  if (box.empty() || !(wide > 0) || !(side.z > 0)) return glm::dvec3(1);
+  const double longest = std::max(wide, side.z);
+  // Longitude and latitude are in proportion, whatever they are.
+  const bool is_thin = side.z < thinnest * longest || (wide < longest && narrow < thinnest * longest);
+  if (!is_thin) return glm::dvec3(1);
+  return {1, 1, round_factor(wide / 4 / side.z)};
+}
+
+glm::dvec3 chosen_scale(const std::optional<glm::dvec3>& asked, bool beside_degrees, const Box& box,
+                        std::vector<std::string>& notes) {
+  if (asked) return *asked;
+  const glm::dvec3 scale = beside_degrees ? scale_beside_degrees(box) : glm::dvec3(1);
+  if (scale != glm::dvec3(1))
+    notes.push_back(
+        fmt::format("x and y are in degrees and z is not: z is multiplied by {:g}, for the box was thinner than 1:20; "
+                    "`scale` 1,1,1 keeps it as it is",
+                    scale.z));
+  return scale;
+}
+
+void scale_blocks(std::span<CellBlock> blocks, const glm::dvec3& scale) {
+  if (scale == glm::dvec3(1)) return;
+  for (CellBlock& block : blocks)
+    for (glm::dvec3& position : block.positions) position *= scale;
+}
+
+Box box_of_points(std::span<const CellBlock> blocks) {
+  Box box;
+  for (const CellBlock& block : blocks)
+    for (const glm::dvec3& p : block.positions)
+      if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z))
+        box = {glm::min(box.low, p), glm::max(box.high, p)};
+  return box;
+}
+
+}  // namespace tessera::io

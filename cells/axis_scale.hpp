@@ -1,0 +1,29 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cells/cell_block.hpp"
+#include "tessera/camera.hpp"
+
+/// Axes of the world multiplied by a factor each (ReadOptions::axis_scale), asked for or chosen.
+namespace tessera::io {
+
+/// For x and y in degrees and z a length: 1, unless the box is thinner than 1:20; then z is multiplied by the largest
+/// of 1, 2 or 5 times a power of ten with which it is at most a quarter of the longer of x and y.
+glm::dvec3 scale_beside_degrees(const Box& box);
+
+/// What is asked for; else by the box, if `beside_degrees`, with a note; else 1.
+glm::dvec3 chosen_scale(const std::optional<glm::dvec3>& asked, bool beside_degrees, const Box& box,
+                        std::vector<std::string>& notes);
+
+/// Scales the points of cells.
+void scale_blocks(std::span<CellBlock> blocks, const glm::dvec3& scale);
+
+/// Box round the finite points of cells.
+Box box_of_points(std::span<const CellBlock> blocks);
+
+}  // namespace tessera::io

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <exception>
+#include <glm/vec3.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cells/cell_block.hpp"
+#include "cells/cell_split.hpp"
+#include "cells/curved/curved_cells.hpp"
+#include "cells/mesh_options.hpp"
+#include "cells/polyhedron_split.hpp"
+
+namespace tessera::io {
+
+/// What some of a block's cells become.
+struct BlockTets {
+  std::vector<scene::Tet> tets;      ///< corners in the block's points, and from their number on in `added`
+  std::vector<std::uint64_t> cells;  ///< of each tet, counted in the block
+  std::vector<glm::dvec3> added;     ///< points that cells are split at beside their own
+  std::vector<double> added_values;  ///< of each of them; empty for cell data
+  std::vector<std::uint32_t> nodes;  ///< of the higher-order cells that were divided; few are corners of tets
+  HigherOrderCells curved;
+  MeshCounts counts;  ///< but of points, and of tets made
+  std::exception_ptr error;
+};
+
+/// The cells of a block: which are kept, and what tets they are split into. Threads may ask for different ones at once.
+class BlockCells {
+ public:
+  /// `points` and `values` are those of the block, the latter of its points or cells by `association`; `source` is for
+  /// messages. All outlive this. `before` is what cells of other blocks have become.
+  BlockCells(const CellBlock& block, std::span<const glm::dvec3> points, std::span<const double> values,
+             scene::Association association, const std::string& source, const CurvedSettings& curved = {},
+             const HigherOrderCells& before = {});
+
+  [[nodiscard]] std::size_t count() const { return block_.cell_count(); }
+  /// Whether some are divided into many tets each.
+  [[nodiscard]] bool divides() const { return curved_.any(); }
+
+  /// Splits the cells [first, last); what was in `out` is gone. Throws Error(bad_input) for a cell that cannot be
+  /// split.
+  void split(std::size_t first, std::size_t last, BlockTets& out) const;
+
+ private:
+  /// What splitting one cell after the other uses again.
+  struct Workplace {
+    std::vector<scene::Tet> tets;
+    std::vector<std::uint32_t> faces, corners;
+    PolyhedronSplitter polyhedra;
+    CurvedWork curved;
+  };
+  void split_cell(std::size_t c, Workplace& work, BlockTets& out) const;
+  void split_curved(std::size_t c, Workplace& work, BlockTets& out) const;
+  void split_polyhedron(std::size_t c, CellKind kind, Workplace& work, BlockTets& out) const;
+  bool keep_filled(std::size_t c, PolyhedronSplitter& filled, BlockTets& out) const;
+  bool is_left_out(std::size_t c, std::span<const std::uint32_t> corner, BlockTets& out) const;
+  template <class PlaceOf>
+  bool keep_tets(std::size_t c, std::span<const scene::Tet> cell_tets, const PlaceOf& place_of, BlockTets& out) const;
+  [[nodiscard]] std::span<const std::uint32_t> faces_of(std::size_t c) const;
+  [[nodiscard]] bool hides_a_point(std::span<const std::uint32_t> corner) const;
+  [[nodiscard]] bool is_finite(std::span<const std::uint32_t> corner, std::size_t c) const;
+  [[nodiscard]] std::string place(std::size_t c) const;
+
+  const CellBlock& block_;
+  std::span<const glm::dvec3> points_;
+  std::span<const double> values_;
+  scene::Association association_;
+  const std::string& source_;
+  std::array<CellShape, 256> shapes_;
+  CurvedCells curved_;
+  std::uint64_t most_curved_tets_;  ///< of this block
+  mutable std::atomic<std::uint64_t> curved_tets_{0};
+};
+
+}  // namespace tessera::io

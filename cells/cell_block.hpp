@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cells/number_tally.hpp"
+#include "scene/tet_mesh.hpp"
+
+namespace tessera::io {
+
+/// Asks a field for the length of its tuples instead of one component.
+inline constexpr int magnitude = -1;
+
+/// One array of a block, read on demand so that only the chosen field is ever converted.
+struct BlockField {
+  std::string name;
+  scene::Association association = scene::Association::point;
+  int components = 1;
+  std::string type;  ///< "float", "int64", ...
+  std::size_t tuples = 0;
+  bool active = false;                 ///< the file marks it as its scalars or vectors
+  bool ids = false;                    ///< the file marks it as ids
+  std::optional<NumberTally> tally{};  ///< where it is known without reading
+  /// Writes tuples [first, first + out.size()) of one component, or their magnitude, as doubles.
+  std::function<void(int component, std::size_t first, std::span<double> out)> read;
+};
+
+/// A field that owns its values, `components` a tuple.
+BlockField field_of_values(std::string name, std::string type, scene::Association association, int components,
+                           std::vector<double> values);
+
+/// Part of a mesh as a file gives it, before splitting: one block of an Exodus or PLOT3D file, or all of the others.
+///
+/// Shape   cell c has type types[c] (VTK's cell type number) and points connectivity[offsets[c]] up to
+///         connectivity[offsets[c + 1]]. Where all cells are tetrahedra they may be `tets`, and the other three empty.
+///         A polyhedron's points are those of its faces: at face_locations[c] `faces` has their number, then of each
+///         the number of its points and these. Of other cells it is no_faces; without polyhedra both are empty. Ghost
+///         arrays hold vtkGhostType bits for each point or cell, or are empty.
+/// Holds   the reader has checked that offsets do not decrease and end at connectivity.size(), and that every index is
+///         < positions.size(), as require_faces() does for faces. Positions and fields may hold NaN.
+struct CellBlock {
+  static constexpr std::int64_t no_faces = -1;
+
+  std::string name;    ///< for messages; empty if it is the only one
+  std::string source;  ///< for messages: the file it comes from, if that is a piece of the file asked for
+  std::vector<glm::dvec3> positions;
+  std::vector<std::uint8_t> types;
+  std::vector<std::uint64_t> offsets;
+  std::vector<std::uint32_t> connectivity;
+  std::vector<scene::Tet> tets;
+  std::vector<std::uint32_t> faces;
+  std::vector<std::int64_t> face_locations;
+  std::vector<std::uint8_t> point_ghost, cell_ghost;
+  std::vector<BlockField> fields;
+
+  [[nodiscard]] std::size_t cell_count() const { return types.empty() ? tets.size() : types.size(); }
+};
+
+/// Checks the faces of a block's polyhedra, whose types, offsets and positions are there. Throws Error(bad_input) that
+/// begins with `where` and names the cell: for a location for all cells, counts and points in range, faces that are one
+/// cell's.
+void require_faces(const CellBlock& block, const std::string& where);
+
+}  // namespace tessera::io

@@ -1,0 +1,219 @@
+#include "cells/cell_split.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "scene/position_order.hpp"
+
+namespace tessera::io {
+namespace {
+
+struct Face {
+  int size;
+  std::array<std::uint8_t, 6> corner;  ///< turning outward
+};
+
+// VTK's corner numbering (vtkHexahedron.h, vtkWedge.h, ...). The wedge's base looks outward there; the others' inward.
+constexpr Face hexahedron_faces[] = {{4, {0, 3, 2, 1}}, {4, {4, 5, 6, 7}}, {4, {0, 1, 5, 4}},
+                                     {4, {1, 2, 6, 5}}, {4, {2, 3, 7, 6}}, {4, {0, 4, 7, 3}}};
+constexpr Face wedge_faces[] = {
+    {3, {0, 1, 2}}, {3, {3, 5, 4}}, {4, {0, 3, 4, 1}}, {4, {1, 4, 5, 2}}, {4, {2, 5, 3, 0}}};
+constexpr Face pyramid_faces[] = {{4, {0, 3, 2, 1}}, {3, {0, 1, 4}}, {3, {1, 2, 4}}, {3, {2, 3, 4}}, {3, {3, 0, 4}}};
+constexpr Face pentagonal_prism_faces[] = {{5, {0, 4, 3, 2, 1}}, {5, {5, 6, 7, 8, 9}}, {4, {0, 1, 6, 5}},
+                                           {4, {1, 2, 7, 6}},    {4, {2, 3, 8, 7}},    {4, {3, 4, 9, 8}},
+                                           {4, {4, 0, 5, 9}}};
+constexpr Face hexagonal_prism_faces[] = {{6, {0, 5, 4, 3, 2, 1}}, {6, {6, 7, 8, 9, 10, 11}}, {4, {0, 1, 7, 6}},
+                                          {4, {1, 2, 8, 7}},       {4, {2, 3, 9, 8}},         {4, {3, 4, 10, 9}},
+                                          {4, {4, 5, 11, 10}},     {4, {5, 0, 6, 11}}};
+
+// A voxel counts its corners x first, then y, then z.
+constexpr std::array<std::uint8_t, 8> voxel_order = {0, 1, 3, 2, 4, 5, 7, 6};
+
+std::span<const Face> faces_of(CellKind kind) {
+  switch (kind) {
+    case CellKind::voxel:
+    case CellKind::hexahedron:
+      return hexahedron_faces;
+    case CellKind::wedge:
+      return wedge_faces;
+    case CellKind::pyramid:
+      return pyramid_faces;
+    case CellKind::pentagonal_prism:
+      return pentagonal_prism_faces;
+    case CellKind::hexagonal_prism:
+      return hexagonal_prism_faces;
+    default:
+      return {};
+  }
+}
+
+/// Corners of one cell in a total order: by position, coincident ones by their place in the cell.
+struct CornerOrder {
+  std::array<glm::dvec3, 12> p;
+
+  bool operator()(std::uint8_t a, std::uint8_t b) const { return p[a] != p[b] ? scene::is_before(p[a], p[b]) : a < b; }
+};
+
+using Triangle = std::array<std::uint8_t, 3>;
+
+/// Up to 12 tets of one cell in its corner numbers.
+struct LocalTets {
+  std::array<std::array<std::uint8_t, 4>, 12> tet;
+  int count = 0;
+  void push_back(const std::array<std::uint8_t, 4>& t) { tet[count++] = t; }
+};
+
+/// The triangles, turning outward, of all faces that do not touch `apex`.
+int far_triangles(std::span<const Face> faces, std::uint8_t apex, const CornerOrder& less,
+                  std::array<Triangle, 12>& triangles) {
+  int count = 0;
+  for (const Face& face : faces) {
+    const auto begin = face.corner.begin(), end = begin + face.size;
+    if (std::find(begin, end, apex) != end) continue;
+    const auto start = static_cast<int>(std::min_element(begin, end, less) - begin);
+    for (int k = 1; k + 1 < face.size; ++k)
+      triangles[count++] = {face.corner[start], face.corner[(start + k) % face.size],
+                            face.corner[(start + k + 1) % face.size]};
+  }
+  return count;
+}
+
+/// The corner that shares no face with corner `apex` of a hexahedron.
+constexpr std::array<std::uint8_t, 8> opposite_in_hexahedron = {6, 7, 4, 5, 2, 3, 0, 1};
+
+/// Where no cut meets `far`, the three triangles round it are a cap that one tet cuts off: 5 tets in all.
+bool split_off_far_corner(std::uint8_t apex, std::span<const Triangle> triangles, LocalTets& local) {
+  const std::uint8_t far = opposite_in_hexahedron[apex];
+  std::array<Triangle, 3> cap;
+  int touching = 0;
+  for (const Triangle& triangle : triangles) {
+    if (std::find(triangle.begin(), triangle.end(), far) == triangle.end()) continue;
+    if (touching == 3) return false;
+    cap[touching++] = triangle;
+  }
+  if (touching != 3) return false;
+  for (const Triangle& triangle : triangles)
+    if (std::find(triangle.begin(), triangle.end(), far) == triangle.end())
+      local.push_back({triangle[0], triangle[1], triangle[2], apex});
+  std::rotate(cap[0].begin(), std::find(cap[0].begin(), cap[0].end(), far), cap[0].end());
+  const std::uint8_t p = cap[0][1], q = cap[0][2];
+  const std::uint8_t r = *std::find_if(cap[1].begin(), cap[1].end(), [&](std::uint8_t c) {
+    return c != far && c != p && c != q;  // cap[1] shares `far` and one of p, q
+  });
+  local.push_back({far, p, q, r});
+  local.push_back({p, q, r, apex});
+  return true;
+}
+
+}  // namespace
+
+CellShape cell_shape(std::uint8_t vtk_type) {
+  switch (vtk_type) {
+    case 10:
+      return {CellKind::tet, 4, 4, false};
+    case 11:
+      return {CellKind::voxel, 8, 8, false};
+    case 12:
+      return {CellKind::hexahedron, 8, 8, false};
+    case 13:
+      return {CellKind::wedge, 6, 6, false};
+    case 14:
+      return {CellKind::pyramid, 5, 5, false};
+    case 15:
+      return {CellKind::pentagonal_prism, 10, 10, false};
+    case 16:
+      return {CellKind::hexagonal_prism, 12, 12, false};
+    case 41:
+      return {CellKind::convex_point_set, 0, 0, false};
+    case 42:
+      return {CellKind::polyhedron, 0, 0, false};
+    case 24:
+      return {CellKind::tet, 4, 10, true};
+    case 25:
+      return {CellKind::hexahedron, 8, 20, true};
+    case 26:
+      return {CellKind::wedge, 6, 15, true};
+    case 27:
+      return {CellKind::pyramid, 5, 13, true};
+    case 29:
+      return {CellKind::hexahedron, 8, 27, true};
+    case 31:
+      return {CellKind::wedge, 6, 12, true};
+    case 32:
+      return {CellKind::wedge, 6, 18, true};
+    case 33:
+      return {CellKind::hexahedron, 8, 24, true};
+    case 37:
+      return {CellKind::pyramid, 5, 19, true};
+    case 71:
+    case 78:
+      return {CellKind::tet, 4, 0, true};
+    case 72:
+    case 79:
+      return {CellKind::hexahedron, 8, 0, true};
+    case 73:
+    case 80:
+      return {CellKind::wedge, 6, 0, true};
+    case 74:
+    case 81:
+      return {CellKind::pyramid, 5, 0, true};
+    default:
+      break;
+  }
+  const bool flat = vtk_type <= 9 || (vtk_type >= 21 && vtk_type <= 23) || vtk_type == 28 || vtk_type == 30 ||
+                    (vtk_type >= 34 && vtk_type <= 36) || (vtk_type >= 51 && vtk_type <= 54) ||
+                    (vtk_type >= 60 && vtk_type <= 63) || (vtk_type >= 68 && vtk_type <= 70) ||
+                    (vtk_type >= 75 && vtk_type <= 77);
+  return {flat ? CellKind::not_volumetric : CellKind::unsupported, 0, 0, false};
+}
+
+std::string cell_type_name(std::uint8_t vtk_type) {
+  if (vtk_type == 41) return "convex point set";
+  if (vtk_type == 42) return "polyhedron";
+  const CellShape shape = cell_shape(vtk_type);
+  static constexpr const char* names[] = {"tetrahedron",      "voxel",           "hexahedron",  "wedge", "pyramid",
+                                          "pentagonal prism", "hexagonal prism", "face or line"};
+  if (shape.kind == CellKind::unsupported) return fmt::format("cell of VTK type {}", vtk_type);
+  return fmt::format("{}{}", shape.higher_order ? "higher-order " : "", names[static_cast<int>(shape.kind)]);
+}
+
+void append_faces(CellKind kind, std::span<const std::uint32_t> corner, std::vector<std::uint32_t>& faces) {
+  for (const Face& face : faces_of(kind)) {
+    faces.push_back(static_cast<std::uint32_t>(face.size));
+    for (int k = 0; k < face.size; ++k)
+      faces.push_back(corner[kind == CellKind::voxel ? voxel_order[face.corner[k]] : face.corner[k]]);
+  }
+}
+
+void split_cell(CellKind kind, std::span<const std::uint32_t> corner, std::span<const glm::dvec3> positions,
+                std::vector<scene::Tet>& tets) {
+  if (kind == CellKind::tet) {
+    tets.push_back({corner[0], corner[1], corner[2], corner[3]});
+    return;
+  }
+  std::array<std::uint32_t, 12> id{};
+  CornerOrder less;
+  const int corners = static_cast<int>(corner.size());
+  for (int k = 0; k < corners; ++k) {
+    id[k] = corner[kind == CellKind::voxel ? voxel_order[k] : k];
+    less.p[k] = positions[id[k]];
+  }
+  std::uint8_t apex = 0;
+  for (int k = 1; k < corners; ++k)
+    if (less(static_cast<std::uint8_t>(k), apex)) apex = static_cast<std::uint8_t>(k);
+
+  std::array<Triangle, 12> triangles;
+  const auto count = static_cast<std::size_t>(far_triangles(faces_of(kind), apex, less, triangles));
+  const std::span<const Triangle> far(triangles.data(), count);
+  LocalTets local;
+  if (corners != 8 || !split_off_far_corner(apex, far, local))
+    for (const Triangle& t : far) local.push_back({t[0], t[1], t[2], apex});
+  for (int k = 0; k < local.count; ++k) {
+    const auto& t = local.tet[k];
+    tets.push_back({id[t[0]], id[t[1]], id[t[2]], id[t[3]]});
+  }
+}
+
+}  // namespace tessera::io

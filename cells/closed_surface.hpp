@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "cells/face_triangles.hpp"
+
+namespace tessera::io {
+
+/// The faces of one polyhedron, cut into triangles that turn outward.
+///
+/// Corners      numbered in the order of their positions, those at one place as one.
+/// Orientation  that of the faces if they agree with each other, whichever side they call the outer one; else they are
+///              turned to agree with their neighbours.
+/// Closed       on every edge there are as many faces going one way as the other. More than two may meet on one.
+class ClosedSurface {
+ public:
+  /// `faces`: of each the number of its corners, then these, as indices into `positions`, which are finite. False if
+  /// they are no closed surface. Costs n log n.
+  bool set(std::span<const std::uint32_t> faces, std::span<const glm::dvec3> positions);
+
+  [[nodiscard]] const std::vector<glm::dvec3>& points() const { return points_; }
+  /// Of each corner its index in `positions`, the smallest of those at its place.
+  [[nodiscard]] const std::vector<std::uint32_t>& indices() const { return indices_; }
+  /// Those with two corners at one place left out.
+  [[nodiscard]] const std::vector<CornerTriangle>& triangles() const { return triangles_; }
+  /// Six times the volume within; of negative ones only what rounding leaves of flat cells.
+  [[nodiscard]] double volume6() const { return volume6_; }
+  /// Whether every face is a fan from its smallest corner.
+  [[nodiscard]] bool are_fans() const { return all_fans_; }
+  /// The corners in the order of a hexahedron (VTK's), if they are one's and its faces are all fans.
+  [[nodiscard]] std::optional<std::array<std::uint32_t, 8>> as_hexahedron() const;
+
+ private:
+  struct Edge {
+    std::uint64_t corners;  ///< the smaller one first
+    std::uint32_t face;
+    bool forward;  ///< from the smaller to the larger
+  };
+  void number_corners(std::span<const std::uint32_t> faces, std::span<const glm::dvec3> positions);
+  void number_faces(std::span<const std::uint32_t> faces);
+  void list_edges();
+  [[nodiscard]] bool is_balanced() const;
+  bool turn_faces();
+  void cut_faces();
+  std::uint32_t group_of(std::uint32_t face, bool& turned);
+  [[nodiscard]] std::span<const std::uint32_t> face(std::size_t f) const {
+    return std::span(face_corners_).subspan(face_starts_[f], face_starts_[f + 1] - face_starts_[f]);
+  }
+  [[nodiscard]] std::size_t face_count() const { return face_starts_.size() - 1; }
+
+  std::vector<glm::dvec3> points_;
+  std::vector<std::uint32_t> indices_;
+  std::vector<CornerTriangle> triangles_;
+  double volume6_ = 0;
+  bool all_fans_ = false;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> numbers_;  ///< of each index in `positions`, in order
+  std::vector<std::uint32_t> by_place_, face_corners_;
+  std::vector<std::size_t> face_starts_;
+  std::vector<Edge> edges_;            ///< sorted by their corners
+  std::vector<std::uint8_t> turned_;   ///< of each face, against its list
+  std::vector<std::uint32_t> parent_;  ///< of each face in the tree of those that it is turned with
+  std::vector<std::uint8_t> against_;  ///< whether it turns the other way than its parent
+  FaceCutter cutter_;
+};
+
+}  // namespace tessera::io

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <span>
+#include <vector>
+
+#include "cells/curved/curved_lattice.hpp"
+
+namespace tessera::io {
+
+/// A place in a cell: (r, s, t) in units of 2^-20, so that midpoints, and the same point told by another cell, are
+/// exact.
+using CellPlace = std::array<std::int32_t, 3>;
+inline constexpr std::int32_t cell_unit = 1 << 20;
+
+/// One higher-order cell: position and field at any of its places.
+///
+/// Functions  Lagrange's of the lattice's nodes, isoparametric: one set for position and field. Serendipity cells get
+///            the nodes they lack first, from the polynomials that they have. A node in the middle of a triangle, and
+///            inside, adds a function that is 0 on edges, and on faces. Of Bezier cells nodes are Bernstein's
+///            coefficients; with weights position and field are both their sums over the weights'. Pyramids have
+///            functions of their own (cells/curved/curved_pyramid.hpp).
+/// Shared     A place on a face or edge is computed from that face's or edge's nodes alone, in an order that follows
+///            from the corners' positions. So both cells at a face get the same bits, however they are numbered.
+class CurvedCell {
+ public:
+  /// The next cell, of as many positions and values as are `given` of the lattice's nodes; values may be none: then the
+  /// field is 0. Weights, positive, are Bezier cells', none: all are 1. The lattice must outlive the cell's use.
+  void set(const CurvedLattice& lattice, std::span<const glm::dvec3> positions, std::span<const double> values,
+           std::span<const double> weights = {});
+
+  /// Bits of the faces that a corner lies on; those of any other place are the ones that all of its neighbours in a
+  /// subdivision have in common.
+  [[nodiscard]] unsigned faces_of_corner(std::size_t corner) const { return corner_faces_[corner]; }
+  [[nodiscard]] CellPlace place_of_corner(std::size_t corner) const;
+
+  /// Position and field at a place that lies on all of these faces.
+  [[nodiscard]] glm::dvec4 at(const CellPlace& place, unsigned faces);
+
+  /// Puts the corners of a segment, triangle or tetrahedron that lies on all of `faces` into an order that both cells
+  /// at such a face find.
+  void order(std::span<CellPlace> corners, unsigned faces);
+
+  /// The degree of position and field on a straight segment, triangle or tetrahedron on all of these faces; with
+  /// weights that of their product with these and a linear function.
+  [[nodiscard]] int degree_on(unsigned faces);
+
+  [[nodiscard]] bool has_weights() const { return !weights_.empty(); }
+  /// Of all nodes', which no place's is below.
+  [[nodiscard]] double least_weight() const { return least_weight_; }
+  /// Whether the cell's functions are polynomials, of degree_on(0).
+  [[nodiscard]] bool is_polynomial() const { return lattice_->family != CurvedFamily::pyramid && !has_weights(); }
+
+  struct Weighted {
+    glm::dvec4 value;  ///< position and field
+    double weight;     ///< what the sums were divided by; 1 without weights
+  };
+  /// At sum of weights[k] corners[k] / total, for corners in `order`.
+  [[nodiscard]] Weighted between(std::span<const CellPlace> corners, std::span<const int> weights, int total,
+                                 unsigned faces);
+
+ private:
+  /// The part of the cell on some of its faces: an edge, a face, or the cell itself.
+  struct Part {
+    CellPlace origin{};            ///< of the part's own coordinates
+    std::array<int, 2> axis{};     ///< of the cell, from which they follow
+    std::array<int, 4> inverse{};  ///< of the matrix from the one to the other on those axes; all whole numbers
+    bool triangle = false;
+    int dimensions = 0;
+    std::array<int, 2> order{};
+    std::vector<glm::dvec4> nodes, weights;  ///< on its lattice; weights in x, or none
+    bool has_bubble = false;
+    glm::dvec4 bubble{};
+  };
+
+  const Part& part_on(unsigned faces);
+  void make_edge(unsigned faces, Part& part) const;
+  void make_face(unsigned faces, Part& part) const;
+  void add_to(Part& part, const LatticePlace& place) const;
+  static void face_to_values(Part& part);
+  void add_missing_nodes();
+  void add_missing_on(const CurvedFace& face, const std::vector<bool>& given);
+  void add_missing_inside(const std::vector<bool>& given);
+  void make_inside();
+  void make_bubbles();
+  [[nodiscard]] glm::dvec4& node(const LatticePlace& p) { return values_[static_cast<std::size_t>(lattice_->slot(p))]; }
+  [[nodiscard]] const glm::dvec4& node(const LatticePlace& p) const {
+    return values_[static_cast<std::size_t>(lattice_->slot(p))];
+  }
+  [[nodiscard]] LatticePlace lattice_corner(std::size_t corner) const;
+  [[nodiscard]] bool before(std::size_t corner, std::size_t other) const;
+  /// A face's first corner by position, and the two next to it, the first of them first.
+  [[nodiscard]] std::array<std::size_t, 3> first_corners(const CurvedFace& face) const;
+  /// Coordinates of the part; of the cell itself its own. In units.
+  [[nodiscard]] static std::array<std::int32_t, 3> coordinates(const Part& part, const CellPlace& place);
+  [[nodiscard]] glm::dvec4 evaluate(const Part& part, const std::array<double, 3>& x) const;
+  [[nodiscard]] double weight(const Part& part, const std::array<double, 3>& x) const;
+  [[nodiscard]] glm::dvec4 sum_of(const Part& part, std::span<const glm::dvec4> nodes,
+                                  const std::array<double, 3>& x) const;
+  [[nodiscard]] glm::dvec4 sum_inside(std::span<const glm::dvec4> nodes, const std::array<double, 3>& x) const;
+
+  const CurvedLattice* lattice_ = nullptr;
+  std::vector<glm::dvec4> values_;   ///< of the lattice's places, then of nodes beside it; times the weights
+  std::vector<glm::dvec4> weights_;  ///< of the same, in x; or none
+  std::vector<glm::dvec4> inside_, inside_weights_;  ///< what sum_inside() sums
+  std::array<glm::dvec4, 5> bubbles_{};              ///< of the cell's triangles, then of what is inside
+  double least_weight_ = 1;
+  std::vector<unsigned> corner_faces_;
+  std::array<glm::dvec3, 8> corner_position_;
+  std::vector<std::pair<unsigned, Part>> parts_;  ///< those asked for, by faces
+  std::size_t parts_made_ = 0;                    ///< of this cell; the others' memory is used again
+};
+
+}  // namespace tessera::io

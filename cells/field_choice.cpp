@@ -1,0 +1,383 @@
+#include "cells/field_choice.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "scene/error.hpp"
+#include "tessera/nearest_name.hpp"
+
+namespace tessera::io {
+namespace {
+
+using scene::Association;
+
+const char* word(Association a) { return a == Association::point ? "point" : "cell"; }
+
+bool is_floating(const FieldSummary& f) { return f.type == "float" || f.type == "double"; }
+
+/// Of floats from 0 or 1 on only: pressures may well be 300 to 307.
+bool counts_up(const NumberTally& numbers, const FieldSummary& f) {
+  return f.components == 1 && (!is_floating(f) || numbers.low == 0 || numbers.low == 1) && numbers.counts_up();
+}
+
+void include_numbers(const BlockField& field, FieldTally& tally) {
+  constexpr std::uint64_t least_of_block = 16;  // one cell a block counts up whatever its value
+  NumberTally numbers;
+  if (field.tally) {
+    numbers = *field.tally;
+    // Some readers tally the least and the greatest of what they hold.
+    numbers.whole = numbers.whole && numbers.finite + numbers.not_finite == field.tuples;
+  } else {
+    std::array<double, 4096> chunk;
+    const int component = field.components == 1 ? 0 : magnitude;
+    for (std::size_t first = 0; first < field.tuples; first += chunk.size()) {
+      const std::span some(chunk.data(), std::min(chunk.size(), field.tuples - first));
+      field.read(component, first, some);
+      numbers.add(some);
+    }
+  }
+  if (field.tuples > 0)
+    tally.blocks_count_up =
+        tally.blocks_count_up && numbers.finite >= least_of_block && counts_up(numbers, tally.summary);
+  tally.numbers.add(numbers);
+}
+
+bool varies(const FieldSummary& f) {
+  // A constant that went through float arithmetic still is one.
+  return f.high - f.low > 1e-6 * std::max(std::abs(f.low), std::abs(f.high));
+}
+
+std::string label(const FieldSummary& field, int component) {
+  if (component == magnitude) return field.name + ":mag";
+  if (field.components == 1) return field.name;
+  if (field.components <= 3) return fmt::format("{}:{}", field.name, "xyz"[component]);
+  return fmt::format("{}:{}", field.name, component);
+}
+
+FieldChoice choice_of(const FieldSummary& field, std::optional<int> component) {
+  const int c = component ? *component : field.components == 1 ? 0 : magnitude;
+  return {field.name, field.association, c, label(field, c), false, {}};
+}
+
+std::string list(std::span<const FieldSummary> fields) {
+  std::vector<std::string> names;
+  for (const FieldSummary& f : fields)
+    names.push_back(f.components == 1
+                        ? fmt::format("{}:'{}'", word(f.association), f.name)
+                        : fmt::format("{}:'{}' ({} components)", word(f.association), f.name, f.components));
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+const FieldSummary* find(std::span<const FieldSummary> fields, const std::string& name,
+                         std::optional<Association> association) {
+  for (const Association wanted : {Association::point, Association::cell}) {
+    if (association && *association != wanted) continue;
+    for (const FieldSummary& f : fields)
+      if (f.association == wanted && f.name == name) return &f;
+  }
+  return nullptr;
+}
+
+/// Component of a word after the colon, in any array; -2 if it is none.
+int parse_component(const std::string& text) {
+  if (text == "mag" || text == "magnitude") return magnitude;
+  if (text == "x" || text == "y" || text == "z") return text[0] - 'x';
+  int n = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), n);
+  return error == std::errc() && end == text.data() + text.size() && n >= 0 ? n : -2;
+}
+
+/// "NAME" or "NAME:component" among arrays of one association, or of both.
+std::optional<FieldChoice> resolve(const std::string& wish, std::optional<Association> association,
+                                   std::span<const FieldSummary> fields, const std::string& source) {
+  if (const FieldSummary* field = find(fields, wish, association)) return choice_of(*field, std::nullopt);
+  const std::size_t colon = wish.rfind(':');
+  if (colon == std::string::npos) return std::nullopt;
+  const FieldSummary* field = find(fields, wish.substr(0, colon), association);
+  if (!field) return std::nullopt;
+  const std::string word_after = wish.substr(colon + 1);
+  const int component = parse_component(word_after);
+  if (component == -2 || component >= field->components)
+    throw scene::bad_input(fmt::format(
+        "{}: field '{}' has {} component{}, no '{}'; use {}", source, field->name, field->components,
+        field->components == 1 ? "" : "s", word_after,
+        field->components == 1 ? "the name alone" : fmt::format(":mag or :0 to :{}", field->components - 1)));
+  return choice_of(*field, component);
+}
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+/// Of labels those that number cells and points, parts and materials: shown last of all.
+bool is_id_name(const std::string& name) {
+  const std::string lower = lower_case(name);
+  static constexpr std::array exact = {"id",   "ids",     "iblank", "rank",     "partition",  "processid",  "procid",
+                                       "part", "blockid", "region", "material", "material #", "materialid", "block"};
+  if (std::find(exact.begin(), exact.end(), lower) != exact.end() || lower.starts_with("vtk")) return true;
+  // A word of the name, as in "GLOBAL_IDS_POINTS" and "GlobalNodeId", but not in "Fluid" or "Solid"; or two, as in
+  // "NodeNumber", but not in "Mach number".
+  constexpr std::array<std::string_view, 4> ids = {"id", "ids", "gid", "gids"};
+  constexpr std::array<std::string_view, 7> counted = {"node", "element", "elem", "cell", "point", "vertex", "face"};
+  constexpr std::array<std::string_view, 6> numbers = {"number", "numbers", "num", "no", "nr", "index"};
+  const auto is_in = [](const auto& words, const std::string& word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  };
+  std::string word, before;
+  for (std::size_t k = 0; k <= name.size(); ++k) {
+    const auto c = static_cast<unsigned char>(k < name.size() ? name[k] : ' ');
+    const bool begins = std::isupper(c) && k > 0 && std::islower(static_cast<unsigned char>(name[k - 1]));
+    if (begins || !std::isalpha(c)) {
+      if (is_in(ids, word) || (is_in(counted, before) && is_in(numbers, word))) return true;
+      if (!word.empty()) before = std::exchange(word, {});
+    }
+    if (std::isalpha(c)) word += static_cast<char>(std::tolower(c));
+  }
+  return false;
+}
+
+bool is_id(const FieldSummary& f) { return f.ids || (!f.fractions && is_id_name(f.name)); }
+
+/// Of so few values 0, 1, 2 ... may be a test's quantity, where nothing else varies.
+bool may_count_by_chance(const FieldSummary& f) {
+  return f.ids && is_floating(f) && f.high - f.low < 64 && !is_label_name(f.name);
+}
+
+const FieldSummary* first_of(std::span<const FieldSummary> fields, const auto& wanted) {
+  const auto f = std::find_if(fields.begin(), fields.end(), wanted);
+  return f == fields.end() ? nullptr : &*f;
+}
+
+/// The first that varies and may be shown.
+const FieldSummary* first_quantity(std::span<const FieldSummary> fields, const auto& may_be) {
+  const auto quantity = [&](const FieldSummary& f) { return varies(f) && may_be(f); };
+  for (const Association a : {Association::point, Association::cell})
+    if (const auto* f = first_of(fields, [&](const FieldSummary& s) {
+          return s.association == a && s.components == 1 && quantity(s) && s.active;
+        }))
+      return f;
+  for (const Association a : {Association::point, Association::cell})
+    for (const bool scalar : {true, false})
+      if (const auto* f = first_of(fields, [&](const FieldSummary& s) {
+            return s.association == a && (s.components == 1) == scalar && quantity(s);
+          }))
+        return f;
+  return nullptr;
+}
+
+std::optional<FieldChoice> default_choice(std::span<const FieldSummary> fields, bool shape) {
+  const auto is_quantity = [](const FieldSummary& s) { return !is_label(s); };
+  if (const auto* f =
+          first_quantity(fields, [&](const FieldSummary& s) { return is_quantity(s) && !looks_like_noise(s); }))
+    return choice_of(*f, std::nullopt);
+  if (const auto* f = first_quantity(fields, is_quantity)) {
+    FieldChoice choice = choice_of(*f, std::nullopt);
+    choice.notes.push_back(fmt::format("'{}' is within {:.2g} of zero everywhere, perhaps noise: no other field varies",
+                                       f->name, std::max(std::abs(f->low), std::abs(f->high))));
+    return choice;
+  }
+  if (const auto* f = first_quantity(fields, may_count_by_chance)) {
+    FieldChoice choice = choice_of(*f, std::nullopt);
+    choice.notes.push_back(
+        fmt::format("'{}' is {:g} to {:g}, each once, perhaps ids: no other field varies", f->name, f->low, f->high));
+    return choice;
+  }
+  if (shape) return std::nullopt;
+  if (const auto* f = first_quantity(fields, [](const FieldSummary& s) { return !is_id(s); }))
+    return choice_of(*f, std::nullopt);
+  if (const auto* f = first_of(fields, [&](const FieldSummary& s) { return s.high > s.low && is_quantity(s); }))
+    return choice_of(*f, std::nullopt);
+  if (const auto* f = first_of(fields, is_quantity)) return choice_of(*f, std::nullopt);
+  if (const auto* f = first_of(fields, varies)) return choice_of(*f, std::nullopt);
+  return std::nullopt;
+}
+
+FieldChoice no_array(std::span<const FieldSummary> fields, bool shape) {
+  FieldChoice none{"", Association::point, 0, shape ? shape_field_name : "none", shape, {}};
+  if (!shape)
+    none.notes.emplace_back("the file has no field: every point has the value 1");
+  else if (fields.empty())
+    none.notes.emplace_back("the file has no field: its shape is drawn, near parts lighter");
+  else
+    none.notes.push_back(
+        fmt::format("of its fields none varies that is no label or index: its shape is drawn, near parts lighter; "
+                    "`field` draws one of {}",
+                    list(fields)));
+  return none;
+}
+
+}  // namespace
+
+const BlockField* find_field(const CellBlock& block, const std::string& name, Association association) {
+  for (const BlockField& f : block.fields)
+    if (f.association == association && f.name == name) return &f;
+  return nullptr;
+}
+
+std::vector<FieldTally> tally_fields(std::span<const CellBlock> blocks) {
+  std::vector<FieldTally> tallies;
+  for (const CellBlock& block : blocks)
+    for (const BlockField& field : block.fields) {
+      auto t = std::find_if(tallies.begin(), tallies.end(), [&](const FieldTally& known) {
+        return known.summary.name == field.name && known.summary.association == field.association &&
+               known.summary.components == field.components;
+      });
+      if (t == tallies.end()) {
+        tallies.push_back({{field.name, field.association, field.components, field.type}, {}, true});
+        t = tallies.end() - 1;
+      }
+      t->summary.active = t->summary.active || field.active;
+      t->summary.ids = t->summary.ids || field.ids;
+      include_numbers(field, *t);
+    }
+  return tallies;
+}
+
+std::vector<FieldSummary> summarize_fields(std::span<const std::vector<FieldTally>> parts) {
+  std::vector<FieldTally> wholes;
+  for (const auto& part : parts)
+    for (const FieldTally& more : part) {
+      auto whole = std::find_if(wholes.begin(), wholes.end(), [&](const FieldTally& known) {
+        return known.summary.name == more.summary.name && known.summary.association == more.summary.association;
+      });
+      if (whole == wholes.end()) {
+        wholes.push_back(more);
+        continue;
+      }
+      whole->summary.active = whole->summary.active || more.summary.active;
+      whole->summary.ids = whole->summary.ids || more.summary.ids;
+      if (whole->summary.components != more.summary.components) continue;  // counts as missing where it is so
+      whole->numbers.add(more.numbers);
+      whole->blocks_count_up = whole->blocks_count_up && more.blocks_count_up;
+    }
+  std::vector<FieldSummary> summaries;
+  for (FieldTally& whole : wholes) {
+    FieldSummary& s = summaries.emplace_back(std::move(whole.summary));
+    const NumberTally& numbers = whole.numbers;
+    s.nan_count = numbers.not_finite;
+    if (numbers.any_finite) s.low = numbers.low, s.high = numbers.high;
+    s.fractions = numbers.any_finite && !numbers.whole && is_floating(s);
+    s.ids = s.ids || (numbers.any_finite && (whole.blocks_count_up || counts_up(numbers, s)));
+  }
+  return summaries;
+}
+
+bool looks_like_noise(const FieldSummary& field) {
+  const double low = field.components == 1 ? field.low : -field.high;  // of vectors it is the length's range
+  return low < 0 && field.high > 0 && std::max(-low, field.high) <= 1e-12;
+}
+
+bool is_label(const FieldSummary& field) { return field.ids || (!field.fractions && is_label_name(field.name)); }
+
+bool is_label_name(const std::string& name) {
+  const std::string lower = lower_case(name);
+  static constexpr std::array words = {"ranks",
+                                       "materials",
+                                       "mat",
+                                       "domain",
+                                       "subdomain",
+                                       "zone",
+                                       "index",
+                                       "indices",
+                                       "label",
+                                       "labels",
+                                       "owner",
+                                       "mpi_rank",
+                                       "mpirank",
+                                       "proc",
+                                       "process",
+                                       "attribute",
+                                       "i",
+                                       "j",
+                                       "k",
+                                       "block_i",
+                                       "block_j",
+                                       "block_k",
+                                       "cell_index",
+                                       "node_index",
+                                       "point_index",
+                                       "nodeid",
+                                       "elementid",
+                                       "cellid",
+                                       "objectid",
+                                       "globalid",
+                                       "globalnodeid",
+                                       "globalelementid",
+                                       "gmsh:physical",
+                                       "gmsh:geometrical",
+                                       "cellentityids"};
+  if (is_id_name(name) || std::find(words.begin(), words.end(), lower) != words.end()) return true;
+  for (const char* begin : {"material_", "material ", "partition_", "rank_"})
+    if (lower.starts_with(begin)) return true;
+  return lower.ends_with("_rank") || lower.ends_with("_label") || lower.ends_with("_labels");
+}
+
+namespace {
+
+/// "did you mean 'NAME'? ", or nothing.
+std::string meant_field(const std::string& wish, std::span<const FieldSummary> fields) {
+  std::vector<std::string> names;
+  for (const FieldSummary& field : fields) names.push_back(field.name);
+  for (const Association a : {Association::point, Association::cell})
+    for (const FieldSummary& field : fields)
+      if (field.association == a) names.push_back(fmt::format("{}:{}", word(a), field.name));
+  const auto near = nearest_name(wish, names);
+  return near ? fmt::format("did you mean '{}'? ", *near) : "";
+}
+
+}  // namespace
+
+FieldChoice choose_field(const std::string& wish, std::span<const FieldSummary> fields, const std::string& source,
+                         bool shape) {
+  if (wish.empty()) {
+    std::optional<FieldChoice> choice = default_choice(fields, shape);
+    if (!choice) return no_array(fields, shape);
+    if (fields.size() > 1)
+      choice->notes.insert(choice->notes.begin(), fmt::format("field {}:'{}' chosen of {}", word(choice->association),
+                                                              choice->label, list(fields)));
+    return *choice;
+  }
+  std::optional<FieldChoice> choice;
+  if (find(fields, wish, std::nullopt)) choice = resolve(wish, std::nullopt, fields, source);
+  for (const Association a : {Association::point, Association::cell})
+    if (const std::string prefix = fmt::format("{}:", word(a)); !choice && wish.starts_with(prefix))
+      choice = resolve(wish.substr(prefix.size()), a, fields, source);
+  if (!choice) choice = resolve(wish, std::nullopt, fields, source);
+  if (!choice)
+    throw scene::bad_input(
+        fields.empty()
+            ? fmt::format("{}: no field '{}', the file has none; leave `field` out", source, wish)
+            : fmt::format("{}: no field '{}'; {}it has {}", source, wish, meant_field(wish, fields), list(fields)));
+  if (choice->association == Association::point && find(fields, choice->name, Association::cell) &&
+      !wish.starts_with("point:"))
+    choice->notes.push_back(fmt::format(
+        "'{0}' is both a point and a cell field: the point one is taken, cell:{0} asks for the other", choice->name));
+  return *choice;
+}
+
+bool look_like_colors(const FieldSummary& field) {
+  return field.type == "uint8" && (field.components == 3 || field.components == 4);
+}
+
+void refuse_colors(const FieldChoice& choice, const FieldSummary& field, const std::string& wish,
+                   const std::string& source) {
+  if (choice.component != magnitude || wish.ends_with(":mag") || wish.ends_with(":magnitude")) return;
+  throw scene::bad_input(
+      fmt::format("{}: '{}' has colors, of {} components, which are not drawn as such; choose one with `field` {}:0 "
+                  "(red), or their length with {}:mag",
+                  source, field.name, field.components, field.name, field.name));
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,400 @@
+#include "cells/mesh_assembly.hpp"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numeric>
+
+#include "cells/block_tets.hpp"
+#include "cells/duplicate_cells.hpp"
+#include "cells/field_choice.hpp"
+#include "cells/mesh_selection.hpp"
+#include "scene/error.hpp"
+#include "scene/threads.hpp"
+
+namespace tessera::io {
+namespace {
+
+using scene::Association;
+using scene::Tet;
+
+/// Turns blocks into one mesh, a block at a time.
+class Assembly {
+ public:
+  Assembly(AssembledBlocks& result, std::span<const FieldSummary> fields, const FieldChoice& choice,
+           const std::string& source, const HigherOrderPlan& plan, int threads)
+      : cell_keys_(result.cell_keys),
+        notes_(result.notes),
+        mesh_(result.mesh),
+        counts_(result.counts),
+        higher_order_(result.higher_order),
+        fields_(fields),
+        choice_(choice),
+        source_(source),
+        plan_(plan),
+        threads_(threads) {}
+
+  void reserve(std::size_t points, std::size_t tets) {
+    require_points(points);
+    mesh_.positions.reserve(points);
+    mesh_.tets.reserve(tets);
+  }
+
+  void add(CellBlock& block) {
+    const std::size_t first_point = mesh_.positions.size();
+    if (first_point == 0) {
+      mesh_.positions = std::move(block.positions);
+    } else {
+      mesh_.positions.insert(mesh_.positions.end(), block.positions.begin(), block.positions.end());
+      block.positions = {};
+    }
+    for (std::size_t v = first_point; v < mesh_.positions.size(); ++v)
+      mesh_.positions[v] += 0.0;  // -0 becomes 0: coincident points get the same bits
+    counts_.points_read += mesh_.positions.size() - first_point;
+    points_ = std::span(mesh_.positions).subspan(first_point);
+    first_point_ = static_cast<std::uint32_t>(first_point);
+    read_values(block);
+
+    cells_before_ = counts_.cells_read;
+    block_tets_ = &block.tets;
+    as_given_ = 0;
+    const bool point = choice_.association == Association::point;
+    add_cells(BlockCells(block, points_, std::span(values_).subspan(point ? first_point : 0), choice_.association,
+                         block.source.empty() ? source_ : block.source, plan_.settings, higher_order_));
+    if (block_tets_ != nullptr) take_tets();
+    take_added_points();
+    block = {};
+  }
+
+  void finish(Duplicates duplicates) {
+    mesh_.association = choice_.association;
+    counts_.points_unused = unused_points();
+    // Cells without a value are gone by now, so that a blank copy of another is none.
+    if (duplicates == Duplicates::keys) {
+      cell_keys_ = duplicate_keys(mesh_, threads_);
+    } else {
+      const bool drop = duplicates == Duplicates::drop;
+      const std::uint64_t found = find_duplicate_cells(mesh_, drop, threads_);
+      (drop ? counts_.duplicates_dropped : counts_.cells_duplicate) = found;
+      if (drop && found > 0) counts_.points_unused = unused_points();
+    }
+    counts_.tets_made = mesh_.tets.size();
+    if (choice_.association == Association::point) mesh_.scalars = std::move(values_);
+    mesh_.field_name = choice_.label;
+    if (higher_order_.divided > 0) higher_order_.tolerance = plan_.tolerance;
+  }
+
+ private:
+  void require_points(std::size_t points) const {
+    if (points > std::numeric_limits<std::uint32_t>::max())
+      throw scene::bad_input(
+          fmt::format("{}: {} points; one process takes at most 2^32 - 1, convert to a .pvtu of "
+                      "pieces",
+                      source_, points));
+  }
+
+  /// Scalars of the block's points (appended to those before) or cells; NaN where the block lacks the field.
+  void read_values(const CellBlock& block) {
+    const bool point = choice_.association == Association::point;
+    const std::size_t n = point ? points_.size() : block.cell_count();
+    if (!point) values_.clear();
+    const std::size_t first = values_.size();
+    if (choice_.shape) {
+      values_.reserve(first + n);
+      for (std::size_t p = 0; p < n; ++p) values_.push_back(glm::dot(points_[p], shape_direction));
+      return;
+    }
+    if (choice_.name.empty()) {
+      values_.resize(first + n, 1.0);
+      return;
+    }
+    values_.resize(first + n, std::numeric_limits<double>::quiet_NaN());
+    const BlockField* field = find_field(block, choice_.name, choice_.association);
+    const auto same = [&](const FieldSummary& s) {
+      return s.name == choice_.name && s.association == choice_.association;
+    };
+    const auto summary = std::find_if(fields_.begin(), fields_.end(), same);
+    if (!field || summary == fields_.end() || field->components != summary->components) {
+      if (block.cell_count() > 0 && !block.source.empty())
+        throw scene::bad_input(fmt::format(
+            "{}: it has no {} field '{}' of {} as other pieces have; write all pieces "
+            "with the same fields",
+            block.source, point ? "point" : "cell", choice_.name,
+            summary == fields_.end() || summary->components == 1 ? "one component"
+                                                                 : fmt::format("{} components", summary->components)));
+      if (block.cell_count() > 0)
+        notes_.push_back(
+            fmt::format("block '{}' lacks the field '{}': its cells are blanked", block.name, choice_.name));
+      return;
+    }
+    const auto values = std::span(values_).subspan(first, n);
+    field->read(choice_.component, 0, values);
+    // Between subnormal numbers there are too few to interpolate.
+    for (double& value : values)
+      if (std::abs(value) < std::numeric_limits<double>::min()) value = 0;
+  }
+
+  /// Appends, in the order of the cells, what threads make of some of them at a time.
+  void add_cells(const BlockCells& cells) {
+    const std::size_t cells_a_task = cells.divides() ? 16 : 16384, count = cells.count();
+    if (count <= cells_a_task) {
+      BlockTets tets;
+      cells.split(0, count, tets);
+      append(tets);
+      return;
+    }
+    const int at_once = scene::threads_for(threads_);
+    const auto in_flight = 2 * static_cast<std::size_t>(at_once);
+    std::vector<BlockTets> results(in_flight);
+    std::size_t next = 0;
+    // A result is used again when as many as there are have begun since: it has been appended by then.
+    const auto begin = [&](tbb::flow_control& flow) {
+      if (next * cells_a_task >= count) flow.stop();
+      return next++;
+    };
+    const auto split = [&](std::size_t task) {
+      BlockTets& tets = results[task % in_flight];
+      try {
+        const std::size_t first = task * cells_a_task;
+        cells.split(first, std::min(count, first + cells_a_task), tets);
+      } catch (...) {
+        tets.error = std::current_exception();  // of several the first cell's is told, whichever thread was faster
+      }
+      return task;
+    };
+    const auto append_next = [&](std::size_t task) {
+      const BlockTets& tets = results[task % in_flight];
+      if (tets.error) std::rethrow_exception(tets.error);
+      append(tets);
+    };
+    using tbb::filter_mode;
+    tbb::task_arena(at_once).execute([&] {
+      tbb::parallel_pipeline(in_flight,
+                             tbb::make_filter<void, std::size_t>(filter_mode::serial_in_order, begin) &
+                                 tbb::make_filter<std::size_t, std::size_t>(filter_mode::parallel, split) &
+                                 tbb::make_filter<std::size_t, void>(filter_mode::serial_in_order, append_next));
+    });
+  }
+
+  void append(const BlockTets& made) {
+    counts_ += made.counts;
+    higher_order_ += made.curved;
+    if (block_tets_ != nullptr) {
+      // Mostly all tets of a block stay, and then they need not be copied.
+      if (made.tets.size() == made.counts.cells_read && !block_tets_->empty()) {
+        as_given_ += made.tets.size();
+        return;
+      }
+      append_given();
+    }
+    append(made.tets, [&](std::size_t t) { return made.cells[t]; });
+    for (const std::uint32_t v : made.nodes) higher_order_nodes_.push_back(first_point_ + v);
+    if (made.added.empty()) return;
+    require_points(mesh_.positions.size() + added_points_.size() + made.added.size());
+    for (const glm::dvec3& p : made.added) added_points_.push_back(p + 0.0);
+    added_values_.insert(added_values_.end(), made.added_values.begin(), made.added_values.end());
+  }
+
+  /// The points that the block's cells were split at follow its own, which threads have looked at until now.
+  void take_added_points() {
+    mesh_.positions.insert(mesh_.positions.end(), added_points_.begin(), added_points_.end());
+    if (choice_.association == Association::point)
+      values_.insert(values_.end(), added_values_.begin(), added_values_.end());
+    added_points_.clear(), added_values_.clear();
+  }
+
+  /// The block's tets so far, all of which have stayed.
+  void append_given() {
+    mesh_.tets.reserve(mesh_.tets.size() + block_tets_->size());
+    append(std::span(*block_tets_).first(as_given_), [](std::size_t t) { return t; });
+    block_tets_ = nullptr;
+  }
+
+  /// All of a block's tets.
+  void take_tets() {
+    if (!mesh_.tets.empty() || first_point_ > 0 || cells_before_ > 0) return append_given();
+    mesh_.tets = std::move(*block_tets_);
+    if (choice_.association == Association::cell) mesh_.scalars.swap(values_);
+  }
+
+  template <class CellOf>
+  void append(std::span<const Tet> tets, const CellOf& cell_of) {
+    for (std::size_t t = 0; t < tets.size() && !numbered_; ++t)
+      if (cells_before_ + cell_of(t) != mesh_.tets.size() + t) number_cells();
+    if (numbered_)
+      for (std::size_t t = 0; t < tets.size(); ++t) mesh_.original_cell.push_back(cells_before_ + cell_of(t));
+    if (choice_.association == Association::cell)
+      for (std::size_t t = 0; t < tets.size(); ++t) mesh_.scalars.push_back(values_[cell_of(t)]);
+    const auto own = static_cast<std::uint32_t>(points_.size()),
+               added = static_cast<std::uint32_t>(added_points_.size());
+    const auto corner = [&](std::uint32_t v) { return first_point_ + v + (v < own ? 0 : added); };
+    for (const Tet& t : tets) mesh_.tets.push_back({corner(t[0]), corner(t[1]), corner(t[2]), corner(t[3])});
+  }
+
+  /// From here on, tet and cell numbers differ.
+  void number_cells() {
+    mesh_.original_cell.reserve(mesh_.tets.capacity());
+    mesh_.original_cell.resize(mesh_.tets.size());
+    std::iota(mesh_.original_cell.begin(), mesh_.original_cell.end(), std::uint64_t{0});
+    numbered_ = true;
+  }
+
+  /// Points that no tet uses.
+  std::uint64_t unused_points() {
+    std::vector<std::uint8_t> is_used(mesh_.positions.size());
+    tbb::task_arena(scene::threads_for(threads_)).execute([&] {
+      constexpr std::size_t grain = 65536;
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh_.tets.size(), grain), [&](const auto& range) {
+        for (std::size_t t = range.begin(); t < range.end(); ++t)
+          for (const std::uint32_t v : mesh_.tets[t]) {
+            std::atomic_ref<std::uint8_t> point(is_used[v]);
+            if (point.load(std::memory_order_relaxed) == 0) point.store(1, std::memory_order_relaxed);
+          }
+      });
+    });
+    for (const std::uint32_t v : higher_order_nodes_) is_used[v] = 1;
+    return static_cast<std::uint64_t>(std::ranges::count(is_used, 0));
+  }
+
+  std::vector<std::uint64_t>& cell_keys_;
+  std::vector<std::string>& notes_;
+  scene::TetMesh& mesh_;
+  MeshCounts& counts_;
+  HigherOrderCells& higher_order_;
+  std::span<const FieldSummary> fields_;
+  const FieldChoice& choice_;
+  const std::string& source_;
+  const HigherOrderPlan& plan_;
+  int threads_;
+  std::span<const glm::dvec3> points_;  ///< of the block at hand
+  std::uint32_t first_point_ = 0;
+  std::uint64_t cells_before_ = 0;          ///< of the blocks before
+  std::vector<Tet>* block_tets_ = nullptr;  ///< of the block at hand, while those looked at are all to stay
+  std::size_t as_given_ = 0;                ///< how many those are; they are not in the mesh yet
+  std::vector<double> values_;              ///< of all points so far, or of the block's cells
+  std::vector<glm::dvec3> added_points_;    ///< of the block at hand
+  std::vector<double> added_values_;
+  std::vector<std::uint32_t> higher_order_nodes_;  ///< of all cells that were divided
+  bool numbered_ = false;
+};
+
+}  // namespace
+
+AssembledBlocks assemble_blocks(std::vector<CellBlock> blocks, std::span<const FieldSummary> fields,
+                                const FieldChoice& choice, const std::string& source, const HigherOrderPlan& plan,
+                                int threads, Duplicates duplicates) {
+  AssembledBlocks result;
+  Assembly assembly(result, fields, choice, source, plan, threads);
+  std::size_t points = 0, tets = 0;
+  for (const CellBlock& block : blocks) {
+    points += block.positions.size();
+    tets += block.tets.size();
+  }
+  if (blocks.size() > 1) assembly.reserve(points, tets);
+  for (CellBlock& block : blocks) assembly.add(block);
+  assembly.finish(duplicates);
+  return result;
+}
+
+std::vector<std::string> notes_on_cells(const MeshCounts& n, const HigherOrderCells& higher_order,
+                                        const std::string& source) {
+  require_selected(n, source);
+  if (n.cells_read == 0)
+    throw scene::bad_input(
+        fmt::format("{}: it holds no cells, nothing is left to render; check how it was written", source));
+  if (n.tets_made == 0)
+    throw scene::bad_input(fmt::format(
+        "{}: nothing is left to render: of {} cells {} are no volumes, {} ghosts, {} hidden, {} hold NaN, infinite or "
+        "missing numbers, {} are polyhedra whose faces do not close, {} are collapsed to a point or face; give a mesh "
+        "of volume cells or choose another field",
+        source, n.cells_read, n.cells_not_volumetric, n.cells_ghost, n.cells_hidden, n.cells_nan, n.cells_open,
+        n.cells_zero_volume));
+  std::vector<std::string> notes;
+  if (n.cells_tangled > n.polyhedra_tangled)
+    notes.push_back(
+        fmt::format("{} cells are so warped that their tets overlap", n.cells_tangled - n.polyhedra_tangled));
+  if (n.cells_polyhedra > 0) {
+    std::string note = fmt::format("{} polyhedra are split into tets, ", n.cells_polyhedra);
+    const std::uint64_t others = n.polyhedra_from_inside + n.polyhedra_in_pieces + n.polyhedra_tangled;
+    note += others == 0 ? "from a corner" : fmt::format("{} from a corner", n.cells_polyhedra - others);
+    if (n.polyhedra_from_inside > 0) note += fmt::format(", {} from a point inside", n.polyhedra_from_inside);
+    if (n.polyhedra_in_pieces > 0) note += fmt::format(", {} piece by piece", n.polyhedra_in_pieces);
+    notes.push_back(note);
+  }
+  if (higher_order.divided > 0)
+    notes.push_back(
+        fmt::format("{} higher-order cells are drawn as {} tets, off by {:.2g} in position and {:.2g} in value at most",
+                    higher_order.divided, higher_order.tets, higher_order.position_error, higher_order.field_error));
+  return notes;
+}
+
+std::vector<std::string> warnings_on_cells(const MeshCounts& n, const HigherOrderCells& higher_order) {
+  std::vector<std::string> warnings;
+  if (higher_order.by_corners > 0)
+    warnings.push_back(
+        fmt::format("{} higher-order cells are rendered as linear ones by their corner nodes, without an error bound "
+                    "for what that leaves out",
+                    higher_order.by_corners));
+  constexpr std::array kinds = {"hexahedra", "wedges", "pyramids", "voxels", "prisms"};
+  for (std::size_t kind = 0; kind < kinds.size(); ++kind)
+    if (n.solids[kind] > 0 && n.solids_tangled[kind] == n.solids[kind])
+      warnings.push_back(
+          fmt::format("all {} {} are tangled, so that they are not drawn as they were meant: is the order of their "
+                      "nodes VTK's? It is another in many programs; write them in VTK's",
+                      n.solids[kind], kinds[kind]));
+  if (n.cells_open > 0)
+    warnings.push_back(fmt::format("{} polyhedra are left out: their faces are no closed surface", n.cells_open));
+  if (n.polyhedra_tangled > 0)
+    warnings.push_back(
+        fmt::format("{} polyhedra are drawn by tets that overlap: their faces cross each other, or no way was found to "
+                    "split them",
+                    n.polyhedra_tangled));
+  if (n.cells_duplicate > 0)
+    warnings.push_back(fmt::format(
+        "{} cell{} the corners of other cells, as in parts of a mesh that are given twice, and {} drawn on top of "
+        "them: "
+        "`drop_duplicates` draws each once, or name the parts to draw by `block`",
+        n.cells_duplicate, n.cells_duplicate == 1 ? " has" : "s have", n.cells_duplicate == 1 ? "is" : "are"));
+  return warnings;
+}
+
+MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options, const std::string& source,
+                       const HigherOrderPlanning& planning) {
+  MeshFile file;
+  const std::vector<FieldTally> tallies = tally_fields(blocks);
+  file.fields = summarize_fields(std::span(&tallies, 1));
+  const FieldChoice choice = choose_field(options.field, file.fields, source, options.shape);
+  file.notes = choice.notes;
+
+  const HigherOrderPlan plan = planning(blocks, options, choice, file.fields);
+  AssembledBlocks assembled = assemble_blocks(std::move(blocks), file.fields, choice, source, plan, options.threads,
+                                              options.drop_duplicates ? Duplicates::drop : Duplicates::count);
+  file.mesh = std::move(assembled.mesh);
+  file.counts = assembled.counts;
+  file.higher_order = assembled.higher_order;
+  const auto add = [&](const std::vector<std::string>& notes) {
+    file.notes.insert(file.notes.end(), notes.begin(), notes.end());
+  };
+  add(assembled.notes);
+  add(notes_on_cells(file.counts, file.higher_order, source));
+  if (options.smooth) {
+    if (choice.association == Association::cell)
+      smooth_to_points(file.mesh);
+    else
+      file.notes.emplace_back("smoothing has no effect on point data");
+  }
+  select(file.mesh, options.selection, file.counts, source);
+  require_selected(file.counts, source);
+  return file;
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "cells/face_triangles.hpp"
+
+namespace tessera::io {
+
+/// Cuts polygons given by numbers of points into triangles, by the points' positions alone (face_triangles.hpp).
+class PolygonTriangles {
+ public:
+  /// Appends a polygon's triangles; of one whose corners are at fewer than three places none.
+  void cut(std::span<const std::uint32_t> polygon, std::span<const glm::dvec3> points,
+           std::vector<std::array<std::uint32_t, 3>>& triangles);
+
+ private:
+  std::vector<std::uint32_t> ring_, sorted_, corners_;
+  std::vector<glm::dvec3> places_;
+  std::vector<CornerTriangle> triangles_;
+  FaceCutter cutter_;
+};
+
+}  // namespace tessera::io

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <random>
+#include <span>
+#include <vector>
+
+#include "cells/face_triangles.hpp"
+
+namespace tessera::io {
+
+/// The triangles in groups that hang together on edges which just two of them have.
+std::vector<std::vector<CornerTriangle>> parts_on_edges(std::span<const CornerTriangle> triangles);
+
+/// Cuts tets off a closed surface one by one, as ears are cut off a polygon: each lies inside, has two triangles or
+/// more of the surface, and holds nothing else of it.
+///
+/// Limits   not every surface has an ear (Schoenhardt's polyhedron has none), and cutting may end at one that has none.
+///          The work on one surface, all attempts together, is bounded; after it there are no more ears.
+class SurfaceEars {
+ public:
+  static constexpr std::size_t most_triangles = 200;
+
+  /// `triangles` turn outward over corners `p`, which outlives this. Ears are taken in another order with every
+  /// `attempt`, those of the best shape first with 0. False if they are more than `most_triangles`.
+  bool set(std::span<const glm::dvec3> p, std::span<const CornerTriangle> triangles, std::uint32_t attempt);
+
+  /// Cuts off the first ear. False if there is none.
+  bool cut(std::array<std::uint32_t, 4>& tet);
+
+  /// What is left, turning outward.
+  [[nodiscard]] const std::vector<CornerTriangle>& left() const { return triangles_; }
+
+ private:
+  struct Edge {
+    std::uint64_t corners;  ///< the smaller one first
+    std::uint32_t triangle;
+  };
+  struct Ear {
+    std::array<std::uint32_t, 4> corner;  ///< triangles 0 1 2 and 1 0 3 are the surface's
+    double rank;
+  };
+  void list();
+  double rank_of(double quality, double edges, bool ends_a_corner);
+  [[nodiscard]] bool is_free(const Ear& ear);
+  [[nodiscard]] bool has_edge(std::uint32_t a, std::uint32_t b) const;
+  [[nodiscard]] std::ptrdiff_t find(const CornerTriangle& triangle) const;
+  void take_off(const Ear& ear);
+
+  std::span<const glm::dvec3> p_;
+  std::vector<CornerTriangle> triangles_;
+  std::vector<Edge> edges_;  ///< sorted
+  std::vector<std::uint32_t> corners_;
+  std::vector<Ear> ears_;
+  std::size_t work_left_ = 0, cuts_left_ = 0;
+  std::uint32_t attempt_ = 0;
+  std::minstd_rand chance_;
+};
+
+}  // namespace tessera::io
