@@ -282,7 +282,7 @@ Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOp
     std::shared_ptr<State> state;
     if (files.empty()) throw scene::bad_input("input: no file is named; name one");
     check_axis_scale(options.axis_scale);
-    for (const auto& file : files) io::note_read(file);
+    for (const auto& file : files) system::note_read(file);
     frame::require_same_files(*transport);  // first of all: what ranks do together goes by them
     if (files.size() == 1 && opens_as_grid(files.front(), options)) {
       state = opened_grid(files.front(), options, *transport, options.trace);

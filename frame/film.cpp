@@ -25,7 +25,7 @@ void check_fits_memory(ImageSize size) {
   constexpr double bytes_a_pixel = 22;  // four floats, a depth and buffers; measured at 4000 x 4000 and 8000 x 8000
   const double needed = bytes_a_pixel * size.width * size.height;
   if (needed < (64 << 20)) return;
-  const auto free = static_cast<double>(io::available_memory());
+  const auto free = static_cast<double>(system::available_memory());
   if (needed > free)
     throw Error(ErrorCode::system_failure,
                 fmt::format("`size`: a {}x{} picture takes {:.1f} GiB, and {:.1f} are free here; make it smaller",

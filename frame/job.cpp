@@ -62,7 +62,7 @@ void Job::answer_termination() {
   state_->meet();
   if (size() > 1)
     exchange::answer_termination(state_->transport(), state_->voice.program, state_->voice.remedy,
-                                 io::abandon_in_handler);
+                                 system::abandon_in_handler);
 }
 
 void Job::watch_stalls(const StallSettings& settings) {

@@ -54,7 +54,7 @@ struct Seen {
 void require_same_files(exchange::Transport& transport) {
   if (transport.size() == 1) return;
   exchange::Bytes own = exchange::begin_message(exchange::MessageKind::files_read);
-  for (const std::string& name : io::take_names_read())
+  for (const std::string& name : system::take_names_read())
     if (const auto file = fingerprint_of(name)) {
       exchange::append_text(own, name);
       exchange::append(own, *file);

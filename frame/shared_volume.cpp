@@ -108,7 +108,7 @@ class Leader {
   }
 
   [[nodiscard]] Bytes message() const {
-    const io::ScratchFile* const written = volume_.scratch.get();
+    const system::ScratchFile* const written = volume_.scratch.get();
     if (written == nullptr) return message_of(volume_, {});
     return message_of(volume_, {written->path(), written->folder(), written->bytes()});
   }
@@ -138,7 +138,7 @@ std::string note_on(const std::filesystem::path& file, const Place& place, std::
       "goes with the run",
       file.filename().string(),
       ranks > 1 ? fmt::format("once for {} ranks", ranks) : "on disk, as memory may not hold them",
-      io::size_in_words(place.bytes), place.folder,
+      system::size_in_words(place.bytes), place.folder,
       machines > 1 ? fmt::format(" on each of {} machines", machines) : "");
 }
 
@@ -147,7 +147,7 @@ io::VolumeFile open_alone(const std::filesystem::path& file, const io::VolumeOpt
   io::VolumeFile volume;
   tbb::task_arena(scene::threads_for(threads)).execute([&] { volume = io::open_unscanned_volume(file, options); });
   if (!volume.scratch) return volume;
-  const io::ScratchFile& scratch = *volume.scratch;
+  const system::ScratchFile& scratch = *volume.scratch;
   volume.notes.push_back(note_on(file, {scratch.path(), scratch.folder(), scratch.bytes()}, 1, 1));
   return volume;
 }

@@ -58,7 +58,7 @@ struct FabNumbers {
     const auto place_of = [&](std::size_t cell) {
       return cell % nx + dx + row * (cell / nx % ny + dy) + slice * (cell / nx / ny + dz);
     };
-    const PositionalFile opened(file);
+    const system::PositionalFile opened(file);
     std::vector<std::byte> stored_bytes;
     for (std::size_t n = 0; n < out.size();) {
       // As far as what lies between the rows is not most of it.
@@ -151,7 +151,7 @@ class PlotFile {
 
   /// FAB, the format of numbers, the box and how many fields there are; then the numbers.
   FabNumbers numbers_of(AmrexFab& fab, const std::filesystem::path& file) {
-    const PositionalFile opened(file);
+    const system::PositionalFile opened(file);
     const auto [known_file, is_new] = files_.try_emplace(file.string(), opened.size());
     const std::uint64_t size = known_file->second;
     if (is_new) bytes_there_ += size;

@@ -6,7 +6,7 @@ namespace tessera::io {
 
 std::vector<std::byte> ArraySource::copy(const ForeignArray& array, const std::string& subject, Then then) {
   std::vector<std::byte> all;
-  reserve_large(all, array.bytes());
+  system::reserve_large(all, array.bytes());
   stream(
       array, subject, [&](std::span<const std::byte> tuples) { all.insert(all.end(), tuples.begin(), tuples.end()); },
       then);

@@ -59,7 +59,7 @@ std::size_t decode_base64(std::string_view text, std::span<std::byte> to) {
   return groups;
 }
 
-PackedBytes::PackedBytes(const PositionalFile& file, bool base64, std::uint64_t first, std::uint64_t end)
+PackedBytes::PackedBytes(const system::PositionalFile& file, bool base64, std::uint64_t first, std::uint64_t end)
     : file_(&file), base64_(base64), at_(first), end_(std::min(end, file.size())) {}
 
 std::uint64_t PackedBytes::left() const {

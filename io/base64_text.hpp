@@ -6,9 +6,11 @@
 #include <string>
 #include <string_view>
 
-namespace tessera::io {
-
+namespace tessera::system {
 class PositionalFile;
+}
+
+namespace tessera::io {
 
 /// Decodes groups of four characters (RFC 4648) from the front of `text`, up to the first that has another character
 /// (padding, white space) or for whose three bytes `to` has no room. Returns the number of groups.
@@ -18,7 +20,7 @@ std::size_t decode_base64(std::string_view text, std::span<std::byte> to);
 /// the text is skipped. Padding may end a group anywhere: texts that were encoded one by one follow each other.
 class PackedBytes {
  public:
-  PackedBytes(const PositionalFile& file, bool base64, std::uint64_t first, std::uint64_t end);
+  PackedBytes(const system::PositionalFile& file, bool base64, std::uint64_t first, std::uint64_t end);
 
   /// false: the bytes end before, or the text is not base64.
   [[nodiscard]] bool read(std::byte* to, std::uint64_t count);
@@ -32,7 +34,7 @@ class PackedBytes {
   [[nodiscard]] bool decode_group();
   [[nodiscard]] bool fetch();
 
-  const PositionalFile* file_;
+  const system::PositionalFile* file_;
   bool base64_;
   std::uint64_t at_, end_;
   std::string text_;

@@ -107,7 +107,7 @@ class BrickSource final : public scene::SampleSource {
     }
   }
 
-  PositionalFile file_;
+  system::PositionalFile file_;
   std::int64_t side_;
   Blocks blocks_;
   scene::ValueRange whole_;
@@ -169,7 +169,7 @@ VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& o
   const std::uint64_t before = brick_magic.size() + sizeof length;
   std::string text;
   {
-    const PositionalFile opened(file);
+    const system::PositionalFile opened(file);
     if (size < before) throw damaged(file, "its header is cut off");
     opened.read(brick_magic.size(), reinterpret_cast<std::byte*>(&length), sizeof length);
     if (length > longest_brick_header || length > size - before) throw damaged(file, "its header is cut off");
@@ -186,7 +186,7 @@ VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& o
       left - count * sizeof(BlockRange) != samples * scene::size_of(header.grid.type))
     throw damaged(file, fmt::format("{} samples in {} blocks do not fit its {} bytes", samples, count, size));
   std::vector<BlockRange> ranges(count);
-  const PositionalFile opened(file);
+  const system::PositionalFile opened(file);
   opened.read(before + length, reinterpret_cast<std::byte*>(ranges.data()), count * sizeof(BlockRange));
 
   VolumeFile result;
@@ -259,14 +259,14 @@ void write_bricks(const scene::SampleSource& source, const std::filesystem::path
     throw scene::bad_input(
         fmt::format("`block`: {} is not a block's side; give {} to {}", side, least_side, most_side));
   BrickWriter writer(source, side, tag_words(axes, tags));
-  AtomicFile out(file);
+  system::AtomicFile out(file);
   writer.write(out);
   out.commit();
 }
 
-std::unique_ptr<ScratchFile> scratch_bricks(const scene::SampleSource& source, const std::string& subject) {
+std::unique_ptr<system::ScratchFile> scratch_bricks(const scene::SampleSource& source, const std::string& subject) {
   BrickWriter writer(source, 64);
-  auto out = std::make_unique<ScratchFile>(subject, writer.bytes());
+  auto out = std::make_unique<system::ScratchFile>(subject, writer.bytes());
   writer.write(*out);
   return out;
 }
@@ -274,7 +274,8 @@ std::unique_ptr<ScratchFile> scratch_bricks(const scene::SampleSource& source, c
 bool unpacked_to_scratch(const StreamedSamples& samples, const VolumeOptions& options, const std::string& source,
                          VolumeFile& volume) {
   const std::uint64_t bytes = bytes_of(samples);
-  if (bytes <= options.most_in_memory || (!options.scratch_is_needed && !ScratchFile::has_room(bytes))) return false;
+  if (bytes <= options.most_in_memory || (!options.scratch_is_needed && !system::ScratchFile::has_room(bytes)))
+    return false;
   volume.scratch = scratch_bricks(samples, source);
   volume.source = open_bricks(volume.scratch->path(), {}, source).source;
   volume.in_memory = false;

@@ -38,7 +38,7 @@ void write_bricks(const scene::SampleSource& source, const std::filesystem::path
 
 /// The same as a file of this process's that others can open (scratch_file.hpp), for open_bricks(). Throws
 /// Error(bad_input) of `subject` if there is no room for it.
-std::unique_ptr<ScratchFile> scratch_bricks(const scene::SampleSource& source, const std::string& subject);
+std::unique_ptr<system::ScratchFile> scratch_bricks(const scene::SampleSource& source, const std::string& subject);
 
 /// Unpacks samples into such a file, a part at a time, and opens it: the volume's source and scratch. false, and
 /// nothing done, if they may stay in memory by VolumeOptions::most_in_memory or, if no room is no error, where there is

@@ -119,7 +119,7 @@ std::string camera_json(const CameraFile& view) {
 }
 
 void write_camera(const CameraFile& camera, const std::filesystem::path& file) {
-  AtomicFile output(file);
+  system::AtomicFile output(file);
   output.write(camera_json(camera));
   output.commit();
 }

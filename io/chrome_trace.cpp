@@ -182,7 +182,7 @@ std::string chrome_trace_events(const scene::Trace& trace, int rank, const std::
 
 void write_chrome_trace(std::span<const std::string> events_of_ranks, const TraceRun& run,
                         const std::filesystem::path& file) {
-  AtomicFile output(file);
+  system::AtomicFile output(file);
   output.write(R"({"displayTimeUnit":"ms","otherData":)");
   output.write(to_json(run).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   output.write(",\n\"traceEvents\":[");

@@ -13,7 +13,7 @@ namespace tessera::io {
 /// Lets OpenEXR write into an AtomicFile.
 class ExrStream : public Imf::OStream {
  public:
-  ExrStream(AtomicFile& file, const std::string& name) : Imf::OStream(name.c_str()), file_(file) {}
+  ExrStream(system::AtomicFile& file, const std::string& name) : Imf::OStream(name.c_str()), file_(file) {}
   void write(const char bytes[], int count) override {
     keep([&] { file_.write(bytes, static_cast<std::size_t>(count)); });
   }
@@ -36,7 +36,7 @@ class ExrStream : public Imf::OStream {
       throw;
     }
   }
-  AtomicFile& file_;
+  system::AtomicFile& file_;
   std::exception_ptr failure_;
 };
 

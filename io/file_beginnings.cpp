@@ -329,8 +329,9 @@ bool begins_as_nifti(const FileBeginning& file) {
 bool begins_as_dicom(const FileBeginning& file) { return looks_like_dicom(file.text); }
 /// Without a magic word, so that its name counts too.
 bool begins_as_analyze(const FileBeginning& file) {
-  const std::filesystem::path stem = lower_extension(file.file) == ".gz" ? file.file.stem() : file.file;
-  if (lower_extension(stem) != ".hdr" || begins_as_nifti(file) || nifti_header_size(file.text) != 348) return false;
+  const std::filesystem::path stem = system::lower_extension(file.file) == ".gz" ? file.file.stem() : file.file;
+  if (system::lower_extension(stem) != ".hdr" || begins_as_nifti(file) || nifti_header_size(file.text) != 348)
+    return false;
   const auto dimensions = [&](std::size_t low) { return file.text[low] >= 1 && file.text[low] <= 7; };
   return (file.text[41] == 0 && dimensions(40)) || (file.text[40] == 0 && dimensions(41));
 }

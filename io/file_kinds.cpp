@@ -247,8 +247,8 @@ const FormatRow& row_of_folder(const std::filesystem::path& folder) {
 std::span<const FormatRow> format_rows() { return rows; }
 
 const FormatRow* format_named(const std::filesystem::path& file) {
-  const bool compressed = lower_extension(file) == ".gz";
-  const std::string extension = lower_extension(compressed ? file.stem() : file);
+  const bool compressed = system::lower_extension(file) == ".gz";
+  const std::string extension = system::lower_extension(compressed ? file.stem() : file);
   if (extension.empty()) return nullptr;
   const auto* row =
       std::find_if(rows.begin(), rows.end(), [&](const FormatRow& r) { return has_extension(r, extension); });
@@ -263,8 +263,8 @@ const FormatRow* format_begun(const std::filesystem::path& file) {
   constexpr std::size_t length = 4096;
   std::string text = read_beginning(file, length);
   std::uint64_t size = std::filesystem::file_size(file, unknown);
-  if (looks_like_gzip(text)) {
-    const auto inner = inflate_beginning(std::as_bytes(std::span(text)), length);
+  if (system::looks_like_gzip(text)) {
+    const auto inner = system::inflate_beginning(std::as_bytes(std::span(text)), length);
     text.assign(reinterpret_cast<const char*>(inner.data()), inner.size());
     size = 0;
   }

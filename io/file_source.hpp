@@ -27,7 +27,7 @@ class FileSource final : public scene::SampleSource {
   void read_samples(const scene::SampleBox& box, const scene::SampleLayout& layout,
                     std::byte* destination) const override;
 
-  PositionalFile file_;
+  system::PositionalFile file_;
   std::uint64_t first_byte_;
   scene::ComponentChoice choice_;
   bool swapped_;

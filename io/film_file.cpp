@@ -154,8 +154,8 @@ struct FilmFile::State {
   void start(const std::filesystem::path& program);
   /// Before its end is waited for, after which its number may be another's.
   void forget_process() const {
-    const auto lock = io::naming_outputs();
-    io::remove_unfinished(process);
+    const auto lock = system::naming_outputs();
+    system::remove_unfinished(process);
   }
   /// No more pictures; waits for its end. Throws if that is not a good one.
   void end();
@@ -166,8 +166,8 @@ struct FilmFile::State {
   std::filesystem::path file;
   ImageSize size;
   FilmFileOptions options;
-  io::AtomicFile target;
-  io::Descriptor pictures, complaints;
+  system::AtomicFile target;
+  system::Descriptor pictures, complaints;
   pid_t process = -1;
   std::vector<std::uint8_t> bytes;
 };
@@ -176,17 +176,17 @@ void FilmFile::State::start(const std::filesystem::path& program) {
   std::array<int, 2> ends{};
   // A socket, whose writer is told that nobody reads and is not killed for it.
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) fail(std::strerror(errno));
-  pictures = io::Descriptor(ends[0]);
-  const io::Descriptor theirs(ends[1]);
-  complaints = io::Descriptor(::memfd_create("ffmpeg", MFD_CLOEXEC));
+  pictures = system::Descriptor(ends[0]);
+  const system::Descriptor theirs(ends[1]);
+  complaints = system::Descriptor(::memfd_create("ffmpeg", MFD_CLOEXEC));
   if (!complaints.is_open()) fail(std::strerror(errno));
 
   constexpr int output = 3;
   // Copies first, above all numbers that are given out below: what is copied from may be one of those.
-  const io::Descriptor in(::fcntl(theirs.get(), F_DUPFD_CLOEXEC, 10)),
+  const system::Descriptor in(::fcntl(theirs.get(), F_DUPFD_CLOEXEC, 10)),
       err(::fcntl(complaints.get(), F_DUPFD_CLOEXEC, 10)), out(::fcntl(target.descriptor(), F_DUPFD_CLOEXEC, 10));
   if (!in.is_open() || !err.is_open() || !out.is_open()) fail(std::strerror(errno));
-  io::SpawnPlan plan;
+  system::SpawnPlan plan;
   ::posix_spawn_file_actions_adddup2(&plan.files, in.get(), STDIN_FILENO);
   ::posix_spawn_file_actions_adddup2(&plan.files, err.get(), STDERR_FILENO);
   ::posix_spawn_file_actions_addopen(&plan.files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
@@ -216,7 +216,7 @@ void FilmFile::State::fail(const std::string& what) const {
 }
 
 void FilmFile::State::end() {
-  pictures = io::Descriptor();
+  pictures = system::Descriptor();
   int status = 0;
   // Looked at first, and taken away once it is no longer to be ended by abandon_outputs().
   siginfo_t ended{};
@@ -237,7 +237,7 @@ bool is_film_name(const std::filesystem::path& file) { return kind_of(file) != n
 void check_film_file(const std::filesystem::path& file) {
   require_kind(file);
   require_ffmpeg(file);
-  io::check_writable(file);
+  system::check_writable(file);
 }
 
 FilmFile::FilmFile(std::filesystem::path file, ImageSize size, const FilmFileOptions& options) {

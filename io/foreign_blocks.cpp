@@ -52,7 +52,7 @@ std::span<const T> numbers_in(std::span<const std::byte> bytes) {
 void copy_points(const ForeignFile& file, const ForeignArray& points, CellBlock& block, const std::string& where) {
   if (points.components != 3)
     throw scene::bad_input(fmt::format("{}: its points have {} coordinates; give x y z", where, points.components));
-  reserve_large(block.positions, points.tuples);
+  system::reserve_large(block.positions, points.tuples);
   with_number_type(points.type, [&](auto zero) {
     using Number = decltype(zero);
     file.arrays->stream(points, where, [&](std::span<const std::byte> tuples) {
@@ -105,7 +105,7 @@ void check_tets(std::span<const scene::Tet> tets, std::size_t points, const std:
 /// All of an array whose tuples are `Stored`, as what they are in memory.
 template <class Stored, class T>
 void copy_numbers(const ForeignFile& file, const ForeignArray& array, std::vector<T>& to, const std::string& where) {
-  reserve_large(to, array.bytes() / sizeof(Stored));
+  system::reserve_large(to, array.bytes() / sizeof(Stored));
   file.arrays->stream(array, where, [&](std::span<const std::byte> tuples) {
     const auto numbers = numbers_in<Stored>(tuples);
     to.insert(to.end(), numbers.begin(), numbers.end());

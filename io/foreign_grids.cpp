@@ -86,7 +86,7 @@ void set_source(const ForeignFile& file, const ForeignPart& part, const FieldCho
     grid.type = choice.component != magnitude ? type : narrow ? SampleType::float32 : SampleType::float64;
     const scene::ComponentChoice of_tuple{field.components, choice.component == magnitude ? -1 : choice.component,
                                           type};
-    const auto tuples = [&](const ByteSink& use) { file.arrays->stream(*array, file.source, use); };
+    const auto tuples = [&](const system::ByteSink& use) { file.arrays->stream(*array, file.source, use); };
     if (unpacked_to_scratch({grid, of_tuple, false, tuples}, options, file.source, result)) return;
     auto owner = std::make_shared<const std::vector<std::byte>>(file.arrays->copy(*array, file.source));
     const std::span<const std::byte> payload = *owner;

@@ -29,7 +29,7 @@ void require_solver_beginning(const std::filesystem::path& file, std::string_vie
   if (!is_gambit && reader != "avs_ucd") return;
   const std::string first = read_beginning(file, 2);
   const bool is_binary_ucd = !is_gambit && first.starts_with('\a');
-  if (format_begun(file) == nullptr && !is_binary_ucd && !looks_like_gzip(first))
+  if (format_begun(file) == nullptr && !is_binary_ucd && !system::looks_like_gzip(first))
     throw scene::bad_input(fmt::format("{}: it does not begin as a file of {} does; check what it is", file.string(),
                                        is_gambit ? "GAMBIT" : "AVS UCD"));
 }
@@ -99,7 +99,7 @@ MeshBlocks blocks_of_solver(const ForeignFile& opened) {
 }  // namespace
 
 MeshBlocks read_vtk_xml(const std::filesystem::path& file, const MeshOptions& options) {
-  const std::string source = file.string(), extension = lower_extension(file), type = xml_type(file);
+  const std::string source = file.string(), extension = system::lower_extension(file), type = xml_type(file);
   const XmlKind* const kind = kind_of(type);
   if (type.empty()) {
     require_no_utf16(file);

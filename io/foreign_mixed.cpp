@@ -28,7 +28,8 @@ bool holds_one_grid(const std::filesystem::path& file, const ForeignReader& by) 
            (parts[0].kind == ForeignPart::Kind::image || parts[0].kind == ForeignPart::Kind::rectilinear);
   };
   try {
-    if (looks_like_gzip(read_beginning(file, 2))) return InflatedFile(file, InflatedFile::Holds::grid).read(look);
+    if (system::looks_like_gzip(read_beginning(file, 2)))
+      return InflatedFile(file, InflatedFile::Holds::grid).read(look);
     return look(file);
   } catch (const scene::Error&) {
     return false;

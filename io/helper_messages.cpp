@@ -73,7 +73,7 @@ std::optional<HelperMessage> receive_message(int socket) {
       rights != nullptr && rights->cmsg_level == SOL_SOCKET && rights->cmsg_type == SCM_RIGHTS) {
     int file = -1;
     std::memcpy(&file, CMSG_DATA(rights), sizeof file);
-    message.file = Descriptor(file);
+    message.file = system::Descriptor(file);
   }
   if (got != static_cast<ssize_t>(sizeof count) || count > longest_message) return std::nullopt;
   // Bytes are made room for as they come: the count alone is only somebody's word.

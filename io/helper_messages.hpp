@@ -23,7 +23,7 @@ inline constexpr int helper_version = 6;
 
 struct HelperMessage {
   std::vector<std::uint8_t> bytes;
-  Descriptor file;
+  system::Descriptor file;
 };
 
 /// False if the other side is gone.

@@ -39,7 +39,7 @@ constexpr std::size_t slots = 2, slot_bytes = 2 << 20;
 
 bool is_picture(const std::filesystem::path& file) {
   constexpr std::array<std::string_view, 7> extensions = {".png", ".exr", ".jpg", ".jpeg", ".tif", ".tiff", ".pfm"};
-  return std::ranges::find(extensions, lower_extension(file)) != extensions.end();
+  return std::ranges::find(extensions, system::lower_extension(file)) != extensions.end();
 }
 
 /// The caller's environment without what would have the helper take itself for a rank.
@@ -126,7 +126,7 @@ std::optional<Course> course_of(std::span<const std::uint8_t> message) {
 
 }  // namespace
 
-SharedBytes::SharedBytes(const Descriptor& file, std::uint64_t count) : size_(static_cast<std::size_t>(count)) {
+SharedBytes::SharedBytes(const system::Descriptor& file, std::uint64_t count) : size_(static_cast<std::size_t>(count)) {
   struct stat facts {};
   if (!file.is_open() || ::fcntl(file.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE) != 0 ||
       ::fstat(file.get(), &facts) != 0 || static_cast<std::uint64_t>(facts.st_size) != count)
@@ -137,8 +137,8 @@ SharedBytes::SharedBytes(const Descriptor& file, std::uint64_t count) : size_(st
   start_ = start;
 }
 
-SharedBytes SharedBytes::made(std::size_t count, Descriptor& file) {
-  file = Descriptor(::memfd_create("tessera", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+SharedBytes SharedBytes::made(std::size_t count, system::Descriptor& file) {
+  file = system::Descriptor(::memfd_create("tessera", MFD_CLOEXEC | MFD_ALLOW_SEALING));
   if (!file.is_open() || ::ftruncate(file.get(), static_cast<off_t>(count)) != 0 ||
       ::fcntl(file.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)
     throw std::bad_alloc();
@@ -169,12 +169,12 @@ HelperProcess::HelperProcess(HelperTask task) : task_(std::move(task)) {
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
     fail_to_start(task_.reader, fmt::format("there is no socket for it: {}", std::strerror(errno)));
-  socket_ = Descriptor(ends[0]);
-  const Descriptor theirs(ends[1]);
+  socket_ = system::Descriptor(ends[0]);
+  const system::Descriptor theirs(ends[1]);
 
   constexpr int helper_end = 3;  // helper/serve.cpp
   // What a terminal sends to caller and helper alike is the caller's to answer, with whose end the helper ends.
-  SpawnPlan plan({SIGINT, SIGTERM, SIGHUP, SIGQUIT});
+  system::SpawnPlan plan({SIGINT, SIGTERM, SIGHUP, SIGQUIT});
   // First of all: it may be one of those that follow, where the caller has closed them.
   ::posix_spawn_file_actions_adddup2(&plan.files, theirs.get(), helper_end);
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
@@ -188,7 +188,7 @@ HelperProcess::HelperProcess(HelperTask task) : task_(std::move(task)) {
 }
 
 HelperProcess::~HelperProcess() {
-  socket_ = Descriptor();  // which is how it knows that it may end
+  socket_ = system::Descriptor();  // which is how it knows that it may end
   forget();
   while (process_ >= 0 && ::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
   }
@@ -196,13 +196,13 @@ HelperProcess::~HelperProcess() {
 
 void HelperProcess::forget() const {
   if (process_ < 0) return;
-  const auto lock = naming_outputs();
-  remove_unfinished(process_);
+  const auto lock = system::naming_outputs();
+  system::remove_unfinished(process_);
 }
 
 void HelperProcess::report_death(const std::string& subject) {
   if (!death_) {
-    socket_ = Descriptor();
+    socket_ = system::Descriptor();
     forget();
     int status = 0;
     pid_t ended = -1;
@@ -228,7 +228,7 @@ void HelperProcess::send(const Json& request, const std::string& subject, int fi
 }
 
 std::optional<HelperMessage> HelperProcess::await() {
-  IdleWatch watch(process_);
+  system::IdleWatch watch(process_);
   pollfd socket{.fd = socket_.get(), .events = POLLIN, .revents = 0};
   const auto step = std::min<std::chrono::milliseconds>(task_.patience / 4, std::chrono::seconds(1));
   for (;;) {
@@ -271,7 +271,7 @@ Json content_of(const HelperMessage& reply, const std::string& subject) {
       for (const Json& name : *opened) {
         const std::filesystem::path file(std::string(name.get_binary().begin(), name.get_binary().end()));
         // Some look into every file of a folder: pictures of earlier runs are none of theirs.
-        if (!is_picture(file)) note_read(file);
+        if (!is_picture(file)) system::note_read(file);
       }
     if (const auto error = json.find("error"); error != json.end()) {
       line = error->at("line").get<std::string>();
@@ -295,7 +295,7 @@ Json HelperProcess::call(const Json& request, const std::string& subject) {
 }
 
 void HelperProcess::open_window(const std::string& subject) {
-  Descriptor file;
+  system::Descriptor file;
   SharedBytes window = SharedBytes::made(slots * slot_bytes, file);
   send({{"do", "window"}, {"slot", slot_bytes}}, subject, file.get());
   content_of(receive(subject), subject);

@@ -26,9 +26,9 @@ class SharedBytes {
  public:
   SharedBytes() = default;
   /// Throws std::bad_alloc if it cannot be mapped, std::invalid_argument unless it holds `count` bytes.
-  SharedBytes(const Descriptor& file, std::uint64_t count);
+  SharedBytes(const system::Descriptor& file, std::uint64_t count);
   /// Memory that another process may fill and change, and not shrink, by `file`.
-  static SharedBytes made(std::size_t count, Descriptor& file);
+  static SharedBytes made(std::size_t count, system::Descriptor& file);
   ~SharedBytes();
   SharedBytes(SharedBytes&& other) noexcept;
   SharedBytes& operator=(SharedBytes&& other) noexcept;
@@ -112,7 +112,7 @@ class HelperProcess final : public ArraySource {
   HelperTask task_;
   std::mutex mutex_;
   int process_ = -1;
-  Descriptor socket_;
+  system::Descriptor socket_;
   SharedBytes window_;                     ///< of slots for stream(); empty until it is needed
   std::uint64_t expected_ = 0, came_ = 0;  ///< bytes of stream()
   bool has_begun_ = false;                 ///< it has said that it is there

@@ -91,7 +91,7 @@ void write_deep_exr(const scene::DeepImage& image, const std::filesystem::path& 
     throw scene::Error(scene::ErrorCode::system_failure, fmt::format("{}: {} sample lists for {} pixels; please report",
                                                                      file.string(), image.begin.size(), pixels));
   check_tidy(image, file);
-  AtomicFile target(file);
+  system::AtomicFile target(file);
   try {
     Imf::Header header(image.size.width, image.size.height);
     header.compression() = Imf::ZIPS_COMPRESSION;

@@ -132,7 +132,7 @@ class MemoryStream : public Imf::OStream {
 }  // namespace
 
 void write_exr(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
-  AtomicFile target(file);
+  system::AtomicFile target(file);
   writing(file, [&] {
     ExrStream stream(target, file.string());
     encode(stream, image, file, options);

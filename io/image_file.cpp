@@ -117,7 +117,7 @@ void write_image(const scene::Image& image, const std::filesystem::path& file, c
 scene::Image read_image(const std::filesystem::path& file) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) throw missing_file(file);
+  if (!std::filesystem::exists(status)) throw system::missing_file(file);
   if (std::filesystem::is_directory(status)) throw scene::bad_input(file.string() + ": is a folder; name a file in it");
   try {
     switch (image_format_of(file)) {
@@ -140,7 +140,7 @@ void check_image_path(const std::filesystem::path& file) {
   if (image_format_of(file) == Format::tiff && !has_tiff())
     throw scene::bad_input(file.string() + ": this build leaves .tif out; build with TESSERA_TIFF=ON, or write .png");
   // The only test that holds for every file system and user: begin such a file, and leave it.
-  check_writable(file);
+  system::check_writable(file);
 }
 
 }  // namespace tessera::io

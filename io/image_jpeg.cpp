@@ -106,7 +106,7 @@ bool has_jpeg() { return true; }
 
 void write_jpeg(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
   Jpeg jpeg;
-  AtomicFile target(file);
+  system::AtomicFile target(file);
   encode(jpeg, image, file, options);
   target.write(jpeg.bytes, jpeg.size);
   target.commit();

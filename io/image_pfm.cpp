@@ -20,7 +20,7 @@ static_assert(std::endian::native == std::endian::little, ".pfm is written as me
 // little endian), each followed by one white space, then rows of RGB floats from the bottom up.
 
 void write_pfm(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
-  AtomicFile target(file);
+  system::AtomicFile target(file);
   target.write(fmt::format("PF\n{} {}\n-1.0\n", image.size.width, image.size.height));
   const auto width = static_cast<std::size_t>(image.size.width);
   std::vector<float> row(4 * width), rgb(3 * width);

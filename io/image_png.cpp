@@ -143,7 +143,7 @@ void encode(const scene::Image& image, const std::filesystem::path& file, const 
 }  // namespace
 
 void write_png(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
-  AtomicFile target(file);
+  system::AtomicFile target(file);
   encode(image, file, options, [&](const void* bytes, std::size_t count) { target.write(bytes, count); });
   target.commit();
 }

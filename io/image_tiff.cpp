@@ -22,7 +22,7 @@ namespace {
 struct Target {
   explicit Target(const std::filesystem::path& path) : file(path) {}
 
-  AtomicFile file;
+  system::AtomicFile file;
   std::uint64_t size = 0;
   std::string message;
   std::exception_ptr error;

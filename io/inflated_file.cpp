@@ -21,7 +21,7 @@ namespace {
 /// The name of the file without a name, which ends in the gzip file's size, so that helpers know it too.
 constexpr std::string_view name_begin = "tessera-gzip-";
 
-InflateLimit limit_of(const std::filesystem::path& packed, InflatedFile::Holds holds) {
+system::InflateLimit limit_of(const std::filesystem::path& packed, InflatedFile::Holds holds) {
   constexpr std::uint64_t always = 64 << 20;
   return {always + static_cast<std::uint64_t>(holds) * require_file(packed), false};
 }
@@ -29,22 +29,23 @@ InflateLimit limit_of(const std::filesystem::path& packed, InflatedFile::Holds h
 }  // namespace
 
 InflatedFile::InflatedFile(const std::filesystem::path& file, Holds holds)
-    : InflatedFile(file, PositionalFile(file), limit_of(file, holds)) {}
+    : InflatedFile(file, system::PositionalFile(file), limit_of(file, holds)) {}
 
 InflatedFile::InflatedFile(const std::filesystem::path& file, std::uint64_t first)
-    : InflatedFile(file, PositionalFile(file), InflateLimit{first, true}) {}
+    : InflatedFile(file, system::PositionalFile(file), system::InflateLimit{first, true}) {}
 
-InflatedFile::InflatedFile(const std::filesystem::path& file, const PositionalFile& packed, const InflateLimit& limit)
+InflatedFile::InflatedFile(const std::filesystem::path& file, const system::PositionalFile& packed,
+                           const system::InflateLimit& limit)
     : file_(file), descriptor_(::memfd_create(fmt::format("{}{}", name_begin, packed.size()).c_str(), MFD_CLOEXEC)) {
   if (!descriptor_.is_open()) throw std::bad_alloc();
-  if (inflate_to(descriptor_.get(), packed, limit, available_memory() / 10 * 9, file.string()) == 0)
+  if (system::inflate_to(descriptor_.get(), packed, limit, system::available_memory() / 10 * 9, file.string()) == 0)
     throw scene::bad_input(fmt::format("{}: it holds nothing; write it anew", file.string()));
   // By number, since the helper opens it too.
   path_ = fmt::format("/proc/{}/fd/{}", ::getpid(), descriptor_.get());
 }
 
 std::filesystem::path InflatedFile::inner_name() const {
-  return lower_extension(file_) == ".gz" ? file_.parent_path() / file_.stem() : file_;
+  return system::lower_extension(file_) == ".gz" ? file_.parent_path() / file_.stem() : file_;
 }
 
 std::string InflatedFile::renamed(std::string line) const {

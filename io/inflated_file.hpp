@@ -41,12 +41,13 @@ class InflatedFile {
   [[nodiscard]] std::string renamed(std::string line) const;
 
  private:
-  InflatedFile(const std::filesystem::path& file, const PositionalFile& packed, const InflateLimit& limit);
+  InflatedFile(const std::filesystem::path& file, const system::PositionalFile& packed,
+               const system::InflateLimit& limit);
 
   [[nodiscard]] scene::Error renamed(const scene::Error& error) const;
 
   std::filesystem::path file_, path_;
-  Descriptor descriptor_;
+  system::Descriptor descriptor_;
 };
 
 /// Whether a name is one that InflatedFile gave, beside which nothing lies.

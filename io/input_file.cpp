@@ -15,14 +15,14 @@ namespace tessera::io {
 namespace {
 
 /// Whether a file of `size` bytes is the text that Git LFS keeps in the place of a large file.
-bool is_git_lfs_pointer(const Descriptor& file, std::uint64_t size) {
+bool is_git_lfs_pointer(const system::Descriptor& file, std::uint64_t size) {
   constexpr std::string_view first_line = "version https://git-lfs.github.com/spec/v1";
   constexpr std::uint64_t longest = 1024;  // by the specification of Git LFS
   return size >= first_line.size() && size <= longest && beginning_of(file, first_line.size()) == first_line;
 }
 
 struct OpenedInput {
-  Descriptor file;
+  system::Descriptor file;
   std::uint64_t size = 0;
 };
 
@@ -30,21 +30,21 @@ struct OpenedInput {
 OpenedInput open_input(const std::filesystem::path& file) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status) && error != std::errc::permission_denied) throw missing_file(file);
+  if (!std::filesystem::exists(status) && error != std::errc::permission_denied) throw system::missing_file(file);
   if (is_input_folder(file)) return {};
   if (std::filesystem::is_directory(status))
     throw scene::bad_input(fmt::format(
         "{}: it is a directory; name a file in it, or the folder of an OpenFOAM case, an AMReX plot file or of DICOM "
         "files",
         file.string()));
-  OpenedInput opened{open_regular(file, file.string())};
-  opened.size = size_of(opened.file, file.string());
+  OpenedInput opened{system::open_regular(file, file.string())};
+  opened.size = system::file_size(opened.file, file.string());
   // OpenFOAM's is a mark on the folder that it lies in.
-  if (opened.size == 0 && lower_extension(file) != ".foam" && lower_extension(file) != ".openfoam")
+  if (opened.size == 0 && system::lower_extension(file) != ".foam" && system::lower_extension(file) != ".openfoam")
     throw scene::bad_input(fmt::format("{}: it is empty; write it anew", file.string()));
   if (is_git_lfs_pointer(opened.file, opened.size))
     throw scene::bad_input(fmt::format("{}: a Git LFS pointer; `git lfs pull` brings the file itself", file.string()));
-  note_read(file);
+  system::note_read(file);
   return opened;
 }
 
@@ -54,7 +54,7 @@ std::uint64_t require_file(const std::filesystem::path& file) { return open_inpu
 
 std::string read_beginning(const std::filesystem::path& file, std::size_t limit) {
   const OpenedInput opened = open_input(file);
-  return beginning_of(opened.file, std::min<std::uint64_t>(opened.size, limit));
+  return system::beginning_of(opened.file, std::min<std::uint64_t>(opened.size, limit));
 }
 
 namespace {
@@ -64,7 +64,7 @@ std::string beginning_if_any(const std::filesystem::path& file, std::uint64_t co
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(file, unknown)) return {};
   try {
-    return beginning_of(open_regular(file, file.string()), count);
+    return system::beginning_of(system::open_regular(file, file.string()), count);
   } catch (const scene::Error&) {
     return {};
   }

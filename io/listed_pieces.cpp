@@ -134,7 +134,7 @@ PieceList piece_list(const std::filesystem::path& file, const BlockChoice& choic
     return list;
   }
   list.format = "VTK XML parallel unstructured grid";
-  if (const std::string extension = lower_extension(file); !extension.empty() && extension != ".pvtu")
+  if (const std::string extension = system::lower_extension(file); !extension.empty() && extension != ".pvtu")
     list.notes.push_back(fmt::format("the file is a {}, read as {}", extension.substr(1), list.format));
   add_pieces_of_whole(file, "", list);
   return list;

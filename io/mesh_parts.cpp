@@ -19,7 +19,7 @@
 namespace tessera::io {
 namespace {
 
-bool is_tets(const std::filesystem::path& file) { return lower_extension(file) == ".tets"; }
+bool is_tets(const std::filesystem::path& file) { return system::lower_extension(file) == ".tets"; }
 
 }  // namespace
 
@@ -54,7 +54,7 @@ struct MeshPartReading::State {
 
   void read_tets(int part, int parts) {
     const std::string source = file.string();
-    const PositionalFile opened(file);
+    const system::PositionalFile opened(file);
     const TetsBytes bytes(opened);
     const TetsHeader header = tets_header(bytes, source);
     TetsRange range = parse_tets_range(bytes, first_of_part(header.tets, part, parts),

@@ -83,7 +83,7 @@ MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row,
     case FileKind::tetgen_surface:
       return read_surface(file, row.kind, options.max_volume, options.progress);
     case FileKind::tets:
-      return blocks_of_tets(parse_tets(TetsBytes(PositionalFile(file)), file.string()));
+      return blocks_of_tets(parse_tets(TetsBytes(system::PositionalFile(file)), file.string()));
     case FileKind::amr:
       return read_amr(file, row.reader, options);
     default:
@@ -114,7 +114,7 @@ MeshBlocks warped(MeshBlocks read, const MeshOptions& options, const std::string
 MeshBlocks read_unscaled_blocks(const std::filesystem::path& file, const MeshOptions& options) {
   const FormatRow* const row = format_of(file);
   if (row == nullptr || row->kind == FileKind::unread) refuse_as_mesh(file);  // inflated, it has no name that tells
-  if (std::filesystem::is_directory(file) || !looks_like_gzip(read_beginning(file, 2)))
+  if (std::filesystem::is_directory(file) || !system::looks_like_gzip(read_beginning(file, 2)))
     return warped(chosen_blocks(read_content(file, *row, options), options.blocks), options, file.string());
   const InflatedFile inflated(
       file, row->holds == FileHolds::grid_or_mesh ? InflatedFile::Holds::grid : InflatedFile::Holds::mesh);

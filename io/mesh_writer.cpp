@@ -24,7 +24,7 @@ float to_float(double value, const std::string& file) {
 /// Collects small pieces so that the file sees few writes.
 class Chunks {
  public:
-  explicit Chunks(AtomicFile& file) : file_(file) {}
+  explicit Chunks(system::AtomicFile& file) : file_(file) {}
   template <class T>
   void put(T value) {
     if (used_ + sizeof value > buffer_.size()) flush();
@@ -37,7 +37,7 @@ class Chunks {
   }
 
  private:
-  AtomicFile& file_;
+  system::AtomicFile& file_;
   std::vector<std::byte> buffer_ = std::vector<std::byte>(1 << 20);
   std::size_t used_ = 0;
 };
@@ -52,7 +52,7 @@ void write_tets(const scene::TetMeshView& mesh, const std::filesystem::path& fil
   if (mesh.positions.size() > static_cast<std::size_t>(INT32_MAX))
     throw scene::bad_input(fmt::format("{}: {} points are too many for the int32 indices of .tets; write .vtu", target,
                                        mesh.positions.size()));
-  AtomicFile out(file);
+  system::AtomicFile out(file);
   Chunks chunks(out);
   chunks.put(static_cast<std::int64_t>(mesh.positions.size()));
   chunks.put(static_cast<std::int64_t>(mesh.tets.size()));

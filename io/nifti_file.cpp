@@ -24,7 +24,7 @@ std::vector<std::byte> header_bytes(const std::filesystem::path& file) {
   constexpr std::size_t enough = 1 << 16;  // of a stream too: it names its file, and deflate expands nothing by much
   const std::string beginning = read_beginning(file, enough);
   const auto bytes = std::as_bytes(std::span(beginning));
-  if (looks_like_gzip(beginning)) return inflate_beginning(bytes, header_size_2);
+  if (system::looks_like_gzip(beginning)) return system::inflate_beginning(bytes, header_size_2);
   const auto first = bytes.first(std::min(bytes.size(), header_size_2));
   return {first.begin(), first.end()};
 }
@@ -227,7 +227,7 @@ void set_nifti_type(const NiftiHeader& header, const std::filesystem::path& file
 /// The file of samples of a header of its own: x.img of x.hdr, packed or not.
 std::filesystem::path image_beside(const std::filesystem::path& header) {
   std::filesystem::path stem = header;
-  if (lower_extension(stem) == ".gz") stem.replace_extension();
+  if (system::lower_extension(stem) == ".gz") stem.replace_extension();
   const bool capitals = stem.extension() == ".HDR";
   stem.replace_extension(capitals ? ".IMG" : ".img");
   for (const char* end : {"", ".gz"}) {
@@ -243,8 +243,8 @@ std::filesystem::path image_beside(const std::filesystem::path& header) {
 /// x.hdr of x.img; any other name is the header's.
 std::filesystem::path header_beside(const std::filesystem::path& file) {
   std::filesystem::path stem = file;
-  if (lower_extension(stem) == ".gz") stem.replace_extension();
-  if (lower_extension(stem) != ".img") return file;
+  if (system::lower_extension(stem) == ".gz") stem.replace_extension();
+  if (system::lower_extension(stem) != ".img") return file;
   stem.replace_extension(stem.extension() == ".IMG" ? ".HDR" : ".hdr");
   for (const char* end : {"", ".gz"}) {
     std::filesystem::path header = stem;
@@ -265,7 +265,7 @@ void set_nifti_payload(const NiftiHeader& header, const std::filesystem::path& f
   volume.offset = static_cast<std::uint64_t>(std::max(offset, least));
   volume.payload = header.separate() ? image_beside(file) : file;
   require_file(volume.payload);
-  volume.compressed = volume.compressed_whole = looks_like_gzip(read_beginning(volume.payload, 2));
+  volume.compressed = volume.compressed_whole = system::looks_like_gzip(read_beginning(volume.payload, 2));
 }
 
 }  // namespace

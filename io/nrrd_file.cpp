@@ -67,7 +67,7 @@ const std::string& required_field(const NrrdFields& fields, const char* name, co
 std::uint64_t after_lines(const std::filesystem::path& payload, std::uint64_t offset, std::int64_t lines) {
   if (lines == 0) return offset;
   const std::uint64_t size = require_file(payload);
-  const PositionalFile opened(payload);
+  const system::PositionalFile opened(payload);
   std::vector<char> part(1 << 16);
   while (offset < size) {
     const std::uint64_t count = std::min<std::uint64_t>(part.size(), size - offset);

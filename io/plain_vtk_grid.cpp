@@ -177,8 +177,8 @@ bool read_text(std::string_view text, NumberType type, std::span<double> numbers
 }
 
 /// None if anything is odd.
-std::optional<AxisCoordinates> axis_of(const PositionalFile& file, const ElementFound& array, const GridElements& found,
-                                       const GridWords& words, std::int64_t points) {
+std::optional<AxisCoordinates> axis_of(const system::PositionalFile& file, const ElementFound& array,
+                                       const GridElements& found, const GridWords& words, std::int64_t points) {
   const auto type = vtk_xml_number_type(word(array.attributes, "type"));
   if (!type || word(array.attributes, "NumberOfComponents", "1") != "1") return std::nullopt;
   AxisCoordinates axis{*type, std::vector<double>(static_cast<std::size_t>(points))};
@@ -197,7 +197,7 @@ std::optional<AxisCoordinates> axis_of(const PositionalFile& file, const Element
   return axis;
 }
 
-bool set_axes_of(const PositionalFile& file, const GridElements& found, const GridWords& words,
+bool set_axes_of(const system::PositionalFile& file, const GridElements& found, const GridWords& words,
                  scene::GridGeometry& g) {
   std::array<AxisCoordinates, 3> axes;
   if (found.coordinates != 1 || found.axes.size() != axes.size()) return false;
@@ -211,7 +211,7 @@ bool set_axes_of(const PositionalFile& file, const GridElements& found, const Gr
 }
 
 /// Leaves out the samples, which end at `end`; false: too much is behind them for words.
-bool leave_out(const PositionalFile& file, std::size_t samples, std::uint64_t end, const scene::GridGeometry& g,
+bool leave_out(const system::PositionalFile& file, std::size_t samples, std::uint64_t end, const scene::GridGeometry& g,
                GridWords& words) {
   std::uint64_t most = longest_beginning;
   for (const std::int64_t n : g.points) most += longest_number * static_cast<std::uint64_t>(n);
@@ -255,7 +255,7 @@ std::optional<StoredVolume> read_plain_vtk_grid(const std::filesystem::path& pat
   const std::uint64_t count = static_cast<std::uint64_t>(g.all_samples().count()) *
                               static_cast<std::uint64_t>(components[0]) * scene::size_of(volume.number);
   if (count <= most_in_memory) return std::nullopt;
-  const PositionalFile file(path);
+  const system::PositionalFile file(path);
   const auto end = end_of_vtk_array(file, *place, count);
   if (!end) return std::nullopt;
   if (word(found.samples.attributes, "format") == "binary") {

@@ -68,7 +68,7 @@ void PvtuWriter::add(const scene::TetMesh& piece) {
 }
 
 void PvtuWriter::commit() {
-  AtomicFile list_file(file_);
+  system::AtomicFile list_file(file_);
   list_file.write(list());
   for (int p = 0; p < pieces_; ++p) {
     const auto name = pvtu_piece_name(file_, p);

@@ -55,8 +55,8 @@ scene::Error too_few(const StoredVolume& volume, const Wanted& wanted, std::uint
 }
 
 /// What to unpack of a compressed volume's file.
-InflatedRange range_of(const StoredVolume& volume, const std::filesystem::path& file, const Wanted& wanted,
-                       std::uint64_t size) {
+system::InflatedRange range_of(const StoredVolume& volume, const std::filesystem::path& file, const Wanted& wanted,
+                               std::uint64_t size) {
   const std::uint64_t skip = volume.compressed_whole ? 0 : volume.offset;
   const std::uint64_t before = (volume.compressed_whole ? volume.offset : 0) + volume.skip_inflated;
   if (skip > size) throw damaged(file, fmt::format("its samples begin at byte {} of {}", skip, size));
@@ -80,7 +80,7 @@ VolumePayload payload_of_file(const StoredVolume& volume, const std::filesystem:
   const std::uint64_t size = require_file(file), end = wanted.first + wanted.count;
   if (volume.compressed) {
     std::vector<std::byte> bytes;
-    inflate_parts(file, range_of(volume, file, wanted, size), source, [&](std::span<const std::byte> part) {
+    system::inflate_parts(file, range_of(volume, file, wanted, size), source, [&](std::span<const std::byte> part) {
       if (bytes.empty()) bytes.reserve(wanted.count);  // which so many compressed ones can hold
       bytes.insert(bytes.end(), part.begin(), part.end());
     });
@@ -138,7 +138,7 @@ VolumePayload payload_of_slices(const StoredVolume& volume, const Wanted& wanted
 VolumePayload in_memory(VolumePayload payload, const std::string& source) {
   if (!payload.in_file) return payload;
   std::vector<std::byte> bytes(payload.count);
-  PositionalFile(payload.in_file->file, source).read(payload.in_file->first_byte, bytes.data(), bytes.size());
+  system::PositionalFile(payload.in_file->file, source).read(payload.in_file->first_byte, bytes.data(), bytes.size());
   return kept(std::move(bytes), 0);
 }
 
@@ -158,11 +158,12 @@ bool comes_in_parts(const StoredVolume& volume) {
   return as_it_comes && volume.slices.empty() && (volume.compressed || volume.vtk_array);
 }
 
-void unpack_payload(const StoredVolume& volume, std::size_t step, const std::string& source, const ByteSink& use) {
+void unpack_payload(const StoredVolume& volume, std::size_t step, const std::string& source,
+                    const system::ByteSink& use) {
   const Wanted wanted = wanted_of(volume, step, source);
   if (volume.vtk_array) return read_vtk_array(volume.payload, *volume.vtk_array, wanted.count, source, use);
   const std::uint64_t size = require_file(volume.payload);
-  inflate_parts(volume.payload, range_of(volume, volume.payload, wanted, size), volume.payload.string(), use);
+  system::inflate_parts(volume.payload, range_of(volume, volume.payload, wanted, size), volume.payload.string(), use);
 }
 
 VolumePayload interleaved(const StoredVolume& volume, const VolumePayload& planar) {

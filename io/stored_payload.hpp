@@ -40,7 +40,8 @@ std::uint64_t payload_bytes(const StoredVolume& volume, const std::string& sourc
 bool comes_in_parts(const StoredVolume& volume);
 
 /// Gives `use` those bytes, in parts. Throws as payload_of(), or when the stream turns out to be damaged.
-void unpack_payload(const StoredVolume& volume, std::size_t step, const std::string& source, const ByteSink& use);
+void unpack_payload(const StoredVolume& volume, std::size_t step, const std::string& source,
+                    const system::ByteSink& use);
 
 /// The tuples of a volume whose components lie one after the other, in memory, each tuple together.
 VolumePayload interleaved(const StoredVolume& volume, const VolumePayload& planar);

@@ -87,11 +87,11 @@ std::uint64_t bytes_of(const StreamedSamples& samples) {
   return static_cast<std::uint64_t>(samples.grid.geometry.all_samples().count()) * scene::size_of(samples.grid.type);
 }
 
-std::unique_ptr<ScratchFile> scratch_bricks(const StreamedSamples& samples, const std::string& subject) {
+std::unique_ptr<system::ScratchFile> scratch_bricks(const StreamedSamples& samples, const std::string& subject) {
   constexpr int side = 64;
   const BrickLayout layout(samples.grid, side);
   const Blocks& blocks = layout.blocks();
-  auto out = std::make_unique<ScratchFile>(subject, layout.bytes());
+  auto out = std::make_unique<system::ScratchFile>(subject, layout.bytes());
   const GridIndex n = samples.grid.geometry.samples();
   const std::size_t size = scene::size_of(samples.grid.type);
   std::vector<BlockRange> ranges(static_cast<std::size_t>(blocks.total()));

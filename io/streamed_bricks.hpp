@@ -17,7 +17,7 @@ struct StreamedSamples {
   scene::ComponentChoice choice;
   bool swapped = false;  ///< tuples are of the other byte order than this machine's
   /// Gives the sink the tuples of all samples, no byte more or fewer. May be called again, for another pass.
-  std::function<void(const ByteSink&)> tuples;
+  std::function<void(const system::ByteSink&)> tuples;
 };
 
 /// Bytes that its samples take as the grid stores them.
@@ -27,7 +27,7 @@ std::uint64_t bytes_of(const StreamedSamples& samples);
 /// slices at a time: 8 MiB of tuples and as much of samples, or what one slice takes if that is more. Ranges are found
 /// on the threads of the caller's arena. Throws what `tuples` throws, and Error(bad_input) of `subject` if there is no
 /// room for the file.
-std::unique_ptr<ScratchFile> scratch_bricks(const StreamedSamples& samples, const std::string& subject);
+std::unique_ptr<system::ScratchFile> scratch_bricks(const StreamedSamples& samples, const std::string& subject);
 
 /// Range and blanks of all of them, in one pass.
 scene::ValueRange value_range(const StreamedSamples& samples);

@@ -29,7 +29,8 @@ Surface read_poly(const std::filesystem::path& file, const std::string& source) 
   node_file.replace_extension(".node");
   std::error_code error;
   const std::string node = std::filesystem::is_regular_file(node_file, error) ? text_of(node_file) : std::string();
-  return parse_tetgen_surface(text_of(file), lower_extension(file) == ".smesh", node, source, node_file.string());
+  return parse_tetgen_surface(text_of(file), system::lower_extension(file) == ".smesh", node, source,
+                              node_file.string());
 }
 
 void require_sound(const Surface& surface, const std::string& source) {
@@ -53,7 +54,7 @@ double box_volume(const Surface& surface) {
 void require_room(double volume, double max_volume, const std::string& source) {
   const double tets = volume / max_volume;
   constexpr double bytes_a_tet = 1024;  // measured (helper/limits.cpp)
-  const double room = std::min(static_cast<double>(available_memory()) / bytes_a_tet, 0x1p31);
+  const double room = std::min(static_cast<double>(system::available_memory()) / bytes_a_tet, 0x1p31);
   if (tets > room)
     throw scene::bad_input(fmt::format(
         "{}: with a `max_volume` of {:.3g} TetGen makes about {:.2g} tets, which takes {:.3g} GiB; set {:.2g} or more",
@@ -81,7 +82,7 @@ SurfaceFile read_surface_file(const std::filesystem::path& file, FileKind kind) 
     surface = std::move(ply.surface);
     result.attribute_names = std::move(ply.attribute_names);
   } else {
-    result.words = lower_extension(file) == ".smesh" ? "smesh" : "poly";
+    result.words = system::lower_extension(file) == ".smesh" ? "smesh" : "poly";
     surface = read_poly(file, source);
     for (std::size_t a = 0; a < surface.attributes.size(); ++a)
       result.attribute_names.push_back(fmt::format("attribute{}", a));
@@ -135,9 +136,9 @@ MeshBlocks read_node_ele(const std::filesystem::path& file) {
   require_beside_others(file);
   std::filesystem::path node_file = file, ele_file = file;
   // The partner's extension in the same case: A.NODE goes with A.ELE.
-  const bool upper = file.extension().string() != lower_extension(file);
-  node_file.replace_extension(lower_extension(file) == ".node" ? file.extension() : upper ? ".NODE" : ".node");
-  ele_file.replace_extension(lower_extension(file) == ".ele" ? file.extension() : upper ? ".ELE" : ".ele");
+  const bool upper = file.extension().string() != system::lower_extension(file);
+  node_file.replace_extension(system::lower_extension(file) == ".node" ? file.extension() : upper ? ".NODE" : ".node");
+  ele_file.replace_extension(system::lower_extension(file) == ".ele" ? file.extension() : upper ? ".ELE" : ".ele");
   MeshBlocks result;
   result.format = "TetGen .node/.ele";
   result.blocks.push_back(parse_node_ele(text_of(node_file), text_of(ele_file), node_file.string(), ele_file.string()));

@@ -75,7 +75,7 @@ TetsBytes::TetsBytes(std::span<const std::byte> bytes)
         std::memcpy(to, bytes.data() + at, count);
       }) {}
 
-TetsBytes::TetsBytes(const PositionalFile& file)
+TetsBytes::TetsBytes(const system::PositionalFile& file)
     : size(file.size()),
       copy([&file](std::uint64_t at, std::byte* to, std::uint64_t count) { file.read(at, to, count); }) {}
 

@@ -15,7 +15,7 @@ namespace tessera::io {
 /// The bytes of a `.tets` file, by position: of a file, or in memory.
 struct TetsBytes {
   explicit TetsBytes(std::span<const std::byte> bytes);
-  explicit TetsBytes(const PositionalFile& file);
+  explicit TetsBytes(const system::PositionalFile& file);
 
   std::uint64_t size = 0;
   /// Copies `count` bytes from byte `at` on. Throws as PositionalFile.

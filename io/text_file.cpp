@@ -28,11 +28,11 @@ std::string_view without_mark(std::string_view text) {
 std::string read_text_file(const std::filesystem::path& file) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) throw missing_file(file);
+  if (!std::filesystem::exists(status)) throw system::missing_file(file);
   if (std::filesystem::is_directory(status)) throw scene::bad_input(file.string() + ": is a folder; name a file in it");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw scene::bad_input(file.string() + ": cannot be opened; check that you may read it");
-  note_read(file);
+  system::note_read(file);
   // Read by pieces rather than by the size: a pipe has none.
   std::string text;
   std::vector<char> piece(1u << 16);

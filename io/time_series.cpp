@@ -51,8 +51,8 @@ std::optional<Pattern> pattern_of(const std::string& name) {
   return std::nullopt;
 }
 
-bool is_file_series(const std::filesystem::path& input) { return lower_extension(input) == ".series"; }
-bool is_pvd(const std::filesystem::path& input) { return lower_extension(input) == ".pvd"; }
+bool is_file_series(const std::filesystem::path& input) { return system::lower_extension(input) == ".series"; }
+bool is_pvd(const std::filesystem::path& input) { return system::lower_extension(input) == ".pvd"; }
 
 /// Of numbered VTK files that state their times, all of them, these.
 void set_own_times(std::vector<TimeStep>& steps) {
@@ -204,7 +204,7 @@ std::vector<TimeStep> steps_of_series(const std::filesystem::path& input) {
 std::vector<TimeStep> read_time_series(const std::filesystem::path& input) {
   std::vector<TimeStep> steps = steps_of_series(input);
   for (const TimeStep& step : steps)
-    for (const auto& file : step.files) io::note_named(file);
+    for (const auto& file : step.files) system::note_named(file);
   return steps;
 }
 

@@ -41,7 +41,8 @@ scene::Error neither(const std::string& name) {
   const std::vector<std::string> presets = colormaps::preset_names();
   const std::size_t colon = std::min(name.find(':'), name.size());
   const auto near = nearest_name(std::string_view(name).substr(0, colon), presets);
-  const std::string meant = near ? fmt::format("did you mean {}?", *near + name.substr(colon)) : meant_file(name);
+  const std::string meant =
+      near ? fmt::format("did you mean {}?", *near + name.substr(colon)) : system::meant_file(name);
   return {scene::ErrorCode::bad_input, name, "no such file and no preset",
           fmt::format("{}{}the presets are {}", meant, meant.empty() ? "" : " ", fmt::join(presets, ", "))};
 }

@@ -67,7 +67,7 @@ bool holds_grid(const std::filesystem::path& file, const FormatRow& row) {
 
 /// The name that counts where the beginning says nothing: x.raw of x.raw.gz.
 std::filesystem::path without_gz(const std::filesystem::path& file) {
-  return lower_extension(file) == ".gz" ? file.parent_path() / file.stem() : file;
+  return system::lower_extension(file) == ".gz" ? file.parent_path() / file.stem() : file;
 }
 
 void list_range(const scene::ValueRange& range, FieldSummary& field) {
@@ -160,7 +160,7 @@ VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const 
   const auto streamed = [&](int component) {
     ChosenSamples samples = chosen(component);
     return StreamedSamples{std::move(samples.grid), samples.of_tuple, volume.swapped,
-                           [&](const ByteSink& use) { unpack_payload(volume, step, source, use); }};
+                           [&](const system::ByteSink& use) { unpack_payload(volume, step, source, use); }};
   };
   field.low = 1, field.high = 0;  // the source's
   const bool lists_lengths = volume.components > 1 && choice.component != magnitude && volume.grid.shift == 0;
@@ -243,7 +243,7 @@ VolumeFile open_described(const std::filesystem::path& file, VolumeKind kind, co
     case VolumeKind::none:
       break;
   }
-  const std::string extension = lower_extension(without_gz(file));
+  const std::string extension = system::lower_extension(without_gz(file));
   if (extension == ".img" || extension == ".hdr") return open_stored(read_analyze_header(file), options, source);
   if (extension == ".dcm" || extension == ".dicom" || extension == ".ima") return read_dicom(file, options);
   if (extension == ".nii") return open_stored(read_nifti_header(file), options, source);
@@ -261,7 +261,7 @@ std::string listed_type(scene::SampleType type) {
 
 bool is_volume(const std::filesystem::path& file) {
   std::error_code unknown;
-  if (lower_extension(without_gz(file)) == ".raw" && !std::filesystem::is_directory(file, unknown)) return true;
+  if (system::lower_extension(without_gz(file)) == ".raw" && !std::filesystem::is_directory(file, unknown)) return true;
   const FormatRow* const row = format_of(file);
   return row != nullptr && holds_grid(file, *row);
 }
@@ -279,7 +279,7 @@ VolumeFile open_unscanned_volume(const std::filesystem::path& file, const Volume
   return with_clean_errors(source, [&] {
     const std::filesystem::path name = without_gz(file);
     const VolumeKind kind = volume_kind_of(file);
-    const bool raw = kind == VolumeKind::none && (lower_extension(name) == ".raw" || options.describes_raw());
+    const bool raw = kind == VolumeKind::none && (system::lower_extension(name) == ".raw" || options.describes_raw());
     if (!raw && options.describes_raw())
       throw scene::bad_input(
           fmt::format("{}: `dims`, `type`, `spacing`, `origin`, `endian` and `skip` are for .raw files; this one says "
@@ -293,7 +293,7 @@ VolumeFile open_unscanned_volume(const std::filesystem::path& file, const Volume
     };
     VolumeFile volume;
     if (is_input_folder(file) || kind == VolumeKind::nifti || kind == VolumeKind::analyze ||
-        (kind == VolumeKind::none && !raw) || !looks_like_gzip(read_beginning(file, 2))) {
+        (kind == VolumeKind::none && !raw) || !system::looks_like_gzip(read_beginning(file, 2))) {
       volume = open(file);
     } else {
       const InflatedFile inflated = inflated_as_needed(file, kind);

@@ -44,11 +44,12 @@ struct VolumeOptions {
 /// A volume whose samples wait in the file or, where they had to be decompressed, in memory or a scratch file.
 struct VolumeFile {
   std::unique_ptr<scene::SampleSource> source;
-  std::shared_ptr<const ScratchFile> scratch;  ///< where the source reads what was unpacked, for others too; else null
-  bool in_memory = true;                       ///< all samples are, so that they could be unpacked or put together
-  scene::ValueRange range;                     ///< of the chosen field, and its blanks; empty until set_range()
-  std::vector<FieldSummary> fields;            ///< low > high: not known until set_range()
-  std::vector<std::string> notes;              ///< one line each: what was chosen or applied, or odd about the file
+  std::shared_ptr<const system::ScratchFile>
+      scratch;                       ///< where the source reads what was unpacked, for others too; else null
+  bool in_memory = true;             ///< all samples are, so that they could be unpacked or put together
+  scene::ValueRange range;           ///< of the chosen field, and its blanks; empty until set_range()
+  std::vector<FieldSummary> fields;  ///< low > high: not known until set_range()
+  std::vector<std::string> notes;    ///< one line each: what was chosen or applied, or odd about the file
   std::string format;
   BodyAxes body_axes = BodyAxes::none;
   BodyAxes axes_if_ct = BodyAxes::none;  ///< set_range() makes them body_axes if the values are those of CT

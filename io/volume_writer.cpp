@@ -29,7 +29,7 @@ const char* written_nrrd_type(SampleType type) {
   return scene::name_of(type);
 }
 
-void write_values(const scene::SampleSource& source, AtomicFile& out) {
+void write_values(const scene::SampleSource& source, system::AtomicFile& out) {
   const scene::Grid& grid = source.grid();
   const SampleType type = written_type(grid);
   const scene::SampleBox all = grid.geometry.all_samples();
@@ -68,7 +68,8 @@ std::string field_data_of(const TagWords& words) {
 }
 
 /// VTK XML with one appended raw array; of a rectilinear grid with its coordinates inline.
-void write_vtk_volume(const scene::SampleSource& source, AtomicFile& out, bool rectilinear, const TagWords& words) {
+void write_vtk_volume(const scene::SampleSource& source, system::AtomicFile& out, bool rectilinear,
+                      const TagWords& words) {
   const scene::Grid& grid = source.grid();
   const scene::GridGeometry& g = grid.geometry;
   const SampleType type = written_type(grid);
@@ -110,7 +111,7 @@ void write_vtk_volume(const scene::SampleSource& source, AtomicFile& out, bool r
   out.write("\n  </AppendedData>\n</VTKFile>\n");
 }
 
-void write_nrrd(const scene::SampleSource& source, AtomicFile& out, const TagWords& words) {
+void write_nrrd(const scene::SampleSource& source, system::AtomicFile& out, const TagWords& words) {
   const scene::GridGeometry& g = source.geometry();
   const SampleType type = written_type(source.grid());
   const auto word_of = [&](const char* name) {
@@ -167,17 +168,17 @@ SampleType written_type(const scene::Grid& grid) {
 }
 
 bool is_volume_output(const std::filesystem::path& file) {
-  const std::string extension = lower_extension(file);
+  const std::string extension = system::lower_extension(file);
   return extension == ".vti" || extension == ".vtr" || extension == ".nrrd" || extension == ".raw" ||
          extension == ".bricks";
 }
 
 void write_volume(const scene::SampleSource& source, const std::filesystem::path& file, int block, BodyAxes axes,
                   const VolumeTags& tags) {
-  const std::string extension = lower_extension(file);
+  const std::string extension = system::lower_extension(file);
   if (extension == ".bricks") return write_bricks(source, file, block, axes, tags);
   check_format(source.grid(), extension, file.string());
-  AtomicFile out(file);
+  system::AtomicFile out(file);
   if (extension == ".vti" || extension == ".vtr")
     write_vtk_volume(source, out, extension == ".vtr", tag_words(axes, tags));
   else if (extension == ".nrrd")

@@ -21,10 +21,10 @@ constexpr std::size_t largest_streamed_block = 16 << 20;
 
 }  // namespace
 
-VtkArrayBytes::VtkArrayBytes(const PositionalFile& file, const VtkArrayPlace& place)
+VtkArrayBytes::VtkArrayBytes(const system::PositionalFile& file, const VtkArrayPlace& place)
     : place_(place), packed_(file, place.base64, place.first_byte, place.end) {}
 
-std::optional<VtkArrayBytes> VtkArrayBytes::open(const PositionalFile& file, const VtkArrayPlace& place) {
+std::optional<VtkArrayBytes> VtkArrayBytes::open(const system::PositionalFile& file, const VtkArrayPlace& place) {
   VtkArrayBytes array(file, place);
   if (place.codec != VtkCodec::none)
     return array.read_table(file.size()) ? std::optional(std::move(array)) : std::nullopt;
@@ -110,8 +110,8 @@ bool VtkArrayBytes::read(std::byte* to, std::uint64_t count) {
 namespace {
 
 /// Passes on `count` bytes, counting them in `made`; false: they end or break before.
-bool pass_on(const PositionalFile& file, const VtkArrayPlace& place, std::uint64_t count, std::uint64_t& made,
-             const ByteSink& use) {
+bool pass_on(const system::PositionalFile& file, const VtkArrayPlace& place, std::uint64_t count, std::uint64_t& made,
+             const system::ByteSink& use) {
   auto array = VtkArrayBytes::open(file, place);
   if (!array || array->size() != count || array->block_size() > largest_streamed_block) return false;
   std::vector<std::byte> part(std::min<std::uint64_t>(std::max<std::uint64_t>(array->block_size(), 1 << 20), count));
@@ -125,7 +125,7 @@ bool pass_on(const PositionalFile& file, const VtkArrayPlace& place, std::uint64
 
 }  // namespace
 
-std::optional<std::uint64_t> end_of_vtk_array(const PositionalFile& file, const VtkArrayPlace& place,
+std::optional<std::uint64_t> end_of_vtk_array(const system::PositionalFile& file, const VtkArrayPlace& place,
                                               std::uint64_t count) {
   const auto array = VtkArrayBytes::open(file, place);
   if (!array || array->size() != count || array->block_size() > largest_streamed_block) return std::nullopt;
@@ -134,7 +134,7 @@ std::optional<std::uint64_t> end_of_vtk_array(const PositionalFile& file, const 
   return array->position() + text;
 }
 
-std::optional<std::vector<std::byte>> small_vtk_array(const PositionalFile& file, const VtkArrayPlace& place,
+std::optional<std::vector<std::byte>> small_vtk_array(const system::PositionalFile& file, const VtkArrayPlace& place,
                                                       std::uint64_t count) {
   std::vector<std::byte> all;
   std::uint64_t made = 0;
@@ -144,9 +144,9 @@ std::optional<std::vector<std::byte>> small_vtk_array(const PositionalFile& file
 }
 
 void read_vtk_array(const std::filesystem::path& path, const VtkArrayPlace& place, std::uint64_t count,
-                    const std::string& source, const ByteSink& use) {
+                    const std::string& source, const system::ByteSink& use) {
   std::uint64_t made = 0;
-  if (!pass_on(PositionalFile(path, source), place, count, made, use))
+  if (!pass_on(system::PositionalFile(path, source), place, count, made, use))
     throw scene::bad_input(
         fmt::format("{}: its samples end or break after {} of {} bytes; the file is truncated or damaged, write it "
                     "anew",

@@ -12,9 +12,11 @@
 #include "io/vtk_codec.hpp"
 #include "system/byte_sink.hpp"
 
-namespace tessera::io {
-
+namespace tessera::system {
 class PositionalFile;
+}
+
+namespace tessera::io {
 
 /// Where a binary array of a VTK XML file begins, and how it is packed there.
 ///
@@ -39,7 +41,7 @@ struct VtkArrayPlace {
 class VtkArrayBytes {
  public:
   /// Nothing if what the array states of itself cannot be true of this file. Such an array takes no memory.
-  static std::optional<VtkArrayBytes> open(const PositionalFile& file, const VtkArrayPlace& place);
+  static std::optional<VtkArrayBytes> open(const system::PositionalFile& file, const VtkArrayPlace& place);
 
   /// Of the whole array.
   [[nodiscard]] std::uint64_t size() const { return size_; }
@@ -53,7 +55,7 @@ class VtkArrayBytes {
   [[nodiscard]] bool read(std::byte* to, std::uint64_t count);
 
  private:
-  VtkArrayBytes(const PositionalFile& file, const VtkArrayPlace& place);
+  VtkArrayBytes(const system::PositionalFile& file, const VtkArrayPlace& place);
   [[nodiscard]] bool read_number(std::uint64_t& number);
   [[nodiscard]] bool read_table(std::uint64_t file_bytes);
   [[nodiscard]] std::uint64_t size_of_block(std::size_t block) const;
@@ -70,16 +72,16 @@ class VtkArrayBytes {
 
 /// Where an array of `count` bytes ends, or some blanks and padding before that if it is text. None if what it states
 /// of itself is not of so many bytes, or of more than the file has, or of blocks too large to be read a part at a time.
-std::optional<std::uint64_t> end_of_vtk_array(const PositionalFile& file, const VtkArrayPlace& place,
+std::optional<std::uint64_t> end_of_vtk_array(const system::PositionalFile& file, const VtkArrayPlace& place,
                                               std::uint64_t count);
 
 /// All of an array that is small. None if it has not `count` bytes or is damaged.
-std::optional<std::vector<std::byte>> small_vtk_array(const PositionalFile& file, const VtkArrayPlace& place,
+std::optional<std::vector<std::byte>> small_vtk_array(const system::PositionalFile& file, const VtkArrayPlace& place,
                                                       std::uint64_t count);
 
 /// Passes all `count` bytes of the array to `use` in parts. Throws Error(bad_input) of `source` if they are damaged or
 /// end before.
 void read_vtk_array(const std::filesystem::path& file, const VtkArrayPlace& place, std::uint64_t count,
-                    const std::string& source, const ByteSink& use);
+                    const std::string& source, const system::ByteSink& use);
 
 }  // namespace tessera::io

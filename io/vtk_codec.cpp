@@ -51,7 +51,7 @@ bool unpack_block(VtkCodec codec, std::span<const std::byte> packed, std::span<s
       std::ranges::copy(packed, out.begin());
       return true;
     case VtkCodec::zlib:
-      return inflate_block(packed, out);
+      return system::inflate_block(packed, out);
     case VtkCodec::lz4:
       return unpack_lz4(packed, out);
     case VtkCodec::lzma:

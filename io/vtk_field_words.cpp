@@ -116,7 +116,7 @@ std::vector<std::pair<std::string, std::string>> vtk_field_words(const std::file
 }
 
 std::optional<double> vtk_time_value(const std::filesystem::path& file) {
-  const std::string extension = lower_extension(file);
+  const std::string extension = system::lower_extension(file);
   const auto is_one_of = [&](std::initializer_list<std::string_view> all) {
     return std::ranges::find(all, extension) != all.end();
   };
@@ -140,8 +140,8 @@ std::optional<double> vtk_time_value(const std::filesystem::path& file) {
   const std::size_t piece = text.find("<Piece");
   const std::string first =
       piece == std::string::npos ? "" : attribute_in(std::string_view(text).substr(piece), "Source");
-  return first.empty() || lower_extension(first).starts_with(".p") ? std::nullopt
-                                                                   : vtk_time_value(file.parent_path() / first);
+  return first.empty() || system::lower_extension(first).starts_with(".p") ? std::nullopt
+                                                                           : vtk_time_value(file.parent_path() / first);
 }
 
 }  // namespace tessera::io

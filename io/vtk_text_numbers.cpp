@@ -62,7 +62,7 @@ const char* read_word(const char* at, const char* end, T& number) {
 
 }  // namespace
 
-VtkTextNumbers::VtkTextNumbers(const PositionalFile& file, std::uint64_t first, std::uint64_t end)
+VtkTextNumbers::VtkTextNumbers(const system::PositionalFile& file, std::uint64_t first, std::uint64_t end)
     : file_(&file), at_(std::min(first, end)), end_(end) {}
 
 bool VtkTextNumbers::fetch() {

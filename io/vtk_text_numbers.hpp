@@ -6,9 +6,11 @@
 
 #include "io/foreign_data.hpp"
 
-namespace tessera::io {
-
+namespace tessera::system {
 class PositionalFile;
+}
+
+namespace tessera::io {
 
 /// The numbers of an ascii array of a VTK XML file, in their order, each in a spelling that C++ streams read, or nan or
 /// inf. Numbers of 8 bits are numbers too, not characters. What follows the last number that is asked for is not
@@ -16,7 +18,7 @@ class PositionalFile;
 class VtkTextNumbers {
  public:
   /// Of the text from one place of the file to another.
-  VtkTextNumbers(const PositionalFile& file, std::uint64_t first, std::uint64_t end);
+  VtkTextNumbers(const system::PositionalFile& file, std::uint64_t first, std::uint64_t end);
 
   /// At most so many numbers follow.
   [[nodiscard]] std::uint64_t left() const { return (end_ - at_ + (text_.size() - used_)) / 2 + 1; }
@@ -33,7 +35,7 @@ class VtkTextNumbers {
   [[nodiscard]] bool read_number(T& number);
   [[nodiscard]] bool fetch();
 
-  const PositionalFile* file_;
+  const system::PositionalFile* file_;
   std::uint64_t at_, end_;
   std::string text_;
   std::size_t used_ = 0;

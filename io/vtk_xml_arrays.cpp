@@ -16,7 +16,8 @@ ForeignArray VtkXmlArrays::hold(ForeignArray array, Stream stream) {
   return array;
 }
 
-void VtkXmlArrays::stream(const ForeignArray& array, const std::string& subject, const ByteSink& use, Then then) {
+void VtkXmlArrays::stream(const ForeignArray& array, const std::string& subject, const system::ByteSink& use,
+                          Then then) {
   std::shared_ptr<const Stream> stream;
   {
     const std::lock_guard lock(mutex_);

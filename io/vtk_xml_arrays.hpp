@@ -20,7 +20,7 @@ namespace tessera::io {
 /// The arrays of a file that this process reads itself: each from the file whenever it is asked for, or from memory.
 class VtkXmlArrays final : public ArraySource {
  public:
-  using Stream = std::function<void(const ByteSink& use)>;
+  using Stream = std::function<void(const system::ByteSink& use)>;
 
   /// `progress` is called with how much of what was expected has been copied; may be null.
   explicit VtkXmlArrays(ReadProgressFunction progress = {}) : progress_(std::move(progress)) {}
@@ -33,11 +33,11 @@ class VtkXmlArrays final : public ArraySource {
   ForeignArray hold_vector(ForeignArray array, std::vector<T> numbers) {
     array.tuples = numbers.size() / static_cast<std::size_t>(array.components);
     return hold(std::move(array), [kept = std::make_shared<const std::vector<T>>(std::move(numbers))](
-                                      const ByteSink& use) { use(std::as_bytes(std::span(*kept))); });
+                                      const system::ByteSink& use) { use(std::as_bytes(std::span(*kept))); });
   }
 
   using ArraySource::stream;
-  void stream(const ForeignArray& array, const std::string& subject, const ByteSink& use, Then then) override;
+  void stream(const ForeignArray& array, const std::string& subject, const system::ByteSink& use, Then then) override;
   void expect(std::uint64_t bytes) override { expected_ = bytes, came_ = 0; }
   void drop(std::span<const std::uint64_t> arrays) noexcept override;
 

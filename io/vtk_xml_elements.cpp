@@ -20,7 +20,7 @@ namespace {
 class ElementWalk {
  public:
   /// Elements that are not kept are forgotten as the next one begins.
-  ElementWalk(const PositionalFile& file, const std::string& source, bool keeps)
+  ElementWalk(const system::PositionalFile& file, const std::string& source, bool keeps)
       : file_(file),
         source_(source),
         keeps_(keeps),
@@ -112,7 +112,7 @@ class ElementWalk {
     return std::string_view(text_).substr(at_ - window_at_);
   }
 
-  const PositionalFile& file_;
+  const system::PositionalFile& file_;
   const std::string& source_;
   bool keeps_;
   std::uint64_t size_;
@@ -135,11 +135,11 @@ std::string VtkXmlElement::word(const std::string& attribute, const std::string&
   return found == attributes.end() ? otherwise : found->second;
 }
 
-std::vector<VtkXmlElement> vtk_xml_elements(const PositionalFile& file, const std::string& source) {
+std::vector<VtkXmlElement> vtk_xml_elements(const system::PositionalFile& file, const std::string& source) {
   return ElementWalk(file, source, true).walk();
 }
 
-void require_vtk_xml_form(const PositionalFile& file, const std::string& source) {
+void require_vtk_xml_form(const system::PositionalFile& file, const std::string& source) {
   ElementWalk(file, source, false).walk();
 }
 

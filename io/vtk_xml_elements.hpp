@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
-namespace tessera::io {
-
+namespace tessera::system {
 class PositionalFile;
+}
+
+namespace tessera::io {
 
 /// An element of a VTK XML file. Elements are listed in the order of their opening tags.
 struct VtkXmlElement {
@@ -26,9 +28,9 @@ struct VtkXmlElement {
 /// The elements of a file up to AppendedData, with which the XML ends, or its own end. The numbers of arrays are passed
 /// over, not parsed as XML. Throws Error(bad_input, "SOURCE: ...") if the rest is not well formed, or elements are
 /// nested deeper than most_nested (xml_elements.hpp).
-std::vector<VtkXmlElement> vtk_xml_elements(const PositionalFile& file, const std::string& source);
+std::vector<VtkXmlElement> vtk_xml_elements(const system::PositionalFile& file, const std::string& source);
 
 /// For files that VTK's reader parses, which goes as deep as they do: throws as vtk_xml_elements().
-void require_vtk_xml_form(const PositionalFile& file, const std::string& source);
+void require_vtk_xml_form(const system::PositionalFile& file, const std::string& source);
 
 }  // namespace tessera::io

@@ -73,7 +73,7 @@ ForeignArray hold_connectivity(const VtkXmlOpened& of, VtuCells& cells) {
       uses.push_back({{topology_of(of.grid, p, "connectivity", of.source), cells.uses[p]}, first_point});
   require_proportion(of, cells.offsets.back() * sizeof(std::uint32_t), "cells' corners");
   as.tuples = cells.offsets.back() / static_cast<std::uint64_t>(as.components);
-  return of.arrays->hold(std::move(as), [file = of.file, uses, source = of.source](const ByteSink& use) {
+  return of.arrays->hold(std::move(as), [file = of.file, uses, source = of.source](const system::ByteSink& use) {
     std::vector<std::uint32_t> narrow;
     for (const Uses& piece : uses)
       stream_whole_numbers(*file, piece.segment, 4, source, [&](std::span<const std::int64_t> points) {
@@ -164,7 +164,7 @@ bool set_part(const VtkXmlOpened& of, ForeignPart& part) {
   return agree;
 }
 
-void require_end(const PositionalFile& file, const std::string& source) {
+void require_end(const system::PositionalFile& file, const std::string& source) {
   std::string end(std::min<std::uint64_t>(file.size(), 1024), '\0');
   file.read(file.size() - end.size(), reinterpret_cast<std::byte*>(end.data()), end.size());
   if (end.find("</VTKFile") == std::string::npos)
@@ -177,7 +177,7 @@ void require_end(const PositionalFile& file, const std::string& source) {
 std::optional<ForeignFile> open_vtk_xml(const std::filesystem::path& path, const ReadProgressFunction& progress) {
   constexpr std::array known = {"UnstructuredGrid", "StructuredGrid", "RectilinearGrid", "ImageData"};
   const std::string source = path.string();
-  const auto file = std::make_shared<const PositionalFile>(path);
+  const auto file = std::make_shared<const system::PositionalFile>(path);
   require_end(*file, source);
   std::optional<VtkXmlGrid> grid = read_vtk_xml_grid(*file, source);
   if (!grid || std::ranges::count(known, grid->element.name) == 0) return std::nullopt;

@@ -39,7 +39,8 @@ std::uint64_t count_of(const VtkXmlElement& piece, const std::string& attribute,
   return static_cast<std::uint64_t>(count);
 }
 
-Packing packing_of(const VtkXmlElement& root, const std::vector<VtkXmlElement>& elements, const PositionalFile& file) {
+Packing packing_of(const VtkXmlElement& root, const std::vector<VtkXmlElement>& elements,
+                   const system::PositionalFile& file) {
   Packing packing;
   const std::string order = root.word("byte_order", "LittleEndian"), number = root.word("header_type", "UInt32");
   const auto codec = vtk_codec_named(root.word("compressor"));
@@ -96,7 +97,8 @@ VtkXmlArray array_of(const VtkXmlElement& element, const Packing& packing) {
 /// Reads the elements in their order. A second element of a kind within a piece takes the place of the first.
 class GridElements {
  public:
-  GridElements(const std::vector<VtkXmlElement>& elements, const PositionalFile& file, const std::string& source)
+  GridElements(const std::vector<VtkXmlElement>& elements, const system::PositionalFile& file,
+               const std::string& source)
       : elements_(elements), packing_(packing_of(elements.front(), elements, file)), source_(source) {}
 
   VtkXmlGrid grid() {
@@ -209,7 +211,7 @@ bool read_whole_number(const std::string& text, std::int64_t& number) {
   return error == std::errc() && behind == end;
 }
 
-std::optional<VtkXmlGrid> read_vtk_xml_grid(const PositionalFile& file, const std::string& source) {
+std::optional<VtkXmlGrid> read_vtk_xml_grid(const system::PositionalFile& file, const std::string& source) {
   const std::vector<VtkXmlElement> elements = vtk_xml_elements(file, source);
   if (elements.empty() || elements.front().name != "VTKFile")
     throw scene::bad_input(fmt::format("{}: it does not begin as a VTK XML file does; check that it is one", source));

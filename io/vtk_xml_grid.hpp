@@ -54,7 +54,7 @@ struct VtkXmlGrid {
 
 /// Nothing if the file has what this reader does not know: time steps, two arrays of one name, numbers between
 /// comments, a version or type to come. Throws Error(bad_input) of `source` if it is another kind of file, or damaged.
-std::optional<VtkXmlGrid> read_vtk_xml_grid(const PositionalFile& file, const std::string& source);
+std::optional<VtkXmlGrid> read_vtk_xml_grid(const system::PositionalFile& file, const std::string& source);
 
 /// The type of numbers that a VTK XML file names so.
 std::optional<NumberType> vtk_xml_number_type(const std::string& name);

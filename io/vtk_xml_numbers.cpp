@@ -42,7 +42,7 @@ void swap_numbers(std::span<std::byte> bytes, std::size_t each) {
 class Numbers {
  public:
   /// Nothing if it is damaged.
-  static std::optional<Numbers> open(const PositionalFile& file, const VtkXmlArray& array) {
+  static std::optional<Numbers> open(const system::PositionalFile& file, const VtkXmlArray& array) {
     if (!array.type) return std::nullopt;
     const VtkArrayPlace& place = array.place;
     if (array.ascii) return Numbers(array, VtkTextNumbers(file, place.first_byte, std::min(place.end, file.size())));
@@ -103,7 +103,7 @@ class Numbers {
   int bits_left_ = 0;  ///< of the byte
 };
 
-Numbers numbers_in(const PositionalFile& file, const VtkXmlSegment& segment, const std::string& source) {
+Numbers numbers_in(const system::PositionalFile& file, const VtkXmlSegment& segment, const std::string& source) {
   auto numbers = Numbers::open(file, segment.array);
   if (!numbers || numbers->most() < segment.numbers)
     throw scene::bad_input(
@@ -115,12 +115,12 @@ Numbers numbers_in(const PositionalFile& file, const VtkXmlSegment& segment, con
 
 }  // namespace
 
-void require_numbers(const PositionalFile& file, const VtkXmlSegment& segment, const std::string& source) {
+void require_numbers(const system::PositionalFile& file, const VtkXmlSegment& segment, const std::string& source) {
   if (segment.numbers > 0) static_cast<void>(numbers_in(file, segment, source));
 }
 
-void stream_numbers(const PositionalFile& file, const VtkXmlSegment& segment, std::size_t together,
-                    const std::string& source, const ByteSink& use) {
+void stream_numbers(const system::PositionalFile& file, const VtkXmlSegment& segment, std::size_t together,
+                    const std::string& source, const system::ByteSink& use) {
   if (segment.numbers == 0) return;
   Numbers numbers = numbers_in(file, segment, source);
   const std::size_t each = size_of(*segment.array.type);
@@ -144,7 +144,7 @@ void stream_numbers(const PositionalFile& file, const VtkXmlSegment& segment, st
   }
 }
 
-void stream_whole_numbers(const PositionalFile& file, const VtkXmlSegment& segment, std::size_t together,
+void stream_whole_numbers(const system::PositionalFile& file, const VtkXmlSegment& segment, std::size_t together,
                           const std::string& source, const std::function<void(std::span<const std::int64_t>)>& use) {
   std::vector<std::int64_t> wide;
   const NumberType type = segment.array.type.value_or(NumberType::float64);
@@ -164,11 +164,11 @@ void stream_whole_numbers(const PositionalFile& file, const VtkXmlSegment& segme
   });
 }
 
-std::vector<std::int64_t> whole_numbers(const PositionalFile& file, const VtkXmlSegment& segment,
+std::vector<std::int64_t> whole_numbers(const system::PositionalFile& file, const VtkXmlSegment& segment,
                                         const std::string& source) {
   require_numbers(file, segment, source);
   std::vector<std::int64_t> all;
-  reserve_large(all, segment.numbers);
+  system::reserve_large(all, segment.numbers);
   stream_whole_numbers(file, segment, 1, source,
                        [&](std::span<const std::int64_t> part) { all.insert(all.end(), part.begin(), part.end()); });
   return all;

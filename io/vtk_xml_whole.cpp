@@ -11,8 +11,8 @@
 namespace tessera::io {
 namespace {
 
-void stream_whole(const PositionalFile& file, const VtkXmlWhole& whole, const std::string& source,
-                  const ByteSink& use) {
+void stream_whole(const system::PositionalFile& file, const VtkXmlWhole& whole, const std::string& source,
+                  const system::ByteSink& use) {
   std::vector<std::byte> bits;
   for (const VtkXmlSegment& segment : whole.segments)
     stream_numbers(file, segment, static_cast<std::size_t>(whole.components), source,
@@ -59,7 +59,7 @@ ForeignArray hold_whole(const VtkXmlOpened& of, VtkXmlWhole whole, ForeignArray 
   }
   as.tuples = numbers / static_cast<std::uint64_t>(whole.components);
   return of.arrays->hold(std::move(as), [file = of.file, whole = std::move(whole), source = of.source,
-                                         decoded = std::move(decoded)](const ByteSink& use) {
+                                         decoded = std::move(decoded)](const system::ByteSink& use) {
     if (decoded != nullptr && !decoded->empty())
       use(*decoded);
     else

@@ -22,7 +22,7 @@ struct VtkXmlWhole {
 
 /// What of an open file its arrays need.
 struct VtkXmlOpened {
-  std::shared_ptr<const PositionalFile> file;
+  std::shared_ptr<const system::PositionalFile> file;
   const VtkXmlGrid& grid;
   const std::string& source;
   std::shared_ptr<VtkXmlArrays> arrays;

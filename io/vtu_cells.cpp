@@ -22,14 +22,16 @@ constexpr std::array<std::uint8_t, 3> higher_order_hexahedra = {67, 72, 79};
 
 bool is_higher_order_hexahedron(std::uint8_t type) { return std::ranges::count(higher_order_hexahedra, type) > 0; }
 
-void add_types(const PositionalFile& file, const VtkXmlSegment& types, const std::string& source, VtuCells& cells) {
+void add_types(const system::PositionalFile& file, const VtkXmlSegment& types, const std::string& source,
+               VtuCells& cells) {
   stream_whole_numbers(file, types, 1, source, [&](std::span<const std::int64_t> part) {
     for (const std::int64_t type : part) cells.types.push_back(static_cast<std::uint8_t>(type));
   });
 }
 
 /// The file has where each cell ends.
-void add_offsets(const PositionalFile& file, const VtkXmlSegment& ends, const std::string& source, VtuCells& cells) {
+void add_offsets(const system::PositionalFile& file, const VtkXmlSegment& ends, const std::string& source,
+                 VtuCells& cells) {
   const std::uint64_t first = cells.offsets.back();
   std::int64_t last = 0;
   stream_whole_numbers(file, ends, 1, source, [&](std::span<const std::int64_t> part) {
@@ -55,7 +57,7 @@ bool all_are_tets(const VtuCells& cells) {
 }
 
 /// VTK's HigherOrderDegrees of a piece's cells; none without that array.
-std::vector<std::array<int, 3>> degrees_of(const PositionalFile& file, const VtkXmlPiece& piece,
+std::vector<std::array<int, 3>> degrees_of(const system::PositionalFile& file, const VtkXmlPiece& piece,
                                            const std::string& source) {
   const auto& arrays = piece.cell_fields.arrays;
   const auto found = std::ranges::find(arrays, "HigherOrderDegrees", &VtkXmlArray::name);
@@ -72,9 +74,10 @@ std::vector<std::array<int, 3>> degrees_of(const PositionalFile& file, const Vtk
   return degrees;
 }
 
-void add_reordered(const PositionalFile& file, const VtkXmlGrid& grid, const std::string& source, VtuCells& cells) {
+void add_reordered(const system::PositionalFile& file, const VtkXmlGrid& grid, const std::string& source,
+                   VtuCells& cells) {
   std::uint64_t first = 0, cell = 0;
-  reserve_large(cells.connectivity, cells.offsets.back());
+  system::reserve_large(cells.connectivity, cells.offsets.back());
   for (std::size_t p = 0; p < grid.pieces.size(); first += grid.pieces[p++].points) {
     if (cells.uses[p] > 0) {
       const VtkXmlSegment uses{topology_of(grid, p, "connectivity", source), cells.uses[p]};
@@ -103,7 +106,7 @@ const VtkXmlArray& topology_of(const VtkXmlGrid& grid, std::size_t piece, const 
   return *array;
 }
 
-VtuCells read_vtu_cells(const PositionalFile& file, const VtkXmlGrid& grid, const std::string& source) {
+VtuCells read_vtu_cells(const system::PositionalFile& file, const VtkXmlGrid& grid, const std::string& source) {
   VtuCells cells;
   cells.offsets.push_back(0);
   std::uint64_t count = 0;
@@ -113,8 +116,8 @@ VtuCells read_vtu_cells(const PositionalFile& file, const VtkXmlGrid& grid, cons
     for (const char* name : {"types", "offsets"})
       if (of_piece > 0) require_numbers(file, {topology_of(grid, p, name, source), of_piece}, source);
   }
-  reserve_large(cells.types, count);
-  reserve_large(cells.offsets, count + 1);
+  system::reserve_large(cells.types, count);
+  system::reserve_large(cells.offsets, count + 1);
   for (std::size_t p = 0; p < grid.pieces.size(); ++p) {
     if (grid.pieces[p].cells == 0) {
       cells.uses.push_back(0);

@@ -22,7 +22,7 @@ struct VtuCells {
 
 /// Reads types, offsets and faces, and looks whether the file can hold the points that cells use. Higher-order
 /// hexahedra of files before version 2.1 come in the order of nodes of later ones. Throws Error(bad_input) of `source`.
-VtuCells read_vtu_cells(const PositionalFile& file, const VtkXmlGrid& grid, const std::string& source);
+VtuCells read_vtu_cells(const system::PositionalFile& file, const VtkXmlGrid& grid, const std::string& source);
 
 /// The array of a piece's cells. Throws Error(bad_input) if it is not there.
 const VtkXmlArray& topology_of(const VtkXmlGrid& grid, std::size_t piece, const char* name, const std::string& source);

@@ -13,7 +13,7 @@ namespace {
 
 /// One piece and what it adds to.
 struct PieceFaces {
-  const PositionalFile& file;
+  const system::PositionalFile& file;
   const VtkXmlGrid& grid;
   std::size_t piece;
   std::uint64_t first_point;
@@ -108,7 +108,8 @@ void add_numbered_faces(const PieceFaces& of) {
 
 }  // namespace
 
-void add_vtu_faces(const PositionalFile& file, const VtkXmlGrid& grid, const std::string& source, VtuCells& cells) {
+void add_vtu_faces(const system::PositionalFile& file, const VtkXmlGrid& grid, const std::string& source,
+                   VtuCells& cells) {
   std::uint64_t first_point = 0;
   std::size_t first_cell = 0;
   for (std::size_t p = 0; p < grid.pieces.size(); ++p) {

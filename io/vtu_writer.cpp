@@ -35,7 +35,7 @@ WrittenArray array_of(std::string attributes, std::size_t numbers, const Of& of)
 
 /// VTK's compressed form (its "VTK XML Formats" wiki page): number of blocks, their size, the size of a last one that
 /// is not full or 0, the compressed size of each, all uint64; then the blocks, zlib.
-void write_compressed(const WrittenArray& array, AtomicFile& out) {
+void write_compressed(const WrittenArray& array, system::AtomicFile& out) {
   constexpr std::size_t block_bytes = 1 << 18;
   const std::size_t numbers_a_block = block_bytes / array.number_size,
                     blocks = (array.numbers + numbers_a_block - 1) / numbers_a_block;
@@ -77,9 +77,9 @@ class VtuText {
     }
     text_ += fmt::format("      </{}>\n", closing);
   }
-  void write(AtomicFile& out) const { out.write(text_); }
+  void write(system::AtomicFile& out) const { out.write(text_); }
   /// Enters where the next array begins.
-  void enter(std::size_t array, std::uint64_t offset, AtomicFile& out) const {
+  void enter(std::size_t array, std::uint64_t offset, system::AtomicFile& out) const {
     const std::uint64_t end = out.position();
     out.seek(places_[array]);
     out.write(fmt::format("{:0{}}", offset, width));
@@ -129,7 +129,7 @@ void write_vtu(const scene::TetMeshView& mesh, const std::filesystem::path& file
   text.add_section("Cells", "Cells", cells);
   text.add("    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n   _");
 
-  AtomicFile out(file);
+  system::AtomicFile out(file);
   text.write(out);
   const std::uint64_t start = out.position();
   std::size_t number = 0;

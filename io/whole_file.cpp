@@ -12,7 +12,7 @@
 namespace tessera::io {
 
 WholeFile::WholeFile(const std::filesystem::path& file) : size_(require_file(file)) {
-  const PositionalFile opened(file);
+  const system::PositionalFile opened(file);
   // What this process inflated itself lies in memory already, and nobody shortens it.
   const bool is_mapped = is_inflated(file);
   start_ = is_mapped ? ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, opened.descriptor(), 0)

@@ -79,7 +79,7 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
 }
 
 void AtomicFile::open_named() {
-  const auto lock = io::naming_outputs();
+  const auto lock = system::naming_outputs();
   for (unsigned number = 0;; ++number) {
     const fs::path candidate = part_name(target_, number);
     const int opened = ::open(candidate.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
@@ -87,7 +87,7 @@ void AtomicFile::open_named() {
       if (descriptor_ >= 0) ::close(descriptor_);
       descriptor_ = opened;
       part_ = candidate;
-      io::add_unfinished(part_);
+      system::add_unfinished(part_);
       return;
     }
     if (errno != EEXIST) fail(errno, "cannot be written");
@@ -97,9 +97,9 @@ void AtomicFile::open_named() {
 AtomicFile::~AtomicFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
   if (part_.empty()) return;
-  const auto lock = io::naming_outputs();
+  const auto lock = system::naming_outputs();
   ::unlink(part_.c_str());
-  io::remove_unfinished(part_);
+  system::remove_unfinished(part_);
 }
 
 void AtomicFile::write(const void* bytes, std::size_t count) {
@@ -134,7 +134,7 @@ void AtomicFile::commit() {
   // Without fsync a machine that goes down after the rename may keep the name and lose the bytes. EINVAL: a file system
   // that has no such thing.
   if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(errno, "cannot be written");
-  const auto lock = io::naming_outputs();
+  const auto lock = system::naming_outputs();
   if (part_.empty()) {
     const std::string self = fmt::format("/proc/self/fd/{}", descriptor_);
     // A new file gets its name at once, so that a process killed here leaves nothing else.
@@ -151,13 +151,13 @@ void AtomicFile::commit() {
       if (errno != EEXIST) fail(errno, "cannot be given its name");
     }
     part_ = candidate;
-    io::add_unfinished(part_);
+    system::add_unfinished(part_);
   }
   const int closed = ::close(descriptor_);
   descriptor_ = -1;
   if (closed != 0) fail(errno, "cannot be written");  // network file systems report a full disk only here
   if (::rename(part_.c_str(), target_.c_str()) != 0) fail(errno, "cannot be renamed to");
-  io::remove_unfinished(part_);
+  system::remove_unfinished(part_);
   part_.clear();
 }
 

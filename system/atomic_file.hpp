@@ -3,10 +3,10 @@
 #include "scene/error.hpp"
 #include "tessera/output_file.hpp"
 
-namespace tessera::io {
+namespace tessera::system {
 
 using tessera::AtomicFile;
 using tessera::check_writable;
 using tessera::OutputFault;
 
-}  // namespace tessera::io
+}  // namespace tessera::system

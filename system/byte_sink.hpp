@@ -4,9 +4,9 @@
 #include <functional>
 #include <span>
 
-namespace tessera::io {
+namespace tessera::system {
 
 /// Receives bytes in order, in pieces of any size.
 using ByteSink = std::function<void(std::span<const std::byte>)>;
 
-}  // namespace tessera::io
+}  // namespace tessera::system

@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <utility>
 
-namespace tessera::io {
+namespace tessera::system {
 
 Descriptor::~Descriptor() {
   if (number_ >= 0) ::close(number_);
@@ -32,4 +32,4 @@ bool write_all(int file, const void* bytes, std::size_t count) {
   return true;
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::system

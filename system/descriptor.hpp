@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-namespace tessera::io {
+namespace tessera::system {
 
 /// A file descriptor that is closed with it.
 class Descriptor {
@@ -24,4 +24,4 @@ class Descriptor {
 /// Writes all of it; false if it cannot.
 bool write_all(int file, const void* bytes, std::size_t count);
 
-}  // namespace tessera::io
+}  // namespace tessera::system

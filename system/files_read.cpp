@@ -11,7 +11,7 @@
 #include "tessera/output_file.hpp"
 
 namespace tessera {
-namespace io {
+namespace system {
 namespace {
 
 struct FilesRead {
@@ -54,13 +54,13 @@ std::vector<std::string> take_names_read() {
   return {names.begin(), names.end()};
 }
 
-}  // namespace io
+}  // namespace system
 
-void protect_inputs() { io::inputs_are_protected = true; }
+void protect_inputs() { system::inputs_are_protected = true; }
 
 void check_not_read(const std::filesystem::path& target) {
   struct stat present {};
-  if (::stat(target.c_str(), &present) == 0 && io::was_read(present.st_dev, present.st_ino))
+  if (::stat(target.c_str(), &present) == 0 && system::was_read(present.st_dev, present.st_ino))
     throw Error(ErrorCode::bad_input, target.string(), "is an input of this run and would be overwritten",
                 "choose another name");
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace tessera::io {
+namespace tessera::system {
 
 /// Remembers that this process, or a reader program for it, has opened a regular file to read: no output is to replace
 /// it (tessera/output_file.hpp), and all ranks are to have the same (frame/same_files.hpp). From any thread.
@@ -20,4 +20,4 @@ bool was_read(std::uint64_t device, std::uint64_t number);
 /// Names under which files have been read since this was last asked, in order of the alphabet, each once.
 std::vector<std::string> take_names_read();
 
-}  // namespace tessera::io
+}  // namespace tessera::system

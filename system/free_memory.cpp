@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string>
 
-namespace tessera::io {
+namespace tessera::system {
 
 namespace {
 
@@ -37,4 +37,4 @@ std::uint64_t left_in_machine() {
 
 std::uint64_t available_memory() { return std::min(left_in_group(), left_in_machine()); }
 
-}  // namespace tessera::io
+}  // namespace tessera::system

@@ -2,10 +2,10 @@
 
 #include <cstdint>
 
-namespace tessera::io {
+namespace tessera::system {
 
 /// Bytes of memory that can be had without swapping: past it the system ends processes instead of refusing. The largest
 /// number where the system does not say.
 std::uint64_t available_memory();
 
-}  // namespace tessera::io
+}  // namespace tessera::system

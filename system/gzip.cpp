@@ -10,7 +10,7 @@
 #include "system/descriptor.hpp"
 #include "system/positional_file.hpp"
 
-namespace tessera::io {
+namespace tessera::system {
 namespace {
 
 constexpr int either_header = 15 + 32;  // zlib finds out whether it is gzip's or its own
@@ -162,4 +162,4 @@ std::uint64_t inflate_to(int file, const PositionalFile& packed, const InflateLi
   }
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::system

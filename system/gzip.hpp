@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tessera::io {
+namespace tessera::system {
 
 class PositionalFile;
 
@@ -45,4 +45,4 @@ struct InflateLimit {
 std::uint64_t inflate_to(int file, const PositionalFile& packed, const InflateLimit& limit, std::uint64_t memory,
                          const std::string& source);
 
-}  // namespace tessera::io
+}  // namespace tessera::system

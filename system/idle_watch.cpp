@@ -9,7 +9,7 @@
 #include <string>
 #include <system_error>
 
-namespace tessera::io {
+namespace tessera::system {
 namespace {
 
 /// By proc(5): the state follows the name, which is in parentheses and may hold some.
@@ -44,4 +44,4 @@ std::chrono::steady_clock::duration IdleWatch::look() {
   return now - since_;
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::system

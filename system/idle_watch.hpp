@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cstdint>
 
-namespace tessera::io {
+namespace tessera::system {
 
 /// Notices that a process waits for something that does not come: it uses no processor time, and all its threads sleep.
 /// One that waits for a disk, that has been stopped, or that no processor is free for, is in another state.
@@ -22,4 +22,4 @@ class IdleWatch {
   std::chrono::steady_clock::time_point since_{};
 };
 
-}  // namespace tessera::io
+}  // namespace tessera::system

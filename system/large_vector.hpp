@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-namespace tessera::io {
+namespace tessera::system {
 
 /// Room for `count` elements. Much of it comes in large pages, which are filled, and later read, in less time.
 template <class T>
@@ -20,4 +20,4 @@ void reserve_large(std::vector<T>& numbers, std::size_t count) {
     static_cast<void>(::madvise(first, room / page * page, MADV_HUGEPAGE));
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::system

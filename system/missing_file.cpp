@@ -9,7 +9,7 @@
 
 #include "tessera/nearest_name.hpp"
 
-namespace tessera::io {
+namespace tessera::system {
 
 namespace {
 
@@ -44,4 +44,4 @@ scene::Error missing_file(const std::filesystem::path& file) {
       fmt::format("{}: there is no such file; {}", file.string(), meant.empty() ? "check the name" : meant));
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::system

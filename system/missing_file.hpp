@@ -5,7 +5,7 @@
 
 #include "scene/error.hpp"
 
-namespace tessera::io {
+namespace tessera::system {
 
 /// The error that a file is not there: it names the file of the same folder that was probably meant, by the names of
 /// the folder's first thousand entries.
@@ -14,4 +14,4 @@ scene::Error missing_file(const std::filesystem::path& file);
 /// "did you mean NAME?", or nothing.
 std::string meant_file(const std::filesystem::path& file);
 
-}  // namespace tessera::io
+}  // namespace tessera::system

@@ -13,7 +13,7 @@
 #include "system/files_read.hpp"
 #include "system/regular_file.hpp"
 
-namespace tessera::io {
+namespace tessera::system {
 
 PositionalFile::PositionalFile(const std::filesystem::path& file, std::string name)
     : name_(name.empty() ? file.string() : std::move(name)), descriptor_(open_regular(file, name_)) {
@@ -41,4 +41,4 @@ void PositionalFile::fail(const std::string& what, int error_number) const {
   throw scene::Error(scene::ErrorCode::system_failure, fmt::format("{}: it {}{}; check the disk", name_, what, why));
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::system

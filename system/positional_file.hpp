@@ -7,7 +7,7 @@
 
 #include "system/descriptor.hpp"
 
-namespace tessera::io {
+namespace tessera::system {
 
 /// An open file that is read by position, by any number of threads. It needs its name no longer: files that are removed
 /// meanwhile can be read to the end.
@@ -29,4 +29,4 @@ class PositionalFile {
   Descriptor descriptor_;
 };
 
-}  // namespace tessera::io
+}  // namespace tessera::system

@@ -13,7 +13,7 @@
 #include "scene/error.hpp"
 #include "system/missing_file.hpp"
 
-namespace tessera::io {
+namespace tessera::system {
 namespace {
 
 scene::Error not_regular(const std::string& name) {
@@ -51,7 +51,7 @@ Descriptor open_regular(const std::filesystem::path& file, const std::string& na
   return opened;
 }
 
-std::uint64_t size_of(const Descriptor& opened, const std::string& name) {
+std::uint64_t file_size(const Descriptor& opened, const std::string& name) {
   struct stat facts {};
   if (::fstat(opened.get(), &facts) != 0) throw cannot_open(name, errno);
   return static_cast<std::uint64_t>(facts.st_size);
@@ -77,4 +77,4 @@ std::string lower_extension(const std::filesystem::path& file) {
   return extension;
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::system

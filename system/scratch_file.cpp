@@ -13,7 +13,7 @@
 
 #include "scene/error.hpp"
 
-namespace tessera::io {
+namespace tessera::system {
 namespace {
 
 /// A file without a name; -1 and errno.
@@ -95,4 +95,4 @@ std::string size_in_words(std::uint64_t bytes) {
   return fmt::format("{:.3g} kB", std::max(1.0, b * 1e-3));
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::system

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace tessera::io {
+namespace tessera::system {
 
 /// A file for as long as this object lives, in the folder for temporary files (TMPDIR, else /tmp), that other processes
 /// of this machine can open. It has no name in that folder, so that nothing is left of it whatever ends this process;
@@ -48,4 +48,4 @@ class ScratchFile {
 /// "1.2 GB"
 std::string size_in_words(std::uint64_t bytes);
 
-}  // namespace tessera::io
+}  // namespace tessera::system

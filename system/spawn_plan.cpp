@@ -4,7 +4,7 @@
 
 #include "system/unfinished.hpp"
 
-namespace tessera::io {
+namespace tessera::system {
 
 SpawnPlan::SpawnPlan(std::initializer_list<int> blocked) {
   ::posix_spawn_file_actions_init(&files);
@@ -40,4 +40,4 @@ int SpawnPlan::start(const std::filesystem::path& program, std::vector<std::stri
   return failed;
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::system

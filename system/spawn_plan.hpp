@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace tessera::io {
+namespace tessera::system {
 
 /// How a program is to be started: its descriptors, `files`, are the caller's to plan. All its signals are at their
 /// defaults, and it is abandoned with this process's outputs (system/unfinished.hpp).
@@ -33,4 +33,4 @@ class SpawnPlan {
   short flags_ = POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF;
 };
 
-}  // namespace tessera::io
+}  // namespace tessera::system

@@ -13,7 +13,7 @@
 
 #include "tessera/output_file.hpp"
 
-namespace tessera::io {
+namespace tessera::system {
 namespace {
 
 struct Unfinished {
@@ -71,12 +71,12 @@ void abandon_in_handler() noexcept {
     if (const pid_t program = number.exchange(0); program > 0) ::kill(program, SIGKILL);
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::system
 
 namespace tessera {
 
 void abandon_outputs() noexcept {
-  io::Unfinished& all = io::unfinished();
+  system::Unfinished& all = system::unfinished();
   // A file system that does not answer must not keep the process: then its files stay.
   std::unique_lock lock(all.naming, std::chrono::seconds(1));
   if (!lock.owns_lock()) return;

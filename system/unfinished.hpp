@@ -8,7 +8,7 @@
 /// What would outlive this process if it ended in mid-run, for abandon_outputs(): files under a temporary name, and
 /// programs that do not see at once that their caller is gone. Of the process; there is no other owner that a signal
 /// could be answered by.
-namespace tessera::io {
+namespace tessera::system {
 
 /// Whoever makes, renames or removes such a file holds this meanwhile. Not to be had any more after abandon_outputs().
 [[nodiscard]] std::unique_lock<std::timed_mutex> naming_outputs();
@@ -25,4 +25,4 @@ void abandon_in_handler() noexcept;
 void add_unfinished(pid_t program);
 void remove_unfinished(pid_t program);
 
-}  // namespace tessera::io
+}  // namespace tessera::system

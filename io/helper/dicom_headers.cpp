@@ -120,7 +120,7 @@ DicomSlice slice_of(const nlohmann::json& j, const std::filesystem::path& file) 
     std::vector<std::uint8_t> bytes;
     if (const auto slice = read_dicom_header(file)) bytes = nlohmann::json::to_cbor(json_of(*slice));
     const auto length = static_cast<std::uint32_t>(bytes.size());
-    if (!write_all(to, &length, sizeof length) || !write_all(to, bytes.data(), bytes.size())) break;
+    if (!system::write_all(to, &length, sizeof length) || !system::write_all(to, bytes.data(), bytes.size())) break;
   }
   ::_exit(0);
 }
@@ -129,13 +129,13 @@ DicomSlice slice_of(const nlohmann::json& j, const std::filesystem::path& file) 
 std::size_t read_some(std::span<const std::filesystem::path> files, std::vector<DicomSlice>& slices) {
   std::array<int, 2> ends{};
   if (::pipe(ends.data()) != 0) throw std::system_error(errno, std::generic_category());
-  Descriptor out(ends[1]);
+  system::Descriptor out(ends[1]);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(::fdopen(ends[0], "rb"), std::fclose);
   const auto take = [&](void* bytes, std::size_t count) { return std::fread(bytes, 1, count, in.get()) == count; };
   const pid_t child = ::fork();
   if (child < 0) throw std::system_error(errno, std::generic_category());
   if (child == 0) tell_headers(out.get(), files);
-  out = Descriptor();
+  out = system::Descriptor();
   std::size_t done = 0;
   for (std::uint32_t length = 0; done < files.size() && take(&length, sizeof length); ++done) {
     std::vector<std::uint8_t> bytes(length);

@@ -77,22 +77,22 @@ EnsightStep::EnsightStep(const EnsightCase& described, double time) {
   case_file_ = in_memory(text, {});
 }
 
-std::filesystem::path EnsightStep::keep(Descriptor opened) {
+std::filesystem::path EnsightStep::keep(system::Descriptor opened) {
   opened_.push_back(std::move(opened));
   return fmt::format("/proc/{}/fd/{}", ::getpid(), opened_.back().get());
 }
 
 std::filesystem::path EnsightStep::in_memory(std::string_view before, std::string_view lines) {
-  Descriptor file(::memfd_create("tessera", MFD_CLOEXEC));
-  if (!file.is_open() || !write_all(file.get(), before.data(), before.size()) ||
-      !write_all(file.get(), lines.data(), lines.size()))
+  system::Descriptor file(::memfd_create("tessera", MFD_CLOEXEC));
+  if (!file.is_open() || !system::write_all(file.get(), before.data(), before.size()) ||
+      !system::write_all(file.get(), lines.data(), lines.size()))
     throw std::bad_alloc();
   return keep(std::move(file));
 }
 
 std::filesystem::path EnsightStep::file_of(const EnsightCase::Located& located) {
   const std::filesystem::path& file = located.values.file;
-  const auto as_it_is = [&] { return keep(open_regular(file, file.string())); };
+  const auto as_it_is = [&] { return keep(system::open_regular(file, file.string())); };
   if (std::error_code unknown; std::filesystem::file_size(file, unknown) == 0) return as_it_is();
   const WholeFile mapped(file);
   const StepText text = step_text(mapped.text(), located.step, located.in_set);

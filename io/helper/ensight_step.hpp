@@ -23,9 +23,9 @@ class EnsightStep {
   /// The path that VTK's reader opens: of the file itself, or of its step in memory.
   std::filesystem::path file_of(const EnsightCase::Located& located);
   std::filesystem::path in_memory(std::string_view before, std::string_view lines);
-  std::filesystem::path keep(Descriptor opened);
+  std::filesystem::path keep(system::Descriptor opened);
 
-  std::vector<Descriptor> opened_;
+  std::vector<system::Descriptor> opened_;
   std::filesystem::path case_file_;
   std::vector<EnsightCase::Values> values_;
 };

@@ -120,13 +120,13 @@ ForeignContents read_gmsh(Holdings& holdings, const std::filesystem::path& file,
     throw scene::bad_input(fmt::format("{}: it does not begin with $MeshFormat; write it anew", source));
   require_last_section(file);
   // By a name without an extension, since one of another format would be believed.
-  Descriptor opened(::open(source.c_str(), O_RDONLY | O_CLOEXEC));
+  system::Descriptor opened(::open(source.c_str(), O_RDONLY | O_CLOEXEC));
   if (!opened.is_open()) throw scene::bad_input(fmt::format("{}: it cannot be opened; check its permissions", source));
-  if (Descriptor quoted = with_quoted_view_names(file); quoted.is_open()) opened = std::move(quoted);
-  const auto path_of = [](const Descriptor& copy) { return fmt::format("/proc/self/fd/{}", copy.get()); };
+  if (system::Descriptor quoted = with_quoted_view_names(file); quoted.is_open()) opened = std::move(quoted);
+  const auto path_of = [](const system::Descriptor& copy) { return fmt::format("/proc/self/fd/{}", copy.get()); };
   try {
     if (!merge(path_of(opened), source, false)) {
-      if (Descriptor copy = without_partitions(path_of(opened)); copy.is_open()) opened = std::move(copy);
+      if (system::Descriptor copy = without_partitions(path_of(opened)); copy.is_open()) opened = std::move(copy);
       merge(path_of(opened), source);
     }
   } catch (const std::bad_alloc&) {

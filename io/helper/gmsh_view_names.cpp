@@ -83,12 +83,12 @@ std::string with_two_tags(std::string_view line) {
 
 }  // namespace
 
-Descriptor with_quoted_view_names(const std::filesystem::path& file) {
+system::Descriptor with_quoted_view_names(const std::filesystem::path& file) {
   const WholeFile mapped(file);
   const std::string_view text = mapped.text();
   const std::vector<std::size_t> places = lacking_quotes(text);
   if (places.empty()) return {};
-  Descriptor copy(::memfd_create("tessera", MFD_CLOEXEC));
+  system::Descriptor copy(::memfd_create("tessera", MFD_CLOEXEC));
   std::size_t done = 0;
   for (const std::size_t place : places) {
     write_all(copy.get(), text.substr(done, place - done), file.string());
@@ -99,11 +99,11 @@ Descriptor with_quoted_view_names(const std::filesystem::path& file) {
   return copy;
 }
 
-Descriptor without_partitions(const std::filesystem::path& file) {
+system::Descriptor without_partitions(const std::filesystem::path& file) {
   const WholeFile mapped(file);
   const std::string_view text = mapped.text();
   if (const std::string binary = binary_without_partitions(text); !binary.empty()) {
-    Descriptor copy(::memfd_create("tessera", MFD_CLOEXEC));
+    system::Descriptor copy(::memfd_create("tessera", MFD_CLOEXEC));
     write_all(copy.get(), binary, file.string());
     return copy;
   }
@@ -112,7 +112,7 @@ Descriptor without_partitions(const std::filesystem::path& file) {
       text.substr(format, 16).find(" 0 ") == std::string_view::npos)
     return {};
   const std::size_t count = line_at(text, elements + 1).next, first = line_at(text, count).next;
-  Descriptor copy(::memfd_create("tessera", MFD_CLOEXEC));
+  system::Descriptor copy(::memfd_create("tessera", MFD_CLOEXEC));
   write_all(copy.get(), text.substr(0, first), file.string());
   std::string lines;
   std::size_t at = first;

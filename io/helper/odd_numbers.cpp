@@ -115,8 +115,8 @@ OddNumbers::OddNumbers(const std::filesystem::path& file) : file_(file) {
 
 std::string OddNumbers::file_name() {
   if (!any()) return file_.string();
-  if (!in_memory_.is_open()) in_memory_ = Descriptor(::memfd_create("tessera", MFD_CLOEXEC));
-  if (!in_memory_.is_open() || !write_all(in_memory_.get(), text_.data(), text_.size())) throw std::bad_alloc();
+  if (!in_memory_.is_open()) in_memory_ = system::Descriptor(::memfd_create("tessera", MFD_CLOEXEC));
+  if (!in_memory_.is_open() || !system::write_all(in_memory_.get(), text_.data(), text_.size())) throw std::bad_alloc();
   return fmt::format("/proc/self/fd/{}", in_memory_.get());
 }
 

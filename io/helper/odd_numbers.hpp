@@ -27,7 +27,7 @@ class OddNumbers {
  private:
   std::filesystem::path file_;
   std::string text_;
-  Descriptor in_memory_;
+  system::Descriptor in_memory_;
 };
 
 }  // namespace tessera::io::helper

@@ -83,7 +83,7 @@ bool has_wide_labels(const std::filesystem::path& folder) {
         if (!std::filesystem::is_regular_file(file, unknown)) continue;
         const std::string beginning = read_beginning(file, 4096);
         if (beginning.starts_with("\x1f\x8b")) {
-          const auto text = inflate_beginning(std::as_bytes(std::span(beginning)), 2048);
+          const auto text = system::inflate_beginning(std::as_bytes(std::span(beginning)), 2048);
           return std::string_view(reinterpret_cast<const char*>(text.data()), text.size()).find("label=64") !=
                  std::string_view::npos;
         }

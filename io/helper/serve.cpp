@@ -48,8 +48,8 @@ Json open(std::span<const Reader> readers, Holdings& holdings, const Json& reque
 }
 
 /// A file without a name that holds an array's numbers.
-Descriptor file_of(const Holdings::Held& held) {
-  Descriptor file(::memfd_create("tessera", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+system::Descriptor file_of(const Holdings::Held& held) {
+  system::Descriptor file(::memfd_create("tessera", MFD_CLOEXEC | MFD_ALLOW_SEALING));
   if (!file.is_open()) throw std::bad_alloc();
   constexpr std::size_t some_bytes = 1 << 18;  // which stay in the processor's cache
   const std::size_t tuple = held.array.tuple_bytes();
@@ -58,7 +58,7 @@ Descriptor file_of(const Holdings::Held& held) {
   for (std::uint64_t first = 0; first < held.array.tuples; first += at_once) {
     const std::uint64_t count = std::min(at_once, held.array.tuples - first);
     held.read(first, count, some.data());
-    if (!write_all(file.get(), some.data(), count * tuple)) throw std::bad_alloc();
+    if (!system::write_all(file.get(), some.data(), count * tuple)) throw std::bad_alloc();
   }
   return file;
 }
@@ -66,7 +66,7 @@ Descriptor file_of(const Holdings::Held& held) {
 /// Memory of the caller's, in slots, through which arrays go without a file each.
 class Window {
  public:
-  void open(const Descriptor& file, std::size_t slot) {
+  void open(const system::Descriptor& file, std::size_t slot) {
     struct stat facts {};
     if (!file.is_open() || slot == 0 || ::fstat(file.get(), &facts) != 0) throw std::invalid_argument("no window");
     const auto bytes = static_cast<std::size_t>(facts.st_size);
@@ -103,7 +103,7 @@ Json error_json(const scene::Error& error) {
 
 /// Answers one request. False if the caller is gone.
 bool answer(std::span<const Reader> readers, Holdings& holdings, Window& window, const Json& request,
-            const Descriptor& given) {
+            const system::Descriptor& given) {
   const auto asked = request.at("do").get<std::string>();
   if (asked == "drop") {
     for (const Json& array : request.at("arrays")) holdings.drop(array.get<std::uint64_t>());
@@ -111,7 +111,7 @@ bool answer(std::span<const Reader> readers, Holdings& holdings, Window& window,
   }
   const std::string source = request.value("file", std::string("the file"));
   Json reply = Json::object();
-  Descriptor file;
+  system::Descriptor file;
   try {
     if (asked == "open") {
       reply = open(readers, holdings, request);

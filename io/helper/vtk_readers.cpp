@@ -197,7 +197,7 @@ ForeignContents contents_of_data(Holdings& holdings, vtkDataObject* data, const 
 }  // namespace
 
 void require_whole_xml(const std::filesystem::path& file) {
-  const PositionalFile opened(file);
+  const system::PositionalFile opened(file);
   std::string end(std::min<std::uint64_t>(opened.size(), 1024), '\0');
   opened.read(opened.size() - end.size(), reinterpret_cast<std::byte*>(end.data()), end.size());
   if (end.find("</VTKFile") == std::string::npos)

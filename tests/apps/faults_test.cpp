@@ -183,7 +183,7 @@ TEST(Faults, AFullDiskBehindStandardOutputIsASystemFailure) {
 
 TEST(Faults, APictureLargerThanMemoryIsRefusedInTime) {
   const Folder folder;
-  const auto free = static_cast<double>(io::available_memory());
+  const auto free = static_cast<double>(system::available_memory());
   const int side = static_cast<int>(std::sqrt(2 * free / 22));  // twice what there is
   if (side > 65536) GTEST_SKIP() << "this machine could hold any";
   const std::string size = std::to_string(side) + "x" + std::to_string(side);

@@ -26,7 +26,7 @@ using test::TemporaryFolder;
 
 TEST(AtomicFile, AppearsOnlyWhenCommitted) {
   const TemporaryFolder folder;
-  AtomicFile file(folder / "out");
+  system::AtomicFile file(folder / "out");
   file.write("hello");
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
   file.commit();
@@ -59,7 +59,7 @@ TEST(AtomicFile, HasNoOtherNameBeforeItsOwnUnlessItReplacesAFile) {
     ::close(probe);
   else
     GTEST_SKIP() << "the file system has no files without a name";
-  const auto write = [&] { AtomicFile(folder / "out").commit(); };
+  const auto write = [&] { system::AtomicFile(folder / "out").commit(); };
   EXPECT_EQ(names_made_by(folder, write), std::vector<std::string>{"out"});
   EXPECT_EQ(names_made_by(folder, write).size(), 2u);
 }
@@ -69,7 +69,7 @@ TEST(AtomicFile, IsRemovedEvenUnderItsTemporaryNameWhenTheProgramAbandonsItsOutp
   const TemporaryFolder folder;
   const pid_t child = fork();
   if (child == 0) {
-    AtomicFile nameless(folder / "a"), named(folder / "b"), done(folder / "c");
+    system::AtomicFile nameless(folder / "a"), named(folder / "b"), done(folder / "c");
     nameless.write("half");
     std::ofstream(named.named_part()) << "half";
     done.commit();
@@ -90,16 +90,16 @@ TEST(AtomicFile, IsRemovedUnderItsTemporaryNameByASignalsHandlerToo) {
   const pid_t child = fork();
   if (child == 0) {
     std::signal(SIGTERM, [](int) {
-      abandon_in_handler();
+      system::abandon_in_handler();
       _exit(0);
     });
-    AtomicFile named(folder / "a"), done(folder / "b");
+    system::AtomicFile named(folder / "a"), done(folder / "b");
     std::ofstream(named.named_part()) << "half";
     std::ofstream(done.named_part()) << "whole";
     done.commit();
     for (int k = 0; k < 200; ++k)
-      static_cast<void>(AtomicFile(folder / "c").named_part());  // each takes a place and gives it back
-    [[maybe_unused]] const auto lock = naming_outputs();         // whatever it interrupts
+      static_cast<void>(system::AtomicFile(folder / "c").named_part());  // each takes a place and gives it back
+    [[maybe_unused]] const auto lock = system::naming_outputs();         // whatever it interrupts
     std::raise(SIGTERM);
     _exit(1);
   }
@@ -123,11 +123,11 @@ TEST(AtomicFile, ReplacesAnOldFileAsAWholeOrLeavesIt) {
   const TemporaryFolder folder;
   folder.write("out", "old");
   {
-    AtomicFile abandoned(folder / "out");
+    system::AtomicFile abandoned(folder / "out");
     abandoned.write("half-writt");
   }
   EXPECT_EQ(contents(folder / "out"), "old");
-  AtomicFile file(folder / "out");
+  system::AtomicFile file(folder / "out");
   file.write("new");
   EXPECT_EQ(contents(folder / "out"), "old");
   file.commit();
@@ -138,12 +138,12 @@ TEST(AtomicFile, ReplacesAnOldFileAsAWholeOrLeavesIt) {
 TEST(AtomicFile, ANamedPartIsRemovedUnlessCommitted) {
   const TemporaryFolder folder;
   {
-    AtomicFile file(folder / "out");
+    system::AtomicFile file(folder / "out");
     EXPECT_TRUE(std::filesystem::exists(file.named_part()));
     EXPECT_EQ(file.named_part().parent_path(), folder.path());
   }
   EXPECT_TRUE(folder.names().empty());
-  AtomicFile one(folder / "one"), two(folder / "two");  // at once, in one folder
+  system::AtomicFile one(folder / "one"), two(folder / "two");  // at once, in one folder
   EXPECT_NE(one.named_part(), two.named_part());
   std::ofstream(one.named_part()) << "1";
   std::ofstream(two.named_part()) << "2";
@@ -155,7 +155,7 @@ TEST(AtomicFile, ANamedPartIsRemovedUnlessCommitted) {
 
 TEST(AtomicFile, SeekOverwrites) {
   const TemporaryFolder folder;
-  AtomicFile file(folder / "out");
+  system::AtomicFile file(folder / "out");
   file.write("hello");
   file.seek(1);
   file.write("u");
@@ -167,7 +167,7 @@ TEST(AtomicFile, SeekOverwrites) {
 TEST(AtomicFile, HasTheRightsOfAnyNewFile) {
   const TemporaryFolder folder;
   const mode_t mask = ::umask(0022);
-  AtomicFile file(folder / "out");
+  system::AtomicFile file(folder / "out");
   file.commit();
   ::umask(mask);
   EXPECT_EQ(static_cast<unsigned>(std::filesystem::status(folder / "out").permissions()), 0644u);
@@ -178,7 +178,7 @@ TEST(AtomicFile, AKilledProcessLeavesNothing) {
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
-    AtomicFile file(folder / "out");
+    system::AtomicFile file(folder / "out");
     file.write("half");
     ::kill(::getpid(), SIGKILL);
   }
@@ -193,14 +193,14 @@ TEST(AtomicFile, AKilledProcessLeavesNothing) {
 TEST(AtomicFile, RefusesWhereNothingCanBeWritten) {
   const TemporaryFolder folder;
   folder.write("file", "");
-  expect_bad_input([&] { AtomicFile(folder / "none/out"); }, {"none/out: ", "make the folder first"});
-  expect_bad_input([&] { AtomicFile(folder / "file/out"); }, {"file/out: ", "folder"});
-  expect_bad_input([&] { AtomicFile(folder.path()); }, {"name a file, not a folder"});
-  expect_bad_input([&] { AtomicFile(folder.path().string() + "/"); }, {"name a file, not a folder"});
-  expect_bad_input([&] { AtomicFile("/dev/null"); }, {"/dev/null: is not a regular file"});
-  expect_bad_input([&] { AtomicFile(""); }, {"name a file"});
-  expect_bad_input([&] { AtomicFile(folder / std::string(300, 'x')); }, {"shorter name"});
-  expect_bad_input([&] { AtomicFile("/proc/out.png"); }, {"/proc/out.png: "});
+  expect_bad_input([&] { system::AtomicFile(folder / "none/out"); }, {"none/out: ", "make the folder first"});
+  expect_bad_input([&] { system::AtomicFile(folder / "file/out"); }, {"file/out: ", "folder"});
+  expect_bad_input([&] { system::AtomicFile(folder.path()); }, {"name a file, not a folder"});
+  expect_bad_input([&] { system::AtomicFile(folder.path().string() + "/"); }, {"name a file, not a folder"});
+  expect_bad_input([&] { system::AtomicFile("/dev/null"); }, {"/dev/null: is not a regular file"});
+  expect_bad_input([&] { system::AtomicFile(""); }, {"name a file"});
+  expect_bad_input([&] { system::AtomicFile(folder / std::string(300, 'x')); }, {"shorter name"});
+  expect_bad_input([&] { system::AtomicFile("/proc/out.png"); }, {"/proc/out.png: "});
   EXPECT_EQ(folder.names(), std::vector<std::string>{"file"});
 }
 
@@ -208,7 +208,7 @@ TEST(AtomicFile, RefusesAFolderWithoutTheRightToWrite) {
   if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
   const TemporaryFolder folder;
   std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
-  expect_bad_input([&] { AtomicFile(folder / "out"); }, {"name a folder you may write in"});
+  expect_bad_input([&] { system::AtomicFile(folder / "out"); }, {"name a folder you may write in"});
   std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
 }
 

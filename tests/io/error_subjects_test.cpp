@@ -47,18 +47,18 @@ TEST(ErrorSubjects, AreTheFilesThatAreRead) {
 TEST(ErrorSubjects, AreTheFilesThatAreWritten) {
   const test::TemporaryFolder folder;
   const auto target = folder / odd / "a.png";
-  expect_subject(target, [&] { check_writable(target); });
-  expect_subject(target, [&] { AtomicFile file(target); });
-  expect_subject(folder.path(), [&] { AtomicFile file(folder.path()); });
+  expect_subject(target, [&] { system::check_writable(target); });
+  expect_subject(target, [&] { system::AtomicFile file(target); });
+  expect_subject(folder.path(), [&] { system::AtomicFile file(folder.path()); });
 }
 
 TEST(ErrorSubjects, AreTheSameWhereAFolderIsRemovedInMidRun) {
   const test::TemporaryFolder folder;
   const auto target = folder / odd / "a.png";
   try {
-    AtomicFile file(target);
+    system::AtomicFile file(target);
     ADD_FAILURE();
-  } catch (const OutputFault& fault) {
+  } catch (const system::OutputFault& fault) {
     const scene::Error since = fault.since_changed();
     EXPECT_EQ(since.code(), scene::ErrorCode::system_failure);
     EXPECT_EQ(since.subject(), target.string());

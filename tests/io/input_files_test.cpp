@@ -110,7 +110,7 @@ TEST(InputFiles, PipesAreRefusedWhereReaderProgramsFindThem) {
 TEST(InputFiles, OtherFilesThatAreNoneAreRefused) {
   expect_bad_input([] { require_file("/dev/zero"); }, {"no regular file"});
   expect_bad_input([] { require_file("/proc/self/maps"); }, {"it is empty"});
-  expect_bad_input([] { PositionalFile(std::string(300, 'y')); }, {"there is no such file"});
+  expect_bad_input([] { system::PositionalFile(std::string(300, 'y')); }, {"there is no such file"});
 }
 
 TEST(InputFiles, WithoutDescriptorsTheSystemHasFailed) {
@@ -139,7 +139,7 @@ TEST(InputFiles, ShortenedBeforeTheyAreReadIsAnError) {
   std::memcpy(tets.data(), &vertices, 8);
   std::memcpy(tets.data() + 8, &cells, 8);
   const auto file = folder.write("m.tets", tets);
-  const PositionalFile opened(file);
+  const system::PositionalFile opened(file);
   const TetsBytes bytes(opened);
   std::filesystem::resize_file(file, 100000);
   expect_failure([&] { parse_tets(bytes, "m.tets"); }, "whole");
@@ -164,8 +164,8 @@ TEST(InputFiles, AWholeFileThatEndsBeforeItsSizeIsAnError) {
   EXPECT_NE(fault.message.find("shortened"), std::string::npos) << fault.message;
 }
 
-TEST(IdleWatch, KnowsAProcessThatSleepsFromOneThatRuns) {
-  IdleWatch own(::getpid());
+TEST(system::IdleWatch, KnowsAProcessThatSleepsFromOneThatRuns) {
+  system::IdleWatch own(::getpid());
   for (int look = 0; look < 3; ++look) EXPECT_EQ(own.look().count(), 0) << "this thread runs";
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
@@ -173,7 +173,7 @@ TEST(IdleWatch, KnowsAProcessThatSleepsFromOneThatRuns) {
     ::pause();
     ::_exit(0);
   }
-  IdleWatch watch(child);
+  system::IdleWatch watch(child);
   const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(2);
   std::chrono::steady_clock::duration idle{};
   while (idle.count() == 0 && std::chrono::steady_clock::now() < give_up) idle = watch.look();

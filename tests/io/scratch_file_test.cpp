@@ -99,11 +99,11 @@ TEST(FileSources, AFileThatIsShortenedMeanwhileIsAnErrorOfItsName) {
 TEST(ScratchFiles, HaveNoNameAndCanBeReadOnWhenTheirWriterIsGone) {
   const test::TemporaryFolder folder;
   const ScratchFolder scratch(folder.path());
-  auto file = std::make_unique<ScratchFile>("v.nii.gz", 5);
+  auto file = std::make_unique<system::ScratchFile>("v.nii.gz", 5);
   file->write("12345");
   EXPECT_EQ(file->folder(), folder.path());
   EXPECT_TRUE(folder.names().empty());
-  const PositionalFile reader(file->path());
+  const system::PositionalFile reader(file->path());
   file.reset();
   std::string text(5, ' ');
   reader.read(0, reinterpret_cast<std::byte*>(text.data()), 5);
@@ -114,7 +114,7 @@ TEST(ScratchFiles, HaveNoNameAndCanBeReadOnWhenTheirWriterIsGone) {
 TEST(ScratchFiles, AFolderThatIsNotThereIsNamedWithARemedy) {
   const test::TemporaryFolder folder;
   const ScratchFolder scratch(folder / "nowhere");
-  expect_bad_input([] { ScratchFile("v.nii.gz", 5); },
+  expect_bad_input([] { system::ScratchFile("v.nii.gz", 5); },
                    {"v.nii.gz: its samples", (folder / "nowhere").string(), "No such file", "set TMPDIR"});
 }
 
@@ -125,8 +125,9 @@ TEST(ScratchFiles, NoRoomIsSaidBeforeAnythingIsWritten) {
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
   const rlimit small{1 << 20, before.rlim_max};
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
-  expect_bad_input([] { ScratchFile("v.nii.gz", 3'200'000'000); }, {"v.nii.gz", "3.2 GB", "free some space there"});
-  EXPECT_NO_THROW(ScratchFile("v.nii.gz", 1 << 20));
+  expect_bad_input([] { system::ScratchFile("v.nii.gz", 3'200'000'000); },
+                   {"v.nii.gz", "3.2 GB", "free some space there"});
+  EXPECT_NO_THROW(system::ScratchFile("v.nii.gz", 1 << 20));
   ::setrlimit(RLIMIT_FSIZE, &before);
   EXPECT_TRUE(folder.names().empty());
 }

@@ -96,7 +96,7 @@ TEST_F(StreamedVolumes, AreWrittenInAnyPartsThatTheyComeIn) {
   const std::string bytes = noise(samples);
   std::vector<double> expected;
   for (const std::size_t part : {std::size_t{1000}, std::size_t{nx} * ny, std::size_t{12'345}, samples}) {
-    streamed.tuples = [&](const ByteSink& use) {
+    streamed.tuples = [&](const system::ByteSink& use) {
       for (std::size_t at = 0; at < bytes.size(); at += part)
         use(std::as_bytes(std::span(bytes).subspan(at, std::min(part, bytes.size() - at))));
     };

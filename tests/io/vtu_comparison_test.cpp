@@ -137,7 +137,7 @@ TEST_F(VtuComparison, FilesOfOtherProgramsAreReadAsVtkReadsThem) {
   std::map<Outcome, std::size_t> counts;
   for (const std::filesystem::path& of : folders)
     for (const auto& entry : std::filesystem::recursive_directory_iterator(of)) {
-      if (!entry.is_regular_file() || lower_extension(entry.path()) != ".vtu") continue;
+      if (!entry.is_regular_file() || system::lower_extension(entry.path()) != ".vtu") continue;
       SCOPED_TRACE(entry.path());
       std::string line;
       const Outcome outcome = compare(entry.path(), line);
