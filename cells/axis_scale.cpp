@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 constexpr double thinnest = 1.0 / 20;
@@ -58,4 +58,4 @@ Box box_of_points(std::span<const CellBlock> blocks) {
   return box;
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

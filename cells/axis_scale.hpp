@@ -10,7 +10,7 @@
 #include "tessera/camera.hpp"
 
 /// Axes of the world multiplied by a factor each (ReadOptions::axis_scale), asked for or chosen.
-namespace tessera::io {
+namespace tessera::cells {
 
 /// For x and y in degrees and z a length: 1, unless the box is thinner than 1:20; then z is multiplied by the largest
 /// of 1, 2 or 5 times a power of ten with which it is at most a quarter of the longer of x and y.
@@ -26,4 +26,4 @@ void scale_blocks(std::span<CellBlock> blocks, const glm::dvec3& scale);
 /// Box round the finite points of cells.
 Box box_of_points(std::span<const CellBlock> blocks);
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

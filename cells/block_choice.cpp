@@ -9,7 +9,7 @@
 #include "scene/quote.hpp"
 #include "tessera/nearest_name.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 std::string list(std::span<const std::string> blocks, bool with_surfaces) {
@@ -68,4 +68,4 @@ std::vector<std::string> distinct_names(std::vector<std::string> names) {
   return names;
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

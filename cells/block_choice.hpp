@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// Blocks of a file by name, as a caller gives them; none: all.
 using BlockChoice = std::vector<std::string>;
@@ -29,4 +29,4 @@ std::string note_on_surfaces(std::string_view what, std::span<const std::string>
 /// The names without empty ones and repetitions, in their order.
 std::vector<std::string> distinct_names(std::vector<std::string> names);
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

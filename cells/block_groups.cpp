@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 constexpr std::size_t most_groups = 256;
@@ -65,4 +65,4 @@ std::vector<CellBlock> blocks_by_number(const CellBlock& all, std::span<const st
   return blocks;
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -11,7 +11,7 @@
 #include "scene/directions.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 using scene::Tet;
@@ -113,7 +113,7 @@ void BlockCells::split_cell(std::size_t c, Workplace& work, BlockTets& out) cons
   }
   if (!is_prism || work.polyhedra.are_fans(work.faces, points_)) {
     work.tets.clear();
-    io::split_cell(shape.kind, corner, points_, work.tets);
+    cells::split_cell(shape.kind, corner, points_, work.tets);
     const auto place_of = [&](std::uint32_t v) { return points_[v]; };
     const std::size_t tets = out.tets.size();
     const std::uint64_t collapsed = out.counts.tets_collapsed;
@@ -131,7 +131,7 @@ void BlockCells::split_cell(std::size_t c, Workplace& work, BlockTets& out) cons
   }
   // Corners given twice may leave a surface that is not closed.
   work.tets.clear();
-  io::split_cell(shape.kind, corner, points_, work.tets);
+  cells::split_cell(shape.kind, corner, points_, work.tets);
   keep_tets(
       c, work.tets, [&](std::uint32_t v) { return points_[v]; }, out);
 }
@@ -281,4 +281,4 @@ std::string BlockCells::place(std::size_t c) const {
   return block_.name.empty() ? fmt::format("cell {}", c) : fmt::format("block '{}', cell {}", block_.name, c);
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

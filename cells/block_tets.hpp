@@ -15,7 +15,7 @@
 #include "cells/mesh_options.hpp"
 #include "cells/polyhedron_split.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// What some of a block's cells become.
 struct BlockTets {
@@ -77,4 +77,4 @@ class BlockCells {
   mutable std::atomic<std::uint64_t> curved_tets_{0};
 };
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -8,7 +8,7 @@
 #include "cells/tuple_length.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 BlockField field_of_values(std::string name, std::string type, scene::Association association, int components,
                            std::vector<double> values) {
@@ -60,4 +60,4 @@ void require_faces(const CellBlock& block, const std::string& where) {
   }
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

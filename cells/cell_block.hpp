@@ -12,7 +12,7 @@
 #include "cells/number_tally.hpp"
 #include "scene/tet_mesh.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// Asks a field for the length of its tuples instead of one component.
 inline constexpr int magnitude = -1;
@@ -67,4 +67,4 @@ struct CellBlock {
 /// cell's.
 void require_faces(const CellBlock& block, const std::string& where);
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

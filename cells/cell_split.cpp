@@ -7,7 +7,7 @@
 
 #include "scene/position_order.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 struct Face {
@@ -216,4 +216,4 @@ void split_cell(CellKind kind, std::span<const std::uint32_t> corner, std::span<
   }
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -9,7 +9,7 @@
 
 #include "scene/tet_mesh.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 enum class CellKind : std::uint8_t {
   tet,
@@ -55,4 +55,4 @@ void split_cell(CellKind kind, std::span<const std::uint32_t> corner, std::span<
 /// and what is no volume.
 void append_faces(CellKind kind, std::span<const std::uint32_t> corner, std::vector<std::uint32_t>& faces);
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

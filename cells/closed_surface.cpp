@@ -5,7 +5,7 @@
 
 #include "scene/position_order.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 /// Calls `use` for each run of edges between the same corners.
@@ -207,4 +207,4 @@ std::optional<std::array<std::uint32_t, 8>> ClosedSurface::as_hexahedron() const
   return corner;
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

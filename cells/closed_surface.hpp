@@ -10,7 +10,7 @@
 
 #include "cells/face_triangles.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// The faces of one polyhedron, cut into triangles that turn outward.
 ///
@@ -69,4 +69,4 @@ class ClosedSurface {
   FaceCutter cutter_;
 };
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 /// Which of the points lie on a plane that has all others on its inner side.
@@ -145,4 +145,4 @@ bool hull_faces(std::span<const std::uint32_t> points, std::span<const glm::dvec
   return Hull(points, positions, thickness).find(faces);
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// More points make no hull: their number cubed is what it costs.
 inline constexpr std::size_t most_hull_points = 128;
@@ -17,4 +17,4 @@ inline constexpr std::size_t most_hull_points = 128;
 bool hull_faces(std::span<const std::uint32_t> points, std::span<const glm::dvec3> positions, double thickness,
                 std::vector<std::uint32_t>& faces);
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

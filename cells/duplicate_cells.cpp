@@ -23,7 +23,7 @@
 #include "scene/position_order.hpp"
 #include "scene/threads.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 using scene::Tet;
@@ -300,4 +300,4 @@ std::uint64_t count_repetitions(const std::vector<std::uint64_t>& keys, int thre
   });
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -5,7 +5,7 @@
 
 #include "scene/tet_mesh.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// Counts, and with `drop` removes, cells whose tets have the corners of an earlier cell's by position: parts that were
 /// put together several times. Each of them is drawn twice as dense as it is. Vertices stay, and original_cell has the
@@ -24,4 +24,4 @@ std::vector<std::uint64_t> duplicate_keys(const scene::TetMeshView& mesh, int th
 /// the whole mesh.
 std::uint64_t count_repetitions(const std::vector<std::uint64_t>& keys, int threads);
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -4,7 +4,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 // Of a face's area: how far triangles may turn the wrong way, or corners lie out of an ear, by rounding alone.
@@ -105,4 +105,4 @@ void FaceCutter::cut_ears(std::span<const glm::dvec3> p) {
   add(ring_[0], ring_[1], ring_[2]);
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

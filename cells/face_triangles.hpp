@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace tessera::io {
+namespace tessera::cells {
 
 using CornerTriangle = std::array<std::uint32_t, 3>;
 
@@ -46,4 +46,4 @@ class FaceCutter {
   std::vector<CornerTriangle>* triangles_ = nullptr;
 };
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -16,7 +16,7 @@
 #include "scene/error.hpp"
 #include "tessera/nearest_name.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 using scene::Association;
@@ -380,4 +380,4 @@ void refuse_colors(const FieldChoice& choice, const FieldSummary& field, const s
                   source, field.name, field.components, field.name, field.name));
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -8,7 +8,7 @@
 #include "cells/cell_block.hpp"
 #include "cells/mesh_options.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// The scalar that will be rendered.
 struct FieldChoice {
@@ -67,4 +67,4 @@ void refuse_colors(const FieldChoice& choice, const FieldSummary& field, const s
 /// Whether this block has the chosen array, with the summary's number of components.
 const BlockField* find_field(const CellBlock& block, const std::string& name, scene::Association association);
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -21,7 +21,7 @@
 #include "scene/error.hpp"
 #include "scene/threads.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 using scene::Association;
@@ -397,4 +397,4 @@ MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options
   return file;
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

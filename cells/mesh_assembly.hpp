@@ -10,7 +10,7 @@
 #include "cells/field_choice.hpp"
 #include "cells/mesh_blocks.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// What some blocks of a file become.
 struct AssembledBlocks {
@@ -55,4 +55,4 @@ MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options
 /// (unweighted where all volumes are 0). Vertices at one position count as one, so that pieces leave no seam.
 void smooth_to_points(scene::TetMesh& mesh);
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-namespace tessera::io {
+namespace tessera::cells {
 
 void add_notes(const std::vector<std::string>& more, std::vector<std::string>& notes) {
   for (const std::string& note : more)
     if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -9,7 +9,7 @@
 #include "scene/tet_mesh.hpp"
 #include "scene/time_step_read.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// What a file holds before its cells are split. Readers that take a choice of blocks read no others.
 struct MeshBlocks {
@@ -41,4 +41,4 @@ struct MeshFile {
   std::string format;        ///< "VTK XML unstructured grid", "PLOT3D", "TetGen .node/.ele", ...
 };
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

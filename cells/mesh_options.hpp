@@ -13,7 +13,7 @@
 #include "tessera/selection.hpp"
 #include "tessera/warp.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// What the user may say about a mesh file; the defaults read any file that can be read.
 struct MeshOptions {
@@ -46,4 +46,4 @@ using tessera::MeshCounts;
 
 using FieldSummary = tessera::FieldInfo;
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -19,7 +19,7 @@
 #include "cells/cell_split.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 using scene::Association;
@@ -272,4 +272,4 @@ void require_selected(const MeshCounts& n, const std::string& source) {
       fmt::format("{}: nothing is left to render: {} (`tessera info` says bounds and ranges)", source, kept));
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -6,7 +6,7 @@
 #include "scene/selection.hpp"
 #include "scene/tet_mesh.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// Leaves of a mesh what is selected (tessera/selection.hpp): threshold, then one half-space after the other. Tets stay
 /// in their order, those of one cell next to each other; vertices that are not used any more are dropped. `counts` gets
@@ -18,4 +18,4 @@ void select(scene::TetMesh& mesh, const scene::Selection& selection, MeshCounts&
 /// Throws Error(bad_input) if a selection has left nothing of a whole mesh.
 void require_selected(const MeshCounts& counts, const std::string& source);
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// Spreads the bits of a key for a hash table: the finalizer of MurmurHash3 (Appleby, 2011, public domain).
 constexpr std::uint64_t mix(std::uint64_t h) {
@@ -11,4 +11,4 @@ constexpr std::uint64_t mix(std::uint64_t h) {
   return h ^ (h >> 33);
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// The bits of a number, mixed (the finalizer of MurmurHash3 after a step of the golden ratio; Steele, Lea, Flood,
 /// "Fast Splittable Pseudorandom Number Generators", 2014).
@@ -64,4 +64,4 @@ struct NumberTally {
   }
 };
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// The beginning of part `part` when n things are divided over the parts; part == parts: n.
 inline std::uint64_t first_of_part(std::uint64_t n, int part, int parts) {
@@ -11,4 +11,4 @@ inline std::uint64_t first_of_part(std::uint64_t n, int part, int parts) {
   return n / count * p + std::min(p, n % count);
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

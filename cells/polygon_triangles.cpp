@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace tessera::io {
+namespace tessera::cells {
 
 void PolygonTriangles::cut(std::span<const std::uint32_t> polygon, std::span<const glm::dvec3> points,
                            std::vector<std::array<std::uint32_t, 3>>& triangles) {
@@ -32,4 +32,4 @@ void PolygonTriangles::cut(std::span<const std::uint32_t> polygon, std::span<con
   for (const CornerTriangle& t : triangles_) triangles.push_back({sorted_[t[0]], sorted_[t[1]], sorted_[t[2]]});
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -8,7 +8,7 @@
 
 #include "cells/face_triangles.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// Cuts polygons given by numbers of points into triangles, by the points' positions alone (face_triangles.hpp).
 class PolygonTriangles {
@@ -24,4 +24,4 @@ class PolygonTriangles {
   FaceCutter cutter_;
 };
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -7,7 +7,7 @@
 #include "cells/cell_split.hpp"
 #include "cells/convex_hull.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 std::optional<SurfaceFill> PolyhedronSplitter::split(std::span<const std::uint32_t> faces,
                                                      std::span<const glm::dvec3> positions) {
@@ -78,4 +78,4 @@ bool PolyhedronSplitter::are_fans(std::span<const std::uint32_t> faces, std::spa
   return surface_.set(faces, positions) && surface_.are_fans();
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -10,7 +10,7 @@
 #include "cells/surface_tets.hpp"
 #include "scene/tet_mesh.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// Splits polyhedra into tets that fit those of their neighbours, one cell after the other.
 ///
@@ -52,4 +52,4 @@ class PolyhedronSplitter {
   std::vector<std::uint32_t> hull_;
 };
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

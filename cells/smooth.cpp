@@ -8,7 +8,7 @@
 #include "cells/mesh_assembly.hpp"
 #include "cells/mix_bits.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 /// For each used vertex, the first used vertex at the same position. Open addressing, linear probing.
@@ -64,4 +64,4 @@ void smooth_to_points(scene::TetMesh& mesh) {
   mesh.association = scene::Association::point;
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -12,7 +12,7 @@
 #include "cells/polygon_triangles.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 struct PositionHash {
@@ -121,4 +121,4 @@ double enclosed_volume(const Surface& surface) {
   return std::abs(six_volumes) / 6;
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <numeric>
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 using Tet = std::array<std::uint32_t, 4>;
@@ -236,4 +236,4 @@ void SurfaceEars::take_off(const Ear& ear) {
   }
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -10,7 +10,7 @@
 
 #include "cells/face_triangles.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// The triangles in groups that hang together on edges which just two of them have.
 std::vector<std::vector<CornerTriangle>> parts_on_edges(std::span<const CornerTriangle> triangles);
@@ -60,4 +60,4 @@ class SurfaceEars {
   std::minstd_rand chance_;
 };
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 // Of a cell's volume: what tets may have on the wrong side by rounding (block_tets.cpp counts no less as tangled).
@@ -256,4 +256,4 @@ void SurfaceTets::fill_overlapping(const Triangles& part) {
   best != nullptr ? add_cone(part, *best) : add_cone_inside(part, mean_);
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

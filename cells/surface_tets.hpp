@@ -9,7 +9,7 @@
 #include "cells/face_triangles.hpp"
 #include "cells/surface_ears.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// How a closed surface was filled with tets, the best way first.
 enum class SurfaceFill : std::uint8_t {
@@ -73,4 +73,4 @@ class SurfaceTets {
 /// exact for values that are linear in space, whatever `x`; their mean at the points' mean.
 double fitted_value(std::span<const glm::dvec3> points, std::span<const double> values, const glm::dvec3& x);
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

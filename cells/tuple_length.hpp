@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// Length of a tuple of any numbers that neither over- nor underflows; NaN or infinite if a component is.
 template <class T>
@@ -26,4 +26,4 @@ double tuple_length(const T* tuple, int components) {
   return largest * std::sqrt(sum);
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

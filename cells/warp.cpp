@@ -13,7 +13,7 @@
 #include "scene/error.hpp"
 #include "tessera/nearest_name.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 bool is_point_vector(const BlockField& field) {
@@ -87,4 +87,4 @@ void warp(MeshBlocks& read, const MeshOptions& options, const std::string& sourc
     add_notes({fmt::format("some blocks have no '{}': their nodes stay", by.vector)}, read.notes);
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -4,7 +4,7 @@
 
 #include "cells/mesh_blocks.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// Whether a vector by its name says how far nodes have moved, whatever the letters' case: "dis", "disp", "displ",
 /// "displacement", with or without an "s" or a "_" at the end. VTK's reader takes any name that begins with "dis", so
@@ -16,4 +16,4 @@ bool is_displacement_name(const std::string& name);
 /// if no block has the one that is asked for.
 void warp(MeshBlocks& read, const MeshOptions& options, const std::string& source);
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

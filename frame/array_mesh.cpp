@@ -121,8 +121,8 @@ bool all_finite(const MeshArrays& a) {
   return std::ranges::all_of(a.points.as<double>(), finite) && std::ranges::all_of(a.scalars.as<double>(), finite);
 }
 
-io::CellBlock block_of(const MeshArrays& a) {
-  io::CellBlock block;
+cells::CellBlock block_of(const MeshArrays& a) {
+  cells::CellBlock block;
   const std::size_t points = a.points.size() / 3;
   const std::vector<double> coordinates = doubles_of(a.points);
   block.positions.resize(points);
@@ -146,17 +146,17 @@ io::CellBlock block_of(const MeshArrays& a) {
   if (!a.faces.empty()) {
     block.faces = whole_numbers<std::uint32_t>(a.faces, "number of faces", 1ull << 32);
     block.face_locations = whole_numbers<std::int64_t>(a.face_locations, "face location", a.faces.size(), -1);
-    io::require_faces(block, "mesh");
+    cells::require_faces(block, "mesh");
   }
-  block.fields.push_back(io::field_of_values(a.field_name, "double", a.association, 1, doubles_of(a.scalars)));
+  block.fields.push_back(cells::field_of_values(a.field_name, "double", a.association, 1, doubles_of(a.scalars)));
   return block;
 }
 
 }  // namespace
 
-ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty, const io::HigherOrderPlanning& planning) {
+ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty, const cells::HigherOrderPlanning& planning) {
   check_shapes(arrays);
-  io::MeshOptions options;
+  cells::MeshOptions options;
   options.threads = 0;
   options.higher_order_tolerance = arrays.higher_order_tolerance;
   options.higher_order_tets = arrays.higher_order_tets;
@@ -173,12 +173,12 @@ ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty, const io::
     result.owner = arrays.owner;
     result.counts.cells_read = result.counts.tets_made = mesh->tets.size();
     result.counts.points_read = mesh->positions.size();
-    if (!may_be_empty) result.counts.cells_duplicate = io::count_duplicate_cells(*mesh, options.threads);
+    if (!may_be_empty) result.counts.cells_duplicate = cells::count_duplicate_cells(*mesh, options.threads);
     return result;
   }
-  std::vector<io::CellBlock> blocks;
+  std::vector<cells::CellBlock> blocks;
   blocks.push_back(block_of(arrays));
-  auto file = std::make_shared<io::MeshFile>(io::assemble_mesh(std::move(blocks), options, "mesh", planning));
+  auto file = std::make_shared<cells::MeshFile>(cells::assemble_mesh(std::move(blocks), options, "mesh", planning));
   result.mesh = file->mesh;
   result.counts = file->counts;
   result.higher_order = file->higher_order;

@@ -24,7 +24,7 @@ struct ArrayMesh {
 /// `planning` is called once, of no blocks where there is nothing to convert. Throws Error(bad_input) naming array and
 /// place.
 ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty,
-                         const io::HigherOrderPlanning& planning = io::plan_higher_order);
+                         const cells::HigherOrderPlanning& planning = cells::plan_higher_order);
 
 /// The same for who only writes it: borrowed whatever its numbers are.
 ArrayMesh mesh_to_write(const MeshArrays& arrays);

@@ -109,8 +109,8 @@ std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, c
     return frame::open_shared_volume(transport, file, volume_options(options), options.threads);
   }();
   frame::require_same_files(transport);  // which it names
-  state->axis_scale = io::chosen_scale(options.axis_scale, volume.beside_degrees,
-                                       scene::bounds(volume.source->geometry()), volume.notes);
+  state->axis_scale = cells::chosen_scale(options.axis_scale, volume.beside_degrees,
+                                          scene::bounds(volume.source->geometry()), volume.notes);
   if (state->axis_scale != glm::dvec3(1))
     volume.source = std::make_unique<scene::ScaledSource>(std::move(volume.source), state->axis_scale, file.string());
   {
@@ -157,7 +157,7 @@ void complete_grid(Dataset::State& state) {
   state.facts = facts_of(grid, state.ranges->range);
 }
 
-void take_description(io::MeshFile&& file, Dataset::State& state) {
+void take_description(cells::MeshFile&& file, Dataset::State& state) {
   state.field_name = std::move(file.mesh.field_name);
   state.fields = std::move(file.fields);
   state.notes = std::move(file.notes);
@@ -210,7 +210,7 @@ auto together(exchange::Transport& transport, const Work& work) {
 
 namespace frame {
 
-io::MeshOptions mesh_options(const ReadOptions& o) {
+cells::MeshOptions mesh_options(const ReadOptions& o) {
   return {o.field,
           o.smooth,
           o.plot3d_q,
@@ -400,7 +400,7 @@ bool Dataset::shows_shape() const { return state_->shape; }
 std::span<const FieldInfo> Dataset::fields() const { return state_->fields; }
 std::span<const std::string> Dataset::notes() const { return state_->notes; }
 std::vector<std::string> Dataset::warnings() const {
-  return io::warnings_on_cells(state_->counts, state_->higher_order);
+  return cells::warnings_on_cells(state_->counts, state_->higher_order);
 }
 std::size_t Dataset::time_steps() const { return std::max<std::size_t>(state_->time_step.count, 1); }
 std::span<const double> Dataset::times() const { return state_->time_step.times; }

@@ -72,7 +72,7 @@ struct TESSERA_HIDDEN Dataset::State {
 
 namespace frame {
 
-io::MeshOptions mesh_options(const ReadOptions& options);
+cells::MeshOptions mesh_options(const ReadOptions& options);
 
 }  // namespace frame
 }  // namespace tessera

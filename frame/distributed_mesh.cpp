@@ -27,11 +27,11 @@ using exchange::Transport;
 
 // What ranks agree on of a mesh; exchange/message.hpp lists the messages.
 
-Bytes message_of(const std::vector<io::FieldTally>& tallies, const scene::Box& box,
+Bytes message_of(const std::vector<cells::FieldTally>& tallies, const scene::Box& box,
                  const std::vector<std::string>& block_names) {
   Bytes message = exchange::begin_message(MessageKind::field_tallies);
   append(message, std::uint64_t{tallies.size()});
-  for (const io::FieldTally& t : tallies) {
+  for (const cells::FieldTally& t : tallies) {
     append_field(message, t.summary);
     append(message, t.numbers);
     append(message, std::uint8_t{t.blocks_count_up});
@@ -42,21 +42,22 @@ Bytes message_of(const std::vector<io::FieldTally>& tallies, const scene::Box& b
 }
 
 /// `box` and `block_names` grow by the part's.
-std::vector<io::FieldTally> tallies_in(MessageReader& reader, scene::Box& box, std::vector<std::string>& block_names) {
-  std::vector<io::FieldTally> tallies;
+std::vector<cells::FieldTally> tallies_in(MessageReader& reader, scene::Box& box,
+                                          std::vector<std::string>& block_names) {
+  std::vector<cells::FieldTally> tallies;
   for (auto left = reader.take<std::uint64_t>(); left > 0; --left) {
-    io::FieldTally tally{take_field(reader)};
-    tally.numbers = reader.take<io::NumberTally>();
+    cells::FieldTally tally{take_field(reader)};
+    tally.numbers = reader.take<cells::NumberTally>();
     tally.blocks_count_up = reader.take<std::uint8_t>() != 0;
     tallies.push_back(std::move(tally));
   }
-  box = io::joined(box, reader.take<scene::Box>());
+  box = cells::joined(box, reader.take<scene::Box>());
   for (std::string& name : take_texts(reader)) block_names.push_back(std::move(name));
   reader.finish();
   return tallies;
 }
 
-Bytes message_of(const io::MeshFile& file) {
+Bytes message_of(const cells::MeshFile& file) {
   Bytes message = exchange::begin_message(MessageKind::mesh_description);
   append(message, file.counts);
   append(message, file.higher_order);
@@ -72,10 +73,10 @@ Bytes message_of(const io::MeshFile& file) {
   return message;
 }
 
-io::MeshFile description_in(MessageReader& reader) {
-  io::MeshFile file;
-  file.counts = reader.take<io::MeshCounts>();
-  file.higher_order = reader.take<io::HigherOrderCells>();
+cells::MeshFile description_in(MessageReader& reader) {
+  cells::MeshFile file;
+  file.counts = reader.take<MeshCounts>();
+  file.higher_order = reader.take<HigherOrderCells>();
   file.fields = take_fields(reader);
   file.notes = take_texts(reader);
   file.blocks = take_texts(reader);
@@ -100,7 +101,7 @@ void gather(Transport& transport, MessageKind kind, Bytes own, std::span<const i
 }
 
 /// The description is the first projector's.
-io::MeshFile share_description(Transport& transport, std::span<const int> projectors, const io::MeshFile& own) {
+cells::MeshFile share_description(Transport& transport, std::span<const int> projectors, const cells::MeshFile& own) {
   const int speaker = projectors.front();
   const Bytes message = exchange::broadcast(transport, speaker, message_of(own));
   MessageReader reader(message, speaker, MessageKind::mesh_description);
@@ -108,9 +109,9 @@ io::MeshFile share_description(Transport& transport, std::span<const int> projec
 }
 
 /// Leaves of every rank's part what is selected; returns what the whole was before, null if that is all. Collective.
-std::shared_ptr<const FieldOfAll> select_part(Transport& transport, const io::MeshOptions& options,
+std::shared_ptr<const FieldOfAll> select_part(Transport& transport, const cells::MeshOptions& options,
                                               const std::string& source, int threads, scene::TetMesh& part,
-                                              io::MeshCounts& counts) {
+                                              MeshCounts& counts) {
   if (options.selection.all()) return nullptr;
   auto all = std::make_shared<FieldOfAll>();
   all->facts = agree_facts(transport, part, threads);
@@ -130,11 +131,11 @@ std::shared_ptr<const FieldOfAll> select_part(Transport& transport, const io::Me
   all->samples = gather_field_samples(transport, part, numbered_by_rank(transport, part.tets.size()), all->facts);
   part.tets = std::move(as_read);
   if (!values.empty()) part.scalars = std::move(values);
-  io::select(part, options.selection, counts, source);
+  cells::select(part, options.selection, counts, source);
   return all;
 }
 
-io::MeshOptions with_everything(io::MeshOptions options) {
+cells::MeshOptions with_everything(cells::MeshOptions options) {
   options.selection.threshold.reset();
   options.selection.clip.clear();
   return options;
@@ -142,21 +143,21 @@ io::MeshOptions with_everything(io::MeshOptions options) {
 
 /// The whole by the first projector.
 DistributedMesh read_whole(Transport& transport, std::span<const std::filesystem::path> files,
-                           const io::MeshOptions& options, std::span<const int> projectors, int threads) {
+                           const cells::MeshOptions& options, std::span<const int> projectors, int threads) {
   DistributedMesh result;
-  io::MeshFile file;
+  cells::MeshFile file;
   const bool reads = transport.rank() == projectors.front();
   if (reads) file = read_input(files, with_everything(options));
   const std::string source = files.front().string();
   result.of_all = select_part(transport, options, source, threads, file.mesh, file.counts);
-  if (reads) io::require_selected(file.counts, source);
+  if (reads) cells::require_selected(file.counts, source);
   result.description = share_description(transport, projectors, file);
   result.part.mesh = std::move(file.mesh);
   return result;
 }
 
 /// A part by each projector.
-DistributedMesh read_parts(Transport& transport, const std::filesystem::path& input, const io::MeshOptions& options,
+DistributedMesh read_parts(Transport& transport, const std::filesystem::path& input, const cells::MeshOptions& options,
                            std::span<const int> projectors, int threads) {
   const auto place = std::find(projectors.begin(), projectors.end(), transport.rank());
   const bool reads = place != projectors.end();
@@ -165,18 +166,18 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
   if (reads)
     reading.emplace(input, with_everything(options), static_cast<int>(part), static_cast<int>(projectors.size()));
 
-  std::vector<std::vector<io::FieldTally>> tallies;
+  std::vector<std::vector<cells::FieldTally>> tallies;
   std::vector<std::string> block_names;
-  scene::Box box = io::higher_order_box({});
+  scene::Box box = cells::higher_order_box({});
   gather(transport, MessageKind::field_tallies,
          reads ? message_of(reading->tallies(), reading->box(), reading->block_names()) : message_of({}, box, {}),
          projectors, [&](MessageReader& reader) { tallies.push_back(tallies_in(reader, box, block_names)); });
-  if (reads) reading->choose(tallies, box, io::distinct_names(std::move(block_names)));
-  io::ExcessTally excess{};
+  if (reads) reading->choose(tallies, box, cells::distinct_names(std::move(block_names)));
+  cells::ExcessTally excess{};
   gather(transport, MessageKind::higher_order,
          exchange::message_of(MessageKind::higher_order, reads ? reading->excess() : excess), projectors,
          [&](MessageReader& reader) {
-           const auto own = reader.take<io::ExcessTally>();
+           const auto own = reader.take<cells::ExcessTally>();
            for (std::size_t bin = 0; bin < own.size(); ++bin) excess[bin] += own[bin];
            reader.finish();
          });
@@ -201,8 +202,8 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
   append(message, std::uint64_t{s.used_points.size()});
   gather(transport, MessageKind::part_summary, std::move(message), projectors, [&](MessageReader& reader) {
     io::PartSummary& summary = summaries.emplace_back();
-    summary.counts = reader.take<io::MeshCounts>();
-    summary.higher_order = reader.take<io::HigherOrderCells>();
+    summary.counts = reader.take<MeshCounts>();
+    summary.higher_order = reader.take<HigherOrderCells>();
     summary.time_step = take_time_step(reader);
     summary.reading_notes = take_texts(reader);
     summary.cell_notes = take_texts(reader);
@@ -214,7 +215,7 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
   own.summary.used_points.resize(words, 0);
   summaries.front().used_points = reduce_all(transport, std::move(own.summary.used_points), Reduction::bit_or);
 
-  io::MeshFile description;
+  cells::MeshFile description;
   if (transport.rank() == projectors.front()) description = io::joined(own, summaries, input);
   description.axis_scale = options.axis_scale.value_or(glm::dvec3(1));
   result.description = share_description(transport, projectors, description);
@@ -228,7 +229,7 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
 }  // namespace
 
 DistributedMesh read_distributed(Transport& transport, std::span<const std::filesystem::path> files,
-                                 const io::MeshOptions& options, const projection::Partition& partition,
+                                 const cells::MeshOptions& options, const projection::Partition& partition,
                                  std::span<const int> projectors, int threads, scene::Trace* trace) {
   DistributedMesh result;
   if (transport.size() == 1) {
@@ -239,7 +240,7 @@ DistributedMesh read_distributed(Transport& transport, std::span<const std::file
     const std::string source = files.front().string();
     result.of_all =
         select_part(transport, options, source, threads, result.description.mesh, result.description.counts);
-    io::require_selected(result.description.counts, source);
+    cells::require_selected(result.description.counts, source);
     result.part.mesh = std::move(result.description.mesh);
     result.description.mesh = {};
     result.description.mesh.field_name = result.part.mesh.field_name;

@@ -21,7 +21,7 @@ struct DistributedMesh {
   std::shared_ptr<const FieldOfAll> of_all;  ///< null: the options select everything
   /// What io::read_mesh says of the whole, the same on every rank, but for the mesh: that has its field and association
   /// only.
-  io::MeshFile description;
+  cells::MeshFile description;
 };
 
 /// Reads a mesh and gives every projector its part. Collective.
@@ -32,7 +32,7 @@ struct DistributedMesh {
 /// read. With one rank it is io::read_mesh and nothing more. Spans `read` and `partition`. An error of one rank is
 /// transport.fail()ed and thrown on all. `threads` find the facts; 0 is all cores.
 DistributedMesh read_distributed(exchange::Transport& transport, std::span<const std::filesystem::path> files,
-                                 const io::MeshOptions& options, const projection::Partition& partition,
+                                 const cells::MeshOptions& options, const projection::Partition& partition,
                                  std::span<const int> projectors, int threads, scene::Trace* trace);
 
 }  // namespace tessera::frame

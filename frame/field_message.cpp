@@ -22,7 +22,7 @@ scene::Association take_association(MessageReader& reader) {
   return reader.take<std::uint8_t>() == 0 ? scene::Association::point : scene::Association::cell;
 }
 
-void append_field(Bytes& message, const io::FieldSummary& f) {
+void append_field(Bytes& message, const cells::FieldSummary& f) {
   append_text(message, f.name);
   append(message, static_cast<std::uint8_t>(f.association));
   append(message, std::int32_t{f.components});
@@ -35,8 +35,8 @@ void append_field(Bytes& message, const io::FieldSummary& f) {
   append(message, std::uint8_t{f.fractions});
 }
 
-io::FieldSummary take_field(MessageReader& reader) {
-  io::FieldSummary f;
+cells::FieldSummary take_field(MessageReader& reader) {
+  cells::FieldSummary f;
   f.name = reader.take_text();
   f.association = take_association(reader);
   f.components = reader.take<std::int32_t>();
@@ -50,13 +50,13 @@ io::FieldSummary take_field(MessageReader& reader) {
   return f;
 }
 
-void append_fields(Bytes& message, const std::vector<io::FieldSummary>& fields) {
+void append_fields(Bytes& message, const std::vector<cells::FieldSummary>& fields) {
   append(message, std::uint64_t{fields.size()});
-  for (const io::FieldSummary& field : fields) append_field(message, field);
+  for (const cells::FieldSummary& field : fields) append_field(message, field);
 }
 
-std::vector<io::FieldSummary> take_fields(MessageReader& reader) {
-  std::vector<io::FieldSummary> fields;
+std::vector<cells::FieldSummary> take_fields(MessageReader& reader) {
+  std::vector<cells::FieldSummary> fields;
   for (auto left = reader.take<std::uint64_t>(); left > 0; --left) fields.push_back(take_field(reader));
   return fields;
 }

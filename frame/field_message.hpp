@@ -17,12 +17,12 @@ std::vector<std::string> take_texts(exchange::MessageReader& reader);
 scene::Association take_association(exchange::MessageReader& reader);
 
 /// Text name, u8 association, i32 components, text type, f64 low, high, u64 nan_count, u8 active, u8 ids.
-void append_field(exchange::Bytes& message, const io::FieldSummary& field);
-io::FieldSummary take_field(exchange::MessageReader& reader);
+void append_field(exchange::Bytes& message, const cells::FieldSummary& field);
+cells::FieldSummary take_field(exchange::MessageReader& reader);
 
 /// u64 number, fields.
-void append_fields(exchange::Bytes& message, const std::vector<io::FieldSummary>& fields);
-std::vector<io::FieldSummary> take_fields(exchange::MessageReader& reader);
+void append_fields(exchange::Bytes& message, const std::vector<cells::FieldSummary>& fields);
+std::vector<cells::FieldSummary> take_fields(exchange::MessageReader& reader);
 
 /// u64 steps, u64 step, list of f64 times.
 void append_time_step(exchange::Bytes& message, const scene::TimeStepRead& read);

@@ -189,7 +189,7 @@ std::string field_of_steps(std::span<const std::vector<FieldInfo>> steps, const 
     field.ids = field.ids && !is_quantity;
     if (everywhere) widest.push_back(std::move(field));
   }
-  const io::FieldChoice choice = io::choose_field("", widest, "series", true);
+  const cells::FieldChoice choice = cells::choose_field("", widest, "series", true);
   if (choice.name.empty()) return "";
   if (options.smooth) return choice.label;
   return (choice.association == Association::point ? "point:" : "cell:") + choice.label;

@@ -7,14 +7,14 @@
 
 namespace tessera::frame {
 
-io::MeshFile read_input(const std::filesystem::path& input, const io::MeshOptions& options) {
+cells::MeshFile read_input(const std::filesystem::path& input, const cells::MeshOptions& options) {
   if (io::is_time_series(input))
     throw scene::bad_input(
         fmt::format("{}: it is a time series, which render and serve take; give one of its meshes", input.string()));
   return io::read_mesh(input, options);
 }
 
-io::MeshFile read_input(std::span<const std::filesystem::path> files, const io::MeshOptions& options) {
+cells::MeshFile read_input(std::span<const std::filesystem::path> files, const cells::MeshOptions& options) {
   return files.size() == 1 ? read_input(files.front(), options) : io::read_mesh(files, options);
 }
 

@@ -12,9 +12,9 @@
 namespace tessera::frame {
 
 /// io::read_mesh, but a regular grid or time series is refused as one. Throws scene::Error.
-io::MeshFile read_input(const std::filesystem::path& input, const io::MeshOptions& options);
+cells::MeshFile read_input(const std::filesystem::path& input, const cells::MeshOptions& options);
 /// Several files are the pieces of one mesh.
-io::MeshFile read_input(std::span<const std::filesystem::path> files, const io::MeshOptions& options);
+cells::MeshFile read_input(std::span<const std::filesystem::path> files, const cells::MeshOptions& options);
 
 using tessera::diagonal;
 

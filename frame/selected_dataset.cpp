@@ -33,8 +33,8 @@ Dataset selected_part(const std::shared_ptr<const Dataset::State>& from, const S
   auto state = std::make_shared<Dataset::State>();
   scene::TetMesh mesh = copy_of(from->mesh);
   state->counts = from->counts;
-  io::select(mesh, selection, state->counts, from->source);
-  io::require_selected(state->counts, from->source);
+  cells::select(mesh, selection, state->counts, from->source);
+  cells::require_selected(state->counts, from->source);
   auto kept = std::make_shared<const scene::TetMesh>(std::move(mesh));
   state->mesh = *kept;
   state->owner = std::move(kept);
@@ -79,7 +79,7 @@ UncutMesh uncut_mesh(const Dataset::State& data) {
   if (data.uncut) return {data.uncut->mesh, data.clip, data.mesh, data.uncut};
   if (data.files.empty())
     throw scene::bad_input("verify: this rank has a part of the mesh, and no file has the whole; verify on one rank");
-  io::MeshOptions options = mesh_options(data.options);
+  cells::MeshOptions options = mesh_options(data.options);
   options.selection.clip.clear();
   auto whole = std::make_shared<const scene::TetMesh>(read_input(data.files, options).mesh);
   return {*whole, data.clip, data.ranks == 1 ? data.mesh : scene::TetMeshView(*whole), whole};
@@ -101,8 +101,8 @@ void clip_box(Dataset::State& grid, const Selection& selection, const std::strin
   for (const auto& [first, second] : {std::array{1u, 3u}, {3u, 2u}, {2u, 6u}, {6u, 4u}, {4u, 5u}, {5u, 1u}})
     mesh.tets.push_back({0, first, second, 7});
   MeshCounts counts;
-  io::select(mesh, {selection.clip}, counts, source);
-  io::require_selected(counts, source);
+  cells::select(mesh, {selection.clip}, counts, source);
+  cells::require_selected(counts, source);
   grid.facts.box = scene::bounds(mesh);
 }
 

@@ -41,7 +41,7 @@ std::uint64_t count_shared_repetitions(exchange::Transport& transport, std::vect
     reader.take_onto(own, reader.take<std::uint64_t>());
     reader.finish();
   }
-  return io::count_repetitions(own, threads);
+  return cells::count_repetitions(own, threads);
 }
 
 }  // namespace tessera::frame

@@ -31,7 +31,7 @@ std::uint64_t product(const std::array<std::uint64_t, 3>& n) {
   return all;
 }
 
-void add_fields_of_image(const OpenedAmrBlock& block, CellBlock& fields, const std::string& source) {
+void add_fields_of_image(const OpenedAmrBlock& block, cells::CellBlock& fields, const std::string& source) {
   const ForeignPart& part = *block.part;
   std::array<std::uint64_t, 3> points{}, cells{};
   for (std::size_t a = 0; a < 3; ++a) {
@@ -48,9 +48,9 @@ void add_fields_of_image(const OpenedAmrBlock& block, CellBlock& fields, const s
 }
 
 /// Fields, whose counts are compared with the block's extent, or its trees' leaves.
-CellBlock fields_of(const OpenedAmrBlock& block, const std::string& source) {
+cells::CellBlock fields_of(const OpenedAmrBlock& block, const std::string& source) {
   const ForeignPart& part = *block.part;
-  CellBlock fields;
+  cells::CellBlock fields;
   fields.name = part.name;
   if (part.kind == ForeignPart::Kind::trees)
     add_foreign_fields(*block.file, part, Association::cell, part.types ? part.types->tuples : 0, fields, source);
@@ -71,9 +71,9 @@ std::optional<std::vector<T>> numbers_as(const OpenedAmrBlock& block, const std:
   return std::vector<T>(first, first + bytes.size() / sizeof(T));
 }
 
-AmrBlock described(const OpenedAmrBlock& block, const std::string& source) {
+cells::AmrBlock described(const OpenedAmrBlock& block, const std::string& source) {
   const ForeignPart& part = *block.part;
-  AmrBlock amr{.name = part.name, .extent = part.extent};
+  cells::AmrBlock amr{.name = part.name, .extent = part.extent};
   amr.ghosts = [block](std::size_t cells) {
     return block.file != nullptr ? ghost_bits(*block.file, block.part->cell_fields, cells)
                                  : std::vector<std::uint8_t>();
@@ -89,19 +89,19 @@ AmrBlock described(const OpenedAmrBlock& block, const std::string& source) {
     read_tuples(block.file->arrays->copy(array, source), array.type, array.components, 0, 0, at);
     return at;
   };
-  amr.leaves = [block, source]() -> std::optional<AmrTreeLeaves> {
+  amr.leaves = [block, source]() -> std::optional<cells::AmrTreeLeaves> {
     auto lows = numbers_as<std::int32_t>(block, block.part->points, NumberType::int32, 3, source);
     auto levels = numbers_as<std::uint8_t>(block, block.part->types, NumberType::uint8, 1, source);
     if (!lows || !levels) return std::nullopt;
-    return AmrTreeLeaves{std::move(*lows), std::move(*levels)};
+    return cells::AmrTreeLeaves{std::move(*lows), std::move(*levels)};
   };
   return amr;
 }
 
 /// The chosen field's numbers of one block; none if it has not got it.
-std::vector<double> numbers_in(const CellBlock& block, const FieldChoice& choice) {
+std::vector<double> numbers_in(const cells::CellBlock& block, const cells::FieldChoice& choice) {
   std::vector<double> numbers;
-  if (const BlockField* const field = find_field(block, choice.name, choice.association)) {
+  if (const cells::BlockField* const field = cells::find_field(block, choice.name, choice.association)) {
     numbers.resize(field->tuples);
     field->read(choice.component, 0, numbers);
   }
@@ -109,13 +109,13 @@ std::vector<double> numbers_in(const CellBlock& block, const FieldChoice& choice
 }
 
 /// Cell data of the leaves. Blocks without the field have none.
-std::vector<double> values_of_leaves(std::span<const CellBlock> fields, const AmrLeaves& amr,
-                                     const FieldChoice& choice) {
+std::vector<double> values_of_leaves(std::span<const cells::CellBlock> fields, const cells::AmrLeaves& amr,
+                                     const cells::FieldChoice& choice) {
   std::vector<double> values(amr.leaves.size(), no_value);
   std::vector<double> numbers;
   std::size_t of = fields.size();
   for (std::size_t l = 0; l < values.size(); ++l) {  // leaves of a block follow each other
-    const AmrLeaf& leaf = amr.leaves[l];
+    const cells::AmrLeaf& leaf = amr.leaves[l];
     if (leaf.part != of) of = leaf.part, numbers = numbers_in(fields[of], choice);
     if (!numbers.empty()) values[l] = numbers[leaf.cell];
   }
@@ -123,7 +123,7 @@ std::vector<double> values_of_leaves(std::span<const CellBlock> fields, const Am
 }
 
 /// Leaves without a number are taken away: those beside them are then at a boundary.
-std::uint64_t drop_blank(AmrLeaves& amr, std::vector<double>& values) {
+std::uint64_t drop_blank(cells::AmrLeaves& amr, std::vector<double>& values) {
   std::size_t kept = 0;
   for (std::size_t l = 0; l < values.size(); ++l)
     if (std::isfinite(values[l])) amr.leaves[kept] = amr.leaves[l], values[kept] = values[l], ++kept;
@@ -132,11 +132,12 @@ std::uint64_t drop_blank(AmrLeaves& amr, std::vector<double>& values) {
   return blank;
 }
 
-CellBlock smooth_block(const AmrLeaves& amr, std::span<const double> values, const std::string& field) {
-  return conforming_cells(amr.lattice, 2, smooth_cubes(amr, values), field);
+cells::CellBlock smooth_block(const cells::AmrLeaves& amr, std::span<const double> values, const std::string& field) {
+  return cells::conforming_cells(amr.lattice, 2, cells::smooth_cubes(amr, values), field);
 }
 
-CellBlock point_block(std::span<const CellBlock> fields, const AmrLeaves& amr, const FieldChoice& choice) {
+cells::CellBlock point_block(std::span<const cells::CellBlock> fields, const cells::AmrLeaves& amr,
+                             const cells::FieldChoice& choice) {
   std::vector<std::vector<double>> numbers;
   for (std::size_t p = 0; p < fields.size(); ++p) {
     numbers.push_back(numbers_in(fields[p], choice));
@@ -144,45 +145,45 @@ CellBlock point_block(std::span<const CellBlock> fields, const AmrLeaves& amr, c
     for (const std::int32_t n : amr.parts[p].cells) points *= static_cast<std::size_t>(n) + 1;
     numbers.back().resize(points, no_value);
   }
-  return conforming_cells(amr.lattice, 1, cubes_of_points(amr, numbers), choice.label);
+  return cells::conforming_cells(amr.lattice, 1, cells::cubes_of_points(amr, numbers), choice.label);
 }
 
-void add_notes_on(std::span<const CellBlock> fields, const AmrLeaves& amr, const FieldChoice& choice,
-                  MeshBlocks& result) {
+void add_notes_on(std::span<const cells::CellBlock> fields, const cells::AmrLeaves& amr,
+                  const cells::FieldChoice& choice, cells::MeshBlocks& result) {
   std::vector<std::uint64_t> of_level(amr.size.size());
-  for (const AmrLeaf& leaf : amr.leaves) ++of_level[static_cast<std::size_t>(leaf.level)];
+  for (const cells::AmrLeaf& leaf : amr.leaves) ++of_level[static_cast<std::size_t>(leaf.level)];
   std::string counts;
   for (const std::uint64_t n : of_level) counts += fmt::format("{}{}", counts.empty() ? "" : " + ", n);
   result.notes.push_back(fmt::format("AMR: {} levels of {} cells", amr.size.size(), counts));
   if (amr.covered > 0)
     result.notes.push_back(fmt::format("{} cells are covered by finer ones and left out", amr.covered));
   if (amr.hidden > 0) result.notes.push_back(fmt::format("{} cells are ghosts or hidden and left out", amr.hidden));
-  for (const CellBlock& block : fields)
+  for (const cells::CellBlock& block : fields)
     if (!choice.name.empty() && find_field(block, choice.name, choice.association) == nullptr)
       result.notes.push_back(
           fmt::format("block '{}' lacks the field '{}': its cells are blanked", block.name, choice.name));
 }
 
-MeshBlocks mesh_of(const OpenedAmr& opened, const MeshOptions& options, const std::string& source) {
+cells::MeshBlocks mesh_of(const OpenedAmr& opened, const cells::MeshOptions& options, const std::string& source) {
   if (opened.blocks.empty())
     throw scene::bad_input(fmt::format("{}: it holds no cells; check how it was written", source));
-  std::vector<CellBlock> fields = opened.fields;
+  std::vector<cells::CellBlock> fields = opened.fields;
   for (const OpenedAmrBlock& block : std::span(opened.blocks).subspan(fields.size()))
     fields.push_back(
         fields_of(block, block.part->name.empty() ? source : fmt::format("{}: block '{}'", source, block.part->name)));
-  MeshBlocks result;
+  cells::MeshBlocks result;
   result.format = opened.format;
   result.notes = opened.notes;
-  const std::vector<FieldTally> tallies = tally_fields(fields);
-  result.fields = summarize_fields(std::span(&tallies, 1));
-  const FieldChoice choice = choose_field(options.field, result.fields, source);
+  const std::vector<cells::FieldTally> tallies = cells::tally_fields(fields);
+  result.fields = cells::summarize_fields(std::span(&tallies, 1));
+  const cells::FieldChoice choice = cells::choose_field(options.field, result.fields, source);
   result.notes.insert(result.notes.end(), choice.notes.begin(), choice.notes.end());
 
   const bool has_trees = !opened.blocks.empty() && opened.blocks.front().part->kind == ForeignPart::Kind::trees;
-  std::vector<AmrBlock> blocks;
+  std::vector<cells::AmrBlock> blocks;
   blocks.reserve(opened.blocks.size());
   for (const OpenedAmrBlock& block : opened.blocks) blocks.push_back(described(block, source));
-  AmrLeaves amr = has_trees ? leaves_of_trees(blocks, source) : leaves_of_blocks(blocks, source);
+  cells::AmrLeaves amr = has_trees ? cells::leaves_of_trees(blocks, source) : cells::leaves_of_blocks(blocks, source);
   add_notes_on(fields, amr, choice, result);
   if (choice.association == Association::point) {
     if (options.smooth) result.notes.emplace_back("smoothing has no effect on point data");
@@ -191,7 +192,8 @@ MeshBlocks mesh_of(const OpenedAmr& opened, const MeshOptions& options, const st
   }
   std::vector<double> values = values_of_leaves(fields, amr, choice);
   if (!options.smooth) {
-    result.blocks.push_back(voxels_of(amr.lattice, 1, cubes_of_cells(amr, std::move(values)), choice.label));
+    result.blocks.push_back(
+        cells::voxels_of(amr.lattice, 1, cells::cubes_of_cells(amr, std::move(values)), choice.label));
     return result;
   }
   if (const std::uint64_t blank = drop_blank(amr, values); blank > 0)
@@ -211,7 +213,7 @@ void OpenedAmr::add(ForeignFile opened) {
   if (format.empty()) format = file.contents.format;
 }
 
-MeshBlocks read_amr(const std::filesystem::path& file, const char* reader, const MeshOptions& options) {
+cells::MeshBlocks read_amr(const std::filesystem::path& file, const char* reader, const cells::MeshOptions& options) {
   const std::string_view name = reader;
   if (name == "amrex") return mesh_of(open_amrex(file), options, file.string());
   require_reader(Reader::vtk, file);  // which would name a block of a list
@@ -220,7 +222,7 @@ MeshBlocks read_amr(const std::filesystem::path& file, const char* reader, const
   return mesh_of(open_amr_by(reader, file), options, file.string());
 }
 
-MeshBlocks read_amr(ForeignFile blocks, const MeshOptions& options) {
+cells::MeshBlocks read_amr(ForeignFile blocks, const cells::MeshOptions& options) {
   require_no_time_step(options.time_step, blocks.source);
   OpenedAmr opened;
   opened.add(std::move(blocks));

@@ -20,7 +20,8 @@ struct OpenedAmr {
   std::deque<ForeignFile> files;       ///< that the helper holds; stay where they are
   std::deque<ForeignPart> parts;       ///< of a parser of ours; stay too
   std::vector<OpenedAmrBlock> blocks;  ///< images, or trees, of one of these
-  std::vector<CellBlock> fields;  ///< of each block, and its name; no cells. Of the helper's empty: not asked for yet
+  std::vector<cells::CellBlock>
+      fields;  ///< of each block, and its name; no cells. Of the helper's empty: not asked for yet
   std::string format;
   std::vector<std::string> notes;
 

@@ -127,9 +127,9 @@ class PlotFile {
     }
   }
 
-  CellBlock fields_of(AmrexFab& fab, const std::filesystem::path& file, const std::string& name) {
+  cells::CellBlock fields_of(AmrexFab& fab, const std::filesystem::path& file, const std::string& name) {
     FabNumbers numbers = numbers_of(fab, file);
-    CellBlock block;
+    cells::CellBlock block;
     block.name = name;
     std::size_t cells = 1, stored = 1;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -137,7 +137,7 @@ class PlotFile {
       stored *= static_cast<std::size_t>(fab.stored.cells(a));
     }
     for (const std::string& field : header_.fields) {
-      BlockField added;
+      cells::BlockField added;
       added.name = field;
       added.association = scene::Association::cell;
       added.type = numbers.bytes == 4 ? "float" : "double";

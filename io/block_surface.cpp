@@ -53,9 +53,9 @@ std::vector<std::uint32_t> rim_of(std::uint8_t type, std::span<const std::uint32
 
 class Faces {
  public:
-  Faces(const FieldChoice* choice, BlockFaces& to) : choice_(choice), to_(to) {}
+  Faces(const cells::FieldChoice* choice, BlockFaces& to) : choice_(choice), to_(to) {}
 
-  void add(const CellBlock& block, const std::string& source) {
+  void add(const cells::CellBlock& block, const std::string& source) {
     if (!block.tets.empty()) to_.has_volume = true;
     read_values(block);
     for (std::size_t c = 0; c < block.types.size(); ++c) {
@@ -69,16 +69,16 @@ class Faces {
       const std::vector<std::uint32_t> rim = rim_of(block.types[c], points);
       if (!rim.empty())
         add_face(block, c, rim, source);
-      else if (cell_shape(block.types[c]).kind != CellKind::not_volumetric)
+      else if (cells::cell_shape(block.types[c]).kind != cells::CellKind::not_volumetric)
         to_.has_volume = true;
     }
   }
 
  private:
-  void read_values(const CellBlock& block) {
+  void read_values(const cells::CellBlock& block) {
     values_.clear();
     if (choice_ == nullptr) return;
-    const BlockField* const field = find_field(block, choice_->name, choice_->association);
+    const cells::BlockField* const field = cells::find_field(block, choice_->name, choice_->association);
     const bool point = choice_->association == scene::Association::point;
     values_.assign(point ? block.positions.size() : block.cell_count(), 0);
     if (field != nullptr && field->tuples == values_.size())
@@ -88,7 +88,7 @@ class Faces {
   }
 
   /// Each face has points of its own, for those of cell data have several values.
-  void add_face(const CellBlock& block, std::size_t cell, std::span<const std::uint32_t> rim,
+  void add_face(const cells::CellBlock& block, std::size_t cell, std::span<const std::uint32_t> rim,
                 const std::string& source) {
     triangles_.clear();
     cutter_.cut(rim, block.positions, triangles_);
@@ -109,21 +109,21 @@ class Faces {
     if (!has_values_) to_.mesh.values.clear(), choice_ = nullptr;
   }
 
-  const FieldChoice* choice_;
+  const cells::FieldChoice* choice_;
   BlockFaces& to_;
   bool has_values_ = true;
   std::vector<double> values_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
-  PolygonTriangles cutter_;
+  cells::PolygonTriangles cutter_;
 };
 
 /// The field that is asked for, if the blocks have it.
-std::optional<FieldChoice> field_of(std::span<const CellBlock> blocks, const std::string& wish,
-                                    const std::string& source) {
+std::optional<cells::FieldChoice> field_of(std::span<const cells::CellBlock> blocks, const std::string& wish,
+                                           const std::string& source) {
   if (wish.empty()) return std::nullopt;
-  const std::vector<FieldTally> tallies = tally_fields(blocks);
+  const std::vector<cells::FieldTally> tallies = cells::tally_fields(blocks);
   try {
-    return choose_field(wish, summarize_fields(std::span(&tallies, 1)), source);
+    return cells::choose_field(wish, cells::summarize_fields(std::span(&tallies, 1)), source);
   } catch (const scene::Error&) {
     return std::nullopt;
   }
@@ -131,19 +131,19 @@ std::optional<FieldChoice> field_of(std::span<const CellBlock> blocks, const std
 
 }  // namespace
 
-BlockFaces read_block_faces(std::span<const std::filesystem::path> files, MeshOptions options) {
+BlockFaces read_block_faces(std::span<const std::filesystem::path> files, cells::MeshOptions options) {
   options.surfaces = true;
   const std::string source = files.front().string();
   return with_clean_errors(source, [&] {
-    std::vector<CellBlock> blocks;
+    std::vector<cells::CellBlock> blocks;
     for (const std::filesystem::path& file : files) {
-      MeshBlocks read = read_mesh_blocks(file, options);
+      cells::MeshBlocks read = read_mesh_blocks(file, options);
       std::move(read.blocks.begin(), read.blocks.end(), std::back_inserter(blocks));
     }
-    const std::optional<FieldChoice> choice = field_of(blocks, options.field, source);
+    const std::optional<cells::FieldChoice> choice = field_of(blocks, options.field, source);
     BlockFaces result;
     Faces faces(choice ? &*choice : nullptr, result);
-    for (const CellBlock& block : blocks) faces.add(block, source);
+    for (const cells::CellBlock& block : blocks) faces.add(block, source);
     return result;
   });
 }

@@ -191,16 +191,16 @@ VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& o
 
   VolumeFile result;
   result.format = fmt::format("brick file, blocks of {}^3", header.side);
-  FieldSummary field{.name = header.grid.field_name,
-                     .association = header.grid.geometry.association,
-                     .type = listed_type(header.grid.type)};
+  cells::FieldSummary field{.name = header.grid.field_name,
+                            .association = header.grid.geometry.association,
+                            .type = listed_type(header.grid.type)};
   field.low = header.range.empty() ? 0 : header.range.low;
   field.high = header.range.empty() ? 0 : header.range.high;
   field.nan_count = header.range.blanks;
   result.fields.push_back(field);
   result.body_axes = header.axes;
   result.tags = std::move(header.tags);
-  choose_field(options.field, result.fields, file.string());  // refuses any other
+  cells::choose_field(options.field, result.fields, file.string());  // refuses any other
   result.in_memory = is_inflated(file);
   result.source = std::make_unique<BrickSource>(std::move(header.grid), file, name, header.side, header.range,
                                                 std::move(ranges), before + length + count * sizeof(BlockRange));

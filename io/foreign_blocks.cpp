@@ -49,7 +49,8 @@ std::span<const T> numbers_in(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
 }
 
-void copy_points(const ForeignFile& file, const ForeignArray& points, CellBlock& block, const std::string& where) {
+void copy_points(const ForeignFile& file, const ForeignArray& points, cells::CellBlock& block,
+                 const std::string& where) {
   if (points.components != 3)
     throw scene::bad_input(fmt::format("{}: its points have {} coordinates; give x y z", where, points.components));
   system::reserve_large(block.positions, points.tuples);
@@ -71,7 +72,7 @@ void copy_points(const ForeignFile& file, const ForeignArray& points, CellBlock&
 }
 
 /// Offsets and corners as they came, checked.
-void check_cells(CellBlock& block, const std::string& where) {
+void check_cells(cells::CellBlock& block, const std::string& where) {
   const std::size_t cells = block.types.size();
   const auto& offsets = block.offsets;
   if (offsets.size() != cells + 1 || offsets[0] != 0 || offsets[cells] > block.connectivity.size())
@@ -112,7 +113,8 @@ void copy_numbers(const ForeignFile& file, const ForeignArray& array, std::vecto
   });
 }
 
-void copy_offsets(const ForeignFile& file, const ForeignArray& offsets, CellBlock& block, const std::string& where) {
+void copy_offsets(const ForeignFile& file, const ForeignArray& offsets, cells::CellBlock& block,
+                  const std::string& where) {
   switch (offsets.type) {
     case NumberType::int64:
       return copy_numbers<std::int64_t>(file, offsets, block.offsets, where);
@@ -125,7 +127,7 @@ void copy_offsets(const ForeignFile& file, const ForeignArray& offsets, CellBloc
   }
 }
 
-void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, CellBlock& block,
+void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, cells::CellBlock& block,
                             const std::string& where) {
   if (!part.connectivity) return;
   if (part.connectivity->type != NumberType::uint32)
@@ -148,7 +150,7 @@ void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, Ce
       throw scene::bad_input(fmt::format("{}: its faces are lists of no known width; write it anew", where));
     copy_numbers<std::uint32_t>(file, *part.faces, block.faces, where);
     copy_numbers<std::int64_t>(file, *part.face_locations, block.face_locations, where);
-    require_faces(block, where);
+    cells::require_faces(block, where);
   }
   // Tets in a file of mixed cells were looked for there; Exodus blocks come as they are.
   const bool all_tets = std::all_of(block.types.begin(), block.types.end(), [](std::uint8_t t) { return t == 10; });
@@ -161,7 +163,7 @@ void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, Ce
 }
 
 /// The hexahedra between n[0] x n[1] x n[2] points; a flat grid gives faces or lines, which are counted and skipped.
-void add_grid_cells(const std::array<std::int64_t, 3>& n, CellBlock& block, const std::string& where) {
+void add_grid_cells(const std::array<std::int64_t, 3>& n, cells::CellBlock& block, const std::string& where) {
   std::uint64_t points = 1;
   for (const std::int64_t side : n)
     if (__builtin_mul_overflow(points, static_cast<std::uint64_t>(std::max<std::int64_t>(side, 0)), &points))
@@ -201,7 +203,7 @@ std::array<std::int64_t, 3> points_along(const ForeignPart& part) {
   return n;
 }
 
-void add_rectilinear_points(const ForeignFile& file, const ForeignPart& part, CellBlock& block,
+void add_rectilinear_points(const ForeignFile& file, const ForeignPart& part, cells::CellBlock& block,
                             const std::string& where) {
   std::array<std::vector<double>, 3> axis;
   for (std::size_t a = 0; a < 3 && a < part.coordinates.size(); ++a) {
@@ -220,7 +222,7 @@ void add_rectilinear_points(const ForeignFile& file, const ForeignPart& part, Ce
       for (const double a : axis[0]) block.positions.emplace_back(a, b, c);
 }
 
-void add_image_points(const ForeignPart& image, CellBlock& block) {
+void add_image_points(const ForeignPart& image, cells::CellBlock& block) {
   const auto& d = image.direction;
   for (std::int64_t k = image.extent[4]; k <= image.extent[5]; ++k)
     for (std::int64_t j = image.extent[2]; j <= image.extent[3]; ++j)
@@ -233,7 +235,7 @@ void add_image_points(const ForeignPart& image, CellBlock& block) {
       }
 }
 
-void add_polygons(const ForeignFile& file, const ForeignPart& part, CellBlock& block, const std::string& where) {
+void add_polygons(const ForeignFile& file, const ForeignPart& part, cells::CellBlock& block, const std::string& where) {
   if (part.points) copy_points(file, *part.points, block, where);
   if (!part.offsets || !part.connectivity || part.offsets->tuples == 0) return;
   if (part.connectivity->type != NumberType::uint32)
@@ -245,8 +247,8 @@ void add_polygons(const ForeignFile& file, const ForeignPart& part, CellBlock& b
   check_cells(block, where);
 }
 
-CellBlock block_of(const ForeignFile& file, const ForeignPart& part, GridsAre grids) {
-  CellBlock block;
+cells::CellBlock block_of(const ForeignFile& file, const ForeignPart& part, GridsAre grids) {
+  cells::CellBlock block;
   block.name = part.name;
   const std::string where = part.name.empty() ? file.source : fmt::format("{}: block '{}'", file.source, part.name);
   switch (part.kind) {
@@ -290,8 +292,8 @@ CellBlock block_of(const ForeignFile& file, const ForeignPart& part, GridsAre gr
 
 }  // namespace
 
-BlockField foreign_field(const ForeignFile& file, const ForeignArray& array, Association association) {
-  BlockField field;
+cells::BlockField foreign_field(const ForeignFile& file, const ForeignArray& array, Association association) {
+  cells::BlockField field;
   field.name = array.name;
   field.association = association;
   field.components = array.components;
@@ -306,7 +308,7 @@ BlockField foreign_field(const ForeignFile& file, const ForeignArray& array, Ass
 }
 
 void add_foreign_fields(const ForeignFile& file, const ForeignPart& part, Association association, std::size_t expected,
-                        CellBlock& block, const std::string& where) {
+                        cells::CellBlock& block, const std::string& where) {
   const bool point = association == Association::point;
   for (const ForeignArray& array : point ? part.point_fields : part.cell_fields) {
     if (array.tuples != expected)
@@ -336,13 +338,13 @@ std::vector<std::uint8_t> ghost_bits(const ForeignFile& file, const std::vector<
   return bits;
 }
 
-std::vector<CellBlock> blocks_of(const ForeignFile& file, std::vector<std::string>& notes, GridsAre grids) {
+std::vector<cells::CellBlock> blocks_of(const ForeignFile& file, std::vector<std::string>& notes, GridsAre grids) {
   std::uint64_t bytes = 0;
   for (const ForeignPart& part : file.contents.parts)
     for (const auto* array : {&part.points, &part.types, &part.offsets, &part.connectivity})
       if (*array) bytes += (*array)->bytes();
   file.arrays->expect(bytes);
-  std::vector<CellBlock> blocks;
+  std::vector<cells::CellBlock> blocks;
   std::vector<std::string> surfaces;
   for (const ForeignPart& part : file.contents.parts) {
     if (part.kind == ForeignPart::Kind::surface && file.contents.parts.size() > 1 && !file.with_surfaces) {
@@ -351,7 +353,7 @@ std::vector<CellBlock> blocks_of(const ForeignFile& file, std::vector<std::strin
     }
     blocks.push_back(block_of(file, part, grids));
   }
-  if (!surfaces.empty()) notes.push_back(note_on_surfaces("block", surfaces));
+  if (!surfaces.empty()) notes.push_back(cells::note_on_surfaces("block", surfaces));
   return blocks;
 }
 

@@ -12,7 +12,7 @@ namespace {
 using Json = nlohmann::json;
 
 Json json_of(const ForeignArray& a) {
-  const NumberTally& t = a.tally;
+  const cells::NumberTally& t = a.tally;
   return {a.number,     a.name,       static_cast<int>(a.type),
           a.components, a.tuples,     a.active,
           t.low,        t.high,       t.not_finite,
@@ -104,7 +104,8 @@ template <class T>
 void copy_tuples(const T* values, int components, int component, std::size_t first, std::span<double> out) {
   const T* tuple = values + first * static_cast<std::size_t>(components);
   for (double& value : out) {
-    value = component == magnitude ? tuple_length(tuple, components) : static_cast<double>(tuple[component]);
+    value =
+        component == cells::magnitude ? cells::tuple_length(tuple, components) : static_cast<double>(tuple[component]);
     tuple += components;
   }
 }

@@ -68,9 +68,9 @@ struct ForeignArray {
   NumberType type = NumberType::float64;
   int components = 1;
   std::uint64_t tuples = 0;
-  bool active = false;  ///< the file marks it as its scalars or vectors
-  bool ids = false;     ///< the file marks it as ids
-  NumberTally tally{};  ///< of fields
+  bool active = false;         ///< the file marks it as its scalars or vectors
+  bool ids = false;            ///< the file marks it as ids
+  cells::NumberTally tally{};  ///< of fields
 
   [[nodiscard]] std::size_t tuple_bytes() const { return static_cast<std::size_t>(components) * size_of(type); }
   [[nodiscard]] std::uint64_t bytes() const { return tuples * tuple_bytes(); }

@@ -28,11 +28,11 @@ ForeignFile open_foreign(std::shared_ptr<HelperProcess> helper, const std::files
                          nlohmann::json request);
 
 /// A field whose numbers are fetched when it is first read, and forgotten with the last copy.
-BlockField foreign_field(const ForeignFile& file, const ForeignArray& array, scene::Association association);
+cells::BlockField foreign_field(const ForeignFile& file, const ForeignArray& array, scene::Association association);
 
 /// Adds the fields of a part's points or cells. Throws Error(bad_input) for one that has not `expected` tuples.
 void add_foreign_fields(const ForeignFile& file, const ForeignPart& part, scene::Association association,
-                        std::size_t expected, CellBlock& block, const std::string& where);
+                        std::size_t expected, cells::CellBlock& block, const std::string& where);
 
 /// Whether regular grids among the parts are refused, since they are better cast as volumes, or become cells.
 enum class GridsAre { volumes, hexahedra };
@@ -41,8 +41,8 @@ enum class GridsAre { volumes, hexahedra };
 /// grids become hexahedra. Empty parts are left out, and so are surfaces beside volumes, for which `notes` has a line,
 /// unless they are asked for.
 /// Throws Error(bad_input) naming the cell at fault, and for images (regular grids).
-std::vector<CellBlock> blocks_of(const ForeignFile& file, std::vector<std::string>& notes,
-                                 GridsAre grids = GridsAre::volumes);
+std::vector<cells::CellBlock> blocks_of(const ForeignFile& file, std::vector<std::string>& notes,
+                                        GridsAre grids = GridsAre::volumes);
 
 /// Bits of vtkGhostType for each point or cell; the older vtkGhostLevels (0 is one's own) becomes "duplicate". Empty if
 /// the part has neither.

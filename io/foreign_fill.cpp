@@ -1,12 +1,13 @@
+#include "io/foreign_fill.hpp"
+
 #include <nlohmann/json.hpp>
 
-#include "cells/surface.hpp"
 #include "io/foreign_numbers.hpp"
 #include "io/surface_message.hpp"
 
 namespace tessera::io {
 
-FilledMesh fill_surface(const Surface& surface, const FillSize& size, const std::string& source) {
+FilledMesh fill_surface(const cells::Surface& surface, const FillSize& size, const std::string& source) {
   HelperTask task{"filling it by TetGen", "mend the surface", Reader::tetgen};
   task.limit_remedy = size.is_chosen
                           ? "mend the surface, or set a larger `max_volume`"

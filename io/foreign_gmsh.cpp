@@ -2,7 +2,8 @@
 
 namespace tessera::io {
 
-MeshBlocks read_by_gmsh(const std::filesystem::path& file, const char* reader, const MeshOptions& options) {
+cells::MeshBlocks read_by_gmsh(const std::filesystem::path& file, const char* reader,
+                               const cells::MeshOptions& options) {
   HelperTask task;
   task.reader = Reader::gmsh;
   return read_foreign_mesh(file, {reader, std::move(task)}, options, GridsAre::volumes);

@@ -72,8 +72,8 @@ std::vector<std::size_t> hidden_samples(const ForeignFile& file, const ForeignPa
 }
 
 /// The samples of one component, in memory or, if they are to be there, in a scratch file.
-void set_source(const ForeignFile& file, const ForeignPart& part, const FieldChoice& choice, const BlockField& field,
-                const VolumeOptions& options, scene::Grid grid, VolumeFile& result) {
+void set_source(const ForeignFile& file, const ForeignPart& part, const cells::FieldChoice& choice,
+                const cells::BlockField& field, const VolumeOptions& options, scene::Grid grid, VolumeFile& result) {
   const auto& arrays = choice.association == Association::point ? part.point_fields : part.cell_fields;
   const auto array =
       std::find_if(arrays.begin(), arrays.end(), [&](const ForeignArray& a) { return a.name == choice.name; });
@@ -83,9 +83,9 @@ void set_source(const ForeignFile& file, const ForeignPart& part, const FieldCho
   // Floats hold numbers of up to 16 bits, and magnitudes of floats.
   const bool narrow = scene::size_of(type) < 4 || type == SampleType::float32;
   if (plain && hidden.empty()) {
-    grid.type = choice.component != magnitude ? type : narrow ? SampleType::float32 : SampleType::float64;
-    const scene::ComponentChoice of_tuple{field.components, choice.component == magnitude ? -1 : choice.component,
-                                          type};
+    grid.type = choice.component != cells::magnitude ? type : narrow ? SampleType::float32 : SampleType::float64;
+    const scene::ComponentChoice of_tuple{field.components,
+                                          choice.component == cells::magnitude ? -1 : choice.component, type};
     const auto tuples = [&](const system::ByteSink& use) { file.arrays->stream(*array, file.source, use); };
     if (unpacked_to_scratch({grid, of_tuple, false, tuples}, options, file.source, result)) return;
     auto owner = std::make_shared<const std::vector<std::byte>>(file.arrays->copy(*array, file.source));
@@ -126,7 +126,7 @@ VolumeFile grid_of(const ForeignFile& opened, const VolumeOptions& options) {
                  .length_unit = result.body_axes == BodyAxes::none ? "" : "mm",
                  .labels = opened.contents.labels};
 
-  CellBlock block;  // only its fields are of use
+  cells::CellBlock block;  // only its fields are of use
   std::size_t points = 1, cells = 1;
   for (const std::int64_t n : grid.geometry.points) {
     points *= static_cast<std::size_t>(std::max<std::int64_t>(n, 0));
@@ -135,14 +135,14 @@ VolumeFile grid_of(const ForeignFile& opened, const VolumeOptions& options) {
   add_foreign_fields(opened, part, Association::point, points, block, source);
   add_foreign_fields(opened, part, Association::cell, cells, block, source);
   if (block.fields.empty()) throw scene::bad_input(fmt::format("{}: it has no field; write one with it", source));
-  const std::vector<std::vector<FieldTally>> tallies = {tally_fields(std::span(&block, 1))};
-  result.fields = summarize_fields(tallies);
-  const FieldChoice choice = choose_field(options.field, result.fields, source);
+  const std::vector<std::vector<cells::FieldTally>> tallies = {cells::tally_fields(std::span(&block, 1))};
+  result.fields = cells::summarize_fields(tallies);
+  const cells::FieldChoice choice = cells::choose_field(options.field, result.fields, source);
   result.notes.insert(result.notes.end(), choice.notes.begin(), choice.notes.end());
-  for (const FieldSummary& listed : result.fields)
-    if (listed.name == choice.name && listed.association == choice.association && look_like_colors(listed))
-      refuse_colors(choice, listed, options.field, source);
-  const BlockField* field = find_field(block, choice.name, choice.association);
+  for (const cells::FieldSummary& listed : result.fields)
+    if (listed.name == choice.name && listed.association == choice.association && cells::look_like_colors(listed))
+      cells::refuse_colors(choice, listed, options.field, source);
+  const cells::BlockField* field = cells::find_field(block, choice.name, choice.association);
   if (!field) throw scene::bad_input(fmt::format("{}: none of its fields can be shown; name one with `field`", source));
   grid.geometry.association = choice.association;
   grid.field_name = choice.label;

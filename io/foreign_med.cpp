@@ -3,7 +3,7 @@
 
 namespace tessera::io {
 
-MeshBlocks read_med(const std::filesystem::path& file, const MeshOptions& options) {
+cells::MeshBlocks read_med(const std::filesystem::path& file, const cells::MeshOptions& options) {
   HelperTask task;
   task.reader = Reader::med;
   return read_foreign_mesh(file, {"med", std::move(task)}, options, GridsAre::hexahedra);

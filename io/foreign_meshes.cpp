@@ -53,8 +53,8 @@ const XmlKind* kind_of(const std::string& type) {
   return kind == xml_kinds.end() ? nullptr : kind;
 }
 
-MeshBlocks named_format(const XmlKind& kind, const std::string& extension) {
-  MeshBlocks result;
+cells::MeshBlocks named_format(const XmlKind& kind, const std::string& extension) {
+  cells::MeshBlocks result;
   result.format = kind.words;
   if (!extension.empty() && extension != kind.extension)
     result.notes.push_back(fmt::format("the file is a {}, read as {}", extension.substr(1), kind.words));
@@ -62,11 +62,12 @@ MeshBlocks named_format(const XmlKind& kind, const std::string& extension) {
 }
 
 /// All of a file that the helper reads in one go.
-MeshBlocks read_foreign(const std::filesystem::path& file, nlohmann::json request, const MeshOptions& options) {
+cells::MeshBlocks read_foreign(const std::filesystem::path& file, nlohmann::json request,
+                               const cells::MeshOptions& options) {
   HelperTask task;
   task.progress = options.progress;
   const ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(std::move(task)), file, std::move(request));
-  MeshBlocks result;
+  cells::MeshBlocks result;
   result.format = opened.contents.format;
   result.notes = opened.contents.notes;
   result.time_step = opened.contents.time_step;
@@ -77,16 +78,17 @@ MeshBlocks read_foreign(const std::filesystem::path& file, nlohmann::json reques
 }
 
 /// One data set in this process, or by VTK's reader if it has what this one does not know.
-MeshBlocks read_data_set(const std::filesystem::path& file, const std::string& type, const MeshOptions& options) {
+cells::MeshBlocks read_data_set(const std::filesystem::path& file, const std::string& type,
+                                const cells::MeshOptions& options) {
   const std::optional<ForeignFile> opened = type.starts_with('P') ? std::nullopt : open_vtk_xml(file, options.progress);
   if (!opened) return read_foreign(file, {{"reader", "vtk_xml"}, {"type", type}}, options);
-  MeshBlocks result;
+  cells::MeshBlocks result;
   result.blocks = blocks_of(*opened, result.notes);
   return result;
 }
 
-MeshBlocks blocks_of_solver(const ForeignFile& opened) {
-  MeshBlocks result;
+cells::MeshBlocks blocks_of_solver(const ForeignFile& opened) {
+  cells::MeshBlocks result;
   result.format = opened.contents.format;
   result.notes = opened.contents.notes;
   result.time_step = opened.contents.time_step;
@@ -98,7 +100,7 @@ MeshBlocks blocks_of_solver(const ForeignFile& opened) {
 
 }  // namespace
 
-MeshBlocks read_vtk_xml(const std::filesystem::path& file, const MeshOptions& options) {
+cells::MeshBlocks read_vtk_xml(const std::filesystem::path& file, const cells::MeshOptions& options) {
   const std::string source = file.string(), extension = system::lower_extension(file), type = xml_type(file);
   const XmlKind* const kind = kind_of(type);
   if (type.empty()) {
@@ -116,22 +118,22 @@ MeshBlocks read_vtk_xml(const std::filesystem::path& file, const MeshOptions& op
   if (!kind) throw scene::bad_input(fmt::format("{}: its type is '{}'; give a mesh", source, type));
 
   if (type.starts_with('P')) require_beside_others(file);
-  MeshBlocks result = named_format(*kind, extension);
-  MeshBlocks read = read_data_set(file, type, options);
-  add_notes(read.notes, result.notes);
+  cells::MeshBlocks result = named_format(*kind, extension);
+  cells::MeshBlocks read = read_data_set(file, type, options);
+  cells::add_notes(read.notes, result.notes);
   result.surface_names = std::move(read.surface_names);
   result.blocks = std::move(read.blocks);
   return result;
 }
 
-MeshBlocks read_vtk_legacy(const std::filesystem::path& file, const MeshOptions& options) {
+cells::MeshBlocks read_vtk_legacy(const std::filesystem::path& file, const cells::MeshOptions& options) {
   if (!read_beginning(file, 64).starts_with("# vtk DataFile Version"))
     throw scene::bad_input(fmt::format(
         "{}: it does not begin with '# vtk DataFile Version'; check that it is a legacy VTK file", file.string()));
   return read_foreign(file, {{"reader", "vtk_legacy"}}, options);
 }
 
-MeshBlocks read_exodus(const std::filesystem::path& file, const MeshOptions& options) {
+cells::MeshBlocks read_exodus(const std::filesystem::path& file, const cells::MeshOptions& options) {
   if (!exodus_files(file).empty()) return read_share(file, options, 0, 1);
   const std::string magic = read_beginning(file, 8);
   if (!magic.starts_with("CDF") && !magic.starts_with("\x89HDF\r\n\x1a\n"))
@@ -143,7 +145,8 @@ MeshBlocks read_exodus(const std::filesystem::path& file, const MeshOptions& opt
   return read_foreign(file, std::move(request), options);
 }
 
-MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader, const MeshOptions& options) {
+cells::MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader,
+                                   const cells::MeshOptions& options) {
   const std::string_view name = reader;
   require_solver_beginning(file, name);
   if (name == "openfoam" || name == "ensight") require_beside_others(file);
@@ -153,7 +156,7 @@ MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reade
   return read_foreign_mesh(file, {reader, std::move(task)}, options, GridsAre::hexahedra);
 }
 
-MeshBlocks read_hdf5(const std::filesystem::path& file, const MeshOptions& options) {
+cells::MeshBlocks read_hdf5(const std::filesystem::path& file, const cells::MeshOptions& options) {
   if (!exodus_files(file).empty()) return read_share(file, options, 0, 1);
   nlohmann::json request{{"reader", "hdf5"}, {"blocks", options.blocks}};
   if (options.surfaces) request["surfaces"] = true;
@@ -165,7 +168,7 @@ MeshBlocks read_hdf5(const std::filesystem::path& file, const MeshOptions& optio
   return opened.contents.has_levels ? read_amr(std::move(opened), options) : blocks_of_solver(opened);
 }
 
-MeshBlocks read_plot3d(const std::filesystem::path& file, const MeshOptions& options) {
+cells::MeshBlocks read_plot3d(const std::filesystem::path& file, const cells::MeshOptions& options) {
   const std::filesystem::path& q_file = options.plot3d_q;
   const Plot3dLayout layout = detect_plot3d(file);
   const std::filesystem::path q = q_file.empty() ? find_plot3d_solution(file) : q_file;
@@ -185,31 +188,31 @@ MeshBlocks read_plot3d(const std::filesystem::path& file, const MeshOptions& opt
   notes.push_back(fmt::format("PLOT3D: {} grid{}, {}, {}{}", layout.grids.size(), layout.grids.size() == 1 ? "" : "s",
                               stored, layout.iblank ? "IBLANK" : "no IBLANK",
                               q.empty() ? "" : fmt::format(", solution {}", q.filename().string())));
-  MeshBlocks result = read_foreign(file,
-                                   {{"reader", "plot3d"},
-                                    {"q", q.string()},
-                                    {"text", layout.is_text},
-                                    {"big_endian", layout.big_endian},
-                                    {"record_marks", layout.record_marks},
-                                    {"multi_grid", layout.multi_grid},
-                                    {"double_precision", layout.double_precision},
-                                    {"iblank", layout.iblank}},
-                                   options);
+  cells::MeshBlocks result = read_foreign(file,
+                                          {{"reader", "plot3d"},
+                                           {"q", q.string()},
+                                           {"text", layout.is_text},
+                                           {"big_endian", layout.big_endian},
+                                           {"record_marks", layout.record_marks},
+                                           {"multi_grid", layout.multi_grid},
+                                           {"double_precision", layout.double_precision},
+                                           {"iblank", layout.iblank}},
+                                          options);
   result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
   return result;
 }
 
-MeshBlocks read_plot3d_list(const std::filesystem::path& file, const MeshOptions& options) {
+cells::MeshBlocks read_plot3d_list(const std::filesystem::path& file, const cells::MeshOptions& options) {
   require_beside_others(file);
   const std::vector<Plot3dStep> steps = parse_plot3d_list(read_text_file(file), file);
   scene::TimeStepRead chosen = scene::chosen_step(options.time_step, steps.size(), file.string());
   for (const Plot3dStep& each : steps) chosen.times.push_back(each.time);
   const Plot3dStep& step = steps[chosen.step];
-  MeshOptions of_step = options;
+  cells::MeshOptions of_step = options;
   of_step.time_step.reset();
   if (of_step.plot3d_q.empty()) of_step.plot3d_q = step.solution;
-  MeshBlocks result = read_plot3d(step.grid, of_step);
-  for (CellBlock& block : result.blocks)
+  cells::MeshBlocks result = read_plot3d(step.grid, of_step);
+  for (cells::CellBlock& block : result.blocks)
     if (block.source.empty()) block.source = step.grid.string();
   result.time_step = std::move(chosen);
   if (step.has_functions)

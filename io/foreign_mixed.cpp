@@ -45,13 +45,13 @@ VolumeFile read_foreign_volume(const std::filesystem::path& file, const ForeignR
   return grid_of(open_by(by, file, std::move(request), asked.progress), asked);
 }
 
-MeshBlocks read_foreign_mesh(const std::filesystem::path& file, const ForeignReader& by, const MeshOptions& options,
-                             GridsAre grids) {
+cells::MeshBlocks read_foreign_mesh(const std::filesystem::path& file, const ForeignReader& by,
+                                    const cells::MeshOptions& options, GridsAre grids) {
   nlohmann::json request{{"blocks", options.blocks}, {"field", options.field}};
   if (options.time_step) request["time_step"] = *options.time_step;
   if (options.surfaces) request["surfaces"] = true;
   const ForeignFile opened = open_by(by, file, std::move(request), options.progress);
-  MeshBlocks result;
+  cells::MeshBlocks result;
   result.format = opened.contents.format;
   result.notes = opened.contents.notes;
   result.time_step = opened.contents.time_step;

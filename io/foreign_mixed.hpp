@@ -25,7 +25,7 @@ VolumeFile read_foreign_volume(const std::filesystem::path& file, const ForeignR
                                const VolumeOptions& options);
 
 /// As a mesh: all blocks, all arrays, one time step, by default the last; grids as `grids` says.
-MeshBlocks read_foreign_mesh(const std::filesystem::path& file, const ForeignReader& by, const MeshOptions& options,
-                             GridsAre grids);
+cells::MeshBlocks read_foreign_mesh(const std::filesystem::path& file, const ForeignReader& by,
+                                    const cells::MeshOptions& options, GridsAre grids);
 
 }  // namespace tessera::io

@@ -32,8 +32,8 @@ ForeignFile open_foreign(std::shared_ptr<HelperProcess> helper, const std::files
   if (!contents.block_names.empty()) return opened;  // the reader has seen to it
   for (const ForeignPart& part : contents.parts)
     if (part.kind != ForeignPart::Kind::surface || opened.with_surfaces) contents.block_names.push_back(part.name);
-  const BlockChoice choice = request.value("blocks", BlockChoice());
-  std::erase_if(contents.parts, [&](const ForeignPart& part) { return !is_chosen(choice, part.name); });
+  const cells::BlockChoice choice = request.value("blocks", cells::BlockChoice());
+  std::erase_if(contents.parts, [&](const ForeignPart& part) { return !cells::is_chosen(choice, part.name); });
   return opened;
 }
 

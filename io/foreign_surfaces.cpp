@@ -17,7 +17,7 @@ std::vector<double> component_of(const ForeignFile& file, const ForeignArray& ar
   return values;
 }
 
-void add_points(const ForeignFile& file, const ForeignArray& points, Surface& surface) {
+void add_points(const ForeignFile& file, const ForeignArray& points, cells::Surface& surface) {
   if (points.components != 3) refuse_surface(file.source);
   const std::vector<std::byte> bytes = file.arrays->copy(points, file.source);
   surface.points.resize(points.tuples);
@@ -35,8 +35,8 @@ std::vector<std::int64_t> offsets_of(const ForeignFile& file, const ForeignArray
   return {narrow.begin(), narrow.end()};
 }
 
-Surface surface_of(const ForeignFile& file, const ForeignPart& part) {
-  Surface surface;
+cells::Surface surface_of(const ForeignFile& file, const ForeignPart& part) {
+  cells::Surface surface;
   if (!part.points || !part.offsets || !part.connectivity) return surface;
   if (part.connectivity->type != NumberType::uint32) refuse_surface(file.source);
   add_points(file, *part.points, surface);
@@ -45,7 +45,7 @@ Surface surface_of(const ForeignFile& file, const ForeignPart& part) {
   for (std::size_t c = 0; c + 1 < offsets.size(); ++c) {
     if (offsets[c] < 0 || offsets[c + 1] < offsets[c] || static_cast<std::uint64_t>(offsets[c + 1]) > corners.size())
       refuse_surface(file.source);
-    Polygon polygon;
+    cells::Polygon polygon;
     for (auto k = static_cast<std::size_t>(offsets[c]); k < static_cast<std::size_t>(offsets[c + 1]); ++k) {
       if (corners[k] >= surface.points.size())
         throw scene::bad_input(fmt::format("{}: face {} uses point {}, the file holds {}; write it anew", file.source,
@@ -66,7 +66,7 @@ ForeignFile open_surface(const std::string& source, const char* reader) {
 
 }  // namespace
 
-Surface read_stl(const std::string& source) {
+cells::Surface read_stl(const std::string& source) {
   const ForeignFile opened = open_surface(source, "stl");
   return surface_of(opened, opened.contents.parts.front());
 }

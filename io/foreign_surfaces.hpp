@@ -8,11 +8,11 @@
 namespace tessera::io {
 
 /// An STL surface by VTK, each face with points of its own. Throws Error(bad_input, "SOURCE: ...").
-Surface read_stl(const std::string& source);
+cells::Surface read_stl(const std::string& source);
 
 /// A VTK surface, XML (.vtp) or legacy: its polygons and strips; point arrays of one component are its attributes.
 struct VtkSurface {
-  Surface surface;
+  cells::Surface surface;
   std::vector<std::string> attribute_names, notes;
 };
 VtkSurface read_vtk_surface(const std::string& source);

@@ -19,7 +19,7 @@ VolumeFile read_xdmf_grid(const std::filesystem::path& file, const VolumeOptions
   return read_foreign_volume(file, xdmf(), options);
 }
 
-MeshBlocks read_xdmf_mesh(const std::filesystem::path& file, const MeshOptions& options) {
+cells::MeshBlocks read_xdmf_mesh(const std::filesystem::path& file, const cells::MeshOptions& options) {
   return read_foreign_mesh(file, xdmf(), options, GridsAre::hexahedra);
 }
 

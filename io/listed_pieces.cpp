@@ -59,8 +59,8 @@ void add_pieces_of_whole(const std::filesystem::path& file, const std::string& b
   });
 }
 
-void add_block(ListedPiece listed, const BlockChoice& choice, PieceList& list) {
-  if (!is_chosen(choice, listed.block)) {  // nor looked into, so that it may be a surface
+void add_block(ListedPiece listed, const cells::BlockChoice& choice, PieceList& list) {
+  if (!cells::is_chosen(choice, listed.block)) {  // nor looked into, so that it may be a surface
     list.block_names.push_back(listed.block);
     return;
   }
@@ -79,7 +79,7 @@ void add_block(ListedPiece listed, const BlockChoice& choice, PieceList& list) {
   list.pieces.push_back(std::move(listed));
 }
 
-void add_blocks(const std::filesystem::path& file, const BlockChoice& choice, PieceList& list) {
+void add_blocks(const std::filesystem::path& file, const cells::BlockChoice& choice, PieceList& list) {
   std::vector<std::string> path;  // of names, by depth
   std::size_t count = 0;
   each_xml_element(read_text_file(file), file.string(), [&](const XmlElement& element) {
@@ -96,7 +96,7 @@ void add_blocks(const std::filesystem::path& file, const BlockChoice& choice, Pi
     ++count;
     add_block({file.parent_path() / *listed, file.string(), std::move(name), ""}, choice, list);
   });
-  if (!list.surface_names.empty()) list.notes.push_back(note_on_surfaces("block", list.surface_names));
+  if (!list.surface_names.empty()) list.notes.push_back(cells::note_on_surfaces("block", list.surface_names));
 }
 
 void require_piece(const ListedPiece& piece, const std::string& type) {
@@ -119,7 +119,7 @@ bool lists_pieces(const std::filesystem::path& file) {
   return type == in_pieces || is_any_of(type, lists);
 }
 
-PieceList piece_list(const std::filesystem::path& file, const BlockChoice& choice, bool with_surfaces) {
+PieceList piece_list(const std::filesystem::path& file, const cells::BlockChoice& choice, bool with_surfaces) {
   require_beside_others(file);
   PieceList list;
   list.with_surfaces = with_surfaces;
@@ -153,9 +153,9 @@ ForeignFile open_piece(const ListedPiece& piece, const std::string& type, bool w
 
 }  // namespace
 
-MeshBlocks read_pieces(const PieceList& list, std::size_t first, std::size_t last,
-                       const ReadProgressFunction& progress) {
-  MeshBlocks result{{}, list.notes, list.format, list.block_names, list.surface_names};
+cells::MeshBlocks read_pieces(const PieceList& list, std::size_t first, std::size_t last,
+                              const ReadProgressFunction& progress) {
+  cells::MeshBlocks result{{}, list.notes, list.format, list.block_names, list.surface_names};
   std::shared_ptr<HelperProcess> helper;
   for (std::size_t k = first; k < last; ++k) {
     const ListedPiece& piece = list.pieces[k];
@@ -164,10 +164,10 @@ MeshBlocks read_pieces(const PieceList& list, std::size_t first, std::size_t las
     const std::string type = of_whole ? type_of(piece.file) : piece.type;
     if (of_whole) require_piece(piece, type);
     ForeignFile opened = open_piece(piece, type, list.with_surfaces, helper);
-    add_notes(opened.contents.notes, result.notes);
+    cells::add_notes(opened.contents.notes, result.notes);
     if (!of_whole)
       for (ForeignPart& part : opened.contents.parts) part.name = piece.block;
-    for (CellBlock& block : blocks_of(opened, result.notes, GridsAre::hexahedra)) {
+    for (cells::CellBlock& block : blocks_of(opened, result.notes, GridsAre::hexahedra)) {
       block.name = piece.block;
       if (of_whole) block.source = piece.file.string();
       result.blocks.push_back(std::move(block));

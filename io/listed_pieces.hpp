@@ -30,11 +30,11 @@ bool lists_pieces(const std::filesystem::path& file);
 
 /// The pieces of such a file, their paths as it gives them, relative ones against its folder. Those of a .pvtu need not
 /// exist; blocks are looked at, since surfaces are left out unless `with_surfaces`. Throws Error(bad_input).
-PieceList piece_list(const std::filesystem::path& file, const BlockChoice& choice, bool with_surfaces = false);
+PieceList piece_list(const std::filesystem::path& file, const cells::BlockChoice& choice, bool with_surfaces = false);
 
 /// Pieces [first, last) of a list, those of a whole a block each, whose `source` is the piece's file; regular grids as
 /// hexahedra. Throws Error(bad_input) that names the piece at fault.
-MeshBlocks read_pieces(const PieceList& list, std::size_t first, std::size_t last,
-                       const ReadProgressFunction& progress = {});
+cells::MeshBlocks read_pieces(const PieceList& list, std::size_t first, std::size_t last,
+                              const ReadProgressFunction& progress = {});
 
 }  // namespace tessera::io

@@ -49,8 +49,8 @@ constexpr std::array<std::pair<std::int32_t, std::string_view>, 14> unread_cells
                                                                                      {207, "polyhedra"}}};
 
 /// In blocks, once their points are known to be there.
-std::vector<CellBlock> checked_blocks(const CellBlock& block, const std::vector<std::int64_t>& references,
-                                      const std::string& source) {
+std::vector<cells::CellBlock> checked_blocks(const cells::CellBlock& block, const std::vector<std::int64_t>& references,
+                                             const std::string& source) {
   if (block.types.empty())
     throw scene::bad_input(fmt::format(
         "{}: it holds no cells of volume; give a mesh of tetrahedra, hexahedra, prisms or pyramids", source));
@@ -58,7 +58,7 @@ std::vector<CellBlock> checked_blocks(const CellBlock& block, const std::vector<
     if (node >= block.positions.size())
       throw scene::bad_input(fmt::format("{}: a cell uses point {} of {}; the file is damaged, export it again", source,
                                          std::uint64_t{node} + 1, block.positions.size()));
-  return blocks_by_number(block, references, "reference", "Reference");
+  return cells::blocks_by_number(block, references, "reference", "Reference");
 }
 
 void require_space(std::int64_t dimension, const std::string& source) {
@@ -78,7 +78,7 @@ class MeditBinary {
     block_.offsets.push_back(0);
   }
 
-  std::vector<CellBlock> blocks() {
+  std::vector<cells::CellBlock> blocks() {
     while (at_ < bytes_.size()) {
       const std::size_t begin = at_;
       const auto code = read<std::int32_t>("keyword");
@@ -165,7 +165,7 @@ class MeditBinary {
   bool is_swapped_ = false;
   std::int32_t version_ = 0;
   std::size_t at_ = 0;
-  CellBlock block_;
+  cells::CellBlock block_;
   std::vector<std::int64_t> references_;  ///< of the cells
 };
 
@@ -176,7 +176,7 @@ class MeditText {
     block_.offsets.push_back(0);
   }
 
-  std::vector<CellBlock> blocks() {
+  std::vector<cells::CellBlock> blocks() {
     std::string_view list;  // that has just been read
     for (std::string_view word = next(); !word.empty() && word != "End"; word = next()) {
       if (!list.empty() && std::string_view("+-.0123456789").find(word[0]) != std::string_view::npos)
@@ -278,20 +278,20 @@ class MeditText {
   std::string_view rest_;
   const std::string& source_;
   std::size_t line_ = 1;
-  CellBlock block_;
+  cells::CellBlock block_;
   std::vector<std::int64_t> references_;  ///< of the cells
 };
 
 }  // namespace
 
-std::vector<CellBlock> parse_medit_binary(std::span<const std::byte> bytes, const std::string& source) {
+std::vector<cells::CellBlock> parse_medit_binary(std::span<const std::byte> bytes, const std::string& source) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (!begins_as_medit_binary(text.substr(0, 24)))
     throw scene::bad_input(fmt::format("{}: it does not begin as a binary Medit mesh does; check what it is", source));
   return MeditBinary(bytes, source).blocks();
 }
 
-std::vector<CellBlock> parse_medit_text(std::string_view text, const std::string& source) {
+std::vector<cells::CellBlock> parse_medit_text(std::string_view text, const std::string& source) {
   if (!begins_as_medit_text(text.substr(0, 128)))
     throw scene::bad_input(fmt::format("{}: it does not begin as a Medit mesh does; check what it is", source));
   return MeditText(text, source).blocks();

@@ -13,7 +13,7 @@ namespace tessera::io {
 /// Parses a Medit mesh in text: numbers and keywords with any blanks and comments between, of the same cells as in
 /// binary, in the same blocks, refused for the same reasons. Version and Dimension may be on one line with the keyword
 /// or not, and the numbers of all other keywords are passed over.
-std::vector<CellBlock> parse_medit_text(std::string_view text, const std::string& source);
+std::vector<cells::CellBlock> parse_medit_text(std::string_view text, const std::string& source);
 
 /// Parses a binary Medit mesh: tetrahedra, pyramids, prisms and hexahedra, of the second order tetrahedra alone; a
 /// block a reference, which the cell field Reference has where there are several (block_groups.hpp). Throws
@@ -25,6 +25,6 @@ std::vector<CellBlock> parse_medit_text(std::string_view text, const std::string
 ///         float in version 1, double later. Of each point its coordinates and a reference, of each cell its points
 ///         from 1 and a reference.
 /// Source  L. Marechal, "The libMeshb library", INRIA, 2018 (its formats and keywords).
-std::vector<CellBlock> parse_medit_binary(std::span<const std::byte> bytes, const std::string& source);
+std::vector<cells::CellBlock> parse_medit_binary(std::span<const std::byte> bytes, const std::string& source);
 
 }  // namespace tessera::io

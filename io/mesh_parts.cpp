@@ -23,7 +23,7 @@ bool is_tets(const std::filesystem::path& file) { return system::lower_extension
 
 }  // namespace
 
-bool readable_in_parts(const std::filesystem::path& file, const MeshOptions& options) {
+bool readable_in_parts(const std::filesystem::path& file, const cells::MeshOptions& options) {
   require_file(file);
   if (options.smooth || options.drop_duplicates) return false;
   if (is_tets(file)) return options.blocks.empty();
@@ -40,13 +40,13 @@ std::vector<std::filesystem::path> files_of_parts(const std::filesystem::path& f
 
 struct MeshPartReading::State {
   std::filesystem::path file;
-  MeshOptions options;
-  MeshBlocks blocks;
-  std::vector<FieldTally> tallies;
+  cells::MeshOptions options;
+  cells::MeshBlocks blocks;
+  std::vector<cells::FieldTally> tallies;
   scene::Box box;  ///< of the part, then of all
-  std::vector<FieldSummary> fields;
-  FieldChoice choice;
-  CurvedSettings asked;
+  std::vector<cells::FieldSummary> fields;
+  cells::FieldChoice choice;
+  cells::CurvedSettings asked;
   // Of a .tets file:
   std::vector<std::uint32_t> file_vertex;
   std::uint64_t file_vertices = 0;
@@ -57,39 +57,39 @@ struct MeshPartReading::State {
     const system::PositionalFile opened(file);
     const TetsBytes bytes(opened);
     const TetsHeader header = tets_header(bytes, source);
-    TetsRange range = parse_tets_range(bytes, first_of_part(header.tets, part, parts),
-                                       first_of_part(header.tets, part + 1, parts), source);
+    TetsRange range = parse_tets_range(bytes, cells::first_of_part(header.tets, part, parts),
+                                       cells::first_of_part(header.tets, part + 1, parts), source);
     file_vertex = std::move(range.file_vertex);
     file_vertices = header.vertices;
     counts_points = part == 0;
     // The tally is of all vertices, used or not: each part looks at its share.
-    const std::uint64_t first = first_of_part(header.vertices, part, parts);
-    BlockField share;
+    const std::uint64_t first = cells::first_of_part(header.vertices, part, parts);
+    cells::BlockField share;
     share.name = "scalar";
     share.type = "float";
-    share.tuples = first_of_part(header.vertices, part + 1, parts) - first;
+    share.tuples = cells::first_of_part(header.vertices, part + 1, parts) - first;
     share.read = [&](int, std::size_t from, std::span<double> out) { read_scalars(bytes, header, first + from, out); };
-    CellBlock shares;
+    cells::CellBlock shares;
     shares.fields.push_back(std::move(share));
-    tallies = tally_fields(std::span(&shares, 1));
+    tallies = cells::tally_fields(std::span(&shares, 1));
     blocks = blocks_of_tets(std::move(range.mesh));
   }
 
   void read_listed(int part, int parts) {
     const PieceList list = piece_list(file, options.blocks);
-    blocks = read_pieces(list, first_of_part(list.pieces.size(), part, parts),
-                         first_of_part(list.pieces.size(), part + 1, parts), options.progress);
-    blocks.block_names = distinct_names(std::move(blocks.block_names));
+    blocks = read_pieces(list, cells::first_of_part(list.pieces.size(), part, parts),
+                         cells::first_of_part(list.pieces.size(), part + 1, parts), options.progress);
+    blocks.block_names = cells::distinct_names(std::move(blocks.block_names));
     if (list.pieces.size() == 1 && blocks.block_names.size() <= 1)  // as read_mesh calls it
-      for (CellBlock& block : blocks.blocks) block.name.clear();
+      for (cells::CellBlock& block : blocks.blocks) block.name.clear();
     if (part > 0) blocks.block_names.clear();
-    tallies = tally_fields(blocks.blocks);
+    tallies = cells::tally_fields(blocks.blocks);
   }
 
   void read_shared(int part, int parts) {
     blocks = read_share(file, options, part, parts);
-    blocks.block_names = distinct_names(std::move(blocks.block_names));
-    tallies = tally_fields(blocks.blocks);
+    blocks.block_names = cells::distinct_names(std::move(blocks.block_names));
+    tallies = cells::tally_fields(blocks.blocks);
   }
 
   void read(int part, int parts) {
@@ -102,48 +102,48 @@ struct MeshPartReading::State {
       read_shared(part, parts);
     else
       read_listed(part, parts);
-    warp(blocks, options, file.string());
+    cells::warp(blocks, options, file.string());
   }
 };
 
-MeshPartReading::MeshPartReading(std::filesystem::path file, const MeshOptions& options, int part, int parts)
+MeshPartReading::MeshPartReading(std::filesystem::path file, const cells::MeshOptions& options, int part, int parts)
     : state_(std::make_unique<State>()) {
   state_->file = std::move(file);
   state_->options = options;
   const std::string source = state_->file.string();
   with_clean_errors(source, [&] {
     state_->read(part, parts);
-    scale_blocks(state_->blocks.blocks, state_->options.axis_scale.value_or(glm::dvec3(1)));
-    state_->box = higher_order_box(state_->blocks.blocks);
+    cells::scale_blocks(state_->blocks.blocks, state_->options.axis_scale.value_or(glm::dvec3(1)));
+    state_->box = cells::higher_order_box(state_->blocks.blocks);
   });
 }
 
 MeshPartReading::~MeshPartReading() = default;
 
-const std::vector<FieldTally>& MeshPartReading::tallies() const { return state_->tallies; }
+const std::vector<cells::FieldTally>& MeshPartReading::tallies() const { return state_->tallies; }
 
 const scene::Box& MeshPartReading::box() const { return state_->box; }
 
 const std::vector<std::string>& MeshPartReading::block_names() const { return state_->blocks.block_names; }
 
-void MeshPartReading::choose(std::span<const std::vector<FieldTally>> tallies_of_all, const scene::Box& box_of_all,
-                             std::vector<std::string> names_of_all) {
+void MeshPartReading::choose(std::span<const std::vector<cells::FieldTally>> tallies_of_all,
+                             const scene::Box& box_of_all, std::vector<std::string> names_of_all) {
   const std::string source = state_->file.string();
   with_clean_errors(source, [&] {
-    require_blocks(state_->options.blocks, names_of_all, source);
+    cells::require_blocks(state_->options.blocks, names_of_all, source);
     state_->blocks.block_names = std::move(names_of_all);
-    state_->fields = summarize_fields(tallies_of_all);
-    state_->choice = choose_field(state_->options.field, state_->fields, source, state_->options.shape);
-    state_->asked = asked_tolerance(state_->options, box_of_all, state_->choice, state_->fields);
+    state_->fields = cells::summarize_fields(tallies_of_all);
+    state_->choice = cells::choose_field(state_->options.field, state_->fields, source, state_->options.shape);
+    state_->asked = cells::asked_tolerance(state_->options, box_of_all, state_->choice, state_->fields);
   });
 }
 
-ExcessTally MeshPartReading::excess() const {
+cells::ExcessTally MeshPartReading::excess() const {
   return with_clean_errors(state_->file.string(),
-                           [&] { return tally_excess(state_->blocks.blocks, state_->choice, state_->asked); });
+                           [&] { return cells::tally_excess(state_->blocks.blocks, state_->choice, state_->asked); });
 }
 
-MeshFilePart MeshPartReading::finish(const ExcessTally& excess_of_all) {
+MeshFilePart MeshPartReading::finish(const cells::ExcessTally& excess_of_all) {
   const std::string source = state_->file.string();
   return with_clean_errors(source, [&] {
     MeshFilePart part;
@@ -151,9 +151,10 @@ MeshFilePart MeshPartReading::finish(const ExcessTally& excess_of_all) {
     part.blocks = std::move(state_->blocks.block_names);
     part.fields = std::move(state_->fields);
     part.choice_notes = state_->choice.notes;
-    AssembledBlocks assembled = assemble_blocks(std::move(state_->blocks.blocks), part.fields, state_->choice, source,
-                                                planned(state_->options, state_->asked, excess_of_all),
-                                                state_->options.threads, Duplicates::keys);
+    cells::AssembledBlocks assembled =
+        cells::assemble_blocks(std::move(state_->blocks.blocks), part.fields, state_->choice, source,
+                               cells::planned(state_->options, state_->asked, excess_of_all), state_->options.threads,
+                               cells::Duplicates::keys);
     part.mesh = std::move(assembled.mesh);
     part.cell_keys = std::move(assembled.cell_keys);
     part.summary.counts = assembled.counts;
@@ -162,8 +163,8 @@ MeshFilePart MeshPartReading::finish(const ExcessTally& excess_of_all) {
     part.summary.time_step = state_->blocks.time_step;
     if (auto note = scene::note_on(part.summary.time_step, state_->options.time_step))
       part.summary.reading_notes.push_back(*std::move(note));
-    add_notes(state_->blocks.notes, part.summary.reading_notes);
-    part.summary.surfaces = distinct_names(std::move(state_->blocks.surface_names));
+    cells::add_notes(state_->blocks.notes, part.summary.reading_notes);
+    part.summary.surfaces = cells::distinct_names(std::move(state_->blocks.surface_names));
     if (is_tets(state_->file)) {
       part.summary.counts.points_read = state_->counts_points ? state_->file_vertices : 0;
       part.summary.counts.points_unused = 0;
@@ -174,13 +175,14 @@ MeshFilePart MeshPartReading::finish(const ExcessTally& excess_of_all) {
           part.summary.used_points[point / 64] |= std::uint64_t{1} << point % 64;
         }
     }
-    select(part.mesh, state_->options.selection, part.summary.counts, source);
+    cells::select(part.mesh, state_->options.selection, part.summary.counts, source);
     return part;
   });
 }
 
-MeshFile joined(const MeshFilePart& own, std::span<const PartSummary> summaries, const std::filesystem::path& file) {
-  MeshFile whole;
+cells::MeshFile joined(const MeshFilePart& own, std::span<const PartSummary> summaries,
+                       const std::filesystem::path& file) {
+  cells::MeshFile whole;
   whole.format = own.format;
   whole.fields = own.fields;
   whole.blocks = own.blocks;
@@ -188,19 +190,19 @@ MeshFile joined(const MeshFilePart& own, std::span<const PartSummary> summaries,
   whole.mesh.association = own.mesh.association;
   std::vector<std::uint64_t> used;
   // What every part finds in the file that all read, one says.
-  const auto add = [&](const std::vector<std::string>& notes) { add_notes(notes, whole.notes); };
+  const auto add = [&](const std::vector<std::string>& notes) { cells::add_notes(notes, whole.notes); };
   for (const PartSummary& part : summaries) {
     whole.counts += part.counts;
     whole.higher_order += part.higher_order;
     add(part.reading_notes);
-    add_notes(part.surfaces, whole.surfaces);
+    cells::add_notes(part.surfaces, whole.surfaces);
     if (part.time_step.count > whole.time_step.count) whole.time_step = part.time_step;
     used.resize(std::max(used.size(), part.used_points.size()), 0);
     for (std::size_t w = 0; w < part.used_points.size(); ++w) used[w] |= part.used_points[w];
   }
   add(own.choice_notes);
   for (const PartSummary& part : summaries) add(part.cell_notes);
-  add(notes_on_cells(whole.counts, whole.higher_order, file.string()));
+  add(cells::notes_on_cells(whole.counts, whole.higher_order, file.string()));
   if (!used.empty()) {
     whole.counts.points_unused = whole.counts.points_read;
     for (const std::uint64_t word : used) whole.counts.points_unused -= static_cast<std::uint64_t>(std::popcount(word));

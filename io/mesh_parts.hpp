@@ -33,7 +33,7 @@ namespace tessera::io {
 /// .vtpc), whose files are, .tets, whose tets are, and meshes in shares (io/mesh_shares.hpp). Not if it is to be
 /// smoothed, which needs all cells round a point, or each cell drawn once, which needs all of them. Throws
 /// Error(bad_input) if there is no such file.
-bool readable_in_parts(const std::filesystem::path& file, const MeshOptions& options);
+bool readable_in_parts(const std::filesystem::path& file, const cells::MeshOptions& options);
 
 /// The files that such a file lists, or that it is one of; none of .tets and of what is in folders. Throws
 /// Error(bad_input).
@@ -53,9 +53,9 @@ struct PartSummary {
 struct MeshFilePart {
   scene::TetMesh mesh;  ///< of this part; may have no tets. `original_cell` counts the part's cells only
   PartSummary summary;
-  std::vector<FieldSummary> fields;       ///< of the whole
-  std::vector<std::string> choice_notes;  ///< on the field, the same on all parts
-  std::vector<std::string> blocks;        ///< the names of all, the same on all parts
+  std::vector<cells::FieldSummary> fields;  ///< of the whole
+  std::vector<std::string> choice_notes;    ///< on the field, the same on all parts
+  std::vector<std::string> blocks;          ///< the names of all, the same on all parts
   std::string format;
   std::vector<std::uint64_t> cell_keys;  ///< duplicate_keys() of the part's cells, before any are selected
 };
@@ -64,24 +64,24 @@ class MeshPartReading {
  public:
   /// Reads part `part` of `parts`, which may be more than the file has pieces. The file has to be readable in parts.
   /// Throws as read_mesh; faults name the piece.
-  MeshPartReading(std::filesystem::path file, const MeshOptions& options, int part, int parts);
+  MeshPartReading(std::filesystem::path file, const cells::MeshOptions& options, int part, int parts);
   ~MeshPartReading();
 
-  [[nodiscard]] const std::vector<FieldTally>& tallies() const;
+  [[nodiscard]] const std::vector<cells::FieldTally>& tallies() const;
   /// higher_order_box() of the part.
   [[nodiscard]] const scene::Box& box() const;
   /// The names of blocks that this part adds: those in its share, of files that list them the first part's alone.
   [[nodiscard]] const std::vector<std::string>& block_names() const;
 
   /// Chooses the field, the same on all parts. Throws as choose_field, and for a block asked for that is in no part.
-  void choose(std::span<const std::vector<FieldTally>> tallies_of_all, const scene::Box& box_of_all,
+  void choose(std::span<const std::vector<cells::FieldTally>> tallies_of_all, const scene::Box& box_of_all,
               std::vector<std::string> names_of_all);
 
   /// After the choice.
-  [[nodiscard]] ExcessTally excess() const;
+  [[nodiscard]] cells::ExcessTally excess() const;
 
   /// Makes the tets. Once. Throws as read_mesh, but for a part in which nothing is left to render.
-  MeshFilePart finish(const ExcessTally& excess_of_all);
+  MeshFilePart finish(const cells::ExcessTally& excess_of_all);
 
  private:
   struct State;
@@ -91,6 +91,7 @@ class MeshPartReading {
 /// What read_mesh would say of the file: all but the mesh. `own` is any part's result, `summaries` are those of all
 /// parts, in order; `points_unused` is taken from their `used_points`, if there are any.
 /// Throws Error(bad_input) if nothing is left to render in any part.
-MeshFile joined(const MeshFilePart& own, std::span<const PartSummary> summaries, const std::filesystem::path& file);
+cells::MeshFile joined(const MeshFilePart& own, std::span<const PartSummary> summaries,
+                       const std::filesystem::path& file);
 
 }  // namespace tessera::io

@@ -31,14 +31,15 @@ bool has_time_steps(const std::filesystem::path& file) {
   return row != nullptr && row->has_time_steps;
 }
 
-MeshBlocks read_tecplot(const std::filesystem::path& file, std::optional<std::size_t> time_step) {
+cells::MeshBlocks read_tecplot(const std::filesystem::path& file, std::optional<std::size_t> time_step) {
   TecplotMesh read = parse_tecplot(WholeFile(file).text(), file.string(), time_step);
-  MeshBlocks mesh{std::move(read.blocks), std::move(read.notes), "Tecplot (text)"};
+  cells::MeshBlocks mesh{std::move(read.blocks), std::move(read.notes), "Tecplot (text)"};
   mesh.time_step = read.time_step;
   return mesh;
 }
 
-MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row, const MeshOptions& options) {
+cells::MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row,
+                               const cells::MeshOptions& options) {
   switch (row.kind) {
     case FileKind::vtk_xml:
       return read_vtk_xml(file, options);
@@ -92,67 +93,69 @@ MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row,
 }
 
 /// Leaves the chosen blocks, if they were not all that was read, and the names of all.
-MeshBlocks chosen_blocks(MeshBlocks read, const BlockChoice& choice) {
+cells::MeshBlocks chosen_blocks(cells::MeshBlocks read, const cells::BlockChoice& choice) {
   if (read.block_names.empty())
-    for (const CellBlock& block : read.blocks) read.block_names.push_back(block.name);
-  read.block_names = distinct_names(std::move(read.block_names));
+    for (const cells::CellBlock& block : read.blocks) read.block_names.push_back(block.name);
+  read.block_names = cells::distinct_names(std::move(read.block_names));
   if (!choice.empty())
-    std::erase_if(read.blocks, [&](const CellBlock& block) {
-      return !block.name.empty() && !is_chosen(choice, block.name);  // those of no name were chosen by their reader
+    std::erase_if(read.blocks, [&](const cells::CellBlock& block) {
+      return !block.name.empty() &&
+             !cells::is_chosen(choice, block.name);  // those of no name were chosen by their reader
     });
   if (read.block_names.size() <= 1)
-    for (CellBlock& block : read.blocks) block.name.clear();
+    for (cells::CellBlock& block : read.blocks) block.name.clear();
   return read;
 }
 
-MeshBlocks warped(MeshBlocks read, const MeshOptions& options, const std::string& source) {
-  warp(read, options, source);
+cells::MeshBlocks warped(cells::MeshBlocks read, const cells::MeshOptions& options, const std::string& source) {
+  cells::warp(read, options, source);
   return read;
 }
 
 /// What is in a gzip file is read under another name, which nobody is to hear of.
-MeshBlocks read_unscaled_blocks(const std::filesystem::path& file, const MeshOptions& options) {
+cells::MeshBlocks read_unscaled_blocks(const std::filesystem::path& file, const cells::MeshOptions& options) {
   const FormatRow* const row = format_of(file);
   if (row == nullptr || row->kind == FileKind::unread) refuse_as_mesh(file);  // inflated, it has no name that tells
   if (std::filesystem::is_directory(file) || !system::looks_like_gzip(read_beginning(file, 2)))
     return warped(chosen_blocks(read_content(file, *row, options), options.blocks), options, file.string());
   const InflatedFile inflated(
       file, row->holds == FileHolds::grid_or_mesh ? InflatedFile::Holds::grid : InflatedFile::Holds::mesh);
-  MeshBlocks read = inflated.read([&](const std::filesystem::path& content) {
+  cells::MeshBlocks read = inflated.read([&](const std::filesystem::path& content) {
     return warped(chosen_blocks(read_content(content, *row, options), options.blocks), options, file.string());
   });
   for (std::string& note : read.notes) note = inflated.renamed(std::move(note));
-  for (CellBlock& block : read.blocks) block.source = inflated.renamed(std::move(block.source));
+  for (cells::CellBlock& block : read.blocks) block.source = inflated.renamed(std::move(block.source));
   read.format += ", gzip";
   return read;
 }
 
-MeshBlocks read_blocks(const std::filesystem::path& file, const MeshOptions& options) {
-  MeshBlocks read = read_unscaled_blocks(file, options);
-  const Box box = read.beside_degrees ? box_of_points(read.blocks) : Box();
-  read.axis_scale = chosen_scale(options.axis_scale, read.beside_degrees, box, read.notes);
-  scale_blocks(read.blocks, read.axis_scale);
+cells::MeshBlocks read_blocks(const std::filesystem::path& file, const cells::MeshOptions& options) {
+  cells::MeshBlocks read = read_unscaled_blocks(file, options);
+  const Box box = read.beside_degrees ? cells::box_of_points(read.blocks) : Box();
+  read.axis_scale = cells::chosen_scale(options.axis_scale, read.beside_degrees, box, read.notes);
+  cells::scale_blocks(read.blocks, read.axis_scale);
   return read;
 }
 
 /// What is left to be chosen of blocks.
-MeshOptions options_after(const MeshBlocks& read, MeshOptions options) {
+cells::MeshOptions options_after(const cells::MeshBlocks& read, cells::MeshOptions options) {
   if (read.fields.empty()) return options;
   options.smooth = false;
   options.field.clear();
-  for (const CellBlock& block : read.blocks)
-    for (const BlockField& field : block.fields) options.field = field.name;
+  for (const cells::CellBlock& block : read.blocks)
+    for (const cells::BlockField& field : block.fields) options.field = field.name;
   return options;
 }
 
 }  // namespace
 
-MeshBlocks blocks_of_tets(scene::TetMesh mesh) {
-  CellBlock block;
+cells::MeshBlocks blocks_of_tets(scene::TetMesh mesh) {
+  cells::CellBlock block;
   block.positions = std::move(mesh.positions);
   block.tets = std::move(mesh.tets);
-  block.fields.push_back(field_of_values("scalar", "float", scene::Association::point, 1, std::move(mesh.scalars)));
-  MeshBlocks result;
+  block.fields.push_back(
+      cells::field_of_values("scalar", "float", scene::Association::point, 1, std::move(mesh.scalars)));
+  cells::MeshBlocks result;
   result.format = "raw tetrahedra (.tets)";
   result.blocks.push_back(std::move(block));
   return result;
@@ -169,30 +172,30 @@ bool is_mesh_file(const std::filesystem::path& file) {
          (row->holds == FileHolds::mesh || row->holds == FileHolds::surface || row->holds == FileHolds::grid_or_mesh);
 }
 
-MeshBlocks read_mesh_blocks(const std::filesystem::path& file, const MeshOptions& options) {
+cells::MeshBlocks read_mesh_blocks(const std::filesystem::path& file, const cells::MeshOptions& options) {
   const std::string source = file.string();
   require_file(file);
   return with_clean_errors(source, [&] {
-    MeshBlocks read = read_blocks(file, options);
+    cells::MeshBlocks read = read_blocks(file, options);
     if (!has_time_steps(file)) require_no_time_step(options.time_step, source);
-    require_blocks(options.blocks, read.block_names, source, options.surfaces);
+    cells::require_blocks(options.blocks, read.block_names, source, options.surfaces);
     return read;
   });
 }
 
-MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options) {
+cells::MeshFile read_mesh(const std::filesystem::path& file, const cells::MeshOptions& options) {
   const std::string source = file.string();
   require_file(file);
   return with_clean_errors(source, [&] {
-    MeshBlocks read = read_blocks(file, options);
+    cells::MeshBlocks read = read_blocks(file, options);
     if (!has_time_steps(file)) require_no_time_step(options.time_step, source);
-    require_blocks(options.blocks, read.block_names, source);
-    const MeshOptions rest = options_after(read, options);
-    MeshFile result = assemble_mesh(std::move(read.blocks), rest, source);
+    cells::require_blocks(options.blocks, read.block_names, source);
+    const cells::MeshOptions rest = options_after(read, options);
+    cells::MeshFile result = cells::assemble_mesh(std::move(read.blocks), rest, source);
     if (!read.fields.empty()) result.fields = std::move(read.fields);
     result.format = std::move(read.format);
     result.blocks = std::move(read.block_names);
-    result.surfaces = distinct_names(std::move(read.surface_names));
+    result.surfaces = cells::distinct_names(std::move(read.surface_names));
     result.notes.insert(result.notes.begin(), read.notes.begin(), read.notes.end());
     result.time_step = read.time_step;
     result.axis_scale = read.axis_scale;
@@ -201,41 +204,41 @@ MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options
   });
 }
 
-scene::TimeStepRead time_steps_of_mesh(const std::filesystem::path& file, const MeshOptions& options) {
+scene::TimeStepRead time_steps_of_mesh(const std::filesystem::path& file, const cells::MeshOptions& options) {
   require_mesh_file(file);
   if (!has_time_steps(file)) return {};
   return with_clean_errors(file.string(), [&] { return read_blocks(file, options).time_step; });
 }
 
-MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptions& options) {
+cells::MeshFile read_mesh(std::span<const std::filesystem::path> files, const cells::MeshOptions& options) {
   if (files.size() == 1) return read_mesh(files.front(), options);
-  MeshBlocks all;
+  cells::MeshBlocks all;
   for (const std::filesystem::path& file : files) {
     const std::string source = file.string();
     require_file(file);
     with_clean_errors(source, [&] {
-      MeshBlocks read = read_blocks(file, options);
+      cells::MeshBlocks read = read_blocks(file, options);
       if (!has_time_steps(file)) require_no_time_step(options.time_step, source);
       if (!read.fields.empty())
         throw scene::bad_input(fmt::format("{}: a mesh with levels is read by itself only; give it alone", source));
       if (all.format.empty()) all.format = read.format;
       all.block_names.insert(all.block_names.end(), read.block_names.begin(), read.block_names.end());
-      for (CellBlock& block : read.blocks) {
+      for (cells::CellBlock& block : read.blocks) {
         if (block.source.empty()) block.source = source;
         all.blocks.push_back(std::move(block));
       }
       if (auto note = scene::note_on(read.time_step, options.time_step)) read.notes.insert(read.notes.begin(), *note);
       all.time_step = read.time_step;
       all.axis_scale = read.axis_scale;
-      add_notes(read.notes, all.notes);
-      add_notes(read.surface_names, all.surface_names);
+      cells::add_notes(read.notes, all.notes);
+      cells::add_notes(read.surface_names, all.surface_names);
     });
   }
   const std::string source = files.empty() ? "mesh" : files.front().string();
   return with_clean_errors(source, [&] {
-    all.block_names = distinct_names(std::move(all.block_names));
-    require_blocks(options.blocks, all.block_names, source);
-    MeshFile result = assemble_mesh(std::move(all.blocks), options, source);
+    all.block_names = cells::distinct_names(std::move(all.block_names));
+    cells::require_blocks(options.blocks, all.block_names, source);
+    cells::MeshFile result = cells::assemble_mesh(std::move(all.blocks), options, source);
     result.format = fmt::format("{} files: {}", files.size(), all.format);
     result.blocks = std::move(all.block_names);
     result.surfaces = std::move(all.surface_names);

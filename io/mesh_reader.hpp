@@ -14,19 +14,19 @@ namespace tessera::io {
 /// on every shared face by position, whatever piece they come from. Throws Error(bad_input) in one line for a missing,
 /// truncated, malformed or empty file, an unknown format or field, or if no cell is left; Error(system_failure) if
 /// memory runs out. Never leaves VTK's own messages on stderr.
-MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options = {});
+cells::MeshFile read_mesh(const std::filesystem::path& file, const cells::MeshOptions& options = {});
 
 /// Reads several files as the pieces of one mesh, their points not merged. Each has to have the chosen field. Throws as
 /// read_mesh.
-MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptions& options = {});
+cells::MeshFile read_mesh(std::span<const std::filesystem::path> files, const cells::MeshOptions& options = {});
 
 /// The cells of a file's chosen blocks as they are before they are split, and the names of all its blocks. Throws as
 /// read_mesh, but not if there are none.
-MeshBlocks read_mesh_blocks(const std::filesystem::path& file, const MeshOptions& options);
+cells::MeshBlocks read_mesh_blocks(const std::filesystem::path& file, const cells::MeshOptions& options);
 
 /// The time steps that a mesh file has, and when they are. Of formats that may have several the helper opens it. Throws
 /// as read_mesh.
-scene::TimeStepRead time_steps_of_mesh(const std::filesystem::path& file, const MeshOptions& options = {});
+scene::TimeStepRead time_steps_of_mesh(const std::filesystem::path& file, const cells::MeshOptions& options = {});
 
 /// Throws Error(bad_input) if the file is not there or read_mesh does not know its format. Does not read it.
 void require_mesh_file(const std::filesystem::path& file);

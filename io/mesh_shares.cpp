@@ -41,32 +41,32 @@ bool is_exodus(const std::filesystem::path& file) {
   return row != nullptr && (row->kind == FileKind::exodus || row->kind == FileKind::hdf5);
 }
 
-nlohmann::json request_for(const char* reader, const MeshOptions& options) {
+nlohmann::json request_for(const char* reader, const cells::MeshOptions& options) {
   nlohmann::json request{{"reader", reader}, {"blocks", options.blocks}};
   if (options.time_step) request["time_step"] = *options.time_step;
   return request;
 }
 
-void add_blocks(const ForeignFile& opened, MeshBlocks& blocks, const std::string& source) {
-  add_notes(opened.contents.notes, blocks.notes);
-  add_notes(opened.contents.block_names, blocks.block_names);
-  add_notes(opened.contents.surface_names, blocks.surface_names);
+void add_blocks(const ForeignFile& opened, cells::MeshBlocks& blocks, const std::string& source) {
+  cells::add_notes(opened.contents.notes, blocks.notes);
+  cells::add_notes(opened.contents.block_names, blocks.block_names);
+  cells::add_notes(opened.contents.surface_names, blocks.surface_names);
   blocks.time_step = opened.contents.time_step;
-  for (CellBlock& block : blocks_of(opened, blocks.notes, GridsAre::hexahedra)) {
+  for (cells::CellBlock& block : blocks_of(opened, blocks.notes, GridsAre::hexahedra)) {
     block.source = source;
     blocks.blocks.push_back(std::move(block));
   }
 }
 
-MeshBlocks read_exodus_files(std::span<const std::filesystem::path> files, const MeshOptions& options, int part,
-                             int parts) {
-  MeshBlocks result;
+cells::MeshBlocks read_exodus_files(std::span<const std::filesystem::path> files, const cells::MeshOptions& options,
+                                    int part, int parts) {
+  cells::MeshBlocks result;
   result.format = fmt::format("Exodus II in {} files", files.size());
   HelperTask task;
   task.progress = options.progress;
   const auto helper = std::make_shared<HelperProcess>(std::move(task));
-  const std::uint64_t last = first_of_part(files.size(), part + 1, parts);
-  for (std::uint64_t k = first_of_part(files.size(), part, parts); k < last; ++k) {
+  const std::uint64_t last = cells::first_of_part(files.size(), part + 1, parts);
+  for (std::uint64_t k = cells::first_of_part(files.size(), part, parts); k < last; ++k) {
     const char* const reader = format_of(files[k])->kind == FileKind::hdf5 ? "hdf5" : "exodus";
     add_blocks(open_foreign(helper, files[k], request_for(reader, options)), result, files[k].string());
   }
@@ -109,7 +109,8 @@ bool has_shares(const std::filesystem::path& file) {
   return !exodus_files(file).empty();
 }
 
-MeshBlocks read_share(const std::filesystem::path& file, const MeshOptions& options, int part, int parts) {
+cells::MeshBlocks read_share(const std::filesystem::path& file, const cells::MeshOptions& options, int part,
+                             int parts) {
   if (const auto files = exodus_files(file); !files.empty()) return read_exodus_files(files, options, part, parts);
   const FormatRow& row = *format_of(file);
   require_beside_others(file);
@@ -122,7 +123,7 @@ MeshBlocks read_share(const std::filesystem::path& file, const MeshOptions& opti
   if (opened.contents.has_levels)
     throw scene::bad_input(
         fmt::format("{}: it is named as CGNS and holds a mesh of several levels; give it another name", file.string()));
-  MeshBlocks result;
+  cells::MeshBlocks result;
   result.format = opened.contents.format;
   add_blocks(opened, result, "");
   return result;

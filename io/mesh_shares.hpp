@@ -19,6 +19,6 @@ std::vector<std::filesystem::path> exodus_files(const std::filesystem::path& fil
 
 /// Share `part` of `parts`, which may be empty: pieces in their order, each a block or more; all in one share are the
 /// whole. Throws Error(bad_input).
-MeshBlocks read_share(const std::filesystem::path& file, const MeshOptions& options, int part, int parts);
+cells::MeshBlocks read_share(const std::filesystem::path& file, const cells::MeshOptions& options, int part, int parts);
 
 }  // namespace tessera::io

@@ -30,15 +30,15 @@ struct SolidElement {
   std::vector<NastranEdge> edges;         ///< in VTK's order
 };
 
-SolidElement solid_of(std::string_view name, CurvedFamily shape, std::size_t nodes) {
-  const std::span<const LatticePlace> corners = corners_of(shape);
-  const NodeOrder& curved = *find_node_order(NodeConvention::nastran, shape, nodes);
+SolidElement solid_of(std::string_view name, cells::CurvedFamily shape, std::size_t nodes) {
+  const std::span<const cells::LatticePlace> corners = cells::corners_of(shape);
+  const cells::NodeOrder& curved = *find_node_order(cells::NodeConvention::nastran, shape, nodes);
   SolidElement element{name,
                        corners.size(),
-                       find_node_order(NodeConvention::nastran, shape, corners.size())->vtk_type,
+                       cells::find_node_order(cells::NodeConvention::nastran, shape, corners.size())->vtk_type,
                        curved.vtk_type,
                        {}};
-  const CurvedLattice lattice = *curved_lattice(curved.vtk_type, nodes);
+  const cells::CurvedLattice lattice = *cells::curved_lattice(curved.vtk_type, nodes);
   const auto place = [&](std::size_t corner) {
     return glm::dvec3(corners[corner][0], corners[corner][1], corners[corner][2]);
   };
@@ -52,9 +52,9 @@ SolidElement solid_of(std::string_view name, CurvedFamily shape, std::size_t nod
 
 const SolidElement* solid_element(std::string_view name) {
   static const std::array<SolidElement, 5> elements = {
-      {solid_of("CTETRA", CurvedFamily::tet, 10), solid_of("CPYRAM", CurvedFamily::pyramid, 13),
-       solid_of("CPYRA", CurvedFamily::pyramid, 13), solid_of("CPENTA", CurvedFamily::wedge, 15),
-       solid_of("CHEXA", CurvedFamily::hexahedron, 20)}};
+      {solid_of("CTETRA", cells::CurvedFamily::tet, 10), solid_of("CPYRAM", cells::CurvedFamily::pyramid, 13),
+       solid_of("CPYRA", cells::CurvedFamily::pyramid, 13), solid_of("CPENTA", cells::CurvedFamily::wedge, 15),
+       solid_of("CHEXA", cells::CurvedFamily::hexahedron, 20)}};
   const auto* const found = std::ranges::find(elements, name, &SolidElement::name);
   return found == elements.end() ? nullptr : found;
 }
@@ -104,7 +104,7 @@ class NastranCells {
     block_.offsets.push_back(block_.connectivity.size());
   }
 
-  CellBlock block() { return std::move(block_); }
+  cells::CellBlock block() { return std::move(block_); }
 
  private:
   [[nodiscard]] std::uint32_t point(std::int64_t grid, std::int64_t element) const {
@@ -130,12 +130,12 @@ class NastranCells {
   const NastranSystems& systems_;
   std::string source_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles_;
-  CellBlock block_;
+  cells::CellBlock block_;
 };
 
 }  // namespace
 
-std::vector<CellBlock> read_nastran(const std::filesystem::path& file) {
+std::vector<cells::CellBlock> read_nastran(const std::filesystem::path& file) {
   NastranSystems systems;
   DeckElements elements;
   read_nastran_deck(
@@ -158,7 +158,7 @@ std::vector<CellBlock> read_nastran(const std::filesystem::path& file) {
     cells.add(kind, elements.ids[e], nodes.first(count));
     nodes = nodes.subspan(count);
   }
-  return blocks_by_number(cells.block(), elements.properties, "property", "PropertyId");
+  return cells::blocks_by_number(cells.block(), elements.properties, "property", "PropertyId");
 }
 
 }  // namespace tessera::io

@@ -14,6 +14,6 @@ namespace tessera::io {
 /// them apart. Throws Error(bad_input) with file, line and remedy.
 ///
 /// Source  MSC Nastran, "Quick Reference Guide", bulk data entries CHEXA, CPENTA, CPYRAM and CTETRA.
-std::vector<CellBlock> read_nastran(const std::filesystem::path& file);
+std::vector<cells::CellBlock> read_nastran(const std::filesystem::path& file);
 
 }  // namespace tessera::io

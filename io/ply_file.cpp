@@ -187,7 +187,7 @@ class PlyParser {
     const double length = number(*property.count);
     if (!(length >= 0) || length > static_cast<double>(text_.size() - at_))
       fail(fmt::format("a list of element {} has the length {}", face, length));
-    Polygon polygon;
+    cells::Polygon polygon;
     for (std::size_t k = 0; static_cast<double>(k) < length; ++k) {
       const double v = number(property.type);
       if (!wanted) continue;

@@ -12,7 +12,7 @@ namespace tessera::io {
 /// `attribute_names`. Every count is compared with the bytes
 /// there are. Throws Error(bad_input, "SOURCE: ...").
 struct PlySurface {
-  Surface surface;
+  cells::Surface surface;
   std::vector<std::string> attribute_names;
 };
 PlySurface parse_ply(std::string_view text, const std::string& source);

@@ -112,7 +112,7 @@ class Lines {
 
 /// A zone as it is read: points may come after the cells that use them.
 struct Zone {
-  CellBlock block;
+  cells::CellBlock block;
   bool has_cells = false, has_points = false;
 };
 
@@ -121,7 +121,7 @@ void read_cells(Lines& lines, Zone& zone) {
   zone.has_cells = true;
   constexpr std::size_t least = 9;  // "10 0 1 2 3", a triangle "5 0 1 2" and its line's end
   const std::size_t count = lines.count("NELEM", least - 1);
-  CellBlock& block = zone.block;
+  cells::CellBlock& block = zone.block;
   block.types.reserve(count);
   block.offsets.reserve(count + 1);
   block.offsets.push_back(0);
@@ -172,7 +172,7 @@ void check(const Zone& zone, const std::string& source) {
 
 }  // namespace
 
-std::vector<CellBlock> parse_su2(std::string_view text, const std::string& source) {
+std::vector<cells::CellBlock> parse_su2(std::string_view text, const std::string& source) {
   Lines lines(text, source);
   std::vector<Zone> zones(1);
   bool has_zones = false;
@@ -192,7 +192,7 @@ std::vector<CellBlock> parse_su2(std::string_view text, const std::string& sourc
       read_points(lines, zones.back());
     }
   }
-  std::vector<CellBlock> blocks;
+  std::vector<cells::CellBlock> blocks;
   for (Zone& zone : zones) {
     check(zone, source);
     if (!has_zones) zone.block.name.clear();

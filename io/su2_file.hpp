@@ -13,6 +13,6 @@ namespace tessera::io {
 /// indices are checked. Throws Error(bad_input) with file, line and remedy, for two-dimensional meshes too.
 ///
 /// Source  SU2's documentation, "Mesh File" (su2code.github.io/docs_v7/Mesh-File).
-std::vector<CellBlock> parse_su2(std::string_view text, const std::string& source);
+std::vector<cells::CellBlock> parse_su2(std::string_view text, const std::string& source);
 
 }  // namespace tessera::io

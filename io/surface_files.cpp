@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "cells/surface.hpp"
+#include "io/foreign_fill.hpp"
 #include "io/foreign_surfaces.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
@@ -24,7 +25,7 @@ constexpr double default_tets = 30000;
 
 std::string text_of(const std::filesystem::path& file) { return std::string(WholeFile(file).text()); }
 
-Surface read_poly(const std::filesystem::path& file, const std::string& source) {
+cells::Surface read_poly(const std::filesystem::path& file, const std::string& source) {
   std::filesystem::path node_file = file;
   node_file.replace_extension(".node");
   std::error_code error;
@@ -33,17 +34,17 @@ Surface read_poly(const std::filesystem::path& file, const std::string& source) 
                               node_file.string());
 }
 
-void require_sound(const Surface& surface, const std::string& source) {
+void require_sound(const cells::Surface& surface, const std::string& source) {
   if (surface.facets.empty())
     throw scene::bad_input(fmt::format("{}: the surface has no faces; write it anew", source));
   for (std::size_t v = 0; v < surface.points.size(); ++v)
     for (int k = 0; k < 3; ++k)
       if (!std::isfinite(surface.points[v][k]))
         throw scene::bad_input(fmt::format("{}: point {} of the surface is not finite; mend it", source, v));
-  require_closed(surface, source);
+  cells::require_closed(surface, source);
 }
 
-double box_volume(const Surface& surface) {
+double box_volume(const cells::Surface& surface) {
   glm::dvec3 low(1e300), high(-1e300);
   for (const glm::dvec3& p : surface.points)
     for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
@@ -66,7 +67,7 @@ void require_room(double volume, double max_volume, const std::string& source) {
 SurfaceFile read_surface_file(const std::filesystem::path& file, FileKind kind) {
   const std::string source = file.string();
   SurfaceFile result;
-  Surface& surface = result.surface;
+  cells::Surface& surface = result.surface;
   if (kind == FileKind::stl) {
     result.words = "stl";
     surface = read_stl(source);
@@ -87,24 +88,24 @@ SurfaceFile read_surface_file(const std::filesystem::path& file, FileKind kind) 
     for (std::size_t a = 0; a < surface.attributes.size(); ++a)
       result.attribute_names.push_back(fmt::format("attribute{}", a));
   }
-  if (kind != FileKind::tetgen_surface) merge_coincident_points(surface);
+  if (kind != FileKind::tetgen_surface) cells::merge_coincident_points(surface);
   return result;
 }
 
-MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::optional<double> max_volume,
-                        const ReadProgressFunction& progress) {
+cells::MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::optional<double> max_volume,
+                               const ReadProgressFunction& progress) {
   const std::string source = file.string();
   if (max_volume && !(*max_volume > 0))
     throw scene::bad_input(fmt::format("{}: the largest tet volume is {}; give a positive one", source, *max_volume));
-  MeshBlocks result;
+  cells::MeshBlocks result;
   SurfaceFile read = read_surface_file(file, kind);
-  Surface& surface = read.surface;
+  cells::Surface& surface = read.surface;
   result.notes = std::move(read.notes);
   require_sound(surface, source);
-  cut_warped_facets(surface);
+  cells::cut_warped_facets(surface);
 
   result.format = fmt::format("surface ({}) filled by TetGen", read.words);
-  double volume = enclosed_volume(surface);
+  double volume = cells::enclosed_volume(surface);
   // Facets that turn both ways cancel; the box is then the only measure.
   if (!(volume > 1e-3 * box_volume(surface))) volume = box_volume(surface);
   if (!(volume > 0))
@@ -119,11 +120,12 @@ MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::o
   result.notes.push_back(fmt::format("surface of {} points and {} facets filled with {} tets of at most {:.4g}{}",
                                      surface.points.size(), surface.facets.size(), filled.tets.size() / 4, largest,
                                      max_volume ? "" : " (`max_volume` sets it)"));
-  CellBlock block;
+  cells::CellBlock block;
   for (std::size_t a = 0; a < filled.attributes.size(); ++a)
-    block.fields.push_back(field_of_values(read.attribute_names[a], "double", scene::Association::point, 1,
-                                           std::move(filled.attributes[a])));
-  block.fields.push_back(field_of_values("depth", "double", scene::Association::point, 1, std::move(filled.depth)));
+    block.fields.push_back(cells::field_of_values(read.attribute_names[a], "double", scene::Association::point, 1,
+                                                  std::move(filled.attributes[a])));
+  block.fields.push_back(
+      cells::field_of_values("depth", "double", scene::Association::point, 1, std::move(filled.depth)));
   result.notes.emplace_back("field 'depth' is the distance to the surface, world units");
   block.positions = std::move(filled.points);
   block.tets.resize(filled.tets.size() / 4);
@@ -132,14 +134,14 @@ MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::o
   return result;
 }
 
-MeshBlocks read_node_ele(const std::filesystem::path& file) {
+cells::MeshBlocks read_node_ele(const std::filesystem::path& file) {
   require_beside_others(file);
   std::filesystem::path node_file = file, ele_file = file;
   // The partner's extension in the same case: A.NODE goes with A.ELE.
   const bool upper = file.extension().string() != system::lower_extension(file);
   node_file.replace_extension(system::lower_extension(file) == ".node" ? file.extension() : upper ? ".NODE" : ".node");
   ele_file.replace_extension(system::lower_extension(file) == ".ele" ? file.extension() : upper ? ".ELE" : ".ele");
-  MeshBlocks result;
+  cells::MeshBlocks result;
   result.format = "TetGen .node/.ele";
   result.blocks.push_back(parse_node_ele(text_of(node_file), text_of(ele_file), node_file.string(), ele_file.string()));
   return result;

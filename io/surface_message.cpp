@@ -34,12 +34,12 @@ T next(const std::vector<T>& values, std::size_t& at) {
 
 }  // namespace
 
-Json json_of(const Surface& surface) {
+Json json_of(const cells::Surface& surface) {
   std::vector<std::uint32_t> counts, corners;  // of each facet: its polygons, their lengths, its holes
   std::vector<glm::dvec3> holes;
-  for (const Facet& facet : surface.facets) {
+  for (const cells::Facet& facet : surface.facets) {
     counts.push_back(static_cast<std::uint32_t>(facet.polygons.size()));
-    for (const Polygon& polygon : facet.polygons) {
+    for (const cells::Polygon& polygon : facet.polygons) {
       counts.push_back(static_cast<std::uint32_t>(polygon.size()));
       corners.insert(corners.end(), polygon.begin(), polygon.end());
     }
@@ -54,16 +54,16 @@ Json json_of(const Surface& surface) {
       {"attributes", std::move(attributes)}};
 }
 
-Surface surface_of(const Json& json) {
-  Surface surface;
+cells::Surface surface_of(const Json& json) {
+  cells::Surface surface;
   surface.points = unpacked<glm::dvec3>(json.at("points"));
   const auto counts = unpacked<std::uint32_t>(json.at("counts")), corners = unpacked<std::uint32_t>(json.at("corners"));
   const auto holes = unpacked<glm::dvec3>(json.at("holes"));
   std::size_t count = 0, corner = 0, hole = 0;
   for (auto facets = json.at("facets").get<std::size_t>(); facets > 0; --facets) {
-    Facet facet;
+    cells::Facet facet;
     for (std::uint32_t polygons = next(counts, count); polygons > 0; --polygons) {
-      Polygon polygon;
+      cells::Polygon polygon;
       for (std::uint32_t n = next(counts, count); n > 0; --n) {
         polygon.push_back(next(corners, corner));
         if (polygon.back() >= surface.points.size()) throw std::invalid_argument("a corner that is no point");

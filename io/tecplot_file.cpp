@@ -132,14 +132,14 @@ class TecplotZones {
   std::map<std::size_t, std::unique_ptr<TecplotNumbers>> read_;
 };
 
-void add_tecplot_cell(CellBlock& block, std::uint8_t type, std::initializer_list<std::size_t> nodes) {
+void add_tecplot_cell(cells::CellBlock& block, std::uint8_t type, std::initializer_list<std::size_t> nodes) {
   block.types.push_back(type);
   for (const std::size_t node : nodes) block.connectivity.push_back(static_cast<std::uint32_t>(node));
   block.offsets.push_back(block.connectivity.size());
 }
 
 /// Bricks with repeated nodes are wedges, pyramids and tetrahedra, as the guide has them.
-void add_brick(CellBlock& block, const std::array<std::size_t, 8>& n) {
+void add_brick(cells::CellBlock& block, const std::array<std::size_t, 8>& n) {
   const bool is_top_point = n[4] == n[5] && n[5] == n[6] && n[6] == n[7];
   if (n[2] == n[3] && is_top_point)
     add_tecplot_cell(block, tecplot_tetrahedron, {n[0], n[1], n[2], n[4]});
@@ -151,7 +151,7 @@ void add_brick(CellBlock& block, const std::array<std::size_t, 8>& n) {
     add_tecplot_cell(block, tecplot_hexahedron, {n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7]});
 }
 
-void add_ordered(const TecplotZone& zone, CellBlock& block) {
+void add_ordered(const TecplotZone& zone, cells::CellBlock& block) {
   const std::size_t row = zone.i, layer = zone.i * zone.j;
   for (std::size_t k = 0; k + 1 < zone.k; ++k)
     for (std::size_t j = 0; j + 1 < zone.j; ++j)
@@ -164,7 +164,7 @@ void add_ordered(const TecplotZone& zone, CellBlock& block) {
 }
 
 /// Each tecplot_polyhedron's faces are those that have it on their left or right.
-void add_polyhedra(const TecplotZone& zone, const TecplotNumbers& numbers, CellBlock& block) {
+void add_polyhedra(const TecplotZone& zone, const TecplotNumbers& numbers, cells::CellBlock& block) {
   std::vector<std::vector<std::size_t>> faces_of(zone.elements);
   std::vector<std::size_t> starts{0};
   for (std::size_t f = 0; f < numbers.face_sizes.size(); ++f) {
@@ -189,7 +189,8 @@ void add_polyhedra(const TecplotZone& zone, const TecplotNumbers& numbers, CellB
   }
 }
 
-void add_cells(const TecplotZone& zone, const TecplotNumbers& numbers, CellBlock& block, const TecplotZones& zones) {
+void add_cells(const TecplotZone& zone, const TecplotNumbers& numbers, cells::CellBlock& block,
+               const TecplotZones& zones) {
   block.offsets.assign(1, 0);
   if (zone.type == TecplotZoneType::ordered) return add_ordered(zone, block);
   for (const auto* const nodes : {&numbers.connectivity, &numbers.face_nodes})
@@ -212,10 +213,10 @@ void add_cells(const TecplotZone& zone, const TecplotNumbers& numbers, CellBlock
   }
 }
 
-CellBlock block_of_zone(const TecplotHeader& header, std::size_t z, const std::array<std::size_t, 3>& axes,
-                        TecplotZones& zones) {
+cells::CellBlock block_of_zone(const TecplotHeader& header, std::size_t z, const std::array<std::size_t, 3>& axes,
+                               TecplotZones& zones) {
   const TecplotZone& zone = header.zones[z];
-  CellBlock block;
+  cells::CellBlock block;
   block.name = zone.name.empty() ? fmt::format("zone {}", z + 1) : zone.name;
   block.positions.assign(zone.nodes, glm::dvec3(0));
   for (std::size_t a = 0; a < 3; ++a) {
@@ -236,9 +237,9 @@ CellBlock block_of_zone(const TecplotHeader& header, std::size_t z, const std::a
     std::vector<double> values = zones.values(z, v);
     if (values.empty()) continue;
     const bool of_cells = header.zones[zones.owner_of(z, v)].of_cells[v];
-    block.fields.push_back(field_of_values(header.variables[v], "double",
-                                           of_cells ? scene::Association::cell : scene::Association::point, 1,
-                                           std::move(values)));
+    block.fields.push_back(cells::field_of_values(header.variables[v], "double",
+                                                  of_cells ? scene::Association::cell : scene::Association::point, 1,
+                                                  std::move(values)));
   }
   return block;
 }

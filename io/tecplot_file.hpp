@@ -14,7 +14,7 @@ namespace tessera::io {
 /// What a Tecplot text file holds at one time step: a block a zone of cells, with a field for each variable but the
 /// coordinates.
 struct TecplotMesh {
-  std::vector<CellBlock> blocks;
+  std::vector<cells::CellBlock> blocks;
   std::vector<std::string> notes;
   scene::TimeStepRead time_step{};
 };

@@ -139,8 +139,8 @@ std::uint32_t point_index(Numbers& in, std::int64_t given, const Nodes& nodes) {
   return static_cast<std::uint32_t>(v);
 }
 
-Polygon read_polygon(Numbers& in, const Nodes& nodes) {
-  Polygon polygon(in.count("a polygon's number of corners", 2));
+cells::Polygon read_polygon(Numbers& in, const Nodes& nodes) {
+  cells::Polygon polygon(in.count("a polygon's number of corners", 2));
   for (std::uint32_t& v : polygon)
     v = point_index(in, in.need_across_lines<std::int64_t>("a corner of the polygon"), nodes);
   return polygon;
@@ -155,8 +155,8 @@ glm::dvec3 read_hole(Numbers& in) {
 
 }  // namespace
 
-CellBlock parse_node_ele(std::string_view node, std::string_view ele, const std::string& node_source,
-                         const std::string& ele_source) {
+cells::CellBlock parse_node_ele(std::string_view node, std::string_view ele, const std::string& node_source,
+                                const std::string& ele_source) {
   Numbers node_numbers(node, node_source), in(ele, ele_source);
   Nodes nodes = parse_nodes(node_numbers);
 
@@ -166,8 +166,8 @@ CellBlock parse_node_ele(std::string_view node, std::string_view ele, const std:
   if (corners != 4 && corners != 10) in.fail(fmt::format("tets have 4 or 10 nodes, not {}", corners));
   if (attributes < 0 || attributes > 1000) in.fail(fmt::format("{} attributes a tet are not possible", attributes));
   const auto nodes_each = static_cast<std::size_t>(corners);
-  const NodeOrder& order = *find_node_order(NodeConvention::tetgen, CurvedFamily::tet, 10);
-  CellBlock block;
+  const cells::NodeOrder& order = *find_node_order(cells::NodeConvention::tetgen, cells::CurvedFamily::tet, 10);
+  cells::CellBlock block;
   nodes_each == 4 ? block.tets.resize(n) : block.connectivity.resize(nodes_each * n);
   std::vector<std::vector<double>> cell_values(static_cast<std::size_t>(attributes));
   for (std::size_t t = 0; t < n; ++t) {
@@ -176,7 +176,7 @@ CellBlock parse_node_ele(std::string_view node, std::string_view ele, const std:
     for (std::size_t k = 0; k < nodes_each; ++k)
       (nodes_each == 4 ? block.tets[t][k] : block.connectivity[nodes_each * t + k]) =
           point_index(in, in.need<std::int64_t>("a corner"), nodes);
-    if (nodes_each == 10) to_vtk_order(order, std::span(block.connectivity).subspan(nodes_each * t, nodes_each));
+    if (nodes_each == 10) cells::to_vtk_order(order, std::span(block.connectivity).subspan(nodes_each * t, nodes_each));
     for (std::vector<double>& values : cell_values) values.push_back(in.need<double>("an attribute"));
   }
   if (nodes_each == 10) {
@@ -186,28 +186,29 @@ CellBlock parse_node_ele(std::string_view node, std::string_view ele, const std:
   }
   block.positions = std::move(nodes.points);
   for (std::size_t a = 0; a < nodes.attributes.size(); ++a)
-    block.fields.push_back(field_of_values(fmt::format("attribute{}", a), "double", scene::Association::point, 1,
-                                           std::move(nodes.attributes[a])));
+    block.fields.push_back(cells::field_of_values(fmt::format("attribute{}", a), "double", scene::Association::point, 1,
+                                                  std::move(nodes.attributes[a])));
   for (std::size_t a = 0; a < cell_values.size(); ++a)
-    block.fields.push_back(field_of_values(fmt::format("attribute{}", a), "double", scene::Association::cell, 1,
-                                           std::move(cell_values[a])));
+    block.fields.push_back(cells::field_of_values(fmt::format("attribute{}", a), "double", scene::Association::cell, 1,
+                                                  std::move(cell_values[a])));
   if (!nodes.markers.empty())
-    block.fields.push_back(field_of_values("marker", "int32", scene::Association::point, 1, std::move(nodes.markers)));
+    block.fields.push_back(
+        cells::field_of_values("marker", "int32", scene::Association::point, 1, std::move(nodes.markers)));
   return block;
 }
 
-Surface parse_tetgen_surface(std::string_view text, bool smesh, std::string_view node, const std::string& source,
-                             const std::string& node_source) {
+cells::Surface parse_tetgen_surface(std::string_view text, bool smesh, std::string_view node, const std::string& source,
+                                    const std::string& node_source) {
   Numbers in(text, source);
   Nodes nodes = parse_nodes(in);
   if (nodes.points.empty()) {
     Numbers node_numbers(node, node_source);
     nodes = parse_nodes(node_numbers);
   }
-  Surface surface;
+  cells::Surface surface;
   in.need_line("the number of facets");
   surface.facets.resize(in.count("the number of facets", 4));
-  for (Facet& facet : surface.facets) {
+  for (cells::Facet& facet : surface.facets) {
     in.need_line("a facet");
     if (smesh) {
       facet.polygons.push_back(read_polygon(in, nodes));

@@ -31,12 +31,12 @@ tessera::TriangleMesh read_triangles(const std::filesystem::path& file) {
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
     if (!(std::isfinite(mesh.points[v].x) && std::isfinite(mesh.points[v].y) && std::isfinite(mesh.points[v].z)))
       throw scene::bad_input(fmt::format("{}: point {} of the surface is not finite; mend it", source, v));
-  PolygonTriangles cutter;
+  cells::PolygonTriangles cutter;
   for (std::size_t f = 0; f < read.surface.facets.size(); ++f) {
-    const Facet& facet = read.surface.facets[f];
+    const cells::Facet& facet = read.surface.facets[f];
     if (!facet.holes.empty())
       throw scene::bad_input(fmt::format("{}: facet {} has holes; divide it into polygons without", source, f));
-    for (const Polygon& polygon : facet.polygons) cutter.cut(polygon, mesh.points, mesh.triangles);
+    for (const cells::Polygon& polygon : facet.polygons) cutter.cut(polygon, mesh.points, mesh.triangles);
   }
   if (mesh.triangles.empty())
     throw scene::bad_input(fmt::format("{}: the surface has no faces; write it anew", source));

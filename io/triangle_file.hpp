@@ -12,7 +12,7 @@ namespace tessera::io {
 
 /// A surface as its file has it, points at one place made one where the format cannot say it.
 struct SurfaceFile {
-  Surface surface;
+  cells::Surface surface;
   std::vector<std::string> attribute_names, notes;
   const char* words = "";  ///< of its format
 };

@@ -70,7 +70,7 @@ std::filesystem::path without_gz(const std::filesystem::path& file) {
   return system::lower_extension(file) == ".gz" ? file.parent_path() / file.stem() : file;
 }
 
-void list_range(const scene::ValueRange& range, FieldSummary& field) {
+void list_range(const scene::ValueRange& range, cells::FieldSummary& field) {
   field.low = range.empty() ? 0 : range.low;
   field.high = range.empty() ? 0 : range.high;
   field.nan_count = range.blanks;
@@ -112,12 +112,12 @@ struct ChosenSamples {
   scene::ComponentChoice of_tuple;
 };
 
-ChosenSamples chosen_samples(const StoredVolume& volume, const FieldChoice& choice, int component, std::size_t step,
-                             const std::string& source) {
+ChosenSamples chosen_samples(const StoredVolume& volume, const cells::FieldChoice& choice, int component,
+                             std::size_t step, const std::string& source) {
   scene::Grid grid = volume.grid;
   grid.type = volume.number;
   grid.field_name = choice.label;
-  if (component == magnitude) {
+  if (component == cells::magnitude) {
     grid.type = scene::size_of(volume.number) < 4 || volume.number == scene::SampleType::float32
                     ? scene::SampleType::float32
                     : scene::SampleType::float64;
@@ -130,7 +130,7 @@ ChosenSamples chosen_samples(const StoredVolume& volume, const FieldChoice& choi
   }
   if (volume.interleaved_steps)
     return {std::move(grid), {static_cast<int>(volume.steps), static_cast<int>(step), volume.number}};
-  return {std::move(grid), {volume.components, component == magnitude ? -1 : component, volume.number}};
+  return {std::move(grid), {volume.components, component == cells::magnitude ? -1 : component, volume.number}};
 }
 
 std::unique_ptr<scene::SampleSource> source_of(const VolumePayload& payload, ChosenSamples samples, bool swapped,
@@ -148,14 +148,15 @@ VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const 
   VolumeFile result;
   result.time_step = step_of(volume, options, source);
   const std::size_t step = result.time_step.step;
-  FieldSummary field{.name = volume.field,
-                     .association = volume.grid.geometry.association,
-                     .components = volume.components,
-                     .type = listed_type(volume.number)};
+  cells::FieldSummary field{.name = volume.field,
+                            .association = volume.grid.geometry.association,
+                            .components = volume.components,
+                            .type = listed_type(volume.number)};
   field.active = volume.active;
   field.high = 1;  // until it is known; nobody chooses by it
-  const FieldChoice choice = choose_field(options.field, std::span(&field, 1), source);
-  if (volume.has_colors.value_or(look_like_colors(field))) refuse_colors(choice, field, options.field, source);
+  const cells::FieldChoice choice = cells::choose_field(options.field, std::span(&field, 1), source);
+  if (volume.has_colors.value_or(cells::look_like_colors(field)))
+    cells::refuse_colors(choice, field, options.field, source);
   const auto chosen = [&](int component) { return chosen_samples(volume, choice, component, step, source); };
   const auto streamed = [&](int component) {
     ChosenSamples samples = chosen(component);
@@ -163,15 +164,15 @@ VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const 
                            [&](const system::ByteSink& use) { unpack_payload(volume, step, source, use); }};
   };
   field.low = 1, field.high = 0;  // the source's
-  const bool lists_lengths = volume.components > 1 && choice.component != magnitude && volume.grid.shift == 0;
+  const bool lists_lengths = volume.components > 1 && choice.component != cells::magnitude && volume.grid.shift == 0;
   if (comes_in_parts(volume) && unpacked_to_scratch(streamed(choice.component), options, source, result)) {
-    if (lists_lengths) list_range(value_range(streamed(magnitude)), field);
+    if (lists_lengths) list_range(value_range(streamed(cells::magnitude)), field);
   } else {
     const VolumePayload payload = usable_payload(volume, step, source);
     result.source = source_of(payload, chosen(choice.component), volume.swapped, source);
     result.in_memory = !payload.in_file || is_inflated(payload.in_file->file);
     if (lists_lengths)
-      list_range(scene::value_range(*source_of(payload, chosen(magnitude), volume.swapped, source)), field);
+      list_range(scene::value_range(*source_of(payload, chosen(cells::magnitude), volume.swapped, source)), field);
   }
   result.format = std::move(volume.format);
   result.body_axes = volume.body_axes;
@@ -312,7 +313,7 @@ void set_range(VolumeFile& volume, const std::filesystem::path& file, const scen
   if (range.empty())
     throw scene::bad_input(fmt::format("{}: none of its {} samples is a finite number; choose another field",
                                        file.string(), volume.source->geometry().all_samples().count()));
-  for (FieldSummary& field : volume.fields)
+  for (cells::FieldSummary& field : volume.fields)
     if (field.low > field.high) list_range(range, field);
   // Hounsfield's units, with air and with what scanners fill the corners with, but no -9999.
   if (const BodyAxes axes = std::exchange(volume.axes_if_ct, BodyAxes::none);

@@ -45,11 +45,11 @@ struct VolumeOptions {
 struct VolumeFile {
   std::unique_ptr<scene::SampleSource> source;
   std::shared_ptr<const system::ScratchFile>
-      scratch;                       ///< where the source reads what was unpacked, for others too; else null
-  bool in_memory = true;             ///< all samples are, so that they could be unpacked or put together
-  scene::ValueRange range;           ///< of the chosen field, and its blanks; empty until set_range()
-  std::vector<FieldSummary> fields;  ///< low > high: not known until set_range()
-  std::vector<std::string> notes;    ///< one line each: what was chosen or applied, or odd about the file
+      scratch;                              ///< where the source reads what was unpacked, for others too; else null
+  bool in_memory = true;                    ///< all samples are, so that they could be unpacked or put together
+  scene::ValueRange range;                  ///< of the chosen field, and its blanks; empty until set_range()
+  std::vector<cells::FieldSummary> fields;  ///< low > high: not known until set_range()
+  std::vector<std::string> notes;           ///< one line each: what was chosen or applied, or odd about the file
   std::string format;
   BodyAxes body_axes = BodyAxes::none;
   BodyAxes axes_if_ct = BodyAxes::none;  ///< set_range() makes them body_axes if the values are those of CT

@@ -41,7 +41,7 @@ void tally(const VtkXmlOpened& of, const VtkXmlWhole& whole, ForeignArray& field
     const std::size_t tuples = bytes.size() / field.tuple_bytes();
     for (std::size_t first = 0; first < tuples; first += some.size()) {
       const std::span chunk(some.data(), std::min(some.size(), tuples - first));
-      read_tuples(bytes, field.type, field.components, field.components == 1 ? 0 : magnitude, first, chunk);
+      read_tuples(bytes, field.type, field.components, field.components == 1 ? 0 : cells::magnitude, first, chunk);
       field.tally.add(chunk);
     }
   });

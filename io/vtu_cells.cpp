@@ -88,7 +88,7 @@ void add_reordered(const system::PositionalFile& file, const VtkXmlGrid& grid, c
     const auto degrees = degrees_of(file, grid.pieces[p], source);
     for (std::uint64_t c = 0; c < grid.pieces[p].cells; ++c, ++cell)
       if (is_higher_order_hexahedron(cells.types[cell]))
-        exchange_vtk8_edges(
+        cells::exchange_vtk8_edges(
             std::span(cells.connectivity).subspan(cells.offsets[cell], cells.offsets[cell + 1] - cells.offsets[cell]),
             degrees.empty() ? std::array<int, 3>{} : degrees[c]);
   }

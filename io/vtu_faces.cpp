@@ -119,7 +119,7 @@ void add_vtu_faces(const system::PositionalFile& file, const VtkXmlGrid& grid, c
     const bool numbered = of.has("face_connectivity") && of.has("face_offsets") && of.has("polyhedron_to_faces") &&
                           of.has("polyhedron_offsets");
     if (of.cell_count() == 0 || (!numbered && !(of.has("faces") && of.has("faceoffsets")))) continue;
-    if (cells.face_locations.empty()) cells.face_locations.resize(cells.types.size(), CellBlock::no_faces);
+    if (cells.face_locations.empty()) cells.face_locations.resize(cells.types.size(), cells::CellBlock::no_faces);
     if (numbered)
       add_numbered_faces(of);
     else

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 constexpr std::uint8_t tetra = 10, voxel = 11;  // VTK's cell type numbers
@@ -169,4 +169,4 @@ CellBlock conforming_cells(const AmrLattice& lattice, int steps, AmrCubes cubes,
   return block;
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

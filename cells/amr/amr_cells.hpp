@@ -7,7 +7,7 @@
 #include "cells/amr/amr_vertices.hpp"
 #include "cells/cell_block.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// A cube of the lattice.
 struct AmrCube {
@@ -41,4 +41,4 @@ CellBlock voxels_of(const AmrLattice& lattice, int steps, AmrCubes cubes, const 
 ///         cubes themselves are divided, for which levels may differ by any number.
 CellBlock conforming_cells(const AmrLattice& lattice, int steps, AmrCubes cubes, const std::string& field);
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -9,7 +9,7 @@
 
 #include "scene/error.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 constexpr double most_corners = most_amr_corners;
@@ -289,4 +289,4 @@ AmrLeaves leaves_of_blocks(std::span<const AmrBlock> blocks, const std::string& 
   return amr;
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// A corner on the lattice of the finest cells.
 using AmrIndex = std::array<std::int32_t, 3>;
@@ -100,4 +100,4 @@ AmrLeaves leaves_of_blocks(std::span<const AmrBlock> blocks, const std::string& 
 /// of it twice. Cells that are ghosts are left out. Throws Error(bad_input) for others.
 AmrLeaves leaves_of_trees(std::span<const AmrBlock> trees, const std::string& source);
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

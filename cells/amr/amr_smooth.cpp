@@ -8,7 +8,7 @@
 
 #include "cells/amr/amr_values.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 constexpr std::uint32_t none = AmrVertices::none;
@@ -285,4 +285,4 @@ void weigh_by_entropy(std::span<const glm::dvec3> offsets, std::span<double> wei
 
 AmrCubes smooth_cubes(const AmrLeaves& amr, std::span<const double> values) { return Smoothing(amr, values).cubes(); }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

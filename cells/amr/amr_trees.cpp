@@ -10,7 +10,7 @@
 #include "cells/amr/amr_vertices.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 std::string piece_words(const AmrBlock& part, const std::string& source) {
@@ -144,4 +144,4 @@ AmrLeaves leaves_of_trees(std::span<const AmrBlock> trees, const std::string& so
   return amr;
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

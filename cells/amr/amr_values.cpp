@@ -4,7 +4,7 @@
 #include <limits>
 #include <numeric>
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 AmrCubes leaf_cubes(const AmrLeaves& amr) {
@@ -74,4 +74,4 @@ AmrCubes cubes_of_points(const AmrLeaves& amr, std::span<const std::vector<doubl
   return cubes;
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -5,7 +5,7 @@
 
 #include "cells/amr/amr_cells.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// The leaves as they are, `values` one each. One step of the cubes is one of the leaves' lattice.
 AmrCubes cubes_of_cells(const AmrLeaves& amr, std::vector<double> values);
@@ -31,4 +31,4 @@ AmrCubes smooth_cubes(const AmrLeaves& amr, std::span<const double> values);
 /// factor each.
 void weigh_by_entropy(std::span<const glm::dvec3> offsets, std::span<double> weights);
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

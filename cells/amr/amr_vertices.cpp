@@ -3,7 +3,7 @@
 #include "cells/mix_bits.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 /// Sixteen points in a row follow each other, as they are asked for one after the other: one piece of cache has them.
@@ -43,4 +43,4 @@ void AmrVertices::grow() {
   for (std::size_t id = 0; id < points_.size(); ++id) slots_[slot_of(points_[id])] = static_cast<std::uint32_t>(id);
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -6,7 +6,7 @@
 
 #include "cells/amr/amr_leaves.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// Points of a lattice, each once, numbered as they come. Open addressing, linear probing.
 class AmrVertices {
@@ -31,4 +31,4 @@ class AmrVertices {
   std::vector<std::uint32_t> slots_;
 };
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

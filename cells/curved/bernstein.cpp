@@ -7,7 +7,7 @@
 
 #include "cells/curved/inverse_matrix.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 using Multi = std::array<int, 4>;
@@ -122,4 +122,4 @@ const std::vector<double>& bernstein_values(int corners, int degree) {
   });
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

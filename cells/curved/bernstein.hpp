@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// Polynomials of one degree on a simplex (a segment, triangle or tetrahedron), from their values on its lattice to
 /// Bernstein's form, whose coefficients bound them: a polynomial lies between its least and greatest coefficient.
@@ -62,4 +62,4 @@ const BernsteinNet& bernstein_net(int degree);
 
 inline constexpr int highest_degree = 12;  ///< whose coefficients still follow from values to 1e-10 or so
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

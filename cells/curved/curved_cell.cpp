@@ -9,7 +9,7 @@
 #include "cells/curved/curved_pyramid.hpp"
 #include "scene/position_order.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 constexpr int highest_order = 100;
@@ -428,4 +428,4 @@ CurvedCell::Weighted CurvedCell::between(std::span<const CellPlace> corners, std
   return {evaluate(part, x), weight(part, x)};
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

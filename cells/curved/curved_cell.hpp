@@ -10,7 +10,7 @@
 
 #include "cells/curved/curved_lattice.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// A place in a cell: (r, s, t) in units of 2^-20, so that midpoints, and the same point told by another cell, are
 /// exact.
@@ -115,4 +115,4 @@ class CurvedCell {
   std::size_t parts_made_ = 0;                    ///< of this cell; the others' memory is used again
 };
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -8,7 +8,7 @@
 
 #include "cells/cell_split.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 bool is_bezier(std::uint8_t type) { return type >= 78 && type <= 80; }
@@ -169,4 +169,4 @@ void CurvedCells::tally_excess(const std::function<void(double)>& say) const {
   }
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -16,7 +16,7 @@
 #include "cells/curved/curved_split.hpp"
 #include "cells/mesh_options.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// How the higher-order cells of a mesh are divided.
 struct CurvedSettings {
@@ -81,4 +81,4 @@ class CurvedCells {
 /// Whether the block has cells that are divided.
 bool has_curved_cells(const CellBlock& block);
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -6,7 +6,7 @@
 #include "cells/curved/bernstein.hpp"
 #include "cells/curved/curved_pyramid.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 constexpr LatticePlace tet_corners[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -465,4 +465,4 @@ std::span<const CurvedFace> faces_of(CurvedFamily family) {
   return {};
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

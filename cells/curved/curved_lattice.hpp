@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// What a higher-order cell looks like in its own coordinates (r, s, t), each 0 to 1. Corners are numbered as VTK's.
 ///
@@ -95,4 +95,4 @@ struct CurvedFace {
 };
 std::span<const CurvedFace> faces_of(CurvedFamily family);
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -5,7 +5,7 @@
 
 #include "cells/curved/curved_cell.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 /// Transfinite interpolation at a place of a quadrilateral's or box's lattice, from what is on its sides: the functions
@@ -97,4 +97,4 @@ void CurvedCell::add_missing_inside(const std::vector<bool>& given) {
   }
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

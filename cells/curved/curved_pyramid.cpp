@@ -4,7 +4,7 @@
 
 #include "cells/curved/inverse_matrix.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 /// What both of VTK's quadratic pyramids have, of x and y from -1 to 1 across at any height and w from 2 at the base to
@@ -76,4 +76,4 @@ std::vector<double> pyramid_matrix(const CurvedLattice& lattice) {
   return inverse_matrix(std::move(all), n);
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

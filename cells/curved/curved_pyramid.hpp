@@ -7,7 +7,7 @@
 
 #include "cells/curved/curved_lattice.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// A basis of a pyramid's functions, as many as it has nodes; in (r, s, t) they are rational.
 ///
@@ -23,4 +23,4 @@ void pyramid_functions(const CurvedLattice& lattice, const std::array<double, 3>
 /// Of function m, what node k has of it, row by row: the inverse of the functions' values at the nodes.
 std::vector<double> pyramid_matrix(const CurvedLattice& lattice);
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -11,7 +11,7 @@
 #include "cells/curved/bernstein.hpp"
 #include "scene/position_order.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 using scene::Tet;
@@ -371,4 +371,4 @@ CurvedError CurvedSplitter::error_of(std::span<const glm::dvec4> departures) con
   return error;
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

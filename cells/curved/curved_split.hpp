@@ -16,7 +16,7 @@
 #include "cells/curved/curved_cell.hpp"
 #include "scene/tet_mesh.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// How far linear tets may be from a higher-order cell: in position, world units, and in the field's own unit.
 struct CurvedTolerance {
@@ -121,4 +121,4 @@ class CurvedSplitter {
   CurvedError error_, tet_error_;  ///< of the cell's tets so far, and of the one at hand
 };
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

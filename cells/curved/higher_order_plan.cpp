@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 constexpr scene::Box no_box{glm::dvec3(std::numeric_limits<double>::infinity()),
@@ -170,4 +170,4 @@ HigherOrderPlan plan_higher_order(std::span<const CellBlock> blocks, const MeshO
   return plan;
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -10,7 +10,7 @@
 #include "cells/mesh_options.hpp"
 #include "scene/camera.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// How far the first tets of higher-order cells are off: of each bin b the number of tets whose edges are off by
 /// 2^(b/2) tolerances, the first bin's by less too. Bins of several parts add up.
@@ -47,4 +47,4 @@ HigherOrderPlan plan_higher_order(std::span<const CellBlock> blocks, const MeshO
 /// The same from what the parts of a mesh have found.
 HigherOrderPlan planned(const MeshOptions& options, const CurvedSettings& asked, const ExcessTally& tally);
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

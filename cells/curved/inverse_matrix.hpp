@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// The inverse of a matrix of n rows, row by row, that is not singular: Gauss and Jordan's elimination with partial
 /// pivoting, in long double.
@@ -34,4 +34,4 @@ inline std::vector<double> inverse_matrix(std::vector<long double> a, std::size_
   return {b.begin(), b.end()};
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

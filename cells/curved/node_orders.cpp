@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 constexpr std::array<std::uint8_t, 8> exodus_tet8 = {0, 1, 2, 3, 6, 4, 5, 7};
@@ -174,4 +174,4 @@ void exchange_vtk8_edges(std::span<std::uint32_t> nodes, const std::array<int, 3
 }
 void exchange_vtk8_edges(std::span<long long> nodes, const std::array<int, 3>& degrees) { exchange(nodes, degrees); }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -7,7 +7,7 @@
 
 #include "cells/curved/curved_lattice.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 
 /// Formats whose cells of higher order have their nodes in another order than VTK's, in some types.
 ///
@@ -65,4 +65,4 @@ const NodeOrder& exodus_wedge21_of_ioss();
 void exchange_vtk8_edges(std::span<std::uint32_t> nodes, const std::array<int, 3>& degrees = {});
 void exchange_vtk8_edges(std::span<long long> nodes, const std::array<int, 3>& degrees = {});  ///< of vtkIdType
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

@@ -22,38 +22,39 @@ using ElementType = CGNS_ENUMT(ElementType_t);
 constexpr std::uint8_t polyhedron = 42;  // VTK's cell type number
 
 /// The order of nodes of an element of three dimensions that is read; null for others.
-const NodeOrder* order_of(ElementType type) {
+const cells::NodeOrder* order_of(ElementType type) {
   struct Solid {
     ElementType type;
-    CurvedFamily shape;
+    cells::CurvedFamily shape;
     std::size_t nodes;
   };
   constexpr std::array solids = {
-      Solid{CGNS_ENUMV(TETRA_4), CurvedFamily::tet, 4},
-      Solid{CGNS_ENUMV(TETRA_10), CurvedFamily::tet, 10},
-      Solid{CGNS_ENUMV(TETRA_16), CurvedFamily::tet, 16},
-      Solid{CGNS_ENUMV(TETRA_20), CurvedFamily::tet, 20},
-      Solid{CGNS_ENUMV(PYRA_5), CurvedFamily::pyramid, 5},
-      Solid{CGNS_ENUMV(PYRA_13), CurvedFamily::pyramid, 13},
-      Solid{CGNS_ENUMV(PYRA_14), CurvedFamily::pyramid, 14},
-      Solid{CGNS_ENUMV(PYRA_21), CurvedFamily::pyramid, 21},
-      Solid{CGNS_ENUMV(PYRA_29), CurvedFamily::pyramid, 29},
-      Solid{CGNS_ENUMV(PYRA_30), CurvedFamily::pyramid, 30},
-      Solid{CGNS_ENUMV(PENTA_6), CurvedFamily::wedge, 6},
-      Solid{CGNS_ENUMV(PENTA_15), CurvedFamily::wedge, 15},
-      Solid{CGNS_ENUMV(PENTA_18), CurvedFamily::wedge, 18},
-      Solid{CGNS_ENUMV(PENTA_24), CurvedFamily::wedge, 24},
-      Solid{CGNS_ENUMV(PENTA_38), CurvedFamily::wedge, 38},
-      Solid{CGNS_ENUMV(PENTA_40), CurvedFamily::wedge, 40},
-      Solid{CGNS_ENUMV(HEXA_8), CurvedFamily::hexahedron, 8},
-      Solid{CGNS_ENUMV(HEXA_20), CurvedFamily::hexahedron, 20},
-      Solid{CGNS_ENUMV(HEXA_27), CurvedFamily::hexahedron, 27},
-      Solid{CGNS_ENUMV(HEXA_32), CurvedFamily::hexahedron, 32},
-      Solid{CGNS_ENUMV(HEXA_56), CurvedFamily::hexahedron, 56},
-      Solid{CGNS_ENUMV(HEXA_64), CurvedFamily::hexahedron, 64},
+      Solid{CGNS_ENUMV(TETRA_4), cells::CurvedFamily::tet, 4},
+      Solid{CGNS_ENUMV(TETRA_10), cells::CurvedFamily::tet, 10},
+      Solid{CGNS_ENUMV(TETRA_16), cells::CurvedFamily::tet, 16},
+      Solid{CGNS_ENUMV(TETRA_20), cells::CurvedFamily::tet, 20},
+      Solid{CGNS_ENUMV(PYRA_5), cells::CurvedFamily::pyramid, 5},
+      Solid{CGNS_ENUMV(PYRA_13), cells::CurvedFamily::pyramid, 13},
+      Solid{CGNS_ENUMV(PYRA_14), cells::CurvedFamily::pyramid, 14},
+      Solid{CGNS_ENUMV(PYRA_21), cells::CurvedFamily::pyramid, 21},
+      Solid{CGNS_ENUMV(PYRA_29), cells::CurvedFamily::pyramid, 29},
+      Solid{CGNS_ENUMV(PYRA_30), cells::CurvedFamily::pyramid, 30},
+      Solid{CGNS_ENUMV(PENTA_6), cells::CurvedFamily::wedge, 6},
+      Solid{CGNS_ENUMV(PENTA_15), cells::CurvedFamily::wedge, 15},
+      Solid{CGNS_ENUMV(PENTA_18), cells::CurvedFamily::wedge, 18},
+      Solid{CGNS_ENUMV(PENTA_24), cells::CurvedFamily::wedge, 24},
+      Solid{CGNS_ENUMV(PENTA_38), cells::CurvedFamily::wedge, 38},
+      Solid{CGNS_ENUMV(PENTA_40), cells::CurvedFamily::wedge, 40},
+      Solid{CGNS_ENUMV(HEXA_8), cells::CurvedFamily::hexahedron, 8},
+      Solid{CGNS_ENUMV(HEXA_20), cells::CurvedFamily::hexahedron, 20},
+      Solid{CGNS_ENUMV(HEXA_27), cells::CurvedFamily::hexahedron, 27},
+      Solid{CGNS_ENUMV(HEXA_32), cells::CurvedFamily::hexahedron, 32},
+      Solid{CGNS_ENUMV(HEXA_56), cells::CurvedFamily::hexahedron, 56},
+      Solid{CGNS_ENUMV(HEXA_64), cells::CurvedFamily::hexahedron, 64},
   };
   const auto* const found = std::ranges::find(solids, type, &Solid::type);
-  return found == solids.end() ? nullptr : find_node_order(NodeConvention::cgns, found->shape, found->nodes);
+  return found == solids.end() ? nullptr
+                               : cells::find_node_order(cells::NodeConvention::cgns, found->shape, found->nodes);
 }
 
 /// Corners of a face; 0 of what is none.
@@ -163,7 +164,7 @@ Elements elements_of(const CgnsZone& zone, const Section& section) {
 /// Reads the sections in the order of the elements' numbers and adds the cells.
 class Cells {
  public:
-  Cells(const CgnsZone& zone, CellBlock& block) : zone_(zone), block_(block), sections_(sections_of(zone)) {
+  Cells(const CgnsZone& zone, cells::CellBlock& block) : zone_(zone), block_(block), sections_(sections_of(zone)) {
     std::ranges::sort(sections_, {}, &Section::first);
     for (std::size_t k = 0; k + 1 < sections_.size(); ++k)
       if (sections_[k + 1].first <= sections_[k].last)
@@ -179,7 +180,7 @@ class Cells {
     for (const Section& section : sections_) add_section(section);
     if (has_polyhedra && block_.types.empty()) add_parents();
     if (block_.faces.empty()) return;
-    block_.face_locations.resize(block_.types.size(), CellBlock::no_faces);
+    block_.face_locations.resize(block_.types.size(), cells::CellBlock::no_faces);
   }
 
  private:
@@ -216,7 +217,7 @@ class Cells {
   }
 
   void add_solid(ElementType type, Face nodes, const Section& section) {
-    const NodeOrder* const solid = order_of(type);
+    const cells::NodeOrder* const solid = order_of(type);
     if (solid == nullptr) {
       if (is_below_three(type)) return;
       refuse(zone_, section,
@@ -249,7 +250,7 @@ class Cells {
 
   /// A face of a cell, whose sign states its direction, which does not matter here.
   void add_polyhedron(Face numbers) {
-    block_.face_locations.resize(block_.types.size(), CellBlock::no_faces);
+    block_.face_locations.resize(block_.types.size(), cells::CellBlock::no_faces);
     block_.face_locations.push_back(static_cast<std::int64_t>(block_.faces.size()));
     block_.faces.push_back(static_cast<std::uint32_t>(numbers.size()));
     const std::size_t first = block_.connectivity.size();
@@ -285,7 +286,7 @@ class Cells {
   }
 
   const CgnsZone& zone_;
-  CellBlock& block_;
+  cells::CellBlock& block_;
   std::vector<Section> sections_;
   std::vector<FaceSection> faces_;
 };
@@ -311,7 +312,7 @@ bool is_plain(const CgnsZone& zone) {
       if (section.first <= zone.size[1]) return false;
       continue;
     }
-    const NodeOrder* const solid = order_of(section.type);
+    const cells::NodeOrder* const solid = order_of(section.type);
     // Cells of higher order, and those that are not read, are not left to VTK, which has some in another order of
     // nodes.
     if (section.first != next || solid == nullptr || solid->nodes > 8) return false;
@@ -320,6 +321,6 @@ bool is_plain(const CgnsZone& zone) {
   return next == zone.size[1] + 1;
 }
 
-void set_cells(const CgnsZone& zone, CellBlock& block) { Cells(zone, block).add_all(); }
+void set_cells(const CgnsZone& zone, cells::CellBlock& block) { Cells(zone, block).add_all(); }
 
 }  // namespace tessera::io::helper

@@ -34,6 +34,6 @@ bool is_plain(const CgnsZone& zone);
 ///
 /// Source  CGNS Standard Interface Data Structures, "Grid Coordinates, Elements, and Flow Solutions": 7.3, Elements_t,
 ///         and its figures of the elements' nodes.
-void set_cells(const CgnsZone& zone, CellBlock& block);
+void set_cells(const CgnsZone& zone, cells::CellBlock& block);
 
 }  // namespace tessera::io::helper

@@ -58,7 +58,7 @@ struct Values {
 };
 
 /// NameX, NameY and NameZ become the vector Name, as VTK's reader has it.
-void add_fields(Values values, CellBlock& block) {
+void add_fields(Values values, cells::CellBlock& block) {
   for (auto& [name, numbers] : values.arrays) {
     if (numbers.empty()) continue;  // used by a vector
     const std::string stem = name.substr(0, name.size() - 1);
@@ -67,7 +67,7 @@ void add_fields(Values values, CellBlock& block) {
                               *const z = values.find(stem + "Z");
     if (stem.empty() || stem.ends_with('/') || (last != "X" && last != "Y" && last != "Z") || x == nullptr ||
         y == nullptr || z == nullptr) {
-      block.fields.push_back(field_of_values(name, "double", values.association, 1, std::move(numbers)));
+      block.fields.push_back(cells::field_of_values(name, "double", values.association, 1, std::move(numbers)));
       numbers.clear();
       continue;
     }
@@ -75,7 +75,7 @@ void add_fields(Values values, CellBlock& block) {
     vectors.reserve(3 * x->size());
     for (std::size_t k = 0; k < x->size(); ++k) vectors.insert(vectors.end(), {(*x)[k], (*y)[k], (*z)[k]});
     x->clear(), y->clear(), z->clear();
-    block.fields.push_back(field_of_values(stem, "double", values.association, 3, std::move(vectors)));
+    block.fields.push_back(cells::field_of_values(stem, "double", values.association, 3, std::move(vectors)));
   }
 }
 
@@ -228,7 +228,7 @@ CgnsNamesakes namesakes_of(std::span<const CgnsZone> zones, std::uint64_t step) 
 }
 
 void set_fields(const CgnsZone& zone, std::uint64_t step, const CgnsNamesakes& namesakes, bool has_cell_values,
-                CellBlock& block, std::vector<std::string>& notes) {
+                cells::CellBlock& block, std::vector<std::string>& notes) {
   Values points{scene::Association::point, {}}, cells{scene::Association::cell, {}};
   for (const CgnsSolution& solution : solutions_of(zone, step)) {
     const bool is_vertex = solution.location == CGNS_ENUMV(Vertex),

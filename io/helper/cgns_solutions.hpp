@@ -47,6 +47,6 @@ CgnsNamesakes namesakes_of(std::span<const CgnsZone> zones, std::uint64_t step);
 
 /// Adds the fields of a zone's points and cells. Namesakes are named SOLUTION/FIELD. What a solution has not is NaN.
 void set_fields(const CgnsZone& zone, std::uint64_t step, const CgnsNamesakes& namesakes, bool has_cell_values,
-                CellBlock& block, std::vector<std::string>& notes);
+                cells::CellBlock& block, std::vector<std::string>& notes);
 
 }  // namespace tessera::io::helper

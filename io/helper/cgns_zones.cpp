@@ -116,7 +116,7 @@ bool has_degrees(const CgnsZone& zone, int grid, int array) {
   return false;
 }
 
-void set_positions(const CgnsZone& zone, std::uint64_t step, CellBlock& block) {
+void set_positions(const CgnsZone& zone, std::uint64_t step, cells::CellBlock& block) {
   const int grid = grid_at_step(zone, step);
   const std::size_t points = product(zone, false);
   require_cgns(cg_goto(zone.file, zone.base, "Zone_t", zone.zone, "GridCoordinates_t", grid, "end"), zone);
@@ -159,7 +159,7 @@ void set_positions(const CgnsZone& zone, std::uint64_t step, CellBlock& block) {
 /// Nothing of a zone without cells of three dimensions.
 std::optional<ForeignPart> part_of(Holdings& holdings, const CgnsZone& zone, std::uint64_t step,
                                    const CgnsNamesakes& namesakes, std::vector<std::string>& notes) {
-  CellBlock block;
+  cells::CellBlock block;
   block.name = zone.name;
   bool has_cell_values = true;
   if (!zone.is_structured()) {
@@ -232,8 +232,8 @@ std::optional<ForeignContents> read_cgns_zones(Holdings& holdings, const std::fi
   contents.time_step = scene::chosen_step(wish, steps.count, source);
   scene::set_times(contents.time_step, std::move(steps.times));
   const int part = request.value("part", 0), parts = request.value("parts", 1);
-  const std::uint64_t first = first_of_part(zones.size(), part, parts);
-  const std::uint64_t last = first_of_part(zones.size(), part + 1, parts);
+  const std::uint64_t first = cells::first_of_part(zones.size(), part, parts);
+  const std::uint64_t last = cells::first_of_part(zones.size(), part + 1, parts);
   for (std::uint64_t k = first; k < last; ++k) {
     if (!is_mesh(zones[k])) continue;
     report_progress(static_cast<double>(k - first) / static_cast<double>(last - first));

@@ -73,7 +73,7 @@ std::vector<DicomSlice> slices_in(const std::filesystem::path& folder, std::vect
 
 /// The smallest type that holds all values: of whole numbers exactly, others as floats; blanks need floats.
 NumberType type_of(const DicomValues& values) {
-  const NumberTally& t = values.tally;
+  const cells::NumberTally& t = values.tally;
   const auto within = [&](double low, double high) { return values.are_whole && t.low >= low && t.high <= high; };
   if (t.not_finite > 0) return !values.are_whole || within(-0x1p24, 0x1p24) ? NumberType::float32 : NumberType::float64;
   if (within(0, 255)) return NumberType::uint8;

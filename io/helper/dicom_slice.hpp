@@ -75,7 +75,7 @@ std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file);
 
 /// What values are, which says how they are held.
 struct DicomValues {
-  NumberTally tally;
+  cells::NumberTally tally;
   bool are_whole = true;
   std::uint64_t shared = 0;  ///< samples in several segments
 };

@@ -20,8 +20,8 @@ struct Middle {
 
 /// Cells of this VTK type and number of nodes, which no other of Exodus' elements becomes, whose middle nodes come in
 /// either of two orders.
-void settle(CellBlock& block, const NodeOrder& other, std::initializer_list<Middle> middles) {
-  const NodeOrder& manual = *find_node_order(other.convention, other.shape, other.nodes);
+void settle(cells::CellBlock& block, const cells::NodeOrder& other, std::initializer_list<Middle> middles) {
+  const cells::NodeOrder& manual = *find_node_order(other.convention, other.shape, other.nodes);
   const auto far_from_middles = [&](std::span<const std::uint32_t> nodes) {
     double far = 0;
     for (const Middle& middle : middles) {
@@ -35,7 +35,7 @@ void settle(CellBlock& block, const NodeOrder& other, std::initializer_list<Midd
   std::array<std::uint32_t, 64> buffer{};
   const auto in_other_order = [&](std::span<const std::uint32_t> nodes) {
     for (std::size_t k = 0; k < nodes.size(); ++k) buffer[manual.from[k]] = nodes[k];
-    to_vtk_order(other, std::span(buffer).first(nodes.size()));
+    cells::to_vtk_order(other, std::span(buffer).first(nodes.size()));
     return std::span<const std::uint32_t>(buffer).first(nodes.size());
   };
   std::vector<std::span<std::uint32_t>> cells;
@@ -62,18 +62,18 @@ std::string exodus_topology(const ex_block& info) {
 ExodusElement exodus_element(const std::string& topology, std::int64_t nodes) {
   struct Solid {
     std::string_view beginning;
-    CurvedFamily shape;
+    cells::CurvedFamily shape;
     std::int64_t corners;
     std::uint8_t other;  ///< its type for other numbers of nodes
   };
-  static constexpr Solid solids[] = {{"HEX", CurvedFamily::hexahedron, 8, 72},
-                                     {"TET", CurvedFamily::tet, 4, 71},
-                                     {"WED", CurvedFamily::wedge, 6, 73},
-                                     {"PYR", CurvedFamily::pyramid, 5, 74}};
+  static constexpr Solid solids[] = {{"HEX", cells::CurvedFamily::hexahedron, 8, 72},
+                                     {"TET", cells::CurvedFamily::tet, 4, 71},
+                                     {"WED", cells::CurvedFamily::wedge, 6, 73},
+                                     {"PYR", cells::CurvedFamily::pyramid, 5, 74}};
   for (const Solid& solid : solids) {
     if (!topology.starts_with(solid.beginning) || nodes < solid.corners) continue;
-    const NodeOrder* const order =
-        find_node_order(NodeConvention::exodus, solid.shape, static_cast<std::size_t>(nodes));
+    const cells::NodeOrder* const order =
+        cells::find_node_order(cells::NodeConvention::exodus, solid.shape, static_cast<std::size_t>(nodes));
     return {order != nullptr ? order->vtk_type : solid.other, order};
   }
   if (topology.starts_with("NFA")) return {42, nullptr};
@@ -104,9 +104,9 @@ std::span<const std::uint8_t> exodus_side(const std::string& topology, std::int6
   return {};
 }
 
-void settle_exodus_middles(CellBlock& block) {
-  settle(block, exodus_tet15_with_centre_last(), {{10, {0, 1, 2}}, {11, {0, 1, 3}}, {14, {0, 1, 2, 3}}});
-  settle(block, exodus_wedge21_of_ioss(), {{15, {0, 1, 2}}, {16, {3, 4, 5}}, {20, {0, 1, 2, 3, 4, 5}}});
+void settle_exodus_middles(cells::CellBlock& block) {
+  settle(block, cells::exodus_tet15_with_centre_last(), {{10, {0, 1, 2}}, {11, {0, 1, 3}}, {14, {0, 1, 2, 3}}});
+  settle(block, cells::exodus_wedge21_of_ioss(), {{15, {0, 1, 2}}, {16, {3, 4, 5}}, {20, {0, 1, 2, 3, 4, 5}}});
 }
 
 }  // namespace tessera::io::helper

@@ -16,8 +16,8 @@ std::string exodus_topology(const ex_block& info);
 
 /// What a block's elements are. Solids with nodes that no type of ours has are drawn by their corners.
 struct ExodusElement {
-  std::uint8_t vtk = 255;            ///< 9 for all that is no solid, 42 for polyhedra, 255 for what is not known
-  const NodeOrder* order = nullptr;  ///< null unless it is a solid of the table
+  std::uint8_t vtk = 255;                   ///< 9 for all that is no solid, 42 for polyhedra, 255 for what is not known
+  const cells::NodeOrder* order = nullptr;  ///< null unless it is a solid of the table
 };
 
 /// By the first letters of its topology and the number of nodes, which names need not tell.
@@ -29,6 +29,6 @@ std::span<const std::uint8_t> exodus_side(const std::string& topology, std::int6
 
 /// For a block with its points, whose tetrahedra of 15 nodes and wedges of 21 are in the manual's order: where all of
 /// one kind fit better in the order of the library's side sets or of Ioss, they are put into that.
-void settle_exodus_middles(CellBlock& block);
+void settle_exodus_middles(cells::CellBlock& block);
 
 }  // namespace tessera::io::helper

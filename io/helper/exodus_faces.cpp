@@ -53,10 +53,10 @@ void ExodusFaces::read_faces() {
   times_used_.assign(starts_.size() - 1, 0);
 }
 
-void ExodusFaces::add(std::int64_t id, const ex_block& info, std::int64_t points, CellBlock& block) {
+void ExodusFaces::add(std::int64_t id, const ex_block& info, std::int64_t points, cells::CellBlock& block) {
   if (!has_read_) read_faces();
   const Lists cells = read(EX_ELEM_BLOCK, id, info.num_entry, info.num_faces_per_entry);
-  block.face_locations.resize(block.types.size() - cells.sizes.size(), CellBlock::no_faces);
+  block.face_locations.resize(block.types.size() - cells.sizes.size(), cells::CellBlock::no_faces);
   std::size_t next = 0;
   for (const int size : cells.sizes) {
     block.face_locations.push_back(static_cast<std::int64_t>(block.faces.size()));

@@ -20,7 +20,7 @@ class ExodusFaces {
       : id_(id), most_values_(most_values), fail_(std::move(fail)) {}
 
   /// Adds the faces of a block's elements, which are the last of `block`'s cells.
-  void add(std::int64_t id, const ex_block& info, std::int64_t points, CellBlock& block);
+  void add(std::int64_t id, const ex_block& info, std::int64_t points, cells::CellBlock& block);
 
  private:
   /// The numbers of an entity block's parts: what each has of `total`, and these themselves.

@@ -203,15 +203,16 @@ void read_cell_values(const ExodusFile& file, int step, int index, std::span<con
 
 /// Turns a reader of one variable's values into a field's reader of components and magnitude.
 template <class ReadOne>
-BlockField make_field(const Variable& variable, scene::Association association, std::size_t tuples, ReadOne read_one) {
-  BlockField field;
+cells::BlockField make_field(const Variable& variable, scene::Association association, std::size_t tuples,
+                             ReadOne read_one) {
+  cells::BlockField field;
   field.name = variable.name;
   field.association = association;
   field.components = static_cast<int>(variable.indices.size());
   field.type = "double";
   field.tuples = tuples;
   field.read = [indices = variable.indices, read_one](int component, std::size_t first, std::span<double> out) {
-    if (component != magnitude) {
+    if (component != cells::magnitude) {
       read_one(indices[static_cast<std::size_t>(component)], first, out);
       return;
     }
@@ -220,7 +221,7 @@ BlockField make_field(const Variable& variable, scene::Association association, 
     for (std::size_t c = 0; c < components; ++c) read_one(indices[c], first, std::span(planes).subspan(c * n, n));
     for (std::size_t k = 0; k < n; ++k) {
       for (std::size_t c = 0; c < components; ++c) tuple[c] = planes[c * n + k];
-      out[k] = tuple_length(tuple.data(), static_cast<int>(components));
+      out[k] = cells::tuple_length(tuple.data(), static_cast<int>(components));
     }
   };
   return field;
@@ -229,7 +230,7 @@ BlockField make_field(const Variable& variable, scene::Association association, 
 /// Reads one file; a class so that its parts share the open file and the counts.
 class Reading {
  public:
-  Reading(const std::filesystem::path& path, std::optional<std::size_t> time_step, BlockChoice choice,
+  Reading(const std::filesystem::path& path, std::optional<std::size_t> time_step, cells::BlockChoice choice,
           bool with_surfaces)
       : source_(path.string()),
         choice_(std::move(choice)),
@@ -253,7 +254,7 @@ class Reading {
     add_fields();
   }
 
-  MeshBlocks take() { return std::move(result_); }
+  cells::MeshBlocks take() { return std::move(result_); }
 
  private:
   void check_count(const char* what, std::int64_t n, std::uint64_t values_each) const {
@@ -291,10 +292,10 @@ class Reading {
       result_.block_names.push_back(name.empty() ? fmt::format("block {}", id) : name);
       const auto count = static_cast<std::uint64_t>(info.num_entry);
       std::vector<std::uint64_t> of;
-      if (!is_chosen(choice_, result_.block_names.back())) of = sets.chosen_of(first, count);
+      if (!cells::is_chosen(choice_, result_.block_names.back())) of = sets.chosen_of(first, count);
       first += count;
       sides_of.push_back({id, info.num_nodes_per_entry, first, exodus_topology(info)});
-      if (count == 0 || (of.empty() && !is_chosen(choice_, result_.block_names.back()))) {
+      if (count == 0 || (of.empty() && !cells::is_chosen(choice_, result_.block_names.back()))) {
         blocks_.push_back({id, block_.types.size(), 0});
         continue;
       }
@@ -313,13 +314,14 @@ class Reading {
     }
     result_.block_names.insert(result_.block_names.end(), sets.names().begin(), sets.names().end());
     result_.surface_names = sets.sides_left_out();
-    if (!result_.surface_names.empty()) result_.notes.push_back(note_on_surfaces("side set", result_.surface_names));
+    if (!result_.surface_names.empty())
+      result_.notes.push_back(cells::note_on_surfaces("side set", result_.surface_names));
     for (const std::int64_t set : sets.sides())
       add_sides(
           file_->id(), set, init_.num_nodes, most_values_, [this](const std::string& what) { file_->fail(what); },
           sides_of, block_);
     has_sides_ = !sets.sides().empty();
-    if (!block_.faces.empty()) block_.face_locations.resize(block_.types.size(), CellBlock::no_faces);
+    if (!block_.faces.empty()) block_.face_locations.resize(block_.types.size(), cells::CellBlock::no_faces);
   }
 
   void add_block(std::int64_t id, const ex_block& info, const ExodusElement& element) {
@@ -351,8 +353,8 @@ class Reading {
     for (std::size_t c = 0; c < count; ++c) {
       block_.offsets.push_back(block_.offsets.back() + nodes);
       if (element.order != nullptr)
-        to_vtk_order(*element.order,
-                     std::span(block_.connectivity).subspan(block_.offsets[block_.offsets.size() - 2], nodes));
+        cells::to_vtk_order(*element.order,
+                            std::span(block_.connectivity).subspan(block_.offsets[block_.offsets.size() - 2], nodes));
     }
     if (type == 42) faces_.add(id, info, init_.num_nodes, block_);
     report_progress(static_cast<double>(block_.types.size()) /
@@ -400,7 +402,7 @@ class Reading {
     if (has_sides_) return finish();
     std::vector<double> ids;
     for (const ElementBlock& b : blocks_) ids.insert(ids.end(), b.count, static_cast<double>(b.id));
-    block_.fields.push_back(field_of_values("ObjectId", "int64", scene::Association::cell, 1, std::move(ids)));
+    block_.fields.push_back(cells::field_of_values("ObjectId", "int64", scene::Association::cell, 1, std::move(ids)));
     finish();
   }
 
@@ -436,7 +438,7 @@ class Reading {
   }
 
   std::string source_;
-  BlockChoice choice_;
+  cells::BlockChoice choice_;
   bool with_surfaces_ = false;
   bool has_sides_ = false;            ///< faces among the cells, of which element variables have no values
   std::shared_ptr<ExodusFile> file_;  // the fields keep it open
@@ -445,8 +447,8 @@ class Reading {
   ExodusFaces faces_;
   int step_ = 0;
   std::vector<ElementBlock> blocks_;
-  CellBlock block_;
-  MeshBlocks result_;
+  cells::CellBlock block_;
+  cells::MeshBlocks result_;
 };
 
 }  // namespace
@@ -455,10 +457,10 @@ ForeignContents read_exodus(Holdings& holdings, const std::filesystem::path& fil
   allow_for(file);
   std::optional<std::size_t> time_step;
   if (const auto step = request.find("time_step"); step != request.end()) time_step = step->get<std::size_t>();
-  MeshBlocks read =
-      Reading(file, time_step, request.value("blocks", BlockChoice()), request.value("surfaces", false)).take();
+  cells::MeshBlocks read =
+      Reading(file, time_step, request.value("blocks", cells::BlockChoice()), request.value("surfaces", false)).take();
   ForeignContents contents;
-  for (CellBlock& block : read.blocks) contents.parts.push_back(hold_block(holdings, std::move(block)));
+  for (cells::CellBlock& block : read.blocks) contents.parts.push_back(hold_block(holdings, std::move(block)));
   contents.notes = std::move(read.notes);
   contents.time_step = read.time_step;
   contents.format = std::move(read.format);

@@ -23,7 +23,7 @@ std::vector<std::int64_t> ids_of(int file, ex_entity_type type, std::int64_t cou
 
 /// Throws for a choice that means one of these sets.
 void refuse(int file, ex_entity_type type, const std::vector<std::int64_t>& ids, const char* what, const char* holds,
-            const BlockChoice& choice, const std::string& source) {
+            const cells::BlockChoice& choice, const std::string& source) {
   if (choice.empty()) return;
   for (const std::int64_t id : ids) {
     const std::string given = exodus_name(file, type, id),
@@ -44,13 +44,13 @@ std::string exodus_name(int file, ex_entity_type type, std::int64_t id) {
   return {name.data(), ::strnlen(name.data(), name.size())};
 }
 
-ExodusSets::ExodusSets(int id, const ex_init_params& init, const BlockChoice& choice, std::uint64_t most_values,
+ExodusSets::ExodusSets(int id, const ex_init_params& init, const cells::BlockChoice& choice, std::uint64_t most_values,
                        const std::string& source, const std::function<void(const std::string&)>& fail,
                        bool with_sides) {
   for (const std::int64_t set : ids_of(id, EX_ELEM_SET, init.num_elem_sets, most_values, fail)) {
     const std::string given = exodus_name(id, EX_ELEM_SET, set);
     names_.push_back(given.empty() ? fmt::format("element set {}", set) : given);
-    if (choice.empty() || !is_chosen(choice, names_.back())) continue;
+    if (choice.empty() || !cells::is_chosen(choice, names_.back())) continue;
     std::int64_t count = 0, factors = 0;
     if (ex_get_set_param(id, EX_ELEM_SET, set, &count, &factors) < 0) fail("an element set cannot be read");
     if (count < 0 || static_cast<std::uint64_t>(count) > most_values)
@@ -74,7 +74,7 @@ ExodusSets::ExodusSets(int id, const ex_init_params& init, const BlockChoice& ch
   for (const std::int64_t set : sides) {
     const std::string given = exodus_name(id, EX_SIDE_SET, set);
     (with_sides ? names_ : sides_left_out_).push_back(given.empty() ? fmt::format("side set {}", set) : given);
-    if (with_sides && !choice.empty() && is_chosen(choice, names_.back())) sides_.push_back(set);
+    if (with_sides && !choice.empty() && cells::is_chosen(choice, names_.back())) sides_.push_back(set);
   }
   refuse(id, EX_NODE_SET, ids_of(id, EX_NODE_SET, init.num_node_sets, most_values, fail), "node set", "points", choice,
          source);
@@ -96,7 +96,7 @@ constexpr std::uint8_t polygon = 7;
 bool add_sides_of_solids(int file, std::span<const std::int64_t> elements, std::span<const std::int64_t> sides,
                          std::int64_t points, std::uint64_t most_values,
                          const std::function<void(const std::string&)>& fail, std::span<const SidesOf> blocks,
-                         CellBlock& block) {
+                         cells::CellBlock& block) {
   const auto block_of = [&](std::int64_t element) {
     return static_cast<std::size_t>(
         std::ranges::lower_bound(blocks, static_cast<std::uint64_t>(element), {}, &SidesOf::end) - blocks.begin());
@@ -133,7 +133,8 @@ bool add_sides_of_solids(int file, std::span<const std::int64_t> elements, std::
 }  // namespace
 
 void add_sides(int file, std::int64_t id, std::int64_t points, std::uint64_t most_values,
-               const std::function<void(const std::string&)>& fail, std::span<const SidesOf> blocks, CellBlock& block) {
+               const std::function<void(const std::string&)>& fail, std::span<const SidesOf> blocks,
+               cells::CellBlock& block) {
   std::int64_t count = 0, factors = 0, length = 0;
   if (ex_get_set_param(file, EX_SIDE_SET, id, &count, &factors) < 0) fail("a side set cannot be read");
   if (count < 0 || static_cast<std::uint64_t>(count) > most_values)
@@ -163,7 +164,7 @@ void add_sides(int file, std::int64_t id, std::int64_t points, std::uint64_t mos
   }
 }
 
-void keep_cells(CellBlock& block, std::size_t first, const std::vector<std::uint64_t>& kept) {
+void keep_cells(cells::CellBlock& block, std::size_t first, const std::vector<std::uint64_t>& kept) {
   std::size_t cell = first;
   std::uint64_t end = block.offsets[first];
   const bool has_faces = block.face_locations.size() > first;

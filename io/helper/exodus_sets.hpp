@@ -20,7 +20,7 @@ class ExodusSets {
  public:
   /// Of an open file; lists hold at most `most_values`. `fail` throws an error that says what is wrong with it. Throws
   /// Error(bad_input) that begins with `source` for a choice that means a side set or a node set.
-  ExodusSets(int id, const ex_init_params& init, const BlockChoice& choice, std::uint64_t most_values,
+  ExodusSets(int id, const ex_init_params& init, const cells::BlockChoice& choice, std::uint64_t most_values,
              const std::string& source, const std::function<void(const std::string&)>& fail, bool with_sides);
 
   /// Of all element sets, and of side sets if asked for, those too that were not chosen; without a name
@@ -56,9 +56,10 @@ struct SidesOf {
 /// many as `most_values`; `fail` as above. `blocks` are the file's element blocks in its order: the corners of solids'
 /// sides are found by them, since the library knows not all types; of others it lists the nodes.
 void add_sides(int file, std::int64_t id, std::int64_t points, std::uint64_t most_values,
-               const std::function<void(const std::string&)>& fail, std::span<const SidesOf> blocks, CellBlock& block);
+               const std::function<void(const std::string&)>& fail, std::span<const SidesOf> blocks,
+               cells::CellBlock& block);
 
 /// Leaves of a block's cells from `first` on those with the numbers `kept`, counted from `first`, ascending.
-void keep_cells(CellBlock& block, std::size_t first, const std::vector<std::uint64_t>& kept);
+void keep_cells(cells::CellBlock& block, std::size_t first, const std::vector<std::uint64_t>& kept);
 
 }  // namespace tessera::io::helper

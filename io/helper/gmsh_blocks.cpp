@@ -66,7 +66,7 @@ class Names {
     if (has_groups() && cells_of_.contains(no_group)) all.push_back(group_names_[no_group]);
     for (const auto& [partition, name] : partitions_)
       if (has_partitions()) all.push_back(name);
-    all = distinct_names(std::move(all));
+    all = cells::distinct_names(std::move(all));
   }
 
   std::vector<std::string> all;
@@ -83,14 +83,14 @@ class Names {
   }
 
   /// The block of a membership's cells; none if they are not chosen.
-  [[nodiscard]] std::optional<std::string> block_of(std::uint32_t member, const BlockChoice& choice) const {
+  [[nodiscard]] std::optional<std::string> block_of(std::uint32_t member, const cells::BlockChoice& choice) const {
     const std::string smallest = name_of(smallest_group(member));
     if (choice.empty()) return smallest;
-    if (!smallest.empty() && is_chosen(choice, smallest)) return smallest;
+    if (!smallest.empty() && cells::is_chosen(choice, smallest)) return smallest;
     for (const int group : memberships_[member].groups)
-      if (const std::string name = name_of(group); !name.empty() && is_chosen(choice, name)) return name;
+      if (const std::string name = name_of(group); !name.empty() && cells::is_chosen(choice, name)) return name;
     if (const auto found = partitions_.find(memberships_[member].partition);
-        found != partitions_.end() && has_partitions() && is_chosen(choice, found->second))
+        found != partitions_.end() && has_partitions() && cells::is_chosen(choice, found->second))
       return found->second;
     return std::nullopt;
   }
@@ -108,7 +108,7 @@ class Names {
 };
 
 /// The elements by the block that they are drawn in; names in the order in which `names` has them.
-std::vector<Group> grouped(GmshVolumes& volumes, const Names& names, const BlockChoice& choice) {
+std::vector<Group> grouped(GmshVolumes& volumes, const Names& names, const cells::BlockChoice& choice) {
   std::vector<std::optional<std::string>> block_of;
   for (std::uint32_t m = 0; m < volumes.memberships.size(); ++m) block_of.push_back(names.block_of(m, choice));
   std::map<std::string, Group> groups;
@@ -155,8 +155,8 @@ class Blocks {
                          [](const GmshView& view) { return view.of == GmshView::Of::element_nodes; });
   }
 
-  CellBlock block_of(const Group& group) {
-    CellBlock block;
+  cells::CellBlock block_of(const Group& group) {
+    cells::CellBlock block;
     block.name = group.name;
     block.offsets.push_back(0);
     used_.clear();
@@ -175,12 +175,13 @@ class Blocks {
   static constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
 
   template <class NumberOf>
-  static void add_number_field(const char* name, const Group& group, CellBlock& block, const NumberOf& number_of) {
+  static void add_number_field(const char* name, const Group& group, cells::CellBlock& block,
+                               const NumberOf& number_of) {
     std::vector<double> numbers;
     numbers.reserve(block.types.size());
     for (const GmshElements& elements : group.elements)
       for (const std::uint32_t member : elements.members) numbers.push_back(number_of(member));
-    block.fields.push_back(field_of_values(name, "int32", Association::cell, 1, std::move(numbers)));
+    block.fields.push_back(cells::field_of_values(name, "int32", Association::cell, 1, std::move(numbers)));
   }
 
   /// Where a view has the value of an element, which the file may list under several numbers.
@@ -202,7 +203,7 @@ class Blocks {
     return place;
   }
 
-  std::uint32_t add_point(std::size_t node, CellBlock& block) {
+  std::uint32_t add_point(std::size_t node, cells::CellBlock& block) {
     if (!apart_ && local_[node] != unused) return local_[node];
     if (used_.size() >= unused)
       throw scene::bad_input(fmt::format("{}: {} points in one block; split it", source_, used_.size()));
@@ -213,7 +214,7 @@ class Blocks {
     return local_[node];
   }
 
-  void add_cells(const GmshElements& elements, CellBlock& block) {
+  void add_cells(const GmshElements& elements, cells::CellBlock& block) {
     block.types.insert(block.types.end(), elements.tags.size(), elements.cell->vtk_type);
     for (std::size_t c = 0; c < elements.tags.size(); ++c) {
       const std::span cell = std::span(elements.nodes).subspan(c * elements.nodes_a_cell, elements.nodes_a_cell);
@@ -224,7 +225,7 @@ class Blocks {
   }
 
   /// A view that has no value in the group is no field of it.
-  void add_field(const GmshView& view, const Group& group, CellBlock& block) const {
+  void add_field(const GmshView& view, const Group& group, cells::CellBlock& block) const {
     const bool of_cells = view.of == GmshView::Of::elements;
     const std::size_t tuples = of_cells ? block.types.size() : used_.size();
     std::vector<double> values(tuples * view.components, absent);
@@ -253,8 +254,9 @@ class Blocks {
         }
     }
     if (known > 0)
-      block.fields.push_back(field_of_values(view.name, "double", of_cells ? Association::cell : Association::point,
-                                             static_cast<int>(view.components), std::move(values)));
+      block.fields.push_back(cells::field_of_values(view.name, "double",
+                                                    of_cells ? Association::cell : Association::point,
+                                                    static_cast<int>(view.components), std::move(values)));
   }
 
   const Nodes& nodes_;
@@ -269,16 +271,16 @@ class Blocks {
 
 }  // namespace
 
-GmshBlocks gmsh_blocks(const std::vector<GmshView>& views, const BlockChoice& choice, const std::filesystem::path& file,
-                       const std::string& source, std::vector<std::string>& notes) {
+GmshBlocks gmsh_blocks(const std::vector<GmshView>& views, const cells::BlockChoice& choice,
+                       const std::filesystem::path& file, const std::string& source, std::vector<std::string>& notes) {
   const Nodes nodes = read_nodes();
   GmshVolumes volumes = gmsh_volumes(file, source, notes);
   Names names(volumes);
   const bool is_known = std::all_of(choice.begin(), choice.end(), [&](const std::string& name) {
     return std::any_of(names.all.begin(), names.all.end(),
-                       [&](const std::string& block) { return means_block(name, block); });
+                       [&](const std::string& block) { return cells::means_block(name, block); });
   });
-  const std::vector<Group> groups = grouped(volumes, names, is_known ? choice : BlockChoice());
+  const std::vector<Group> groups = grouped(volumes, names, is_known ? choice : cells::BlockChoice());
   Blocks maker(nodes, volumes, names, views, source);
   GmshBlocks result;
   for (const Group& group : groups) result.blocks.push_back(maker.block_of(group));

@@ -11,7 +11,7 @@
 namespace tessera::io::helper {
 
 struct GmshBlocks {
-  std::vector<CellBlock> blocks;
+  std::vector<cells::CellBlock> blocks;
   std::vector<std::string> names;  ///< of all physical groups and partitions, which may share cells
 };
 
@@ -20,7 +20,7 @@ struct GmshBlocks {
 /// several groups or partitions there are the cell fields PhysicalGroupId and PartitionId. Where a view has values of
 /// cells' nodes, each cell has points of its own. `file` as gmsh_volumes() has it. A choice of a name that is not there
 /// chooses all, for the caller to refuse. Throws Error(bad_input) for a node that is not there.
-GmshBlocks gmsh_blocks(const std::vector<GmshView>& views, const BlockChoice& choice, const std::filesystem::path& file,
-                       const std::string& source, std::vector<std::string>& notes);
+GmshBlocks gmsh_blocks(const std::vector<GmshView>& views, const cells::BlockChoice& choice,
+                       const std::filesystem::path& file, const std::string& source, std::vector<std::string>& notes);
 
 }  // namespace tessera::io::helper

@@ -112,7 +112,7 @@ GmshCell gmsh_cell(int order, std::size_t corners, std::span<const double> place
   if (nodes == corners) return cell;
   cell.by_corners = true;
   const std::optional<std::uint8_t> type = curved_type(static_cast<std::size_t>(order), corners, nodes);
-  const std::optional<CurvedLattice> lattice = type ? curved_lattice(*type, nodes) : std::nullopt;
+  const std::optional<cells::CurvedLattice> lattice = type ? cells::curved_lattice(*type, nodes) : std::nullopt;
   if (!lattice) return cell;
 
   std::vector<glm::dvec3> theirs;

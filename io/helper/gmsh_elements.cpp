@@ -98,7 +98,7 @@ class Repetitions {
   }
   [[nodiscard]] std::uint64_t hash_of(std::uint32_t elements, std::size_t place) const {
     std::uint64_t sum = 0;
-    for (const std::size_t node : nodes_of(elements, place)) sum += mix(node + 1);
+    for (const std::size_t node : nodes_of(elements, place)) sum += cells::mix(node + 1);
     return sum;
   }
   void mark(const Key& key, Gone& is_gone) const {

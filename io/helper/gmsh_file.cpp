@@ -102,8 +102,8 @@ ForeignContents contents_of_model(Holdings& holdings, const std::string& source,
   std::optional<std::size_t> time_step;
   if (const auto step = request.find("time_step"); step != request.end()) time_step = step->get<std::size_t>();
   const std::vector<GmshView> views = gmsh_views(time_step, source, contents.notes, contents.time_step);
-  GmshBlocks read = gmsh_blocks(views, request.value("blocks", BlockChoice()), listed, source, contents.notes);
-  for (CellBlock& block : read.blocks) contents.parts.push_back(hold_block(holdings, std::move(block)));
+  GmshBlocks read = gmsh_blocks(views, request.value("blocks", cells::BlockChoice()), listed, source, contents.notes);
+  for (cells::CellBlock& block : read.blocks) contents.parts.push_back(hold_block(holdings, std::move(block)));
   contents.block_names = std::move(read.names);
   gmsh::clear();
   if (contents.parts.empty())

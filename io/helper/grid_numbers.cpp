@@ -56,7 +56,7 @@ ForeignArray hold_field_numbers(Holdings& holdings, std::string name, GridNumber
   std::array<double, 4096> some;
   for (std::size_t first = 0; first < tuples; first += some.size()) {
     const std::span chunk(some.data(), std::min(some.size(), tuples - first));
-    read_tuples(numbers.bytes, field.type, components, components == 1 ? 0 : magnitude, first, chunk);
+    read_tuples(numbers.bytes, field.type, components, components == 1 ? 0 : cells::magnitude, first, chunk);
     field.tally.add(chunk);
   }
   return hold_vector(holdings, std::move(field), std::move(numbers.bytes));

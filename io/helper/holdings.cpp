@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t tuples_at_once = 1 << 16;
 
 /// A field's doubles tuple by tuple.
-void read_field(const BlockField& field, std::uint64_t first, std::uint64_t count, std::byte* out) {
+void read_field(const cells::BlockField& field, std::uint64_t first, std::uint64_t count, std::byte* out) {
   const auto components = static_cast<std::size_t>(field.components);
   std::vector<double> plane(std::min<std::size_t>(count, tuples_at_once));
   for (std::size_t done = 0; done < count; done += plane.size()) {
@@ -23,7 +23,7 @@ void read_field(const BlockField& field, std::uint64_t first, std::uint64_t coun
   }
 }
 
-ForeignArray hold_field(Holdings& holdings, const BlockField& field) {
+ForeignArray hold_field(Holdings& holdings, const cells::BlockField& field) {
   ForeignArray array;
   array.name = field.name;
   array.type = NumberType::float64;
@@ -34,7 +34,7 @@ ForeignArray hold_field(Holdings& holdings, const BlockField& field) {
   std::vector<double> some(std::min(field.tuples, tuples_at_once));
   for (std::size_t first = 0; first < field.tuples; first += some.size()) {
     const std::span chunk = std::span(some).first(std::min(some.size(), field.tuples - first));
-    field.read(field.components == 1 ? 0 : magnitude, first, chunk);
+    field.read(field.components == 1 ? 0 : cells::magnitude, first, chunk);
     array.tally.add(chunk);
   }
   return holdings.hold(std::move(array), [field](std::uint64_t first, std::uint64_t count, std::byte* out) {
@@ -63,7 +63,7 @@ const Holdings::Held* Holdings::find(std::uint64_t number) const {
   return found == held_.end() ? nullptr : &found->second;
 }
 
-ForeignPart hold_block(Holdings& holdings, CellBlock block) {
+ForeignPart hold_block(Holdings& holdings, cells::CellBlock block) {
   ForeignPart part;
   part.name = block.name;
   part.points = hold_vector(holdings, {.type = NumberType::float64, .components = 3}, std::move(block.positions));
@@ -74,7 +74,7 @@ ForeignPart hold_block(Holdings& holdings, CellBlock block) {
     part.faces = hold_vector(holdings, {.type = NumberType::uint32}, std::move(block.faces));
     part.face_locations = hold_vector(holdings, {.type = NumberType::int64}, std::move(block.face_locations));
   }
-  for (const BlockField& field : block.fields)
+  for (const cells::BlockField& field : block.fields)
     (field.association == scene::Association::point ? part.point_fields : part.cell_fields)
         .push_back(hold_field(holdings, field));
   return part;

@@ -48,6 +48,6 @@ ForeignArray hold_vector(Holdings& holdings, ForeignArray array, std::vector<T> 
 }
 
 /// A block as its reader made it. Its fields are read when they are asked for, twice: once for their ranges.
-ForeignPart hold_block(Holdings& holdings, CellBlock block);
+ForeignPart hold_block(Holdings& holdings, cells::CellBlock block);
 
 }  // namespace tessera::io::helper

@@ -89,7 +89,7 @@ void add_field(const MedFile& file, const FieldAt& field, MedMesh& mesh, std::ve
   std::vector<double> of_nodes(mesh.block.positions.size() * components, nan);
   if (read_values(file, field, MED_NODE, MED_NO_GEOTYPE, mesh.block.positions.size(), of_nodes.data()) == Found::some)
     mesh.block.fields.push_back(
-        field_of_values(field.name, "double", scene::Association::point, field.components, std::move(of_nodes)));
+        cells::field_of_values(field.name, "double", scene::Association::point, field.components, std::move(of_nodes)));
   std::vector<double> of_cells(mesh.block.types.size() * components, nan);
   bool any = false;
   std::size_t first = 0;
@@ -104,7 +104,7 @@ void add_field(const MedFile& file, const FieldAt& field, MedMesh& mesh, std::ve
   }
   if (any)
     mesh.block.fields.push_back(
-        field_of_values(field.name, "double", scene::Association::cell, field.components, std::move(of_cells)));
+        cells::field_of_values(field.name, "double", scene::Association::cell, field.components, std::move(of_cells)));
 }
 
 /// Of a field's steps; none if one has none.

@@ -45,7 +45,7 @@ class MedFile {
 
 /// A mesh of the file, as a block without fields.
 struct MedMesh {
-  CellBlock block;
+  cells::CellBlock block;
   std::vector<std::size_t> cells_of_kind;  ///< of each of med_cell_kinds, which follow each other in the block
 };
 

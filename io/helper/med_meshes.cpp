@@ -35,7 +35,7 @@ std::size_t count_of(const MedFile& file, const MeshAt& mesh, med_entity_type en
   return static_cast<std::size_t>(std::max<med_int>(count, 0));  // negative where there are none
 }
 
-void read_points(const MedFile& file, const MeshAt& mesh, CellBlock& block) {
+void read_points(const MedFile& file, const MeshAt& mesh, cells::CellBlock& block) {
   const std::size_t count = count_of(file, mesh, MED_NODE, MED_NO_GEOTYPE, MED_COORDINATE);
   file.require(count > 0, "the number of nodes");
   std::vector<med_float> xyz(3 * count);
@@ -53,15 +53,15 @@ void read_points(const MedFile& file, const MeshAt& mesh, CellBlock& block) {
 }
 
 /// Null for hexagonal prisms, whose order is VTK's.
-const NodeOrder* order_of(const MedCellKind& kind) {
-  for (const NodeOrder& order : all_node_orders())
-    if (order.convention == NodeConvention::med && order.vtk_type == kind.vtk && order.nodes == kind.nodes)
+const cells::NodeOrder* order_of(const MedCellKind& kind) {
+  for (const cells::NodeOrder& order : cells::all_node_orders())
+    if (order.convention == cells::NodeConvention::med && order.vtk_type == kind.vtk && order.nodes == kind.nodes)
       return &order;
   return nullptr;
 }
 
 void read_cells(const MedFile& file, const MeshAt& mesh, MedMesh& to) {
-  CellBlock& block = to.block;
+  cells::CellBlock& block = to.block;
   block.offsets.push_back(0);
   for (const MedCellKind& kind : med_cell_kinds) {
     const std::size_t count = count_of(file, mesh, MED_CELL, kind.med, MED_CONNECTIVITY);
@@ -72,13 +72,13 @@ void read_cells(const MedFile& file, const MeshAt& mesh, MedMesh& to) {
     file.require(MEDmeshElementConnectivityRd(file.id(), mesh.name.c_str(), mesh.step, mesh.iteration, MED_CELL,
                                               kind.med, MED_NODAL, MED_FULL_INTERLACE, corners.data()) >= 0,
                  "the cells");
-    const NodeOrder* const order = order_of(kind);
+    const cells::NodeOrder* const order = order_of(kind);
     for (std::size_t c = 0; c < count; ++c) {
       for (std::size_t n = 0; n < nodes; ++n) {
         const med_int node = corners[c * nodes + n];  // counted from 1
         block.connectivity.push_back(node < 1 ? UINT32_MAX : static_cast<std::uint32_t>(node - 1));
       }
-      if (order != nullptr) to_vtk_order(*order, std::span(block.connectivity).last(nodes));
+      if (order != nullptr) cells::to_vtk_order(*order, std::span(block.connectivity).last(nodes));
       block.types.push_back(kind.vtk);
       block.offsets.push_back(block.connectivity.size());
     }

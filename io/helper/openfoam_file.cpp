@@ -183,7 +183,7 @@ std::vector<std::string> patches_of(vtkOpenFOAMReader& reader) {
     const std::string own = slash == std::string::npos ? name : name.substr(slash + 1);
     if (own != "internalMesh" && !own.starts_with("procBoundary")) patches.push_back(own);
   }
-  return distinct_names(std::move(patches));
+  return cells::distinct_names(std::move(patches));
 }
 
 /// The request's share of the processors, one by one, as whole and shares alike are read: their blocks in their order.
@@ -195,8 +195,8 @@ void read_processors(Holdings& holdings, ProcessorReader& reader, const std::fil
         fmt::format("{}: of its {} processors' folders {} can be read; run reconstructPar, or decomposePar anew",
                     source, folders, processors));
   const auto count = static_cast<std::uint64_t>(processors);
-  const std::uint64_t last = first_of_part(count, part + 1, parts);
-  for (std::uint64_t k = first_of_part(count, part, parts); k < last; ++k) {
+  const std::uint64_t last = cells::first_of_part(count, part + 1, parts);
+  for (std::uint64_t k = cells::first_of_part(count, part, parts); k < last; ++k) {
     reader.choose(static_cast<int>(k));
     update_at_step(reader, request, source, contents.time_step);
     if (vtkDataObject* const data = reader.GetOutputDataObject(0); data != nullptr)
@@ -242,7 +242,7 @@ ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::path& n
     if (request.value("surfaces", false))
       reader->EnableAllPatchArrays();  // without, the volume alone is on
     else if (contents.surface_names = patches_of(*reader); !contents.surface_names.empty())
-      contents.notes.push_back(note_on_surfaces("patch", contents.surface_names));
+      contents.notes.push_back(cells::note_on_surfaces("patch", contents.surface_names));
     if (is_decomposed) return read_processors(holdings, *reader, folder, source, request, contents);
     update_at_step(*reader, request, source, contents.time_step);
     if (vtkDataObject* const data = reader->GetOutputDataObject(0); data != nullptr)

@@ -143,7 +143,7 @@ std::vector<double> depth_below_surface(const FilledSurface& filled) {
   return depth;
 }
 
-std::vector<std::vector<double>> spread_attributes(const Surface& surface, const FilledSurface& coarse,
+std::vector<std::vector<double>> spread_attributes(const cells::Surface& surface, const FilledSurface& coarse,
                                                    const FilledSurface& filled) {
   std::vector<std::vector<double>> at_coarse = surface.attributes, result = surface.attributes;
   for (std::vector<double>& values : at_coarse) fill_unknown(coarse, surface.points.size(), values);

@@ -19,7 +19,7 @@ struct FilledSurface {
 
 /// With tets of at most `max_volume`, or with no points but the surface's own where that can be. Throws
 /// Error(bad_input, "SOURCE: ...").
-FilledSurface fill(const Surface& surface, std::optional<double> max_volume, const std::string& source);
+FilledSurface fill(const cells::Surface& surface, std::optional<double> max_volume, const std::string& source);
 
 /// Gives points from number `known` on the mean of their neighbours in the tets, ring after ring.
 void fill_unknown(const FilledSurface& mesh, std::size_t known, std::vector<double>& values);
@@ -30,7 +30,7 @@ std::vector<double> depth_below_surface(const FilledSurface& filled);
 /// The surface's attributes at the filled mesh's points, which TetGen does not compute for the points it adds: linear
 /// in each tet of `coarse`, the same surface filled with no points but its own (so a linear attribute stays linear).
 /// Where even that needed added points, these get the mean of their neighbours.
-std::vector<std::vector<double>> spread_attributes(const Surface& surface, const FilledSurface& coarse,
+std::vector<std::vector<double>> spread_attributes(const cells::Surface& surface, const FilledSurface& coarse,
                                                    const FilledSurface& filled);
 
 }  // namespace tessera::io::helper

@@ -49,7 +49,7 @@ struct Frame {
   glm::dvec3 centre{0};
   double scale = 1;
 
-  explicit Frame(const Surface& surface) {
+  explicit Frame(const cells::Surface& surface) {
     glm::dvec3 low(1e300), high(-1e300);
     for (const glm::dvec3& p : surface.points) low = glm::min(low, p), high = glm::max(high, p);
     centre = 0.5 * low + 0.5 * high;
@@ -69,7 +69,7 @@ tetgenio* keep_for_good() {
 }
 
 /// tetgenio frees its arrays by delete[], so they are made by new[].
-void copy_in(const Surface& surface, const Frame& frame, tetgenio& in) {
+void copy_in(const cells::Surface& surface, const Frame& frame, tetgenio& in) {
   const auto put = [&](REAL* list, std::size_t at, const glm::dvec3& p_world) {
     const glm::dvec3 p = frame.in(p_world);
     for (int k = 0; k < 3; ++k) list[3 * at + static_cast<std::size_t>(k)] = p[k];
@@ -79,12 +79,12 @@ void copy_in(const Surface& surface, const Frame& frame, tetgenio& in) {
   for (std::size_t v = 0; v < surface.points.size(); ++v) put(in.pointlist, v, surface.points[v]);
   in.facetlist = new tetgenio::facet[surface.facets.size()];
   for (std::size_t f = 0; f < surface.facets.size(); ++f) {
-    const Facet& from = surface.facets[f];
+    const cells::Facet& from = surface.facets[f];
     tetgenio::facet& to = in.facetlist[f];
     tetgenio::init(&to);
     in.numberoffacets = static_cast<int>(f) + 1;
     to.polygonlist = new tetgenio::polygon[from.polygons.size()];
-    for (const Polygon& polygon : from.polygons) {
+    for (const cells::Polygon& polygon : from.polygons) {
       tetgenio::polygon& corners = to.polygonlist[to.numberofpolygons++];
       tetgenio::init(&corners);
       corners.vertexlist = new int[polygon.size()];
@@ -104,7 +104,7 @@ void copy_in(const Surface& surface, const Frame& frame, tetgenio& in) {
 }
 
 /// Where a surface cuts itself, in words that follow "the surface cuts itself"; none if TetGen does not find it.
-std::string place_of_cut(const Surface& surface, const Frame& frame) {
+std::string place_of_cut(const cells::Surface& surface, const Frame& frame) {
   tetgenbehavior wishes;
   std::string switches = "dzQ";  // d: find faces that meet where they should not
   wishes.parse_commandline(switches.data());
@@ -130,7 +130,7 @@ std::string place_of_cut(const Surface& surface, const Frame& frame) {
 
 }  // namespace
 
-FilledSurface fill(const Surface& surface, std::optional<double> max_volume, const std::string& source) {
+FilledSurface fill(const cells::Surface& surface, std::optional<double> max_volume, const std::string& source) {
   if (surface.points.size() > static_cast<std::size_t>(INT32_MAX) / 8)
     throw scene::bad_input(
         fmt::format("{}: {} points are too many for TetGen; coarsen the surface", source, surface.points.size()));
@@ -171,7 +171,7 @@ FilledSurface fill(const Surface& surface, std::optional<double> max_volume, con
 
 namespace {
 
-ForeignContents fill_with_fields(Holdings& holdings, const Surface& surface, const std::string& source,
+ForeignContents fill_with_fields(Holdings& holdings, const cells::Surface& surface, const std::string& source,
                                  const nlohmann::json& request) {
   FilledSurface filled = fill(surface, request.at("max_volume").get<double>(), source);
   ForeignPart part;
@@ -191,7 +191,7 @@ ForeignContents fill_with_fields(Holdings& holdings, const Surface& surface, con
 
 ForeignContents fill_surface(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   const std::string source = file.string();
-  const Surface surface = surface_of(request.at("surface"));
+  const cells::Surface surface = surface_of(request.at("surface"));
   allow_filling(surface.facets.size(), request.at("tets").get<double>(), request.at("is_chosen").get<bool>());
   try {
     return fill_with_fields(holdings, surface, source, request);

@@ -89,18 +89,18 @@ std::optional<ForeignArray> hold_any(Holdings& holdings, vtkDataArray* array) {
   return array != nullptr ? std::optional(hold(holdings, *array)) : std::nullopt;
 }
 
-NumberTally tally_of(vtkDataArray& given) {
+cells::NumberTally tally_of(vtkDataArray& given) {
   const vtkSmartPointer<vtkDataArray> array = plain(given);
   const NumberType type = type_of(array->GetDataType());
   const int components = array->GetNumberOfComponents();
   const auto tuples = static_cast<std::size_t>(array->GetNumberOfTuples());
   const std::span bytes(static_cast<const std::byte*>(array->GetVoidPointer(0)),
                         tuples * static_cast<std::size_t>(components) * size_of(type));
-  NumberTally tally;
+  cells::NumberTally tally;
   std::array<double, 4096> some;
   for (std::size_t first = 0; first < tuples; first += some.size()) {
     const std::span chunk(some.data(), std::min(some.size(), tuples - first));
-    read_tuples(bytes, type, components, components == 1 ? 0 : magnitude, first, chunk);
+    read_tuples(bytes, type, components, components == 1 ? 0 : cells::magnitude, first, chunk);
     tally.add(chunk);
   }
   return tally;

@@ -115,7 +115,8 @@ class OldCellsOnce final : public vtkXMLUnstructuredGridReader {
       if (degrees != nullptr && degrees->GetNumberOfComponents() == 3)
         for (int axis = 0; axis < 3; ++axis)
           orders[static_cast<std::size_t>(axis)] = static_cast<int>(degrees->GetComponent(cell, axis));
-      exchange_vtk8_edges(std::span(nodes->GetPointer(0), static_cast<std::size_t>(nodes->GetNumberOfIds())), orders);
+      cells::exchange_vtk8_edges(std::span(nodes->GetPointer(0), static_cast<std::size_t>(nodes->GetNumberOfIds())),
+                                 orders);
       grid.GetCells()->ReplaceCellAtId(cell, nodes);
     }
   }

@@ -26,13 +26,14 @@ std::vector<T> numbers_of(const XdmfArray& array) {
 }
 
 template <class T>
-NumberTally tally_of(const std::vector<T>& numbers, NumberType type, int components) {
-  NumberTally tally;
+cells::NumberTally tally_of(const std::vector<T>& numbers, NumberType type, int components) {
+  cells::NumberTally tally;
   const std::size_t tuples = numbers.size() / static_cast<std::size_t>(components);
   std::vector<double> some(std::min<std::size_t>(tuples, 4096));
   for (std::size_t first = 0; first < tuples; first += some.size()) {
     const std::span chunk = std::span(some).first(std::min(some.size(), tuples - first));
-    read_tuples(std::as_bytes(std::span(numbers)), type, components, components == 1 ? 0 : magnitude, first, chunk);
+    read_tuples(std::as_bytes(std::span(numbers)), type, components, components == 1 ? 0 : cells::magnitude, first,
+                chunk);
     tally.add(chunk);
   }
   return tally;

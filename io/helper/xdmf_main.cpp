@@ -202,9 +202,9 @@ void add_arrays(XdmfGrid& grid, XdmfHeavyFiles& files) {
 }
 
 /// The name that a block is chosen by; none if it is not.
-std::optional<std::string> chosen_name(const XdmfBlock& block, const BlockChoice& choice) {
+std::optional<std::string> chosen_name(const XdmfBlock& block, const cells::BlockChoice& choice) {
   for (const std::string& name : block.names)
-    if (is_chosen(choice, name)) return name;
+    if (cells::is_chosen(choice, name)) return name;
   return std::nullopt;
 }
 
@@ -233,7 +233,7 @@ ForeignContents read(Holdings& holdings, const std::filesystem::path& file, cons
   if (blocks.size() == 1) blocks.front().names = {""};
   for (const XdmfBlock& block : blocks)
     contents.block_names.insert(contents.block_names.end(), block.names.begin(), block.names.end());
-  const auto choice = request.value("blocks", BlockChoice());
+  const auto choice = request.value("blocks", cells::BlockChoice());
   std::erase_if(blocks, [&](const XdmfBlock& block) { return !chosen_name(block, choice); });
   for (const XdmfBlock& block : blocks)
     for (const auto& grid : block.grids) add_arrays(*grid, files);

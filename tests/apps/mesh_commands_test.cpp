@@ -221,7 +221,7 @@ TEST(Convert, PiecesHoldEveryTetOnceAndFileOrderKeepsThePicture) {
         ASSERT_EQ(tessera({"render", mesh, "-o", folder / "whole.exr", "--size", "48x48"}).status, 0);
         EXPECT_TRUE(contents(folder / "whole.exr") == contents(folder / "p.exr"));
       }
-      const io::MeshFile read = io::read_mesh(folder / "p.pvtu"), whole = io::read_mesh(mesh);
+      const cells::MeshFile read = io::read_mesh(folder / "p.pvtu"), whole = io::read_mesh(mesh);
       std::multiset<std::array<double, 16>> expected, found;
       for (const auto* file : {&read, &whole})
         for (const scene::Tet& tet : file->mesh.tets) {

@@ -52,8 +52,8 @@ TEST(ClipPicture, IsThatOfRaysCutShort) {
     std::string words;
     const std::vector<HalfSpace> clip = random_clip(random, mesh, words);
     scene::TetMesh cut = mesh;
-    io::MeshCounts counts;
-    io::select(cut, {clip}, counts, "mesh");
+    MeshCounts counts;
+    cells::select(cut, {clip}, counts, "mesh");
     if (cut.tets.empty()) {
       ++empty;
       continue;
@@ -87,8 +87,8 @@ TEST(ClipPicture, HoldsAlongTheAxes) {
   scene::TetMesh cut = mesh;
   const auto sides = half_spaces_of({{-0.25, -0.375, -0.1}, {0.25, 0.125, 0.3}});
   const std::vector<HalfSpace> clip(sides.begin(), sides.end());
-  io::MeshCounts counts;
-  io::select(cut, {clip}, counts, "mesh");
+  MeshCounts counts;
+  cells::select(cut, {clip}, counts, "mesh");
   const scene::TransferFunction function = datasets::smooth_knots(12, scene::scalar_range(mesh), 3, 5);
   for (int axis = 0; axis < 3; ++axis)
     for (const double sign : {-1.0, 1.0}) {
@@ -121,8 +121,8 @@ TEST_P(ClippedData, IsWithinThePromise) {
   std::vector<HalfSpace> clip{{middle, {1, 0.4, -0.3}}};
   for (const HalfSpace& side : half_spaces_of({box.low + 0.1 * (box.high - box.low), box.high})) clip.push_back(side);
   scene::TetMesh cut = mesh;
-  io::MeshCounts counts;
-  io::select(cut, {clip}, counts, "mesh");
+  MeshCounts counts;
+  cells::select(cut, {clip}, counts, "mesh");
   ASSERT_FALSE(cut.tets.empty());
   EXPECT_GT(counts.cells_cut, 0u);
   RenderSettings settings;

@@ -21,10 +21,10 @@ constexpr scene::ImageSize size{40, 40};
 scene::TetMesh clipped(const scene::TetMesh& mesh, const std::vector<HalfSpace>& clip,
                        const scene::Surfaces& surfaces) {
   scene::TetMesh cut = mesh;
-  io::MeshCounts counts;
+  MeshCounts counts;
   scene::Selection selection{clip};
   for (const IsoSurface& iso : surfaces.iso) selection.levels.push_back(iso.value);
-  io::select(cut, selection, counts, "mesh");
+  cells::select(cut, selection, counts, "mesh");
   return cut;
 }
 

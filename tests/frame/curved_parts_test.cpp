@@ -35,7 +35,7 @@ std::vector<Corners> tets_of(const Dataset& data) {
 
 /// Some of a block's cells; each has points of its own.
 struct Cells {
-  Cells(const io::CellBlock& block, std::size_t first, std::size_t last) {
+  Cells(const cells::CellBlock& block, std::size_t first, std::size_t last) {
     std::vector<double> values(block.positions.size());
     block.fields.front().read(0, 0, values);
     for (std::size_t c = first; c < last; ++c) {
@@ -76,7 +76,7 @@ TEST(CurvedParts, AreDividedAsTheWholeIs) {
   test::SomeCases some(4);
   for (const io::testing::Kind& kind : {io::testing::Kind{24, 10, 2}, {72, 27, 2}})
     for (const std::uint64_t most_tets : {std::uint64_t{1} << 21, std::uint64_t{2000}}) {
-      const io::CellBlock block = io::testing::warped_box(kind, 2, io::testing::bent, field, true);
+      const cells::CellBlock block = io::testing::warped_box(kind, 2, io::testing::bent, field, true);
       const std::size_t cells = block.types.size();
       const Dataset whole = Dataset::of(Cells(block, 0, cells).arrays(1e-3, most_tets));
       std::vector<Corners> expected = tets_of(whole);

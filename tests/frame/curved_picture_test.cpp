@@ -55,7 +55,7 @@ bool is_in_reference(const io::testing::Kind& kind) {
 }
 
 struct Case {
-  io::CellBlock block;
+  cells::CellBlock block;
   std::string words;
 };
 
@@ -81,9 +81,9 @@ Case random_case(Random& random, double accuracy) {
 
 /// The cells as the reference takes them.
 struct Truth {
-  explicit Truth(const io::CellBlock& block) {
+  explicit Truth(const cells::CellBlock& block) {
     scalars.resize(block.positions.size());
-    for (const io::BlockField& field : block.fields) {
+    for (const cells::BlockField& field : block.fields) {
       if (field.name == "f") field.read(0, 0, scalars);
       if (field.name != "HigherOrderDegrees") continue;
       degrees.resize(field.tuples);

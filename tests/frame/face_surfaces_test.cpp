@@ -321,8 +321,8 @@ TEST(BoundarySurface, OfAClippedMeshHasTheCutFaces) {
     const scene::TetMesh mesh = datasets::cube(2 + random.below(4), random.uniform(0, 0.2), random.bits());
     const auto clip = random_clip(random, mesh, words);
     scene::TetMesh cut = mesh;
-    io::MeshCounts counts;
-    io::select(cut, {clip}, counts, "mesh");
+    MeshCounts counts;
+    cells::select(cut, {clip}, counts, "mesh");
     if (cut.tets.empty()) continue;
     const auto [camera, extent] = random_view(random, cut);
     const TransferFunction function =

@@ -21,7 +21,7 @@ constexpr scene::ImageSize size{40, 40};
 
 double field_at(const glm::dvec3& p) { return p.x + 2 * p.y + 3 * p.z; }
 
-io::CellBlock random_polyhedra(Random& random, unsigned seed, std::string& words) {
+cells::CellBlock random_polyhedra(Random& random, unsigned seed, std::string& words) {
   switch (random.below(4)) {
     case 0:
       words = std::string("Voronoi cells");
@@ -63,14 +63,14 @@ TEST(PolyhedraPicture, IsThatOfTheBoxTheyFill) {
   const scene::TetMesh box = reference::box_of_tets(1, glm::dvec3(0), glm::dvec3(1), field_at);
   double worst = 0;
   std::size_t excused = 0, pixels = 0;
-  io::MeshCounts counts;
+  MeshCounts counts;
   for (int number = first; number < last; ++number) {
     Random random(1000003u + static_cast<std::uint64_t>(number));
     std::string words;
-    io::MeshOptions options;
+    cells::MeshOptions options;
     options.field = std::string("f");
-    const io::MeshFile file =
-        io::assemble_mesh({random_polyhedra(random, static_cast<unsigned>(number), words)}, options, "mesh");
+    const cells::MeshFile file =
+        cells::assemble_mesh({random_polyhedra(random, static_cast<unsigned>(number), words)}, options, "mesh");
     EXPECT_EQ(file.counts.cells_tangled + file.counts.cells_open, 0u) << words << ", case " << number;
     counts += file.counts;
     const scene::Camera camera = random_camera(random);
@@ -100,9 +100,9 @@ TEST(PolyhedraPicture, OfCellDataIsThatOfTheCubesTheyAreMadeOf) {
   for (int number = 0; number < 10; ++number) {
     Random random(77u + static_cast<std::uint64_t>(number));
     std::vector<std::size_t> cell_of_cube;
-    io::MeshOptions options;
+    cells::MeshOptions options;
     options.field = std::string("c");
-    const io::MeshFile file = io::assemble_mesh(
+    const cells::MeshFile file = cells::assemble_mesh(
         {io::testing::agglomerates(n, 6, 0, static_cast<unsigned>(number), &cell_of_cube)}, options, "mesh");
     const scene::TetMesh cubes = reference::with_cell_data(
         reference::box_of_tets(n, glm::dvec3(0), glm::dvec3(1), field_at), [&](const glm::dvec3& centre) {

@@ -57,7 +57,7 @@ std::vector<std::pair<glm::dvec3, glm::dvec3>> lines() {
 TEST(Amr, LinesThroughCellDataSumUpWhatTheirFinestCellsHold) {
   const test::TemporaryFolder folder;
   const AmrScene amr = nested_blocks();
-  const MeshFile read = read_mesh(write_vth(folder, amr, false, wavy));
+  const cells::MeshFile read = read_mesh(write_vth(folder, amr, false, wavy));
   scene::validate(read.mesh, "amr");
   EXPECT_EQ(read.mesh.association, scene::Association::cell);
   EXPECT_EQ(read.counts.cells_read, 64u - 8 - 1 + 64 - 8 + 2 * 64);
@@ -94,7 +94,7 @@ TEST(Amr, LinesThroughCellDataSumUpWhatTheirFinestCellsHold) {
 TEST(Amr, PointDataIsContinuousAcrossLevelsAndLinearWhereItIs) {
   const test::TemporaryFolder folder;
   for (const auto& at : {linear, wavy}) {
-    const MeshFile read = read_mesh(write_vth(folder, nested_blocks(), true, at));
+    const cells::MeshFile read = read_mesh(write_vth(folder, nested_blocks(), true, at));
     scene::validate(read.mesh, "amr");
     ASSERT_EQ(read.mesh.association, scene::Association::point);
     expect_conforming(read.mesh, glm::dvec3(4 * AmrScene::unit));
@@ -106,10 +106,10 @@ TEST(Amr, PointDataIsContinuousAcrossLevelsAndLinearWhereItIs) {
 TEST(Amr, SmoothedCellDataIsContinuousAndLinearInsideAndKeepsEachCellsValue) {
   const test::TemporaryFolder folder;
   const AmrScene amr = nested_blocks();
-  MeshOptions options;
+  cells::MeshOptions options;
   options.smooth = true;
   for (const auto& at : {linear, wavy}) {
-    const MeshFile read = read_mesh(write_vth(folder, amr, false, at), options);
+    const cells::MeshFile read = read_mesh(write_vth(folder, amr, false, at), options);
     scene::validate(read.mesh, "amr");
     expect_smooth(read.mesh, amr, 4, at, at == linear, 1e-9);
     EXPECT_GE(read.mesh.positions.size(), 239u);
@@ -122,9 +122,9 @@ TEST(Amr, BlocksThatCutThroughCoarserCellsLeaveTheRestOfThem) {
   for (const bool points : {false, true}) {
     const std::filesystem::path file = write_vth(folder, amr, points, linear);
     for (const bool smooth : {false, true}) {
-      MeshOptions options;
+      cells::MeshOptions options;
       options.smooth = smooth;
-      const MeshFile read = read_mesh(file, options);
+      const cells::MeshFile read = read_mesh(file, options);
       EXPECT_NEAR(testing::volume(read.mesh), std::pow(4 * AmrScene::unit, 3), 1e-11) << points << smooth;
       if (points || smooth) expect_conforming(read.mesh, glm::dvec3(4 * AmrScene::unit));
       for (std::size_t v = 0; points && v < read.mesh.positions.size(); ++v)
@@ -145,7 +145,7 @@ TEST(Amr, WeightsOfLargestEntropyAreAboveZeroAndHaveTheMeanAskedFor) {
       const double size = length(random);
       offsets[static_cast<std::size_t>(k)] = size * glm::dvec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
     }
-    weigh_by_entropy(offsets, weights);
+    cells::weigh_by_entropy(offsets, weights);
     glm::dvec3 mean(0);
     double sum = 0;
     for (std::size_t k = 0; k < 8; ++k) {

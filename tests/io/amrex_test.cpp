@@ -18,8 +18,8 @@ namespace {
 
 using namespace testing;
 
-MeshOptions field_f(bool smooth) {
-  MeshOptions options;
+cells::MeshOptions field_f(bool smooth) {
+  cells::MeshOptions options;
   options.field = std::string("f");
   options.smooth = smooth;
   return options;
@@ -39,7 +39,7 @@ TEST(Amrex, CellsHaveTheirValuesHoweverTheyAreStored) {
                                          .around = around,
                                          .two_files = around > 0});
           for (const auto& file : {plot, plot / "Header"}) {
-            const MeshFile read = read_mesh(file, field_f(false));
+            const cells::MeshFile read = read_mesh(file, field_f(false));
             EXPECT_EQ(read.counts.cells_read, 64u - 8 - 1 + 64 - 8 + 2 * 64);
             expect_cells(read.mesh, scene, 4, wavy, single ? 2e-7 : 1e-12);
           }
@@ -50,7 +50,7 @@ TEST(Amrex, SmoothedItIsContinuousAcrossLevelsAndLinearInside) {
   const test::TemporaryFolder folder;
   const AmrScene scene = nested_blocks();
   for (const auto& at : {linear, wavy}) {
-    const MeshFile read = read_mesh(write_amrex(folder, scene, at), field_f(true));
+    const cells::MeshFile read = read_mesh(write_amrex(folder, scene, at), field_f(true));
     scene::validate(read.mesh, "amrex");
     expect_smooth(read.mesh, scene, 4, at, at == linear, 1e-9);
   }
@@ -59,7 +59,7 @@ TEST(Amrex, SmoothedItIsContinuousAcrossLevelsAndLinearInside) {
 TEST(Amrex, FieldsAreListedAndTheFolderIsToldByItsHeader) {
   const test::TemporaryFolder folder;
   const auto plot = write_amrex(folder, nested_blocks(), wavy);
-  const MeshFile read = read_mesh(plot);
+  const cells::MeshFile read = read_mesh(plot);
   ASSERT_EQ(read.fields.size(), 2u);
   EXPECT_EQ(read.fields[0].name, "other one");
   EXPECT_EQ(read.fields[1].name, "f");

@@ -31,13 +31,13 @@ void expect_conforming(const scene::TetMesh& mesh) {
 class Mixed : public ::testing::TestWithParam<unsigned> {};
 
 TEST_P(Mixed, NeighboursAgreeOnEveryFace) {
-  const MeshFile file = assemble_mesh({mixed_mesh(5, GetParam(), false)}, {}, "mesh");
+  const cells::MeshFile file = cells::assemble_mesh({mixed_mesh(5, GetParam(), false)}, {}, "mesh");
   expect_conforming(file.mesh);
   EXPECT_EQ(file.counts.cells_tangled, 0u);
 }
 
 TEST_P(Mixed, NeighboursAgreeByPositionIfTheyShareNoIndex) {
-  expect_conforming(assemble_mesh({mixed_mesh(5, GetParam(), true)}, {}, "mesh").mesh);
+  expect_conforming(cells::assemble_mesh({mixed_mesh(5, GetParam(), true)}, {}, "mesh").mesh);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Mixed, ::testing::Range(1u, 9u));
@@ -65,7 +65,8 @@ TEST(SplitCell, PrismsOverPolygonsAgreeHoweverTheyAreNumbered) {
         for (const int side : {flip, 1 - flip})
           for (int k = 0; k < n; ++k)
             corner.push_back(static_cast<std::uint32_t>((layer + side) * n + (start + k) % n));
-        split_cell(n == 5 ? CellKind::pentagonal_prism : CellKind::hexagonal_prism, corner, points, mesh.tets);
+        cells::split_cell(n == 5 ? cells::CellKind::pentagonal_prism : cells::CellKind::hexagonal_prism, corner, points,
+                          mesh.tets);
       }
       mesh.positions = points;
       int boundary = 0;
@@ -90,7 +91,7 @@ TEST(SplitCell, AHexahedronWhoseFarCornerNoCutMeetsGivesFiveTets) {
   // Corners 0 (smallest), 2, 5, 7 hold x of 0 to 0.3, the others 1: every cut runs between two of the four.
   const std::vector<std::uint32_t> corner = {0, 1, 2, 3, 4, 5, 6, 7};
   std::vector<scene::Tet> tets;
-  split_cell(CellKind::hexahedron, corner, p, tets);
+  cells::split_cell(cells::CellKind::hexahedron, corner, p, tets);
   EXPECT_EQ(tets.size(), 5u);
 }
 
@@ -102,7 +103,7 @@ TEST(SplitCell, CollapsedHexahedraAgreeWithTheirNeighbours) {
     const double angle = 2 * 3.141592653589793 * (turn % around) / around;
     return glm::dvec3(radius * std::cos(angle), radius * std::sin(angle), layer);
   };
-  CellBlock block;
+  cells::CellBlock block;
   block.offsets.push_back(0);
   for (int layer = 0; layer < up; ++layer)
     for (int radius = 0; radius < 2; ++radius)
@@ -121,7 +122,7 @@ TEST(SplitCell, CollapsedHexahedraAgreeWithTheirNeighbours) {
         }
         block.offsets.push_back(block.connectivity.size());
       }
-  const MeshFile file = assemble_mesh({block}, {}, "ring");
+  const cells::MeshFile file = cells::assemble_mesh({block}, {}, "ring");
   EXPECT_GT(file.counts.tets_collapsed, 0u);
   int boundary = 0;
   for (const auto& [triangle, uses] : count_triangles(file.mesh)) {
@@ -134,15 +135,15 @@ TEST(SplitCell, CollapsedHexahedraAgreeWithTheirNeighbours) {
   EXPECT_NEAR(testing::volume(file.mesh), area * up, 1e-12 * area * up);
 }
 
-TEST(CellShape, KnowsEveryVolumetricTypeAndRefusesTheRest) {
-  EXPECT_EQ(cell_shape(10).kind, CellKind::tet);
-  EXPECT_EQ(cell_shape(25).corners, 8);
-  EXPECT_TRUE(cell_shape(25).higher_order);
-  EXPECT_EQ(cell_shape(5).kind, CellKind::not_volumetric);
-  EXPECT_EQ(cell_shape(42).kind, CellKind::polyhedron);
-  EXPECT_EQ(cell_shape(41).kind, CellKind::convex_point_set);
-  EXPECT_EQ(cell_shape(255).kind, CellKind::unsupported);
-  EXPECT_EQ(cell_type_name(42), "polyhedron");
+TEST(cells::CellShape, KnowsEveryVolumetricTypeAndRefusesTheRest) {
+  EXPECT_EQ(cells::cell_shape(10).kind, cells::CellKind::tet);
+  EXPECT_EQ(cells::cell_shape(25).corners, 8);
+  EXPECT_TRUE(cells::cell_shape(25).higher_order);
+  EXPECT_EQ(cells::cell_shape(5).kind, cells::CellKind::not_volumetric);
+  EXPECT_EQ(cells::cell_shape(42).kind, cells::CellKind::polyhedron);
+  EXPECT_EQ(cells::cell_shape(41).kind, cells::CellKind::convex_point_set);
+  EXPECT_EQ(cells::cell_shape(255).kind, cells::CellKind::unsupported);
+  EXPECT_EQ(cells::cell_type_name(42), "polyhedron");
 }
 
 }  // namespace

@@ -213,16 +213,16 @@ std::vector<double> counted(std::size_t n, double from = 0) {
   return values;
 }
 
-MeshFile read(const std::filesystem::path& file, const std::string& field = "cell:f",
-              std::optional<std::size_t> step = {}) {
-  MeshOptions options;
+cells::MeshFile read(const std::filesystem::path& file, const std::string& field = "cell:f",
+                     std::optional<std::size_t> step = {}) {
+  cells::MeshOptions options;
   options.field = field;
   options.time_step = step;
   return read_mesh(file, options);
 }
 
 /// A cube at x has the value `from` + x.
-void expect_row(const MeshFile& file, int n, double from = 0) {
+void expect_row(const cells::MeshFile& file, int n, double from = 0) {
   EXPECT_NEAR(testing::volume(file.mesh), n, 1e-12);
   EXPECT_EQ(file.counts.cells_read, static_cast<std::uint64_t>(n));
   for (std::size_t t = 0; t < file.mesh.tets.size(); ++t) {
@@ -257,7 +257,7 @@ TEST(CgnsZones, CellsAreInTheOrderOfTheirNumbersWhereverFacesAre) {
     file.close();
     expect_row(read(folder / "a.cgns"), 5);
     for (const char* field : {"point:g", "V:x"}) {
-      const MeshFile points = read(folder / "a.cgns", field);
+      const cells::MeshFile points = read(folder / "a.cgns", field);
       for (std::size_t v = 0; v < points.mesh.positions.size(); ++v)
         EXPECT_EQ(points.mesh.scalars[v], points.mesh.positions[v].x);
     }
@@ -301,7 +301,7 @@ TEST(CgnsZones, MixedSectionsHoldFacesAmongTheCells) {
   for (const bool is_old : {false, true}) {
     SCOPED_TRACE(is_old);
     if (is_old) make_old(folder / "a.cgns", {}, {"section 1"});
-    const MeshFile mesh = read(folder / "a.cgns");
+    const cells::MeshFile mesh = read(folder / "a.cgns");
     EXPECT_EQ(mesh.counts.cells_read, 4u);
     EXPECT_NEAR(testing::volume(mesh.mesh), 3, 1e-12);
     for (std::size_t t = 0; t < mesh.mesh.tets.size(); ++t) {
@@ -363,7 +363,7 @@ TEST(CgnsZones, PolyhedraAreNumberedBeforeOrAfterTheirFaces) {
         SCOPED_TRACE(is_old);
         if (is_old)
           make_old(folder / "a.cgns", {fmt::format("section {}", first_face), fmt::format("section {}", first_cell)});
-        const MeshFile mesh = read(folder / "a.cgns");
+        const cells::MeshFile mesh = read(folder / "a.cgns");
         EXPECT_EQ(mesh.counts.cells_polyhedra, 3u);
         expect_row(mesh, 3);
       }
@@ -387,7 +387,7 @@ TEST(CgnsZones, PolyhedraAreThoseThatTheirFacesHaveAsParents) {
   for (const bool is_old : {false, true}) {
     SCOPED_TRACE(is_old);
     if (is_old) make_old(folder / "a.cgns", {"section 1"});
-    const MeshFile mesh = read(folder / "a.cgns");
+    const cells::MeshFile mesh = read(folder / "a.cgns");
     EXPECT_EQ(mesh.counts.cells_polyhedra, 3u);
     expect_row(mesh, 3);
   }
@@ -421,10 +421,10 @@ TEST(CgnsZones, ZonesOfEveryKindAreBlocksAndShares) {
   file.begin_zone("structured", third.points, 2, {3, 2, 2, 2, 1, 1, 0, 0, 0});
   file.write_values("cells", CGNS_ENUMV(CellCenter), {{"f", counted(2, 5)}});
   file.close();
-  const MeshFile whole = read(folder / "a.cgns");
+  const cells::MeshFile whole = read(folder / "a.cgns");
   expect_row(whole, 7);
   EXPECT_EQ(whole.blocks, (std::vector<std::string>{"base/cells first", "base/faces first", "base/structured"}));
-  MeshOptions options;
+  cells::MeshOptions options;
   options.field = "cell:f";
   testing::expect_as_whole(folder / "a.cgns", options);
   options.blocks = {"structured"};
@@ -444,7 +444,7 @@ TEST(CgnsZones, StepsHaveTheirOwnSolutionsAndGrids) {
   file.write_steps({0.5, 2}, {"early", "late"}, {"GridCoordinates", "moved"});
   file.close();
   for (const std::size_t step : {0u, 1u}) {
-    const MeshFile mesh = read(folder / "a.cgns", "cell:f", step);
+    const cells::MeshFile mesh = read(folder / "a.cgns", "cell:f", step);
     EXPECT_EQ(mesh.time_step.count, 2u);
     EXPECT_EQ(mesh.time_step.times, (std::vector<double>{0.5, 2}));
     expect_row(mesh, 2);
@@ -508,7 +508,7 @@ TEST(CgnsZones, CellsOfSecondOrderHaveTheirNodesInVtksOrder) {
     for (const glm::dvec3& p : points) values.push_back(p.x + 2 * p.y + 3 * p.z);
     file.write_values("points", CGNS_ENUMV(Vertex), {{"f", values}});
     file.close();
-    const MeshFile mesh = read(folder / "a.cgns", "f");
+    const cells::MeshFile mesh = read(folder / "a.cgns", "f");
     // All nodes are where a straight cell has them: one that is not moves the surface and the field.
     EXPECT_NEAR(testing::volume(mesh.mesh), c.corners == 8 ? 30 : c.corners == 6 ? 15 : c.corners == 5 ? 10 : 5, 1e-9);
     for (std::size_t v = 0; v < mesh.mesh.positions.size(); ++v) {
@@ -545,9 +545,9 @@ TEST(CgnsZones, SolutionsOfSomePointsOrCellsAreBlankElsewhere) {
     if (!c.is_structured) file.write(cubes(row, 0, 4, 1), 4);
     file.write_part("some", c.location, c.set, c.count, c.indices, "f", values);
     file.close();
-    MeshOptions options;
+    cells::MeshOptions options;
     options.field = c.location == cell ? "cell:f" : "point:f";
-    const MeshFile mesh = read_mesh(folder / "a.cgns", options);
+    const cells::MeshFile mesh = read_mesh(folder / "a.cgns", options);
     std::uint64_t kept = 0;
     for (std::size_t i = 0; i < 4; ++i) kept += c.location == cell ? std::ranges::count(c.places, i) : 0;
     if (c.location == point) kept = 1;  // one cube has all its corners
@@ -614,7 +614,7 @@ TEST(CgnsZones, CylinderCoordinatesAreTurnedToXyz) {
       if (in_degrees) file.write_degrees();
       file.write_values("cells", CGNS_ENUMV(CellCenter), {{"f", counted(90)}});
       file.close();
-      const MeshFile mesh = read(folder / "a.cgns");
+      const cells::MeshFile mesh = read(folder / "a.cgns");
       EXPECT_NEAR(testing::volume(mesh.mesh), 2 * 4 * 90 * std::sin(std::numbers::pi / 180), 1e-5);
       for (const auto& p : mesh.mesh.positions) {
         EXPECT_GE(p.x, -1e-6);

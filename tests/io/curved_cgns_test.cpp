@@ -92,8 +92,8 @@ std::vector<std::pair<ReferenceCell, CGNS_ENUMT(ElementType_t)>> sids_cells() {
       {{1, 2, 3, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 4, 8, 7}, {1, 5, 8, 4}, {5, 6, 7, 8}, {1, 2, 3, 4, 5, 6, 7, 8}});
   wedge18.insert(wedge18.end(), {{1, 2, 5, 4}, {2, 3, 6, 5}, {3, 1, 4, 6}});
   pyramid14.push_back({1, 2, 3, 4});
-  constexpr auto hexahedron = CurvedFamily::hexahedron, tet = CurvedFamily::tet, wedge = CurvedFamily::wedge,
-                 pyramid = CurvedFamily::pyramid;
+  constexpr auto hexahedron = cells::CurvedFamily::hexahedron, tet = cells::CurvedFamily::tet,
+                 wedge = cells::CurvedFamily::wedge, pyramid = cells::CurvedFamily::pyramid;
   return {{{"TETRA_10", tet, tet10}, CGNS_ENUMV(TETRA_10)},
           {{"TETRA_16", tet, first_of(tet20_lists(), 12)}, CGNS_ENUMV(TETRA_16)},
           {{"TETRA_20", tet, tet20_lists()}, CGNS_ENUMV(TETRA_20)},
@@ -150,7 +150,7 @@ void write_cgns(const std::filesystem::path& file, const BentCell& cell, CGNS_EN
 TEST(CurvedCgns, EveryTypeHasItsVolumeAndItsField) {
   TESSERA_VTK_OR_SKIP();
   const test::TemporaryFolder folder;
-  const MeshOptions options = testing::coarse_options();
+  const cells::MeshOptions options = testing::coarse_options();
   test::SomeCases some(3);
   for (const auto& [cell, type] : sids_cells()) {
     SCOPED_TRACE(cell.name);
@@ -166,7 +166,7 @@ TEST(CurvedCgns, EveryTypeHasItsVolumeAndItsField) {
 TEST(CurvedCgns, TypesThatAreNotReadAreRefused) {
   TESSERA_VTK_OR_SKIP();
   const test::TemporaryFolder folder;
-  BentCell cell = testing::bend({"HEXA_44", CurvedFamily::hexahedron, hex64_lists()});
+  BentCell cell = testing::bend({"HEXA_44", cells::CurvedFamily::hexahedron, hex64_lists()});
   cell.positions.resize(44), cell.values.resize(44);
   for (const bool is_mixed : {false, true}) {
     write_cgns(folder / "a.cgns", cell, CGNS_ENUMV(HEXA_44), is_mixed);

@@ -66,7 +66,7 @@ ReferenceCell hex64() {
     for (int k = 1; k <= 4; ++k) lists.push_back(testing::near_corner_of_hexahedron(k + level));
   }
   for (int k = 0; k < 4; ++k) lists.push_back(near_first({k + 5, (k + 1) % 4 + 5, (k + 2) % 4 + 5, (k + 3) % 4 + 5}));
-  return {"HEX64", CurvedFamily::hexahedron, lists};
+  return {"HEX64", cells::CurvedFamily::hexahedron, lists};
 }
 
 /// Cells of third order with nodes on their edges alone: those of upright edges come low ones first.
@@ -84,8 +84,8 @@ Lists cubic_edges(const Lists& base, const Lists& upright, const Lists& top) {
 }
 
 std::vector<ReferenceCell> manual_cells() {
-  constexpr auto hexahedron = CurvedFamily::hexahedron, tet = CurvedFamily::tet, wedge = CurvedFamily::wedge,
-                 pyramid = CurvedFamily::pyramid;
+  constexpr auto hexahedron = cells::CurvedFamily::hexahedron, tet = cells::CurvedFamily::tet,
+                 wedge = cells::CurvedFamily::wedge, pyramid = cells::CurvedFamily::pyramid;
   const Lists hex20 = together(base_edges, upright_edges, top_edges),
               wedge15 = together(wedge_base, wedge_upright, wedge_top);
   return {{"HEX9", hexahedron, hexahedron_inside, CellSpace::linear},
@@ -157,11 +157,11 @@ void write_exodus(const std::string& name, const std::string& topology, const Be
   ASSERT_EQ(ex_close(id), EX_NOERR);
 }
 
-MeshFile read_back(const std::string& topology, const BentCell& cell, int cells = 1,
-                   double tolerance = testing::coarse_options().higher_order_tolerance) {
+cells::MeshFile read_back(const std::string& topology, const BentCell& cell, int cells = 1,
+                          double tolerance = testing::coarse_options().higher_order_tolerance) {
   const test::TemporaryFolder folder;
   write_exodus((folder / "a.exo").string(), topology, cell, 0, cells);
-  MeshOptions options = testing::coarse_options();
+  cells::MeshOptions options = testing::coarse_options();
   options.higher_order_tolerance = tolerance;
   return read_mesh(folder / "a.exo", options);
 }
@@ -181,7 +181,7 @@ TEST(CurvedExodus, ANodeInATrianglesMiddleBendsIt) {
   TESSERA_VTK_OR_SKIP();
   // Its function is 27 L1 L2 L3, whose integral over a triangle is 9/20 of the area.
   const ReferenceCell tet8{
-      "TETRA8", CurvedFamily::tet, {{1, 2, 4}, {2, 3, 4}, {1, 2, 3}, {1, 3, 4}}, CellSpace::linear};
+      "TETRA8", cells::CurvedFamily::tet, {{1, 2, 4}, {2, 3, 4}, {1, 2, 3}, {1, 3, 4}}, CellSpace::linear};
   BentCell bent{testing::places_of(tet8), std::vector<double>(8, 1), 1.0 / 6 + 0.45 * 0.5 * 0.1, 0};
   bent.positions[6].z -= 0.1;  // of the base
   bent.integral = bent.volume;
@@ -192,15 +192,15 @@ TEST(CurvedExodus, ANodeInsideChangesTheFieldAndNotTheShape) {
   TESSERA_VTK_OR_SKIP();
   // Of a cube of field 0 with 1 in its middle: the integral of 64 r (1 - r) s (1 - s) t (1 - t), and of a tetrahedron
   // that of 256 L1 L2 L3 L4, 256 / 7!.
-  const ReferenceCell hex9{"HEX9", CurvedFamily::hexahedron, hexahedron_inside, CellSpace::linear},
-      tet11{"TETRA11", CurvedFamily::tet, together(tet_edges, tet_inside)};
+  const ReferenceCell hex9{"HEX9", cells::CurvedFamily::hexahedron, hexahedron_inside, CellSpace::linear},
+      tet11{"TETRA11", cells::CurvedFamily::tet, together(tet_edges, tet_inside)};
   for (const auto& [cell, volume, integral] :
        {std::tuple(hex9, 1.0, 64.0 / 216), std::tuple(tet11, 1.0 / 6, 256.0 / 5040)}) {
     SCOPED_TRACE(cell.name);
     BentCell bent{testing::places_of(cell), {}, volume, integral};
     bent.values.assign(bent.positions.size(), 0);
     bent.values.back() = 1;
-    const MeshFile read = read_back(cell.name, bent, 1, 1e-2);
+    const cells::MeshFile read = read_back(cell.name, bent, 1, 1e-2);
     EXPECT_NEAR(testing::volume(read.mesh), volume, 1e-12);
     EXPECT_LT(read.higher_order.field_error, 0.02);
     EXPECT_NEAR(testing::field_integral(read.mesh), integral, read.higher_order.field_error * volume);
@@ -210,16 +210,16 @@ TEST(CurvedExodus, ANodeInsideChangesTheFieldAndNotTheShape) {
 TEST(CurvedExodus, CellsWithoutAPublishedOrderAreDrawnByTheirCorners) {
   TESSERA_VTK_OR_SKIP();
   for (const auto& [name, shape, nodes] :
-       {std::tuple("TETRA40", CurvedFamily::tet, 40u), std::tuple("WEDGE52", CurvedFamily::wedge, 52u)}) {
+       {std::tuple("TETRA40", cells::CurvedFamily::tet, 40u), std::tuple("WEDGE52", cells::CurvedFamily::wedge, 52u)}) {
     SCOPED_TRACE(name);
     ReferenceCell cell{name, shape, {}};
     while (testing::places_of(cell).size() < nodes) cell.middles.push_back({1, 2, 3});
     BentCell plane{testing::places_of(cell), {}, 0, 0};
     plane.values.assign(plane.positions.size(), 1);
-    const MeshFile read = read_back(name, plane);
-    EXPECT_NEAR(testing::volume(read.mesh), shape == CurvedFamily::tet ? 1.0 / 6 : 0.5, 1e-12);
+    const cells::MeshFile read = read_back(name, plane);
+    EXPECT_NEAR(testing::volume(read.mesh), shape == cells::CurvedFamily::tet ? 1.0 / 6 : 0.5, 1e-12);
     EXPECT_EQ(read.higher_order.by_corners, 1u);
-    const std::vector<std::string> warnings = warnings_on_cells(read.counts, read.higher_order);
+    const std::vector<std::string> warnings = cells::warnings_on_cells(read.counts, read.higher_order);
     ASSERT_FALSE(warnings.empty());
     EXPECT_NE(warnings.front().find("rendered as linear ones by their corner nodes"), std::string::npos);
   }
@@ -234,9 +234,11 @@ TEST(CurvedExodus, SidesOfEveryTypeCloseItsCorners) {
     SCOPED_TRACE(cell.name);
     BentCell plane{testing::places_of(cell), {}, 0, 0};
     plane.values.assign(plane.positions.size(), 1);
-    const int sides = cell.shape == CurvedFamily::tet ? 4 : cell.shape == CurvedFamily::hexahedron ? 6 : 5;
+    const int sides = cell.shape == cells::CurvedFamily::tet          ? 4
+                      : cell.shape == cells::CurvedFamily::hexahedron ? 6
+                                                                      : 5;
     write_exodus((folder / "a.exo").string(), cell.name, plane, sides, 2);
-    MeshOptions options;
+    cells::MeshOptions options;
     options.blocks = {"skin"};
     const BlockFaces faces = read_block_faces(std::vector<std::filesystem::path>{folder / "a.exo"}, options);
     double six_volumes = 0;
@@ -244,10 +246,10 @@ TEST(CurvedExodus, SidesOfEveryTypeCloseItsCorners) {
       const auto& p = faces.mesh.points;
       six_volumes += glm::dot(p[t[0]], glm::cross(p[t[1]], p[t[2]]));
     }
-    const double volume = cell.shape == CurvedFamily::tet          ? 1.0 / 6
-                          : cell.shape == CurvedFamily::hexahedron ? 1
-                          : cell.shape == CurvedFamily::wedge      ? 0.5
-                                                                   : 1.0 / 3;
+    const double volume = cell.shape == cells::CurvedFamily::tet          ? 1.0 / 6
+                          : cell.shape == cells::CurvedFamily::hexahedron ? 1
+                          : cell.shape == cells::CurvedFamily::wedge      ? 0.5
+                                                                          : 1.0 / 3;
     EXPECT_NEAR(std::abs(six_volumes) / 6, volume, 1e-12);
   }
 }

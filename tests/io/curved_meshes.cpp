@@ -69,19 +69,19 @@ const std::vector<Kind> kinds = {{24, 10, 2},
                                  lagrange(79, {3, 3, 3}),
                                  lagrange(80, {3, 3, 2})};
 
-glm::dvec3 place_of(const CurvedLattice& lattice, std::size_t node) { return lattice.place(node); }
+glm::dvec3 place_of(const cells::CurvedLattice& lattice, std::size_t node) { return lattice.place(node); }
 
-CellBlock warped_box(const Kind& kind, int n, const Warp& warp, const Field& field, bool turned) {
-  CellBlock block;
+cells::CellBlock warped_box(const Kind& kind, int n, const Warp& warp, const Field& field, bool turned) {
+  cells::CellBlock block;
   block.offsets = {0};
   std::vector<double> values, degrees;
-  const auto lattice = curved_lattice(kind.type, kind.nodes, kind.degrees);
+  const auto lattice = cells::curved_lattice(kind.type, kind.nodes, kind.degrees);
   std::mt19937 random(7);
   const auto add = [&](const std::function<glm::dvec3(const glm::dvec3&)>& to_box) {
     for (std::size_t k = 0; k < kind.nodes; ++k) {
       glm::dvec3 p = to_box(place_of(*lattice, k));
       for (int x = 0; x < 3; ++x) p[x] = std::round(p[x] * 360360) / 360360;  // one point for all cells that have it
-      p = warp(p);
+      p = cells::warp(p);
       block.connectivity.push_back(static_cast<std::uint32_t>(block.positions.size()));
       block.positions.push_back(p);
       values.push_back(field(p));
@@ -95,7 +95,7 @@ CellBlock warped_box(const Kind& kind, int n, const Warp& warp, const Field& fie
     const glm::dvec3 from = glm::dvec3(c % n, c / n % n, c / (n * n)) / static_cast<double>(n);
     const double h = 1.0 / n;
     switch (lattice->family) {
-      case CurvedFamily::tet:
+      case cells::CurvedFamily::tet:
         for (const auto& axis : kuhn) {
           std::array<glm::dvec3, 4> corner = {from, from, from, from};
           for (int k = 0; k < 3; ++k)
@@ -106,7 +106,7 @@ CellBlock warped_box(const Kind& kind, int n, const Warp& warp, const Field& fie
           });
         }
         break;
-      case CurvedFamily::hexahedron: {
+      case cells::CurvedFamily::hexahedron: {
         // Not all sides of a 24-node hexahedron have nodes in their middles, nor all edges of a 16-node one, nor one
         // order those of different ones.
         const bool may_turn = turned && kind.type != 33 && kind.nodes != 16 && kind.degrees[0] == kind.degrees[2];
@@ -119,7 +119,7 @@ CellBlock warped_box(const Kind& kind, int n, const Warp& warp, const Field& fie
         });
         break;
       }
-      case CurvedFamily::wedge:
+      case cells::CurvedFamily::wedge:
         for (const bool upper : {false, true}) {
           std::array<glm::dvec2, 3> corner = {glm::dvec2(0, 0), glm::dvec2(1, upper ? 1 : 0),
                                               glm::dvec2(upper ? 0 : 1, 1)};
@@ -130,7 +130,7 @@ CellBlock warped_box(const Kind& kind, int n, const Warp& warp, const Field& fie
           });
         }
         break;
-      case CurvedFamily::pyramid:
+      case cells::CurvedFamily::pyramid:
         for (int side = 0; side < 6; ++side)  // base on a side of the cube, apex in its middle
           add([=](const glm::dvec3& x) {
             const double u = x.x + x.z / 2, v = x.y + x.z / 2, w = x.z / 2;
@@ -140,9 +140,10 @@ CellBlock warped_box(const Kind& kind, int n, const Warp& warp, const Field& fie
         break;
     }
   }
-  block.fields.push_back(field_of_values("f", "double", Association::point, 1, std::move(values)));
+  block.fields.push_back(cells::field_of_values("f", "double", Association::point, 1, std::move(values)));
   if (kind.degrees[0] > 0)
-    block.fields.push_back(field_of_values("HigherOrderDegrees", "double", Association::cell, 3, std::move(degrees)));
+    block.fields.push_back(
+        cells::field_of_values("HigherOrderDegrees", "double", Association::cell, 3, std::move(degrees)));
   return block;
 }
 

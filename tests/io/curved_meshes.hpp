@@ -27,12 +27,12 @@ using Field = std::function<double(const glm::dvec3&)>;
 using Warp = std::function<glm::dvec3(const glm::dvec3&)>;
 
 /// A node's place in its cell.
-glm::dvec3 place_of(const CurvedLattice& lattice, std::size_t node);
+glm::dvec3 place_of(const cells::CurvedLattice& lattice, std::size_t node);
 
 /// The unit cube as n^3 cubes of cells of one kind, then warped: field "f" at the nodes. Each cell is numbered from a
 /// corner of its own choice where `turned`. Every cell has points of its own, so that only positions tell that cells
 /// touch.
-CellBlock warped_box(const Kind& kind, int n, const Warp& warp, const Field& field, bool turned);
+cells::CellBlock warped_box(const Kind& kind, int n, const Warp& warp, const Field& field, bool turned);
 
 glm::dvec3 bent(const glm::dvec3& p);
 

@@ -30,7 +30,7 @@ double field_of_place(CellSpace space, const glm::dvec3& p) {
 }
 
 /// The integral over a shape by Gauss's rule on the cube that collapses into it.
-double integral_of(CurvedFamily shape, const std::function<double(const glm::dvec3&)>& density) {
+double integral_of(cells::CurvedFamily shape, const std::function<double(const glm::dvec3&)>& density) {
   static constexpr std::array<std::pair<double, double>, 5> rule = {{{0.0, 0.5688888888888889},
                                                                      {-0.5384693101056831, 0.47862867049936647},
                                                                      {0.5384693101056831, 0.47862867049936647},
@@ -43,10 +43,10 @@ double integral_of(CurvedFamily shape, const std::function<double(const glm::dve
         const double u = (1 + a) / 2, v = (1 + b) / 2, w = (1 + c) / 2;
         glm::dvec3 p(u, v, w);
         double factor = 1;
-        if (shape == CurvedFamily::wedge) p = {u * (1 - v), v, w}, factor = 1 - v;
-        if (shape == CurvedFamily::tet)
+        if (shape == cells::CurvedFamily::wedge) p = {u * (1 - v), v, w}, factor = 1 - v;
+        if (shape == cells::CurvedFamily::tet)
           p = {u * (1 - v) * (1 - w), v * (1 - w), w}, factor = (1 - v) * (1 - w) * (1 - w);
-        if (shape == CurvedFamily::pyramid) p = {u * (1 - w), v * (1 - w), w}, factor = (1 - w) * (1 - w);
+        if (shape == cells::CurvedFamily::pyramid) p = {u * (1 - w), v * (1 - w), w}, factor = (1 - w) * (1 - w);
         sum += wa * wb * wc / 8 * factor * density(p);
       }
   return sum;
@@ -56,7 +56,8 @@ double integral_of(CurvedFamily shape, const std::function<double(const glm::dve
 
 std::vector<glm::dvec3> places_of(const ReferenceCell& cell) {
   std::vector<glm::dvec3> places;
-  for (const LatticePlace& corner : corners_of(cell.shape)) places.emplace_back(corner[0], corner[1], corner[2]);
+  for (const cells::LatticePlace& corner : cells::corners_of(cell.shape))
+    places.emplace_back(corner[0], corner[1], corner[2]);
   for (const std::vector<int>& middle : cell.middles) {
     glm::dvec3 sum(0);
     for (const int corner : middle) sum += places[static_cast<std::size_t>(corner) - 1];
@@ -73,8 +74,8 @@ std::vector<int> near_first(const std::array<int, 4>& q) {
 }
 
 std::vector<int> near_corner_of_hexahedron(int corner) {
-  const auto corners = corners_of(CurvedFamily::hexahedron);
-  const LatticePlace& at = corners[static_cast<std::size_t>(corner) - 1];
+  const auto corners = cells::corners_of(cells::CurvedFamily::hexahedron);
+  const cells::LatticePlace& at = corners[static_cast<std::size_t>(corner) - 1];
   std::vector<int> list;
   for (std::size_t k = 0; k < 8; ++k) {
     int weight = 1;
@@ -91,7 +92,7 @@ BentCell bend(const ReferenceCell& cell, bool mirrored) {
   return bend_places(cell.shape, cell.space, places);
 }
 
-BentCell bend_places(CurvedFamily shape, CellSpace space, const std::vector<glm::dvec3>& places) {
+BentCell bend_places(cells::CurvedFamily shape, CellSpace space, const std::vector<glm::dvec3>& places) {
   BentCell bent{};
   for (const glm::dvec3& p : places) {
     bent.positions.push_back(bent_place(space, p));
@@ -122,14 +123,14 @@ double field_integral(const scene::TetMesh& mesh) {
   return sum;
 }
 
-MeshOptions coarse_options() {
-  MeshOptions options;
+cells::MeshOptions coarse_options() {
+  cells::MeshOptions options;
   options.field = "f";
   options.higher_order_tolerance = 2e-3;
   return options;
 }
 
-void expect_same(const MeshFile& read, const BentCell& cell, double count) {
+void expect_same(const cells::MeshFile& read, const BentCell& cell, double count) {
   // A node out of its place changes more than a hundredth; tets of the coarse tolerance less than half of that.
   EXPECT_NEAR(volume(read.mesh), count * cell.volume, 5e-3 * count * cell.volume);
   EXPECT_NEAR(field_integral(read.mesh), count * cell.integral, 5e-3 * count * std::abs(cell.integral));

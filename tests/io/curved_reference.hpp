@@ -19,7 +19,7 @@ enum class CellSpace : std::uint8_t { linear, quadratic_in_r_s, quadratic };
 /// the corners that a list names, counted from 1 as manuals do.
 struct ReferenceCell {
   std::string name;
-  CurvedFamily shape;
+  cells::CurvedFamily shape;
   std::vector<std::vector<int>> middles;
   CellSpace space = CellSpace::quadratic;
 };
@@ -42,7 +42,7 @@ std::vector<int> near_first(const std::array<int, 4>& quadrilateral);
 std::vector<int> near_corner_of_hexahedron(int corner);
 
 /// The same of nodes at places in (r, s, t).
-BentCell bend_places(CurvedFamily shape, CellSpace space, const std::vector<glm::dvec3>& places);
+BentCell bend_places(cells::CurvedFamily shape, CellSpace space, const std::vector<glm::dvec3>& places);
 
 /// Where the nodes are in (r, s, t) before it is bent.
 std::vector<glm::dvec3> places_of(const ReferenceCell& cell);
@@ -51,10 +51,10 @@ std::vector<glm::dvec3> places_of(const ReferenceCell& cell);
 double field_integral(const scene::TetMesh& mesh);
 
 /// Of a field "f": cells divided to 4e-4 of their size, which is quick.
-MeshOptions coarse_options();
+cells::MeshOptions coarse_options();
 
 /// That what was read has the volume and the integral, of a number of such cells, and that none is drawn by its
 /// corners.
-void expect_same(const MeshFile& read, const BentCell& cell, double count = 1);
+void expect_same(const cells::MeshFile& read, const BentCell& cell, double count = 1);
 
 }  // namespace tessera::io::testing

@@ -33,32 +33,32 @@ using testing::Warp;
 using testing::warped_box;
 
 /// A random point of a cell's own coordinates, in units.
-CellPlace random_place(CurvedFamily family, std::mt19937& random) {
-  std::uniform_int_distribution<std::int32_t> number(0, cell_unit);
+cells::CellPlace random_place(cells::CurvedFamily family, std::mt19937& random) {
+  std::uniform_int_distribution<std::int32_t> number(0, cells::cell_unit);
   for (;;) {
-    const CellPlace p = {number(random), number(random), number(random)};
+    const cells::CellPlace p = {number(random), number(random), number(random)};
     switch (family) {
-      case CurvedFamily::tet:
-        if (p[0] + p[1] + p[2] <= cell_unit) return p;
+      case cells::CurvedFamily::tet:
+        if (p[0] + p[1] + p[2] <= cells::cell_unit) return p;
         break;
-      case CurvedFamily::hexahedron:
+      case cells::CurvedFamily::hexahedron:
         return p;
-      case CurvedFamily::wedge:
-        if (p[0] + p[1] <= cell_unit) return p;
+      case cells::CurvedFamily::wedge:
+        if (p[0] + p[1] <= cells::cell_unit) return p;
         break;
-      case CurvedFamily::pyramid:
-        if (std::max(p[0], p[1]) + p[2] <= cell_unit) return p;
+      case cells::CurvedFamily::pyramid:
+        if (std::max(p[0], p[1]) + p[2] <= cells::cell_unit) return p;
         break;
     }
   }
 }
 
-TEST(CurvedCell, HasAllPolynomialsOfItsDegree) {
+TEST(cells::CurvedCell, HasAllPolynomialsOfItsDegree) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> coefficient(-1, 1);
   for (const Kind& kind : kinds) {
     SCOPED_TRACE(static_cast<int>(kind.type));
-    const auto lattice = curved_lattice(kind.type, kind.nodes, kind.degrees);
+    const auto lattice = cells::curved_lattice(kind.type, kind.nodes, kind.degrees);
     ASSERT_TRUE(lattice);
     std::vector<std::array<double, 4>> terms;  // powers of r, s, t and a factor
     for (int i = 0; i <= kind.degree; ++i)
@@ -77,12 +77,12 @@ TEST(CurvedCell, HasAllPolynomialsOfItsDegree) {
       positions.push_back(place_of(*lattice, k));
       values.push_back(f(positions.back()));
     }
-    CurvedCell cell;
+    cells::CurvedCell cell;
     cell.set(*lattice, positions, values);
     for (int n = 0; n < 50; ++n) {
-      const CellPlace place = random_place(lattice->family, random);
+      const cells::CellPlace place = random_place(lattice->family, random);
       const glm::dvec4 found = cell.at(place, 0);
-      const glm::dvec3 x = glm::dvec3(place[0], place[1], place[2]) / static_cast<double>(cell_unit);
+      const glm::dvec3 x = glm::dvec3(place[0], place[1], place[2]) / static_cast<double>(cells::cell_unit);
       EXPECT_NEAR(found.x, x.x, 1e-12);  // positions are the identity, a polynomial too
       EXPECT_NEAR(found.z, x.z, 1e-12);
       EXPECT_NEAR(found.w, f(x), 1e-11);
@@ -90,22 +90,22 @@ TEST(CurvedCell, HasAllPolynomialsOfItsDegree) {
   }
 }
 
-TEST(CurvedCell, HasItsNodesWhereTheLatticeSays) {
+TEST(cells::CurvedCell, HasItsNodesWhereTheLatticeSays) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> anywhere(-1, 1);
   for (const Kind& kind : kinds) {
     SCOPED_TRACE(static_cast<int>(kind.type));
-    const auto lattice = curved_lattice(kind.type, kind.nodes, kind.degrees);
+    const auto lattice = cells::curved_lattice(kind.type, kind.nodes, kind.degrees);
     ASSERT_TRUE(lattice);
     if (lattice->has_control_points) continue;
     std::vector<glm::dvec3> positions(kind.nodes);
     std::vector<double> values(kind.nodes);
     for (auto& p : positions) p = {anywhere(random), anywhere(random), anywhere(random)};
     for (double& v : values) v = anywhere(random);
-    CurvedCell cell;
+    cells::CurvedCell cell;
     cell.set(*lattice, positions, values);
     for (std::size_t k = 0; k < kind.nodes; ++k) {
-      CellPlace place;
+      cells::CellPlace place;
       bool is_whole = true;  // a third has no place in units
       for (std::size_t x = 0; x < 3; ++x) {
         const int steps = lattice->order[x] * lattice->refined;
@@ -119,25 +119,25 @@ TEST(CurvedCell, HasItsNodesWhereTheLatticeSays) {
 }
 
 // A place on a face, told by the face alone and by the whole cell: two ways to one number.
-TEST(CurvedCell, AgreesWithItselfOnFacesAndEdges) {
+TEST(cells::CurvedCell, AgreesWithItselfOnFacesAndEdges) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> anywhere(-1, 1);
   for (const Kind& kind : kinds) {
     SCOPED_TRACE(static_cast<int>(kind.type));
-    const auto lattice = curved_lattice(kind.type, kind.nodes, kind.degrees);
+    const auto lattice = cells::curved_lattice(kind.type, kind.nodes, kind.degrees);
     std::vector<glm::dvec3> positions(kind.nodes);
     std::vector<double> values(kind.nodes);
     for (auto& p : positions) p = {anywhere(random), anywhere(random), anywhere(random)};
     for (double& v : values) v = anywhere(random);
-    CurvedCell cell;
+    cells::CurvedCell cell;
     cell.set(*lattice, positions, values);
-    const std::size_t corners = corners_of(lattice->family).size();
+    const std::size_t corners = cells::corners_of(lattice->family).size();
     for (std::size_t a = 0; a < corners; ++a)
       for (std::size_t b = 0; b < a; ++b) {
         const unsigned shared = cell.faces_of_corner(a) & cell.faces_of_corner(b);
         if (shared == 0) continue;
-        const CellPlace p = cell.place_of_corner(a), q = cell.place_of_corner(b);
-        CellPlace at;
+        const cells::CellPlace p = cell.place_of_corner(a), q = cell.place_of_corner(b);
+        cells::CellPlace at;
         for (std::size_t x = 0; x < 3; ++x) at[x] = (3 * p[x] + q[x]) / 4;
         const glm::dvec4 alone = cell.at(at, shared), whole = cell.at(at, 0);
         for (int x = 0; x < 4; ++x) EXPECT_NEAR(alone[x], whole[x], 1e-12);
@@ -145,8 +145,8 @@ TEST(CurvedCell, AgreesWithItselfOnFacesAndEdges) {
   }
 }
 
-MeshOptions tolerance(double relative) {
-  MeshOptions options;
+cells::MeshOptions tolerance(double relative) {
+  cells::MeshOptions options;
   options.higher_order_tolerance = relative;
   options.field = "point:f";
   return options;
@@ -181,8 +181,8 @@ void expect_closed_ball(const scene::TetMesh& mesh) {
 /// Many tets a cell, few enough for sanitized builds.
 constexpr double coarse = 6e-2;
 
-void expect_one_ball(std::vector<CellBlock> blocks) {
-  const MeshFile file = assemble_mesh(std::move(blocks), tolerance(coarse), "mesh");
+void expect_one_ball(std::vector<cells::CellBlock> blocks) {
+  const cells::MeshFile file = cells::assemble_mesh(std::move(blocks), tolerance(coarse), "mesh");
   EXPECT_EQ(file.higher_order.by_corners, 0u);
   EXPECT_GT(file.higher_order.tets, file.higher_order.divided * 2);
   expect_closed_ball(file.mesh);
@@ -196,7 +196,8 @@ TEST(CurvedSplit, LeavesNoCracksWhateverTheNumbering) {
       for (const bool turned : {false, true}) {
         if (!some.next()) continue;
         SCOPED_TRACE(fmt::format("{}, {} nodes, {}{}", kind.type, kind.nodes, relative, turned ? ", turned" : ""));
-        const MeshFile file = assemble_mesh({warped_box(kind, 2, bent, wavy, turned)}, tolerance(relative), "mesh");
+        const cells::MeshFile file =
+            cells::assemble_mesh({warped_box(kind, 2, bent, wavy, turned)}, tolerance(relative), "mesh");
         EXPECT_EQ(file.higher_order.by_corners, 0u);
         EXPECT_GT(file.higher_order.tets, file.higher_order.divided * 2);
         EXPECT_LE(file.higher_order.position_error, relative * 2);
@@ -233,8 +234,8 @@ TEST(CurvedSplit, KeepsAFieldWithinItsBound) {
     for (const double relative : {1e-1, 1e-2, 4e-3}) {
       if (!some.next()) continue;
       SCOPED_TRACE(::testing::PrintToString(static_cast<int>(kind.type)) + " " + ::testing::PrintToString(relative));
-      const MeshFile file =
-          assemble_mesh({warped_box(kind, 1, straight, quadratic, true)}, tolerance(relative), "mesh");
+      const cells::MeshFile file =
+          cells::assemble_mesh({warped_box(kind, 1, straight, quadratic, true)}, tolerance(relative), "mesh");
       const double range = 4;  // -1 ... 2.5, nearly
       const double worst = worst_difference(file.mesh, quadratic, 4);
       EXPECT_LE(worst, file.higher_order.field_error + 1e-12);
@@ -250,7 +251,8 @@ TEST(CurvedSplit, KeepsALinearFieldOnCurvedCells) {
   const Field linear = [](const glm::dvec3& p) { return 1 + p.x - 2 * p.y + 3 * p.z; };
   for (const Kind& kind : kinds) {
     if (kind.type == 27 || kind.type == 31) continue;  // whose functions of a curved face are not all of its positions
-    const MeshFile file = assemble_mesh({warped_box(kind, 2, bent, linear, false)}, tolerance(4e-2), "mesh");
+    const cells::MeshFile file =
+        cells::assemble_mesh({warped_box(kind, 2, bent, linear, false)}, tolerance(4e-2), "mesh");
     EXPECT_LE(worst_difference(file.mesh, linear, 1), 1e-12) << static_cast<int>(kind.type) << " of " << kind.nodes;
     // Edges that are straight are not halved: tets around a point inside become thin, and their slopes round more.
     const bool has_straight_edges = kind.type == 71 && (kind.nodes == 5 || kind.nodes == 8);
@@ -263,7 +265,8 @@ TEST(CurvedSplit, NeedsMoreTetsForLessError) {
   const Field wavy = [](const glm::dvec3& p) { return std::sin(5 * p.x) + p.y; };
   std::uint64_t before = 0;
   for (const double relative : {1e-1, 3e-2, 1e-2, 3e-3}) {
-    const MeshFile file = assemble_mesh({warped_box(kinds[0], 2, bent, wavy, false)}, tolerance(relative), "mesh");
+    const cells::MeshFile file =
+        cells::assemble_mesh({warped_box(kinds[0], 2, bent, wavy, false)}, tolerance(relative), "mesh");
     EXPECT_GT(file.higher_order.tets, before);
     EXPECT_EQ(file.higher_order.tolerance, relative);
     before = file.higher_order.tets;
@@ -272,17 +275,17 @@ TEST(CurvedSplit, NeedsMoreTetsForLessError) {
 
 TEST(CurvedSplit, LoosensItsToleranceWhereThatTakesTooManyTets) {
   const Field wavy = [](const glm::dvec3& p) { return std::sin(5 * p.x) + p.y; };
-  MeshOptions options = tolerance(1e-6);
+  cells::MeshOptions options = tolerance(1e-6);
   options.higher_order_tets = 20000;
-  const MeshFile file = assemble_mesh({warped_box(kinds[4], 2, bent, wavy, false)}, options, "mesh");
+  const cells::MeshFile file = cells::assemble_mesh({warped_box(kinds[4], 2, bent, wavy, false)}, options, "mesh");
   EXPECT_GT(file.higher_order.tolerance, 1e-6);
   EXPECT_LE(file.higher_order.tets, 60000u) << "about so many, not three times";
   EXPECT_GE(file.higher_order.tets, 2000u) << "and not a tenth";
   options.higher_order_tets = 0;
-  const MeshFile corners = assemble_mesh({warped_box(kinds[4], 2, bent, wavy, false)}, options, "mesh");
+  const cells::MeshFile corners = cells::assemble_mesh({warped_box(kinds[4], 2, bent, wavy, false)}, options, "mesh");
   EXPECT_EQ(corners.higher_order.by_corners, 8u);
   EXPECT_EQ(corners.mesh.tets.size() % 8, 0u);
-  EXPECT_EQ(warnings_on_cells(corners.counts, corners.higher_order).size(), 1u);
+  EXPECT_EQ(cells::warnings_on_cells(corners.counts, corners.higher_order).size(), 1u);
 }
 
 TEST(CurvedSplit, FillsWhatTheCellsFill) {
@@ -294,7 +297,8 @@ TEST(CurvedSplit, FillsWhatTheCellsFill) {
     if (kind.degree < 2) continue;
     for (const double relative : {1e-2, 1e-3}) {
       if (!some.next()) continue;
-      const MeshFile file = assemble_mesh({warped_box(kind, 1, bend, one, false)}, tolerance(relative), "mesh");
+      const cells::MeshFile file =
+          cells::assemble_mesh({warped_box(kind, 1, bend, one, false)}, tolerance(relative), "mesh");
       // The surface, of 6.9, is nowhere off by more than that.
       EXPECT_NEAR(testing::volume(file.mesh), 1.32, 7 * file.higher_order.position_error);
       EXPECT_LE(file.higher_order.position_error, 2 * relative);  // the diagonal is 2
@@ -303,15 +307,15 @@ TEST(CurvedSplit, FillsWhatTheCellsFill) {
 }
 
 /// As a writer of rational cells adds them.
-void add_weights(CellBlock& block, const std::function<double(const glm::dvec3&)>& weight) {
+void add_weights(cells::CellBlock& block, const std::function<double(const glm::dvec3&)>& weight) {
   std::vector<double> weights;
   for (const glm::dvec3& p : block.positions) weights.push_back(weight(p));
   block.fields.push_back(
-      field_of_values("RationalWeights", "double", scene::Association::point, 1, std::move(weights)));
+      cells::field_of_values("RationalWeights", "double", scene::Association::point, 1, std::move(weights)));
 }
 
 /// A quarter of a tube of radii 1 and 2 and height 1, in one cell whose field is the height.
-CellBlock quarter_tube() {
+cells::CellBlock quarter_tube() {
   const Kind kind{79, 12, 1, {2, 1, 1}};
   const auto height = [](const glm::dvec3& p) { return p.z; };
   const Warp tube = [](const glm::dvec3& p) {
@@ -320,7 +324,7 @@ CellBlock quarter_tube() {
     const glm::dvec2 at = control[static_cast<int>(std::lround(2 * p.x))];
     return glm::dvec3(at.x, at.y, -p.z);  // as r, s, t turn
   };
-  CellBlock block = warped_box(kind, 1, tube, height, false);
+  cells::CellBlock block = warped_box(kind, 1, tube, height, false);
   add_weights(block, [](const glm::dvec3& p) { return p.x == p.y ? std::sqrt(0.5) : 1; });
   return block;
 }
@@ -329,7 +333,7 @@ TEST(CurvedSplit, DrawsTheCirclesOfRationalCells) {
   test::SomeCases some(3);
   for (const double relative : {1e-2, 1e-1, 1e-3}) {
     if (!some.next()) continue;
-    const MeshFile file = assemble_mesh({quarter_tube()}, tolerance(relative), "mesh");
+    const cells::MeshFile file = cells::assemble_mesh({quarter_tube()}, tolerance(relative), "mesh");
     EXPECT_EQ(file.higher_order.by_corners, 0u);
     const double error = file.higher_order.position_error;
     EXPECT_LE(error, relative * 3.01);  // the diagonal of the control points
@@ -363,7 +367,7 @@ TEST(CurvedSplit, LeavesNoCracksBetweenRationalCells) {
   for (const Kind& kind : kinds) {
     if (kind.type < 78) continue;
     SCOPED_TRACE(static_cast<int>(kind.type));
-    CellBlock block = warped_box(kind, 2, bent, wavy, true);
+    cells::CellBlock block = warped_box(kind, 2, bent, wavy, true);
     add_weights(block, [](const glm::dvec3& p) { return 1 + 0.5 * std::sin(7 * p.x + 3 * p.y - 5 * p.z); });
     expect_one_ball({std::move(block)});
   }
@@ -372,10 +376,11 @@ TEST(CurvedSplit, LeavesNoCracksBetweenRationalCells) {
 TEST(CurvedSplit, TakesEqualWeightsForNone) {
   const Field wavy = [](const glm::dvec3& p) { return std::sin(5 * p.x) + p.y; };
   const Kind kind{79, 27, 1, {2, 2, 2}};
-  const MeshFile without = assemble_mesh({warped_box(kind, 2, bent, wavy, true)}, tolerance(1e-2), "mesh");
-  CellBlock block = warped_box(kind, 2, bent, wavy, true);
+  const cells::MeshFile without =
+      cells::assemble_mesh({warped_box(kind, 2, bent, wavy, true)}, tolerance(1e-2), "mesh");
+  cells::CellBlock block = warped_box(kind, 2, bent, wavy, true);
   add_weights(block, [](const glm::dvec3&) { return 0.3; });
-  const MeshFile with = assemble_mesh({std::move(block)}, tolerance(1e-2), "mesh");
+  const cells::MeshFile with = cells::assemble_mesh({std::move(block)}, tolerance(1e-2), "mesh");
   EXPECT_EQ(with.mesh.tets, without.mesh.tets);
   EXPECT_EQ(with.mesh.positions, without.mesh.positions);
   EXPECT_EQ(with.mesh.scalars, without.mesh.scalars);
@@ -383,13 +388,13 @@ TEST(CurvedSplit, TakesEqualWeightsForNone) {
 
 TEST(CurvedSplit, DrawsCellsOfUnusableWeightsByTheirCornersAndSaysSo) {
   for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), 1e9}) {
-    CellBlock block = quarter_tube();
+    cells::CellBlock block = quarter_tube();
     bool is_first = true;
     block.fields.pop_back();
     add_weights(block, [&](const glm::dvec3&) { return std::exchange(is_first, false) ? bad : 1.0; });
-    const MeshFile file = assemble_mesh({std::move(block)}, tolerance(1e-2), "mesh");
+    const cells::MeshFile file = cells::assemble_mesh({std::move(block)}, tolerance(1e-2), "mesh");
     EXPECT_EQ(file.higher_order.by_corners, 1u) << bad;
-    EXPECT_EQ(warnings_on_cells(file.counts, file.higher_order).size(), 1u);
+    EXPECT_EQ(cells::warnings_on_cells(file.counts, file.higher_order).size(), 1u);
   }
 }
 
@@ -416,48 +421,49 @@ TEST(CurvedSplit, LeavesNoCracksBetweenKinds) {
 }
 
 /// Cubic tets of a cube, the nodes within the first face of so many of them moved through their cells.
-CellBlock folded_box(std::size_t folded, double by) {
-  CellBlock block = warped_box(
+cells::CellBlock folded_box(std::size_t folded, double by) {
+  cells::CellBlock block = warped_box(
       {71, 20, 3}, 2, bent, [](const glm::dvec3& p) { return p.x; }, false);
   for (std::size_t c = 0; c < folded; ++c) block.positions[block.connectivity[block.offsets[c] + 16]] += by;
   return block;
 }
 
 TEST(CurvedSplit, RefusesCellsThatTakeTetsWithoutEnd) {
-  MeshOptions options = tolerance(1e-5);
+  cells::MeshOptions options = tolerance(1e-5);
   options.higher_order_tets = 20000;
-  const auto planning = [](const auto&, const MeshOptions& o, const auto&...) {
-    return HigherOrderPlan{{{.position = o.higher_order_tolerance}, 5000}, o.higher_order_tolerance};
+  const auto planning = [](const auto&, const cells::MeshOptions& o, const auto&...) {
+    return cells::HigherOrderPlan{{{.position = o.higher_order_tolerance}, 5000}, o.higher_order_tolerance};
   };
-  test::expect_bad_input([&] { assemble_mesh({folded_box(1, 2)}, options, "mesh", planning); },
+  test::expect_bad_input([&] { cells::assemble_mesh({folded_box(1, 2)}, options, "mesh", planning); },
                          {"mesh: cell 0 takes more than 5000 tets", "`higher_order_tolerance`"});
-  MeshOptions remedy = options;
+  cells::MeshOptions remedy = options;
   remedy.higher_order_tolerance = 0.1;
-  EXPECT_NO_THROW(assemble_mesh({folded_box(1, 2)}, remedy, "mesh", planning));
+  EXPECT_NO_THROW(cells::assemble_mesh({folded_box(1, 2)}, remedy, "mesh", planning));
   // Few are tried out first.
-  const MeshFile file = assemble_mesh({folded_box(1, 2)}, options, "mesh");
+  const cells::MeshFile file = cells::assemble_mesh({folded_box(1, 2)}, options, "mesh");
   EXPECT_LE(file.higher_order.tets, 65536u + 64 * 48);
   EXPECT_GT(file.higher_order.tolerance, 1e-5);
 }
 
 TEST(CurvedSplit, TakesTheToleranceThatOneStronglyCurvedCellAllows) {
   // Values of 1 at the corners and 0 halfway, of one tet: more than a million tets at a ten-thousandth.
-  CellBlock block = warped_box(
+  cells::CellBlock block = warped_box(
       {24, 10, 2}, 1, bent, [](const glm::dvec3&) { return 0.0; }, false);
   block.types.resize(1), block.offsets.resize(2), block.connectivity.resize(10);
   std::vector<double> values(block.positions.size(), 0);
   for (std::size_t k = 0; k < 4; ++k) values[block.connectivity[k]] = 1;
-  block.fields = {field_of_values("f", "double", scene::Association::point, 1, std::move(values))};
-  const MeshFile file = assemble_mesh({std::move(block)}, tolerance(default_higher_order_tolerance), "mesh");
+  block.fields = {cells::field_of_values("f", "double", scene::Association::point, 1, std::move(values))};
+  const cells::MeshFile file =
+      cells::assemble_mesh({std::move(block)}, tolerance(default_higher_order_tolerance), "mesh");
   EXPECT_GT(file.higher_order.tolerance, default_higher_order_tolerance);
   EXPECT_GT(file.higher_order.tets, 10000u);
 }
 
 TEST(CurvedSplit, GivesOneCellTheFewerTetsTheLongerTheyTake) {
   const auto limit_of = [&](const Kind& kind, std::size_t limit) {
-    const CellBlock block = warped_box(
+    const cells::CellBlock block = warped_box(
         kind, 1, bent, [](const glm::dvec3&) { return 0.0; }, false);
-    return CurvedCells(block, block.positions, {}, scene::Association::point, {.tolerance = {}, .limit = limit})
+    return cells::CurvedCells(block, block.positions, {}, scene::Association::point, {.tolerance = {}, .limit = limit})
         .settings()
         .limit;
   };
@@ -468,13 +474,13 @@ TEST(CurvedSplit, GivesOneCellTheFewerTetsTheLongerTheyTake) {
 }
 
 TEST(CurvedSplit, RefusesMeshesThatTakeTetsWithoutEnd) {
-  const CellBlock block = warped_box(
+  const cells::CellBlock block = warped_box(
       kinds[0], 2, bent, [](const glm::dvec3& p) { return p.x; }, false);
   const auto tets_of = [&](std::size_t blocks, std::uint64_t all) {
     const auto planning = [&](const auto&...) {
-      return HigherOrderPlan{{{.position = 4e-4}, std::size_t{1} << 20, all}, 1e-4};
+      return cells::HigherOrderPlan{{{.position = 4e-4}, std::size_t{1} << 20, all}, 1e-4};
     };
-    return assemble_mesh(std::vector(blocks, block), tolerance(1e-4), "mesh", planning).higher_order.tets;
+    return cells::assemble_mesh(std::vector(blocks, block), tolerance(1e-4), "mesh", planning).higher_order.tets;
   };
   const std::uint64_t alone = tets_of(1, 1 << 20);
   ASSERT_GT(alone, 64 * block.types.size()) << "what each cell may become beside";
@@ -489,23 +495,24 @@ TEST(CurvedSplit, RefusesMeshesThatTakeTetsWithoutEnd) {
 }
 
 TEST(CurvedSplit, TakesNoMemoryOutOfProportionForADamagedNode) {
-  ExcessTally tally{};
-  EXPECT_EQ(usual_tets(tally), 1u << 18);
+  cells::ExcessTally tally{};
+  EXPECT_EQ(cells::usual_tets(tally), 1u << 18);
   tally[0] = 1000, tally[40] = 48;
-  EXPECT_EQ(usual_tets(tally), (1u << 18) + 2000) << "what a node pulls away counts not";
+  EXPECT_EQ(cells::usual_tets(tally), (1u << 18) + 2000) << "what a node pulls away counts not";
   tally[40] = 200;
-  EXPECT_EQ(usual_tets(tally), 1u << 21);
+  EXPECT_EQ(cells::usual_tets(tally), 1u << 21);
   tally[0] = 1 << 20;
-  EXPECT_EQ(usual_tets(tally), 4 * ((1u << 20) + 200)) << "a large mesh is divided too";
+  EXPECT_EQ(cells::usual_tets(tally), 4 * ((1u << 20) + 200)) << "a large mesh is divided too";
 
   const Field wavy = [](const glm::dvec3& p) { return std::sin(5 * p.x) + p.y; };
   for (const std::size_t kind : {0u, 4u}) {
     // A node within an edge is a thousand times as far away as the mesh is large.
-    CellBlock block = warped_box(kinds[kind], 1, bent, wavy, false);
+    cells::CellBlock block = warped_box(kinds[kind], 1, bent, wavy, false);
     block.positions[block.connectivity[kinds[kind].nodes / 2 + 2]].x += 1e3;
     std::uint64_t tets = 0;
     try {
-      tets = assemble_mesh({std::move(block)}, tolerance(default_higher_order_tolerance), "mesh").higher_order.tets;
+      tets =
+          cells::assemble_mesh({std::move(block)}, tolerance(default_higher_order_tolerance), "mesh").higher_order.tets;
     } catch (const Error& e) {
       EXPECT_NE(std::string(e.what()).find("more tets (`higher_order_tets`)"), std::string::npos) << e.what();
     }
@@ -514,10 +521,10 @@ TEST(CurvedSplit, TakesNoMemoryOutOfProportionForADamagedNode) {
 }
 
 TEST(CurvedSplit, DividesNoCellForDistancesThatAreNoNumbers) {
-  CellBlock block = warped_box(
+  cells::CellBlock block = warped_box(
       {24, 10, 2}, 1, bent, [](const glm::dvec3& p) { return p.x; }, false);
   block.positions[block.connectivity[4]].z = 1e308;  // whose square is not finite
-  const MeshFile file = assemble_mesh({std::move(block)}, tolerance(1e-2), "mesh");
+  const cells::MeshFile file = cells::assemble_mesh({std::move(block)}, tolerance(1e-2), "mesh");
   EXPECT_LT(file.higher_order.tets, 1000u);
   EXPECT_EQ(file.higher_order.position_error, std::numeric_limits<double>::infinity());
 }

@@ -24,8 +24,8 @@ using Lists = std::vector<std::vector<int>>;
 /// With what the format calls it.
 using Named = std::vector<std::pair<ReferenceCell, std::string>>;
 
-constexpr auto tet = CurvedFamily::tet, pyramid = CurvedFamily::pyramid, wedge = CurvedFamily::wedge,
-               hexahedron = CurvedFamily::hexahedron;
+constexpr auto tet = cells::CurvedFamily::tet, pyramid = cells::CurvedFamily::pyramid,
+               wedge = cells::CurvedFamily::wedge, hexahedron = cells::CurvedFamily::hexahedron;
 
 template <class... More>
 Lists together(Lists first, const More&... more) {
@@ -59,8 +59,8 @@ std::string numbers_to(std::size_t end, std::size_t first) {
 
 class CurvedText : public ::testing::Test {
  protected:
-  MeshFile read(const std::string& name, const std::string& text, const std::string& field = "f") const {
-    MeshOptions options = testing::coarse_options();
+  cells::MeshFile read(const std::string& name, const std::string& text, const std::string& field = "f") const {
+    cells::MeshOptions options = testing::coarse_options();
     options.field = field;
     return read_mesh(folder.write(name, text), options);
   }
@@ -153,7 +153,7 @@ TEST_F(CurvedText, OfEnSight6ANoteStatesThatCornersAreUsed) {
     geometry += fmt::format("part 1\ncell\n{}\n{:8}\n", is_quadratic ? "hexa20" : "hexa8", 1);
     for (std::size_t k = 1; k <= n; ++k) geometry += fmt::format("{:8}", k);
     folder.write("six.geo", geometry + "\n");
-    const MeshFile mesh = read("six.case", "FORMAT\ntype: ensight\nGEOMETRY\nmodel: six.geo\n", "");
+    const cells::MeshFile mesh = read("six.case", "FORMAT\ntype: ensight\nGEOMETRY\nmodel: six.geo\n", "");
     EXPECT_NEAR(testing::volume(mesh.mesh), 1, 1e-12);
     const bool is_noted = std::ranges::any_of(mesh.notes, [](const std::string& note) {
       return note.find("(hexa20) are drawn by their corners") != std::string::npos;
@@ -215,7 +215,7 @@ TEST_F(CurvedText, MeditHasItsVolume) {
   const BentCell bent = testing::bend(tet10);
   std::string text = "MeshVersionFormatted 2\nDimension 3\nVertices\n10\n";
   for (const glm::dvec3& p : bent.positions) text += fmt::format("{} {} {} 1\n", p.x, p.y, p.z);
-  const MeshFile mesh = read("a.mesh", text + "TetrahedraP2\n1\n1 2 3 4 5 6 7 8 9 10 1\nEnd\n", "");
+  const cells::MeshFile mesh = read("a.mesh", text + "TetrahedraP2\n1\n1 2 3 4 5 6 7 8 9 10 1\nEnd\n", "");
   EXPECT_NEAR(testing::volume(mesh.mesh), bent.volume, 5e-3 * bent.volume);
   EXPECT_EQ(mesh.higher_order.by_corners, 0u);
 }
@@ -244,9 +244,9 @@ TEST_F(CurvedText, IdeasParabolicElementsGoRoundFromCornerToMiddle) {
         std::tuple(hex20, 116, of_brick), std::tuple(hex20, 105, of_brick)}) {
     SCOPED_TRACE(type);
     const BentCell bent = testing::bend(cell);
-    MeshOptions options = testing::coarse_options();
+    cells::MeshOptions options = testing::coarse_options();
     options.field.clear();
-    const MeshFile read = read_mesh(folder.write("a.unv", universal(bent.positions, type, nodes)), options);
+    const cells::MeshFile read = read_mesh(folder.write("a.unv", universal(bent.positions, type, nodes)), options);
     EXPECT_NEAR(testing::volume(read.mesh), bent.volume, 5e-3 * bent.volume);
     EXPECT_EQ(read.higher_order.by_corners, 0u);
   }

@@ -22,7 +22,7 @@ using testing::BentCell;
 BentCell bent_lagrange(const std::array<int, 3>& degrees, bool is_old) {
   std::size_t nodes = 1;
   for (const int degree : degrees) nodes *= static_cast<std::size_t>(degree) + 1;
-  const auto lattice = curved_lattice(72, nodes, degrees);
+  const auto lattice = cells::curved_lattice(72, nodes, degrees);
   std::vector<glm::dvec3> places;
   for (std::size_t k = 0; k < nodes; ++k) places.push_back(lattice->place(k));
   if (is_old) {
@@ -33,7 +33,7 @@ BentCell bent_lagrange(const std::array<int, 3>& degrees, bool is_old) {
         if (p.x == 1 || p.x == 0) (p.x == 1 ? third : fourth).push_back(k);
     for (std::size_t k = 0; k < third.size(); ++k) std::swap(places[third[k]], places[fourth[k]]);
   }
-  return testing::bend_places(CurvedFamily::hexahedron, testing::CellSpace::quadratic, places);
+  return testing::bend_places(cells::CurvedFamily::hexahedron, testing::CellSpace::quadratic, places);
 }
 
 std::string array(const std::string& type, const std::string& name, int components, const std::string& numbers) {
@@ -68,7 +68,7 @@ std::string vtu(const std::string& version, const std::string& pieces) {
       version, pieces);
 }
 
-MeshFile read_text(const std::string& text) {
+cells::MeshFile read_text(const std::string& text) {
   const test::TemporaryFolder folder;
   return read_mesh(folder.write("a.vtu", text), testing::coarse_options());
 }

@@ -22,9 +22,9 @@ using scene::Association;
 
 /// The mesh of mixed cells, of volume 1.
 scene::TetMesh mixed_tets(bool own_points) {
-  std::vector<CellBlock> blocks;
+  std::vector<cells::CellBlock> blocks;
   blocks.push_back(testing::mixed_mesh(6, 7, own_points));
-  return assemble_mesh(std::move(blocks), {}, "mesh").mesh;
+  return cells::assemble_mesh(std::move(blocks), {}, "mesh").mesh;
 }
 
 /// The mesh and then again the cells that `again` says, with points of their own, every tet's corners and every cell's
@@ -64,7 +64,7 @@ TEST(DuplicateCells, AMeshWithoutHasNone) {
   for (const bool own_points : {false, true}) {
     scene::TetMesh mesh = mixed_tets(own_points);
     const std::size_t tets = mesh.tets.size();
-    EXPECT_EQ(find_duplicate_cells(mesh, true, 2), 0u);
+    EXPECT_EQ(cells::find_duplicate_cells(mesh, true, 2), 0u);
     EXPECT_EQ(mesh.tets.size(), tets);
   }
 }
@@ -80,12 +80,12 @@ TEST(DuplicateCells, AreFoundByTheirCornersAndDropped) {
     scene::TetMesh mesh = with_copies(once, some, 3);
     const std::size_t tets = mesh.tets.size();
     EXPECT_GT(tets, once.tets.size());
-    EXPECT_EQ(find_duplicate_cells(mesh, false, threads), expected);
+    EXPECT_EQ(cells::find_duplicate_cells(mesh, false, threads), expected);
     EXPECT_EQ(mesh.tets.size(), tets);
-    EXPECT_EQ(find_duplicate_cells(mesh, true, threads), expected);
+    EXPECT_EQ(cells::find_duplicate_cells(mesh, true, threads), expected);
     EXPECT_EQ(mesh.tets, once.tets) << "the first of equal cells stay";
     EXPECT_EQ(mesh.original_cell, once.original_cell);
-    EXPECT_EQ(find_duplicate_cells(mesh, true, threads), 0u);
+    EXPECT_EQ(cells::find_duplicate_cells(mesh, true, threads), 0u);
   }
 }
 
@@ -96,7 +96,7 @@ TEST(DuplicateCells, ATetThatIsPartOfAnotherCellIsNone) {
   while (mesh.cell_of(split) != mesh.cell_of(split + 1)) ++split;
   mesh.tets.push_back(mesh.tets[split]);
   mesh.original_cell.push_back(mesh.original_cell.back() + 1);
-  EXPECT_EQ(find_duplicate_cells(mesh, true, 1), 0u);
+  EXPECT_EQ(cells::find_duplicate_cells(mesh, true, 1), 0u);
 }
 
 TEST(DuplicateCells, ManyCopiesOfOneLeaveOne) {
@@ -107,7 +107,7 @@ TEST(DuplicateCells, ManyCopiesOfOneLeaveOne) {
     mesh.scalars.push_back(k);
   }
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  EXPECT_EQ(find_duplicate_cells(mesh, true, 2), 99999u);
+  EXPECT_EQ(cells::find_duplicate_cells(mesh, true, 2), 99999u);
   ASSERT_EQ(mesh.tets.size(), 1u);
   EXPECT_EQ(mesh.scalars, std::vector<double>{0});
   EXPECT_EQ(mesh.original_cell, std::vector<std::uint64_t>{0});
@@ -116,7 +116,7 @@ TEST(DuplicateCells, ManyCopiesOfOneLeaveOne) {
 class DuplicateFiles : public ::testing::Test {
  protected:
   /// A .pvtu of two pieces.
-  std::filesystem::path pieces(const CellBlock& first, const CellBlock& second) const {
+  std::filesystem::path pieces(const cells::CellBlock& first, const cells::CellBlock& second) const {
     folder.write("a.vtu", testing::vtu_text(first));
     folder.write("b.vtu", testing::vtu_text(second));
     return folder.write("m.pvtu", testing::pvtu_text(second, {"a.vtu", "b.vtu"}));
@@ -125,25 +125,25 @@ class DuplicateFiles : public ::testing::Test {
 };
 
 TEST_F(DuplicateFiles, ARepeatedPieceIsAWarningAndDrawnOnceIfAskedFor) {
-  const CellBlock block = testing::mixed_mesh(3, 5, false);
+  const cells::CellBlock block = testing::mixed_mesh(3, 5, false);
   const auto file = pieces(block, block);
   const std::uint64_t cells = block.types.size();
-  const MeshFile twice = read_mesh(file);
+  const cells::MeshFile twice = read_mesh(file);
   EXPECT_EQ(twice.counts.cells_duplicate, cells);
   EXPECT_NEAR(testing::volume(twice.mesh), 2, 1e-9);
-  const std::vector<std::string> warnings = warnings_on_cells(twice.counts, twice.higher_order);
+  const std::vector<std::string> warnings = cells::warnings_on_cells(twice.counts, twice.higher_order);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].find(std::to_string(cells) + " cells have the corners of other cells"), std::string::npos)
       << warnings[0];
   EXPECT_NE(warnings[0].find("`drop_duplicates`"), std::string::npos);
-  MeshOptions options;
+  cells::MeshOptions options;
   options.drop_duplicates = true;
-  const MeshFile once = read_mesh(file, options);
+  const cells::MeshFile once = read_mesh(file, options);
   EXPECT_EQ(once.counts.cells_duplicate, 0u);
   EXPECT_EQ(once.counts.duplicates_dropped, cells);
   EXPECT_EQ(once.counts.tets_made, once.mesh.tets.size());
   EXPECT_NEAR(testing::volume(once.mesh), 1, 1e-9);
-  EXPECT_TRUE(warnings_on_cells(once.counts, once.higher_order).empty());
+  EXPECT_TRUE(cells::warnings_on_cells(once.counts, once.higher_order).empty());
   EXPECT_TRUE(readable_in_parts(file, {}));
   EXPECT_FALSE(readable_in_parts(file, options)) << "two parts would each keep their copy";
   // The same of several files of one mesh, as a .pvd lists those of one time.
@@ -153,11 +153,11 @@ TEST_F(DuplicateFiles, ARepeatedPieceIsAWarningAndDrawnOnceIfAskedFor) {
 }
 
 TEST_F(DuplicateFiles, GhostCellsAreNotDuplicates) {
-  const CellBlock block = testing::mixed_mesh(3, 5, false);
-  CellBlock ghosts = testing::mixed_mesh(3, 5, false), own = testing::mixed_mesh(3, 5, false);
+  const cells::CellBlock block = testing::mixed_mesh(3, 5, false);
+  cells::CellBlock ghosts = testing::mixed_mesh(3, 5, false), own = testing::mixed_mesh(3, 5, false);
   ghosts.cell_ghost.assign(ghosts.types.size(), 1);
   own.cell_ghost.assign(own.types.size(), 0);
-  const MeshFile mesh = read_mesh(pieces(own, ghosts));
+  const cells::MeshFile mesh = read_mesh(pieces(own, ghosts));
   EXPECT_EQ(mesh.counts.cells_ghost, block.types.size());
   EXPECT_EQ(mesh.counts.cells_duplicate, 0u);
   EXPECT_NEAR(testing::volume(mesh.mesh), 1, 1e-9);
@@ -168,30 +168,30 @@ TEST_F(DuplicateFiles, GhostCellsAreNotDuplicates) {
       text.replace(at, 12, "vtkGhostLevels");
     folder.write(name, text);
   }
-  const MeshFile levels = read_mesh(folder / "m.pvtu");
+  const cells::MeshFile levels = read_mesh(folder / "m.pvtu");
   EXPECT_EQ(levels.counts.cells_ghost, block.types.size());
   EXPECT_NEAR(testing::volume(levels.mesh), 1, 1e-9);
 }
 
 TEST_F(DuplicateFiles, EveryDuplicateOfALargeMeshIsCounted) {
-  const auto assembled = [](const MeshOptions& options, bool repeated) {
-    std::vector<CellBlock> blocks;
+  const auto assembled = [](const cells::MeshOptions& options, bool repeated) {
+    std::vector<cells::CellBlock> blocks;
     blocks.push_back(testing::mixed_mesh(24, 5, false));
     blocks.push_back(testing::mixed_mesh(24, 5, false));
-    CellBlock& copy = blocks.back();  // of few cells
+    cells::CellBlock& copy = blocks.back();  // of few cells
     copy.types.resize(repeated ? 3 : 0);
     copy.offsets.resize(copy.types.size() + 1);
     copy.connectivity.resize(copy.offsets.back());
-    return assemble_mesh(std::move(blocks), options, "mesh");
+    return cells::assemble_mesh(std::move(blocks), options, "mesh");
   };
-  const MeshFile once = assembled({}, false);
+  const cells::MeshFile once = assembled({}, false);
   ASSERT_GT(once.mesh.tets.size(), 65536u);
   EXPECT_EQ(once.counts.cells_duplicate, 0u);
-  MeshOptions options;
+  cells::MeshOptions options;
   options.threads = 3;
   EXPECT_EQ(assembled(options, true).counts.cells_duplicate, 3u);
   options.drop_duplicates = true;
-  const MeshFile dropped = assembled(options, true);
+  const cells::MeshFile dropped = assembled(options, true);
   EXPECT_EQ(dropped.counts.duplicates_dropped, 3u);
   EXPECT_EQ(dropped.mesh.tets, once.mesh.tets);
 }
@@ -204,27 +204,27 @@ TEST_F(DuplicateFiles, KeysOfPartsGiveTheCountOfTheWhole) {
   const auto first = static_cast<std::ptrdiff_t>(once.tets.size());
   copies.tets.erase(copies.tets.begin(), copies.tets.begin() + first);
   copies.original_cell.erase(copies.original_cell.begin(), copies.original_cell.begin() + first);
-  std::vector<std::uint64_t> keys = duplicate_keys(once, 2);
-  EXPECT_EQ(count_repetitions(keys, 2), 0u);
-  const std::vector<std::uint64_t> others = duplicate_keys(copies, 1);
+  std::vector<std::uint64_t> keys = cells::duplicate_keys(once, 2);
+  EXPECT_EQ(cells::count_repetitions(keys, 2), 0u);
+  const std::vector<std::uint64_t> others = cells::duplicate_keys(copies, 1);
   scene::TetMesh counted = twice;
-  const std::uint64_t expected = find_duplicate_cells(counted, false, 2);
+  const std::uint64_t expected = cells::find_duplicate_cells(counted, false, 2);
   EXPECT_EQ(others.size(), expected);
   keys.insert(keys.end(), others.begin(), others.end());
-  EXPECT_EQ(count_repetitions(keys, 2), expected);
+  EXPECT_EQ(cells::count_repetitions(keys, 2), expected);
   keys.insert(keys.end(), others.begin(), others.end());
-  EXPECT_EQ(count_repetitions(keys, 3), 2 * expected);
+  EXPECT_EQ(cells::count_repetitions(keys, 3), 2 * expected);
 }
 
 TEST_F(DuplicateFiles, ABlankCopyIsNotDrawnAndNoDuplicate) {
-  std::vector<CellBlock> blocks;
+  std::vector<cells::CellBlock> blocks;
   blocks.push_back(testing::mixed_mesh(3, 5, false));
   blocks.push_back(testing::mixed_mesh(3, 5, false));
   blocks[0].name = "with", blocks[1].name = "without";
   blocks[1].fields.clear();
-  MeshOptions options;
+  cells::MeshOptions options;
   options.drop_duplicates = true;
-  const MeshFile mesh = assemble_mesh(std::move(blocks), options, "mesh");
+  const cells::MeshFile mesh = cells::assemble_mesh(std::move(blocks), options, "mesh");
   EXPECT_EQ(mesh.counts.duplicates_dropped, 0u);
   EXPECT_EQ(mesh.counts.cells_nan, mesh.counts.cells_read / 2);
   EXPECT_NEAR(testing::volume(mesh.mesh), 1, 1e-9);

@@ -111,13 +111,13 @@ class EnsightValues : public ::testing::Test {
     std::filesystem::resize_file(file, std::filesystem::file_size(file) - bytes);
   }
 
-  MeshFile read(const std::string& field = "") const {
-    MeshOptions options;
+  cells::MeshFile read(const std::string& field = "") const {
+    cells::MeshOptions options;
     options.field = field;
     return read_mesh(folder.path() / "a.case", options);
   }
 
-  static std::vector<std::string> left_out(const MeshFile& file) {
+  static std::vector<std::string> left_out(const cells::MeshFile& file) {
     std::vector<std::string> notes = file.notes;
     std::erase_if(notes, [](const std::string& note) { return note.find("is left out") == std::string::npos; });
     return notes;
@@ -132,7 +132,7 @@ TEST_F(EnsightValues, WholeFilesAreRead) {
     SCOPED_TRACE(static_cast<int>(layout));
     write_case(layout);
     for (const char* field : {"f", "v", "g"}) EXPECT_TRUE(left_out(read(field)).empty()) << field;
-    const MeshFile f = read("f");
+    const cells::MeshFile f = read("f");
     EXPECT_EQ(*std::ranges::max_element(f.mesh.scalars), 7);
     EXPECT_EQ(read("g").mesh.scalars.back(), 20);
   }
@@ -225,7 +225,7 @@ TEST_F(EnsightValues, PartsWithoutValuesAreBlankAndNamed) {
     SCOPED_TRACE(static_cast<int>(layout));
     write_case(layout);
     folder.write("a.f", Content(layout).line("f").part(2).line("coordinates").real({4, 5, 6, 7}).text);
-    const MeshFile file = read("f");
+    const cells::MeshFile file = read("f");
     EXPECT_EQ(file.mesh.tets.size(), 1u);
     EXPECT_EQ(std::ranges::count(file.notes,
                                  "f is blank in 1 of the case's parts, such as 'p1': a.f has no values for "
@@ -246,7 +246,7 @@ TEST_F(EnsightValues, CellsOfATypeWithoutValuesAreBlank) {
     geometry.line("tetra4").whole({1}).whole({1, 2, 3, 4}).line("pyramid5").whole({1}).whole({1, 2, 5, 3, 4});
     folder.write("a.geo", geometry.text);
     folder.write("a.g", Content(layout).line("g").part(1).line("tetra4").real({20}).text);
-    const MeshFile file = read("g");
+    const cells::MeshFile file = read("g");
     EXPECT_EQ(file.mesh.tets.size(), 1u);
     for (const float value : file.mesh.scalars) EXPECT_EQ(value, 20);
   }
@@ -265,7 +265,7 @@ TEST_F(EnsightValues, PartialAndUndefinedValuesCount) {
     v.line("v").part(1).line("coordinates undef").real({-9}).real(std::vector<float>(12, 1));
     folder.write("a.v", v.text);
     EXPECT_TRUE(left_out(read()).empty());
-    const MeshFile file = read("f");
+    const cells::MeshFile file = read("f");
     ASSERT_EQ(file.mesh.tets.size(), 1u);
     for (const std::uint32_t v : file.mesh.tets[0]) EXPECT_LE(file.mesh.scalars[v], 3);
     for (const char* name : {"a.f", "a.v"}) cut(name, layout == Layout::gold_binary ? 4 : 13);
@@ -371,10 +371,10 @@ class EnsightSteps : public EnsightValues {
   }
 
   float least_of_step(const std::string& field, std::size_t step) const {
-    MeshOptions options;
+    cells::MeshOptions options;
     options.field = field;
     options.time_step = step;
-    const MeshFile file = read_mesh(folder.path() / "a.case", options);
+    const cells::MeshFile file = read_mesh(folder.path() / "a.case", options);
     EXPECT_EQ(file.mesh.tets.size(), 2u);
     EXPECT_TRUE(left_out(file).empty());
     EXPECT_EQ(file.time_step.count, 3u);
@@ -430,7 +430,7 @@ TEST_F(EnsightSteps, TheFileOfAStepIsFoundByItsTimeAsFloat) {  // 0.7 as a float
   write_steps(Layout::gold_text, "");
   folder.write("a.f", steps[0] + steps[1] + steps[2]);
   std::filesystem::remove(folder.path() / "a.g05");
-  MeshOptions options;
+  cells::MeshOptions options;
   options.time_step = 1;
   const std::vector<std::string> notes = left_out(read_mesh(folder.path() / "a.case", options));
   ASSERT_EQ(notes.size(), 1u);

@@ -72,15 +72,15 @@ void write_cubes(const std::string& name, bool with_sets = false) {
 TEST(ExodusBlocks, AreReadByTheirNamesWithTheirValues) {
   const test::TemporaryFolder folder;
   write_cubes((folder / "a.exo").string());
-  const MeshFile all = read_mesh(folder / "a.exo");
+  const cells::MeshFile all = read_mesh(folder / "a.exo");
   EXPECT_EQ(all.blocks, (std::vector<std::string>{"steel", "block 8", "air"}));
   EXPECT_NEAR(testing::volume(all.mesh), 3, 1e-12);
-  MeshOptions options;
+  cells::MeshOptions options;
   options.field = "v";
   const std::array<const char*, 3> names = {"steel", "block 8", "air"};
   for (std::size_t b = 0; b < 3; ++b) {
     options.blocks = {names[b]};
-    const MeshFile one = read_mesh(folder / "a.exo", options);
+    const cells::MeshFile one = read_mesh(folder / "a.exo", options);
     EXPECT_EQ(one.blocks, all.blocks);
     EXPECT_EQ(one.counts.cells_read, 1u);
     EXPECT_NEAR(testing::volume(one.mesh), 1, 1e-12);
@@ -93,21 +93,21 @@ TEST(ExodusBlocks, AreReadByTheirNamesWithTheirValues) {
 TEST(ExodusBlocks, ElementSetsAreChosenLikeBlocks) {
   const test::TemporaryFolder folder;
   write_cubes((folder / "a.exo").string(), true);
-  const MeshFile all = read_mesh(folder / "a.exo");
+  const cells::MeshFile all = read_mesh(folder / "a.exo");
   EXPECT_EQ(all.blocks, (std::vector<std::string>{"steel", "ends", "element set 4"}));
   EXPECT_NEAR(testing::volume(all.mesh), 3, 1e-12);  // each cube once
-  MeshOptions options;
+  cells::MeshOptions options;
   options.field = std::string("v");
   const auto read = [&](const std::vector<std::string>& names) {
     options.blocks = names;
     return read_mesh(folder / "a.exo", options);
   };
-  const MeshFile ends = read({"ends"});
+  const cells::MeshFile ends = read({"ends"});
   EXPECT_EQ(ends.counts.cells_read, 2u);
   EXPECT_NEAR(testing::volume(ends.mesh), 2, 1e-12);
   std::set<double> values(ends.mesh.scalars.begin(), ends.mesh.scalars.end());
   EXPECT_EQ(values, (std::set<double>{0, 20}));
-  const MeshFile middle = read({"element set 4"});
+  const cells::MeshFile middle = read({"element set 4"});
   EXPECT_NEAR(testing::volume(middle.mesh), 1, 1e-12);
   values = {middle.mesh.scalars.begin(), middle.mesh.scalars.end()};
   EXPECT_EQ(values, std::set<double>{10});

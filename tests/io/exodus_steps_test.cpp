@@ -46,7 +46,7 @@ void write_cube(const std::filesystem::path& file, const std::vector<std::string
 }
 
 double volume_of(const std::filesystem::path& file, const std::optional<Warp>& warp = {}, std::size_t step = 2) {
-  MeshOptions options;
+  cells::MeshOptions options;
   options.warp = warp;
   options.time_step = step;
   return testing::volume(read_mesh(file, options).mesh);
@@ -58,7 +58,7 @@ TEST(ExodusSteps, AreAtTheirTimes) {
   const scene::TimeStepRead steps = time_steps_of_mesh(folder / "a.exo");
   EXPECT_EQ(steps.times, (std::vector<double>{0.5, 0.75, 4}));
   EXPECT_EQ(times_of(folder / "a.exo"), steps.times);
-  const MeshFile last = read_mesh(folder / "a.exo");
+  const cells::MeshFile last = read_mesh(folder / "a.exo");
   EXPECT_EQ(last.time_step.step, 2u);
   EXPECT_EQ(last.notes.front().substr(0, 28), "time step 2 of 0 to 2, time ") << last.notes.front();
   const Dataset first = Dataset::open(folder / "a.exo", {.time_step = 0});
@@ -71,7 +71,7 @@ TEST(ExodusSteps, MayBeHdf5BehindAUserBlock) {
   write_cube(folder / "a.exo", {"v_"}, EX_CLOBBER | EX_NETCDF4);
   for (const std::size_t block : {512u, 2048u}) {
     folder.write("b.exo", std::string(block, 'u') + test::contents(folder / "a.exo"));
-    const MeshFile file = read_mesh(folder / "b.exo");
+    const cells::MeshFile file = read_mesh(folder / "b.exo");
     EXPECT_EQ(file.counts.cells_read, 1u);
     EXPECT_EQ(file.time_step.times, (std::vector<double>{0.5, 0.75, 4}));
     EXPECT_EQ(file.mesh.scalars, read_mesh(folder / "a.exo").mesh.scalars);
@@ -115,18 +115,18 @@ TEST(ExodusSteps, PartsOfAVectorNeedNotBeNeighbours) {
       ex_put_var(id, 1, EX_NODAL, v, 1, 4, values.data());
     }
     EXPECT_EQ(ex_close(id), EX_NOERR);
-    MeshOptions still;
+    cells::MeshOptions still;
     still.warp = Warp{};
     std::vector<std::string> fields;
-    for (const FieldSummary& f : read_mesh(folder / "a.exo", still).fields)
+    for (const cells::FieldSummary& f : read_mesh(folder / "a.exo", still).fields)
       if (f.association == Association::point) fields.push_back(f.name + std::to_string(f.components));
     return fields;
   };
   using Names = std::vector<std::string>;
   EXPECT_EQ(fields_of({"disp_x", "T", "disp_y", "disp_z"}), (Names{"disp3", "T1"}));
-  MeshOptions moved;
+  cells::MeshOptions moved;
   moved.field = "disp:z";
-  const MeshFile read = read_mesh(folder / "a.exo", moved);
+  const cells::MeshFile read = read_mesh(folder / "a.exo", moved);
   EXPECT_EQ(read.mesh.scalars.front(), 4.5);
   EXPECT_NEAR(read.mesh.positions.front().y, 3.5, 1e-6);
   EXPECT_EQ(fields_of({"vZ", "p", "vY", "q", "vX"}), (Names{"v3", "p1", "q1"}));
@@ -191,10 +191,10 @@ TEST(ExodusSteps, WithoutFileSizeNodesHaveTheirValues) {
   const test::TemporaryFolder folder;
   write_as_meshio(folder / "a.e");
   for (const std::size_t step : {0u, 1u}) {
-    MeshOptions options;
+    cells::MeshOptions options;
     options.field = "T";
     options.time_step = step;
-    const MeshFile read = read_mesh(folder / "a.e", options);
+    const cells::MeshFile read = read_mesh(folder / "a.e", options);
     ASSERT_EQ(read.mesh.positions.size(), 4u);
     for (std::size_t k = 0; k < 4; ++k) {
       const glm::dvec3 p = read.mesh.positions[k];

@@ -10,7 +10,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace tessera;
   test::parse_or_refuse([&] {
     const io::PlySurface ply = io::parse_ply(std::string_view(reinterpret_cast<const char*>(data), size), "f");
-    for (const io::Facet& facet : ply.surface.facets)
+    for (const cells::Facet& facet : ply.surface.facets)
       for (const std::uint32_t v : facet.polygons.front()) test::require(v < ply.surface.points.size());
     test::require(ply.attribute_names.size() == ply.surface.attributes.size());
     for (const auto& values : ply.surface.attributes) test::require(values.size() == ply.surface.points.size());

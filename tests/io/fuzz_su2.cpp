@@ -9,7 +9,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tessera;
   test::parse_or_refuse([&] {
-    for (const io::CellBlock& block : io::parse_su2({reinterpret_cast<const char*>(data), size}, "f.su2")) {
+    for (const cells::CellBlock& block : io::parse_su2({reinterpret_cast<const char*>(data), size}, "f.su2")) {
       test::require(block.offsets.size() == block.types.size() + 1);
       test::require(block.offsets.back() == block.connectivity.size());
       for (std::size_t c = 0; c < block.types.size(); ++c) test::require(block.offsets[c] <= block.offsets[c + 1]);

@@ -12,16 +12,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view first = text.substr(0, text.find('\0'));
   const std::string_view second = text.substr(first.size() < size ? first.size() + 1 : size);
   test::parse_or_refuse([&] {
-    const io::CellBlock block = io::parse_node_ele(first, second, "f.node", "f.ele");
+    const cells::CellBlock block = io::parse_node_ele(first, second, "f.node", "f.ele");
     for (const std::uint32_t v : block.connectivity) test::require(v < block.positions.size());
     for (const scene::Tet& tet : block.tets)
       for (const std::uint32_t v : tet) test::require(v < block.positions.size());
   });
   for (const bool smesh : {false, true})
     test::parse_or_refuse([&] {
-      const io::Surface surface = io::parse_tetgen_surface(first, smesh, second, "f.poly", "f.node");
-      for (const io::Facet& facet : surface.facets)
-        for (const io::Polygon& polygon : facet.polygons)
+      const cells::Surface surface = io::parse_tetgen_surface(first, smesh, second, "f.poly", "f.node");
+      for (const cells::Facet& facet : surface.facets)
+        for (const cells::Polygon& polygon : facet.polygons)
           for (const std::uint32_t v : polygon) test::require(v < surface.points.size());
     });
   return 0;

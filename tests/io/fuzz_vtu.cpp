@@ -13,7 +13,7 @@
 
 namespace {
 
-void check(const tessera::io::CellBlock& block) {
+void check(const tessera::cells::CellBlock& block) {
   using tessera::test::require;
   if (!block.types.empty()) {
     require(block.offsets.size() == block.types.size() + 1);
@@ -23,7 +23,7 @@ void check(const tessera::io::CellBlock& block) {
   for (const std::uint32_t v : block.connectivity) require(v < block.positions.size());
   for (const auto& tet : block.tets)
     for (const std::uint32_t v : tet) require(v < block.positions.size());
-  for (const tessera::io::BlockField& field : block.fields) {
+  for (const tessera::cells::BlockField& field : block.fields) {
     const bool is_point = field.association == tessera::scene::Association::point;
     require(field.tuples == (is_point ? block.positions.size() : block.cell_count()));
     std::vector<double> values(field.tuples);
@@ -43,7 +43,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto opened = io::open_vtk_xml(file.path);
     if (!opened) return;
     std::vector<std::string> notes;
-    for (const io::CellBlock& block : io::blocks_of(*opened, notes, io::GridsAre::hexahedra)) check(block);
+    for (const cells::CellBlock& block : io::blocks_of(*opened, notes, io::GridsAre::hexahedra)) check(block);
   });
   return 0;
 }

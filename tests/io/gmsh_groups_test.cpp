@@ -19,9 +19,9 @@ class GmshGroups : public ::testing::Test {
   void SetUp() override {
     if (!has_reader(Reader::gmsh)) GTEST_SKIP() << "tessera-read-gmsh is not installed";
   }
-  MeshFile read(const std::string& text, const std::vector<std::string>& blocks = {},
-                const std::string& field = "") const {
-    MeshOptions options;
+  cells::MeshFile read(const std::string& text, const std::vector<std::string>& blocks = {},
+                       const std::string& field = "") const {
+    cells::MeshOptions options;
     options.blocks = blocks;
     options.field = field;
     return read_mesh(folder.write("a.msh", text), options);
@@ -101,7 +101,7 @@ std::string msh1() {
 
 TEST_F(GmshGroups, AnElementOfSeveralIsOneCellAndEachCanBeChosen) {
   for (const std::string& text : {msh2(listed_twice("1", "2")), binary_msh2()}) {
-    const MeshFile all = read(text);
+    const cells::MeshFile all = read(text);
     EXPECT_EQ(all.counts.cells_read, 2u);
     EXPECT_NEAR(testing::volume(all.mesh), corner + middle, 1e-12);
     EXPECT_EQ(all.blocks, (std::vector<std::string>{"left", "right", "all"}));
@@ -111,7 +111,7 @@ TEST_F(GmshGroups, AnElementOfSeveralIsOneCellAndEachCanBeChosen) {
     EXPECT_NEAR(volume_of(text, {"right", "all"}), corner + middle, 1e-12);
     test::expect_bad_input([&] { read(text, {"none"}); }, {"no block 'none'", "'left', 'right', 'all'"});
   }
-  const MeshFile first_version = read(msh1());
+  const cells::MeshFile first_version = read(msh1());
   EXPECT_EQ(first_version.counts.cells_read, 2u);
   EXPECT_EQ(first_version.blocks, (std::vector<std::string>{"group 1", "group 2", "group 3"}));
   EXPECT_NEAR(volume_of(msh1(), {"group 2"}), middle, 1e-12);
@@ -123,7 +123,7 @@ TEST_F(GmshGroups, AreTheElementsOwnWhereOneEntityHasAll) {
   EXPECT_NEAR(volume_of(text, {"left"}), corner, 1e-12);
   EXPECT_NEAR(volume_of(text, {"right"}), middle, 1e-12);
   // The smallest group colors a cell, whatever its number.
-  const MeshFile mesh = read(text, {}, "PhysicalGroupId");
+  const cells::MeshFile mesh = read(text, {}, "PhysicalGroupId");
   ASSERT_EQ(mesh.mesh.scalars.size(), 2u);
   EXPECT_EQ(std::min(mesh.mesh.scalars[0], mesh.mesh.scalars[1]), 1);
   EXPECT_EQ(std::max(mesh.mesh.scalars[0], mesh.mesh.scalars[1]), 2);
@@ -136,7 +136,7 @@ TEST_F(GmshGroups, WhatAGroupItselfListsTwiceStaysTwice) {
 
 TEST_F(GmshGroups, CellsOfNoneAreThere) {
   const std::string text = msh2({tet(1, "2 1 1", corner_nodes), tet(2, "2 0 2", middle_nodes)});
-  const MeshFile mesh = read(text);
+  const cells::MeshFile mesh = read(text);
   EXPECT_NEAR(testing::volume(mesh.mesh), corner + middle, 1e-12);
   EXPECT_EQ(mesh.counts.cells_nan, 0u);
   EXPECT_EQ(mesh.blocks, (std::vector<std::string>{"left", "no group"}));
@@ -146,7 +146,7 @@ TEST_F(GmshGroups, CellsOfNoneAreThere) {
 TEST_F(GmshGroups, AViewHasTheValueOfAnElementUnderAnyOfItsNumbers) {
   const std::string text =
       msh2(listed_twice("1", "2"), "$ElementData\n1\n\"c\"\n1\n0\n3\n0\n1\n2\n2 7\n3 9\n$EndElementData\n");
-  const MeshFile mesh = read(text, {}, "c");
+  const cells::MeshFile mesh = read(text, {}, "c");
   EXPECT_EQ(mesh.counts.cells_nan, 0u);
   std::vector<double> values = mesh.mesh.scalars;
   std::ranges::sort(values);
@@ -157,7 +157,7 @@ TEST_F(GmshGroups, PartitionsAreBlocksAndTheirGhostsAreNotDrawn) {
   // 2.2: the first partition has the element, those below 0 have it as a ghost.
   for (const std::string& text :
        {msh2({tet(1, "5 1 1 2 1 -2", corner_nodes), tet(2, "5 2 2 2 2 -1", middle_nodes)}), binary_msh2(true)}) {
-    const MeshFile mesh = read(text);
+    const cells::MeshFile mesh = read(text);
     EXPECT_EQ(mesh.counts.cells_read, 2u);
     EXPECT_EQ(mesh.blocks, (std::vector<std::string>{"left", "right", "partition 1", "partition 2"}));
     EXPECT_NEAR(volume_of(text, {"partition 2"}), middle, 1e-12);
@@ -172,7 +172,7 @@ TEST_F(GmshGroups, PartitionsAreBlocksAndTheirGhostsAreNotDrawn) {
   later +=
       "$EndNodes\n$Elements\n2 2 1 2\n3 2 4 1\n1 1 2 3 4\n3 3 4 1\n2 2 3 4 5\n$EndElements\n"
       "$GhostElements\n2\n1 1 1 2\n2 2 1 1\n$EndGhostElements\n";
-  const MeshFile partitioned = read(later);
+  const cells::MeshFile partitioned = read(later);
   EXPECT_EQ(partitioned.counts.cells_read, 2u);
   EXPECT_NEAR(testing::volume(partitioned.mesh), corner + middle, 1e-12);
   EXPECT_EQ(partitioned.blocks, (std::vector<std::string>{"partition 1", "partition 2"}));
@@ -188,11 +188,11 @@ TEST_F(GmshGroups, ViewsHaveNamesWithoutQuotesToo) {
   };
   const std::string text = msh2(elements, view("centre", 10) + view(" my field\t", 20) + view("\"quoted\"", 30));
   for (const auto& [name, low] : {std::pair("centre", 10), std::pair("my field", 20), std::pair("quoted", 30)}) {
-    const MeshFile mesh = read(text, {}, name);
+    const cells::MeshFile mesh = read(text, {}, name);
     EXPECT_EQ(*std::ranges::min_element(mesh.mesh.scalars), low) << name;
     EXPECT_EQ(*std::ranges::max_element(mesh.mesh.scalars), low + 1) << name;
   }
-  const MeshFile nameless = read(msh2(elements, view("\"\"", 40)));
+  const cells::MeshFile nameless = read(msh2(elements, view("\"\"", 40)));
   EXPECT_EQ(nameless.mesh.field_name, "view 1");
   EXPECT_EQ(*std::ranges::max_element(nameless.mesh.scalars), 41);
 }

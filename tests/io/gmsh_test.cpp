@@ -142,7 +142,7 @@ class Gmsh : public ::testing::Test {
 };
 
 /// Both cubes with the field as it is given.
-void expect_cubes(const MeshFile& read, double factor) {
+void expect_cubes(const cells::MeshFile& read, double factor) {
   EXPECT_NEAR(testing::volume(read.mesh), 2, 1e-12);
   EXPECT_EQ(read.counts.cells_read, 2u);
   ASSERT_EQ(read.mesh.scalars.size(), read.mesh.positions.size());
@@ -159,15 +159,15 @@ TEST_F(Gmsh, EveryVersionGivesTheSameCellsAndField) {
 
 TEST_F(Gmsh, PhysicalGroupsAreBlocksAndAField) {
   for (const std::string& text : {msh2(""), msh4("")}) {
-    const MeshBlocks read = read_by_gmsh(folder.write("a.msh", text), "gmsh", {});
+    const cells::MeshBlocks read = read_by_gmsh(folder.write("a.msh", text), "gmsh", {});
     ASSERT_EQ(read.blocks.size(), 2u);
     EXPECT_EQ(read.blocks[0].name, "left");
     EXPECT_EQ(read.blocks[1].name, "right");
     EXPECT_EQ(read.blocks[1].positions.size(), 8u);
-    MeshOptions options;
+    cells::MeshOptions options;
     options.blocks = {"right"};
     EXPECT_NEAR(testing::volume(read_mesh(folder / "a.msh", options).mesh), 1, 1e-12);
-    const MeshFile mesh = read_mesh(folder / "a.msh");
+    const cells::MeshFile mesh = read_mesh(folder / "a.msh");
     EXPECT_EQ(mesh.mesh.field_name, "PhysicalGroupId");
     for (std::size_t t = 0; t < mesh.mesh.tets.size(); ++t) {
       const bool right =
@@ -179,7 +179,7 @@ TEST_F(Gmsh, PhysicalGroupsAreBlocksAndAField) {
 
 TEST_F(Gmsh, TimeStepsOfAFieldCountFrom0WhateverTheFileCountsFrom) {
   const auto file = folder.write("a.msh", msh2(node_data("f", 1, 1) + node_data("f", 2, 10) + node_data("f", 3, 100)));
-  MeshOptions options;
+  cells::MeshOptions options;
   expect_cubes(read_mesh(file), 100);
   options.time_step = 1;
   expect_cubes(read_mesh(file, options), 10);
@@ -197,13 +197,13 @@ TEST_F(Gmsh, FieldsOfCellsAndOfCellsNodesKeepTheirJumps) {
     data += "\n";
   }
   const auto file = folder.write("a.msh", msh4(data + "$EndElementNodeData\n"));
-  MeshOptions options;
+  cells::MeshOptions options;
   options.field = "c";
-  const MeshFile cells = read_mesh(file, options);
+  const cells::MeshFile cells = read_mesh(file, options);
   EXPECT_EQ(*std::ranges::max_element(cells.mesh.scalars), 4.5);
   EXPECT_EQ(*std::ranges::min_element(cells.mesh.scalars), -1);
   options.field = "jump";
-  const MeshFile jump = read_mesh(file, options);
+  const cells::MeshFile jump = read_mesh(file, options);
   std::size_t on_face = 0;
   for (const scene::Tet& tet : jump.mesh.tets) {
     const bool right = std::ranges::any_of(tet, [&](std::uint32_t v) { return jump.mesh.positions[v].x > 1.5; });
@@ -219,7 +219,7 @@ TEST_F(Gmsh, FieldsOfCellsAndOfCellsNodesKeepTheirJumps) {
 TEST_F(Gmsh, AFieldOfSomeNodesLeavesTheOtherCellsBlank) {
   std::string data = "$NodeData\n1\n\"f\"\n1\n0\n3\n0\n1\n8\n";
   for (const int v : cube_corners[0]) data += fmt::format("{} {}\n", tag_of(v), v);
-  const MeshFile read = read_mesh(folder.write("a.msh", msh2(data + "$EndNodeData\n")));
+  const cells::MeshFile read = read_mesh(folder.write("a.msh", msh2(data + "$EndNodeData\n")));
   EXPECT_EQ(read.mesh.field_name, "f");
   EXPECT_NEAR(testing::volume(read.mesh), 1, 1e-12);
   EXPECT_EQ(read.counts.cells_nan, 1u);
@@ -237,7 +237,7 @@ std::string one_cell(int type, const Points& places) {
 }
 
 /// The points of a block's first cell in its order.
-Points cell_points(const CellBlock& block) {
+Points cell_points(const cells::CellBlock& block) {
   Points points;
   for (const std::uint32_t v : block.connectivity) points.push_back(block.positions[v]);
   return points;
@@ -281,7 +281,7 @@ TEST_F(Gmsh, SecondOrderNodesComeInVtksOrder) {
   };
   for (const Case& c : cases) {
     const auto file = folder.write("a.msh", one_cell(c.gmsh, with_middles(c.corners, c.theirs)));
-    const MeshBlocks read = read_by_gmsh(file, "gmsh", {});
+    const cells::MeshBlocks read = read_by_gmsh(file, "gmsh", {});
     ASSERT_EQ(read.blocks.size(), 1u);
     ASSERT_EQ(read.blocks[0].types.size(), 1u);
     EXPECT_EQ(read.blocks[0].types[0], c.vtk);
@@ -303,7 +303,7 @@ TEST_F(Gmsh, ThirdOrderTetrahedraComeInVtksOrder) {
       with_thirds({{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 2}, {3, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {3, 1, 2}});
   const Points vtks =
       with_thirds({{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}, {{0, 1, 3}, {1, 2, 3}, {0, 2, 3}, {0, 1, 2}});
-  const MeshBlocks read = read_by_gmsh(folder.write("a.msh", one_cell(29, theirs)), "gmsh", {});
+  const cells::MeshBlocks read = read_by_gmsh(folder.write("a.msh", one_cell(29, theirs)), "gmsh", {});
   ASSERT_EQ(read.blocks.size(), 1u);
   EXPECT_EQ(read.blocks[0].types[0], 71);
   EXPECT_EQ(cell_points(read.blocks[0]), vtks);
@@ -321,7 +321,7 @@ TEST_F(Gmsh, ThirdOrderHexahedraComeInVtksOrder) {
   thirds(vtks, {{0, 1}, {1, 2}, {3, 2}, {0, 3}, {4, 5}, {5, 6}, {7, 6}, {4, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}});
   // Only where the edges' nodes go is looked at here: those of faces and inside may lie anywhere.
   for (int k = 0; k < 32; ++k) theirs.emplace_back(1.5, 1.5, 1.5 + 0.01 * k);
-  const MeshBlocks read = read_by_gmsh(folder.write("a.msh", one_cell(92, theirs)), "gmsh", {});
+  const cells::MeshBlocks read = read_by_gmsh(folder.write("a.msh", one_cell(92, theirs)), "gmsh", {});
   ASSERT_EQ(read.blocks.size(), 1u);
   EXPECT_EQ(read.blocks[0].types[0], 72);
   Points points = cell_points(read.blocks[0]);
@@ -335,7 +335,7 @@ TEST_F(Gmsh, CompleteQuadraticPyramidsComeInLagrangesOrder) {
   Points theirs = with_middles(corners, {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 4}, {2, 3}, {2, 4}, {3, 4}});
   Points ours = with_middles(corners, {{0, 1}, {1, 2}, {3, 2}, {0, 3}, {0, 4}, {1, 4}, {2, 4}, {3, 4}});
   theirs.emplace_back(1, 1.5, 0.25), ours.emplace_back(1, 1.5, 0.25);
-  const MeshBlocks read = read_by_gmsh(folder.write("a.msh", one_cell(14, theirs)), "gmsh", {});
+  const cells::MeshBlocks read = read_by_gmsh(folder.write("a.msh", one_cell(14, theirs)), "gmsh", {});
   ASSERT_EQ(read.blocks.size(), 1u);
   EXPECT_EQ(read.blocks[0].types[0], 74);
   EXPECT_EQ(cell_points(read.blocks[0]), ours);
@@ -354,7 +354,7 @@ TEST_F(Gmsh, ThirdOrderPrismsComeInVtksOrder) {
                        {0, 2, 3}, {0, 1, 3}, {0, 0, 1}, {0, 0, 2}, {3, 0, 1}, {3, 0, 2}, {0, 3, 1}, {0, 3, 2},
                        {1, 1, 0}, {1, 1, 3}, {1, 0, 1}, {2, 0, 1}, {1, 0, 2}, {2, 0, 2}, {2, 1, 1}, {1, 2, 1},
                        {2, 1, 2}, {1, 2, 2}, {0, 2, 1}, {0, 1, 1}, {0, 2, 2}, {0, 1, 2}, {1, 1, 1}, {1, 1, 2}};
-  const MeshBlocks read = read_by_gmsh(folder.write("a.msh", one_cell(90, theirs)), "gmsh", {});
+  const cells::MeshBlocks read = read_by_gmsh(folder.write("a.msh", one_cell(90, theirs)), "gmsh", {});
   ASSERT_EQ(read.blocks.size(), 1u);
   EXPECT_EQ(read.blocks[0].types[0], 73);
   EXPECT_EQ(cell_points(read.blocks[0]), vtks);

@@ -70,11 +70,11 @@ class Hdf5References : public ::testing::Test {
 
 TEST_F(Hdf5References, BesideTheFileAreFollowed) {
   EXPECT_NEAR(testing::volume(read_mesh(linked("a.vtkhdf", "tets.vtkhdf")).mesh), 4.0 / 6, 1e-12);
-  MeshOptions options;
+  cells::MeshOptions options;
   options.field = "g";
-  const MeshFile read = read_mesh(with_virtual_field("v.vtkhdf", "tets.vtkhdf", "/VTKHDF/PointData/f"), options);
+  const cells::MeshFile read = read_mesh(with_virtual_field("v.vtkhdf", "tets.vtkhdf", "/VTKHDF/PointData/f"), options);
   EXPECT_EQ(read.mesh.scalars.size(), 5u);
-  const MeshFile own = read_mesh(with_virtual_field("w.vtkhdf", ".", "/VTKHDF/PointData/f"), options);
+  const cells::MeshFile own = read_mesh(with_virtual_field("w.vtkhdf", ".", "/VTKHDF/PointData/f"), options);
   EXPECT_EQ(own.mesh.scalars, read.mesh.scalars);
 }
 

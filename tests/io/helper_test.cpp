@@ -129,9 +129,9 @@ TEST(Helper, TellsHowFarItIs) {
   text.insert(text.find(element + ">") + element.size(), " TimeValues=\"0\"");  // VTK's reader alone knows them
   const auto file = folder.write("m.vtu", text);
   std::vector<ReadProgress> heard;
-  MeshOptions options;
+  cells::MeshOptions options;
   options.progress = [&](const ReadProgress& progress) { heard.push_back(progress); };
-  const MeshFile mesh = read_mesh(file, options);
+  const cells::MeshFile mesh = read_mesh(file, options);
   EXPECT_GT(mesh.mesh.positions.size(), 100000u);
   std::size_t reading = 0;
   for (std::size_t k = 0; k < heard.size(); ++k) {

@@ -44,9 +44,9 @@ TEST(HyperTrees, CellsAreThoseOfTheLeavesWithTheirValues) {
           scene.is_masked = is_masked;
           const auto file =
               folder.write("t.htg", htg_text(scene, wavy, {.version = version, .transposed = transposed}));
-          MeshOptions options;
+          cells::MeshOptions options;
           options.field = field;
-          const MeshFile read = read_mesh(file, options);
+          const cells::MeshFile read = read_mesh(file, options);
           scene::validate(read.mesh, "trees");
           const std::vector<TreeCell> leaves = scene.leaves();
           EXPECT_EQ(read.counts.cells_read, leaves.size());
@@ -71,14 +71,14 @@ TEST(HyperTrees, CellsAreThoseOfTheLeavesWithTheirValues) {
 
 TEST(HyperTrees, SmoothedTheyAreContinuousAcrossLevelsAndLinearInside) {
   const test::TemporaryFolder folder;
-  MeshOptions options;
+  cells::MeshOptions options;
   options.smooth = true;
   options.field = std::string("f");
   for (const auto& axes : {even, uneven})
     for (const int branching : {2, 3})
       for (const auto& at : {linear, wavy}) {
         const TreeScene scene = deep(axes, branching);
-        const MeshFile read = read_mesh(folder.write("t.htg", htg_text(scene, at)), options);
+        const cells::MeshFile read = read_mesh(folder.write("t.htg", htg_text(scene, at)), options);
         scene::validate(read.mesh, "trees");
         ASSERT_EQ(read.mesh.association, scene::Association::point);
         expect_conforming(read.mesh, scene.sides());
@@ -124,10 +124,10 @@ TEST(HyperTrees, PiecesAreOneGridAndGhostsAreLeftOut) {
       "<Piece Source=\"p1.htg\"/></PHyperTreeGrid></VTKFile>";
   const auto pieces = folder.write("p.phtg", list), whole = folder.write("whole.htg", htg_text(scene, wavy));
   for (const bool smooth : {false, true}) {
-    MeshOptions options;
+    cells::MeshOptions options;
     options.smooth = smooth;
     options.field = std::string("f");
-    const MeshFile a = read_mesh(pieces, options), b = read_mesh(whole, options);
+    const cells::MeshFile a = read_mesh(pieces, options), b = read_mesh(whole, options);
     EXPECT_EQ(a.counts.cells_read, b.counts.cells_read);
     EXPECT_NEAR(volume(a.mesh), volume(b.mesh), 1e-12 * volume(b.mesh));
     std::vector<double> x(a.mesh.scalars.begin(), a.mesh.scalars.end()),

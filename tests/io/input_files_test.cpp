@@ -149,7 +149,7 @@ TEST(InputFiles, ShortenedBeforeTheyAreReadIsAnError) {
   const OpenedAmr amr = open_amrex(plot);
   for (const auto& entry : std::filesystem::recursive_directory_iterator(plot))
     if (entry.path().filename().string().starts_with("Cell_D")) std::filesystem::resize_file(entry.path(), 200);
-  const BlockField& field = amr.fields.front().fields.front();
+  const cells::BlockField& field = amr.fields.front().fields.front();
   std::vector<double> values(field.tuples);
   expect_failure([&] { field.read(0, 0, values); }, "AMReX");
 }

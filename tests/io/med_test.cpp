@@ -108,9 +108,9 @@ TEST(Med, CylinderCoordinatesAreTurnedToXyz) {
 TEST(Med, CellsAndFieldsAreRead) {
   const test::TemporaryFolder folder;
   write_bar((folder / "bar.med").string());
-  MeshOptions options;
+  cells::MeshOptions options;
   options.field = "t";
-  const MeshFile mesh = read_mesh(folder / "bar.med", options);
+  const cells::MeshFile mesh = read_mesh(folder / "bar.med", options);
   EXPECT_EQ(mesh.format, "MED");
   EXPECT_EQ(mesh.counts.cells_read, 3u);  // the triangle is none of volume
   EXPECT_NEAR(testing::volume(mesh.mesh), 1 + 1.0 / 6 + 1, 1e-12);
@@ -119,7 +119,7 @@ TEST(Med, CellsAndFieldsAreRead) {
     EXPECT_EQ(mesh.mesh.scalars[v], 10 * (p.x + 2 * p.y + 3 * p.z));
   }
   options.time_step = 0;
-  const MeshFile first = read_mesh(folder / "bar.med", options);
+  const cells::MeshFile first = read_mesh(folder / "bar.med", options);
   EXPECT_EQ(*std::ranges::max_element(first.mesh.scalars), 0.5 + 1 + 12);
   options.time_step = 2;
   test::expect_bad_input([&] { read_mesh(folder / "bar.med", options); }, {"bar.med: there is no time step 2"});
@@ -128,9 +128,9 @@ TEST(Med, CellsAndFieldsAreRead) {
 TEST(Med, WhatAFieldHasNoValueForIsBlank) {
   const test::TemporaryFolder folder;
   write_bar((folder / "bar.med").string());
-  MeshOptions options;
+  cells::MeshOptions options;
   options.field = "p";
-  const MeshFile cells = read_mesh(folder / "bar.med", options);
+  const cells::MeshFile cells = read_mesh(folder / "bar.med", options);
   EXPECT_NEAR(testing::volume(cells.mesh), 1 + 1.0 / 6, 1e-12);  // the pyramid has none
   for (std::size_t t = 0; t < cells.mesh.tets.size(); ++t) {
     const bool of_tet = cells.mesh.positions[cells.mesh.tets[t][0]].x + cells.mesh.positions[cells.mesh.tets[t][1]].x +
@@ -140,7 +140,7 @@ TEST(Med, WhatAFieldHasNoValueForIsBlank) {
     EXPECT_EQ(cells.mesh.scalars[t], of_tet ? 6 : 5);
   }
   // Two of twelve nodes have a vector, by a profile.
-  const auto u = std::ranges::find(cells.fields, "u", &FieldSummary::name);
+  const auto u = std::ranges::find(cells.fields, "u", &cells::FieldSummary::name);
   ASSERT_NE(u, cells.fields.end());
   EXPECT_EQ(u->low, 5);
   EXPECT_EQ(u->high, 7);
@@ -184,8 +184,8 @@ TEST(Med, CellsOfSecondOrderHaveTheirVolumeAndTheirField) {
   hexahedron27.insert(
       hexahedron27.end(),
       {{1, 2, 3, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 4, 8, 7}, {1, 4, 8, 5}, {5, 6, 7, 8}, {1, 2, 3, 4, 5, 6, 7, 8}});
-  constexpr auto tet = CurvedFamily::tet, pyramid = CurvedFamily::pyramid, wedge = CurvedFamily::wedge,
-                 hexahedron = CurvedFamily::hexahedron;
+  constexpr auto tet = cells::CurvedFamily::tet, pyramid = cells::CurvedFamily::pyramid,
+                 wedge = cells::CurvedFamily::wedge, hexahedron = cells::CurvedFamily::hexahedron;
   const std::vector<std::pair<testing::ReferenceCell, med_geometry_type>> cells = {
       {{"TETRA10", tet, tet10}, MED_TETRA10},
       {{"PYRA13", pyramid, pyramid13, testing::CellSpace::linear}, MED_PYRA13},
@@ -194,7 +194,7 @@ TEST(Med, CellsOfSecondOrderHaveTheirVolumeAndTheirField) {
       {{"HEXA20", hexahedron, hexahedron20}, MED_HEXA20},
       {{"HEXA27", hexahedron, hexahedron27}, MED_HEXA27}};
   const test::TemporaryFolder folder;
-  const MeshOptions options = testing::coarse_options();
+  const cells::MeshOptions options = testing::coarse_options();
   for (const auto& [cell, kind] : cells) {
     SCOPED_TRACE(cell.name);
     const testing::BentCell bent = testing::bend(cell, true);
@@ -266,7 +266,7 @@ void write_version_2(const std::string& name) {
 TEST(Med, VersionTwoIsRead) {
   const test::TemporaryFolder folder;
   write_version_2((folder / "bar.med").string());
-  const MeshFile mesh = read_mesh(folder / "bar.med");
+  const cells::MeshFile mesh = read_mesh(folder / "bar.med");
   EXPECT_EQ(mesh.counts.cells_read, 2u);
   EXPECT_NEAR(testing::volume(mesh.mesh), 4, 1e-12);  // a square of 4 under a height of 3
 }

@@ -110,7 +110,7 @@ TEST(MeditBinary, EveryVersionAndByteOrderIsTheSameMesh) {
       for (const char* name : {"a.meshb", "a.dat"}) {
         SCOPED_TRACE(fmt::format("{} {} {}", version, is_big, name));
         const auto file = folder.write(name, tower(version, is_big));
-        const MeshFile read = read_mesh(file);
+        const cells::MeshFile read = read_mesh(file);
         EXPECT_EQ(read.format, "Medit, binary");
         EXPECT_EQ(read.counts.cells_read, 4u);
         EXPECT_NEAR(testing::volume(read.mesh), 1 + 1 + 0.5 + 0.5, 1e-12);
@@ -121,7 +121,7 @@ TEST(MeditBinary, EveryVersionAndByteOrderIsTheSameMesh) {
               std::ranges::any_of(read.mesh.tets[t], [&](std::uint32_t v) { return read.mesh.positions[v].z > 2; });
           EXPECT_EQ(read.mesh.scalars[t], is_top ? 2 : 5);
         }
-        MeshOptions options;
+        cells::MeshOptions options;
         options.blocks = {"reference 2"};
         EXPECT_NEAR(testing::volume(read_mesh(file, options).mesh), 1, 1e-12);
       }
@@ -141,7 +141,7 @@ TEST(MeditBinary, TetrahedraOfSecondOrderAreCurved) {
                {0.5, 0, 0.5},
                {0, 0.5, 0.5}});
   file.cells(30, {{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 0}});
-  const MeshFile read = read_mesh(folder.write("a.meshb", file.text()));
+  const cells::MeshFile read = read_mesh(folder.write("a.meshb", file.text()));
   EXPECT_NEAR(testing::volume(read.mesh), 1.0 / 6, 1e-12);
   EXPECT_EQ(read.counts.cells_tangled, 0u);
 }
@@ -188,7 +188,7 @@ TEST(MeditText, LinesAndCommentsPartWordsAsBlanksDo) {
   const test::TemporaryFolder folder;
   for (const std::string gap : {"\n", " ", "\t\r\n\r\n", " # of 9 cells\n  \n"}) {
     SCOPED_TRACE(gap);
-    const MeshFile read = read_mesh(folder.write("a.mesh", two_tets(gap)));
+    const cells::MeshFile read = read_mesh(folder.write("a.mesh", two_tets(gap)));
     EXPECT_EQ(read.format, "Medit");
     EXPECT_EQ(read.counts.cells_read, 2u);
     EXPECT_NEAR(testing::volume(read.mesh), 2.0 / 6, 1e-12);

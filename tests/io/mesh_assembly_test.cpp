@@ -14,8 +14,8 @@ using testing::message_of;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
 
 /// A row of n tets that share no point; cell c has the points 4 c to 4 c + 3, the value c at its points and its cell.
-CellBlock row_of_tets(std::size_t n) {
-  CellBlock block;
+cells::CellBlock row_of_tets(std::size_t n) {
+  cells::CellBlock block;
   std::vector<double> point, cell;
   for (std::size_t c = 0; c < n; ++c) {
     const glm::dvec3 o(2.0 * static_cast<double>(c), 0, 0);
@@ -27,21 +27,21 @@ CellBlock row_of_tets(std::size_t n) {
     }
     cell.push_back(static_cast<double>(c));
   }
-  block.fields.push_back(field_of_values("p", "double", Association::point, 1, std::move(point)));
-  block.fields.push_back(field_of_values("c", "double", Association::cell, 1, std::move(cell)));
+  block.fields.push_back(cells::field_of_values("p", "double", Association::point, 1, std::move(point)));
+  block.fields.push_back(cells::field_of_values("c", "double", Association::cell, 1, std::move(cell)));
   return block;
 }
 
-MeshFile assemble(const CellBlock& block, const std::string& field = "p") {
-  MeshOptions options;
+cells::MeshFile assemble(const cells::CellBlock& block, const std::string& field = "p") {
+  cells::MeshOptions options;
   options.field = field;
-  MeshFile file = assemble_mesh({block}, options, "mesh");
+  cells::MeshFile file = cells::assemble_mesh({block}, options, "mesh");
   scene::validate(file.mesh, "mesh");
   return file;
 }
 
 /// The tets as cells of type 10 with offsets, so that others can be added.
-CellBlock with_types(CellBlock block) {
+cells::CellBlock with_types(cells::CellBlock block) {
   block.types.assign(block.tets.size(), 10);
   for (const scene::Tet& tet : block.tets) block.connectivity.insert(block.connectivity.end(), tet.begin(), tet.end());
   block.tets.clear();
@@ -50,7 +50,7 @@ CellBlock with_types(CellBlock block) {
 }
 
 TEST(MeshAssembly, TetsThatAllStayNeedNoCellNumbers) {
-  const MeshFile file = assemble(row_of_tets(3));
+  const cells::MeshFile file = assemble(row_of_tets(3));
   EXPECT_EQ(file.mesh.tets.size(), 3u);
   EXPECT_TRUE(file.mesh.original_cell.empty());
   EXPECT_EQ(file.counts.tets_made, 3u);
@@ -58,10 +58,10 @@ TEST(MeshAssembly, TetsThatAllStayNeedNoCellNumbers) {
 }
 
 TEST(MeshAssembly, GhostAndHiddenCellsAreDroppedAndCounted) {
-  CellBlock block = row_of_tets(6);
+  cells::CellBlock block = row_of_tets(6);
   block.cell_ghost = {0, 1, 32, 33, 8, 0};
   for (const char* field : {"p", "c"}) {
-    const MeshFile file = assemble(block, field);
+    const cells::MeshFile file = assemble(block, field);
     EXPECT_EQ(file.counts.cells_ghost, 2u);
     EXPECT_EQ(file.counts.cells_hidden, 2u);
     EXPECT_EQ(file.mesh.original_cell, (std::vector<std::uint64_t>{0, 5}));
@@ -71,98 +71,98 @@ TEST(MeshAssembly, GhostAndHiddenCellsAreDroppedAndCounted) {
 }
 
 TEST(MeshAssembly, AHiddenPointHidesItsCellsAndADuplicateOneDoesNot) {
-  CellBlock block = row_of_tets(3);
+  cells::CellBlock block = row_of_tets(3);
   block.point_ghost.assign(12, 0);
   block.point_ghost[5] = 2;
   block.point_ghost[9] = 1;
-  const MeshFile file = assemble(block);
+  const cells::MeshFile file = assemble(block);
   EXPECT_EQ(file.counts.cells_hidden, 1u);
   EXPECT_EQ(file.mesh.original_cell, (std::vector<std::uint64_t>{0, 2}));
 }
 
 TEST(MeshAssembly, NaNAndInfiniteNumbersBlankTheirCells) {
-  CellBlock block = row_of_tets(5);
+  cells::CellBlock block = row_of_tets(5);
   std::vector<double> p(20, 1.0), c(5, 1.0);
   p[2] = nan;
   p[6] = -inf;
   c[4] = inf;
   block.positions[14].y = nan;
-  block.fields = {field_of_values("p", "double", Association::point, 1, p),
-                  field_of_values("c", "double", Association::cell, 1, c)};
+  block.fields = {cells::field_of_values("p", "double", Association::point, 1, p),
+                  cells::field_of_values("c", "double", Association::cell, 1, c)};
   EXPECT_EQ(assemble(block).counts.cells_nan, 3u);
   EXPECT_EQ(assemble(block).mesh.tets.size(), 2u);
   EXPECT_EQ(assemble(block, "c").counts.cells_nan, 2u);
 }
 
 TEST(MeshAssembly, AMeshOfNaNIsAnErrorWithItsCounts) {
-  CellBlock block = row_of_tets(2);
-  block.fields = {field_of_values("p", "double", Association::point, 1, std::vector<double>(8, nan))};
+  cells::CellBlock block = row_of_tets(2);
+  block.fields = {cells::field_of_values("p", "double", Association::point, 1, std::vector<double>(8, nan))};
   const std::string message = message_of([&] { assemble(block); });
   EXPECT_NE(message.find("mesh: nothing is left to render: of 2 cells"), std::string::npos) << message;
   EXPECT_NE(message.find("2 hold NaN"), std::string::npos) << message;
-  EXPECT_NE(message_of([] { assemble_mesh({}, {}, "mesh"); }).find("holds no cells"), std::string::npos);
+  EXPECT_NE(message_of([] { cells::assemble_mesh({}, {}, "mesh"); }).find("holds no cells"), std::string::npos);
 }
 
 TEST(MeshAssembly, FlatCellsAreKeptAndCounted) {
-  CellBlock block = row_of_tets(3);
+  cells::CellBlock block = row_of_tets(3);
   block.positions[7] = {3.25, 0.25, 0};  // in the plane of the other three
-  const MeshFile file = assemble(block);
+  const cells::MeshFile file = assemble(block);
   EXPECT_EQ(file.counts.cells_zero_volume, 1u);
   EXPECT_EQ(file.mesh.tets.size(), 3u);
 }
 
 TEST(MeshAssembly, TetsWithTwoCornersAtOnePlaceAreNotMade) {
-  CellBlock block = row_of_tets(3);
+  cells::CellBlock block = row_of_tets(3);
   block.tets[1][1] = block.tets[1][0];            // a repeated index
   block.positions[8] = block.positions[9] + 0.0;  // another point at the same place
-  const MeshFile file = assemble(block);
+  const cells::MeshFile file = assemble(block);
   EXPECT_EQ(file.counts.tets_collapsed, 2u);
   EXPECT_EQ(file.counts.cells_zero_volume, 2u);
   EXPECT_EQ(file.mesh.tets.size(), 1u);
 }
 
 TEST(MeshAssembly, EitherHandednessIsKept) {
-  CellBlock block = row_of_tets(2);
+  cells::CellBlock block = row_of_tets(2);
   std::swap(block.tets[0][0], block.tets[0][1]);
-  const MeshFile file = assemble(block);
+  const cells::MeshFile file = assemble(block);
   EXPECT_EQ(file.mesh.tets.size(), 2u);
   EXPECT_EQ(file.counts.cells_zero_volume + file.counts.cells_tangled, 0u);
 }
 
 TEST(MeshAssembly, FacesAndLinesAreSkippedAndCounted) {
-  CellBlock block = with_types(row_of_tets(1));
+  cells::CellBlock block = with_types(row_of_tets(1));
   block.types.insert(block.types.end(), {5, 3, 1});
   block.connectivity.insert(block.connectivity.end(), {0, 1, 2, 0, 1, 0});
   block.offsets.insert(block.offsets.end(), {7, 9, 10});
   block.fields.pop_back();
-  const MeshFile file = assemble(block);
+  const cells::MeshFile file = assemble(block);
   EXPECT_EQ(file.counts.cells_read, 4u);
   EXPECT_EQ(file.counts.cells_not_volumetric, 3u);
   EXPECT_EQ(file.mesh.tets.size(), 1u);
 }
 
 TEST(MeshAssembly, HigherOrderCellsUseTheirCornersIfNoneMayBeDivided) {
-  CellBlock block = row_of_tets(3);  // twelve points: enough for a ten-node tet
+  cells::CellBlock block = row_of_tets(3);  // twelve points: enough for a ten-node tet
   block.tets.clear();
   block.types = {24};
   block.connectivity = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
   block.offsets = {0, 10};
   block.fields.pop_back();
-  MeshOptions options;
+  cells::MeshOptions options;
   options.higher_order_tets = 0;
-  const MeshFile file = assemble_mesh({block}, options, "mesh");
+  const cells::MeshFile file = cells::assemble_mesh({block}, options, "mesh");
   EXPECT_EQ(file.mesh.tets.front(), (scene::Tet{0, 1, 2, 3}));
   EXPECT_EQ(file.counts.cells_quadratic, 1u);
   EXPECT_EQ(file.higher_order.by_corners, 1u);
-  const std::vector<std::string> warnings = warnings_on_cells(file.counts, file.higher_order);
+  const std::vector<std::string> warnings = cells::warnings_on_cells(file.counts, file.higher_order);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].find("1 higher-order cells are rendered as linear ones by their corner nodes"),
             std::string::npos);
-  EXPECT_TRUE(warnings_on_cells({}, {}).empty());
+  EXPECT_TRUE(cells::warnings_on_cells({}, {}).empty());
 }
 
 TEST(MeshAssembly, PolyhedraAndWrongNodeCountsAreRefusedByCell) {
-  CellBlock block = with_types(row_of_tets(3));
+  cells::CellBlock block = with_types(row_of_tets(3));
   block.types[2] = 42;
   EXPECT_NE(message_of([&] { assemble(block); }).find("cell 2 is a polyhedron"), std::string::npos);
   block.types[2] = 12;
@@ -171,12 +171,12 @@ TEST(MeshAssembly, PolyhedraAndWrongNodeCountsAreRefusedByCell) {
 }
 
 TEST(MeshAssembly, BlocksFollowEachOtherAndALackingFieldBlanksItsBlock) {
-  CellBlock second = row_of_tets(2), third = row_of_tets(2);
+  cells::CellBlock second = row_of_tets(2), third = row_of_tets(2);
   second.name = "shell";
   second.fields.clear();
-  MeshOptions options;
+  cells::MeshOptions options;
   options.field = "p";
-  const MeshFile file = assemble_mesh({row_of_tets(2), second, third}, options, "mesh");
+  const cells::MeshFile file = cells::assemble_mesh({row_of_tets(2), second, third}, options, "mesh");
   scene::validate(file.mesh, "mesh");
   EXPECT_EQ(file.counts.cells_read, 6u);
   EXPECT_EQ(file.counts.cells_nan, 2u);
@@ -186,8 +186,8 @@ TEST(MeshAssembly, BlocksFollowEachOtherAndALackingFieldBlanksItsBlock) {
 }
 
 /// Every seventh cell a ghost, every eleventh of NaN, every thirteenth a wedge's corners on the points of two tets.
-CellBlock many_cells(std::size_t n) {
-  CellBlock block = with_types(row_of_tets(n));
+cells::CellBlock many_cells(std::size_t n) {
+  cells::CellBlock block = with_types(row_of_tets(n));
   block.cell_ghost.assign(n, 0);
   std::vector<double> values(n);
   std::vector<std::uint32_t> connectivity;
@@ -205,18 +205,18 @@ CellBlock many_cells(std::size_t n) {
     block.offsets[c + 1] = connectivity.size();
   }
   block.connectivity = std::move(connectivity);
-  block.fields = {field_of_values("c", "double", Association::cell, 1, std::move(values))};
+  block.fields = {cells::field_of_values("c", "double", Association::cell, 1, std::move(values))};
   return block;
 }
 
 TEST(MeshAssembly, ThreadsMakeTheSameMesh) {
   constexpr std::size_t n = 150'001;
-  MeshOptions options;
+  cells::MeshOptions options;
   const auto assemble_with = [&](int threads) {
     options.threads = threads;
-    return assemble_mesh({many_cells(n), many_cells(n / 2), many_cells(20)}, options, "mesh");
+    return cells::assemble_mesh({many_cells(n), many_cells(n / 2), many_cells(20)}, options, "mesh");
   };
-  const MeshFile one = assemble_with(1);
+  const cells::MeshFile one = assemble_with(1);
   std::size_t tets = 0, t = 0;
   std::uint64_t cell = 0;
   for (const std::size_t cells : {n, n / 2, std::size_t{20}})
@@ -231,7 +231,7 @@ TEST(MeshAssembly, ThreadsMakeTheSameMesh) {
     }
   EXPECT_EQ(one.mesh.tets.size(), tets);
   for (const int threads : {2, 0}) {
-    const MeshFile several = assemble_with(threads);
+    const cells::MeshFile several = assemble_with(threads);
     EXPECT_EQ(several.mesh.tets, one.mesh.tets);
     EXPECT_EQ(several.mesh.original_cell, one.mesh.original_cell);
     EXPECT_EQ(several.mesh.scalars, one.mesh.scalars);
@@ -243,19 +243,19 @@ TEST(MeshAssembly, TetsAreAsCellsOfTheirTypeWhicheverAreDropped) {
   constexpr std::size_t n = 40'000;
   for (const char* field : {"p", "c"})
     for (const int threads : {1, 2}) {
-      MeshOptions options;
+      cells::MeshOptions options;
       options.field = field, options.threads = threads;
       for (const std::size_t dropped : {n, std::size_t{0}, std::size_t{20'000}, n - 1}) {
-        CellBlock some = row_of_tets(n);
+        cells::CellBlock some = row_of_tets(n);
         some.cell_ghost.assign(n, 0);
         if (dropped < n) some.cell_ghost[dropped] = 1;
         for (const std::size_t before : {std::size_t{0}, std::size_t{3}}) {
-          const auto blocks = [&](const CellBlock& block) {
-            return before > 0 ? std::vector<CellBlock>{row_of_tets(before), block, row_of_tets(2)}
-                              : std::vector<CellBlock>{block};
+          const auto blocks = [&](const cells::CellBlock& block) {
+            return before > 0 ? std::vector<cells::CellBlock>{row_of_tets(before), block, row_of_tets(2)}
+                              : std::vector<cells::CellBlock>{block};
           };
-          const MeshFile tets = assemble_mesh(blocks(some), options, "mesh");
-          const MeshFile cells = assemble_mesh(blocks(with_types(some)), options, "mesh");
+          const cells::MeshFile tets = cells::assemble_mesh(blocks(some), options, "mesh");
+          const cells::MeshFile cells = cells::assemble_mesh(blocks(with_types(some)), options, "mesh");
           scene::validate(tets.mesh, "mesh");
           EXPECT_EQ(tets.mesh.tets.size(), n - (dropped < n ? 1 : 0) + (before > 0 ? before + 2 : 0));
           EXPECT_EQ(tets.mesh.tets, cells.mesh.tets);
@@ -268,23 +268,23 @@ TEST(MeshAssembly, TetsAreAsCellsOfTheirTypeWhicheverAreDropped) {
 }
 
 TEST(MeshAssembly, OfSeveralBadCellsTheFirstIsToldWhicheverThreadFindsIt) {
-  CellBlock block = many_cells(200'000);
+  cells::CellBlock block = many_cells(200'000);
   for (const std::size_t c : {150'000, 90'001, 90'000}) block.types[c] = 42;
-  MeshOptions options;
+  cells::MeshOptions options;
   for (options.threads = 0; options.threads < 3; ++options.threads)
-    EXPECT_NE(message_of([&] { assemble_mesh({block}, options, "mesh"); }).find("cell 90000 is a polyhedron"),
+    EXPECT_NE(message_of([&] { cells::assemble_mesh({block}, options, "mesh"); }).find("cell 90000 is a polyhedron"),
               std::string::npos);
 }
 
 TEST(MeshAssembly, MinusZeroAndZeroAreOnePlace) {
-  CellBlock block = row_of_tets(1);
+  cells::CellBlock block = row_of_tets(1);
   block.positions[0] = {-0.0, -0.0, -0.0};
   EXPECT_FALSE(std::signbit(assemble(block).mesh.positions[0].x));
 }
 
 /// Two tets over one face, of 1 and 3 times the same volume, with values 4 and 8.
-CellBlock two_tets(bool own_points) {
-  CellBlock block;
+cells::CellBlock two_tets(bool own_points) {
+  cells::CellBlock block;
   const glm::dvec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0), up(0, 0, 1), down(0, 0, -3);
   if (own_points) {
     block.positions = {a, b, c, up, b, a, c, down};
@@ -293,15 +293,15 @@ CellBlock two_tets(bool own_points) {
     block.positions = {a, b, c, up, down};
     block.tets = {{0, 1, 2, 3}, {1, 0, 2, 4}};
   }
-  block.fields.push_back(field_of_values("c", "double", Association::cell, 1, {4, 8}));
+  block.fields.push_back(cells::field_of_values("c", "double", Association::cell, 1, {4, 8}));
   return block;
 }
 
 TEST(Smooth, WeightsByVolumeAndJoinsPointsByPosition) {
-  MeshOptions options;
+  cells::MeshOptions options;
   options.smooth = true;
   for (const bool own : {false, true}) {
-    const MeshFile file = assemble_mesh({two_tets(own)}, options, "mesh");
+    const cells::MeshFile file = cells::assemble_mesh({two_tets(own)}, options, "mesh");
     scene::validate(file.mesh, "mesh");
     EXPECT_EQ(file.mesh.association, Association::point);
     for (std::size_t t = 0; t < 2; ++t)
@@ -313,12 +313,12 @@ TEST(Smooth, WeightsByVolumeAndJoinsPointsByPosition) {
 }
 
 TEST(Smooth, ASingleValueStaysThatValue) {
-  CellBlock block = two_tets(true);
-  block.fields = {field_of_values("c", "double", Association::cell, 1, {2.5, 2.5})};
+  cells::CellBlock block = two_tets(true);
+  block.fields = {cells::field_of_values("c", "double", Association::cell, 1, {2.5, 2.5})};
   block.positions[3] = {0.25, 0.25, 0};  // a flat cell must not divide by its volume
-  MeshOptions options;
+  cells::MeshOptions options;
   options.smooth = true;
-  for (const double s : assemble_mesh({block}, options, "mesh").mesh.scalars) EXPECT_EQ(s, 2.5);
+  for (const double s : cells::assemble_mesh({block}, options, "mesh").mesh.scalars) EXPECT_EQ(s, 2.5);
 }
 
 }  // namespace

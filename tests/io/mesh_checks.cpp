@@ -9,7 +9,7 @@
 namespace tessera::io::testing {
 namespace {
 
-std::vector<double> values_of(const BlockField& field) {
+std::vector<double> values_of(const cells::BlockField& field) {
   std::vector<double> one(field.tuples), all(field.tuples * static_cast<std::size_t>(field.components));
   for (int c = 0; c < field.components; ++c) {
     field.read(c, 0, one);
@@ -26,10 +26,10 @@ std::string data_array(const std::string& name, const std::string& type, int com
   return text + "\n</DataArray>\n";
 }
 
-std::string fields_text(const CellBlock& block, scene::Association association,
+std::string fields_text(const cells::CellBlock& block, scene::Association association,
                         const std::vector<std::uint8_t>& ghost) {
   std::string text;
-  for (const BlockField& field : block.fields)
+  for (const cells::BlockField& field : block.fields)
     if (field.association == association) text += data_array(field.name, "Float64", field.components, values_of(field));
   if (!ghost.empty()) text += data_array("vtkGhostType", "UInt8", 1, ghost);
   return text;
@@ -82,7 +82,7 @@ std::vector<std::pair<TrianglePlace, int>> count_triangles(const scene::TetMesh&
   return uses;
 }
 
-std::string vtu_text(const CellBlock& block) {
+std::string vtu_text(const cells::CellBlock& block) {
   std::vector<double> xyz;
   for (const glm::dvec3& p : block.positions) xyz.insert(xyz.end(), {p.x, p.y, p.z});
   std::vector<std::uint8_t> types = block.types;
@@ -118,9 +118,9 @@ std::string vtu_text(const CellBlock& block) {
          data_array("types", "UInt8", 1, types) + faces + "</Cells></Piece></UnstructuredGrid></VTKFile>\n";
 }
 
-std::string pvtu_text(const CellBlock& block, const std::vector<std::string>& pieces) {
+std::string pvtu_text(const cells::CellBlock& block, const std::vector<std::string>& pieces) {
   std::string point, cell, sources;
-  for (const BlockField& field : block.fields)
+  for (const cells::BlockField& field : block.fields)
     (field.association == scene::Association::point ? point : cell) += fmt::format(
         "<PDataArray type=\"Float64\" Name=\"{}\" NumberOfComponents=\"{}\"/>\n", field.name, field.components);
   if (!block.cell_ghost.empty()) cell += "<PDataArray type=\"UInt8\" Name=\"vtkGhostType\"/>\n";
@@ -132,7 +132,7 @@ std::string pvtu_text(const CellBlock& block, const std::vector<std::string>& pi
          "</PUnstructuredGrid></VTKFile>\n";
 }
 
-CellBlock mixed_mesh(int n, unsigned seed, bool own_points) {
+cells::CellBlock mixed_mesh(int n, unsigned seed, bool own_points) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> jitter(-0.15, 0.15);
   const auto side = static_cast<std::uint32_t>(n + 1);
@@ -192,7 +192,7 @@ CellBlock mixed_mesh(int n, unsigned seed, bool own_points) {
   std::iota(place.begin(), place.end(), 0u);
   std::shuffle(place.begin(), place.end(), random);
 
-  CellBlock block;
+  cells::CellBlock block;
   if (!own_points) {
     block.positions.resize(points.size());
     for (std::size_t v = 0; v < points.size(); ++v) block.positions[place[v]] = points[v];
@@ -208,7 +208,7 @@ CellBlock mixed_mesh(int n, unsigned seed, bool own_points) {
   }
   std::vector<double> f;
   for (const glm::dvec3& p : block.positions) f.push_back(p.x + 2 * p.y + 3 * p.z);
-  block.fields.push_back(field_of_values("f", "double", scene::Association::point, 1, std::move(f)));
+  block.fields.push_back(cells::field_of_values("f", "double", scene::Association::point, 1, std::move(f)));
   return block;
 }
 

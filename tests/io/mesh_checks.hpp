@@ -36,14 +36,14 @@ std::string message_of(const Work& work) {
 }
 
 /// A block as the text of a .vtu file.
-std::string vtu_text(const CellBlock& block);
+std::string vtu_text(const cells::CellBlock& block);
 
 /// The text of a .pvtu file over pieces with the fields of `block`.
-std::string pvtu_text(const CellBlock& block, const std::vector<std::string>& pieces);
+std::string pvtu_text(const cells::CellBlock& block, const std::vector<std::string>& pieces);
 
 /// [0, 1]^3 as n^3 cubes, inner points moved at random: columns along z of wedges or of hexahedra, voxels and fans of
 /// six pyramids, every cell numbered from a random corner and in either handedness. The point field "f" is x + 2 y + 3
 /// z. With `own_points` each cell has points of its own, so that only positions tell that cells touch.
-CellBlock mixed_mesh(int n, unsigned seed, bool own_points);
+cells::CellBlock mixed_mesh(int n, unsigned seed, bool own_points);
 
 }  // namespace tessera::io::testing

@@ -28,7 +28,7 @@ constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 class MeshParts : public ::testing::Test {
  protected:
   /// A .pvtu of these blocks as pieces.
-  std::filesystem::path write_pieces(const std::vector<CellBlock>& pieces) {
+  std::filesystem::path write_pieces(const std::vector<cells::CellBlock>& pieces) {
     std::vector<std::string> names;
     for (std::size_t p = 0; p < pieces.size(); ++p) {
       names.push_back(fmt::format("piece{}.vtu", p));
@@ -41,8 +41,8 @@ class MeshParts : public ::testing::Test {
 };
 
 /// A mixed mesh moved along x, so that pieces stand side by side, with fields that tell the pieces apart.
-CellBlock piece_at(int p) {
-  CellBlock block = testing::mixed_mesh(2, static_cast<unsigned>(p) + 1, p % 2 == 0);
+cells::CellBlock piece_at(int p) {
+  cells::CellBlock block = testing::mixed_mesh(2, static_cast<unsigned>(p) + 1, p % 2 == 0);
   for (glm::dvec3& x : block.positions) x.x += p;
   block.fields.clear();
   std::vector<double> constant(block.positions.size(), p), noisy;
@@ -50,22 +50,22 @@ CellBlock piece_at(int p) {
     noisy.push_back(v == 3 ? no_number : static_cast<double>(v) - p);
   std::vector<double> cells;
   for (std::size_t c = 0; c < block.cell_count(); ++c) cells.push_back(static_cast<double>(c * c));
-  block.fields.push_back(field_of_values("piece", "double", scene::Association::point, 1, constant));
-  block.fields.push_back(field_of_values("noisy", "double", scene::Association::point, 1, noisy));
-  block.fields.push_back(field_of_values("cells", "double", scene::Association::cell, 1, cells));
+  block.fields.push_back(cells::field_of_values("piece", "double", scene::Association::point, 1, constant));
+  block.fields.push_back(cells::field_of_values("noisy", "double", scene::Association::point, 1, noisy));
+  block.fields.push_back(cells::field_of_values("cells", "double", scene::Association::cell, 1, cells));
   return block;
 }
 
 TEST_F(MeshParts, PiecesGiveTheTetsCountsAndFieldOfTheWhole) {
   TESSERA_VTK_OR_SKIP();
-  std::vector<CellBlock> pieces;
+  std::vector<cells::CellBlock> pieces;
   for (int p = 0; p < 5; ++p) pieces.push_back(piece_at(p));
   const auto file = write_pieces(pieces);
   // "piece" is constant in each piece; only all together know that it varies, and so is chosen.
   EXPECT_EQ(read_mesh(file).mesh.field_name, "piece");
   expect_as_whole(file);
   for (const char* field : {"noisy", "cells", "point:piece"}) {
-    MeshOptions options;
+    cells::MeshOptions options;
     options.field = field;
     expect_as_whole(file, options);
   }
@@ -73,19 +73,20 @@ TEST_F(MeshParts, PiecesGiveTheTetsCountsAndFieldOfTheWhole) {
 
 TEST_F(MeshParts, GhostsAndEmptyPiecesAreAsInTheWhole) {
   TESSERA_VTK_OR_SKIP();
-  std::vector<CellBlock> pieces = {piece_at(0), piece_at(1), piece_at(2)};
-  for (CellBlock& piece : pieces) {
+  std::vector<cells::CellBlock> pieces = {piece_at(0), piece_at(1), piece_at(2)};
+  for (cells::CellBlock& piece : pieces) {
     piece.cell_ghost.assign(piece.cell_count(), 0);
     piece.cell_ghost[1] = 1;
     piece.cell_ghost[2] = 32;
   }
-  CellBlock empty = pieces[0];
+  cells::CellBlock empty = pieces[0];
   empty.positions.clear();
   empty.types.clear();
   empty.offsets.clear();
   empty.connectivity.clear();
   empty.cell_ghost.clear();
-  for (BlockField& field : empty.fields) field = field_of_values(field.name, "double", field.association, 1, {});
+  for (cells::BlockField& field : empty.fields)
+    field = cells::field_of_values(field.name, "double", field.association, 1, {});
   pieces.insert(pieces.begin() + 1, empty);
   const auto file = write_pieces(pieces);
   EXPECT_EQ(read_mesh(file).counts.cells_ghost, 3u);
@@ -97,7 +98,7 @@ TEST_F(MeshParts, ListsOfBlocksAreReadInParts) {
   TESSERA_VTK_OR_SKIP();
   write_pieces({piece_at(1), piece_at(2)});  // m.pvtu
   folder.write("first.vtu", testing::vtu_text(piece_at(0)));
-  CellBlock last = piece_at(3);
+  cells::CellBlock last = piece_at(3);
   last.fields.pop_back();  // its cells are blanked where "cells" is drawn
   folder.write("last.vtu", testing::vtu_text(last));
   folder.write("skin.vtp", "<VTKFile type=\"PolyData\">");  // not looked into further
@@ -106,11 +107,11 @@ TEST_F(MeshParts, ListsOfBlocksAreReadInParts) {
                                  "<DataSet name=\"a\" file=\"first.vtu\"/><DataSet name=\"skin\" file=\"skin.vtp\"/>"
                                  "<Block name=\"middle\"><DataSet name=\"b\" file=\"m.pvtu\"/></Block>"
                                  "<DataSet name=\"c\" file=\"last.vtu\"/></vtkMultiBlockDataSet></VTKFile>");
-  const MeshFile whole = read_mesh(file);
+  const cells::MeshFile whole = read_mesh(file);
   EXPECT_EQ(whole.blocks, (std::vector<std::string>{"a", "middle/b", "c"}));
   EXPECT_GT(whole.counts.tets_made, read_mesh(folder / "m.pvtu").counts.tets_made);
   expect_as_whole(file);
-  MeshOptions options;
+  cells::MeshOptions options;
   options.field = "cells";
   expect_as_whole(file, options);
   options.field = "piece";
@@ -124,10 +125,10 @@ TEST_F(MeshParts, ListsOfBlocksAreReadInParts) {
 TEST_F(MeshParts, NeighbouringPiecesAgreeOnTheirFaces) {
   TESSERA_VTK_OR_SKIP();
   // One mesh cut into three pieces, each with points of its own: only positions tell that hexahedra touch.
-  const CellBlock whole = testing::mixed_mesh(3, 4, true);
-  std::vector<CellBlock> pieces(3);
+  const cells::CellBlock whole = testing::mixed_mesh(3, 4, true);
+  std::vector<cells::CellBlock> pieces(3);
   for (std::size_t p = 0; p < 3; ++p) {
-    CellBlock& piece = pieces[p];
+    cells::CellBlock& piece = pieces[p];
     piece.positions = whole.positions;
     piece.offsets.push_back(0);
     for (std::size_t c = p; c < whole.cell_count(); c += 3) {
@@ -157,14 +158,14 @@ TEST_F(MeshParts, NeighbouringPiecesAgreeOnTheirFaces) {
 
 TEST_F(MeshParts, FaultsNameThePiece) {
   TESSERA_VTK_OR_SKIP();
-  std::vector<CellBlock> pieces = {piece_at(0), piece_at(1), piece_at(2)};
+  std::vector<cells::CellBlock> pieces = {piece_at(0), piece_at(1), piece_at(2)};
   pieces[1].fields.erase(pieces[1].fields.begin());
   auto file = write_pieces(pieces);
   const std::string expected = (folder / "piece1.vtu").string() + ": it has no point field 'piece'";
   EXPECT_EQ(message_of([&] { read_mesh(file); }).substr(0, expected.size()), expected);
   EXPECT_EQ(message_of([&] { read_in_parts(file, 2); }), message_of([&] { read_mesh(file); }));
   EXPECT_EQ(message_of([&] { read_in_parts(file, 3); }), message_of([&] { read_mesh(file); }));
-  MeshOptions options;
+  cells::MeshOptions options;
   options.field = "noisy";  // which all have
   EXPECT_NO_THROW(read_in_parts(file, 3, options));
   options.field = "absent";
@@ -214,7 +215,7 @@ TEST_F(MeshParts, RangesOfTetsGiveTheWhole) {
   mesh.tets.push_back({4, 4, 5, 6});
   const auto file = folder / "m.tets";
   write_tets(mesh, file);
-  const MeshFile whole = read_mesh(file);
+  const cells::MeshFile whole = read_mesh(file);
   EXPECT_GT(whole.counts.cells_nan, 0u);
   EXPECT_GT(whole.counts.tets_collapsed, 0u);
   EXPECT_GE(whole.counts.points_unused, 10u);
@@ -265,7 +266,7 @@ TEST_F(MeshParts, TetRangesCheckTheirIndicesAndSizes) {
 TEST_F(MeshParts, OtherFormatsAndSmoothingAreReadWhole) {
   TESSERA_VTK_OR_SKIP();
   const auto pvtu = write_pieces({piece_at(0)});
-  MeshOptions smooth;
+  cells::MeshOptions smooth;
   smooth.smooth = true;
   EXPECT_TRUE(readable_in_parts(pvtu, {}));
   EXPECT_FALSE(readable_in_parts(pvtu, smooth));

@@ -25,7 +25,7 @@ scene::TetMesh cube_of_linear_field(int n, std::uint64_t seed = 7) {
 
 scene::TetMesh selected(scene::TetMesh mesh, const Selection& selection, MeshCounts* counts = nullptr) {
   MeshCounts own;
-  select(mesh, selection, counts != nullptr ? *counts : own, "mesh");
+  cells::select(mesh, selection, counts != nullptr ? *counts : own, "mesh");
   scene::validate(mesh, "mesh");
   return mesh;
 }
@@ -156,10 +156,10 @@ TEST(Clip, PlanesThatMissChangeNothing) {
 TEST(Clip, RemovesAllBehindThePlane) {
   scene::TetMesh mesh = datasets::cube(3);
   MeshCounts counts;
-  select(mesh, {{{{1, 0, 0}, {1, 0, 0}}}}, counts, "a.vtu");  // its surface alone is left
+  cells::select(mesh, {{{{1, 0, 0}, {1, 0, 0}}}}, counts, "a.vtu");  // its surface alone is left
   EXPECT_TRUE(mesh.tets.empty());
   EXPECT_EQ(counts.cells_clipped, 162u);
-  EXPECT_THROW(require_selected(counts, "a.vtu"), scene::Error);
+  EXPECT_THROW(cells::require_selected(counts, "a.vtu"), scene::Error);
 }
 
 TEST(Clip, CellDataStaysTheCells) {
@@ -173,7 +173,7 @@ TEST(Clip, CellDataStaysTheCells) {
 
 /// Two hexahedra of which one has a corner out of range: all of its tets go, those without that corner too.
 TEST(Threshold, KeepsWholeCellsOfPointData) {
-  CellBlock block;
+  cells::CellBlock block;
   for (int k = 0; k < 2; ++k)
     for (int j = 0; j < 2; ++j)
       for (int i = 0; i < 3; ++i) block.positions.emplace_back(i, j, k);
@@ -182,16 +182,16 @@ TEST(Threshold, KeepsWholeCellsOfPointData) {
   block.connectivity = {0, 1, 4, 3, 6, 7, 10, 9, 1, 2, 5, 4, 7, 8, 11, 10};
   std::vector<double> values(12, 1.0);
   values[0] = 3;
-  block.fields.push_back(field_of_values("f", "double", scene::Association::point, 1, values));
-  MeshOptions options;
+  block.fields.push_back(cells::field_of_values("f", "double", scene::Association::point, 1, values));
+  cells::MeshOptions options;
   options.selection.threshold = {0.0, 2.0};
-  const MeshFile file = assemble_mesh({block}, options, "mesh");
+  const cells::MeshFile file = cells::assemble_mesh({block}, options, "mesh");
   EXPECT_EQ(file.counts.cells_out_of_range, 1u);
   EXPECT_NEAR(volume(file.mesh), 1, 1e-15);
   options.selection.threshold = {1.0, 3.0};  // both ends belong to it
-  EXPECT_NEAR(volume(assemble_mesh({block}, options, "mesh").mesh), 2, 1e-15);
+  EXPECT_NEAR(volume(cells::assemble_mesh({block}, options, "mesh").mesh), 2, 1e-15);
   options.selection.threshold = {4.0, 5.0};
-  EXPECT_THROW(assemble_mesh({block}, options, "mesh"), scene::Error);
+  EXPECT_THROW(cells::assemble_mesh({block}, options, "mesh"), scene::Error);
 }
 
 TEST(Threshold, GoesByTheCellsValue) {

@@ -36,7 +36,7 @@ void write_exodus(const std::filesystem::path& file, int at) {
   const int id = ex_create(file.c_str(), EX_CLOBBER, &word, &stored);
   ASSERT_GE(id, 0);
   ex_put_init(id, "cube", 3, 8, 1, 2, 0, 0);
-  const auto xyz = corners_of(at);
+  const auto xyz = cells::corners_of(at);
   ex_put_coord(id, xyz[0].data(), xyz[1].data(), xyz[2].data());
   ex_put_variable_param(id, EX_NODAL, 1);
   ex_put_variable_name(id, EX_NODAL, 1, "v");
@@ -61,16 +61,16 @@ TEST(MeshShares, AnExodusMeshInSeveralFilesIsReadByTheNameOfOne) {
   for (int k = 0; k < 12; ++k) write_exodus(folder / fmt::format("m.ex2.12.{:02}", k), k);
   const auto file = folder / "m.ex2.12.07";
   EXPECT_EQ(exodus_files(file).size(), 12u);
-  const MeshFile whole = read_mesh(file);
+  const cells::MeshFile whole = read_mesh(file);
   EXPECT_NEAR(testing::volume(whole.mesh), 12, 1e-12);
   EXPECT_EQ(whole.blocks, (std::vector<std::string>{"block 1", "block 2"}));
   EXPECT_EQ(whole.format, "Exodus II in 12 files");
-  MeshOptions options;
+  cells::MeshOptions options;
   options.field = std::string("point:v");  // of a bare literal GCC 12 warns that it overlaps itself
   for (const std::size_t step : {std::size_t{0}, std::size_t{1}}) {
     options.time_step = step;
     testing::expect_as_whole(file, options);
-    const MeshFile read = read_mesh(file, options);
+    const cells::MeshFile read = read_mesh(file, options);
     for (std::size_t v = 0; v < read.mesh.positions.size(); ++v)
       EXPECT_EQ(read.mesh.scalars[v], static_cast<double>(step + 1) * read.mesh.positions[v].x);
   }
@@ -103,7 +103,7 @@ void write_zones(const std::filesystem::path& file, int zones) {
     const std::array<cgsize_t, 3> size{8, 1, 0};
     ASSERT_EQ(cg_zone_write(id, base, fmt::format("zone {}", k).c_str(), size.data(), CGNS_ENUMV(Unstructured), &zone),
               CG_OK);
-    const auto xyz = corners_of(k);
+    const auto xyz = cells::corners_of(k);
     const std::array<const char*, 3> names{"CoordinateX", "CoordinateY", "CoordinateZ"};
     for (std::size_t a = 0; a < 3; ++a)
       ASSERT_EQ(cg_coord_write(id, base, zone, CGNS_ENUMV(RealDouble), names[a], xyz[a].data(), &made), CG_OK);
@@ -123,11 +123,11 @@ TEST(MeshShares, ZonesOfACgnsFileAreDivided) {
     if (!some.next()) continue;
     const auto file = folder / fmt::format("{}.cgns", zones);
     write_zones(file, zones);
-    const MeshFile whole = read_mesh(file);
+    const cells::MeshFile whole = read_mesh(file);
     EXPECT_NEAR(testing::volume(whole.mesh), zones, 1e-12);
     testing::expect_as_whole(file);
     if (zones == 1) continue;
-    MeshOptions options;
+    cells::MeshOptions options;
     options.blocks = {"zone 1"};
     EXPECT_EQ(read_mesh(file, options).counts.cells_read, 1u);
     testing::expect_as_whole(file, options);

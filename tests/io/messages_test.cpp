@@ -34,7 +34,7 @@ class Messages : public ::testing::Test {
   test::TemporaryFolder folder;
 };
 
-bool has_note(const MeshFile& file, const std::string& words) {
+bool has_note(const cells::MeshFile& file, const std::string& words) {
   return std::any_of(file.notes.begin(), file.notes.end(),
                      [&](const std::string& note) { return note.find(words) != std::string::npos; });
 }
@@ -67,11 +67,11 @@ TEST_F(EnsightMessages, AVariableWithoutItsFileIsLeftOutOfThatStep) {
   TESSERA_VTK_OR_SKIP();
   EXPECT_EQ(read_mesh(folder / "a.case").mesh.field_name, "f");
   std::filesystem::remove(folder / "a.f0011");
-  const MeshFile last = read_mesh(folder / "a.case");
+  const cells::MeshFile last = read_mesh(folder / "a.case");
   EXPECT_EQ(last.mesh.field_name, "g");
   EXPECT_EQ(last.mesh.scalars.front(), 11);
   EXPECT_TRUE(has_note(last, "f is left out: a.f0011 is missing"));
-  MeshOptions options;
+  cells::MeshOptions options;
   options.time_step = 1;
   EXPECT_EQ(read_mesh(folder / "a.case", options).mesh.field_name, "f");
   options.time_step = 2, options.field = "f";
@@ -119,9 +119,9 @@ TEST_F(Messages, NanInLegacyTextIsANumber) {
   TESSERA_VTK_OR_SKIP();
   for (const std::string odd : {"nan", "NaN", "-nan", "inf", "-Infinity", "1.#QNAN"})
     for (const std::string field : {"nan", "inf"}) {
-      MeshOptions options;
+      cells::MeshOptions options;
       options.field = field;
-      const MeshFile read = read_mesh(write("a.vtk", legacy(odd)), options);
+      const cells::MeshFile read = read_mesh(write("a.vtk", legacy(odd)), options);
       EXPECT_EQ(read.counts.cells_read, 2u) << odd;
       EXPECT_EQ(read.counts.cells_nan, 1u) << odd;
       EXPECT_EQ(read.mesh.scalars[3], field == "nan" ? 3 : 7) << odd;
@@ -193,7 +193,7 @@ TEST_F(Messages, NanInTextOfGridsAndUcdIsANumber) {
   const auto ucd = write("a.inp",
                          "5 2 1 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n1 1 tet 1 2 3 4\n2 1 tet 2 3 4 5\n1 "
                          "1\nf, none\n1 0\n2 1\n3 2\n4 3\n5 nan\n");
-  const MeshFile mesh = read_mesh(ucd);
+  const cells::MeshFile mesh = read_mesh(ucd);
   EXPECT_EQ(mesh.counts.cells_nan, 1u);
   EXPECT_EQ(mesh.counts.cells_read, 2u);
 }
@@ -217,7 +217,7 @@ TEST_F(Messages, ListsOfSurfacesAndPlaneMeshesAreRefusedForWhatTheyAre) {
 
 TEST_F(Messages, CellsWithTheirNodesInAnotherOrderAreWarnedOf) {
   const auto block_of = [](const std::vector<std::uint32_t>& order) {
-    CellBlock block;
+    cells::CellBlock block;
     for (int k = 0; k < 12; ++k) block.positions.emplace_back(k % 2, k / 2 % 2, k / 4);
     block.types = {12, 12};
     block.offsets = {0, 8, 16};
@@ -225,12 +225,13 @@ TEST_F(Messages, CellsWithTheirNodesInAnotherOrderAreWarnedOf) {
       for (const std::uint32_t corner : order) block.connectivity.push_back(first + corner);
     return block;
   };
-  std::vector<CellBlock> right, voxels;
+  std::vector<cells::CellBlock> right, voxels;
   right.push_back(block_of({0, 1, 3, 2, 4, 5, 7, 6}));
   voxels.push_back(block_of({0, 1, 2, 3, 4, 5, 6, 7}));
-  const MeshFile good = assemble_mesh(std::move(right), {}, "a"), tangled = assemble_mesh(std::move(voxels), {}, "a");
-  EXPECT_TRUE(warnings_on_cells(good.counts, good.higher_order).empty());
-  const auto warnings = warnings_on_cells(tangled.counts, tangled.higher_order);
+  const cells::MeshFile good = cells::assemble_mesh(std::move(right), {}, "a"),
+                        tangled = cells::assemble_mesh(std::move(voxels), {}, "a");
+  EXPECT_TRUE(cells::warnings_on_cells(good.counts, good.higher_order).empty());
+  const auto warnings = cells::warnings_on_cells(tangled.counts, tangled.higher_order);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings.front().find("all 2 hexahedra are tangled"), 0u) << warnings.front();
 }

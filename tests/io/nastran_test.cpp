@@ -91,7 +91,7 @@ TEST_F(Nastran, EveryFormOfFieldsIsTheSameMesh) {
     for (int k = 0; k < 8; ++k) bulk += form(grid(k + 1, "", cube[static_cast<std::size_t>(k)]));
     bulk += form(hexahedron(1, 1)) + form({"CQUAD4", "2", "1", "1", "2", "3", "4"});
     for (const std::string& text : {deck(bulk), bulk}) {
-      const MeshFile read = read_mesh(folder.write("a.bdf", text));
+      const cells::MeshFile read = read_mesh(folder.write("a.bdf", text));
       EXPECT_NEAR(testing::volume(read.mesh), 1, 1e-12) << text;
       EXPECT_EQ(read.counts.cells_read, 1u);
       EXPECT_EQ(read.format, "Nastran");
@@ -155,7 +155,7 @@ TEST_F(Nastran, BlankNodesInTheMiddleOfEdgesAreTheMiddle) {
                            {0, 0, 1},
                            {1, 0, 1},
                            {0, 1, 1}}));
-  const MeshFile straight = read_mesh(folder.write("b.bdf", deck(grids + "CTETRA,1,1,1,2,3,4,,\n+,,,,\n")));
+  const cells::MeshFile straight = read_mesh(folder.write("b.bdf", deck(grids + "CTETRA,1,1,1,2,3,4,,\n+,,,,\n")));
   EXPECT_EQ(straight.mesh.tets.size(), 1u);
   EXPECT_NEAR(testing::volume(straight.mesh), 8.0 / 6, 1e-12);
 }
@@ -210,7 +210,7 @@ TEST_F(Nastran, IncludedFilesAreReadInTheirPlaces) {
   folder.write("parts/again.bdf", "INCLUDE 'grids.bdf'\n$ once more\n");
   for (const char* include : {"INCLUDE 'parts/grids.bdf'\n", "include \"parts/\n   grids.bdf\"\n",
                               "INCLUDE parts/grids.bdf\nINCLUDE 'parts/grids.bdf' $ twice\n"}) {
-    const MeshFile read = read_mesh(folder.write("a.bdf", deck(include + small(hexahedron(1, 1)))));
+    const cells::MeshFile read = read_mesh(folder.write("a.bdf", deck(include + small(hexahedron(1, 1)))));
     EXPECT_NEAR(testing::volume(read.mesh), 1, 1e-12) << include;
     EXPECT_EQ(read.counts.cells_read, 1u);
   }
@@ -231,12 +231,12 @@ TEST_F(Nastran, PropertiesAreBlocksAndAField) {
   }
   const auto file =
       folder.write("a.nas", deck(bulk + "CHEXA,1,30,11,12,13,14,15,16\n,17,18\n" + small(hexahedron(2, 4))));
-  const MeshFile read = read_mesh(file);
+  const cells::MeshFile read = read_mesh(file);
   EXPECT_EQ(read.blocks, (std::vector<std::string>{"property 4", "property 30"}));
   EXPECT_EQ(read.mesh.field_name, "PropertyId");
   for (std::size_t t = 0; t < read.mesh.tets.size(); ++t)
     EXPECT_EQ(read.mesh.scalars[t], read.mesh.positions[read.mesh.tets[t][0]].x < 2 ? 4 : 30);
-  MeshOptions options;
+  cells::MeshOptions options;
   options.blocks = {"property 30"};
   EXPECT_NEAR(testing::volume(read_mesh(file, options).mesh), 1, 1e-12);
 }
@@ -249,7 +249,7 @@ TEST_F(Nastran, ReplicationsCopyAndAddToTheEntryBefore) {
     std::string bulk;
     for (int k = 0; k < 40; ++k) bulk += fmt::format("GRID,{},,{}.,{}.,{}.\n", k + 1, k % 3, k * k % 7, k * k * k % 11);
     std::vector<std::vector<std::uint32_t>> cells;
-    for (const CellBlock& block : read_nastran(folder.write("a.bdf", deck(bulk + elements))))
+    for (const cells::CellBlock& block : read_nastran(folder.write("a.bdf", deck(bulk + elements))))
       for (std::size_t c = 0; c < block.types.size(); ++c) {
         const auto first = block.connectivity.begin() + static_cast<std::ptrdiff_t>(block.offsets[c]);
         cells.emplace_back(first, first + static_cast<std::ptrdiff_t>(block.offsets[c + 1] - block.offsets[c]));

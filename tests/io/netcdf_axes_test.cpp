@@ -295,7 +295,7 @@ TEST(NetcdfAxes, OfCurvilinearPointsComeInAnyOrder) {
     for (const bool down : {false, true}) {
       of.down = down;
       write_curved(folder / "c.nc", of);
-      const MeshFile mesh = read_mesh(folder / "c.nc");
+      const cells::MeshFile mesh = read_mesh(folder / "c.nc");
       EXPECT_EQ(mesh.counts.cells_read, 6u);
       EXPECT_NEAR(testing::volume(mesh.mesh), 6 * 6 * 10, 1e-9);
       for (std::size_t p = 0; p < mesh.mesh.positions.size(); ++p) {
@@ -316,7 +316,7 @@ TEST(NetcdfAxes, OfCurvilinearCellsHaveCornersFromAnyOn) {
     of.down = variant >= 4, of.level_bounds = variant >= 8;
     SCOPED_TRACE(variant);
     write_curved(folder / "c.nc", of);
-    const MeshFile mesh = read_mesh(folder / "c.nc");
+    const cells::MeshFile mesh = read_mesh(folder / "c.nc");
     EXPECT_EQ(mesh.counts.cells_read, 24u);
     EXPECT_NEAR(testing::volume(mesh.mesh), 12 * 6 * (of.level_bounds ? 30 : 20), 1e-9);
     for (std::size_t t = 0; t < mesh.mesh.tets.size(); ++t) {

@@ -236,7 +236,7 @@ TEST(NetcdfGrids, OfTwoDimensionalCoordinatesAreMeshes) {
     w.put(v, values);
   }
   EXPECT_FALSE(is_volume(folder / "ocean.nc"));
-  const MeshFile mesh = read_mesh(folder / "ocean.nc");
+  const cells::MeshFile mesh = read_mesh(folder / "ocean.nc");
   EXPECT_EQ(mesh.format, "NetCDF");
   EXPECT_EQ(mesh.counts.cells_read, 4u);
   EXPECT_NEAR(testing::volume(mesh.mesh), 4 * 6 * 5, 1e-12);
@@ -275,7 +275,7 @@ TEST(NetcdfGrids, CellsWithBoundsHaveAValueEach) {
     w.put(blon, lon_bounds);
     w.put(v, ramp(8, 0));
   }
-  const MeshFile mesh = read_mesh(folder / "cells.nc");
+  const cells::MeshFile mesh = read_mesh(folder / "cells.nc");
   EXPECT_EQ(mesh.counts.cells_read, 8u);
   EXPECT_NEAR(testing::volume(mesh.mesh), 2 * 2 * 4, 1e-12);
   for (std::size_t t = 0; t < mesh.mesh.tets.size(); ++t) {

@@ -31,24 +31,24 @@ inline std::vector<double> content(const scene::TetMesh& mesh) {
 
 struct InParts {
   std::vector<MeshFilePart> parts;
-  MeshFile whole;  ///< its mesh empty
+  cells::MeshFile whole;  ///< its mesh empty
 };
 
-inline InParts read_in_parts(const std::filesystem::path& file, int parts, const MeshOptions& options = {}) {
+inline InParts read_in_parts(const std::filesystem::path& file, int parts, const cells::MeshOptions& options = {}) {
   std::vector<std::unique_ptr<MeshPartReading>> readings;
-  std::vector<std::vector<FieldTally>> tallies;
+  std::vector<std::vector<cells::FieldTally>> tallies;
   std::vector<std::string> names;
   for (int p = 0; p < parts; ++p) {
     readings.push_back(std::make_unique<MeshPartReading>(file, options, p, parts));
     tallies.push_back(readings.back()->tallies());
-    add_notes(readings.back()->block_names(), names);
+    cells::add_notes(readings.back()->block_names(), names);
   }
-  scene::Box box = higher_order_box({});
-  for (const auto& reading : readings) box = joined(box, reading->box());
-  ExcessTally excess{};
+  scene::Box box = cells::higher_order_box({});
+  for (const auto& reading : readings) box = cells::joined(box, reading->box());
+  cells::ExcessTally excess{};
   for (const auto& reading : readings) {
     reading->choose(tallies, box, names);
-    const ExcessTally own = reading->excess();
+    const cells::ExcessTally own = reading->excess();
     for (std::size_t bin = 0; bin < own.size(); ++bin) excess[bin] += own[bin];
   }
   InParts result;
@@ -59,14 +59,14 @@ inline InParts read_in_parts(const std::filesystem::path& file, int parts, const
     summaries.push_back(result.parts.back().summary);
     keys.insert(keys.end(), result.parts.back().cell_keys.begin(), result.parts.back().cell_keys.end());
   }
-  summaries.front().counts.cells_duplicate = count_repetitions(keys, 2);
-  result.whole = joined(result.parts.back(), summaries, file);
+  summaries.front().counts.cells_duplicate = cells::count_repetitions(keys, 2);
+  result.whole = cells::joined(result.parts.back(), summaries, file);
   return result;
 }
 
-inline void expect_as_whole(const std::filesystem::path& file, const MeshOptions& options = {}) {
+inline void expect_as_whole(const std::filesystem::path& file, const cells::MeshOptions& options = {}) {
   ASSERT_TRUE(readable_in_parts(file, options));
-  const MeshFile whole = read_mesh(file, options);
+  const cells::MeshFile whole = read_mesh(file, options);
   for (const int parts : {1, 2, 3, 7}) {
     SCOPED_TRACE(::testing::Message() << file << " in " << parts << " parts");
     const InParts read = read_in_parts(file, parts, options);

@@ -103,13 +103,13 @@ TEST(Plot3d, EveryLayoutIsFoundAndReadWithoutAnOption) {
     EXPECT_EQ(found.double_precision, layout.double_precision);
     EXPECT_EQ(found.iblank, layout.iblank);
     EXPECT_EQ(found.grids, layout.grids);
-    const MeshFile read = read_mesh(file);
+    const cells::MeshFile read = read_mesh(file);
     scene::validate(read.mesh, "grid");
     EXPECT_EQ(read.counts.cells_read, layout.multi_grid ? 24u + 10u : 24u);
     EXPECT_DOUBLE_EQ(testing::volume(read.mesh), layout.multi_grid ? 34 : 24);
     EXPECT_EQ(read.mesh.field_name, "Density");
     for (std::size_t v = 0; v < 60; ++v) EXPECT_EQ(read.mesh.scalars[v], read.mesh.positions[v].x);
-    MeshOptions options;
+    cells::MeshOptions options;
     options.field = "Momentum";
     EXPECT_EQ(read_mesh(file, options).mesh.scalars.front(), 3);
   }
@@ -189,7 +189,7 @@ TEST(Plot3d, TextIsReadInEveryLayout) {
     EXPECT_EQ(found.multi_grid, layout.multi_grid);
     EXPECT_EQ(found.iblank, layout.iblank);
     EXPECT_EQ(found.grids, layout.grids);
-    const MeshFile read = read_mesh(file);
+    const cells::MeshFile read = read_mesh(file);
     EXPECT_EQ(read.counts.cells_read, layout.multi_grid ? 24u + 10u : 24u);
     EXPECT_EQ(read.counts.cells_hidden, layout.iblank ? layout.grids.size() : 0u);
     EXPECT_EQ(read.mesh.positions[1].x, 1.1);  // as a double
@@ -228,7 +228,7 @@ TEST(Plot3d, TextThatVtkWouldMisreadIsRefused) {
 TEST(Plot3d, IBlankZeroHidesTheCellsOfItsPoint) {
   Plot3dLayout layout{true, false, false, false, true, {{4, 4, 4}}};
   const test::TemporaryFolder folder;
-  const MeshFile read = read_mesh(folder.write("g.xyz", grid_bytes(layout, 0)));  // a corner: one cell
+  const cells::MeshFile read = read_mesh(folder.write("g.xyz", grid_bytes(layout, 0)));  // a corner: one cell
   EXPECT_EQ(read.counts.cells_hidden, 1u);
   EXPECT_EQ(read_mesh(folder.write("g.xyz", grid_bytes(layout, 1 + 4 * (1 + 4)))).counts.cells_hidden, 8u);
 }
@@ -239,7 +239,7 @@ TEST(Plot3d, TheSolutionIsFoundByNameOrGiven) {
   const auto grid = folder.write("fin.xyz", grid_bytes(layout));
   EXPECT_TRUE(find_plot3d_solution(grid).empty());
   EXPECT_EQ(read_mesh(grid).mesh.field_name, "none");
-  MeshOptions options;
+  cells::MeshOptions options;
   options.plot3d_q = folder.write("solution_17.bin", solution_bytes(layout));
   EXPECT_EQ(read_mesh(grid, options).mesh.field_name, "Density");
   folder.write("fin.q", solution_bytes(layout));
@@ -259,15 +259,15 @@ TEST(Plot3d, ListsOfFilesAreReadOneTimeEach) {
   const auto list = folder.write("a.p3d", R"({"auto-detect-format": true, "functions": [110], "filenames": [
       {"time": 4.5, "xyz": "small.bin", "q": "small_9.bin", "function": "f.bin"},
       {"time": 3.5, "xyz": "large.bin"}]})");
-  const MeshFile last = read_mesh(list);
+  const cells::MeshFile last = read_mesh(list);
   EXPECT_EQ(last.mesh.field_name, "Density");
   EXPECT_NEAR(testing::volume(last.mesh), 1, 1e-12);
   EXPECT_EQ(last.time_step.count, 2u);
   EXPECT_EQ(last.time_step.step, 1u);
   EXPECT_EQ(std::ranges::count_if(last.notes, [](const auto& n) { return n.find("functions") != n.npos; }), 1);
-  MeshOptions first;
+  cells::MeshOptions first;
   first.time_step = 0;
-  const MeshFile before = read_mesh(list, first);
+  const cells::MeshFile before = read_mesh(list, first);
   EXPECT_EQ(before.mesh.field_name, "none");
   EXPECT_NEAR(testing::volume(before.mesh), 3, 1e-12);
   EXPECT_EQ(time_steps_of_mesh(list, {}).count, 2u);

@@ -46,7 +46,7 @@ TEST(PlyFile, AsciiAndEitherByteOrderAreTheSame) {
     const PlySurface ply = parse_ply(text, "s.ply");
     EXPECT_EQ(ply.surface.points, (std::vector<glm::dvec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1.5}}));
     ASSERT_EQ(ply.surface.facets.size(), 2u);
-    EXPECT_EQ(ply.surface.facets[1].polygons, (std::vector<Polygon>{{0, 1, 2, 3}}));
+    EXPECT_EQ(ply.surface.facets[1].polygons, (std::vector<cells::Polygon>{{0, 1, 2, 3}}));
     EXPECT_EQ(ply.attribute_names, std::vector<std::string>{"heat"});  // a colour is no quantity
     EXPECT_EQ(ply.surface.attributes, (std::vector<std::vector<double>>{{-1, 2, 3, 4}}));
   }

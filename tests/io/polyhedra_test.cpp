@@ -60,7 +60,7 @@ double area_of(const testing::TrianglePlace& t) {
 
 /// Inside, two tets meet in every triangle; on the box, those that one alone has are the box; the volume is the box's,
 /// and the field linear.
-void expect_fills_the_box(const MeshFile& file, unsigned seed, bool has_flat_faces = false) {
+void expect_fills_the_box(const cells::MeshFile& file, unsigned seed, bool has_flat_faces = false) {
   SCOPED_TRACE(fmt::format("seed {}", seed));
   scene::validate(file.mesh, "mesh");
   std::size_t wrong = 0;
@@ -82,17 +82,17 @@ void expect_fills_the_box(const MeshFile& file, unsigned seed, bool has_flat_fac
     EXPECT_LT(field_error(file.mesh, {anywhere(random), anywhere(random), anywhere(random)}), 1e-12);
 }
 
-MeshFile assemble_f(const CellBlock& block) {
-  MeshOptions options;
+cells::MeshFile assemble_f(const cells::CellBlock& block) {
+  cells::MeshOptions options;
   options.field = std::string("f");
-  return assemble_mesh({block}, options, "mesh");
+  return cells::assemble_mesh({block}, options, "mesh");
 }
 
 class Polyhedra : public ::testing::TestWithParam<unsigned> {};
 
 TEST_P(Polyhedra, VoronoiCellsFillTheBox) {
-  const CellBlock block = voronoi_mesh(60, GetParam());
-  const MeshFile file = assemble_f(block);
+  const cells::CellBlock block = voronoi_mesh(60, GetParam());
+  const cells::MeshFile file = assemble_f(block);
   expect_fills_the_box(file, GetParam());
   EXPECT_EQ(file.counts.cells_polyhedra, 60u);
 }
@@ -100,7 +100,7 @@ TEST_P(Polyhedra, VoronoiCellsFillTheBox) {
 TEST_P(Polyhedra, JoinedCubesOfAnyShapeFillTheBox) {
   for (const double jitter : {0.0, 0.1, 0.2}) {
     SCOPED_TRACE(jitter);
-    const MeshFile file = assemble_f(agglomerates(4, 6, jitter, GetParam()));
+    const cells::MeshFile file = assemble_f(agglomerates(4, 6, jitter, GetParam()));
     expect_fills_the_box(file, GetParam(), jitter == 0);
     EXPECT_GT(file.counts.polyhedra_from_inside, 0u);
   }
@@ -123,8 +123,8 @@ std::multiset<std::vector<std::array<double, 3>>> places_of(const scene::TetMesh
 
 TEST_P(Polyhedra, NativeCellsGivenAsPolyhedraGiveTheSameTets) {
   std::mt19937 random(GetParam());
-  CellBlock native = mixed_mesh(4, GetParam(), false);
-  const MeshFile cells = assemble_f(native), polyhedra = assemble_f(as_polyhedra(native, random));
+  cells::CellBlock native = mixed_mesh(4, GetParam(), false);
+  const cells::MeshFile cells = assemble_f(native), polyhedra = assemble_f(as_polyhedra(native, random));
   EXPECT_EQ(places_of(cells.mesh), places_of(polyhedra.mesh));
   EXPECT_EQ(polyhedra.counts.cells_polyhedra, native.types.size());
   EXPECT_EQ(polyhedra.counts.polyhedra_from_inside, 0u);
@@ -167,34 +167,34 @@ TEST(PolyhedronCells, FacesWithCornersOnTheirEdgesLeaveNoHoles) {
 
 TEST(PolyhedronCells, InSeveralBlocksAgreeByPosition) {
   for (unsigned seed = 1; seed < 4; ++seed) {
-    const CellBlock whole = agglomerates(4, 5, 0.15, seed);
+    const cells::CellBlock whole = agglomerates(4, 5, 0.15, seed);
     const std::vector<Faces> all = testing::faces_of_cells(whole);
-    std::vector<CellBlock> blocks;
+    std::vector<cells::CellBlock> blocks;
     std::mt19937 random(seed);
     for (const std::size_t first : {0, 1}) {
       std::vector<Faces> cells;
       for (std::size_t c = first; c < all.size(); c += 2) cells.push_back(all[c]);
       blocks.push_back(polyhedra_of(whole.positions, cells, random));
     }
-    MeshOptions options;
+    cells::MeshOptions options;
     options.field = std::string("f");
-    expect_fills_the_box(assemble_mesh(blocks, options, "mesh"), seed);
+    expect_fills_the_box(cells::assemble_mesh(blocks, options, "mesh"), seed);
   }
 }
 
 TEST(PolyhedronCells, MeetHexahedraWedgesAndPyramids) {
   for (unsigned seed = 1; seed < 6; ++seed) {
     std::mt19937 random(seed);
-    const CellBlock native = mixed_mesh(5, seed, false);
-    CellBlock some = as_polyhedra(native, random);
+    const cells::CellBlock native = mixed_mesh(5, seed, false);
+    cells::CellBlock some = as_polyhedra(native, random);
     for (std::size_t c = 0; c < some.types.size(); ++c) some.types[c] = random() % 2 == 0 ? 42 : 0;
-    CellBlock others = native;
+    cells::CellBlock others = native;
     for (std::size_t c = 0; c < some.types.size(); ++c)
       if (some.types[c] != 0) others.types[c] = 1;  // skipped there
     for (std::uint8_t& type : some.types) type = type == 0 ? 1 : type;
-    MeshOptions options;
+    cells::MeshOptions options;
     options.field = std::string("f");
-    expect_fills_the_box(assemble_mesh({some, others}, options, "mesh"), seed);
+    expect_fills_the_box(cells::assemble_mesh({some, others}, options, "mesh"), seed);
   }
 }
 
@@ -204,7 +204,7 @@ TEST(PolyhedronCells, HexahedraThatTheirSmallestCornerDoesNotSeeAreSplitAnotherW
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> move(-0.25, 0.25);
     constexpr std::uint32_t n = 5, u = n + 1, w = u * u;
-    CellBlock block;
+    cells::CellBlock block;
     block.offsets.push_back(0);
     std::vector<double> f;
     for (std::uint32_t v = 0; v < w * u; ++v) {
@@ -214,7 +214,7 @@ TEST(PolyhedronCells, HexahedraThatTheirSmallestCornerDoesNotSeeAreSplitAnotherW
       block.positions.push_back(p / static_cast<double>(n));
       f.push_back(glm::dot(block.positions.back(), glm::dvec3(1, 2, 3)));
     }
-    block.fields.push_back(field_of_values("f", "double", scene::Association::point, 1, std::move(f)));
+    block.fields.push_back(cells::field_of_values("f", "double", scene::Association::point, 1, std::move(f)));
     for (std::uint32_t v = 0; v < w * u; ++v) {
       if (v % u == n || v / u % u == n || v / w == n) continue;
       for (const std::uint32_t corner : {v, v + 1, v + 1 + u, v + u, v + w, v + w + 1, v + w + 1 + u, v + w + u})
@@ -222,12 +222,13 @@ TEST(PolyhedronCells, HexahedraThatTheirSmallestCornerDoesNotSeeAreSplitAnotherW
       block.types.push_back(12);
       block.offsets.push_back(block.connectivity.size());
     }
-    const MeshFile file = assemble_f(block);
+    const cells::MeshFile file = assemble_f(block);
     // The cones that overlap, if all are from the smallest corners.
     for (std::size_t c = 0; c < block.types.size(); ++c) {
       scene::TetMesh cone;
       cone.positions = block.positions;
-      split_cell(CellKind::hexahedron, std::span(block.connectivity).subspan(8 * c, 8), block.positions, cone.tets);
+      cells::split_cell(cells::CellKind::hexahedron, std::span(block.connectivity).subspan(8 * c, 8), block.positions,
+                        cone.tets);
       double sum = 0;
       for (const scene::Tet& t : cone.tets) {
         const glm::dvec3 a = block.positions[t[0]];

@@ -27,17 +27,17 @@ namespace {
 
 using testing::Faces;
 
-MeshFile read_field(const std::filesystem::path& file) {
-  MeshOptions options;
+cells::MeshFile read_field(const std::filesystem::path& file) {
+  cells::MeshOptions options;
   options.field = std::string("f");
   return read_mesh(file, options);
 }
 
-void expect_like(const std::filesystem::path& file, const CellBlock& block) {
+void expect_like(const std::filesystem::path& file, const cells::CellBlock& block) {
   SCOPED_TRACE(file);
-  MeshOptions options;
+  cells::MeshOptions options;
   options.field = std::string("f");
-  const MeshFile wanted = assemble_mesh({block}, options, "mesh"), read = read_field(file);
+  const cells::MeshFile wanted = cells::assemble_mesh({block}, options, "mesh"), read = read_field(file);
   EXPECT_EQ(read.mesh.tets.size(), wanted.mesh.tets.size());
   EXPECT_EQ(read.mesh.original_cell, wanted.mesh.original_cell);
   EXPECT_EQ(read.counts.cells_polyhedra, wanted.counts.cells_polyhedra);
@@ -48,7 +48,7 @@ void expect_like(const std::filesystem::path& file, const CellBlock& block) {
   }
 }
 
-vtkNew<vtkUnstructuredGrid> grid_of(const CellBlock& block) {
+vtkNew<vtkUnstructuredGrid> grid_of(const cells::CellBlock& block) {
   vtkNew<vtkUnstructuredGrid> grid;
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
@@ -72,7 +72,7 @@ vtkNew<vtkUnstructuredGrid> grid_of(const CellBlock& block) {
 }
 
 TEST(PolyhedraWritten, ByVtkAreReadInEveryEncoding) {
-  const CellBlock block = testing::agglomerates(3, 5, 0.2, 1);
+  const cells::CellBlock block = testing::agglomerates(3, 5, 0.2, 1);
   const auto grid = grid_of(block);
   const test::TemporaryFolder folder;
   for (const int mode : {vtkXMLWriter::Ascii, vtkXMLWriter::Binary, vtkXMLWriter::Appended})
@@ -96,14 +96,14 @@ TEST(PolyhedraWritten, ByVtkAreReadInEveryEncoding) {
       writer->SetFileVersion(version);
       writer->SetInputData(grid);
       ASSERT_EQ(writer->Write(), 1);
-      const MeshFile read = read_field(file);
+      const cells::MeshFile read = read_field(file);
       EXPECT_EQ(read.counts.cells_polyhedra, block.types.size());
       EXPECT_NEAR(testing::volume(read.mesh), 1, 1e-5);  // text has six digits
     }
 }
 
 /// A zone with faces as NGON_n and cells as NFACE_n, where a face whose cell is its second has a negative number.
-void write_cgns(const std::filesystem::path& file, const CellBlock& block) {
+void write_cgns(const std::filesystem::path& file, const cells::CellBlock& block) {
   const std::vector<Faces> cells = testing::faces_of_cells(block);
   std::map<std::vector<std::uint32_t>, cgsize_t> numbers;
   std::vector<cgsize_t> corners, corner_offsets{0}, faces, face_offsets{0};
@@ -150,13 +150,13 @@ void write_cgns(const std::filesystem::path& file, const CellBlock& block) {
 
 TEST(PolyhedraWritten, OfCgnsAreFacesOfNgonAndNface) {
   const test::TemporaryFolder folder;
-  const CellBlock block = testing::agglomerates(3, 5, 0.2, 2);
+  const cells::CellBlock block = testing::agglomerates(3, 5, 0.2, 2);
   write_cgns(folder / "m.cgns", block);
   expect_like(folder / "m.cgns", block);
 }
 
 /// A block of cubes before one of polyhedra, whose faces are in two face blocks; the value of each cell is its number.
-void write_exodus(const std::filesystem::path& file, const CellBlock& block, int damage = 0) {
+void write_exodus(const std::filesystem::path& file, const cells::CellBlock& block, int damage = 0) {
   const std::vector<Faces> cells = testing::faces_of_cells(block);
   std::map<std::vector<std::uint32_t>, int> numbers;
   std::array<std::vector<int>, 2> corners, sizes;
@@ -226,16 +226,16 @@ void write_exodus(const std::filesystem::path& file, const CellBlock& block, int
 
 TEST(PolyhedraWritten, OfExodusAreFacesOfNsidedAndNfaced) {
   const test::TemporaryFolder folder;
-  const CellBlock block = testing::agglomerates(3, 5, 0.2, 2);
+  const cells::CellBlock block = testing::agglomerates(3, 5, 0.2, 2);
   write_exodus(folder / "m.exo", block);
   // The cube alone lies over others.
-  MeshOptions options;
+  cells::MeshOptions options;
   options.field = std::string("f");
-  const MeshFile both = read_mesh(folder / "m.exo", options);
+  const cells::MeshFile both = read_mesh(folder / "m.exo", options);
   EXPECT_EQ(both.counts.cells_read, block.types.size() + 1);
   EXPECT_EQ(both.counts.cells_polyhedra, block.types.size());
   options.blocks = {"block 2"};
-  const MeshFile read = read_mesh(folder / "m.exo", options);
+  const cells::MeshFile read = read_mesh(folder / "m.exo", options);
   EXPECT_NEAR(testing::volume(read.mesh), 1, 1e-12);
   EXPECT_LT(testing::volume(both.mesh), 1.1);
   for (std::size_t v = 0; v < read.mesh.positions.size(); ++v) {

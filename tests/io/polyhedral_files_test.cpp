@@ -26,19 +26,19 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-MeshFile read_field(const std::filesystem::path& file, const char* field) {
-  MeshOptions options;
+cells::MeshFile read_field(const std::filesystem::path& file, const char* field) {
+  cells::MeshOptions options;
   options.field = std::string(field);
   return read_mesh(file, options);
 }
 
-MeshFile in_memory(const CellBlock& block, const char* field) {
-  MeshOptions options;
+cells::MeshFile in_memory(const cells::CellBlock& block, const char* field) {
+  cells::MeshOptions options;
   options.field = std::string(field);
-  return assemble_mesh({block}, options, "mesh");
+  return cells::assemble_mesh({block}, options, "mesh");
 }
 
-void expect_same(const MeshFile& read, const MeshFile& wanted) {
+void expect_same(const cells::MeshFile& read, const cells::MeshFile& wanted) {
   EXPECT_EQ(read.mesh.tets, wanted.mesh.tets);
   EXPECT_EQ(read.mesh.positions, wanted.mesh.positions);
   EXPECT_EQ(read.mesh.scalars, wanted.mesh.scalars);
@@ -76,29 +76,29 @@ struct FaceList {
 TEST(PolyhedralFiles, AVtuHasTheCellsThatItWasMadeOf) {
   const test::TemporaryFolder folder;
   // Other cells among the polyhedra, which have no faces.
-  CellBlock block = agglomerates(3, 5, 0.2, 3);
+  cells::CellBlock block = agglomerates(3, 5, 0.2, 3);
   block.types.insert(block.types.begin(), 12);
   block.connectivity.insert(block.connectivity.begin(), {0, 1, 5, 4, 16, 17, 21, 20});
   for (std::uint64_t& offset : block.offsets) offset += 8;
   block.offsets.insert(block.offsets.begin(), 0);
-  block.face_locations.insert(block.face_locations.begin(), CellBlock::no_faces);
+  block.face_locations.insert(block.face_locations.begin(), cells::CellBlock::no_faces);
   block.fields.pop_back();
   expect_same(read_field(folder.write("m.vtu", testing::vtu_text(block)), "f"), in_memory(block, "f"));
 }
 
 TEST(PolyhedralFiles, PiecesOfAPvtuAgreeOnTheFacesBetweenThem) {
   const test::TemporaryFolder folder;
-  const CellBlock whole = agglomerates(4, 5, 0.15, 6);
+  const cells::CellBlock whole = agglomerates(4, 5, 0.15, 6);
   const std::vector<Faces> all = testing::faces_of_cells(whole);
   std::mt19937 random(6);
-  CellBlock piece;
+  cells::CellBlock piece;
   for (const std::size_t first : {0, 1}) {
     std::vector<Faces> cells;
     for (std::size_t c = first; c < all.size(); c += 2) cells.push_back(all[c]);
     piece = testing::polyhedra_of(whole.positions, cells, random);
     folder.write(fmt::format("{}.vtu", first), testing::vtu_text(piece));
   }
-  const MeshFile read = read_field(folder.write("m.pvtu", testing::pvtu_text(piece, {"0.vtu", "1.vtu"})), "f");
+  const cells::MeshFile read = read_field(folder.write("m.pvtu", testing::pvtu_text(piece, {"0.vtu", "1.vtu"})), "f");
   EXPECT_EQ(read.counts.cells_polyhedra, all.size());
   EXPECT_NEAR(testing::volume(read.mesh), 1, 1e-12);
   for (const auto& [place, uses] : testing::count_triangles(read.mesh)) {
@@ -111,7 +111,7 @@ TEST(PolyhedralFiles, PiecesOfAPvtuAgreeOnTheFacesBetweenThem) {
 
 TEST(PolyhedralFiles, ALegacyFileHasFacesInItsCells) {
   const test::TemporaryFolder folder;
-  const CellBlock block = agglomerates(2, 3, 0.2, 3);
+  const cells::CellBlock block = agglomerates(2, 3, 0.2, 3);
   const std::vector<Faces> cells = testing::faces_of_cells(block);
   std::string text = fmt::format("# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {} double\n",
                                  block.positions.size());
@@ -135,7 +135,8 @@ TEST(PolyhedralFiles, DamagedFacesAreOneLine) {
   const test::TemporaryFolder folder;
   std::mt19937 random(1);
   const std::vector<glm::dvec3> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  const CellBlock block = testing::polyhedra_of(points, {{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}}, random, true);
+  const cells::CellBlock block =
+      testing::polyhedra_of(points, {{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}}, random, true);
   const std::string good = testing::vtu_text(block);
   EXPECT_NEAR(testing::volume(read_mesh(folder.write("good.vtu", good)).mesh), 1.0 / 6, 1e-15);
   const std::string list = fmt::format("{} ", fmt::join(block.faces, " "));
@@ -158,14 +159,14 @@ TEST(PolyhedralFiles, DamagedFacesAreOneLine) {
 
 TEST(PolyhedralFiles, RandomNumbersAmongFacesNeverCrash) {
   const test::TemporaryFolder folder;
-  const CellBlock block = agglomerates(2, 4, 0.2, 1);
+  const cells::CellBlock block = agglomerates(2, 4, 0.2, 1);
   std::mt19937 random(4);
   for (int round = 0; round < 60; ++round) {
-    CellBlock bad = block;
+    cells::CellBlock bad = block;
     for (unsigned k = 0; k <= random() % 3; ++k)
       bad.faces[random() % bad.faces.size()] = random() % 4 == 0 ? random() : random() % 30;
     const test::Fault fault = test::fault_of([&] {
-      require_faces(bad, "mesh");
+      cells::require_faces(bad, "mesh");
       scene::validate(in_memory(bad, "f").mesh, "mesh");
     });
     if (!fault.code) continue;
@@ -181,7 +182,7 @@ std::string foam_header(const char* kind, const std::string& object) {
 }
 
 /// A case whose field `c` is the cell's number.
-void write_case(const std::filesystem::path& folder, const CellBlock& block) {
+void write_case(const std::filesystem::path& folder, const cells::CellBlock& block) {
   const std::vector<Faces> cells = testing::faces_of_cells(block);
   const FaceList list(cells);
   const auto write = [&](const char* name, const std::string& text) {
@@ -224,7 +225,7 @@ void write_case(const std::filesystem::path& folder, const CellBlock& block) {
 }
 
 /// Volume, faces, cell numbers and linear point data of a mesh that was read through floats.
-void expect_like(const MeshFile& read, const CellBlock& block, bool has_polyhedra = true) {
+void expect_like(const cells::MeshFile& read, const cells::CellBlock& block, bool has_polyhedra = true) {
   scene::validate(read.mesh, "mesh");
   EXPECT_NEAR(testing::volume(read.mesh), 1, 1e-5);
   EXPECT_EQ(read.counts.cells_read, block.types.size());
@@ -268,7 +269,7 @@ void expect_like(const MeshFile& read, const CellBlock& block, bool has_polyhedr
 TEST(PolyhedralFiles, AnOpenFoamCaseKeepsItsCellsAndValues) {
   for (const unsigned seed : {1u, 2u, 3u}) {
     const test::TemporaryFolder folder;
-    const CellBlock block = agglomerates(4, 5, 0.15, seed);
+    const cells::CellBlock block = agglomerates(4, 5, 0.15, seed);
     write_case(folder.path(), block);
     expect_like(read_field(folder / "case.foam", "c"), block);
     expect_like(read_field(folder / "case.foam", "f"), block);
@@ -278,7 +279,7 @@ TEST(PolyhedralFiles, AnOpenFoamCaseKeepsItsCellsAndValues) {
 TEST(PolyhedralFiles, EnSightGoldHasThemAsNfaced) {
   for (const unsigned seed : {1u, 2u, 3u}) {
     const test::TemporaryFolder folder;
-    const CellBlock block = agglomerates(4, 5, 0.15, seed);
+    const cells::CellBlock block = agglomerates(4, 5, 0.15, seed);
     const std::vector<Faces> cells = testing::faces_of_cells(block);
     std::string text = "made\nhere\nnode id off\nelement id off\npart\n         1\nbox\ncoordinates\n";
     text += fmt::format("{:10}\n", block.positions.size());
@@ -330,7 +331,7 @@ TEST(PolyhedralFiles, FluentsConvexCellsAreReadAsPolyhedra) {
   for (const unsigned seed : {1u, 2u, 3u}) {
     const test::TemporaryFolder folder;
     std::mt19937 random(seed);
-    const CellBlock block = testing::voronoi_mesh(30, seed);
+    const cells::CellBlock block = testing::voronoi_mesh(30, seed);
     const std::vector<Faces> cells = testing::faces_of_cells(block);
     const FaceList list(cells);
     std::string text =
@@ -347,7 +348,7 @@ TEST(PolyhedralFiles, FluentsConvexCellsAreReadAsPolyhedra) {
     text += fmt::format("(13 (0 1 {:x} 0))\n(13 (3 1 {:x} 2 5)(\n{}))\n", list.faces.size(), list.inner, lines[0]);
     text += fmt::format("(13 (4 {:x} {:x} 3 5)(\n{}))\n", list.inner + 1, list.faces.size(), lines[1]);
     text += "(45 (2 fluid fluid)())\n(45 (3 interior inside)())\n(45 (4 wall walls)())\n";
-    const MeshFile alone = read_mesh(folder.write("a.cas", text));
+    const cells::MeshFile alone = read_mesh(folder.write("a.cas", text));
     EXPECT_NEAR(testing::volume(alone.mesh), 1, 1e-5);
     std::string data = fmt::format("(0 \"values\")\n(300 (3 2 1 0 0 1 {})\n(", cells.size());
     for (std::size_t c = 0; c < cells.size(); ++c) data += fmt::format("{}\n", c);

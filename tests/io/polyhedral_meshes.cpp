@@ -129,9 +129,9 @@ void drop_inner(Faces& faces) {
 
 }  // namespace
 
-CellBlock polyhedra_of(std::vector<glm::dvec3> points, const std::vector<Faces>& cells, std::mt19937& random,
-                       bool outward) {
-  CellBlock block;
+cells::CellBlock polyhedra_of(std::vector<glm::dvec3> points, const std::vector<Faces>& cells, std::mt19937& random,
+                              bool outward) {
+  cells::CellBlock block;
   std::vector<double> f, c;
   for (const glm::dvec3& p : points) f.push_back(p.x + 2 * p.y + 3 * p.z);
   block.positions = std::move(points);
@@ -152,12 +152,12 @@ CellBlock polyhedra_of(std::vector<glm::dvec3> points, const std::vector<Faces>&
     block.offsets.push_back(block.connectivity.size());
     c.push_back(static_cast<double>(c.size()));
   }
-  block.fields.push_back(field_of_values("f", "double", scene::Association::point, 1, std::move(f)));
-  block.fields.push_back(field_of_values("c", "double", scene::Association::cell, 1, std::move(c)));
+  block.fields.push_back(cells::field_of_values("f", "double", scene::Association::point, 1, std::move(f)));
+  block.fields.push_back(cells::field_of_values("c", "double", scene::Association::cell, 1, std::move(c)));
   return block;
 }
 
-std::vector<Faces> faces_of_cells(const CellBlock& block) {
+std::vector<Faces> faces_of_cells(const cells::CellBlock& block) {
   std::vector<Faces> cells(block.face_locations.size());
   for (std::size_t c = 0; c < cells.size(); ++c) {
     auto at = static_cast<std::size_t>(block.face_locations[c]);
@@ -170,7 +170,7 @@ std::vector<Faces> faces_of_cells(const CellBlock& block) {
   return cells;
 }
 
-CellBlock as_polyhedra(const CellBlock& block, std::mt19937& random) {
+cells::CellBlock as_polyhedra(const cells::CellBlock& block, std::mt19937& random) {
   std::vector<Faces> cells;
   for (std::size_t c = 0; c < block.types.size(); ++c) {
     const std::span corner(block.connectivity.data() + block.offsets[c], block.offsets[c + 1] - block.offsets[c]);
@@ -178,7 +178,7 @@ CellBlock as_polyhedra(const CellBlock& block, std::mt19937& random) {
     if (block.types[c] == 10)
       list = {3, corner[0], corner[1], corner[2], 3, corner[0], corner[3], corner[1],
               3, corner[1], corner[3], corner[2], 3, corner[2], corner[3], corner[0]};
-    append_faces(cell_shape(block.types[c]).kind, corner, list);
+    cells::append_faces(cells::cell_shape(block.types[c]).kind, corner, list);
     Faces faces;
     for (std::size_t k = 0; k < list.size(); k += list[k] + 1)
       faces.emplace_back(list.begin() + static_cast<std::ptrdiff_t>(k + 1),
@@ -189,7 +189,7 @@ CellBlock as_polyhedra(const CellBlock& block, std::mt19937& random) {
   return polyhedra_of(block.positions, cells, random);
 }
 
-CellBlock voronoi_mesh(int sites, unsigned seed) {
+cells::CellBlock voronoi_mesh(int sites, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> anywhere(0, 1);
   std::vector<glm::dvec3> site;
@@ -220,7 +220,8 @@ CellBlock voronoi_mesh(int sites, unsigned seed) {
   return polyhedra_of(std::move(points), cells, random);
 }
 
-CellBlock agglomerates(int n, int largest, double jitter, unsigned seed, std::vector<std::size_t>* cell_of_cube) {
+cells::CellBlock agglomerates(int n, int largest, double jitter, unsigned seed,
+                              std::vector<std::size_t>* cell_of_cube) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> move(-jitter, jitter);
   const auto side = static_cast<std::uint32_t>(n + 1);
@@ -263,7 +264,7 @@ CellBlock agglomerates(int n, int largest, double jitter, unsigned seed, std::ve
   return polyhedra_of(std::move(points), cells, random, true);
 }
 
-CellBlock polyominoes(int n, int layers, unsigned seed) {
+cells::CellBlock polyominoes(int n, int layers, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> move(-0.25, 0.25);
   const auto side = static_cast<std::uint32_t>(n + 1), map = side * side;

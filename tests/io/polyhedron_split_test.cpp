@@ -25,10 +25,10 @@ bool comes_before(const glm::dvec3& a, const glm::dvec3& b) {
   return std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z};
 }
 
-MeshFile assembled(const CellBlock& block, const std::string& field = "f", int threads = 0) {
-  MeshOptions options;
+cells::MeshFile assembled(const cells::CellBlock& block, const std::string& field = "f", int threads = 0) {
+  cells::MeshOptions options;
   options.field = field, options.threads = threads;
-  MeshFile file = assemble_mesh({block, block}, options, "mesh");
+  cells::MeshFile file = cells::assemble_mesh({block, block}, options, "mesh");
   file.counts.cells_duplicate = 0;  // the second block is on top of the first, which is of no interest here
   return file;
 }
@@ -53,11 +53,11 @@ std::set<testing::TrianglePlace> triangles_of(const std::vector<glm::dvec3>& out
     corners.push_back(static_cast<std::uint32_t>(std::find(p.begin(), p.end(), x) - p.begin()));
   std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(random() % corners.size()), corners.end());
   if (random() % 2 == 0) std::reverse(corners.begin(), corners.end());
-  std::vector<CornerTriangle> triangles;
-  FaceCutter().cut(corners, p, triangles);
+  std::vector<cells::CornerTriangle> triangles;
+  cells::FaceCutter().cut(corners, p, triangles);
   EXPECT_EQ(triangles.size(), outline.size() - 2);
   std::set<testing::TrianglePlace> places;
-  for (const CornerTriangle& t : triangles) {
+  for (const cells::CornerTriangle& t : triangles) {
     testing::TrianglePlace place;
     for (std::size_t k = 0; k < 3; ++k) place[k] = {p[t[k]].x, p[t[k]].y, p[t[k]].z};
     std::sort(place.begin(), place.end());
@@ -72,7 +72,7 @@ double area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
 
 TEST(FaceTriangles, DependOnNeitherTheStartNorTheOrderOfTheCorners) {
   std::mt19937 random(5);
-  std::uniform_real_distribution<double> radius(0.2, 1), warp(-0.1, 0.1);
+  std::uniform_real_distribution<double> radius(0.2, 1), cells::warp(-0.1, 0.1);
   int ears = 0;
   for (int round = 0; round < 300; ++round) {
     SCOPED_TRACE(fmt::format("round {}", round));
@@ -82,7 +82,7 @@ TEST(FaceTriangles, DependOnNeitherTheStartNorTheOrderOfTheCorners) {
     double whole = 0;
     for (int k = 0; k < n; ++k) {  // a star round the origin
       const double angle = 2 * 3.141592653589793 * k / n, r = is_convex ? 1 : radius(random), x = r * std::cos(angle);
-      outline.emplace_back(x, r * std::sin(angle), is_plane ? 0.3 * x : warp(random));
+      outline.emplace_back(x, r * std::sin(angle), is_plane ? 0.3 * x : cells::warp(random));
     }
     for (std::size_t k = 0; k < outline.size(); ++k)
       whole += area(glm::dvec3(0), outline[k], outline[(k + 1) % outline.size()]);
@@ -126,7 +126,7 @@ TEST(FaceTriangles, OfAFaceWithCornersOnItsEdgesKeepThemAll) {
 TEST(PolyhedronSplit, TakesFacesWhicheverWayTheyTurn) {
   for (unsigned seed = 1; seed < 20; ++seed) {
     std::mt19937 random(seed);
-    const MeshFile file = assembled(polyhedra_of(cube_points(), {cube_faces()}, random));
+    const cells::MeshFile file = assembled(polyhedra_of(cube_points(), {cube_faces()}, random));
     EXPECT_EQ(file.mesh.tets.size(), 2 * 6u);
     EXPECT_DOUBLE_EQ(testing::volume(file.mesh), 2);
   }
@@ -140,12 +140,13 @@ TEST(PolyhedronSplit, LeavesOutWithAWarningWhatIsNotClosed) {
   open.pop_back();
   doubled.push_back(doubled.front());
   for (const Faces& bad : {open, doubled, Faces{}}) {
-    const MeshFile file = assembled(polyhedra_of(p, {bad, cube_faces()}, random));
+    const cells::MeshFile file = assembled(polyhedra_of(p, {bad, cube_faces()}, random));
     EXPECT_EQ(file.counts.cells_open, 2u);
     EXPECT_EQ(file.counts.cells_polyhedra, 2u);
     EXPECT_DOUBLE_EQ(testing::volume(file.mesh), 2);
-    ASSERT_EQ(warnings_on_cells(file.counts, {}).size(), 1u);
-    EXPECT_EQ(warnings_on_cells(file.counts, {})[0], "2 polyhedra are left out: their faces are no closed surface");
+    ASSERT_EQ(cells::warnings_on_cells(file.counts, {}).size(), 1u);
+    EXPECT_EQ(cells::warnings_on_cells(file.counts, {})[0],
+              "2 polyhedra are left out: their faces are no closed surface");
   }
   test::expect_bad_input([&] { assembled(polyhedra_of(p, {open}, random)); }, {"2 are polyhedra whose faces do not"});
 }
@@ -163,10 +164,10 @@ TEST(PolyhedronSplit, CutsUpWhatNoPointSeesAllOf) {
     faces.push_back({k, (k + 1) % 8, (k + 1) % 8 + 8, k + 8});
   }
   std::mt19937 random(1);
-  const MeshFile file = assembled(polyhedra_of(p, {faces}, random));
+  const cells::MeshFile file = assembled(polyhedra_of(p, {faces}, random));
   EXPECT_EQ(file.counts.polyhedra_in_pieces, 2u);
   EXPECT_NEAR(testing::volume(file.mesh), 10, 1e-13);
-  EXPECT_TRUE(warnings_on_cells(file.counts, {}).empty());
+  EXPECT_TRUE(cells::warnings_on_cells(file.counts, {}).empty());
 }
 
 TEST(PolyhedronSplit, AddsAPointToWhatHasNoTetsOfItsOwnCorners) {
@@ -186,7 +187,7 @@ TEST(PolyhedronSplit, AddsAPointToWhatHasNoTetsOfItsOwnCorners) {
   }
   for (const auto& face : faces) signed6 += glm::dot(glm::cross(p[face[0]], p[face[1]]), p[face[2]]);
   std::mt19937 random(1);
-  const MeshFile file = assembled(polyhedra_of(p, {faces}, random));
+  const cells::MeshFile file = assembled(polyhedra_of(p, {faces}, random));
   EXPECT_EQ(file.counts.polyhedra_from_inside, 2u);
   EXPECT_NEAR(testing::volume(file.mesh), 2 * signed6 / 6, 1e-13);
 }
@@ -199,11 +200,11 @@ TEST(PolyhedronSplit, WarnsOfTetsThatOverlapWhereItFindsNoWay) {
   for (auto& face : inner) std::reverse(face.begin(), face.end());
   faces.insert(faces.end(), inner.begin(), inner.end());
   std::mt19937 random(1);
-  const MeshFile file = assembled(polyhedra_of(p, {faces}, random, true));
+  const cells::MeshFile file = assembled(polyhedra_of(p, {faces}, random, true));
   EXPECT_EQ(file.counts.polyhedra_tangled, 2u);
   EXPECT_EQ(file.counts.cells_tangled, 2u);
-  ASSERT_EQ(warnings_on_cells(file.counts, {}).size(), 1u);
-  EXPECT_NE(warnings_on_cells(file.counts, {})[0].find("2 polyhedra are drawn by tets that overlap"),
+  ASSERT_EQ(cells::warnings_on_cells(file.counts, {}).size(), 1u);
+  EXPECT_NE(cells::warnings_on_cells(file.counts, {})[0].find("2 polyhedra are drawn by tets that overlap"),
             std::string::npos);
 }
 
@@ -226,7 +227,7 @@ TEST(PolyhedronSplit, FindsAPointInsideWhereCornersAndTheirMeanDoNot) {
     twice += outline[k].first * outline[next].second - outline[next].first * outline[k].second;
   }
   std::mt19937 random(1);
-  const MeshFile file = assembled(polyhedra_of(p, {faces}, random));
+  const cells::MeshFile file = assembled(polyhedra_of(p, {faces}, random));
   EXPECT_NEAR(testing::volume(file.mesh), twice, 1e-12);
   for (std::size_t v = 0; v < file.mesh.positions.size(); ++v) {
     const glm::dvec3& x = file.mesh.positions[v];
@@ -235,10 +236,10 @@ TEST(PolyhedronSplit, FindsAPointInsideWhereCornersAndTheirMeanDoNot) {
 }
 
 TEST(PolyhedronSplit, FollowsTheRulesForGhostsHiddenPointsAndNan) {
-  CellBlock block = voronoi_mesh(40, 3);
+  cells::CellBlock block = voronoi_mesh(40, 3);
   block.cell_ghost.assign(40, 0);
   block.cell_ghost[3] = 1, block.cell_ghost[4] = 32;
-  MeshFile file = assembled(block);
+  cells::MeshFile file = assembled(block);
   EXPECT_EQ(file.counts.cells_ghost, 2u);
   EXPECT_EQ(file.counts.cells_hidden, 2u);
   EXPECT_EQ(file.counts.cells_polyhedra, 76u);
@@ -254,7 +255,7 @@ TEST(PolyhedronSplit, FollowsTheRulesForGhostsHiddenPointsAndNan) {
 }
 
 TEST(PolyhedronSplit, KeepsOneValueACellOfCellData) {
-  const MeshFile file = assembled(agglomerates(3, 5, 0.2, 4), "c");
+  const cells::MeshFile file = assembled(agglomerates(3, 5, 0.2, 4), "c");
   scene::validate(file.mesh, "mesh");
   EXPECT_GT(file.counts.polyhedra_from_inside, 0u);
   ASSERT_EQ(file.mesh.scalars.size(), file.mesh.tets.size());
@@ -268,7 +269,7 @@ TEST(PolyhedronSplit, GivesTheSameMeshWithAnyThreads) {
   std::mt19937 random(1);
   std::vector<glm::dvec3> p;
   std::vector<Faces> cells;
-  const CellBlock shapes = agglomerates(3, 5, 0.2, 2);
+  const cells::CellBlock shapes = agglomerates(3, 5, 0.2, 2);
   const std::vector<Faces> shape = testing::faces_of_cells(shapes);
   for (std::uint32_t k = 0; k < 20'000; ++k) {
     if (k % 100 == 0) {
@@ -284,8 +285,8 @@ TEST(PolyhedronSplit, GivesTheSameMeshWithAnyThreads) {
     for (const glm::dvec3& x : cube_points(2.0 * k)) p.push_back(x);
     cells.push_back(cube_faces(first));
   }
-  const CellBlock block = polyhedra_of(p, cells, random);
-  const MeshFile one = assembled(block, "f", 1), two = assembled(block, "f", 2);
+  const cells::CellBlock block = polyhedra_of(p, cells, random);
+  const cells::MeshFile one = assembled(block, "f", 1), two = assembled(block, "f", 2);
   scene::validate(one.mesh, "mesh");
   EXPECT_NEAR(testing::volume(one.mesh), 2 * (20'000 + 200), 1e-6);
   for (std::size_t v = 0; v < one.mesh.positions.size(); ++v) {
@@ -310,13 +311,13 @@ TEST(PolyhedronSplit, CutsPrismsWithHollowLidsAsPolyhedra) {
     faces.push_back({k + 6, (k + 1) % 6 + 6, (k + 1) % 6 + 12, k + 12});
   }
   std::mt19937 random(1);
-  CellBlock block = polyhedra_of(p, {faces}, random);
+  cells::CellBlock block = polyhedra_of(p, {faces}, random);
   block.types.push_back(16);
   for (std::uint32_t k = 0; k < 12; ++k) block.connectivity.push_back(k);
   block.offsets.push_back(block.connectivity.size());
-  block.face_locations.push_back(CellBlock::no_faces);
+  block.face_locations.push_back(cells::CellBlock::no_faces);
   block.fields.pop_back();
-  const MeshFile file = assemble_mesh({block}, {}, "mesh");
+  const cells::MeshFile file = cells::assemble_mesh({block}, {}, "mesh");
   double area = 0;
   for (std::size_t k = 0; k < 6; ++k) area += (p[k].x * p[(k + 1) % 6].y - p[(k + 1) % 6].x * p[k].y) / 2;
   EXPECT_NEAR(testing::volume(file.mesh), 2 * area, 1e-13);
@@ -332,18 +333,18 @@ TEST(ConvexPointSets, AreHullsThatFitTheirNeighbours) {
     for (unsigned seed = 1; seed < 9; ++seed) {
       SCOPED_TRACE(fmt::format("seed {}, float {}", seed, to_float));
       // Voronoi cells, some as polyhedra, others as their corners in any order.
-      CellBlock block = voronoi_mesh(40, seed);
+      cells::CellBlock block = voronoi_mesh(40, seed);
       std::mt19937 random(seed);
       for (std::size_t c = 0; c < block.types.size(); ++c) {
         if (random() % 2 == 0) continue;
         block.types[c] = 41;
-        block.face_locations[c] = CellBlock::no_faces;
+        block.face_locations[c] = cells::CellBlock::no_faces;
         std::shuffle(block.connectivity.begin() + static_cast<std::ptrdiff_t>(block.offsets[c]),
                      block.connectivity.begin() + static_cast<std::ptrdiff_t>(block.offsets[c + 1]), random);
       }
       for (glm::dvec3& p : block.positions)
         for (int a = 0; a < 3 && to_float; ++a) p[a] = static_cast<float>(p[a]);
-      const MeshFile file = assemble_mesh({block}, {}, "mesh");
+      const cells::MeshFile file = cells::assemble_mesh({block}, {}, "mesh");
       EXPECT_EQ(file.counts.cells_polyhedra, 40u);
       std::size_t wrong = 0;
       for (const auto& [place, uses] : testing::count_triangles(file.mesh)) {
@@ -358,7 +359,7 @@ TEST(ConvexPointSets, AreHullsThatFitTheirNeighbours) {
 }
 
 TEST(ConvexPointSets, OfTooManyOrFlatPointsAreCounted) {
-  CellBlock block;
+  cells::CellBlock block;
   std::mt19937 random(2);
   std::normal_distribution<double> anywhere;
   block.offsets = {0};
@@ -371,7 +372,7 @@ TEST(ConvexPointSets, OfTooManyOrFlatPointsAreCounted) {
     block.types.push_back(41);
     block.offsets.push_back(block.connectivity.size());
   }
-  const MeshFile file = assemble_mesh({block}, {}, "mesh");
+  const cells::MeshFile file = cells::assemble_mesh({block}, {}, "mesh");
   EXPECT_EQ(file.counts.cells_open, 1u);
   EXPECT_EQ(file.counts.cells_zero_volume, 1u);
   EXPECT_EQ(file.mesh.tets.size(), 1u);

@@ -17,10 +17,10 @@ class SharedData : public ::testing::Test {
     if (!std::filesystem::exists(data)) GTEST_SKIP() << "no " << data << ": the public meshes are not here";
   }
 
-  static MeshFile read(const std::string& name, const std::string& field = "") {
-    MeshOptions options;
+  static cells::MeshFile read(const std::string& name, const std::string& field = "") {
+    cells::MeshOptions options;
     options.field = field;
-    MeshFile file = read_mesh(data / name, options);
+    cells::MeshFile file = read_mesh(data / name, options);
     scene::validate(file.mesh, name);
     EXPECT_EQ(file.counts.tets_made, file.mesh.tets.size());
     EXPECT_EQ(file.counts.cells_nan + file.counts.cells_ghost + file.counts.cells_not_volumetric, 0u);
@@ -38,8 +38,8 @@ class SharedData : public ::testing::Test {
     return boundary;
   }
 
-  static FieldSummary field(const MeshFile& file, const std::string& name) {
-    for (const FieldSummary& f : file.fields)
+  static cells::FieldSummary field(const cells::MeshFile& file, const std::string& name) {
+    for (const cells::FieldSummary& f : file.fields)
       if (f.name == name) return f;
     ADD_FAILURE() << "no field " << name;
     return {};
@@ -47,7 +47,7 @@ class SharedData : public ::testing::Test {
 };
 
 TEST_F(SharedData, OxygenPostClosesAtItsSeam) {
-  const MeshFile file = read("oxygen-post/postxyz.bin");
+  const cells::MeshFile file = read("oxygen-post/postxyz.bin");
   EXPECT_EQ(file.counts.cells_read, 102675u);
   EXPECT_EQ(file.counts.points_read, 109744u);
   EXPECT_EQ(file.counts.cells_hidden, 0u);
@@ -64,7 +64,7 @@ TEST_F(SharedData, OxygenPostClosesAtItsSeam) {
 }
 
 TEST_F(SharedData, BluntFinHasCollapsedEdges) {
-  const MeshFile file = read("bluntfin/bluntfinxyz.bin");
+  const cells::MeshFile file = read("bluntfin/bluntfinxyz.bin");
   EXPECT_EQ(file.counts.cells_read, 37479u);
   EXPECT_EQ(file.counts.points_read, 40960u);
   EXPECT_EQ(file.mesh.field_name, "Density");
@@ -77,7 +77,7 @@ TEST_F(SharedData, BluntFinHasCollapsedEdges) {
 }
 
 TEST_F(SharedData, BracketIsLeftHandedWithUnusedPoints) {
-  const MeshFile file = read("bracket/bracket_appended_compressed.vtu", "sj2p");
+  const cells::MeshFile file = read("bracket/bracket_appended_compressed.vtu", "sj2p");
   EXPECT_EQ(file.counts.cells_read, 206208u);
   EXPECT_EQ(file.mesh.tets.size(), 206208u);
   EXPECT_EQ(file.counts.points_read, 50000u);
@@ -91,7 +91,7 @@ TEST_F(SharedData, BracketIsLeftHandedWithUnusedPoints) {
 }
 
 TEST_F(SharedData, DiskOutIsReadFromExodus) {
-  const MeshFile file = read("disk-out/disk_out_ref.ex2");
+  const cells::MeshFile file = read("disk-out/disk_out_ref.ex2");
   EXPECT_EQ(file.counts.cells_read, 7472u);
   EXPECT_EQ(file.counts.points_read, 8499u);
   EXPECT_EQ(file.mesh.field_name, "Temp");
@@ -99,14 +99,14 @@ TEST_F(SharedData, DiskOutIsReadFromExodus) {
   EXPECT_NEAR(scene::scalar_range(file.mesh)[1], 913, 0.5);
   EXPECT_EQ(read("disk-out/disk_out_ref.ex2", "V:z").mesh.field_name, "V:z");
   boundary_triangles(file.mesh);
-  MeshOptions options;
+  cells::MeshOptions options;
   options.time_step = 1;
   EXPECT_NE(testing::message_of([&] { read_mesh(data / "disk-out/disk_out_ref.ex2", options); }).find("no time step 1"),
             std::string::npos);
 }
 
 TEST_F(SharedData, NotchMixesHexahedraAndWedges) {
-  const MeshFile file = read("notch/notch_stress_fixed.vtk");
+  const cells::MeshFile file = read("notch/notch_stress_fixed.vtk");
   EXPECT_EQ(file.counts.cells_read, 2192u);
   EXPECT_EQ(file.counts.points_read, 3537u);
   EXPECT_EQ(file.mesh.field_name, "Nodal Stress-0");
@@ -118,7 +118,7 @@ TEST_F(SharedData, NotchMixesHexahedraAndWedges) {
 }
 
 TEST_F(SharedData, UnisimKeepsMetresAtSevenMillion) {
-  const MeshFile file = read("unisim/UNISIM-II-D.vtu");
+  const cells::MeshFile file = read("unisim/UNISIM-II-D.vtu");
   EXPECT_EQ(file.counts.cells_read, 47610u);
   EXPECT_EQ(file.counts.points_read, 58433u);
   EXPECT_EQ(file.counts.cells_hidden, 14775u);

@@ -38,7 +38,7 @@ std::string avs_ucd(const Cubes& cubes) {
   for (std::size_t v = 0; v < cubes.points.size(); ++v)
     text += fmt::format("{} {} {} {}\n", v + 1, cubes.points[v].x, cubes.points[v].y, cubes.points[v].z);
   for (std::size_t c = 0; c < cubes.cells.size(); ++c)
-    text += fmt::format("{} 1 hex", c + 1) + joined(cubes.cells[c], 1);
+    text += fmt::format("{} 1 hex", c + 1) + cells::joined(cubes.cells[c], 1);
   text += "1 1\ntemperature, K\n";
   for (std::size_t v = 0; v < cubes.points.size(); ++v)
     text += fmt::format("{} {}\n", v + 1, field_at(cubes.points[v]));
@@ -50,7 +50,7 @@ std::string tecplot(const Cubes& cubes) {
       "TITLE = \"t\"\nVARIABLES = \"X\", \"Y\", \"Z\", \"T\"\nZONE T=\"z\", N={}, E={}, F=FEPOINT, ET=BRICK\n",
       cubes.points.size(), cubes.cells.size());
   for (const glm::dvec3& p : cubes.points) text += fmt::format("{} {} {} {}\n", p.x, p.y, p.z, field_at(p));
-  for (const auto& cell : cubes.cells) text += joined(cell, 1);
+  for (const auto& cell : cubes.cells) text += cells::joined(cell, 1);
   return text;
 }
 
@@ -89,7 +89,7 @@ std::string fluent(const Cubes& cubes) {
   return text + "(45 (2 fluid fluid)())\n(45 (3 interior inside)())\n(45 (4 wall walls)())\n";
 }
 
-void expect_cube(const MeshFile& file, int n) {
+void expect_cube(const cells::MeshFile& file, int n) {
   scene::validate(file.mesh, "cube");
   EXPECT_NEAR(testing::volume(file.mesh), n * n * n, 1e-5 * n * n * n);
   EXPECT_EQ(file.counts.cells_read, static_cast<std::uint64_t>(n * n * n));
@@ -142,7 +142,7 @@ TEST(SolverFiles, GambitsBricksAreReadRowByRowOrRoundAsTheyAre) {
   const Cubes cubes(3);
   const std::array<std::size_t, 8> by_rows{0, 1, 3, 2, 4, 5, 7, 6}, round{0, 1, 2, 3, 4, 5, 6, 7};
   for (const auto& order : {by_rows, round}) {
-    const MeshFile read = read_mesh(folder.write("m.neu", gambit(cubes, order)));
+    const cells::MeshFile read = read_mesh(folder.write("m.neu", gambit(cubes, order)));
     scene::validate(read.mesh, "cube");
     EXPECT_NEAR(testing::volume(read.mesh), 27, 1e-5);
     EXPECT_EQ(read.counts.cells_read, 32u);
@@ -154,7 +154,7 @@ TEST(SolverFiles, AFluentCaseIsAMeshWithTheValuesBesideItIfAny) {
   const test::TemporaryFolder folder;
   const Cubes cubes(3);
   const auto file = folder.write("a.cas", fluent(cubes));
-  const MeshFile alone = read_mesh(file);
+  const cells::MeshFile alone = read_mesh(file);
   EXPECT_NEAR(testing::volume(alone.mesh), 27, 1e-5);
   EXPECT_EQ(alone.counts.cells_read, 27u);
   EXPECT_NE(std::find(alone.notes.begin(), alone.notes.end(), "no .dat file lies beside the case: it has no field"),
@@ -163,7 +163,7 @@ TEST(SolverFiles, AFluentCaseIsAMeshWithTheValuesBesideItIfAny) {
   std::string data = fmt::format("(0 \"values\")\n(300 (3 2 1 0 0 1 {})\n(", cubes.cells.size());
   for (std::size_t c = 0; c < cubes.cells.size(); ++c) data += fmt::format("{}\n", 300 + c);
   folder.write("a.dat", data + "))\n");
-  const MeshFile read = read_mesh(file);
+  const cells::MeshFile read = read_mesh(file);
   expect_cube(read, 3);
   EXPECT_EQ(read.mesh.field_name, "TEMPERATURE");
   for (std::size_t t = 0; t < read.mesh.tets.size(); ++t) {
@@ -180,13 +180,13 @@ TEST(SolverFiles, AFluentCaseIsAMeshWithTheValuesBesideItIfAny) {
   pressure.replace(pressure.find("(300 (3"), 7, "(300 (1");
   for (const std::string& text : {data + ")\n", line + ")", pressure + line + ")\n", line + " )\n"}) {
     folder.write("a.dat", text);
-    MeshOptions options;
+    cells::MeshOptions options;
     options.field = "TEMPERATURE";
     EXPECT_EQ(read_mesh(file, options).mesh.scalars, read.mesh.scalars) << text;
   }
   std::string close = fluent(cubes);
   for (std::size_t at = close.find("\n))"); at != std::string::npos; at = close.find("\n))")) close.erase(at, 1);
-  const MeshFile closed = read_mesh(folder.write("c.cas", close));
+  const cells::MeshFile closed = read_mesh(folder.write("c.cas", close));
   EXPECT_EQ(closed.mesh.positions, alone.mesh.positions);
   EXPECT_EQ(closed.counts.cells_read, 27u);
   test::expect_bad_input([&] { read_mesh(folder.write("b.cas", fluent(cubes).substr(0, 900))); }, {"b.cas"});
@@ -197,16 +197,16 @@ TEST(SolverFiles, AnOpenFoamCaseIsReadAtItsLastTimeOrTheOneAskedFor) {
   const Cubes cubes(3);
   write_foam(folder.path(), cubes, [](int) { return true; });
   write_control(folder.path());
-  const MeshFile last = read_mesh(folder / "case.foam");
+  const cells::MeshFile last = read_mesh(folder / "case.foam");
   expect_cube(last, 3);
   for (const auto& other :
        {folder.path(), folder / "system" / "controlDict", folder / "constant" / "polyMesh" / "points"})
     EXPECT_EQ(read_mesh(other).mesh.scalars, last.mesh.scalars) << other;
   EXPECT_EQ(last.mesh.field_name, "p");
   EXPECT_EQ(last.mesh.scalars.front(), 1000);
-  MeshOptions first;
+  cells::MeshOptions first;
   first.time_step = 0;
-  const MeshFile begin = read_mesh(folder / "case.foam", first);
+  const cells::MeshFile begin = read_mesh(folder / "case.foam", first);
   for (std::size_t t = 0; t < begin.mesh.tets.size(); ++t) {
     glm::dvec3 centre(0);
     for (const std::uint32_t v : begin.mesh.tets[t]) centre += 0.25 * begin.mesh.positions[v];
@@ -224,7 +224,7 @@ TEST(SolverFiles, PatchesOfAnOpenFoamCaseAreReadByName) {
   write_foam(folder.path(), Cubes(3), [](int) { return true; });
   write_control(folder.path());
   const std::array files = {folder / "case.foam"};
-  MeshOptions options;
+  cells::MeshOptions options;
   options.field = "cell:p";
   options.blocks = {"walls"};
   const BlockFaces walls = read_block_faces(files, options);
@@ -245,17 +245,17 @@ TEST(SolverFiles, ADecomposedOpenFoamCaseIsReadWhole) {
     write_foam(own, cubes, [&](int c) { return (c / 32) == part; });
   }
   write_control(folder.path());
-  const MeshFile whole = read_mesh(folder / "case.foam");
+  const cells::MeshFile whole = read_mesh(folder / "case.foam");
   expect_cube(whole, 4);
   EXPECT_EQ(whole.mesh.scalars.front(), 1000);
   for (const std::size_t step : {std::size_t{0}, std::size_t{1}}) {
-    MeshOptions options;
+    cells::MeshOptions options;
     options.time_step = step;
     testing::expect_as_whole(folder / "case.foam", options);
     options.blocks = {"internalMesh"};
     testing::expect_as_whole(folder / "case.foam", options);
   }
-  MeshOptions none;
+  cells::MeshOptions none;
   none.blocks = {"solid"};
   test::expect_bad_input([&] { testing::read_in_parts(folder / "case.foam", 2, none); },
                          {"case.foam", "there is no block", "internalMesh"});
@@ -285,11 +285,11 @@ TEST(SolverFiles, RegionsOfADecomposedOpenFoamCaseAreBlocksOfAllProcessors) {
     }
   }
   write_control(folder.path());
-  const MeshFile all = read_mesh(folder / "case.foam");
+  const cells::MeshFile all = read_mesh(folder / "case.foam");
   EXPECT_EQ(all.blocks, (std::vector<std::string>{"fluid/internalMesh", "solid/internalMesh"}));
   EXPECT_EQ(all.counts.cells_read, 64u + 216u);
   testing::expect_as_whole(folder / "case.foam");
-  MeshOptions options;
+  cells::MeshOptions options;
   options.blocks = {"solid"};
   EXPECT_EQ(read_mesh(folder / "case.foam", options).counts.cells_read, 216u);
   testing::expect_as_whole(folder / "case.foam", options);
@@ -309,10 +309,10 @@ TEST(SolverFiles, RegionsOfAnOpenFoamCaseAreBlocks) {
     }
   }
   write_control(folder.path());
-  const MeshFile all = read_mesh(folder / "case.foam");
+  const cells::MeshFile all = read_mesh(folder / "case.foam");
   EXPECT_EQ(all.blocks, (std::vector<std::string>{"fluid/internalMesh", "solid/internalMesh"}));
   EXPECT_EQ(all.counts.cells_read, 8u + 27u);
-  MeshOptions options;
+  cells::MeshOptions options;
   options.blocks = {"solid"};
   EXPECT_EQ(read_mesh(folder / "case.foam", options).counts.cells_read, 27u);
 }
@@ -333,7 +333,7 @@ TEST(SolverFiles, AMultiBlockFilesVolumesAreDrawnTogether) {
   const std::string both =
       "<DataSet index=\"0\" name=\"fluid\" file=\"a.vtu\"/><Block index=\"1\"><DataSet index=\"0\" "
       "file=\"b.vti\"/></Block>";
-  const MeshFile file = read_mesh(list(both + "<DataSet index=\"2\" file=\"s.vtp\"/><DataSet index=\"3\"/>"));
+  const cells::MeshFile file = read_mesh(list(both + "<DataSet index=\"2\" file=\"s.vtp\"/><DataSet index=\"3\"/>"));
   EXPECT_NEAR(testing::volume(file.mesh), 3, 1e-12);
   EXPECT_EQ(file.mesh.field_name, "f");
   for (std::size_t v = 0; v < file.mesh.positions.size(); ++v)
@@ -343,13 +343,13 @@ TEST(SolverFiles, AMultiBlockFilesVolumesAreDrawnTogether) {
       file.notes.end());
   EXPECT_EQ(file.blocks, (std::vector<std::string>{"fluid", "1"}));
   EXPECT_EQ(file.surfaces, std::vector<std::string>{"2"});
-  MeshOptions options;
+  cells::MeshOptions options;
   options.blocks = {"solid"};
   // The block that is not asked for is not even there.
   const std::string nested =
       "<Block index=\"0\" name=\"fluid\"><DataSet index=\"0\" name=\"inner\" file=\"gone.vtu\"/></Block><Block "
       "index=\"1\" name=\"solid\"><DataSet index=\"0\" name=\"inner\" file=\"b.vti\"/></Block>";
-  const MeshFile solid = read_mesh(list(nested), options);
+  const cells::MeshFile solid = read_mesh(list(nested), options);
   EXPECT_NEAR(testing::volume(solid.mesh), 2, 1e-12);
   EXPECT_EQ(solid.blocks, (std::vector<std::string>{"fluid/inner", "solid/inner"}));
   EXPECT_NE(
@@ -376,7 +376,7 @@ TEST(SolverFiles, AMultiBlockFilesSurfacesAreReadByName) {
       "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet><DataSet index=\"0\" "
       "name=\"fluid\" "
       "file=\"a.vtu\"/><DataSet index=\"1\" name=\"lid\" file=\"s.vtp\"/></vtkMultiBlockDataSet></VTKFile>")};
-  MeshOptions options;
+  cells::MeshOptions options;
   options.field = "f";
   options.blocks = {"lid"};
   const BlockFaces lid = read_block_faces(files, options);

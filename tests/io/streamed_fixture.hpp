@@ -67,7 +67,7 @@ class StreamedVolumes : public ::testing::Test {
     EXPECT_EQ(whole.format, parts.format);
     EXPECT_EQ(whole.fields.size(), parts.fields.size());
     for (std::size_t k = 0; k < std::min(whole.fields.size(), parts.fields.size()); ++k) {
-      const io::FieldSummary &a = whole.fields[k], &b = parts.fields[k];
+      const cells::FieldSummary &a = whole.fields[k], &b = parts.fields[k];
       EXPECT_EQ(a.name, b.name);
       EXPECT_EQ(a.association, b.association);
       EXPECT_EQ(a.components, b.components);

@@ -25,7 +25,7 @@ std::string tower(const std::string& points_last) {
 TEST(Su2, AllCellsAreReadWhateverComesFirst) {
   const test::TemporaryFolder folder;
   for (const char* points_last : {"", "yes"}) {
-    const MeshFile read = read_mesh(folder.write("a.su2", tower(points_last)));
+    const cells::MeshFile read = read_mesh(folder.write("a.su2", tower(points_last)));
     EXPECT_EQ(read.format, "SU2");
     EXPECT_EQ(read.counts.cells_read, 4u);
     EXPECT_EQ(read.counts.points_read, 13u);

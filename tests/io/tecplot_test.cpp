@@ -61,14 +61,15 @@ std::string zone(const std::string& more) {
                      cubes.cells.size(), more);
 }
 
-MeshFile read(const std::filesystem::path& file, const std::string& field, std::optional<std::size_t> step = {}) {
-  MeshOptions options;
+cells::MeshFile read(const std::filesystem::path& file, const std::string& field,
+                     std::optional<std::size_t> step = {}) {
+  cells::MeshOptions options;
   options.field = field;
   options.time_step = step;
   return read_mesh(file, options);
 }
 
-void expect_pressure(const MeshFile& file, double factor = 1) {
+void expect_pressure(const cells::MeshFile& file, double factor = 1) {
   scene::validate(file.mesh, "cube");
   EXPECT_NEAR(testing::volume(file.mesh), n * n * n, 1e-9);
   EXPECT_EQ(file.counts.cells_read, static_cast<std::uint64_t>(n * n * n));
@@ -77,7 +78,7 @@ void expect_pressure(const MeshFile& file, double factor = 1) {
     EXPECT_NEAR(file.mesh.scalars[v], p_at(file.mesh.positions[v], factor), 1e-9);
 }
 
-void expect_density(const MeshFile& file) {
+void expect_density(const cells::MeshFile& file) {
   ASSERT_EQ(file.mesh.association, scene::Association::cell);
   for (std::size_t t = 0; t < file.mesh.tets.size(); ++t) {
     glm::dvec3 centre(0);
@@ -143,7 +144,7 @@ TEST_F(Tecplot, SolutionTimesAreSteps) {
             coordinates(cubes) + pressures(cubes, step + 1) + densities(cubes) + elements(cubes);
   const auto file = folder.write("a.tec", text);
   for (const int step : {0, 1, 2}) {
-    const MeshFile at_step = read(file, "p", step);
+    const cells::MeshFile at_step = read(file, "p", step);
     expect_pressure(at_step, step + 1);
     EXPECT_EQ(at_step.time_step.count, 3u);
     EXPECT_EQ(at_step.time_step.times, (std::vector<double>{0, 0.5, 1}));
@@ -197,7 +198,7 @@ TEST_F(Tecplot, OrderedZonesAreHexahedra) {
         points += fmt::format("{} {} {} {}\n", i, j, k, p_at({i, j, k}));
         if (i < 1 && j < 2 && k < 3) cells += fmt::format("{} ", 10 * (i + j + 2 * k));
       }
-  const MeshFile by_point =
+  const cells::MeshFile by_point =
       read(folder.write("a.tec", "VARIABLES=X,Y,Z,f\nZONE I=2, J=3, K=4, F=POINT\n" + points), "f");
   EXPECT_NEAR(testing::volume(by_point.mesh), 6, 1e-12);
   EXPECT_EQ(by_point.counts.cells_read, 6u);
@@ -206,11 +207,11 @@ TEST_F(Tecplot, OrderedZonesAreHexahedra) {
   std::string blocks;
   for (int a = 0; a < 3; ++a)
     for (int v = 0; v < 24; ++v) blocks += fmt::format("{} ", a == 0 ? v % 2 : a == 1 ? v / 2 % 3 : v / 6);
-  const MeshFile of_cells = read(folder.write("b.tec",
-                                              "VARIABLES=X,Y,Z,f\nZONE I=2, J=3, K=4, DATAPACKING=BLOCK, "
-                                              "VARLOCATION=([4]=CELLCENTERED)\n" +
-                                                  blocks + "\n" + cells + "\n"),
-                                 "f");
+  const cells::MeshFile of_cells = read(folder.write("b.tec",
+                                                     "VARIABLES=X,Y,Z,f\nZONE I=2, J=3, K=4, DATAPACKING=BLOCK, "
+                                                     "VARLOCATION=([4]=CELLCENTERED)\n" +
+                                                         blocks + "\n" + cells + "\n"),
+                                        "f");
   for (std::size_t t = 0; t < of_cells.mesh.tets.size(); ++t) {
     glm::dvec3 centre(0);
     for (const std::uint32_t v : of_cells.mesh.tets[t]) centre += 0.25 * of_cells.mesh.positions[v];
@@ -226,7 +227,7 @@ TEST_F(Tecplot, BricksWithRepeatedNodesAreWedgesPyramidsAndTetrahedra) {
       "1 2 3 3 5 6 7 7\n1 3 4 4 5 7 8 8\n5 6 7 8 9 9 9 9\n10 11 12 12 1 1 1 1\n";
   const TecplotMesh mesh = parse_tecplot(text, "a.tec", std::nullopt);
   EXPECT_EQ(mesh.blocks.at(0).types, (std::vector<std::uint8_t>{13, 13, 14, 10}));
-  MeshOptions options;
+  cells::MeshOptions options;
   EXPECT_EQ(read_mesh(folder.write("a.tec", text), options).counts.cells_tangled, 0u);
 }
 
@@ -238,7 +239,7 @@ TEST_F(Tecplot, PolyhedraHaveTheFacesBesideThem) {
       "0 1 2 0 1 2 0 1 2 0 1 2\n0 0 0 1 1 1 0 0 0 1 1 1\n6*0 6*1\n3 4\n11*4\n"
       "1 2 5 4\n7 8 11 10\n1 2 8 7\n4 5 11 10\n1 4 10 7\n2 5 11 8\n2 3 6 5\n8 9 12 11\n2 3 9 8\n5 6 12 11\n3 6 12 9\n"
       "6*1 5*2\n5*0 2 5*0\n";
-  const MeshFile mesh = read(folder.write("a.tec", text), "f");
+  const cells::MeshFile mesh = read(folder.write("a.tec", text), "f");
   EXPECT_NEAR(testing::volume(mesh.mesh), 2, 1e-12);
   EXPECT_EQ(mesh.counts.cells_polyhedra, 2u);
   for (std::size_t t = 0; t < mesh.mesh.tets.size(); ++t) {
@@ -255,7 +256,7 @@ TEST_F(Tecplot, FacesAndOtherRecordsAreLeftOut) {
                            "TEXT X=50, Y=50, T=\"words\"\nGEOMETRY X=1 Y=1 T=LINE\n1\n2\n0 0\n1 1\n" +
                            zone(", DATAPACKING=BLOCK, PASSIVEVARLIST=([5])") + coordinates(cubes) + pressures(cubes) +
                            elements(cubes);
-  const MeshFile mesh = read(folder.write("a.tec", text), "p");
+  const cells::MeshFile mesh = read(folder.write("a.tec", text), "p");
   expect_pressure(mesh);
   EXPECT_NE(std::ranges::find(mesh.notes, "1 of 2 zones are lines or faces, which are left out"), mesh.notes.end());
   test::expect_bad_input([&] { read_mesh(folder.write("b.tec", variables + face + points)); },

@@ -25,14 +25,14 @@ TEST(NodeEle, EitherNameReadsPointsTetsAndAttributes) {
   const test::TemporaryFolder folder;
   const auto node = folder.write("m.1.node", node_text), ele = folder.write("m.1.ele", ele_text);
   for (const auto& file : {node, ele}) {
-    const MeshFile read = read_mesh(file);
+    const cells::MeshFile read = read_mesh(file);
     scene::validate(read.mesh, "m");
     EXPECT_EQ(read.format, "TetGen .node/.ele");
     EXPECT_EQ(read.mesh.tets, (std::vector<scene::Tet>{{0, 1, 2, 3}, {1, 2, 3, 4}}));
     EXPECT_EQ(read.mesh.field_name, "attribute0");
     EXPECT_EQ(read.mesh.scalars, (std::vector<double>{0, 1, 2, 3, 5}));
   }
-  MeshOptions options;
+  cells::MeshOptions options;
   options.field = "cell:attribute0";
   EXPECT_EQ(read_mesh(node, options).mesh.scalars, (std::vector<double>{1.5, 2.5}));
   options.field = "attribute1";
@@ -43,7 +43,7 @@ TEST(NodeEle, NumberingFromZeroAndSecondOrderTetsWork) {
   std::string node = "10 3 0 0\n", ele = "1 10 0\n0";
   for (int v = 0; v < 10; ++v) node += fmt::format("{} {} {} {}\n", v, v & 1, v >> 1 & 1, v >> 2);
   for (int v = 0; v < 10; ++v) ele += fmt::format(" {}", v == 3 ? 4 : v == 4 ? 3 : v);
-  const CellBlock block = parse_node_ele(node, ele, "m.node", "m.ele");
+  const cells::CellBlock block = parse_node_ele(node, ele, "m.node", "m.ele");
   EXPECT_EQ(block.types, (std::vector<std::uint8_t>{24}));
   EXPECT_EQ(block.offsets.back(), 10u);
 }
@@ -52,7 +52,7 @@ TEST(NodeEle, SecondOrderNodesAreInTetGensOrder) {
   // The middles of the edges as TetGen 1.5 writes them (-o2): 3-4, 1-4, 1-2, 2-3, 2-4, 1-3.
   const std::string node =
       "10 3 0 0\n1 0 0 0\n2 2 0 0\n3 0 2 0\n4 0 0 2\n5 0 1 1\n6 0 0 1\n7 1 0 0\n8 1 1 0\n9 1 0 1\n10 0 1 0\n";
-  const CellBlock block = parse_node_ele(node, "1 10 0\n1 1 2 3 4 5 6 7 8 9 10\n", "m.node", "m.ele");
+  const cells::CellBlock block = parse_node_ele(node, "1 10 0\n1 1 2 3 4 5 6 7 8 9 10\n", "m.node", "m.ele");
   // VTK's: 0-1, 1-2, 2-0, 0-3, 1-3, 2-3.
   constexpr std::array<std::array<std::size_t, 2>, 6> edges = {{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
   const auto point = [&](std::size_t k) { return block.positions[block.connectivity[k]]; };
@@ -182,13 +182,13 @@ class Filled : public ::testing::Test {
 
 TEST_F(Filled, ASphereHasThePolyhedronsVolumeAndDepth) {
   const Sphere s = sphere(24, {3, -2, 5}, 2);
-  MeshOptions options;
+  cells::MeshOptions options;
   options.max_volume = s.volume / 5000;
   std::vector files = {folder.write("s.ply", ply({s}))};
   if (has_reader(Reader::vtk)) files.push_back(folder.write("s.stl", stl(s)));
   for (const auto& file : files) {
     SCOPED_TRACE(file);
-    const MeshFile read = read_mesh(file, options);
+    const cells::MeshFile read = read_mesh(file, options);
     scene::validate(read.mesh, "s");
     EXPECT_NEAR(testing::volume(read.mesh), s.volume, 1e-6 * s.volume);  // the files hold floats
     EXPECT_GE(read.mesh.tets.size(), 5000u);
@@ -208,7 +208,7 @@ TEST_F(Filled, ASphereHasThePolyhedronsVolumeAndDepth) {
 TEST_F(Filled, SizeAndPlaceDoNotMatter) {
   const Sphere small = sphere(12, {0, 0, 0}, 1e-9), large = sphere(12, {0, 0, 0}, 1e12);
   for (const Sphere& s : {small, large}) {
-    const MeshFile read =
+    const cells::MeshFile read =
         read_mesh(has_reader(Reader::vtk) ? folder.write("s.stl", stl(s)) : folder.write("s.ply", ply({s})));
     EXPECT_NEAR(testing::volume(read.mesh), s.volume, 1e-6 * s.volume);
     EXPECT_GE(read.mesh.tets.size(), 20000u);
@@ -216,9 +216,9 @@ TEST_F(Filled, SizeAndPlaceDoNotMatter) {
 }
 
 TEST_F(Filled, APolyKeepsItsLinearAttribute) {
-  MeshOptions options;
+  cells::MeshOptions options;
   options.max_volume = 1e-3;
-  const MeshFile read = read_mesh(folder.write("cube.poly", cube_poly), options);
+  const cells::MeshFile read = read_mesh(folder.write("cube.poly", cube_poly), options);
   EXPECT_NEAR(testing::volume(read.mesh), 1, 1e-9);
   EXPECT_EQ(read.mesh.field_name, "attribute0");
   for (const scene::Tet& tet : read.mesh.tets)
@@ -259,7 +259,7 @@ TEST_F(Filled, OpenCuttingFlatAndEmptySurfacesAreTold) {
   Sphere nan = s;
   nan.points[3].x = NAN;
   expect_bad_input([&] { read_mesh(folder.write("n.ply", ply({nan}))); }, {"n.ply: "});
-  MeshOptions options;
+  cells::MeshOptions options;
   options.max_volume = -1;
   expect_bad_input([&] { read_mesh(folder.write("s.ply", ply({s})), options); }, {"give a positive one"});
 }
@@ -275,9 +275,9 @@ TEST_F(Filled, WarpedPolygonsAreCutIntoTriangles) {
     text += fmt::format("{} {} {}\n", std::cos(angle), std::sin(angle), v / 3);
   }
   text += "3 0 2 1\n3 3 4 5\n4 0 1 4 3\n4 1 2 5 4\n4 2 0 3 5\n";
-  MeshOptions options;
+  cells::MeshOptions options;
   options.max_volume = 0.01;
-  const MeshFile read = read_mesh(folder.write("w.ply", text), options);
+  const cells::MeshFile read = read_mesh(folder.write("w.ply", text), options);
   // Each side's diagonal is one of two: what is inside lies between the volumes of all inward and all outward.
   const double base = 0.75 * std::sqrt(3.0);
   EXPECT_NEAR(testing::volume(read.mesh), base, 0.25 * base);

@@ -21,7 +21,7 @@ double rounded(double x) {
 }
 
 scene::TetMesh small() {
-  scene::TetMesh mesh = assemble_mesh({testing::mixed_mesh(2, 4, false)}, {}, "mesh").mesh;
+  scene::TetMesh mesh = cells::assemble_mesh({testing::mixed_mesh(2, 4, false)}, {}, "mesh").mesh;
   for (glm::dvec3& p : mesh.positions) p = {rounded(p.x), rounded(p.y), rounded(p.z)};
   for (double& s : mesh.scalars) s = rounded(s);
   return mesh;
@@ -31,7 +31,7 @@ TEST(TetsFile, WhatIsWrittenIsReadBitForBit) {
   const test::TemporaryFolder folder;
   const scene::TetMesh mesh = small();
   write_tets(mesh, folder / "m.tets");
-  const MeshFile read = read_mesh(folder / "m.tets");
+  const cells::MeshFile read = read_mesh(folder / "m.tets");
   EXPECT_EQ(read.mesh.positions, mesh.positions);
   EXPECT_EQ(read.mesh.tets, mesh.tets);
   EXPECT_EQ(read.mesh.scalars, mesh.scalars);
@@ -83,7 +83,7 @@ TEST(TetsFile, NaNBlanksTheTetsThatUseIt) {
   scene::TetMesh mesh = small();
   mesh.scalars[mesh.tets[0][0]] = NAN;
   write_tets(mesh, folder / "m.tets");
-  const MeshFile read = read_mesh(folder / "m.tets");
+  const cells::MeshFile read = read_mesh(folder / "m.tets");
   EXPECT_GT(read.counts.cells_nan, 0u);
   EXPECT_EQ(read.counts.cells_nan + read.mesh.tets.size(), mesh.tets.size());
   EXPECT_EQ(read.mesh.original_cell.size(), read.mesh.tets.size());
@@ -92,9 +92,9 @@ TEST(TetsFile, NaNBlanksTheTetsThatUseIt) {
 TEST(VtuWriter, WhatIsWrittenIsReadBitForBit) {
   TESSERA_VTK_OR_SKIP();
   const test::TemporaryFolder folder;
-  scene::TetMesh mesh = assemble_mesh({testing::mixed_mesh(2, 4, false)}, {}, "mesh").mesh;
+  scene::TetMesh mesh = cells::assemble_mesh({testing::mixed_mesh(2, 4, false)}, {}, "mesh").mesh;
   write_vtu(mesh, folder / "m.vtu");
-  MeshFile read = read_mesh(folder / "m.vtu");
+  cells::MeshFile read = read_mesh(folder / "m.vtu");
   EXPECT_EQ(read.mesh.positions, mesh.positions);
   EXPECT_EQ(read.mesh.tets, mesh.tets);
   EXPECT_EQ(read.mesh.scalars, mesh.scalars);

@@ -139,8 +139,8 @@ AmrScene oct_tree() {
   return scene;
 }
 
-MeshOptions with(const char* field, bool smooth) {
-  MeshOptions options;
+cells::MeshOptions with(const char* field, bool smooth) {
+  cells::MeshOptions options;
   options.field = std::string(field);
   options.smooth = smooth;
   return options;
@@ -151,13 +151,13 @@ TEST(Flash, CellsHaveTheirValuesAndSmoothedTheyAreContinuous) {
   const AmrScene scene = oct_tree();
   for (const bool is_packed : {false, true}) {
     const auto file = write_flash(folder, scene, wavy, is_packed);
-    const MeshFile cells = read_mesh(file, with("dens", false));
+    const cells::MeshFile cells = read_mesh(file, with("dens", false));
     EXPECT_EQ(cells.format, "FLASH");
     EXPECT_EQ(cells.counts.cells_read, 64u * (7 + 7 + 8));
     expect_cells(cells.mesh, scene, 4, wavy, 3e-7);  // stored as float
   }
   for (const auto& at : {linear, wavy}) {
-    const MeshFile read = read_mesh(write_flash(folder, scene, at), with("f   ", true));
+    const cells::MeshFile read = read_mesh(write_flash(folder, scene, at), with("f   ", true));
     scene::validate(read.mesh, "flash");
     expect_smooth(read.mesh, scene, 4, at, at == linear, 1e-9);
   }
@@ -179,7 +179,7 @@ TEST(Flash, DamagesAreOneLine) {
   ASSERT_NE(packed, std::string::npos);
   for (std::size_t k = 20; k < 60; ++k) text[packed + k] ^= '\x5a';
   fault(text);
-  MeshOptions options;
+  cells::MeshOptions options;
   options.time_step = 3;
   folder.write("run_hdf5_plt_cnt_0003", good);
   EXPECT_NE(message_of([&] { read_mesh(file, options); }), "");
@@ -264,13 +264,13 @@ TEST(Enzo, CellsHaveTheirValuesAndSmoothedTheyAreContinuous) {
   const AmrScene scene = nested_blocks();
   const auto file = write_enzo(folder, nested_grids(), wavy);
   for (const auto& named : {file, folder / "output_0003.boundary"}) {
-    const MeshFile cells = read_mesh(named, with("f", false));
+    const cells::MeshFile cells = read_mesh(named, with("f", false));
     EXPECT_EQ(cells.format, "Enzo");
     EXPECT_EQ(cells.counts.cells_read, 64u - 8 - 1 + 64 - 8 + 2 * 64);
     expect_cells(cells.mesh, scene, 4, wavy, 1e-12);
   }
   for (const auto& at : {linear, wavy}) {
-    const MeshFile read = read_mesh(write_enzo(folder, nested_grids(), at), with("f", true));
+    const cells::MeshFile read = read_mesh(write_enzo(folder, nested_grids(), at), with("f", true));
     scene::validate(read.mesh, "enzo");
     expect_smooth(read.mesh, scene, 4, at, at == linear, 1e-9);
   }
@@ -370,7 +370,7 @@ TEST(HyperTreesOfVtk, AreReadAsVtkHasThemInMemory) {
       writer->SetDataMode(mode);
       writer->SetFileName(file.c_str());
       ASSERT_NE(writer->Write(), 0);
-      const MeshFile read = read_mesh(file);
+      const cells::MeshFile read = read_mesh(file);
       EXPECT_EQ(read.counts.cells_read, leaves.size()) << version << ' ' << mode;
       EXPECT_NEAR(volume(read.mesh), whole, 1e-12 * whole);
       for (std::size_t t = 0; t < read.mesh.tets.size(); ++t) {

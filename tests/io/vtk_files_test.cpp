@@ -34,7 +34,7 @@ class VtkFiles : public ::testing::Test {
 };
 
 TEST_F(VtkFiles, AMixedVtuKeepsItsFacesAndLinearField) {
-  const MeshFile file = read_mesh(write("m.vtu", testing::vtu_text(testing::mixed_mesh(3, 5, false))));
+  const cells::MeshFile file = read_mesh(write("m.vtu", testing::vtu_text(testing::mixed_mesh(3, 5, false))));
   scene::validate(file.mesh, "m.vtu");
   EXPECT_EQ(file.format, "VTK XML unstructured grid");
   EXPECT_NEAR(testing::volume(file.mesh), 1, 1e-12);
@@ -47,10 +47,10 @@ TEST_F(VtkFiles, AMixedVtuKeepsItsFacesAndLinearField) {
 TEST_F(VtkFiles, PiecesOfAPvtuAgreeOnTheFacesBetweenThem) {
   // Cells scattered over three pieces at random, as a partition with no sense would; piece 0 holds some of piece 1 as
   // ghosts.
-  const CellBlock whole = testing::mixed_mesh(4, 9, false);
-  std::vector<CellBlock> pieces(3);
+  const cells::CellBlock whole = testing::mixed_mesh(4, 9, false);
+  std::vector<cells::CellBlock> pieces(3);
   std::uint64_t ghosts = 0;
-  const auto add = [&](CellBlock& piece, std::size_t c, std::uint8_t ghost) {
+  const auto add = [&](cells::CellBlock& piece, std::size_t c, std::uint8_t ghost) {
     if (piece.offsets.empty()) piece.offsets.push_back(0);
     for (std::uint64_t k = whole.offsets[c]; k < whole.offsets[c + 1]; ++k) {
       piece.connectivity.push_back(static_cast<std::uint32_t>(piece.positions.size()));
@@ -69,11 +69,11 @@ TEST_F(VtkFiles, PiecesOfAPvtuAgreeOnTheFacesBetweenThem) {
   for (std::size_t p = 0; p < pieces.size(); ++p) {
     std::vector<double> f;
     for (const glm::dvec3& x : pieces[p].positions) f.push_back(x.x);
-    pieces[p].fields.push_back(field_of_values("f", "double", scene::Association::point, 1, std::move(f)));
+    pieces[p].fields.push_back(cells::field_of_values("f", "double", scene::Association::point, 1, std::move(f)));
     write(fmt::format("piece{}.vtu", p), testing::vtu_text(pieces[p]));
   }
   const auto file = write("m.pvtu", testing::pvtu_text(pieces[0], {"piece0.vtu", "piece1.vtu", "piece2.vtu"}));
-  const MeshFile read = read_mesh(file);
+  const cells::MeshFile read = read_mesh(file);
   EXPECT_EQ(read.counts.cells_ghost, ghosts);
   EXPECT_GT(ghosts, 0u);
   for (const auto& [place, uses] : testing::count_triangles(read.mesh)) {
@@ -111,7 +111,7 @@ TEST_F(VtkFiles, CurvilinearGridsInPiecesAreOneAndBadPiecesAreNamed) {
   const std::string values = "1 2 4 5 7 8 10 11";
   write("first.vts", piece(0, "Float32", "0 1 3 4 6 7 9 10"));
   write("good.vts", piece(1, "Float32", values));
-  const MeshFile mesh = read_mesh(write("good.pvts", whole("good.vts")));
+  const cells::MeshFile mesh = read_mesh(write("good.pvts", whole("good.vts")));
   EXPECT_EQ(mesh.counts.cells_read, 2u);
   ASSERT_EQ(mesh.mesh.positions.size(), 12u);
   for (std::size_t p = 0; p < 12; ++p) {
@@ -128,7 +128,7 @@ TEST_F(VtkFiles, CurvilinearGridsInPiecesAreOneAndBadPiecesAreNamed) {
                                   "<CellData><DataArray type=\"UInt8\" Name=\"vtkGhostType\" "
                                   "format=\"ascii\">0</DataArray></CellData>"));
   write("ghosts.vts", ghosts);
-  const MeshFile overlapping = read_mesh(write("ghosts.pvts", whole("ghosts.vts")));
+  const cells::MeshFile overlapping = read_mesh(write("ghosts.pvts", whole("ghosts.vts")));
   EXPECT_EQ(overlapping.counts.cells_read, 2u);
   EXPECT_EQ(overlapping.counts.cells_ghost, 0u);
   write("first.vts", piece(0, "Float32", "0 1 3 4 6 7 9 10"));
@@ -179,7 +179,7 @@ TEST_F(VtkFiles, StructuredAndRectilinearGridsAreReadAsCells) {
                 "</Coordinates></Piece></RectilinearGrid></VTKFile>");
   for (const auto& path : {curvilinear, rectilinear, xml, xml_r}) {
     SCOPED_TRACE(path);
-    const MeshFile file = read_mesh(path);
+    const cells::MeshFile file = read_mesh(path);
     EXPECT_EQ(file.counts.cells_read, 24u);
     EXPECT_EQ(file.counts.points_read, 60u);
     EXPECT_DOUBLE_EQ(testing::volume(file.mesh), 4 * 3 * 4);
@@ -213,7 +213,7 @@ TEST_F(VtkFiles, TheLegacyVectorIsReadByComponentAndMagnitude) {
             "CELL_TYPES 1\n10\nPOINT_DATA 4\nVECTORS vel double\n3 4 0 0 0 0 1 0 0 0 0 2\n"
             "SCALARS a int 1\nLOOKUP_TABLE default\n1 1 1 1\nSCALARS b int 1\nLOOKUP_TABLE default\n1 2 3 5\n");
   EXPECT_EQ(read_mesh(file).mesh.field_name, "b");
-  MeshOptions options;
+  cells::MeshOptions options;
   options.field = "vel";
   EXPECT_EQ(read_mesh(file, options).mesh.scalars, (std::vector<double>{5, 0, 1, 2}));
   options.field = "vel:z";
@@ -221,12 +221,12 @@ TEST_F(VtkFiles, TheLegacyVectorIsReadByComponentAndMagnitude) {
 }
 
 TEST_F(VtkFiles, VoxelsAreNotHexahedra) {
-  CellBlock block;
+  cells::CellBlock block;
   for (int v = 0; v < 8; ++v) block.positions.emplace_back(v & 1, v >> 1 & 1, v >> 2);
   block.types = {11};
   block.offsets = {0, 8};
   block.connectivity = {0, 1, 2, 3, 4, 5, 6, 7};
-  const MeshFile file = read_mesh(write("v.vtu", testing::vtu_text(block)));
+  const cells::MeshFile file = read_mesh(write("v.vtu", testing::vtu_text(block)));
   EXPECT_DOUBLE_EQ(testing::volume(file.mesh), 1);
   EXPECT_EQ(file.counts.cells_tangled, 0u);
   EXPECT_EQ(file.mesh.field_name, "none");
@@ -240,13 +240,13 @@ const std::string& good() {
 }
 
 TEST_F(VtkFiles, AGzipFileReadsAsWhatItHolds) {
-  const MeshFile plain = read_mesh(write("m.vtu", good()));
+  const cells::MeshFile plain = read_mesh(write("m.vtu", good()));
   const std::filesystem::path file = folder / "m.vtu.gz", odd = folder / "odd";
   for (const auto& name : {file, odd}) {
     gzFile out = gzopen(name.c_str(), "wb");
     ASSERT_EQ(gzwrite(out, good().data(), static_cast<unsigned>(good().size())), static_cast<int>(good().size()));
     gzclose(out);
-    const MeshFile read = read_mesh(name);
+    const cells::MeshFile read = read_mesh(name);
     EXPECT_EQ(read.mesh.positions, plain.mesh.positions);
     EXPECT_EQ(read.mesh.tets, plain.mesh.tets);
     EXPECT_EQ(read.format, plain.format + ", gzip");
@@ -281,7 +281,7 @@ TEST_F(VtkFiles, EveryTruncationIsTold) {
 }
 
 TEST_F(VtkFiles, WrongIndicesAreToldByCell) {
-  CellBlock block = testing::mixed_mesh(2, 1, false);
+  cells::CellBlock block = testing::mixed_mesh(2, 1, false);
   block.connectivity[20] = 4'000'000'000u;
   EXPECT_NE(error("i.vtu", testing::vtu_text(block)).find("uses point 4000000000"), std::string::npos);
   const std::string start = "Name=\"connectivity\" NumberOfComponents=\"1\" format=\"ascii\">\n";
@@ -290,7 +290,7 @@ TEST_F(VtkFiles, WrongIndicesAreToldByCell) {
 }
 
 TEST_F(VtkFiles, WrongOffsetsTypesAndCountsAreTold) {
-  CellBlock block = testing::mixed_mesh(2, 1, false);
+  cells::CellBlock block = testing::mixed_mesh(2, 1, false);
   std::swap(block.offsets[3], block.offsets[5]);
   error("o.vtu", testing::vtu_text(block));
   block = testing::mixed_mesh(2, 1, false);
@@ -323,12 +323,12 @@ TEST_F(VtkFiles, LegacyCountsAreTold) {
 }
 
 TEST_F(VtkFiles, AnEmptyMeshAndAMeshOfNaNAreTold) {
-  CellBlock empty;
+  cells::CellBlock empty;
   empty.offsets = {0};
   EXPECT_NE(error("e.vtu", testing::vtu_text(empty)).find("no cells"), std::string::npos);
-  CellBlock nan = testing::mixed_mesh(2, 1, false);
-  nan.fields = {
-      field_of_values("f", "double", scene::Association::point, 1, std::vector<double>(nan.positions.size(), NAN))};
+  cells::CellBlock nan = testing::mixed_mesh(2, 1, false);
+  nan.fields = {cells::field_of_values("f", "double", scene::Association::point, 1,
+                                       std::vector<double>(nan.positions.size(), NAN))};
   EXPECT_NE(error("n.vtu", testing::vtu_text(nan)).find("NaN"), std::string::npos);
 }
 

@@ -20,7 +20,7 @@ using testing::write_tets;
 TEST(VtkHdf, AnUnstructuredGridIsReadWithItsField) {
   const test::TemporaryFolder folder;
   write_tets(HdfWriter((folder / "a.vtkhdf").string(), "UnstructuredGrid"));
-  const MeshFile read = read_mesh(folder / "a.vtkhdf");
+  const cells::MeshFile read = read_mesh(folder / "a.vtkhdf");
   EXPECT_EQ(read.format, "VTKHDF");
   EXPECT_NEAR(testing::volume(read.mesh), 4.0 / 6, 1e-12);
   ASSERT_EQ(read.mesh.scalars.size(), 5u);
@@ -63,10 +63,10 @@ TEST(VtkHdf, EveryStepHasItsOwnPartsPointsAndFields) {
   write_steps(HdfWriter((folder / "t.vtkhdf").string(), "UnstructuredGrid"));
   for (std::size_t step = 0; step < 3; ++step) {
     SCOPED_TRACE(step);
-    MeshOptions options;
+    cells::MeshOptions options;
     options.time_step = step;
     options.field = "f";
-    MeshFile read = read_mesh(folder / "t.vtkhdf", options);
+    cells::MeshFile read = read_mesh(folder / "t.vtkhdf", options);
     EXPECT_EQ(read.time_step.count, 3u);
     EXPECT_EQ(read.time_step.step, step);
     EXPECT_EQ(read.time_step.times, (std::vector<double>{1.5, 2, 4}));
@@ -83,7 +83,7 @@ TEST(VtkHdf, EveryStepHasItsOwnPartsPointsAndFields) {
     EXPECT_EQ(read.mesh.scalars, (std::vector<double>{first, first + 1}));
   }
   EXPECT_EQ(read_mesh(folder / "t.vtkhdf").time_step.step, 2u);
-  MeshOptions options;
+  cells::MeshOptions options;
   options.time_step = 3;
   test::expect_bad_input([&] { read_mesh(folder / "t.vtkhdf", options); }, {"t.vtkhdf", "no time step 3", "has 3"});
 }
@@ -104,7 +104,7 @@ TEST(VtkHdf, PartsWithoutStepsAreOneMesh) {
     file.group("CellData");
     file.data<std::int32_t>("CellData/c", H5T_NATIVE_INT32, {5, 9});
   }
-  const MeshFile read = read_mesh(folder / "p.vtkhdf");
+  const cells::MeshFile read = read_mesh(folder / "p.vtkhdf");
   EXPECT_NEAR(testing::volume(read.mesh), 2.0 / 6, 1e-12);
   EXPECT_EQ(read.mesh.scalars, (std::vector<double>{5, 9}));
 }

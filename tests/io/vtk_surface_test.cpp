@@ -53,7 +53,7 @@ std::string vtp(int polygons, const std::string& cell_lists) {
       array("Float32", "Points", points), cell_lists);
 }
 
-void expect_cube(const MeshFile& read) {
+void expect_cube(const cells::MeshFile& read) {
   EXPECT_NEAR(testing::volume(read.mesh), 8, 1e-9);
   EXPECT_EQ(read.format, "surface (vtk) filled by TetGen");
   ASSERT_EQ(read.fields.size(), 2u);
@@ -62,7 +62,7 @@ void expect_cube(const MeshFile& read) {
 }
 
 TEST_F(VtkSurfaces, PolygonsAndStripsAreFilledWithTheirNumbers) {
-  const MeshFile polygons = read_mesh(folder.write("a.vtp", vtp(6, cells("Polys", quads, quad_ends))));
+  const cells::MeshFile polygons = read_mesh(folder.write("a.vtp", vtp(6, cells("Polys", quads, quad_ends))));
   expect_cube(polygons);
   EXPECT_EQ(polygons.mesh.field_name, "t");
   // What is given at the corners of a cube stays there.

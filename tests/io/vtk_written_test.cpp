@@ -57,7 +57,7 @@ vtkNew<vtkUnstructuredGrid> hexahedra(int n) {
 
 /// Cells 0 and 1, and n - 1 with its twin.
 void expect_pairs(const std::filesystem::path& file, int n) {
-  const MeshFile read = read_mesh(file);
+  const cells::MeshFile read = read_mesh(file);
   ASSERT_EQ(read.mesh.tets.size(), 6u * static_cast<std::size_t>(n + 1)) << file;
   const frame::MeshCheck check = frame::check_mesh(read.mesh);
   EXPECT_EQ(check.overlaps.count, 2u) << file;

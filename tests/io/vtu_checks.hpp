@@ -17,7 +17,7 @@
 namespace tessera::test {
 
 /// All that a block has, its fields as they come.
-inline std::vector<double> values_of(const io::BlockField& field, int component) {
+inline std::vector<double> values_of(const cells::BlockField& field, int component) {
   std::vector<double> values(field.tuples);
   field.read(component, 0, values);
   return values;
@@ -35,7 +35,7 @@ inline void expect_same_values(const std::vector<double>& a, const std::vector<d
 }
 
 /// Expects blocks to have the same cells, fields and values, to the bit.
-inline void expect_same_blocks(const io::CellBlock& a, const io::CellBlock& b) {
+inline void expect_same_blocks(const cells::CellBlock& a, const cells::CellBlock& b) {
   EXPECT_EQ(a.name, b.name);
   ASSERT_EQ(a.positions.size(), b.positions.size());
   for (std::size_t v = 0; v < a.positions.size(); ++v)
@@ -52,7 +52,7 @@ inline void expect_same_blocks(const io::CellBlock& a, const io::CellBlock& b) {
   EXPECT_EQ(a.cell_ghost, b.cell_ghost);
   ASSERT_EQ(a.fields.size(), b.fields.size());
   for (std::size_t k = 0; k < a.fields.size(); ++k) {
-    const io::BlockField &x = a.fields[k], &y = b.fields[k];
+    const cells::BlockField &x = a.fields[k], &y = b.fields[k];
     SCOPED_TRACE("field " + x.name);
     EXPECT_EQ(x.name, y.name);
     EXPECT_EQ(x.association, y.association);
@@ -72,15 +72,15 @@ inline void expect_same_blocks(const io::CellBlock& a, const io::CellBlock& b) {
 }
 
 /// The one block of a .vtu that this process reads.
-inline io::CellBlock vtu_block(const std::filesystem::path& file) {
+inline cells::CellBlock vtu_block(const std::filesystem::path& file) {
   const auto opened = io::open_vtk_xml(file);
   EXPECT_TRUE(opened.has_value()) << file << " is left to VTK's reader";
   if (!opened) return {};
   std::vector<std::string> notes;
-  std::vector<io::CellBlock> blocks = io::blocks_of(*opened, notes);
+  std::vector<cells::CellBlock> blocks = io::blocks_of(*opened, notes);
   EXPECT_TRUE(notes.empty());
   EXPECT_EQ(blocks.size(), 1u);
-  return blocks.empty() ? io::CellBlock() : std::move(blocks.front());
+  return blocks.empty() ? cells::CellBlock() : std::move(blocks.front());
 }
 
 }  // namespace tessera::test

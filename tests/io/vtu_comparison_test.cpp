@@ -23,11 +23,11 @@ namespace {
 using test::vtu_file_text;
 using test::VtuPiece;
 
-CellBlock block_by_vtk(const std::filesystem::path& file) {
+cells::CellBlock block_by_vtk(const std::filesystem::path& file) {
   const ForeignFile opened =
       open_foreign(std::make_shared<HelperProcess>(), file, {{"reader", "vtk_xml"}, {"type", "UnstructuredGrid"}});
   std::vector<std::string> notes;
-  std::vector<CellBlock> blocks = blocks_of(opened, notes);
+  std::vector<cells::CellBlock> blocks = blocks_of(opened, notes);
   EXPECT_EQ(blocks.size(), 1u);
   return std::move(blocks.at(0));
 }
@@ -36,7 +36,7 @@ enum class Outcome : std::uint8_t { same, refused_by_both, left_to_vtk, refused_
 
 Outcome compare(const std::filesystem::path& file, std::string& line) {
   bool known = true;
-  CellBlock here, there;
+  cells::CellBlock here, there;
   const auto of_here = test::fault_of([&] {
     const auto opened = open_vtk_xml(file);
     known = opened.has_value();
@@ -119,8 +119,8 @@ TEST_F(VtuComparison, BitsAreReadPieceByPiece) {
                                   is_text ? "ascii" : "binary", bits));
     }
     expect_same(text);
-    const CellBlock block = test::vtu_block(folder / "m.vtu");
-    const auto field = std::ranges::find(block.fields, "b", &BlockField::name);
+    const cells::CellBlock block = test::vtu_block(folder / "m.vtu");
+    const auto field = std::ranges::find(block.fields, "b", &cells::BlockField::name);
     ASSERT_NE(field, block.fields.end());
     std::vector<double> values(field->tuples);
     field->read(0, 0, values);

@@ -50,8 +50,8 @@ class VtuDamaged : public ::testing::Test {
       known = opened.has_value();
       if (!opened) return;
       std::vector<std::string> notes;
-      for (const CellBlock& block : blocks_of(*opened, notes))
-        for (const BlockField& field : block.fields) test::values_of(field, 0);
+      for (const cells::CellBlock& block : blocks_of(*opened, notes))
+        for (const cells::BlockField& field : block.fields) test::values_of(field, 0);
     });
     if (!fault.code) return known;
     EXPECT_EQ(fault.code, scene::ErrorCode::bad_input) << fault.message;

@@ -42,14 +42,14 @@ const std::vector<double>& numbers_of(const std::vector<VtuArray>& arrays, const
   return std::ranges::find(arrays, name, &VtuArray::name)->numbers;
 }
 
-void expect_points(const CellBlock& block, const std::vector<double>& numbers, std::size_t first = 0) {
+void expect_points(const cells::CellBlock& block, const std::vector<double>& numbers, std::size_t first = 0) {
   ASSERT_GE(block.positions.size(), first + numbers.size() / 3);
   for (std::size_t k = 0; k < numbers.size(); ++k)
     EXPECT_EQ(block.positions[first + k / 3][static_cast<int>(k % 3)], numbers[k]) << k;
 }
 
 /// The block of sample_piece().
-void expect_sample(const CellBlock& block, const VtuPiece& piece) {
+void expect_sample(const cells::CellBlock& block, const VtuPiece& piece) {
   ASSERT_EQ(block.positions.size(), piece.points);
   expect_points(block, piece.coordinates[0].numbers);
   const auto& uses = numbers_of(piece.topology, "connectivity");
@@ -58,7 +58,7 @@ void expect_sample(const CellBlock& block, const VtuPiece& piece) {
   EXPECT_EQ(block.types, (std::vector<std::uint8_t>{12, 13, 13}));
   EXPECT_TRUE(block.tets.empty() && block.faces.empty() && block.point_ghost.empty() && block.cell_ghost.empty());
   ASSERT_EQ(block.fields.size(), 3u);
-  const BlockField &f = block.fields[0], &v = block.fields[1], &c = block.fields[2];
+  const cells::BlockField &f = block.fields[0], &v = block.fields[1], &c = block.fields[2];
   EXPECT_EQ(f.name, "f");
   EXPECT_EQ(f.type, "float");
   EXPECT_TRUE(f.active && v.active && !c.active);
@@ -93,7 +93,7 @@ VtuPiece one_tet(double at, double value) {
 class Vtu : public ::testing::Test {
  protected:
   std::filesystem::path write(const std::string& text) const { return folder.write("m.vtu", text); }
-  CellBlock read(const VtuStorage& storage, const std::vector<VtuPiece>& pieces) const {
+  cells::CellBlock read(const VtuStorage& storage, const std::vector<VtuPiece>& pieces) const {
     return vtu_block(write(vtu_file_text(storage, pieces)));
   }
 
@@ -138,7 +138,7 @@ TEST_F(Vtu, LargeArraysInManyBlocksAreWhole) {
       if (coding == Coding::ascii && codec != Codec::none) continue;
       const VtuStorage storage{.coding = coding, .codec = codec, .block = 32768};
       SCOPED_TRACE(words_of(storage));
-      const CellBlock block = read(storage, {piece});
+      const cells::CellBlock block = read(storage, {piece});
       expect_points(block, piece.coordinates[0].numbers);
       ASSERT_EQ(block.fields.size(), 2u);
       EXPECT_EQ(values_of(block.fields[0], 0), piece.point_data[0].numbers);
@@ -164,7 +164,7 @@ TEST_F(Vtu, EveryTypeOfNumberKeepsItsValues) {
       SCOPED_TRACE(type + ", " + words_of(storage));
       VtuPiece piece = one_tet(0, 1);
       piece.point_data = {{type, "p", 1, values}};
-      const CellBlock block = read(storage, {piece});
+      const cells::CellBlock block = read(storage, {piece});
       ASSERT_EQ(block.fields.size(), 2u);
       EXPECT_EQ(values_of(block.fields[0], 0), values);
     }
@@ -189,7 +189,8 @@ TEST_F(Vtu, PiecesFollowEachOtherAndEmptyOnesAreSkipped) {
     for (VtuArray& array : *list) array.numbers.clear();
   for (const VtuStorage& storage : all_storages()) {
     SCOPED_TRACE(words_of(storage));
-    const CellBlock block = read(storage, {bare, one_tet(0, 1), empty, one_tet(1, 2), bare, one_tet(2, 3), empty});
+    const cells::CellBlock block =
+        read(storage, {bare, one_tet(0, 1), empty, one_tet(1, 2), bare, one_tet(2, 3), empty});
     EXPECT_EQ(block.tets, (std::vector<scene::Tet>{{0, 1, 2, 3}, {4, 5, 6, 7}, {8, 9, 10, 11}}));
     for (std::size_t k = 0; k < 3; ++k)
       expect_points(block, one_tet(static_cast<double>(k), 0).coordinates[0].numbers, 4 * k);
@@ -202,7 +203,7 @@ TEST_F(Vtu, PiecesFollowEachOtherAndEmptyOnesAreSkipped) {
 TEST_F(Vtu, PiecesOfSeveralKindsOfCellsKeepTheirOffsets) {
   VtuPiece tet = one_tet(3, 1), mixed = sample_piece();
   tet.point_data.clear(), tet.cell_data.clear(), mixed.point_data.clear(), mixed.cell_data.clear();
-  const CellBlock block = read({}, {tet, mixed});
+  const cells::CellBlock block = read({}, {tet, mixed});
   EXPECT_EQ(block.types, (std::vector<std::uint8_t>{10, 12, 13, 13}));
   EXPECT_EQ(block.offsets, (std::vector<std::uint64_t>{0, 4, 12, 18, 24}));
   EXPECT_EQ(block.connectivity[4], 4u);
@@ -248,7 +249,7 @@ TEST_F(Vtu, PolyhedraOfBothLayoutsHaveTheSameFaces) {
     for (const Coding coding : {Coding::ascii, Coding::appended_raw}) {
       VtuPiece hexahedra = sample_piece();
       hexahedra.point_data.clear(), hexahedra.cell_data.clear();
-      const CellBlock block =
+      const cells::CellBlock block =
           read({.coding = coding, .version = numbered ? "2.3" : "2.2"}, {hexahedra, polyhedra(numbered)});
       EXPECT_EQ(block.types, (std::vector<std::uint8_t>{12, 13, 13, 13, 42}));
       EXPECT_EQ(block.face_locations, (std::vector<std::int64_t>{-1, -1, -1, -1, 0}));
@@ -258,7 +259,7 @@ TEST_F(Vtu, PolyhedraOfBothLayoutsHaveTheSameFaces) {
 }
 
 /// Cells [first, last) of a block of polyhedra as VTK 9.4 writes them, with cell numbers; faces between cells once.
-std::string numbered_polyhedra(const CellBlock& block, std::size_t first, std::size_t last) {
+std::string numbered_polyhedra(const cells::CellBlock& block, std::size_t first, std::size_t last) {
   const std::vector<testing::Faces> cells = testing::faces_of_cells(block);
   std::map<std::vector<std::uint32_t>, std::size_t> numbers;
   std::string points, uses, ends, types, values, corners, corner_ends, faces, face_ends;
@@ -302,7 +303,7 @@ std::string vtk94_file(const std::string& pieces) {
 }
 
 TEST_F(Vtu, PolyhedraOfVtk94AreReadWholeInPiecesAndInFilesOfPieces) {
-  const CellBlock block = testing::agglomerates(3, 5, 0.2, 3);
+  const cells::CellBlock block = testing::agglomerates(3, 5, 0.2, 3);
   const std::size_t cells = block.types.size(), half = cells / 2;
   const std::string first = numbered_polyhedra(block, 0, half), second = numbered_polyhedra(block, half, cells);
   folder.write("one.vtu", vtk94_file(numbered_polyhedra(block, 0, cells)));
@@ -314,10 +315,10 @@ TEST_F(Vtu, PolyhedraOfVtk94AreReadWholeInPiecesAndInFilesOfPieces) {
                "<PDataArray type=\"Float64\" Name=\"n\"/></PCellData><PPoints><PDataArray type=\"Float64\" "
                "NumberOfComponents=\"3\"/></PPoints><Piece Source=\"a.vtu\"/><Piece Source=\"b.vtu\"/>"
                "</PUnstructuredGrid></VTKFile>\n");
-  const MeshFile wanted = assemble_mesh({block}, {}, "mesh");
+  const cells::MeshFile wanted = cells::assemble_mesh({block}, {}, "mesh");
   for (const char* name : {"one.vtu", "two.vtu", "m.pvtu"}) {
     SCOPED_TRACE(name);
-    const MeshFile read = read_mesh(folder / name);
+    const cells::MeshFile read = read_mesh(folder / name);
     EXPECT_EQ(read.counts.cells_polyhedra, cells);
     EXPECT_EQ(read.mesh.tets.size(), wanted.mesh.tets.size());
     EXPECT_EQ(read.mesh.original_cell, wanted.mesh.original_cell);
@@ -372,7 +373,7 @@ TEST_F(Vtu, GhostsAreMarkedInBothWays) {
     VtuPiece piece = sample_piece();
     piece.cell_data = {{"UInt8", name, 1, {0, 2, 1}}};
     piece.point_data = {{"UInt8", name, 1, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3}}};
-    const CellBlock block = read({.version = is_old ? "0.1" : "1.0"}, {piece});
+    const cells::CellBlock block = read({.version = is_old ? "0.1" : "1.0"}, {piece});
     EXPECT_EQ(block.cell_ghost, is_old ? (std::vector<std::uint8_t>{0, 1, 1}) : (std::vector<std::uint8_t>{0, 2, 1}));
     EXPECT_EQ(block.point_ghost.back(), is_old ? 1 : 3);
     EXPECT_EQ(block.fields.front().name, "vtkGhostType");
@@ -388,7 +389,7 @@ TEST_F(Vtu, NumbersAreReadAsStreamsSpellThem) {
     return changed.replace(at, from.size(), to);
   };
   const std::string points = "0 0 0 1 0 0 0 1 0 0 0 1 ";
-  CellBlock block = vtu_block(write(replaced(points, "\t+0 .5 5.\r\n 1e3 -2.5E-3\f1.e+2 -0 1e-400 0 0 0 1")));
+  cells::CellBlock block = vtu_block(write(replaced(points, "\t+0 .5 5.\r\n 1e3 -2.5E-3\f1.e+2 -0 1e-400 0 0 0 1")));
   EXPECT_EQ(block.positions[0], glm::dvec3(0, 0.5, 5));
   EXPECT_EQ(block.positions[1], glm::dvec3(1000, -0.0025, 100));
   EXPECT_TRUE(std::signbit(block.positions[2].x));
@@ -417,7 +418,7 @@ TEST_F(Vtu, XmlIsReadAsXml) {
           "<?other <DataArray> ?>\n<FieldData><DataArray type=\"String\" Name=\"s\" "
           "NumberOfTuples=\"1\" format=\"ascii\">97 0</DataArray></FieldData><UnstructuredGrid>");
   replace("<Cells>", "<![CDATA[<Points>]]><Unknown><DataArray/></Unknown><Cells>");
-  const CellBlock block = vtu_block(write(text));
+  const cells::CellBlock block = vtu_block(write(text));
   EXPECT_EQ(block.tets, (std::vector<scene::Tet>{{0, 1, 2, 3}}));
   ASSERT_EQ(block.fields.size(), 2u);
   EXPECT_EQ(block.fields[0].name, "a <& > b>");
@@ -430,7 +431,7 @@ TEST_F(Vtu, ArraysOfTextAreSkipped) {
   const std::size_t at = text.find(data);
   ASSERT_NE(at, std::string::npos);
   text.insert(at + data.size(), "<Array type=\"String\" Name=\"s\" format=\"ascii\">\n97 0 \n</Array>\n");
-  const CellBlock block = vtu_block(write(text));
+  const cells::CellBlock block = vtu_block(write(text));
   ASSERT_EQ(block.fields.size(), 2u);
   EXPECT_EQ(block.fields[1].name, "c");
   EXPECT_EQ(values_of(block.fields[1], 0), (std::vector<double>{1}));
@@ -439,7 +440,7 @@ TEST_F(Vtu, ArraysOfTextAreSkipped) {
 TEST_F(Vtu, ArraysWithoutANameHaveTheirNumber) {
   std::string text = vtu_file_text({}, {one_tet(0, 1)});
   text.erase(text.find("Name=\"p\""), 8);
-  const CellBlock block = vtu_block(write(text));
+  const cells::CellBlock block = vtu_block(write(text));
   ASSERT_EQ(block.fields.size(), 2u);
   EXPECT_EQ(block.fields[0].name, "array 1");
   EXPECT_EQ(values_of(block.fields[0], 0), (std::vector<double>{10, 11, 12, 13}));
@@ -448,7 +449,7 @@ TEST_F(Vtu, ArraysWithoutANameHaveTheirNumber) {
 TEST_F(Vtu, ArraysOfTuplesWithoutNumbersAreSkipped) {
   VtuPiece piece = one_tet(0, 1);
   piece.point_data.insert(piece.point_data.begin(), {"Float64", "none", 0, {}});
-  const CellBlock block = read({}, {piece});
+  const cells::CellBlock block = read({}, {piece});
   ASSERT_EQ(block.fields.size(), 2u);
   EXPECT_EQ(block.fields[0].name, "p");
 }

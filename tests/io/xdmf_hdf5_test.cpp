@@ -60,9 +60,9 @@ TEST(XdmfHdf5, CellsAndFieldsAreReadFromTheFileBeside) {
   if (!has_reader(Reader::xdmf)) GTEST_SKIP() << "tessera-read-xdmf is not installed";
   const test::TemporaryFolder folder;
   write_data((folder / "a.h5").string());
-  MeshOptions options;
+  cells::MeshOptions options;
   options.field = "u:0";
-  const MeshFile mesh = read_mesh(folder.write("a.xdmf", mesh_text("a.h5")), options);
+  const cells::MeshFile mesh = read_mesh(folder.write("a.xdmf", mesh_text("a.h5")), options);
   EXPECT_EQ(mesh.counts.cells_read, 1u);
   EXPECT_NEAR(testing::volume(mesh.mesh), 8.0 / 6, 1e-12);
   for (const scene::Tet& tet : mesh.mesh.tets)

@@ -55,9 +55,9 @@ class XdmfMeshes : public ::testing::Test {
   void SetUp() override {
     if (!has_reader(Reader::xdmf)) GTEST_SKIP() << "tessera-read-xdmf is not installed";
   }
-  MeshFile read(const std::string& domain, std::optional<std::size_t> time_step = std::nullopt,
-                const std::string& field = "", const std::vector<std::string>& blocks = {}) const {
-    MeshOptions options;
+  cells::MeshFile read(const std::string& domain, std::optional<std::size_t> time_step = std::nullopt,
+                       const std::string& field = "", const std::vector<std::string>& blocks = {}) const {
+    cells::MeshOptions options;
     options.time_step = time_step;
     options.field = field;
     options.blocks = blocks;
@@ -68,7 +68,7 @@ class XdmfMeshes : public ::testing::Test {
                      options);
   }
   /// One mesh, once, with a field whose smallest value this is.
-  static void expect_once(const MeshFile& file, double smallest) {
+  static void expect_once(const cells::MeshFile& file, double smallest) {
     EXPECT_NEAR(testing::volume(file.mesh), volume, 1e-12);
     EXPECT_EQ(file.counts.cells_read, 2u);
     EXPECT_TRUE(file.blocks.empty());
@@ -156,7 +156,7 @@ TEST_F(XdmfMeshes, PointsThatSeveralBlocksShareAreThereForAll) {
   const std::string shared = "<ns0:include xpointer=\"xpointer(//Grid[@Name='one']/Geometry)\"/>";
   const std::string domain = "<Grid Name=\"all\" GridType=\"Collection\" CollectionType=\"Spatial\">" +
                              part("one", geometry, "0 1 2 3") + part("other", shared, "1 2 3 4") + "</Grid>";
-  const MeshFile both = read(domain);
+  const cells::MeshFile both = read(domain);
   EXPECT_NEAR(testing::volume(both.mesh), volume, 1e-12);
   EXPECT_EQ(both.blocks, (std::vector<std::string>{"one", "other"}));
   EXPECT_NEAR(testing::volume(read(domain, std::nullopt, "", {"other"}).mesh), volume * 2 / 3, 1e-12);
@@ -180,8 +180,8 @@ TEST_F(XdmfMeshes, FiniteElementFunctionsAreNamedAsNotRead) {
         "<Attribute Name=\"p\" ElementFamily=\"CG\" ElementDegree=\"2\" {}>{}{}"
         "</Attribute>",
         kind, item("2", "0 1"), item("3", "4 5 6"));
-    const MeshFile file = read("<Grid Name=\"m\">" + topology + geometry + function +
-                               attribute("f", "Node", item("5", values(3))) + "</Grid>");
+    const cells::MeshFile file = read("<Grid Name=\"m\">" + topology + geometry + function +
+                                      attribute("f", "Node", item("5", values(3))) + "</Grid>");
     expect_once(file, 3);
     const auto notes = std::ranges::count_if(file.notes, [](const std::string& note) {
       return note.find("'p' is a finite-element function (CG of degree 2)") != std::string::npos;

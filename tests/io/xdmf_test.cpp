@@ -67,11 +67,11 @@ class Xdmf : public ::testing::Test {
   void SetUp() override {
     if (!has_reader(Reader::xdmf)) GTEST_SKIP() << "tessera-read-xdmf is not installed";
   }
-  MeshFile read(const std::string& domain, const MeshOptions& options = {}) const {
+  cells::MeshFile read(const std::string& domain, const cells::MeshOptions& options = {}) const {
     return read_mesh(folder.write("a.xmf", file_of(domain)), options);
   }
   void expect_refused(const std::string& domain, const std::vector<std::string>& words,
-                      const MeshOptions& options = {}) const {
+                      const cells::MeshOptions& options = {}) const {
     std::vector<std::string> all = {"a.xmf: ", "; "};
     all.insert(all.end(), words.begin(), words.end());
     test::expect_bad_input([&] { read(domain, options); }, all);
@@ -80,7 +80,7 @@ class Xdmf : public ::testing::Test {
 };
 
 TEST_F(Xdmf, TetsHaveTheirPlacesAndFields) {
-  const MeshFile mesh = read(two_tets("m", 0, 1));
+  const cells::MeshFile mesh = read(two_tets("m", 0, 1));
   EXPECT_FALSE(is_volume(folder / "a.xmf"));
   EXPECT_EQ(mesh.format, "XDMF");
   EXPECT_NEAR(testing::volume(mesh.mesh), 4.0 / 6, 1e-12);
@@ -89,12 +89,12 @@ TEST_F(Xdmf, TetsHaveTheirPlacesAndFields) {
     const glm::dvec3& p = mesh.mesh.positions[v];
     EXPECT_EQ(mesh.mesh.scalars[v], p.x + 2 * p.y + 3 * p.z);
   }
-  MeshOptions options;
+  cells::MeshOptions options;
   options.field = "c";
-  const MeshFile cells = read(two_tets("m", 0, 1), options);
+  const cells::MeshFile cells = read(two_tets("m", 0, 1), options);
   EXPECT_EQ(cells.mesh.scalars, (std::vector<double>{7, 8}));
   options.field = "v";
-  const MeshFile vectors = read(two_tets("m", 0, 1), options);
+  const cells::MeshFile vectors = read(two_tets("m", 0, 1), options);
   EXPECT_EQ(*std::max_element(vectors.mesh.scalars.begin(), vectors.mesh.scalars.end()), 5);
 }
 
@@ -106,17 +106,17 @@ TEST_F(Xdmf, TimeStepsAreInTheOrderOfTheirTimes) {
       attribute("f", "Node", item("5", "0 10 20 30 -90")) + "</Grid>\n";
   const std::string series = collection("s", "Temporal", two_tets("early", 0, 1, timed(1)) + later);
   const auto range = [&](std::optional<std::size_t> step) {
-    MeshOptions options;
+    cells::MeshOptions options;
     options.time_step = step;
     options.field = "f";
-    const MeshFile mesh = read(series, options);
+    const cells::MeshFile mesh = read(series, options);
     return *std::max_element(mesh.mesh.scalars.begin(), mesh.mesh.scalars.end());
   };
   EXPECT_EQ(range(std::nullopt), 30);
   EXPECT_EQ(read(series).time_step.times, (std::vector<double>{1, 2}));
   EXPECT_EQ(range(0), 3);
   EXPECT_EQ(range(1), 30);
-  MeshOptions options;
+  cells::MeshOptions options;
   options.time_step = 2;
   expect_refused(series, {"there is no time step 2, the file has 2"}, options);
 }
@@ -129,12 +129,12 @@ TEST_F(Xdmf, AGridOfOneTimeHasIt) {
 
 TEST_F(Xdmf, GridsInSpaceAreBlocks) {
   const std::string parts = collection("engine", "Spatial", two_tets("left", 0, 1) + two_tets("right", 5, 1));
-  const MeshFile both = read(parts);
+  const cells::MeshFile both = read(parts);
   EXPECT_EQ(both.blocks, (std::vector<std::string>{"left", "right"}));
   EXPECT_NEAR(testing::volume(both.mesh), 8.0 / 6, 1e-12);
-  MeshOptions options;
+  cells::MeshOptions options;
   options.blocks = {"right"};
-  const MeshFile one = read(parts, options);
+  const cells::MeshFile one = read(parts, options);
   EXPECT_NEAR(testing::volume(one.mesh), 4.0 / 6, 1e-12);
   for (const glm::dvec3& p : one.mesh.positions) EXPECT_GE(p.x, 5);
 }
@@ -147,8 +147,8 @@ TEST_F(Xdmf, MixedCellsAreToldByTheirNumbers) {
   const std::string points = "<Geometry GeometryType=\"XYZ\">\n" +
                              item("11 3", "0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1  2 0 0 2 1 0  0.5 0.5 2.5") +
                              "</Geometry>\n";
-  const MeshFile mesh = read("<Grid Name=\"m\" GridType=\"Uniform\">\n" + topology + points +
-                             attribute("f", "Node", item("11", "0 1 2 3 4 5 6 7 8 9 10")) + "</Grid>\n");
+  const cells::MeshFile mesh = read("<Grid Name=\"m\" GridType=\"Uniform\">\n" + topology + points +
+                                    attribute("f", "Node", item("11", "0 1 2 3 4 5 6 7 8 9 10")) + "</Grid>\n");
   EXPECT_EQ(mesh.counts.cells_read, 4u);
   EXPECT_NEAR(testing::volume(mesh.mesh), 1 + 0.5 + 0.5, 1e-12);
 }
@@ -193,7 +193,7 @@ TEST_F(Xdmf, RectilinearGridsAreVolumesAndCurvilinearOnesMeshes) {
       "<Geometry GeometryType=\"XYZ\">\n" +
       item("12 3", "0 0 0 1 0 0 2 0 0  1 1 0 2 1 0 3 1 0  0 0 1 1 0 1 2 0 1  1 1 1 2 1 1 3 1 1") + "</Geometry>\n" +
       attribute("s", "Node", item("2 2 3", "0 1 2 3 4 5 6 7 8 9 10 11")) + "</Grid>\n";
-  const MeshFile mesh = read(curvilinear);
+  const cells::MeshFile mesh = read(curvilinear);
   EXPECT_EQ(mesh.counts.cells_read, 2u);
   EXPECT_NEAR(testing::volume(mesh.mesh), 2, 1e-12);
 }
@@ -214,7 +214,7 @@ TEST_F(Xdmf, BinaryNumbersLieBeside) {
   };
   std::filesystem::create_directory(folder / "data");
   folder.write("data/a.bin", test::bytes_of(points) + test::bytes_of(values));
-  const MeshFile mesh = read(grid("data/a.bin"));
+  const cells::MeshFile mesh = read(grid("data/a.bin"));
   EXPECT_NEAR(testing::volume(mesh.mesh), 1.0 / 6, 1e-12);
   std::vector<double> scalars = mesh.mesh.scalars;
   std::ranges::sort(scalars);
