@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # lint.sh format   says which sources clang-format would change (lint.sh fix changes them)
 # lint.sh tidy     runs clang-tidy (.clang-tidy) over the sources, headers included by way of them, as build/tidy
-#                  is configured. Tests are left out, and io/helper, which includes VTK: its headers take minutes and the
+#                  is configured. Tests are left out, and readers/, which include VTK: its headers take minutes and the
 #                  warnings are not ours.
 # lint.sh changed  tidies only what differs from where this branch left the main one (with nothing of its own: what the
 #                  last commit changed), for at most 6 minutes: it names what it did not come to
@@ -11,8 +11,7 @@ cd "$(dirname "$0")/.."
 
 # With what -inl.h files hold: kernels, compiled once per instruction set.
 sources() { git ls-files --cached --others --exclude-standard -- '*.cpp' '*.hpp' '*.h'; }
-# The folders, and after them io without io/helper.
-ours='^((scene|colormaps|integrals|exchange|projection|sorting|compositor|frame|reference|volume|analysis|annotation|server|apps|gl|datasets)/.*|io/[^/]*)'
+ours='^(scene|system|colormaps|cells|io|integrals|exchange|projection|sorting|compositor|frame|api|reference|volume|analysis|annotation|server|apps|gl|datasets)/.*'
 
 format() { sources | xargs -r clang-format-14 --style=file "$@"; }
 

@@ -21,14 +21,15 @@ namespace tessera::cells {
 /// nastran "Quick Reference Guide", CTETRA, CPYRAM, CPENTA and CHEXA: the edges between base and top come before the
 ///         top's. Any node in the middle of an edge may be blank.
 /// cgns    SIDS, section 3.3 "Unstructured Grid Element Numbering Conventions". Cells of higher order are read by
-///         CGNS's own library (io/helper/cgns_cells.hpp), as VTK 9.1's reader gets some of them wrong. Those of fourth
-///         order are not: SIDS places the nodes inside triangles elsewhere than on the lattice that exporters take.
+///         CGNS's own library (readers/vtk/cgns_cells.hpp), as VTK 9.1's reader gets some of them wrong. Those of
+///         fourth order are not: SIDS places the nodes inside triangles elsewhere than on the lattice that exporters
+///         take.
 /// tetgen  User's manual, ".ele files": the edges of a tetrahedron of 10 nodes.
 ///
 /// In VTK's order as they are: EnSight (User Manual, EnSight Gold Geometry File Format; VTK's reader mirrors wedges),
 /// XDMF (Tet_10 ... Hex_27, which VTK and meshio write so; the format's pages define none), legacy VTK and VTK XML but
 /// for old Lagrange hexahedra (exchange_vtk8_edges() below), VTKHDF, Medit. Gmsh's own files go by the
-/// places of nodes that its library gives (io/helper/gmsh_cells.hpp). AVS UCD, Fluent,
+/// places of nodes that its library gives (readers/gmsh/gmsh_cells.hpp). AVS UCD, Fluent,
 /// GAMBIT, OpenFOAM, PLOT3D, SU2 and Tecplot have linear cells here.
 enum class NodeConvention : std::uint8_t { exodus, med, cgns, nastran, tetgen };
 

@@ -49,30 +49,30 @@ EXCEPTIONS = {
     ),
     r"^io/(foreign_blocks|foreign_grids|cell_block|foreign_numbers)": (16, ANSWER),
     r"^io/(vtk_xml_(file|grid|numbers)|vtu_(cells|faces))\.cpp": (8, VTK_XML),
-    r"^io/foreign_open\.cpp|^io/helper/readers\.hpp": (2, ANSWER),
-    r"^io/helper/\w+\.cpp:\d+: \{\}: (nothing can be|it holds \{\}, no|it is a grid of a kind|it cannot be read)": (
+    r"^io/foreign_open\.cpp|^readers/common/readers\.hpp": (2, ANSWER),
+    r"^readers/[a-z0-9/]+/\w+\.cpp:\d+: \{\}: (nothing can be|it holds \{\}, no|it is a grid of a kind|it cannot be read)": (
         7,
         ANSWER,
     ),
-    r"^io/helper/(gmsh_blocks\.cpp:\d+: \{\}: a cell uses|gmsh_file\.cpp:\d+: \{\}: \{\}Gmsh cannot)": (2, ANSWER),
-    r"^io/helper/vtk_readers\.cpp:\d+: grid or": (1, ANSWER),
-    r"^io/helper/(xdmf_rewritten\.cpp:\d+: \{\}: it is not well|gmsh_view_names)": (2, ANSWER),
-    r"^io/helper/tetgen_fill\.cpp:\d+: \{\}: TetGen finds nothing": (1, ANSWER),
-    r"^io/helper/(hdf5_(kind|file|grid|references)|vtk_hdf_mesh|netcdf_values|med_meshes|minc2_file|amr_files)|^io/mesh_shares\.cpp:\d+: \{\}: it is named as CGNS": (
+    r"^readers/[a-z0-9/]+/(gmsh_blocks\.cpp:\d+: \{\}: a cell uses|gmsh_file\.cpp:\d+: \{\}: \{\}Gmsh cannot)": (2, ANSWER),
+    r"^readers/vtk/vtk_readers\.cpp:\d+: grid or": (1, ANSWER),
+    r"^readers/[a-z0-9/]+/(xdmf_rewritten\.cpp:\d+: \{\}: it is not well|gmsh_view_names)": (2, ANSWER),
+    r"^readers/tetgen/tetgen_fill\.cpp:\d+: \{\}: TetGen finds nothing": (1, ANSWER),
+    r"^readers/[a-z0-9/]+/(hdf5_(kind|file|grid|references)|vtk_hdf_mesh|netcdf_values|med_meshes|minc2_file|amr_files)|^io/mesh_shares\.cpp:\d+: \{\}: it is named as CGNS": (
         27,
         HDF5,
     ),
-    r"^io/helper/cgns_": (18, HDF5),
-    r"^io/helper/exodus_file\.cpp:\d+: field": (1, RARE),
-    r"^io/helper/linear_only": (2, RARE),
+    r"^readers/[a-z0-9/]+/cgns_": (18, HDF5),
+    r"^readers/vtk/exodus_file\.cpp:\d+: field": (1, RARE),
+    r"^readers/[a-z0-9/]+/linear_only": (2, RARE),
     r"^io/tecplot_numbers\.cpp:\d+: the zone has \{\} values": (1, RARE),
-    r"^io/helper/gmsh_elements\.cpp:\d+: \{\}: its cells of": (1, RARE),
+    r"^readers/gmsh/gmsh_elements\.cpp:\d+: \{\}: its cells of": (1, RARE),
     r"^io/(helper_process\.[ch]pp|helper/serve|helper/limits|foreign_fill\.cpp:\d+: filling)": (9, HELPER),
     r"^io/(foreign_fill\.cpp:\d+: mend|block_tets\.cpp:\d+: .*order_tolerance|amr_leaves\.cpp:\d+: .*many pieces)": (
         5,
         TIME,
     ),
-    r"^io/helper/vtk_words\.cpp:\d+: \{\}: VTK's reader does not get over it and": (1, RARE),
+    r"^readers/vtk/vtk_words\.cpp:\d+: \{\}: VTK's reader does not get over it and": (1, RARE),
     r"points in one block; split it$|^system/gzip\.cpp:\d+: it holds more than": (2, HUGE),
 }
 
@@ -89,7 +89,7 @@ NO_ADVICE = [
     r"io/chrome_trace_reader\.cpp:\d+: name is missing",
     r"io/file_kinds\.cpp:\d+: (closed|VTK XML|AMReX|Enzo|FLASH|Exodus|OpenFOAM|VTKHDF|MED|Fluent|AVS|Gmsh|Medit|I-DEAS|Tecplot \.\.)",
     r"io/file_kinds\.cpp:\d+: (Nastran|SU2|PLOT3D|raw tetra|NetCDF|MINC|MetaImage|NRRD|NIfTI|Analyze|DICOM)",
-    r"io/helper/dicom_main\.cpp:\d+: \{\} samples are in several segments",
-    r"io/helper/dicom_series\.cpp:\d+: (some places have|slices are|values are)",
+    r"readers/dicom/dicom_main\.cpp:\d+: \{\} samples are in several segments",
+    r"readers/dicom/dicom_series\.cpp:\d+: (some places have|slices are|values are)",
     r"io/text_transfer_function\.cpp:\d+:  \(extinctions as they stand",
 ]

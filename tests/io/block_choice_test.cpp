@@ -10,7 +10,7 @@
 namespace tessera::io {
 namespace {
 
-TEST(cells::BlockChoice, ANameIsThatOfABlockOrAnEndOfItsPath) {
+TEST(BlockChoice, ANameIsThatOfABlockOrAnEndOfItsPath) {
   EXPECT_TRUE(cells::means_block("fluid", "fluid"));
   EXPECT_TRUE(cells::means_block("fluid", "fluid/internalMesh"));
   EXPECT_TRUE(cells::means_block("internalMesh", "fluid/internalMesh"));
@@ -31,7 +31,7 @@ std::string zone(int number, int x) {
          " 0 0\n" + at + " 1 0\n" + at + " 0 1\n";
 }
 
-TEST(cells::BlockChoice, SurfacesAreNotedByName) {
+TEST(BlockChoice, SurfacesAreNotedByName) {
   const std::vector<std::string> two{"inlet", "walls"}, many(23, "x");
   EXPECT_EQ(cells::note_on_surfaces("patch", two),
             "2 patches are surfaces and are left out: 'inlet', 'walls' (`surface` shows one)");
@@ -40,7 +40,7 @@ TEST(cells::BlockChoice, SurfacesAreNotedByName) {
   EXPECT_NE(cells::note_on_surfaces("block", many).find("'x' and 3 more (`surface`"), std::string::npos);
 }
 
-TEST(cells::BlockChoice, OnlyTheNamedBlocksAreRead) {
+TEST(BlockChoice, OnlyTheNamedBlocksAreRead) {
   const test::TemporaryFolder folder;
   const auto file = folder.write("a.su2", "NZONE= 3\n" + zone(1, 0) + zone(2, 10) + zone(3, 20));
   cells::MeshOptions options;
@@ -54,7 +54,7 @@ TEST(cells::BlockChoice, OnlyTheNamedBlocksAreRead) {
   for (const glm::dvec3& p : some.mesh.positions) EXPECT_FALSE(p.x > 5 && p.x < 15);
 }
 
-TEST(cells::BlockChoice, ANameOfNoBlockIsRefusedWithThoseThereAre) {
+TEST(BlockChoice, ANameOfNoBlockIsRefusedWithThoseThereAre) {
   const test::TemporaryFolder folder;
   const auto file = folder.write("a.su2", "NZONE= 2\n" + zone(1, 0) + zone(2, 10));
   cells::MeshOptions options;

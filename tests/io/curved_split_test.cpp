@@ -53,7 +53,7 @@ cells::CellPlace random_place(cells::CurvedFamily family, std::mt19937& random) 
   }
 }
 
-TEST(cells::CurvedCell, HasAllPolynomialsOfItsDegree) {
+TEST(CurvedCell, HasAllPolynomialsOfItsDegree) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> coefficient(-1, 1);
   for (const Kind& kind : kinds) {
@@ -90,7 +90,7 @@ TEST(cells::CurvedCell, HasAllPolynomialsOfItsDegree) {
   }
 }
 
-TEST(cells::CurvedCell, HasItsNodesWhereTheLatticeSays) {
+TEST(CurvedCell, HasItsNodesWhereTheLatticeSays) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> anywhere(-1, 1);
   for (const Kind& kind : kinds) {
@@ -119,7 +119,7 @@ TEST(cells::CurvedCell, HasItsNodesWhereTheLatticeSays) {
 }
 
 // A place on a face, told by the face alone and by the whole cell: two ways to one number.
-TEST(cells::CurvedCell, AgreesWithItselfOnFacesAndEdges) {
+TEST(CurvedCell, AgreesWithItselfOnFacesAndEdges) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> anywhere(-1, 1);
   for (const Kind& kind : kinds) {

@@ -40,14 +40,14 @@ const cells::CellBlock flow = block_with(
      field("StagnationEnergy", Association::point, {-1, 4}), field("ObjectId", Association::cell, {0, 1}),
      field("stress: max", Association::cell, {5, 6})});
 
-TEST(cells::FieldChoice, DefaultSkipsConstantsAndLabels) {
+TEST(FieldChoice, DefaultSkipsConstantsAndLabels) {
   EXPECT_EQ(choose("", flow).label, "StagnationEnergy");
   const cells::CellBlock labels_first =
       block_with({field("GlobalNodeId", Association::point, {0, 1}), field("speed", Association::cell, {0, 1})});
   EXPECT_EQ(choose("", labels_first).label, "speed");
 }
 
-TEST(cells::FieldChoice, DefaultPrefersTheActiveScalarsIfTheyVary) {
+TEST(FieldChoice, DefaultPrefersTheActiveScalarsIfTheyVary) {
   cells::CellBlock block = block_with({field("a", Association::point, {0, 1}), field("b", Association::point, {0, 2})});
   block.fields[1].active = true;
   EXPECT_EQ(choose("", block).label, "b");
@@ -56,14 +56,14 @@ TEST(cells::FieldChoice, DefaultPrefersTheActiveScalarsIfTheyVary) {
   EXPECT_EQ(choose("", block).label, "a");
 }
 
-TEST(cells::FieldChoice, DefaultTakesPointsBeforeCellsAndScalarsBeforeVectors) {
+TEST(FieldChoice, DefaultTakesPointsBeforeCellsAndScalarsBeforeVectors) {
   const cells::BlockField vector = field("v", Association::point, {0, 0, 0, 1, 1, 1}, 3);
   const cells::BlockField cell = field("c", Association::cell, {0, 1});
   EXPECT_EQ(choose("", block_with({cell, vector})).label, "v:mag");
   EXPECT_EQ(choose("", block_with({cell, vector, field("p", Association::point, {0, 1})})).label, "p");
 }
 
-TEST(cells::FieldChoice, IndicesAndPartsAreNoDefaultWhereShapesAreShown) {
+TEST(FieldChoice, IndicesAndPartsAreNoDefaultWhereShapesAreShown) {
   const cells::CellBlock labels =
       block_with({field("vtkOriginalCellIds", Association::cell, {0, 1}), field("BLOCK_I", Association::cell, {0, 1})});
   const std::vector<cells::FieldSummary> fields = summary({&labels, 1});
@@ -81,7 +81,7 @@ TEST(cells::FieldChoice, IndicesAndPartsAreNoDefaultWhereShapesAreShown) {
     EXPECT_FALSE(cells::is_label_name(name));
 }
 
-TEST(cells::FieldChoice, NamesTellLabelsOfWholeNumbersOnly) {
+TEST(FieldChoice, NamesTellLabelsOfWholeNumbersOnly) {
   const cells::BlockField other = field("other", Association::cell, {0.5, 0.75});
   for (const char* name : {"k", "i", "K", "zone", "process", "proc", "block", "region", "rank", "material_id"}) {
     const cells::CellBlock quantity = block_with({field(name, Association::point, {0.25, 3, 7, 7}), other});
@@ -106,7 +106,7 @@ std::vector<double> shuffled(std::size_t count, double first) {
   return values;
 }
 
-TEST(cells::FieldChoice, NumbersOfPointsAreIdsByAnyName) {
+TEST(FieldChoice, NumbersOfPointsAreIdsByAnyName) {
   const cells::BlockField cells = field("porosity", Association::cell, {0.1, 0.2});
   for (const double first : {0.0, 1.0})
     for (const std::size_t count : {std::size_t{4}, std::size_t{64}, std::size_t{1000}})
@@ -135,7 +135,7 @@ TEST(cells::FieldChoice, NumbersOfPointsAreIdsByAnyName) {
   EXPECT_EQ(choose("", block_with({field("v", Association::point, axis, 3), cells})).label, "v:mag");
 }
 
-TEST(cells::FieldChoice, IdsAreKnownInBlocksAndPartsAlike) {
+TEST(FieldChoice, IdsAreKnownInBlocksAndPartsAlike) {
   const cells::BlockField cells = field("porosity", Association::cell, {0.1, 0.2});
   std::vector<double> whole = shuffled(200, 0);
   const auto block_of = [&](std::size_t first, std::size_t count) {
@@ -156,7 +156,7 @@ TEST(cells::FieldChoice, IdsAreKnownInBlocksAndPartsAlike) {
   EXPECT_FALSE(summary(other)[0].ids);
 }
 
-TEST(cells::FieldChoice, IdsAreLastAndThenOnlyWithAWord) {
+TEST(FieldChoice, IdsAreLastAndThenOnlyWithAWord) {
   const cells::BlockField constant = field("T", Association::point, {300, 300});
   const cells::CellBlock many = block_with({field("nr", Association::point, shuffled(100, 0)), constant});
   EXPECT_TRUE(cells::choose_field("", summary(std::vector{many}), "mesh.vtu", true).shape);
@@ -180,7 +180,7 @@ TEST(cells::FieldChoice, IdsAreLastAndThenOnlyWithAWord) {
     EXPECT_FALSE(cells::is_label_name(name)) << name;
 }
 
-TEST(cells::FieldChoice, NoiseAroundZeroIsShownOnlyWithAWord) {
+TEST(FieldChoice, NoiseAroundZeroIsShownOnlyWithAWord) {
   const cells::BlockField noise = field("y", Association::point, {-1e-15, 2e-15});
   EXPECT_EQ(choose("", block_with({noise, field("p", Association::cell, {0, 1})})).label, "p");
   const cells::FieldChoice alone = choose("", block_with({noise}));
@@ -191,14 +191,14 @@ TEST(cells::FieldChoice, NoiseAroundZeroIsShownOnlyWithAWord) {
   EXPECT_TRUE(choose("", block_with({field("k", Association::point, {1e-15, 2e-13})})).notes.empty());
 }
 
-TEST(cells::FieldChoice, AFileWithoutFieldsSaysSo) {
+TEST(FieldChoice, AFileWithoutFieldsSaysSo) {
   const cells::FieldChoice choice = choose("", cells::CellBlock{});
   EXPECT_TRUE(choice.name.empty());
   ASSERT_EQ(choice.notes.size(), 1u);
   EXPECT_NE(message_of([] { choose("x", cells::CellBlock{}); }).find("the file has none"), std::string::npos);
 }
 
-TEST(cells::FieldChoice, ReadsComponents) {
+TEST(FieldChoice, ReadsComponents) {
   EXPECT_EQ(choose("Momentum", flow).component, cells::magnitude);
   EXPECT_EQ(choose("Momentum:mag", flow).label, "Momentum:mag");
   EXPECT_EQ(choose("Momentum:y", flow).component, 1);
@@ -209,7 +209,7 @@ TEST(cells::FieldChoice, ReadsComponents) {
   EXPECT_NE(message_of([] { choose("Density:y", flow); }).find("use the name alone"), std::string::npos);
 }
 
-TEST(cells::FieldChoice, NamesMayHoldColonsAndSpaces) {
+TEST(FieldChoice, NamesMayHoldColonsAndSpaces) {
   EXPECT_EQ(choose("stress: max", flow).name, "stress: max");
   EXPECT_EQ(choose("cell:stress: max", flow).association, Association::cell);
   const cells::CellBlock odd =
@@ -218,7 +218,7 @@ TEST(cells::FieldChoice, NamesMayHoldColonsAndSpaces) {
   EXPECT_EQ(choose("a:y", odd).name, "a");
 }
 
-TEST(cells::FieldChoice, APrefixChoosesBetweenPointAndCell) {
+TEST(FieldChoice, APrefixChoosesBetweenPointAndCell) {
   const cells::CellBlock both =
       block_with({field("s", Association::cell, {0, 1}), field("s", Association::point, {0, 1})});
   EXPECT_EQ(choose("s", both).association, Association::point);
@@ -228,14 +228,14 @@ TEST(cells::FieldChoice, APrefixChoosesBetweenPointAndCell) {
   EXPECT_NE(message_of([] { choose("cell:Density", flow); }), "");
 }
 
-TEST(cells::FieldChoice, AWrongNameListsAllNames) {
+TEST(FieldChoice, AWrongNameListsAllNames) {
   const std::string message = message_of([] { choose("Temperature", flow); });
   EXPECT_EQ(message,
             "mesh.vtu: no field 'Temperature'; it has point:'Density', point:'Momentum' (3 components), "
             "point:'StagnationEnergy', cell:'ObjectId', cell:'stress: max'");
 }
 
-TEST(cells::FieldChoice, LabelsAreToldFromWords) {
+TEST(FieldChoice, LabelsAreToldFromWords) {
   for (const char* name :
        {"GlobalNodeId", "ObjectId", "vtkOriginalCellIds", "vtkGhostType", "IBlank", "node_id", "Material #", "PartIDs"})
     EXPECT_TRUE(cells::is_label_name(name)) << name;
@@ -243,7 +243,7 @@ TEST(cells::FieldChoice, LabelsAreToldFromWords) {
     EXPECT_FALSE(cells::is_label_name(name)) << name;
 }
 
-TEST(cells::FieldSummary, CountsNaNAndInfiniteAndLeavesThemOutOfTheRange) {
+TEST(FieldSummary, CountsNaNAndInfiniteAndLeavesThemOutOfTheRange) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   const std::vector<cells::CellBlock> blocks = {block_with({field("s", Association::point, {nan, -2, inf, 5, -inf}),
                                                             field("v", Association::point, {3, 4, 0, nan, 0, 0}, 3),

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/volume_checks.hpp"
 #include "io/volume_reader.hpp"

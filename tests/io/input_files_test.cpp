@@ -164,7 +164,7 @@ TEST(InputFiles, AWholeFileThatEndsBeforeItsSizeIsAnError) {
   EXPECT_NE(fault.message.find("shortened"), std::string::npos) << fault.message;
 }
 
-TEST(system::IdleWatch, KnowsAProcessThatSleepsFromOneThatRuns) {
+TEST(IdleWatch, KnowsAProcessThatSleepsFromOneThatRuns) {
   system::IdleWatch own(::getpid());
   for (int look = 0; look < 3; ++look) EXPECT_EQ(own.look().count(), 0) << "this thread runs";
   const pid_t child = ::fork();

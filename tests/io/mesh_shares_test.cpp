@@ -36,7 +36,7 @@ void write_exodus(const std::filesystem::path& file, int at) {
   const int id = ex_create(file.c_str(), EX_CLOBBER, &word, &stored);
   ASSERT_GE(id, 0);
   ex_put_init(id, "cube", 3, 8, 1, 2, 0, 0);
-  const auto xyz = cells::corners_of(at);
+  const auto xyz = corners_of(at);
   ex_put_coord(id, xyz[0].data(), xyz[1].data(), xyz[2].data());
   ex_put_variable_param(id, EX_NODAL, 1);
   ex_put_variable_name(id, EX_NODAL, 1, "v");
@@ -103,7 +103,7 @@ void write_zones(const std::filesystem::path& file, int zones) {
     const std::array<cgsize_t, 3> size{8, 1, 0};
     ASSERT_EQ(cg_zone_write(id, base, fmt::format("zone {}", k).c_str(), size.data(), CGNS_ENUMV(Unstructured), &zone),
               CG_OK);
-    const auto xyz = cells::corners_of(k);
+    const auto xyz = corners_of(k);
     const std::array<const char*, 3> names{"CoordinateX", "CoordinateY", "CoordinateZ"};
     for (std::size_t a = 0; a < 3; ++a)
       ASSERT_EQ(cg_coord_write(id, base, zone, CGNS_ENUMV(RealDouble), names[a], xyz[a].data(), &made), CG_OK);

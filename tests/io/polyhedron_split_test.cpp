@@ -72,7 +72,7 @@ double area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
 
 TEST(FaceTriangles, DependOnNeitherTheStartNorTheOrderOfTheCorners) {
   std::mt19937 random(5);
-  std::uniform_real_distribution<double> radius(0.2, 1), cells::warp(-0.1, 0.1);
+  std::uniform_real_distribution<double> radius(0.2, 1), warp(-0.1, 0.1);
   int ears = 0;
   for (int round = 0; round < 300; ++round) {
     SCOPED_TRACE(fmt::format("round {}", round));
@@ -82,7 +82,7 @@ TEST(FaceTriangles, DependOnNeitherTheStartNorTheOrderOfTheCorners) {
     double whole = 0;
     for (int k = 0; k < n; ++k) {  // a star round the origin
       const double angle = 2 * 3.141592653589793 * k / n, r = is_convex ? 1 : radius(random), x = r * std::cos(angle);
-      outline.emplace_back(x, r * std::sin(angle), is_plane ? 0.3 * x : cells::warp(random));
+      outline.emplace_back(x, r * std::sin(angle), is_plane ? 0.3 * x : warp(random));
     }
     for (std::size_t k = 0; k < outline.size(); ++k)
       whole += area(glm::dvec3(0), outline[k], outline[(k + 1) % outline.size()]);

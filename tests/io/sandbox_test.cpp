@@ -1,5 +1,5 @@
 // What reader programs can no longer do.
-#include "io/helper/sandbox.hpp"
+#include "readers/common/sandbox.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@
 
 #include "io/temporary_folder.hpp"
 
-namespace tessera::io::helper {
+namespace tessera::readers {
 namespace {
 
 bool kernel_has_it() {
@@ -104,4 +104,4 @@ TEST(Sandbox, LeavesAReaderWhatItNeeds) {
 }
 
 }  // namespace
-}  // namespace tessera::io::helper
+}  // namespace tessera::readers

@@ -38,7 +38,7 @@ std::string avs_ucd(const Cubes& cubes) {
   for (std::size_t v = 0; v < cubes.points.size(); ++v)
     text += fmt::format("{} {} {} {}\n", v + 1, cubes.points[v].x, cubes.points[v].y, cubes.points[v].z);
   for (std::size_t c = 0; c < cubes.cells.size(); ++c)
-    text += fmt::format("{} 1 hex", c + 1) + cells::joined(cubes.cells[c], 1);
+    text += fmt::format("{} 1 hex", c + 1) + joined(cubes.cells[c], 1);
   text += "1 1\ntemperature, K\n";
   for (std::size_t v = 0; v < cubes.points.size(); ++v)
     text += fmt::format("{} {}\n", v + 1, field_at(cubes.points[v]));
@@ -50,7 +50,7 @@ std::string tecplot(const Cubes& cubes) {
       "TITLE = \"t\"\nVARIABLES = \"X\", \"Y\", \"Z\", \"T\"\nZONE T=\"z\", N={}, E={}, F=FEPOINT, ET=BRICK\n",
       cubes.points.size(), cubes.cells.size());
   for (const glm::dvec3& p : cubes.points) text += fmt::format("{} {} {} {}\n", p.x, p.y, p.z, field_at(p));
-  for (const auto& cell : cubes.cells) text += cells::joined(cell, 1);
+  for (const auto& cell : cubes.cells) text += joined(cell, 1);
   return text;
 }
 

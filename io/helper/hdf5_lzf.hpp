@@ -1,8 +1,0 @@
-#pragma once
-
-namespace tessera::io::helper {
-
-/// Has HDF5's library undo the filter lzf (32000), which h5py brings and the library does not know.
-void register_lzf();
-
-}  // namespace tessera::io::helper

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace tessera::readers {
+
+/// Names of the regular files that this process has opened to read since it was last asked, by its libraries too: they
+/// call this program's own open() and fopen(). The caller notes them (system/files_read.hpp).
+std::vector<std::string> take_opened_files();
+
+}  // namespace tessera::readers

@@ -1,0 +1,18 @@
+// tessera-read-gmsh: reads what Gmsh's library reads, as tessera-read-vtk does other formats. A program of its own,
+// since that library takes a while to load and is under the GPL.
+#include "readers/common/serve.hpp"
+#include "readers/gmsh/gmsh_file.hpp"
+
+#ifdef __SANITIZE_ADDRESS__
+// Gmsh 4.8 frees an array of prisms' faces as a single object (ClosureGen::getFaceClosurePrism).
+extern "C" [[gnu::visibility("default"), gnu::used]] const char*
+__asan_default_options() {  // NOLINT(bugprone-reserved-identifier)
+  return "alloc_dealloc_mismatch=0";
+}
+#endif
+
+int main() {
+  using namespace tessera::readers;
+  constexpr Reader readers[] = {{"gmsh", read_gmsh}, {"by_gmsh", read_by_gmsh}};
+  serve(readers);
+}

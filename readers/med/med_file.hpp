@@ -1,0 +1,60 @@
+#pragma once
+
+#include <med.h>
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cells/cell_block.hpp"
+#include "scene/time_step_read.hpp"
+
+namespace tessera::readers {
+
+/// Cells of volume that MED and VTK both know; cells/curved/node_orders.hpp has the order of their nodes.
+struct MedCellKind {
+  med_geometry_type med;
+  std::uint8_t vtk;
+  int nodes;
+};
+inline constexpr std::array med_cell_kinds = {
+    MedCellKind{MED_TETRA4, 10, 4},  MedCellKind{MED_PYRA5, 14, 5},    MedCellKind{MED_PENTA6, 13, 6},
+    MedCellKind{MED_HEXA8, 12, 8},   MedCellKind{MED_TETRA10, 24, 10}, MedCellKind{MED_OCTA12, 16, 12},
+    MedCellKind{MED_PYRA13, 27, 13}, MedCellKind{MED_PENTA15, 26, 15}, MedCellKind{MED_PENTA18, 32, 18},
+    MedCellKind{MED_HEXA20, 25, 20}, MedCellKind{MED_HEXA27, 29, 27}};
+
+/// An open file. Every call that fails ends in Error.
+class MedFile {
+ public:
+  explicit MedFile(const std::filesystem::path& file);
+  ~MedFile();
+  MedFile(const MedFile&) = delete;
+  MedFile& operator=(const MedFile&) = delete;
+
+  [[nodiscard]] med_idt id() const { return id_; }
+  [[nodiscard]] const std::string& source() const { return source_; }
+  void require(bool good, const std::string& what) const;
+
+ private:
+  std::string source_;
+  med_idt id_ = -1;
+};
+
+/// A mesh of the file, as a block without fields.
+struct MedMesh {
+  cells::CellBlock block;
+  std::vector<std::size_t> cells_of_kind;  ///< of each of med_cell_kinds, which follow each other in the block
+};
+
+/// All meshes of three dimensions; notes name the others. Throws Error(bad_input) for polyhedra, and if there is none.
+std::vector<MedMesh> med_meshes(const MedFile& file, std::vector<std::string>& notes);
+
+/// Adds the fields of a mesh's nodes and cells at one time step, counted from 0, or the last; `read` says which. Values
+/// that the file has not are NaN. Throws Error(bad_input) for a step that no field has.
+void add_med_fields(const MedFile& file, std::optional<std::size_t> time_step, std::vector<MedMesh>& meshes,
+                    std::vector<std::string>& notes, scene::TimeStepRead& read);
+
+}  // namespace tessera::readers

@@ -1,0 +1,9 @@
+// tessera-read-tetgen: fills surfaces by TetGen. A program of its own, since TetGen is under the AGPL-3.0.
+#include "readers/common/readers.hpp"
+#include "readers/common/serve.hpp"
+
+int main() {
+  using namespace tessera::readers;
+  constexpr Reader readers[] = {{"fill", fill_surface}};
+  serve(readers);
+}

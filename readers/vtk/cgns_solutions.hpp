@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cells/cell_block.hpp"
+#include "readers/vtk/cgns_cells.hpp"
+
+namespace tessera::readers {
+
+using CgnsName = std::array<char, 34>;
+
+/// Whether a zone has cells of three dimensions.
+bool is_mesh(const CgnsZone& zone);
+
+/// Numbers along each index of a zone, of its points or cells.
+std::vector<cgsize_t> lengths(const CgnsZone& zone, bool of_cells);
+
+/// All of them. Throws Error(bad_input) for 2^32 and more.
+std::size_t product(const CgnsZone& zone, bool of_cells);
+
+/// The names of a zone's grids or solutions at a step; none: the zone does not list them.
+std::vector<std::string> zone_names_at_step(const CgnsZone& zone, std::uint64_t step, std::string_view word);
+
+/// A solution of a zone.
+struct CgnsSolution {
+  int number = 0;
+  std::string name{};
+  CGNS_ENUMT(GridLocation_t) location{};
+  CGNS_ENUMT(PointSetType_t) set = CGNS_ENUMV(PointSetTypeNull);  ///< of the points or cells that have values, or null
+  cgsize_t in_set = 0;
+
+  [[nodiscard]] bool is_part() const { return set != CGNS_ENUMV(PointSetTypeNull); }
+};
+
+/// Those of a step; all where the zone lists none.
+std::vector<CgnsSolution> solutions_of(const CgnsZone& zone, std::uint64_t step);
+
+/// Where, and names of fields that several solutions have there.
+using CgnsNamesakes = std::set<std::pair<CGNS_ENUMT(GridLocation_t), std::string>>;
+CgnsNamesakes namesakes_of(std::span<const CgnsZone> zones, std::uint64_t step);
+
+/// Adds the fields of a zone's points and cells. Namesakes are named SOLUTION/FIELD. What a solution has not is NaN.
+void set_fields(const CgnsZone& zone, std::uint64_t step, const CgnsNamesakes& namesakes, bool has_cell_values,
+                cells::CellBlock& block, std::vector<std::string>& notes);
+
+}  // namespace tessera::readers

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vtk_exodusII.h>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cells/cell_block.hpp"
+
+namespace tessera::readers {
+
+/// The polyhedra of an Exodus file: elements of `nfaced` blocks, whose faces are those of the file's face blocks
+/// (`nsided`), counted from 1 over all of them.
+class ExodusFaces {
+ public:
+  /// Of an open file; arrays hold at most `most_values`. `fail` throws an error that says what is wrong with it.
+  ExodusFaces(int id, std::uint64_t most_values, std::function<void(const std::string&)> fail)
+      : id_(id), most_values_(most_values), fail_(std::move(fail)) {}
+
+  /// Adds the faces of a block's elements, which are the last of `block`'s cells.
+  void add(std::int64_t id, const ex_block& info, std::int64_t points, cells::CellBlock& block);
+
+ private:
+  /// The numbers of an entity block's parts: what each has of `total`, and these themselves.
+  struct Lists {
+    std::vector<int> sizes;
+    std::vector<std::int64_t> numbers;
+  };
+  [[nodiscard]] Lists read(ex_entity_type type, std::int64_t id, std::int64_t count, std::int64_t total) const;
+  void read_faces();
+
+  int id_;
+  std::uint64_t most_values_;
+  std::function<void(const std::string&)> fail_;
+  bool has_read_ = false;
+  std::vector<std::size_t> starts_;       ///< of each face in `corners_`, one more than faces
+  std::vector<std::int64_t> corners_;     ///< from 1
+  std::vector<std::uint8_t> times_used_;  ///< of each face
+};
+
+}  // namespace tessera::readers

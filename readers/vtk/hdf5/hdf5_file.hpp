@@ -1,0 +1,77 @@
+#pragma once
+
+#include <hdf5.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "readers/vtk/grid_numbers.hpp"
+
+namespace tessera::readers {
+
+/// What the library knows something by, closed with this.
+class Hdf5Handle {
+ public:
+  Hdf5Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  ~Hdf5Handle() {
+    if (is_open()) close_(id_);
+  }
+  Hdf5Handle(const Hdf5Handle&) = delete;
+  Hdf5Handle& operator=(const Hdf5Handle&) = delete;
+
+  [[nodiscard]] hid_t get() const { return id_; }
+  [[nodiscard]] bool is_open() const { return id_ >= 0; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+/// Numbers of a file, of any type that fits one of ours; the first axis is the slowest.
+struct Hdf5Array {
+  std::string path;  ///< "exchange/data"
+  NumberType type = NumberType::float64;
+  std::vector<std::size_t> lengths;
+};
+
+/// An open file of the library's; lzf, h5py's filter, is among those that it can undo.
+class Hdf5File {
+ public:
+  explicit Hdf5File(const std::filesystem::path& file);
+
+  [[nodiscard]] bool is_open() const { return file_.is_open(); }
+  [[nodiscard]] bool has(const char* name) const { return H5Lexists(file_.get(), name, H5P_DEFAULT) > 0; }
+  [[nodiscard]] bool has_attribute(const char* name) const { return H5Aexists(file_.get(), name) > 0; }
+
+  /// The text of an attribute of a group or an array; empty if it has none.
+  [[nodiscard]] std::string text_of(const char* object, const char* name) const;
+
+  /// An attribute that is one number, or `otherwise`.
+  [[nodiscard]] long number_of(const char* object, const char* name, long otherwise) const;
+
+  /// An attribute's numbers; none if it has none, or text.
+  [[nodiscard]] std::vector<double> numbers_of(const char* object, const char* name) const;
+
+  /// All arrays of numbers in the file, or below a group, by their paths. Links to other files are not followed.
+  [[nodiscard]] std::vector<Hdf5Array> arrays(const std::string& group = "/") const;
+
+  /// Whether an array has scales, as NetCDF's library makes them its dimensions.
+  [[nodiscard]] bool has_scales(const Hdf5Array& array) const;
+
+  /// Numbers from `first` on, `counts` along each axis. Throws Error(bad_input) if they cannot be read.
+  [[nodiscard]] GridNumbers read(const Hdf5Array& array, std::span<const std::size_t> first,
+                                 std::span<const std::size_t> counts) const;
+
+ private:
+  [[nodiscard]] std::optional<Hdf5Array> array_at(const std::string& path) const;
+
+  std::string source_;
+  Hdf5Handle file_;
+};
+
+}  // namespace tessera::readers

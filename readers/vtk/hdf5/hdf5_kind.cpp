@@ -1,0 +1,108 @@
+// HDF5 says nothing at its beginning of what is in it.
+#include <fmt/format.h>
+#include <vtk_netcdf.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "io/inflated_file.hpp"
+#include "io/input_file.hpp"
+#include "readers/common/readers.hpp"
+#include "readers/vtk/hdf5/hdf5_file.hpp"
+#include "readers/vtk/hdf5/hdf5_grid.hpp"
+#include "readers/vtk/hdf5/hdf5_references.hpp"
+#include "readers/vtk/hdf5/vtk_hdf_mesh.hpp"
+#include "scene/error.hpp"
+#include "scene/quote.hpp"
+
+namespace tessera::readers {
+namespace {
+
+/// NetCDF-4, or other HDF5 with scales, which its library takes for such.
+bool is_netcdf(const Hdf5File& opened, const std::filesystem::path& file) {
+  const std::vector<Hdf5Array> arrays = opened.arrays();
+  const bool is_written_by_netcdf = opened.has_attribute("_NCProperties") || opened.has_attribute("_nc3_strict");
+  if (!is_written_by_netcdf &&
+      std::none_of(arrays.begin(), arrays.end(), [&](const Hdf5Array& array) { return opened.has_scales(array); }))
+    return false;
+  int id = 0;
+  if (nc_open(file.c_str(), NC_NOWRITE, &id) != NC_NOERR) return false;
+  nc_close(id);
+  // Dimensions of NetCDF have a meaning, as time has, which those of other arrays lack.
+  return is_written_by_netcdf || holds_netcdf_grid(file) || !holds_arrays(opened);
+}
+
+/// Files that do not state a type are of the first version.
+bool is_mesh_type(const std::string& vtk_type) { return vtk_type.empty() || vtk_type == "UnstructuredGrid"; }
+
+}  // namespace
+
+io::ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  io::require_real_name(file);
+  allow_for(file);
+  std::string vtk_type;
+  enum class Kind { unknown, netcdf, vtk, vtk_image, cgns, exodus, flash, fluent, minc, med } kind = Kind::unknown;
+  {
+    const Hdf5File opened(file);
+    if (!opened.is_open())
+      throw scene::bad_input(fmt::format(
+          "{}: it begins as HDF5 and cannot be opened; it is truncated or damaged, write it anew", file.string()));
+    require_sound_references(file, ReferencesMay::lie_below);
+    if (opened.has("VTKHDF")) {
+      vtk_type = opened.text_of("VTKHDF", "Type");
+      kind = vtk_type == "ImageData" ? Kind::vtk_image : Kind::vtk;
+    } else if (opened.has("CGNSLibraryVersion"))
+      kind = Kind::cgns;
+    else if (opened.has_attribute("floating_point_word_size") || opened.has("num_nodes"))
+      kind = Kind::exodus;
+    else if (opened.has("gid") && opened.has("refine level") && opened.has("bounding box"))
+      kind = Kind::flash;
+    else if (opened.has("meshes") && opened.has("settings"))
+      kind = Kind::fluent;
+    else if (opened.has("minc-2.0"))
+      kind = Kind::minc;
+    else if (opened.has("ENS_MAA"))
+      kind = Kind::med;
+    else if (is_netcdf(opened, file))
+      kind = Kind::netcdf;
+    const bool is_first_share = request.value("part", 0) == 0, is_look = request.value("look", false);
+    if (kind == Kind::vtk && is_mesh_type(vtk_type) && is_first_share && !is_look)
+      return read_vtk_hdf_mesh(holdings, opened, file.string(), request);
+    if (kind == Kind::vtk_image) return read_vtk_hdf_image(holdings, opened, file.string(), request);
+    if (kind == Kind::unknown) return read_arrays(holdings, opened, file.string(), request);
+  }
+  const auto refuse = [&](const char* what, const char* remedy) {
+    return scene::bad_input(fmt::format("{}: it is HDF5 and holds {}; {}", file.string(), what, remedy));
+  };
+  if (request.value("look", false) && kind != Kind::netcdf && kind != Kind::minc) return {};  // no grid
+  if (kind != Kind::cgns && request.value("part", 0) > 0) return {};                          // the first share is all
+  switch (kind) {
+    case Kind::vtk:
+      throw refuse(
+          fmt::format("VTKHDF of the type {}; only UnstructuredGrid and ImageData are read", scene::quote(vtk_type))
+              .c_str(),
+          "save it as .vtu, .vtm, .vth or .vtp in ParaView");
+    case Kind::cgns:
+      if (!io::read_beginning(file, 8).starts_with("\x89HDF"))
+        throw refuse("CGNS behind a user block, which its library does not open",
+                     "remove the block with HDF5's tools: h5unjam -i FILE -u BLOCK -o OUT.cgns");
+      return read_cgns(holdings, file, request);
+    case Kind::exodus:
+      return read_exodus(holdings, file, request);
+    case Kind::flash:
+      return read_flash(holdings, file, request);
+    case Kind::fluent:
+      throw refuse("a Fluent case, which is read as text only", "export CGNS, EnSight or a .cas without HDF5");
+    case Kind::minc:
+      return read_minc2(holdings, file, request);
+    case Kind::med:
+      throw refuse("a MED mesh, which is known by its name alone", "have that end in .med");
+    case Kind::netcdf:
+    case Kind::vtk_image:
+    case Kind::unknown:
+      break;
+  }
+  return read_netcdf(holdings, file, request);
+}
+
+}  // namespace tessera::readers

@@ -1,0 +1,8 @@
+#pragma once
+
+namespace tessera::readers {
+
+/// Has HDF5's library undo the filter lzf (32000), which h5py brings and the library does not know.
+void register_lzf();
+
+}  // namespace tessera::readers

@@ -1,0 +1,123 @@
+#include "readers/vtk/legacy_byte_order.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/whole_file.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::readers {
+namespace {
+
+template <class T>
+T number_at(std::string_view bytes, std::size_t at, bool is_swapped) {
+  std::array<char, sizeof(T)> own;
+  std::memcpy(own.data(), bytes.data() + at, sizeof(T));
+  if (is_swapped) std::ranges::reverse(own);
+  return std::bit_cast<T>(own);
+}
+
+/// The first numbers, which are few.
+template <class T, class IsLikely>
+bool are_likely(std::string_view bytes, bool is_swapped, const IsLikely& is_likely) {
+  constexpr std::size_t most = 3000;
+  for (std::size_t k = 0; k < std::min(most, bytes.size() / sizeof(T)); ++k)
+    if (!is_likely(number_at<T>(bytes, k * sizeof(T), is_swapped))) return false;
+  return true;
+}
+
+/// Whether they are such only in the order that the format does not have.
+template <class T, class IsLikely>
+bool are_little_endian(std::string_view bytes, const IsLikely& is_likely) {
+  constexpr bool is_little = std::endian::native == std::endian::little;
+  return bytes.size() >= sizeof(T) && !are_likely<T>(bytes, is_little, is_likely) &&
+         are_likely<T>(bytes, !is_little, is_likely);
+}
+
+/// Words of the line that begins with `key`; none without. `rest` is what follows the line.
+std::vector<std::string> line_of(std::string_view text, std::string_view key, std::string_view& rest) {
+  const std::size_t at = text.find(fmt::format("\n{} ", key));
+  if (at == std::string_view::npos) return {};
+  const std::size_t end = std::min(text.find('\n', at + 1), text.size());
+  rest = text.substr(std::min(end + 1, text.size()));
+  std::vector<std::string> words;
+  std::string_view line = text.substr(at + 1, std::min<std::size_t>(end - at - 1, 400));
+  while (!line.empty()) {
+    const std::size_t length = std::min(line.find_first_of(" \t\r"), line.size());
+    if (length > 0) words.emplace_back(line.substr(0, length));
+    line.remove_prefix(std::min(length + 1, line.size()));
+  }
+  return words;
+}
+
+std::size_t count_in(const std::string& word) {
+  std::size_t count = 0;
+  std::from_chars(word.data(), word.data() + word.size(), count);
+  return count;
+}
+
+/// Of floats all that are of usual sizes in one order have odd ones in the other.
+bool has_little_floats(std::string_view bytes, const std::string& type, std::size_t count) {
+  const auto is_usual = [](auto x) { return x == 0 || (std::abs(x) > 1e-30F && std::abs(x) < 1e30F); };
+  if (type == "float") return are_little_endian<float>(bytes.substr(0, 4 * count), is_usual);
+  return type == "double" && are_little_endian<double>(bytes.substr(0, 8 * count), is_usual);
+}
+
+/// Whether a field's first numbers of `size` bytes are mostly different: 1e-35 everywhere is usual in the wrong order
+/// alone.
+bool are_various(std::string_view bytes, std::size_t size) {
+  const std::size_t count = std::min<std::size_t>(64, bytes.size() / size);
+  std::set<std::string_view> different;
+  for (std::size_t k = 0; k < count; ++k) different.insert(bytes.substr(k * size, size));
+  return 2 * different.size() >= count;
+}
+
+bool is_little_endian(std::string_view text) {
+  std::string_view rest;
+  if (const auto words = line_of(text, "POINTS", rest);
+      words.size() > 2 && has_little_floats(rest, words[2], std::min(3 * count_in(words[1]), rest.size() / 8)))
+    return true;
+  for (const char* key : {"CELLS", "POLYGONS", "LINES", "VERTICES", "TRIANGLE_STRIPS"}) {
+    const auto words = line_of(text, key, rest);
+    if (words.size() < 3) continue;
+    const auto size = static_cast<double>(count_in(words[2]));
+    const auto fits = [&](auto count) { return count >= 0 && static_cast<double>(count) <= size; };
+    if (!rest.starts_with("OFFSETS")) return are_little_endian<std::int32_t>(rest.substr(0, 4), fits);
+    const std::string_view numbers = rest.substr(std::min(rest.find('\n') + 1, rest.size()));
+    return rest.starts_with("OFFSETS vtktypeint64") && are_little_endian<std::int64_t>(numbers.substr(0, 16), fits);
+  }
+  const auto words = line_of(text, "SCALARS", rest);
+  if (words.size() < 3 || !rest.starts_with("LOOKUP_TABLE")) return false;
+  rest.remove_prefix(std::min(rest.find('\n') + 1, rest.size()));
+  std::string_view behind;
+  const auto points = line_of(text, "POINT_DATA", behind);
+  return are_various(rest, words[2] == "double" ? 8 : 4) &&
+         has_little_floats(rest, words[2], points.size() > 1 ? count_in(points[1]) : 1);
+}
+
+}  // namespace
+
+void require_big_endian(const std::filesystem::path& file) {
+  const io::WholeFile mapped(file);
+  const std::string_view text = mapped.text();
+  const std::size_t title = text.find('\n'), coding = std::min(text.find('\n', title + 1), text.size() - 1);
+  if (title == std::string_view::npos || !text.substr(coding + 1).starts_with("BINARY") || !is_little_endian(text))
+    return;
+  throw scene::bad_input(
+      fmt::format("{}: its binary numbers are little-endian, and legacy VTK files have them big-endian; swap their "
+                  "bytes, or export text or .vtu",
+                  file.string()));
+}
+
+}  // namespace tessera::readers

@@ -1,0 +1,258 @@
+// OpenFOAM cases, by VTK's reader: whole, or a share of the processors' folders of a decomposed one.
+#include <fmt/format.h>
+#include <vtkCollection.h>
+#include <vtkDummyController.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkPOpenFOAMReader.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "cells/block_choice.hpp"
+#include "cells/mesh_blocks.hpp"
+#include "cells/part_range.hpp"
+#include "io/input_file.hpp"
+#include "readers/common/readers.hpp"
+#include "readers/vtk/time_steps.hpp"
+#include "readers/vtk/vtk_parts.hpp"
+#include "readers/vtk/vtk_session.hpp"
+#include "readers/vtk/vtk_words.hpp"
+#include "scene/error.hpp"
+#include "system/gzip.hpp"
+
+namespace tessera::readers {
+namespace {
+
+/// Reads one processor's part at a time, where VTK's own reader appends all of them.
+class ProcessorReader : public vtkPOpenFOAMReader {
+ public:
+  static ProcessorReader* New();
+
+  /// How many parts there are, after UpdateInformation().
+  [[nodiscard]] int processors() const { return Readers->GetNumberOfItems(); }
+
+  /// Which of them the next update reads; all at first.
+  void choose(int processor) {
+    chosen_ = processor;
+    Modified();
+  }
+
+ protected:
+  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override {
+    if (chosen_ < 0) return vtkPOpenFOAMReader::RequestData(request, inputs, outputs);
+    const vtkNew<vtkCollection> all;
+    for (int k = 0; k < processors(); ++k) all->AddItem(Readers->GetItemAsObject(k));
+    Readers->RemoveAllItems();
+    Readers->AddItem(all->GetItemAsObject(chosen_));
+    const int result = vtkPOpenFOAMReader::RequestData(request, inputs, outputs);
+    Readers->RemoveAllItems();
+    for (int k = 0; k < all->GetNumberOfItems(); ++k) Readers->AddItem(all->GetItemAsObject(k));
+    return result;
+  }
+
+ private:
+  int chosen_ = -1;
+};
+vtkStandardNewMacro(ProcessorReader);
+
+/// The meshes of a case, or of one of its processors: of all regions, if it has several.
+std::vector<std::filesystem::path> meshes_of(const std::filesystem::path& folder) {
+  std::error_code unknown;
+  std::vector<std::filesystem::path> meshes;
+  const auto add = [&](const std::filesystem::path& of) {
+    if (std::filesystem::is_directory(of / "polyMesh", unknown)) meshes.push_back(of / "polyMesh");
+  };
+  add(folder / "constant");
+  for (std::filesystem::directory_iterator entry(folder / "constant", unknown), end; !unknown && entry != end;
+       entry.increment(unknown))
+    add(entry->path());
+  return meshes;
+}
+
+/// Whether a case's lists have 64-bit integers, which its files say of themselves ("arch").
+bool has_wide_labels(const std::filesystem::path& folder) {
+  std::error_code unknown;
+  for (const char* part : {".", "processor0"})
+    for (const std::filesystem::path& mesh : meshes_of(folder / part))
+      for (const char* name : {"owner", "owner.gz"}) {
+        const std::filesystem::path file = mesh / name;
+        if (!std::filesystem::is_regular_file(file, unknown)) continue;
+        const std::string beginning = io::read_beginning(file, 4096);
+        if (beginning.starts_with("\x1f\x8b")) {
+          const auto text = system::inflate_beginning(std::as_bytes(std::span(beginning)), 2048);
+          return std::string_view(reinterpret_cast<const char*>(text.data()), text.size()).find("label=64") !=
+                 std::string_view::npos;
+        }
+        return beginning.find("label=64") != std::string::npos;
+      }
+  return false;
+}
+
+/// The text that OpenFOAM itself writes has a list for each face.
+void refuse_compact_text(const std::filesystem::path& faces, const std::string& source) {
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(faces, unknown)) return;
+  std::string header = io::read_beginning(faces, 4096);
+  header.resize(std::min(header.size(), header.find('}')));
+  std::istringstream words(header);
+  bool is_text = false, is_compact = false;
+  for (std::string key, value; words >> key;) {
+    if (key == "format" && words >> value) is_text = value.starts_with("ascii");
+    if (key == "class" && words >> value) is_compact = value.starts_with("faceCompactList");
+  }
+  if (is_text && is_compact)
+    throw scene::bad_input(
+        fmt::format("{}: {} is a faceCompactList in text, which VTK's reader does not know; write the "
+                    "case again with foamFormatConvert",
+                    source, faces.lexically_normal().string()));
+}
+
+/// Throws if a file of a mesh is gone, which VTK's reader takes for a mesh that is not there, or for damage.
+void require_mesh_files(const std::filesystem::path& folder, const std::string& source) {
+  std::error_code unknown;
+  for (const char* part : {".", "processor0"})
+    for (const std::filesystem::path& mesh : meshes_of(folder / part)) {
+      for (const char* name : {"points", "faces", "owner", "neighbour"})
+        if (!std::filesystem::exists(mesh / name, unknown) &&
+            !std::filesystem::exists(mesh / (std::string(name) + ".gz"), unknown))
+          throw scene::bad_input(fmt::format("{}: its mesh needs {}, and there is no such file; put it there", source,
+                                             (mesh / name).lexically_normal().string()));
+      refuse_compact_text(mesh / "faces", source);
+    }
+}
+
+/// Throws if a file that VTK's reader may open is a pipe, which it would wait for. What lies in the folder of the case
+/// itself is not read.
+void require_regular_files(const std::filesystem::path& folder, const std::string& source) {
+  std::error_code unknown;
+  std::filesystem::recursive_directory_iterator entry(folder, unknown);
+  for (; !unknown && entry != std::filesystem::recursive_directory_iterator(); entry.increment(unknown)) {
+    std::error_code gone;
+    if (entry.depth() > 0 && entry->exists(gone) && !entry->is_regular_file(gone) && !entry->is_directory(gone))
+      throw scene::bad_input(
+          fmt::format("{}: {} is no regular file; remove it", source, entry->path().lexically_normal().string()));
+  }
+}
+
+bool is_case(const std::filesystem::path& folder) {
+  std::error_code unknown;
+  return io::is_case_folder(folder) || std::filesystem::exists(folder / "processor0", unknown) ||
+         std::filesystem::exists(folder / "processors", unknown);
+}
+
+/// The folder of the case that a file or folder is of: the one that it is in, or one of those above.
+std::filesystem::path case_of(const std::filesystem::path& named) {
+  std::error_code unknown;
+  if (std::filesystem::is_directory(named, unknown)) return named;
+  std::filesystem::path own = named.has_parent_path() ? named.parent_path() : std::filesystem::path(".");
+  std::filesystem::path folder = own;
+  for (int level = 0; level < 4; ++level) {
+    if (is_case(folder)) return folder;
+    folder /= "..";
+  }
+  return own;
+}
+
+/// How many folders of processors a case has, as VTK knows them.
+int processor_folders(const std::filesystem::path& folder) {
+  std::error_code unknown;
+  int count = 0;
+  for (std::filesystem::directory_iterator entry(folder, unknown), end; !unknown && entry != end;
+       entry.increment(unknown)) {
+    const std::string name = entry->path().filename().string();
+    constexpr std::string_view begin = "processor";
+    if (name.starts_with(begin) && name.size() > begin.size() && entry->is_directory(unknown) &&
+        name.find_first_not_of("0123456789", begin.size()) == std::string::npos)
+      ++count;
+  }
+  return count;
+}
+
+/// Names of the patches of all regions, after UpdateInformation(); not of those between processors, nor of groups of
+/// patches, which are no surfaces of their own.
+std::vector<std::string> patches_of(vtkOpenFOAMReader& reader) {
+  std::vector<std::string> patches;
+  for (int k = 0; k < reader.GetNumberOfPatchArrays(); ++k) {
+    const std::string name = reader.GetPatchArrayName(k);
+    if (name.find("group/") != std::string::npos) continue;
+    const std::size_t slash = name.rfind('/');
+    const std::string own = slash == std::string::npos ? name : name.substr(slash + 1);
+    if (own != "internalMesh" && !own.starts_with("procBoundary")) patches.push_back(own);
+  }
+  return cells::distinct_names(std::move(patches));
+}
+
+/// The request's share of the processors, one by one, as whole and shares alike are read: their blocks in their order.
+void read_processors(Holdings& holdings, ProcessorReader& reader, const std::filesystem::path& folder,
+                     const std::string& source, const nlohmann::json& request, io::ForeignContents& contents) {
+  const int processors = reader.processors(), part = request.value("part", 0), parts = request.value("parts", 1);
+  if (const int folders = processor_folders(folder); processors != folders)
+    throw scene::bad_input(
+        fmt::format("{}: of its {} processors' folders {} can be read; run reconstructPar, or decomposePar anew",
+                    source, folders, processors));
+  const auto count = static_cast<std::uint64_t>(processors);
+  const std::uint64_t last = cells::first_of_part(count, part + 1, parts);
+  for (std::uint64_t k = cells::first_of_part(count, part, parts); k < last; ++k) {
+    reader.choose(static_cast<int>(k));
+    update_at_step(reader, request, source, contents.time_step);
+    if (vtkDataObject* const data = reader.GetOutputDataObject(0); data != nullptr)
+      for (io::ForeignPart& made : parts_of(holdings, *data, source)) contents.parts.push_back(std::move(made));
+  }
+}
+
+}  // namespace
+
+io::ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::path& named,
+                                  const nlohmann::json& request) {
+  const std::filesystem::path folder = case_of(named);
+  const std::string source = named.string();
+  // The reader takes the case from a name in its folder, and asks for no such file.
+  const std::filesystem::path file = is_case(folder) ? folder / "case.foam" : named;
+  allow_for_folder(folder);
+  const vtkNew<ProcessorReader> reader;
+  const vtkNew<vtkDummyController> alone;  // it takes the parts of a case for processes' and asks who it is
+  reader->SetController(alone);
+  reader->SetFileName(file.c_str());
+  // processor0, processor1, ...: written by parallel runs, and not put together since.
+  std::error_code unknown;
+  const bool is_whole = !meshes_of(folder).empty();
+  const bool is_decomposed = !is_whole && (std::filesystem::exists(folder / "processor0", unknown) ||
+                                           std::filesystem::exists(folder / "processors", unknown));
+  if (!is_decomposed && !std::filesystem::is_directory(folder / "constant", unknown))
+    throw scene::bad_input(fmt::format(
+        "{}: there is no mesh of OpenFOAM beside it, constant/polyMesh or processor0/constant/polyMesh; move "
+        "it into the folder of a case, or name that folder",
+        source));
+  require_mesh_files(folder, source);
+  require_regular_files(folder, source);
+  reader->SetCaseType(is_decomposed ? vtkPOpenFOAMReader::DECOMPOSED_CASE : vtkPOpenFOAMReader::RECONSTRUCTED_CASE);
+  reader->SetUse64BitLabels(has_wide_labels(folder));
+  reader->CreateCellToPointOff();
+  reader->DecomposePolyhedraOff();  // ours are conforming, one value a cell (polyhedron_split.hpp)
+  io::ForeignContents contents;
+  contents.format = "OpenFOAM case";
+  if (!is_decomposed && request.value("part", 0) > 0) return contents;
+  const std::string warning = with_quiet_vtk(source, write_anew, [&] {
+    reader->UpdateInformation();
+    reader->EnableAllCellArrays();
+    reader->EnableAllPointArrays();
+    if (request.value("surfaces", false))
+      reader->EnableAllPatchArrays();  // without, the volume alone is on
+    else if (contents.surface_names = patches_of(*reader); !contents.surface_names.empty())
+      contents.notes.push_back(cells::note_on_surfaces("patch", contents.surface_names));
+    if (is_decomposed) return read_processors(holdings, *reader, folder, source, request, contents);
+    update_at_step(*reader, request, source, contents.time_step);
+    if (vtkDataObject* const data = reader->GetOutputDataObject(0); data != nullptr)
+      contents.parts = parts_of(holdings, *data, source);
+  });
+  if (!warning.empty()) contents.notes.push_back("VTK warns: " + warning);
+  if (contents.parts.empty() && request.value("parts", 1) == 1)
+    throw scene::bad_input(fmt::format("{}: it holds no cells; check how it was written", source));
+  return contents;
+}
+
+}  // namespace tessera::readers

@@ -1,0 +1,100 @@
+#include "readers/xdmf/xdmf_arrays.hpp"
+
+#include <fmt/format.h>
+
+#include <XdmfArray.hpp>
+#include <XdmfArrayType.hpp>
+#include <XdmfBinaryController.hpp>
+#include <XdmfHeavyDataController.hpp>
+#include <algorithm>
+
+#include "io/inflated_file.hpp"
+#include "io/input_file.hpp"
+#include "readers/common/readers.hpp"
+#include "readers/xdmf/xdmf_references.hpp"
+#include "scene/error.hpp"
+#include "scene/quote.hpp"
+
+namespace tessera::readers {
+namespace {
+
+template <class T>
+std::vector<T> numbers_of(const XdmfArray& array) {
+  std::vector<T> numbers(array.getSize());
+  if (!numbers.empty()) array.getValues<T>(0, numbers.data(), static_cast<unsigned>(numbers.size()), 1, 1);
+  return numbers;
+}
+
+template <class T>
+cells::NumberTally tally_of(const std::vector<T>& numbers, NumberType type, int components) {
+  cells::NumberTally tally;
+  const std::size_t tuples = numbers.size() / static_cast<std::size_t>(components);
+  std::vector<double> some(std::min<std::size_t>(tuples, 4096));
+  for (std::size_t first = 0; first < tuples; first += some.size()) {
+    const std::span chunk = std::span(some).first(std::min(some.size(), tuples - first));
+    io::read_tuples(std::as_bytes(std::span(numbers)), type, components, components == 1 ? 0 : cells::magnitude, first,
+                    chunk);
+    tally.add(chunk);
+  }
+  return tally;
+}
+
+}  // namespace
+
+XdmfHeavyFiles::XdmfHeavyFiles(const std::filesystem::path& file) : source_(file.string()) {
+  std::error_code unknown;  // there is none of what was in a gzip file
+  folder_ = std::filesystem::weakly_canonical(file, unknown).parent_path();
+  files_.push_back(std::filesystem::absolute(file));  // the current folder may be another one later
+}
+
+void XdmfHeavyFiles::add(XdmfArray& array) {
+  for (XdmfArray* const other : referenced_arrays(array, source_)) add(*other);
+  for (unsigned k = 0; k < array.getNumberHeavyDataControllers(); ++k) {
+    io::require_beside_others(source_);
+    const std::filesystem::path named = array.getHeavyDataController(k)->getFilePath();
+    std::error_code unknown;
+    const std::filesystem::path file = std::filesystem::canonical(named, unknown);
+    if (unknown || !std::filesystem::is_regular_file(file, unknown))
+      throw scene::bad_input(fmt::format("{}: its data are in {}, which is not there; put it there", source_,
+                                         scene::quote(named.filename().string())));
+    if (std::mismatch(folder_.begin(), folder_.end(), file.begin(), file.end()).first != folder_.end())
+      throw scene::bad_input(
+          fmt::format("{}: its data are in {}, which lies neither beside it nor below; move it there, and name it so",
+                      source_, scene::quote(named.string())));
+    const auto* const binary = dynamic_cast<const XdmfBinaryController*>(array.getHeavyDataController(k).get());
+    if (binary != nullptr) require_size(*binary, file);
+    if (std::find(files_.begin(), files_.end(), file) == files_.end()) files_.push_back(file);
+  }
+}
+
+/// Xdmf makes zeros of what a file is short of.
+void XdmfHeavyFiles::require_size(const XdmfBinaryController& numbers, const std::filesystem::path& file) const {
+  const std::uint64_t size = io::require_file(file),
+                      least = numbers.getSeek() +
+                              std::uint64_t{numbers.getDataspaceSize()} * numbers.getType()->getElementSize();
+  if (size < least)
+    throw scene::bad_input(fmt::format("{}: its data in {} end at byte {}, the file has {}; write both anew", source_,
+                                       scene::quote(file.filename().string()), least, size));
+}
+
+void XdmfHeavyFiles::allow() const { allow_for_files(files_); }
+
+std::vector<double> doubles_of(XdmfArray& array) {
+  read_numbers(array);
+  return numbers_of<double>(array);
+}
+
+io::ForeignArray hold_xdmf(Holdings& holdings, XdmfArray& array, const std::string& name, int components,
+                           bool is_kept) {
+  read_numbers(array);
+  const NumberType type = number_type_of(array);
+  return io::with_number_type(type, [&](auto zero) {
+    std::vector<decltype(zero)> numbers = numbers_of<decltype(zero)>(array);
+    io::ForeignArray held{.name = name, .type = type, .components = components};
+    held.tally = tally_of(numbers, type, components);
+    if (!is_kept) array.release();
+    return hold_vector(holdings, std::move(held), std::move(numbers));
+  });
+}
+
+}  // namespace tessera::readers
