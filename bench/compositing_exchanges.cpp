@@ -45,7 +45,7 @@
 #include "exchange/packed_pixels.hpp"
 #include "frame/distributed.hpp"
 #include "frame/render.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "projection/partition.hpp"
 #include "scene/error.hpp"
 #include "scene/mesh_facts.hpp"

@@ -29,7 +29,7 @@ from simulate_check import call, mpirun
 from simulate_work import Work, work_of
 
 SIZE, TILE, BASE_NODES = 1024, 32, 8
-STRIPS = 12  # io/picture_strips.hpp: rows of 256 KiB, of 3 bytes a pixel
+STRIPS = 12  # io/image/picture_strips.hpp: rows of 256 KiB, of 3 bytes a pixel
 PARTS = ("projection", "imbalance", "last tile", "compositing", "assembly", "wire")
 MILLIONS = (15.7, 51.1, 1e3, 1e4)
 MANY = 512  # nodes: a run of the model takes so long that only the least and the most tets are

@@ -27,7 +27,7 @@
 #include "cpu_time.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/transfer_functions.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "projection/depth_order.hpp"
 #include "projection/tile_lists.hpp"
 

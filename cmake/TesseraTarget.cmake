@@ -18,7 +18,8 @@ endif()
 if(TESSERA_SANITIZE MATCHES address)
   # Scopes of vectors in registers: a kernel compiles four times as long with them watched.
   # g++ 12 with ASan warns falsely inside std::regex; the release build keeps the warning.
-  target_compile_options(tessera_warnings INTERFACE -fno-sanitize-address-use-after-scope -Wno-maybe-uninitialized)
+  target_compile_options(tessera_warnings INTERFACE -fno-sanitize-address-use-after-scope
+                                                    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endif()
 if(TESSERA_QUICK AND TESSERA_SANITIZE)
   # Checks at every pointer take two fifths of the time to compile, and what they find ASan mostly finds as it is used. The

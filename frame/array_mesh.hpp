@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cells/mesh_assembly.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "scene/tet_mesh.hpp"
 #include "tessera/dataset.hpp"
 

@@ -1,4 +1,4 @@
-#include "io/block_surface.hpp"
+#include "io/mesh/block_surface.hpp"
 
 #include <fmt/format.h>
 #include <tbb/task_arena.h>

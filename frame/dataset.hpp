@@ -7,8 +7,8 @@
 
 #include "frame/field_of_all.hpp"
 #include "frame/mesh_exchange.hpp"
-#include "io/mesh_reader.hpp"
-#include "io/volume_tags.hpp"
+#include "io/mesh/mesh_reader.hpp"
+#include "io/volume/volume_tags.hpp"
 #include "projection/prepared_mesh.hpp"
 #include "scene/mesh_facts.hpp"
 #include "scene/sample_source.hpp"

@@ -13,7 +13,7 @@
 #include "frame/reduce.hpp"
 #include "frame/render.hpp"
 #include "frame/shared_repetitions.hpp"
-#include "io/mesh_parts.hpp"
+#include "io/mesh/mesh_parts.hpp"
 
 namespace tessera::frame {
 namespace {

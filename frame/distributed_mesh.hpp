@@ -7,7 +7,7 @@
 #include "exchange/transport.hpp"
 #include "frame/field_of_all.hpp"
 #include "frame/mesh_exchange.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "projection/partition.hpp"
 #include "scene/mesh_facts.hpp"
 #include "scene/trace.hpp"

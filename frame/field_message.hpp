@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "exchange/message.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "scene/grid.hpp"
 
 /// What descriptions of data sets have in common as messages.

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "exchange/transport.hpp"
-#include "io/volume_reader.hpp"
+#include "io/volume/volume_reader.hpp"
 #include "tessera/dataset.hpp"
 #include "volume/cell_ranges.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "io/time_series.hpp"
+#include "io/scene/time_series.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::frame {

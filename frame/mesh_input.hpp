@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "scene/mesh_facts.hpp"
 #include "tessera/dataset.hpp"
 

@@ -13,7 +13,7 @@
 #include "exchange/collectives.hpp"
 #include "exchange/shared_pages.hpp"
 #include "frame/field_message.hpp"
-#include "io/brick_file.hpp"
+#include "io/volume/brick_file.hpp"
 #include "scene/error.hpp"
 #include "scene/threads.hpp"
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "exchange/transport.hpp"
-#include "io/volume_reader.hpp"
+#include "io/volume/volume_reader.hpp"
 
 namespace tessera::frame {
 

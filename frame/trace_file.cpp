@@ -4,8 +4,8 @@
 
 #include "exchange/collectives.hpp"
 #include "frame/communicator.hpp"
-#include "io/chrome_trace.hpp"
-#include "io/chrome_trace_reader.hpp"
+#include "io/scene/chrome_trace.hpp"
+#include "io/scene/chrome_trace_reader.hpp"
 
 namespace tessera {
 namespace {

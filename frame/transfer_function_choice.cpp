@@ -10,7 +10,7 @@
 #include "colormaps/default_function.hpp"
 #include "frame/dataset.hpp"
 #include "frame/mesh_input.hpp"
-#include "io/transfer_function_file.hpp"
+#include "io/scene/transfer_function_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::frame {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cells/cell_block.hpp"
-#include "io/foreign_data.hpp"
+#include "io/foreign/messages/foreign_data.hpp"
 
 namespace tessera::readers {
 

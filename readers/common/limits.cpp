@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <fstream>
 
-#include "io/inflated_file.hpp"
-#include "io/input_file.hpp"
+#include "io/formats/inflated_file.hpp"
+#include "io/formats/input_file.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/common/sandbox.hpp"
 

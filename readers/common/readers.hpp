@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "cells/surface.hpp"
-#include "io/foreign_data.hpp"
+#include "io/foreign/messages/foreign_data.hpp"
 #include "readers/common/holdings.hpp"
 #include "scene/error.hpp"
 
@@ -26,7 +26,7 @@ io::ForeignContents read_vtk_legacy(Holdings& holdings, const std::filesystem::p
 io::ForeignContents read_hyper_trees(Holdings& holdings, const std::filesystem::path& file,
                                      const nlohmann::json& request);
 
-/// PLOT3D; `q` is the solution file or empty, the rest is the layout (io/plot3d_layout.hpp).
+/// PLOT3D; `q` is the solution file or empty, the rest is the layout (io/mesh/plot3d_layout.hpp).
 io::ForeignContents read_plot3d(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
 /// STL surfaces.

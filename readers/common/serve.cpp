@@ -19,9 +19,9 @@
 #include <thread>
 #include <vector>
 
-#include "io/clean_errors.hpp"
-#include "io/helper_messages.hpp"
-#include "io/input_file.hpp"
+#include "io/foreign/messages/helper_messages.hpp"
+#include "io/formats/input_file.hpp"
+#include "io/text/clean_errors.hpp"
 #include "readers/common/opened_files.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/common/sandbox.hpp"

@@ -19,7 +19,8 @@ struct Reader {
 /// Answers the requests of the library that started this process, over descriptor 3, and ends with it:
 ///
 /// First     {} from the helper: it runs.
-/// Requests  {"do": "open", "version", "file", "reader": a name, ...}        -> {"contents"} (io/foreign_data.hpp)
+/// Requests  {"do": "open", "version", "file", "reader": a name, ...}        -> {"contents"}
+/// (io/foreign/messages/foreign_data.hpp)
 ///           {"do": "take", "array": number, "keep": bool}                   -> {} and a file with its numbers
 ///           {"do": "window", "slot": bytes} and a file of some slots        -> {}
 ///           {"do": "put", "array": number, "first", "count", "slot": index} -> {}; those tuples are in that slot

@@ -12,8 +12,8 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "io/file_beginnings.hpp"
-#include "io/input_file.hpp"
+#include "io/formats/file_beginnings.hpp"
+#include "io/formats/input_file.hpp"
 #include "readers/common/holdings.hpp"
 #include "readers/common/opened_files.hpp"
 #include "readers/common/readers.hpp"

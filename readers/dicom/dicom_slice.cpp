@@ -17,8 +17,8 @@
 #include <limits>
 #include <type_traits>
 
-#include "io/input_file.hpp"
-#include "io/whole_file.hpp"
+#include "io/formats/input_file.hpp"
+#include "io/formats/whole_file.hpp"
 #include "readers/dicom/dicom_elements.hpp"
 #include "readers/dicom/dicom_frames.hpp"
 #include "scene/error.hpp"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "cells/number_tally.hpp"
-#include "io/foreign_data.hpp"
+#include "io/foreign/messages/foreign_data.hpp"
 #include "readers/dicom/dicom_elements.hpp"
 
 namespace tessera::readers {

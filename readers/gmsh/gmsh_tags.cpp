@@ -7,7 +7,7 @@
 #include <map>
 #include <string_view>
 
-#include "io/whole_file.hpp"
+#include "io/formats/whole_file.hpp"
 #include "readers/gmsh/gmsh_types.hpp"
 
 namespace tessera::readers {

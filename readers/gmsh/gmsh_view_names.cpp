@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/whole_file.hpp"
+#include "io/formats/whole_file.hpp"
 #include "readers/gmsh/gmsh_tags.hpp"
 #include "scene/error.hpp"
 

@@ -13,7 +13,7 @@
 #include <tuple>
 #include <utility>
 
-#include "io/whole_file.hpp"
+#include "io/formats/whole_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::readers {

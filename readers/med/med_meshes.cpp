@@ -12,7 +12,7 @@
 #include <system_error>
 
 #include "cells/curved/node_orders.hpp"
-#include "io/input_file.hpp"
+#include "io/formats/input_file.hpp"
 #include "readers/med/med_file.hpp"
 #include "scene/error.hpp"
 

@@ -17,7 +17,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "io/surface_message.hpp"
+#include "io/foreign/messages/surface_message.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/tetgen/surface_fields.hpp"
 #include "scene/error.hpp"

@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 
-#include "io/foreign_data.hpp"
+#include "io/foreign/messages/foreign_data.hpp"
 #include "readers/common/holdings.hpp"
 
 namespace tessera::readers {

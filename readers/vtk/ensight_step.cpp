@@ -12,8 +12,8 @@
 #include <system_error>
 #include <utility>
 
-#include "io/input_file.hpp"
-#include "io/whole_file.hpp"
+#include "io/formats/input_file.hpp"
+#include "io/formats/whole_file.hpp"
 #include "system/descriptor.hpp"
 
 namespace tessera::readers {

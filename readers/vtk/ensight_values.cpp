@@ -32,7 +32,7 @@
 #include <system_error>
 #include <vector>
 
-#include "io/whole_file.hpp"
+#include "io/formats/whole_file.hpp"
 
 namespace tessera::readers {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/foreign_data.hpp"
+#include "io/foreign/messages/foreign_data.hpp"
 #include "readers/common/holdings.hpp"
 
 namespace tessera::readers {

@@ -22,11 +22,11 @@
 #include <optional>
 #include <sstream>
 
-#include "io/clean_errors.hpp"
-#include "io/file_beginnings.hpp"
-#include "io/input_file.hpp"
-#include "io/whole_file.hpp"
-#include "io/xml_elements.hpp"
+#include "io/formats/file_beginnings.hpp"
+#include "io/formats/input_file.hpp"
+#include "io/formats/whole_file.hpp"
+#include "io/text/clean_errors.hpp"
+#include "io/text/xml_elements.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/vtk/extents.hpp"
 

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/whole_file.hpp"
+#include "io/formats/whole_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::readers {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/whole_file.hpp"
+#include "io/formats/whole_file.hpp"
 #include "scene/quote.hpp"
 
 namespace tessera::readers {

@@ -12,7 +12,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "io/whole_file.hpp"
+#include "io/formats/whole_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::readers {

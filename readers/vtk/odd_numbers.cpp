@@ -19,7 +19,7 @@
 #include <new>
 #include <string_view>
 
-#include "io/whole_file.hpp"
+#include "io/formats/whole_file.hpp"
 
 namespace tessera::readers {
 namespace {

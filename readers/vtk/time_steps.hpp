@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "io/foreign_data.hpp"
+#include "io/foreign/messages/foreign_data.hpp"
 
 class vtkAlgorithm;
 

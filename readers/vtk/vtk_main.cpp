@@ -1,5 +1,5 @@
 // tessera-read-vtk: reads files with VTK and the libraries that come with it, in a process of its own (serve.hpp), for
-// the Tessera library that started it (io/helper_process.hpp).
+// the Tessera library that started it (io/foreign/client/helper_process.hpp).
 #include "readers/common/readers.hpp"
 #include "readers/common/serve.hpp"
 

@@ -26,8 +26,8 @@
 #include <span>
 
 #include "cells/curved/node_orders.hpp"
-#include "io/input_file.hpp"
-#include "io/vtk_xml_elements.hpp"
+#include "io/formats/input_file.hpp"
+#include "io/vtk/vtk_xml_elements.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/vtk/extents.hpp"
 #include "readers/vtk/grid_pieces.hpp"

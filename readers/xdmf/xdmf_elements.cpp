@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include "io/whole_file.hpp"
-#include "io/xml_elements.hpp"
+#include "io/formats/whole_file.hpp"
+#include "io/text/xml_elements.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
 

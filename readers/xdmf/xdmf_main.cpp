@@ -20,8 +20,8 @@
 #include <set>
 
 #include "cells/block_choice.hpp"
-#include "io/inflated_file.hpp"
-#include "io/input_file.hpp"
+#include "io/formats/inflated_file.hpp"
+#include "io/formats/input_file.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/common/serve.hpp"
 #include "readers/xdmf/xdmf_arrays.hpp"

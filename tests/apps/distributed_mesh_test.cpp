@@ -10,7 +10,7 @@
 #include "datasets/modify.hpp"
 #include "exchange/loopback_transport.hpp"
 #include "io/foam_case.hpp"
-#include "io/mesh_parts.hpp"
+#include "io/mesh/mesh_parts.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::apps {

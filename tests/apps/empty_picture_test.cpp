@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/program.hpp"
-#include "io/image_file.hpp"
+#include "io/image/image_file.hpp"
 
 namespace tessera::apps::empty_picture_test {
 namespace {

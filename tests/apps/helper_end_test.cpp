@@ -8,7 +8,7 @@
 
 #include "apps/program.hpp"
 #include "cells/surface.hpp"
-#include "io/reader_programs.hpp"
+#include "io/formats/reader_programs.hpp"
 #include "support/await.hpp"
 
 namespace tessera::apps {

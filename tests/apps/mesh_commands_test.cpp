@@ -10,9 +10,9 @@
 
 #include "apps/program.hpp"
 #include "apps/quadratic_mesh.hpp"
-#include "io/mesh_formats.hpp"
-#include "io/mesh_reader.hpp"
-#include "io/reader_programs.hpp"
+#include "io/formats/reader_programs.hpp"
+#include "io/mesh/mesh_formats.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "scene/mesh_facts.hpp"
 
 namespace tessera::apps {

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "apps/program.hpp"
-#include "io/reader_programs.hpp"
+#include "io/formats/reader_programs.hpp"
 
 namespace tessera::apps {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "apps/program.hpp"
 #include "apps/quadratic_mesh.hpp"
-#include "io/mesh_formats.hpp"
-#include "io/reader_programs.hpp"
+#include "io/formats/reader_programs.hpp"
+#include "io/mesh/mesh_formats.hpp"
 #include "support/some_cases.hpp"
 
 namespace tessera::apps {

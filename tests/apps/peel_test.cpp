@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/program.hpp"
-#include "io/image_file.hpp"
+#include "io/image/image_file.hpp"
 
 namespace tessera::apps {
 namespace {

@@ -6,7 +6,7 @@
 #include <regex>
 
 #include "apps/program.hpp"
-#include "io/image_file.hpp"
+#include "io/image/image_file.hpp"
 
 namespace tessera::apps {
 namespace {

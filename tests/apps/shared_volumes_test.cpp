@@ -15,8 +15,8 @@
 #include <sstream>
 
 #include "apps/program.hpp"
-#include "io/mesh_formats.hpp"
-#include "io/reader_programs.hpp"
+#include "io/formats/reader_programs.hpp"
+#include "io/mesh/mesh_formats.hpp"
 #include "support/await.hpp"
 #include "support/some_cases.hpp"
 

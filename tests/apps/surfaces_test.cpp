@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/program.hpp"
-#include "io/image_file.hpp"
+#include "io/image/image_file.hpp"
 
 namespace tessera::apps {
 namespace {

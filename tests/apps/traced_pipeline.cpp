@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "io/chrome_trace.hpp"
+#include "io/scene/chrome_trace.hpp"
 
 namespace tessera::apps {
 namespace {

@@ -12,7 +12,7 @@
 #include "frame/random_clips.hpp"
 #include "frame/render.hpp"
 #include "frame/shared_meshes.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "reference/grid_reference.hpp"
 #include "reference/judge.hpp"
 #include "reference/reference.hpp"

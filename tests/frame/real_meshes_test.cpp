@@ -6,7 +6,7 @@
 #include "datasets/transfer_functions.hpp"
 #include "frame/render.hpp"
 #include "frame/shared_meshes.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "reference/judge.hpp"
 
 /// The promise of accuracy_test.cpp on meshes that nobody here made: curvilinear grids with seams and boundary layers,

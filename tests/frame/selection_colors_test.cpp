@@ -6,7 +6,7 @@
 #include "datasets/boxes.hpp"
 #include "exchange/loopback_transport.hpp"
 #include "frame/communicator.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 #include "query_data.hpp"
 

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include "io/mesh_formats.hpp"
-#include "io/reader_programs.hpp"
+#include "io/formats/reader_programs.hpp"
+#include "io/mesh/mesh_formats.hpp"
 
 /// Meshes that nobody here made, which lie beside the project on some machines only.
 namespace tessera::frame {

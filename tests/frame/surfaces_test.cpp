@@ -13,7 +13,7 @@
 #include "frame/render.hpp"
 #include "frame/shared_meshes.hpp"
 #include "frame/surface_scenes.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
 #include "support/deep_pixels.hpp"

@@ -1,63 +1,96 @@
 #!/usr/bin/env python3
-"""Which folder may include which: what each of the library's folders includes of the others, beside the table below.
+"""Checks the layout: which directory includes which, and how many modules one holds.
 
-Every folder may include its own headers, the public ones (tessera/) and scene/; what else, MAY_INCLUDE says. The
-compiler holds targets to what they link (cmake/TesseraTarget.cmake); this holds the links to the design: a folder that
-links another without being meant to fails here. Foreign headers that one place alone may know are in ONLY_IN.
+MAY_INCLUDE is the table. A row applies to its directory and all below it; a row of a subdirectory adds to its parent's.
+Every directory may include its own headers, the public ones (tessera/), scene/ and system/. A directory and its
+subdirectories may include each other: they are one library. Subdirectories side by side may not, unless a row says so.
+The table has no cycle. The compiler enforces the same between libraries (cmake/TesseraTarget.cmake).
 
-Says file:line of every include that is not allowed; exit status 1 if there is one. Says too, without failing, which
-allowances of MAY_INCLUDE nobody uses.
+Reports every include that the table does not allow as file:line, and directories of more than 40 modules; exit status 1
+if there is one. Also reports, without failing, which allowances are not used.
 
-    include_rules.py SOURCE_TREE
+    include_rules.py SOURCE_TREE [--count]    --count: prints the number of includes from directory to directory instead
 """
 
 import re
 import sys
-from collections import defaultdict
-from pathlib import Path
+from collections import Counter, defaultdict
+from pathlib import Path, PurePosixPath
 
-# Beside scene/ and tessera/. None: anything.
+# None: anything.
 MAY_INCLUDE = {
     "include": set(),
     "scene": set(),
     "system": set(),
     "colormaps": set(),
-    "cells": {"system"},
-    "io": {"cells", "system", "colormaps"},
-    "readers": {"cells", "io", "system"},
+    "cells": set(),
+    "io": {"cells", "colormaps"},
+    "io/formats": set(),
+    "io/text": {"io/formats"},
+    "io/foreign/messages": set(),
+    "io/foreign/client": {"io/foreign/messages", "io/formats", "io/text"},
+    "io/vtk": {"io/foreign/client", "io/foreign/messages", "io/formats", "io/text"},
+    "io/mesh": {"io/vtk", "io/foreign/client", "io/foreign/messages", "io/formats", "io/text"},
+    "io/volume": {"io/vtk", "io/foreign/client", "io/foreign/messages", "io/formats", "io/text"},
+    "io/foreign": {"io/mesh", "io/volume", "io/vtk", "io/formats", "io/text"},
+    "io/image": {"io/text"},
+    "io/scene": {"io/vtk", "io/formats", "io/text"},
+    "readers": {"cells", "io/formats", "io/text", "io/foreign/messages"},
+    "readers/common": set(),
+    "readers/dicom": {"readers/common"},
+    "readers/gmsh": {"readers/common"},
+    "readers/med": {"readers/common"},
+    "readers/tetgen": {"readers/common"},
+    "readers/vtk": {"readers/common", "io/vtk"},
+    "readers/xdmf": {"readers/common"},
     "integrals": set(),
     "exchange": set(),
     "gl": set(),
     "projection": {"gl"},
     "sorting": {"projection", "gl"},
-    "volume": {"integrals", "gl"},
+    "volume": {"integrals"},
+    "volume/bricks": set(),
+    "volume/split": {"volume/bricks"},
+    "volume/precise": {"volume/bricks", "volume/split"},
+    "volume/lanes": {"volume/bricks", "volume/precise"},
     "compositor": {"sorting", "projection", "integrals", "exchange", "gl"},
     "reference": set(),
-    "frame": {"compositor", "sorting", "projection", "volume", "integrals", "exchange", "gl", "io", "cells", "system",
-              "colormaps",
-              "reference"},
+    "reference/mesh": set(),
+    "reference/grid": {"reference/mesh"},
+    "reference/curved": {"reference/mesh"},
+    "frame": {"compositor", "sorting", "projection", "volume", "integrals", "exchange", "io", "cells", "colormaps"},
+    "frame/mesh": set(),
+    "frame/ranks": {"frame/mesh"},
+    "frame/grid": {"frame/mesh", "frame/ranks"},
+    "api": {"frame", "compositor", "sorting", "projection", "volume", "integrals", "exchange", "io", "cells",
+            "colormaps", "reference"},
     "datasets": set(),
     "annotation": set(),
     "analysis": set(),
     "server": {"analysis"},
-    "apps": {"analysis", "datasets", "server"},
+    "apps": {"analysis", "annotation", "datasets", "server"},
+    "apps/options": set(),
+    "apps/render": {"apps/options"},
+    "apps/help": {"apps/options"},
+    "apps/commands": {"apps/options", "apps/render", "apps/help"},
     "examples": set(),
     "bench": None,
     "tests": None,
 }
-# These may not even include scene/.
+# These may include neither scene/ nor system/, unless their row says so.
 PUBLIC_ONLY = {"include", "examples", "annotation", "analysis", "server", "apps"}
+MOST_MODULES = 40
 
-# Foreign headers, and the folders or files that alone may include them. Tests of io/ write VTK's files by VTK.
+# Foreign headers, and the directories or files that alone may include them. Tests of readers write VTK's files by VTK.
 ONLY_IN = [
-    (r"mpi\.h$", ["exchange/", "include/tessera/mpi.hpp"]),
-    (r"vtk", ["readers/vtk/", "tests/io/"]),
+    (r"mpi\.h$", ["exchange/mpi/", "include/tessera/mpi.hpp"]),
+    (r"vtk", ["readers/vtk/", "tests/readers/", "tests/io/"]),
     (r"gmsh\.h$", ["readers/gmsh/"]),
-    (r"tetgen\.h$", ["readers/tetgen/tetgen_fill.cpp"]),
+    (r"tetgen\.h$", ["readers/tetgen/"]),
     (r"^Xdmf", ["readers/xdmf/"]),
     (r"^boost/", ["readers/xdmf/", "server/", "tests/server/"]),
-    (r"^med\.h$", ["readers/med/", "tests/io/med_test.cpp"]),
-    (r"^minc2\.h$", ["readers/vtk/", "tests/io/minc2_test.cpp"]),
+    (r"^med\.h$", ["readers/med/", "tests/readers/"]),
+    (r"^minc2\.h$", ["readers/vtk/", "tests/readers/"]),
     (r"CLI/", ["apps/"]),
     (r"(GL|EGL|KHR)/", ["gl/"]),
     (r"cairo", ["analysis/", "annotation/"]),
@@ -68,52 +101,132 @@ SUFFIXES = {".cpp", ".hpp", ".h", ".in"}
 INCLUDE = re.compile(r'^\s*#\s*(?:include|define\s+HWY_TARGET_INCLUDE)\s*[<"]([^>"]+)[>"]')
 
 
-def includes(tree):
-    """(folder, file, line, header) of every include in the folders of MAY_INCLUDE."""
-    for folder in MAY_INCLUDE:
-        for file in sorted((tree / folder).rglob("*")):
+def sources(tree):
+    """Every source in the directories of the table, as a path from the tree."""
+    for directory in sorted({name.split("/")[0] for name in MAY_INCLUDE}):
+        for file in sorted((tree / directory).rglob("*")):
             if file.suffix in SUFFIXES and file.is_file():
-                for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
-                    if match := INCLUDE.match(line):
-                        yield folder, file.relative_to(tree).as_posix(), number, match[1]
+                yield file.relative_to(tree)
 
 
-def allowed(folder, header):
-    of = header.split("/")[0]
-    if MAY_INCLUDE[folder] is None or of == "tessera" or (of == folder and folder != "include"):
-        return True
-    if of == "scene" and folder not in PUBLIC_ONLY:
-        return True
-    return of in MAY_INCLUDE[folder]
+def includes(tree, file):
+    """(line, header) of every include of a file."""
+    for number, line in enumerate((tree / file).read_text(encoding="utf-8").splitlines(), 1):
+        if match := INCLUDE.match(line):
+            yield number, match[1]
 
 
-def unknown_folders(tree):
-    """Folders that the build adds and the table lacks."""
+def directory_of(path):
+    """The directory of a file or header; of a public header, tessera."""
+    return PurePosixPath(path).parent.as_posix()
+
+
+def top(directory):
+    return directory.split("/")[0]
+
+
+def is_within(directory, other):
+    return directory == other or directory.startswith(other + "/")
+
+
+def rows_of(directory):
+    """The names of the rows that apply to a directory: its own and its parents'."""
+    parts = directory.split("/")
+    return [name for n in range(len(parts)) if (name := "/".join(parts[: n + 1])) in MAY_INCLUDE]
+
+
+def allowances(directory):
+    """All that the rows of a directory name; None: anything."""
+    rows = [MAY_INCLUDE[name] for name in rows_of(directory)]
+    return None if None in rows else set().union(*rows)
+
+
+def allowance_of(directory, of):
+    """What allows `directory` to include a header of the directory `of`: a word, or None if nothing does."""
+    others = allowances(directory)
+    if others is None or top(of) == "tessera":
+        return "tessera"
+    if top(of) in ("scene", "system") and top(directory) not in PUBLIC_ONLY:
+        return top(of)
+    if is_within(directory, of) or is_within(of, directory):
+        return directory
+    return next((name for name in sorted(others) if is_within(of, name)), None)
+
+
+def cycle_in_table():
+    """A cycle of the table's rows, or nothing. Rows of one library stand for their subdirectories too."""
+    follows = {name: {other for other in others or () if other not in rows_of(name)} for name, others in MAY_INCLUDE.items()}
+    for name in MAY_INCLUDE:
+        seen, path = set(), []
+
+        def visit(at):
+            if at == name and path:
+                return path + [at]
+            if at in seen:
+                return None
+            seen.add(at)
+            path.append(at)
+            for row in MAY_INCLUDE:
+                if is_within(row, at):
+                    for other in follows[row]:
+                        if found := visit(other):
+                            return found
+            path.pop()
+            return None
+
+        if found := visit(name):
+            return found
+    return None
+
+
+def module(file):
+    """The name that a header and its source share."""
+    return re.sub(r"\.(cpp|hpp|h)(\.in)?$", "", file.as_posix())
+
+
+def unknown_directories(tree):
+    """Directories that the build adds and the table lacks."""
     build = (tree / "CMakeLists.txt").read_text(encoding="utf-8")
     return [f for f in re.findall(r"^\s*add_subdirectory\((\w+)\)", build, re.MULTILINE) if f not in MAY_INCLUDE]
 
 
 def main():
     tree = Path(sys.argv[1])
-    faults = [f"CMakeLists.txt: adds {folder}/, which this table does not know" for folder in unknown_folders(tree)]
-    files, used = set(), defaultdict(set)
-    for folder, file, line, header in includes(tree):
-        files.add(file)
-        of = header.split("/")[0]
-        if of in MAY_INCLUDE or of == "tessera":
-            used[folder].add(of)
-            if not allowed(folder, header):
-                also = sorted({"tessera"} | MAY_INCLUDE[folder] | (set() if folder in PUBLIC_ONLY else {"scene"}))
-                faults.append(f'{file}:{line}: includes "{header}"; {folder}/ may include {", ".join(also)}')
-        for pattern, places in ONLY_IN:
-            if re.match(pattern, header) and not file.startswith(tuple(places)):
-                faults.append(f"{file}:{line}: includes {header}; only {' and '.join(places)} may")
+    faults = [f"CMakeLists.txt: adds {name}/, which this table does not know" for name in unknown_directories(tree)]
+    if cycle := cycle_in_table():
+        faults.append(f"include_rules.py: the table has a cycle: {' -> '.join(cycle)}")
+    files, used, arrows, modules = list(sources(tree)), defaultdict(set), Counter(), defaultdict(set)
+    for file in files:
+        directory = directory_of(file)
+        if top(directory) not in ("tests", "bench"):
+            modules[directory].add(module(file))
+        for line, header in includes(tree, file):
+            of = directory_of(header)
+            if top(of) in MAY_INCLUDE or top(of) == "tessera":
+                if of != directory:
+                    arrows[directory, of] += 1
+                if allowance := allowance_of(directory, of):
+                    used[directory].add(allowance)
+                else:
+                    may = ", ".join(sorted(allowances(directory))) or "nothing else"
+                    faults.append(f'{file}:{line}: includes "{header}"; {directory}/ may include {may}')
+            for pattern, places in ONLY_IN:
+                if re.match(pattern, header) and not file.as_posix().startswith(tuple(places)):
+                    faults.append(f"{file}:{line}: includes {header}; only {' and '.join(places)} may")
+    if "--count" in sys.argv:
+        for (directory, of), count in sorted(arrows.items()):
+            print(f"{directory} -> {of}: {count}")
+        return 0
+    for directory, names in sorted(modules.items()):
+        if len(names) > MOST_MODULES and directory != "include/tessera":
+            faults.append(f"{directory}/: {len(names)} modules, {MOST_MODULES} at most; divide it")
     for fault in faults:
         print(fault)
-    for folder, others in MAY_INCLUDE.items():
-        if unused := sorted((others or set()) - used[folder]):
-            print(f"note: {folder}/ may include {', '.join(unused)} and does not")
-    print(f"{len(files)} files, {len(faults)} includes against the rules")
+    for name, others in MAY_INCLUDE.items():
+        inside = set().union(*(words for directory, words in used.items() if is_within(directory, name)), set())
+        if unused := sorted((others or set()) - inside):
+            print(f"note: {name}/ may include {', '.join(unused)} and does not")
+    print(f"{len(files)} files, {len(faults)} faults")
     return 1 if faults or not files else 0
 
 

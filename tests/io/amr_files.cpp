@@ -12,8 +12,8 @@
 #include <map>
 #include <random>
 
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
 #include "support/some_cases.hpp"
 
 namespace tessera::io::testing {

@@ -10,8 +10,8 @@
 
 #include "cells/amr/amr_values.hpp"
 #include "io/amr_files.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace tessera::io {

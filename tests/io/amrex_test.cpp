@@ -6,11 +6,11 @@
 #include <fstream>
 
 #include "io/amr_files.hpp"
-#include "io/amrex_header.hpp"
-#include "io/file_beginnings.hpp"
-#include "io/file_kinds.hpp"
+#include "io/formats/file_beginnings.hpp"
+#include "io/formats/file_kinds.hpp"
+#include "io/mesh/amrex_header.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace tessera::io {

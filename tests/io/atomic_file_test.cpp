@@ -12,7 +12,7 @@
 #include <csignal>
 #include <cstring>
 
-#include "io/image_file.hpp"
+#include "io/image/image_file.hpp"
 #include "system/unfinished.hpp"
 #include "temporary_folder.hpp"
 

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace tessera::io {

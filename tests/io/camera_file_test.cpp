@@ -1,4 +1,4 @@
-#include "io/camera_file.hpp"
+#include "io/scene/camera_file.hpp"
 
 #include <gtest/gtest.h>
 

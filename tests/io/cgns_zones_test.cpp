@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
 #include "io/parts_checks.hpp"
 #include "io/temporary_folder.hpp"
 

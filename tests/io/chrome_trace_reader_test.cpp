@@ -1,4 +1,4 @@
-#include "io/chrome_trace_reader.hpp"
+#include "io/scene/chrome_trace_reader.hpp"
 
 #include <gtest/gtest.h>
 

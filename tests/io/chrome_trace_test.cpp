@@ -1,4 +1,4 @@
-#include "io/chrome_trace.hpp"
+#include "io/scene/chrome_trace.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "io/curved_reference.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/vtk_or_skip.hpp"
 #include "support/some_cases.hpp"

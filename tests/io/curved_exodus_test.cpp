@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "cells/mesh_assembly.hpp"
-#include "io/block_surface.hpp"
 #include "io/curved_reference.hpp"
+#include "io/mesh/block_surface.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/vtk_or_skip.hpp"
 #include "support/some_cases.hpp"

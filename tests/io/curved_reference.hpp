@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cells/curved/curved_lattice.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 
 /// Curved cells as formats' manuals describe them, with their exact volumes and integrals.
 namespace tessera::io::testing {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "io/curved_reference.hpp"
+#include "io/formats/reader_programs.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
-#include "io/reader_programs.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace tessera::io::curved_text_test {

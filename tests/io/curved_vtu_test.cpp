@@ -9,7 +9,7 @@
 
 #include "cells/curved/curved_lattice.hpp"
 #include "io/curved_reference.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/vtk_or_skip.hpp"
 

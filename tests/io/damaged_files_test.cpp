@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <random>
 
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
 
 namespace tessera::io {
 namespace {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "io/dicom_writing.hpp"
-#include "io/reader_programs.hpp"
+#include "io/formats/reader_programs.hpp"
 #include "io/temporary_folder.hpp"
+#include "io/volume/volume_reader.hpp"
 #include "io/volume_checks.hpp"
-#include "io/volume_reader.hpp"
 
 namespace tessera::io::dicom_frames_test {
 namespace {

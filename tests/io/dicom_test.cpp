@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "io/dicom_writing.hpp"
-#include "io/file_kinds.hpp"
-#include "io/reader_programs.hpp"
+#include "io/formats/file_kinds.hpp"
+#include "io/formats/reader_programs.hpp"
 #include "io/temporary_folder.hpp"
+#include "io/volume/volume_formats.hpp"
+#include "io/volume/volume_reader.hpp"
 #include "io/volume_bytes.hpp"
 #include "io/volume_checks.hpp"
-#include "io/volume_formats.hpp"
-#include "io/volume_reader.hpp"
 #include "support/some_cases.hpp"
 
 namespace tessera::io {

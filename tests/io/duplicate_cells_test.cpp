@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "cells/mesh_assembly.hpp"
+#include "io/mesh/mesh_parts.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_parts.hpp"
-#include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace tessera::io::duplicate_cells_test {

@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "io/camera_file.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
+#include "io/scene/camera_file.hpp"
+#include "io/scene/transfer_function_file.hpp"
 #include "io/temporary_folder.hpp"
-#include "io/transfer_function_file.hpp"
-#include "io/volume_reader.hpp"
+#include "io/volume/volume_reader.hpp"
 #include "system/atomic_file.hpp"
 
 namespace tessera::io {

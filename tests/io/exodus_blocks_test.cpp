@@ -7,8 +7,8 @@
 #include <set>
 #include <vector>
 
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 #include "tessera/triangle_file.hpp"
 

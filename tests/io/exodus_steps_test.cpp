@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "cells/warp.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 #include "tessera/dataset.hpp"
 

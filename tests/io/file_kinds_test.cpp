@@ -1,5 +1,5 @@
 // What a file is, is told from what it begins with, then from its name.
-#include "io/file_kinds.hpp"
+#include "io/formats/file_kinds.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -8,11 +8,11 @@
 #include <fstream>
 #include <map>
 
-#include "io/file_beginnings.hpp"
+#include "io/formats/file_beginnings.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
-#include "io/volume_reader.hpp"
+#include "io/volume/volume_reader.hpp"
 
 namespace tessera::io {
 namespace {

@@ -4,8 +4,8 @@
 #include <string_view>
 
 #include "fuzz_check.hpp"
-#include "io/amrex_header.hpp"
-#include "io/file_beginnings.hpp"
+#include "io/formats/file_beginnings.hpp"
+#include "io/mesh/amrex_header.hpp"
 
 namespace {
 

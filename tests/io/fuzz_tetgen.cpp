@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "fuzz_check.hpp"
-#include "io/tetgen_files.hpp"
+#include "io/mesh/tetgen_files.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tessera;

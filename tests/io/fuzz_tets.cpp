@@ -4,7 +4,7 @@
 #include <span>
 
 #include "fuzz_check.hpp"
-#include "io/tets_file.hpp"
+#include "io/mesh/tets_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tessera;

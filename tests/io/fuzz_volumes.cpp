@@ -10,8 +10,8 @@
 
 #include "fuzz_check.hpp"
 #include "fuzz_file.hpp"
-#include "io/volume_formats.hpp"
-#include "io/volume_reader.hpp"
+#include "io/volume/volume_formats.hpp"
+#include "io/volume/volume_reader.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tessera;

@@ -9,7 +9,7 @@
 
 #include "fuzz_check.hpp"
 #include "fuzz_file.hpp"
-#include "io/vtk_xml_file.hpp"
+#include "io/vtk/vtk_xml_file.hpp"
 
 namespace {
 

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
-#include "io/mesh_reader.hpp"
-#include "io/reader_programs.hpp"
+#include "io/formats/reader_programs.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/volume_bytes.hpp"
 #include "io/volume_checks.hpp"
 #include "io/vtk_or_skip.hpp"

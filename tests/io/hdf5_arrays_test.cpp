@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
+#include "io/volume/volume_reader.hpp"
 #include "io/volume_checks.hpp"
-#include "io/volume_reader.hpp"
 
 namespace tessera::io::hdf5_arrays_test {
 namespace {

@@ -6,8 +6,8 @@
 #include <array>
 #include <string>
 
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/vtk_hdf_files.hpp"
 

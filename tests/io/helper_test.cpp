@@ -16,12 +16,12 @@
 #include <vector>
 
 #include "io/foam_case.hpp"
-#include "io/foreign_file.hpp"
-#include "io/helper_process.hpp"
+#include "io/foreign/client/foreign_file.hpp"
+#include "io/foreign/client/helper_process.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
-#include "io/volume_reader.hpp"
+#include "io/volume/volume_reader.hpp"
 
 namespace tessera::io {
 namespace {

@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 
 #include "io/hyper_tree_files.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace tessera::io {

@@ -1,4 +1,4 @@
-#include "io/image_file.hpp"
+#include "io/image/image_file.hpp"
 
 #include <ImfChannelList.h>
 #include <ImfHeader.h>
@@ -12,8 +12,8 @@
 #include <limits>
 
 #include "colormaps/color_spaces.hpp"
-#include "io/display_rows.hpp"
-#include "io/image_formats.hpp"
+#include "io/image/display_rows.hpp"
+#include "io/image/image_formats.hpp"
 #include "temporary_folder.hpp"
 
 namespace tessera::io {

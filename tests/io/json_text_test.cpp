@@ -1,4 +1,4 @@
-#include "io/json_text.hpp"
+#include "io/text/json_text.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "io/json_transfer_function.hpp"
+#include "io/scene/json_transfer_function.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <random>
 
 #include "colormaps/presets.hpp"
-#include "io/transfer_function_file.hpp"
+#include "io/scene/transfer_function_file.hpp"
 #include "temporary_folder.hpp"
 
 namespace tessera::io {

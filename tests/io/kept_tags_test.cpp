@@ -4,10 +4,10 @@
 #include <string>
 
 #include "io/temporary_folder.hpp"
+#include "io/volume/volume_reader.hpp"
+#include "io/volume/volume_writer.hpp"
 #include "io/volume_bytes.hpp"
 #include "io/volume_checks.hpp"
-#include "io/volume_reader.hpp"
-#include "io/volume_writer.hpp"
 
 namespace tessera::io::kept_tags_test {
 namespace {

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "io/volume/volume_reader.hpp"
 #include "io/volume_checks.hpp"
-#include "io/volume_reader.hpp"
 #include "support/some_cases.hpp"
 
 /// A volume of a patient with one bright sample, in any of the 48 orientations: where does a reader put it?

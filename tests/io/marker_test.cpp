@@ -9,10 +9,10 @@
 #include <string>
 
 #include "io/dicom_writing.hpp"
-#include "io/reader_programs.hpp"
+#include "io/formats/reader_programs.hpp"
 #include "io/temporary_folder.hpp"
+#include "io/volume/volume_writer.hpp"
 #include "io/volume_bytes.hpp"
-#include "io/volume_writer.hpp"
 
 namespace tessera::io::marker_test {
 namespace {

@@ -12,10 +12,10 @@
 
 #include "io/changed_bytes.hpp"
 #include "io/curved_reference.hpp"
+#include "io/formats/reader_programs.hpp"
+#include "io/mesh/mesh_formats.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_formats.hpp"
-#include "io/mesh_reader.hpp"
-#include "io/reader_programs.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace tessera::io {

@@ -1,4 +1,4 @@
-#include "io/mesh_parts.hpp"
+#include "io/mesh/mesh_parts.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -6,10 +6,10 @@
 #include <cstring>
 #include <limits>
 
+#include "io/formats/reader_programs.hpp"
+#include "io/mesh/tets_file.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/parts_checks.hpp"
-#include "io/reader_programs.hpp"
-#include "io/tets_file.hpp"
 #include "io/vtk_or_skip.hpp"
 #include "scene/error.hpp"
 

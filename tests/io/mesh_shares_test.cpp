@@ -1,5 +1,5 @@
 // CGNS of several zones and meshes in several Exodus files, written by their own libraries, read in shares.
-#include "io/mesh_shares.hpp"
+#include "io/mesh/mesh_shares.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include <array>
 #include <vector>
 
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
 #include "io/parts_checks.hpp"
 #include "io/temporary_folder.hpp"
 #include "support/some_cases.hpp"

@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "cells/mesh_assembly.hpp"
-#include "io/file_kinds.hpp"
 #include "io/foam_case.hpp"
+#include "io/formats/file_kinds.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
-#include "io/volume_reader.hpp"
+#include "io/volume/volume_reader.hpp"
 #include "io/vtk_or_skip.hpp"
 
 namespace tessera::io::messages_test {

@@ -9,10 +9,10 @@ extern "C" {
 
 #include "io/changed_bytes.hpp"
 #include "io/marker.hpp"
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
+#include "io/volume/volume_formats.hpp"
 #include "io/volume_checks.hpp"
-#include "io/volume_formats.hpp"
 
 namespace tessera::io::minc2_test {
 namespace {

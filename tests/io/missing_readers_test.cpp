@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <map>
 
-#include "io/file_kinds.hpp"
-#include "io/mesh_reader.hpp"
-#include "io/reader_programs.hpp"
+#include "io/formats/file_kinds.hpp"
+#include "io/formats/reader_programs.hpp"
+#include "io/mesh/mesh_reader.hpp"
+#include "io/mesh/triangle_file.hpp"
 #include "io/temporary_folder.hpp"
-#include "io/triangle_file.hpp"
-#include "io/volume_reader.hpp"
+#include "io/volume/volume_reader.hpp"
 
 namespace tessera::io::missing_readers_test {
 namespace {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "io/mesh/mesh_reader.hpp"
+#include "io/mesh/nastran_file.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
-#include "io/nastran_file.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace tessera::io::nastran_test {

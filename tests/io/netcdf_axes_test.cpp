@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh_reader.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/netcdf_writer.hpp"
 #include "io/temporary_folder.hpp"
+#include "io/volume/volume_reader.hpp"
 #include "io/volume_checks.hpp"
-#include "io/volume_reader.hpp"
 #include "support/some_cases.hpp"
 
 namespace tessera::io::netcdf_axes_test {

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "io/changed_bytes.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
 #include "io/netcdf_writer.hpp"
 #include "io/temporary_folder.hpp"
+#include "io/volume/volume_formats.hpp"
+#include "io/volume/volume_reader.hpp"
 #include "io/volume_checks.hpp"
-#include "io/volume_formats.hpp"
-#include "io/volume_reader.hpp"
 
 namespace tessera::io::netcdf_test {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "io/netcdf_writer.hpp"
 #include "io/temporary_folder.hpp"
+#include "io/volume/volume_reader.hpp"
 #include "io/volume_checks.hpp"
-#include "io/volume_reader.hpp"
 
 namespace tessera::io::netcdf_values_test {
 namespace {

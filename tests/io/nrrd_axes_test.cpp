@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "io/temporary_folder.hpp"
+#include "io/volume/volume_reader.hpp"
 #include "io/volume_bytes.hpp"
 #include "io/volume_checks.hpp"
-#include "io/volume_reader.hpp"
 
 namespace tessera::io::nrrd_axes_test {
 namespace {

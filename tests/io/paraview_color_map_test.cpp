@@ -1,4 +1,4 @@
-#include "io/paraview_color_map.hpp"
+#include "io/scene/paraview_color_map.hpp"
 
 #include <gtest/gtest.h>
 

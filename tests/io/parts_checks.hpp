@@ -10,8 +10,8 @@
 
 #include "cells/block_choice.hpp"
 #include "cells/duplicate_cells.hpp"
-#include "io/mesh_formats.hpp"
-#include "io/mesh_parts.hpp"
+#include "io/mesh/mesh_formats.hpp"
+#include "io/mesh/mesh_parts.hpp"
 
 /// Meshes read in parts beside the same ones read whole.
 namespace tessera::io::testing {

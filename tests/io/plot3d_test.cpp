@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cstring>
 
+#include "io/mesh/mesh_reader.hpp"
+#include "io/mesh/plot3d_layout.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
-#include "io/plot3d_layout.hpp"
 #include "support/some_cases.hpp"
 
 namespace tessera::io {

@@ -1,4 +1,4 @@
-#include "io/ply_file.hpp"
+#include "io/mesh/ply_file.hpp"
 
 #include <gtest/gtest.h>
 

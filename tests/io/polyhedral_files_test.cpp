@@ -10,8 +10,8 @@
 #include <set>
 
 #include "cells/mesh_assembly.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
 #include "io/polyhedral_meshes.hpp"
 
 namespace tessera::io {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "colormaps/color_spaces.hpp"
-#include "io/transfer_function_file.hpp"
+#include "io/scene/transfer_function_file.hpp"
 #include "temporary_folder.hpp"
 
 namespace tessera::io {

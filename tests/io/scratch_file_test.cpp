@@ -9,10 +9,10 @@
 #include <cstring>
 #include <random>
 
-#include "io/brick_file.hpp"
-#include "io/file_source.hpp"
 #include "io/scratch_folder.hpp"
 #include "io/temporary_folder.hpp"
+#include "io/volume/brick_file.hpp"
+#include "io/volume/file_source.hpp"
 
 namespace tessera::io {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
 
 namespace tessera::io {
 namespace {

@@ -10,10 +10,10 @@
 #include <map>
 #include <utility>
 
-#include "io/block_surface.hpp"
 #include "io/foam_case.hpp"
+#include "io/mesh/block_surface.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
 #include "io/parts_checks.hpp"
 #include "io/temporary_folder.hpp"
 

@@ -12,7 +12,7 @@
 
 #include "io/scratch_folder.hpp"
 #include "io/temporary_folder.hpp"
-#include "io/volume_reader.hpp"
+#include "io/volume/volume_reader.hpp"
 
 namespace tessera::test {
 

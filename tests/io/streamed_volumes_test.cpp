@@ -3,10 +3,10 @@
 
 #include <cstring>
 
-#include "io/brick_file.hpp"
 #include "io/scratch_folder.hpp"
-#include "io/streamed_bricks.hpp"
 #include "io/streamed_fixture.hpp"
+#include "io/volume/brick_file.hpp"
+#include "io/volume/streamed_bricks.hpp"
 #include "io/volume_bytes.hpp"
 #include "io/volume_checks.hpp"
 #include "io/vtk_grid_files.hpp"

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "io/streamed_fixture.hpp"
+#include "io/volume/volume_formats.hpp"
 #include "io/volume_bytes.hpp"
 #include "io/volume_checks.hpp"
-#include "io/volume_formats.hpp"
 #include "io/vtk_grid_files.hpp"
 #include "io/vtk_or_skip.hpp"
 #include "support/some_cases.hpp"

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "io/mesh/mesh_reader.hpp"
+#include "io/mesh/su2_file.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
-#include "io/su2_file.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace tessera::io {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "io/foam_case.hpp"
+#include "io/mesh/mesh_reader.hpp"
+#include "io/mesh/tecplot_file.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
-#include "io/tecplot_file.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace tessera::io::tecplot_test {

@@ -5,11 +5,11 @@
 #include <numbers>
 
 #include "cells/surface.hpp"
+#include "io/formats/reader_programs.hpp"
+#include "io/mesh/mesh_formats.hpp"
+#include "io/mesh/mesh_reader.hpp"
+#include "io/mesh/tetgen_files.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_formats.hpp"
-#include "io/mesh_reader.hpp"
-#include "io/reader_programs.hpp"
-#include "io/tetgen_files.hpp"
 
 namespace tessera::io {
 namespace {

@@ -1,12 +1,12 @@
-#include "io/tets_file.hpp"
+#include "io/mesh/tets_file.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstring>
 
 #include "cells/mesh_assembly.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
 #include "io/vtk_or_skip.hpp"
 
 namespace tessera::io {

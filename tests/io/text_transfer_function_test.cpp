@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "colormaps/presets.hpp"
-#include "io/text_file.hpp"
-#include "io/transfer_function_file.hpp"
+#include "io/scene/transfer_function_file.hpp"
+#include "io/text/text_file.hpp"
 #include "temporary_folder.hpp"
 
 namespace tessera::io {

@@ -1,4 +1,4 @@
-#include "io/time_series.hpp"
+#include "io/scene/time_series.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "io/mesh_checks.hpp"
-#include "io/volume_reader.hpp"
+#include "io/volume/volume_reader.hpp"
 
 namespace tessera::test {
 

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "io/temporary_folder.hpp"
+#include "io/volume/volume_reader.hpp"
 #include "io/volume_bytes.hpp"
 #include "io/volume_checks.hpp"
-#include "io/volume_reader.hpp"
 
 namespace tessera::io::volume_colors_test {
 namespace {

@@ -10,13 +10,13 @@
 #include <string>
 #include <tuple>
 
+#include "io/formats/reader_programs.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
-#include "io/reader_programs.hpp"
+#include "io/volume/volume_reader.hpp"
+#include "io/volume/volume_writer.hpp"
 #include "io/volume_bytes.hpp"
 #include "io/volume_checks.hpp"
-#include "io/volume_reader.hpp"
-#include "io/volume_writer.hpp"
 #include "io/vtk_or_skip.hpp"
 
 namespace tessera::io {

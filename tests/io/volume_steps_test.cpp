@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "io/file_kinds.hpp"
+#include "io/formats/file_kinds.hpp"
 #include "io/temporary_folder.hpp"
+#include "io/volume/volume_reader.hpp"
 #include "io/volume_bytes.hpp"
 #include "io/volume_checks.hpp"
-#include "io/volume_reader.hpp"
 
 namespace tessera::io {
 namespace {

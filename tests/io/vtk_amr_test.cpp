@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "io/amr_files.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace tessera::io::vtk_amr_test {

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include "io/mesh/mesh_formats.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_formats.hpp"
-#include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace tessera::io {

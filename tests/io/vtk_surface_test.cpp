@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "cells/surface.hpp"
+#include "io/formats/reader_programs.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
-#include "io/reader_programs.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/vtk_or_skip.hpp"
 

@@ -23,11 +23,11 @@
 #include <vector>
 
 #include "frame/mesh_check.hpp"
-#include "io/mesh_reader.hpp"
-#include "io/plain_vtk_grid.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/streamed_fixture.hpp"
 #include "io/temporary_folder.hpp"
-#include "io/volume_formats.hpp"
+#include "io/volume/plain_vtk_grid.hpp"
+#include "io/volume/volume_formats.hpp"
 
 namespace tessera::io::vtk_written_test {
 namespace {

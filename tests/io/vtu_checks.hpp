@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "cells/cell_block.hpp"
-#include "io/foreign_file.hpp"
-#include "io/vtk_xml_file.hpp"
+#include "io/foreign/client/foreign_file.hpp"
+#include "io/vtk/vtk_xml_file.hpp"
 
 namespace tessera::test {
 

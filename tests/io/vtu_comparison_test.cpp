@@ -8,7 +8,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "io/input_file.hpp"
+#include "io/formats/input_file.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/polyhedral_meshes.hpp"
 #include "io/temporary_folder.hpp"

@@ -9,9 +9,9 @@
 #include <random>
 
 #include "io/temporary_folder.hpp"
+#include "io/text/xml_elements.hpp"
 #include "io/vtu_checks.hpp"
 #include "io/vtu_writing.hpp"
-#include "io/xml_elements.hpp"
 #include "support/some_cases.hpp"
 
 namespace tessera::io {

@@ -8,9 +8,9 @@
 #include <map>
 
 #include "cells/mesh_assembly.hpp"
+#include "io/mesh/mesh_formats.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_formats.hpp"
-#include "io/mesh_reader.hpp"
 #include "io/polyhedral_meshes.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/vtu_checks.hpp"

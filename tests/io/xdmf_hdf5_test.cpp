@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "io/changed_bytes.hpp"
+#include "io/formats/reader_programs.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
-#include "io/reader_programs.hpp"
 #include "io/temporary_folder.hpp"
+#include "io/volume/volume_formats.hpp"
 #include "io/volume_checks.hpp"
-#include "io/volume_formats.hpp"
 
 namespace tessera::io::xdmf_hdf5_test {
 namespace {

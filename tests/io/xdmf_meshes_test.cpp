@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "io/formats/reader_programs.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
-#include "io/reader_programs.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/volume_bytes.hpp"
 

@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "io/file_kinds.hpp"
+#include "io/formats/file_kinds.hpp"
+#include "io/formats/reader_programs.hpp"
+#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh_checks.hpp"
-#include "io/mesh_reader.hpp"
-#include "io/reader_programs.hpp"
 #include "io/temporary_folder.hpp"
+#include "io/volume/volume_formats.hpp"
+#include "io/volume/volume_reader.hpp"
 #include "io/volume_bytes.hpp"
 #include "io/volume_checks.hpp"
-#include "io/volume_formats.hpp"
-#include "io/volume_reader.hpp"
 
 namespace tessera::io {
 namespace {

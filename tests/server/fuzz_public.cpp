@@ -1,7 +1,7 @@
 // What the fuzzed sources call of the public API, without the rest of it.
 #include <nlohmann/json.hpp>
 
-#include "io/json_text.hpp"
+#include "io/text/json_text.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/input_file.hpp"
 #include "tessera/view.hpp"

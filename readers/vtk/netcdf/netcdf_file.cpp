@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "io/input_file.hpp"
+#include "io/formats/input_file.hpp"
 #include "readers/vtk/netcdf/netcdf_size.hpp"
 #include "readers/vtk/vtk_words.hpp"
 #include "scene/error.hpp"

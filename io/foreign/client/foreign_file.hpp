@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "cells/cell_block.hpp"
+#include "io/foreign/client/helper_process.hpp"
+#include "io/foreign/messages/array_source.hpp"
+#include "io/foreign/messages/foreign_data.hpp"
+
+namespace tessera::io {
+
+/// An opened file, whose arrays are read when they are asked for. Copies share them.
+struct ForeignFile {
+  std::shared_ptr<ArraySource> arrays;
+  std::string source;  ///< for messages
+  ForeignContents contents;
+  bool with_surfaces = false;  ///< surfaces are blocks like others: of polygons (VTK's type 7)
+};
+
+/// Has the helper read a file. `request` names the reader and what it is told (helper/readers.hpp); the file is added.
+/// Of the parts those that its "blocks", names, do not mean are left out; contents.block_names are of all. Throws
+/// Error(bad_input) in one line. With "surfaces" those count as blocks (ForeignFile::with_surfaces).
+ForeignFile open_foreign(std::shared_ptr<HelperProcess> helper, const std::filesystem::path& file,
+                         nlohmann::json request);
+
+/// A field whose numbers are fetched when it is first read, and forgotten with the last copy.
+cells::BlockField foreign_field(const ForeignFile& file, const ForeignArray& array, scene::Association association);
+
+/// Adds the fields of a part's points or cells. Throws Error(bad_input) for one that has not `expected` tuples.
+void add_foreign_fields(const ForeignFile& file, const ForeignPart& part, scene::Association association,
+                        std::size_t expected, cells::CellBlock& block, const std::string& where);
+
+/// Whether regular grids among the parts are refused, since they are better cast as volumes, or become cells.
+enum class GridsAre { volumes, hexahedra };
+
+/// The parts as blocks, every offset and index checked, which readers do not. Structured, curvilinear and rectilinear
+/// grids become hexahedra. Empty parts are left out, and so are surfaces beside volumes, for which `notes` has a line,
+/// unless they are asked for.
+/// Throws Error(bad_input) naming the cell at fault, and for images (regular grids).
+std::vector<cells::CellBlock> blocks_of(const ForeignFile& file, std::vector<std::string>& notes,
+                                        GridsAre grids = GridsAre::volumes);
+
+/// Bits of vtkGhostType for each point or cell; the older vtkGhostLevels (0 is one's own) becomes "duplicate". Empty if
+/// the part has neither.
+std::vector<std::uint8_t> ghost_bits(const ForeignFile& file, const std::vector<ForeignArray>& fields, std::size_t n);
+
+}  // namespace tessera::io

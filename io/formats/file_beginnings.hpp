@@ -1,0 +1,102 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "io/formats/file_kinds.hpp"
+
+/// Whether a file begins as one of a format does. None says yes to a file of another format of the table.
+namespace tessera::io {
+
+/// The `type` of <VTKFile type="...">, or else empty.
+std::string vtk_xml_type(std::string_view beginning);
+
+/// Whether text begins as the Header of an AMReX plot file: a line without blanks, the number of fields, their names,
+/// and the dimensions.
+bool looks_like_amrex(std::string_view beginning);
+
+/// Whether a file begins as DICOM files do, with DICM after 128 bytes of anything.
+bool looks_like_dicom(std::string_view beginning);
+
+/// Whether a file begins as a binary Medit mesh (.meshb): a 1 of 32 bits in either byte order, a version of 1 to 4, and
+/// a dimension of 2 or 3.
+bool begins_as_medit_binary(std::string_view beginning);
+
+/// Whether a file begins as a Medit mesh in text (.mesh).
+bool begins_as_medit_text(std::string_view beginning);
+
+/// For VTK XML: throws Error(bad_input) for a file in UTF-16, whose words are not those that are looked for.
+void require_no_utf16(const std::filesystem::path& file);
+
+/// The word after DATASET of legacy VTK, or else empty.
+std::string vtk_legacy_type(std::string_view beginning);
+
+bool begins_as_vtu(const FileBeginning& file);
+bool begins_as_vts(const FileBeginning& file);
+bool begins_as_vtk_amr(const FileBeginning& file);
+bool begins_as_hyper_trees(const FileBeginning& file);
+bool begins_as_amrex(const FileBeginning& file);
+bool begins_as_enzo(const FileBeginning& file);
+bool begins_as_vtk_list(const FileBeginning& file);
+bool begins_as_vtk_surface(const FileBeginning& file);
+bool begins_as_vti(const FileBeginning& file);
+bool begins_as_vtr(const FileBeginning& file);
+bool begins_as_pvd(const FileBeginning& file);
+bool begins_as_file_series(const FileBeginning& file);
+bool begins_as_other_vtk_xml(const FileBeginning& file);
+bool begins_as_legacy_mesh(const FileBeginning& file);
+bool begins_as_legacy_grid(const FileBeginning& file);
+bool begins_as_exodus(const FileBeginning& file);
+bool begins_as_minc(const FileBeginning& file);
+bool begins_as_netcdf(const FileBeginning& file);
+bool begins_as_hdf5(const FileBeginning& file);
+/// Whether HDF5 begins behind a block of the user's own, whose size is 512 bytes or a power of two times that.
+bool has_hdf5_behind_block(const std::filesystem::path& file);
+bool begins_as_adf(const FileBeginning& file);
+bool begins_as_openfoam(const FileBeginning& file);
+bool begins_as_ensight(const FileBeginning& file);
+bool begins_as_fluent(const FileBeginning& file);
+bool begins_as_gambit(const FileBeginning& file);
+bool begins_as_gmsh(const FileBeginning& file);
+bool begins_as_medit(const FileBeginning& file);
+bool begins_as_freesurfer(const FileBeginning& file);
+bool begins_as_meshb(const FileBeginning& file);
+bool begins_as_su2(const FileBeginning& file);
+bool begins_as_plot3d_list(const FileBeginning& file);
+bool begins_as_avs_ucd(const FileBeginning& file);
+bool begins_as_tecplot(const FileBeginning& file);
+bool begins_as_stl(const FileBeginning& file);
+bool begins_as_ply(const FileBeginning& file);
+bool begins_as_brick_file(const FileBeginning& file);
+bool begins_as_nrrd(const FileBeginning& file);
+bool begins_as_meta_image(const FileBeginning& file);
+bool begins_as_nifti(const FileBeginning& file);
+bool begins_as_dicom(const FileBeginning& file);
+bool begins_as_analyze(const FileBeginning& file);
+bool begins_as_xdmf(const FileBeginning& file);
+
+// Not read.
+bool begins_as_binary_tecplot(const FileBeginning& file);
+bool begins_as_abaqus(const FileBeginning& file);
+bool begins_as_mfem(const FileBeginning& file);
+bool begins_as_netgen(const FileBeginning& file);
+bool begins_as_nek5000(const FileBeginning& file);
+bool begins_as_amira(const FileBeginning& file);
+bool begins_as_brep(const FileBeginning& file);
+bool begins_as_d3plot(const FileBeginning& file);
+bool begins_as_fits(const FileBeginning& file);
+bool begins_as_frd(const FileBeginning& file);
+bool begins_as_gltf(const FileBeginning& file);
+bool begins_as_grib(const FileBeginning& file);
+bool begins_as_hdf4(const FileBeginning& file);
+bool begins_as_ls_dyna(const FileBeginning& file);
+bool begins_as_mrc(const FileBeginning& file);
+bool begins_as_numpy(const FileBeginning& file);
+bool begins_as_nvdb(const FileBeginning& file);
+bool begins_as_off(const FileBeginning& file);
+bool begins_as_step(const FileBeginning& file);
+bool begins_as_tiff(const FileBeginning& file);
+bool begins_as_vdb(const FileBeginning& file);
+
+}  // namespace tessera::io

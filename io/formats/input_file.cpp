@@ -1,0 +1,103 @@
+#include "io/formats/input_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+
+#include "io/formats/file_beginnings.hpp"
+#include "scene/error.hpp"
+#include "system/files_read.hpp"
+#include "system/missing_file.hpp"
+#include "system/regular_file.hpp"
+
+namespace tessera::io {
+namespace {
+
+/// Whether a file of `size` bytes is the text that Git LFS keeps in the place of a large file.
+bool is_git_lfs_pointer(const system::Descriptor& file, std::uint64_t size) {
+  constexpr std::string_view first_line = "version https://git-lfs.github.com/spec/v1";
+  constexpr std::uint64_t longest = 1024;  // by the specification of Git LFS
+  return size >= first_line.size() && size <= longest && beginning_of(file, first_line.size()) == first_line;
+}
+
+struct OpenedInput {
+  system::Descriptor file;
+  std::uint64_t size = 0;
+};
+
+/// Of a folder that stands for a file nothing is opened.
+OpenedInput open_input(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status) && error != std::errc::permission_denied) throw system::missing_file(file);
+  if (is_input_folder(file)) return {};
+  if (std::filesystem::is_directory(status))
+    throw scene::bad_input(fmt::format(
+        "{}: it is a directory; name a file in it, or the folder of an OpenFOAM case, an AMReX plot file or of DICOM "
+        "files",
+        file.string()));
+  OpenedInput opened{system::open_regular(file, file.string())};
+  opened.size = system::file_size(opened.file, file.string());
+  // OpenFOAM's is a mark on the folder that it lies in.
+  if (opened.size == 0 && system::lower_extension(file) != ".foam" && system::lower_extension(file) != ".openfoam")
+    throw scene::bad_input(fmt::format("{}: it is empty; write it anew", file.string()));
+  if (is_git_lfs_pointer(opened.file, opened.size))
+    throw scene::bad_input(fmt::format("{}: a Git LFS pointer; `git lfs pull` brings the file itself", file.string()));
+  system::note_read(file);
+  return opened;
+}
+
+}  // namespace
+
+std::uint64_t require_file(const std::filesystem::path& file) { return open_input(file).size; }
+
+std::string read_beginning(const std::filesystem::path& file, std::size_t limit) {
+  const OpenedInput opened = open_input(file);
+  return system::beginning_of(opened.file, std::min<std::uint64_t>(opened.size, limit));
+}
+
+namespace {
+
+/// The first bytes of a file; none of one that cannot be read.
+std::string beginning_if_any(const std::filesystem::path& file, std::uint64_t count) {
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(file, unknown)) return {};
+  try {
+    return system::beginning_of(system::open_regular(file, file.string()), count);
+  } catch (const scene::Error&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+bool is_case_folder(const std::filesystem::path& folder) {
+  std::error_code unknown;
+  return std::filesystem::is_directory(folder, unknown) &&
+         (std::filesystem::is_regular_file(folder / "system" / "controlDict", unknown) ||
+          std::filesystem::is_directory(folder / "constant" / "polyMesh", unknown) ||
+          std::filesystem::is_directory(folder / "processor0" / "constant" / "polyMesh", unknown));
+}
+
+bool is_amrex_folder(const std::filesystem::path& folder) {
+  return looks_like_amrex(beginning_if_any(folder / "Header", 4096));
+}
+
+bool is_input_folder(const std::filesystem::path& folder) {
+  if (is_case_folder(folder) || is_amrex_folder(folder)) return true;
+  // In many folders the slices lie one or two levels below, and other files beside them.
+  constexpr int most = 1000;
+  constexpr int deepest = 4;
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) return false;
+  std::filesystem::recursive_directory_iterator entry(folder, error);
+  for (int files = 0; !error && files < most && entry != std::filesystem::recursive_directory_iterator(); ++files) {
+    if (entry.depth() >= deepest) entry.disable_recursion_pending();
+    if (looks_like_dicom(beginning_if_any(entry->path(), 132))) return true;
+    entry.increment(error);
+  }
+  return false;
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,142 @@
+#include "io/formats/reader_programs.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "io/formats/file_kinds.hpp"
+
+namespace tessera::io {
+namespace {
+
+constexpr std::array programs = {
+    ReaderProgram{Reader::vtk, "tessera-read-vtk", "read"},
+    ReaderProgram{Reader::tetgen, "tessera-read-tetgen", "filled"},
+    ReaderProgram{Reader::gmsh, "tessera-read-gmsh", "read"},
+    ReaderProgram{Reader::dicom, "tessera-read-dicom", "read"},
+    ReaderProgram{Reader::xdmf, "tessera-read-xdmf", "read"},
+    ReaderProgram{Reader::med, "tessera-read-med", "read"},
+};
+
+/// The file that this code was loaded from: the library, or the program that has it linked in.
+std::filesystem::path own_file() {
+  Dl_info info{};
+  std::error_code unknown;
+  if (::dladdr(reinterpret_cast<const void*>(&own_file), &info) != 0 && info.dli_fname != nullptr) {
+    std::filesystem::path file = std::filesystem::canonical(info.dli_fname, unknown);
+    if (!unknown) return file;  // a program's name need not be one that leads to it
+  }
+  return std::filesystem::read_symlink("/proc/self/exe", unknown);
+}
+
+bool is_program(const std::filesystem::path& file) { return ::access(file.c_str(), X_OK) == 0; }
+
+/// Who owns a file, and whether everybody may change it.
+struct Ownership {
+  uid_t owner;
+  bool is_open_to_all;
+};
+std::optional<Ownership> ownership_of(const std::filesystem::path& file) {
+  struct stat facts {};
+  if (::stat(file.c_str(), &facts) != 0) return std::nullopt;
+  return Ownership{facts.st_uid, (facts.st_mode & S_IWOTH) != 0};
+}
+
+/// Whether a reader has not been put there by another user, as anybody can put /tmp/libexec: it and the folders in
+/// which it was found are root's, this user's, or those of who installed `own`, and no more open than that.
+bool is_trusted(const std::filesystem::path& program, const std::filesystem::path& own) {
+  const auto self = ownership_of(own);
+  const std::filesystem::path folder = program.parent_path();
+  for (const std::filesystem::path& each : {program, folder, folder.parent_path()}) {
+    const auto found = ownership_of(each);
+    if (!found || (found->is_open_to_all && !(self && self->is_open_to_all))) return false;
+    if (found->owner != 0 && found->owner != ::geteuid() && (!self || found->owner != self->owner)) return false;
+  }
+  return true;
+}
+
+/// What a user can do without the reader.
+std::string other_remedy(Reader reader, const FormatRow* row) {
+  if (reader == Reader::tetgen) return "give a mesh of tetrahedra";
+  if (reader == Reader::dicom) return "convert them to .nii.gz with dcm2niix";
+  if (row == nullptr || std::string_view(row->extensions).starts_with(".vtu"))
+    return "convert the file to another format";
+  switch (row->holds) {
+    case FileHolds::surface:
+      return "convert the file to .ply";
+    case FileHolds::grid:
+      return "convert the file to .nrrd";
+    case FileHolds::grid_or_mesh:
+      return "convert the file to .nrrd or .vtu";
+    default:
+      return "convert the file to .vtu";
+  }
+}
+
+}  // namespace
+
+std::span<const ReaderProgram> reader_programs() { return programs; }
+
+const ReaderProgram& reader_program(Reader reader) { return programs[static_cast<std::size_t>(reader)]; }
+
+std::filesystem::path find_reader(Reader reader) {
+  const char* const name = reader_program(reader).program;
+  std::error_code unknown;
+  for (const std::filesystem::path& own : {own_file(), std::filesystem::read_symlink("/proc/self/exe", unknown)}) {
+    std::filesystem::path start = own;
+    for (int levels = 0; levels < 5 && start.has_relative_path(); ++levels) {
+      start = start.parent_path();
+      std::filesystem::path file = start / "libexec/tessera" / name;
+      if (is_program(file) && is_trusted(file, own)) return file;
+    }
+  }
+  const std::filesystem::path installed = std::filesystem::path(TESSERA_LIBEXEC) / name;
+  return is_program(installed) ? installed : std::filesystem::path();
+}
+
+bool has_reader(Reader reader) { return !find_reader(reader).empty(); }
+
+scene::Error missing_reader(Reader reader, const std::filesystem::path& file) {
+  const FormatRow* const row = format_of(file);
+  const std::string_view format = row != nullptr ? row->name : "such";
+  const ReaderProgram& program = reader_program(reader);
+  // Formats that this library reads itself need a reader for what is rare in them.
+  const char* const words = row != nullptr && !needs_reader(row->needs, reader)
+                                ? "{}: this {} file has parts that are {} by {} alone"
+                                : "{}: {} files are {} by {}";
+  return scene::bad_input(
+      fmt::format(fmt::runtime(words), file.string(), format, program.does, program.program) +
+      fmt::format(", which is not installed; install it (scripts/readers.sh of the sources builds it), or {}",
+                  other_remedy(reader, row)));
+}
+
+bool needs_reader(Needs needs, Reader reader) {
+  switch (reader) {
+    case Reader::vtk:
+      return needs == Needs::vtk || needs == Needs::vtk_and_tetgen;
+    case Reader::tetgen:
+      return needs == Needs::tetgen || needs == Needs::vtk_and_tetgen;
+    case Reader::gmsh:
+      return needs == Needs::gmsh;
+    case Reader::dicom:
+      return needs == Needs::dicom;
+    case Reader::xdmf:
+      return needs == Needs::xdmf;
+    case Reader::med:
+      return needs == Needs::med;
+  }
+  return false;
+}
+
+void require_reader(Reader reader, const std::filesystem::path& file) {
+  if (!has_reader(reader)) throw missing_reader(reader, file);
+}
+
+}  // namespace tessera::io

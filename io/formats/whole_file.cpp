@@ -1,0 +1,33 @@
+#include "io/formats/whole_file.hpp"
+
+#include <fmt/format.h>
+#include <sys/mman.h>
+
+#include <new>
+
+#include "io/formats/inflated_file.hpp"
+#include "io/formats/input_file.hpp"
+#include "system/positional_file.hpp"
+
+namespace tessera::io {
+
+WholeFile::WholeFile(const std::filesystem::path& file) : size_(require_file(file)) {
+  const system::PositionalFile opened(file);
+  // What this process inflated itself lies in memory already, and nobody shortens it.
+  const bool is_mapped = is_inflated(file);
+  start_ = is_mapped ? ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, opened.descriptor(), 0)
+                     : ::mmap(nullptr, size_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (start_ == MAP_FAILED) throw std::bad_alloc();
+  if (is_mapped) return;
+  ::madvise(start_, size_, MADV_HUGEPAGE);  // most of the time would go into page faults
+  try {
+    opened.read(0, static_cast<std::byte*>(start_), size_);
+  } catch (...) {
+    ::munmap(start_, size_);
+    throw;
+  }
+}
+
+WholeFile::~WholeFile() { ::munmap(start_, size_); }
+
+}  // namespace tessera::io

@@ -1,0 +1,294 @@
+#include "tessera/film_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "io/image/display_rows.hpp"
+#include "scene/error.hpp"
+#include "scene/image.hpp"
+#include "system/atomic_file.hpp"
+#include "system/descriptor.hpp"
+#include "system/spawn_plan.hpp"
+#include "system/unfinished.hpp"
+
+namespace tessera {
+namespace {
+
+/// What ffmpeg is told of a kind of file: its format, and how pictures become it.
+struct FilmKind {
+  std::string_view extension, format;
+  bool is_video = true;           ///< else its pictures have colours of a palette
+  std::string_view quality = "";  ///< words for its encoder; without them it is made for small files
+};
+
+// Without a bit rate of 0, VP9 keeps to one that is low whatever the pictures' size.
+constexpr std::string_view h264 = "-crf 18", vp9 = "-crf 24 -b:v 0";
+constexpr std::array kinds = {
+    FilmKind{".mp4", "mp4", true, h264},  FilmKind{".mov", "mov", true, h264}, FilmKind{".mkv", "matroska", true, h264},
+    FilmKind{".webm", "webm", true, vp9}, FilmKind{".gif", "gif", false},
+};
+
+const FilmKind* kind_of(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : static_cast<char>(c);
+  });
+  const auto* const kind = std::ranges::find_if(kinds, [&](const FilmKind& k) { return k.extension == extension; });
+  return kind == kinds.end() ? nullptr : kind;
+}
+
+/// Where PATH has the program; empty if nowhere.
+std::filesystem::path find_ffmpeg() {
+  const char* const value = ::getenv("PATH");
+  std::string_view path = value == nullptr ? "" : value;
+  while (!path.empty()) {
+    const std::size_t end = std::min(path.find(':'), path.size());
+    std::filesystem::path program = std::filesystem::path(path.substr(0, end)) / "ffmpeg";
+    std::error_code unknown;
+    if (end > 0 && std::filesystem::is_regular_file(program, unknown) && ::access(program.c_str(), X_OK) == 0)
+      return program;
+    path.remove_prefix(std::min(end + 1, path.size()));
+  }
+  return {};
+}
+
+/// Pictures to write in its place. A name that is numbered already has its number.
+std::string pictures_instead(const std::filesystem::path& file) {
+  const std::string stem = (file.parent_path() / file.stem()).string();
+  return stem + (stem.find('%') == std::string::npos ? "_%04d.png" : ".png");
+}
+
+std::filesystem::path require_ffmpeg(const std::filesystem::path& file) {
+  std::filesystem::path program = find_ffmpeg();
+  if (program.empty())
+    throw bad_input(
+        fmt::format("{}: films are made by the program ffmpeg, which is not on PATH; install it (Debian: apt install "
+                    "ffmpeg), or write {}",
+                    file.string(), pictures_instead(file)));
+  return program;
+}
+
+const FilmKind& require_kind(const std::filesystem::path& file) {
+  const FilmKind* const kind = kind_of(file);
+  if (kind == nullptr)
+    throw bad_input(file.string() + ": is no film by its name; end it in .mp4, .mov, .mkv, .webm or .gif");
+  return *kind;
+}
+
+/// The display values that stand behind pictures, as ffmpeg writes a colour.
+std::string ground_color(const ImageFileOptions& options) {
+  std::string color = "0x";
+  for (int k = 0; k < 3; ++k) {
+    const double value = std::clamp(options.background ? (*options.background)[k] : 0.0, 0.0, 1.0);
+    color += fmt::format("{:02x}", options.encode_srgb ? io::srgb_code(value) : std::lround(value * 255));
+  }
+  return color;
+}
+
+std::vector<std::string> ffmpeg_words(const FilmKind& kind, ImageSize size, const FilmFileOptions& options,
+                                      int output) {
+  std::vector<std::string> words = {"ffmpeg",     "-hide_banner",
+                                    "-loglevel",  "error",
+                                    "-nostdin",   "-y",
+                                    "-f",         "rawvideo",
+                                    "-pix_fmt",   "rgb24",
+                                    "-s",         fmt::format("{}x{}", size.width, size.height),
+                                    "-framerate", fmt::format("{:g}", options.frames_per_second),
+                                    "-i",         "pipe:0"};
+  if (kind.is_video) {
+    // Chroma in pairs of pixels is what players understand. They take large pictures for those of BT.709, small ones
+    // for BT.601's, unless they are told, and ffmpeg makes BT.601 of all and says nothing.
+    words.insert(words.end(), {"-vf", fmt::format("pad=ceil(iw/2)*2:ceil(ih/2)*2:color={},scale=out_color_matrix=bt709:"
+                                                  "out_range=tv,format=yuv420p",
+                                                  ground_color(options.image))});
+    for (const std::string_view word :
+         {"-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "iec61966-2-1", "-color_range", "tv"})
+      words.emplace_back(word);
+  } else {
+    words.insert(words.end(), {"-vf", "split[a][b];[a]palettegen[p];[b][p]paletteuse"});
+  }
+  for (std::string_view left = kind.quality; !left.empty();) {
+    const std::size_t end = std::min(left.find(' '), left.size());
+    words.emplace_back(left.substr(0, end));
+    left.remove_prefix(std::min(end + 1, left.size()));
+  }
+  // By descriptor: the nameless file that it is leaves nothing behind if this process is killed.
+  words.insert(words.end(), {"-f", std::string(kind.format), fmt::format("/proc/self/fd/{}", output)});
+  return words;
+}
+
+}  // namespace
+
+struct FilmFile::State {
+  State(std::filesystem::path file_named, ImageSize picture_size, const FilmFileOptions& film_options)
+      : file(std::move(file_named)), size(picture_size), options(film_options), target(file) {
+    options.image.png_bits = 8;
+  }
+  ~State() {
+    if (process > 0) {
+      forget_process();
+      ::kill(process, SIGKILL);
+      ::waitpid(process, nullptr, 0);
+    }
+  }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  void start(const std::filesystem::path& program);
+  /// Before its end is waited for, after which its number may be another's.
+  void forget_process() const {
+    const auto lock = system::naming_outputs();
+    system::remove_unfinished(process);
+  }
+  /// No more pictures; waits for its end. Throws if that is not a good one.
+  void end();
+  [[noreturn]] void fail(const std::string& what) const;
+  /// The last line that ffmpeg has said.
+  [[nodiscard]] std::string last_words() const;
+
+  std::filesystem::path file;
+  ImageSize size;
+  FilmFileOptions options;
+  system::AtomicFile target;
+  system::Descriptor pictures, complaints;
+  pid_t process = -1;
+  std::vector<std::uint8_t> bytes;
+};
+
+void FilmFile::State::start(const std::filesystem::path& program) {
+  std::array<int, 2> ends{};
+  // A socket, whose writer is told that nobody reads and is not killed for it.
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) fail(std::strerror(errno));
+  pictures = system::Descriptor(ends[0]);
+  const system::Descriptor theirs(ends[1]);
+  complaints = system::Descriptor(::memfd_create("ffmpeg", MFD_CLOEXEC));
+  if (!complaints.is_open()) fail(std::strerror(errno));
+
+  constexpr int output = 3;
+  // Copies first, above all numbers that are given out below: what is copied from may be one of those.
+  const system::Descriptor in(::fcntl(theirs.get(), F_DUPFD_CLOEXEC, 10)),
+      err(::fcntl(complaints.get(), F_DUPFD_CLOEXEC, 10)), out(::fcntl(target.descriptor(), F_DUPFD_CLOEXEC, 10));
+  if (!in.is_open() || !err.is_open() || !out.is_open()) fail(std::strerror(errno));
+  system::SpawnPlan plan;
+  ::posix_spawn_file_actions_adddup2(&plan.files, in.get(), STDIN_FILENO);
+  ::posix_spawn_file_actions_adddup2(&plan.files, err.get(), STDERR_FILENO);
+  ::posix_spawn_file_actions_addopen(&plan.files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  ::posix_spawn_file_actions_adddup2(&plan.files, out.get(), output);
+  ::posix_spawn_file_actions_addclosefrom_np(&plan.files, output + 1);  // sockets of a server, say
+  plan.set_own_group();  // Ctrl-C is for this program, whose end it hears of
+  const int failed = plan.start(program, ffmpeg_words(*kind_of(file), size, options, output), environ, process);
+  if (failed != 0) {
+    process = -1;
+    fail(fmt::format("{} does not start: {}", program.string(), std::strerror(failed)));
+  }
+}
+
+std::string FilmFile::State::last_words() const {
+  std::string text(4096, '\0');
+  const off_t end = ::lseek(complaints.get(), 0, SEEK_END);
+  const off_t begin = std::max<off_t>(0, end - static_cast<off_t>(text.size()));
+  const ssize_t got = ::pread(complaints.get(), text.data(), text.size(), begin);
+  text.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+  return text.substr(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1);
+}
+
+void FilmFile::State::fail(const std::string& what) const {
+  throw Error(ErrorCode::system_failure, file.string(), "ffmpeg cannot make it: " + what,
+              "mend that, or write " + pictures_instead(file));
+}
+
+void FilmFile::State::end() {
+  pictures = system::Descriptor();
+  int status = 0;
+  // Looked at first, and taken away once it is no longer to be ended by abandon_outputs().
+  siginfo_t ended{};
+  while (::waitid(P_PID, static_cast<id_t>(process), &ended, WEXITED | WNOWAIT) < 0 && errno == EINTR) {
+  }
+  forget_process();
+  while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
+  process = -1;
+  const std::string words = last_words();
+  if (WIFSIGNALED(status)) fail(fmt::format("it was ended by signal {}", WTERMSIG(status)));
+  if (WEXITSTATUS(status) != 0)
+    fail(words.empty() ? fmt::format("it ended with status {}", WEXITSTATUS(status)) : words);
+}
+
+bool is_film_name(const std::filesystem::path& file) { return kind_of(file) != nullptr; }
+
+void check_film_file(const std::filesystem::path& file) {
+  require_kind(file);
+  require_ffmpeg(file);
+  system::check_writable(file);
+}
+
+FilmFile::FilmFile(std::filesystem::path file, ImageSize size, const FilmFileOptions& options) {
+  require_kind(file);
+  const std::filesystem::path program = require_ffmpeg(file);
+  if (!(options.frames_per_second >= least_film_rate && options.frames_per_second <= most_film_rate))
+    throw bad_input(fmt::format("`frame_rate` {:g}: it must be {} to {}", options.frames_per_second, least_film_rate,
+                                most_film_rate));
+  scene::validate(size);
+  state_ = std::make_unique<State>(std::move(file), size, options);
+  state_->start(program);
+}
+
+FilmFile::~FilmFile() = default;
+
+void FilmFile::add(const Image& image) {
+  State& s = *state_;
+  if (image.size != s.size)
+    throw bad_input(fmt::format("{}: a picture of {}x{} among those of {}x{}; give all one size", s.file.string(),
+                                image.size.width, image.size.height, s.size.width, s.size.height));
+  const io::DisplayRows display(image, s.file, s.options.image, 3);
+  std::vector<float> rgba;
+  s.bytes.resize(display.row_bytes());
+  for (int y = 0; y < image.size.height; ++y) {
+    display.row(y, rgba, s.bytes.data());
+    const std::uint8_t* next = s.bytes.data();
+    for (std::size_t left = s.bytes.size(); left > 0;) {
+      const ssize_t sent = ::send(s.pictures.get(), next, left, MSG_NOSIGNAL);
+      if (sent < 0 && errno == EINTR) continue;
+      if (sent < 0) {
+        s.end();
+        s.fail("it ended before the last picture");
+      }
+      next += sent;
+      left -= static_cast<std::size_t>(sent);
+    }
+  }
+}
+
+std::string FilmFile::take() {
+  state_->end();
+  std::ifstream film(fmt::format("/proc/self/fd/{}", state_->target.descriptor()), std::ios::binary);
+  std::ostringstream bytes;
+  bytes << film.rdbuf();
+  if (!film || !bytes) state_->fail("it cannot be read back");
+  return std::move(bytes).str();
+}
+
+void FilmFile::commit() {
+  state_->end();
+  state_->target.commit();
+}
+
+}  // namespace tessera

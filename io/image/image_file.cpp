@@ -1,0 +1,146 @@
+#include "io/image/image_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <string>
+
+#include "io/image/image_formats.hpp"
+#include "scene/error.hpp"
+#include "system/atomic_file.hpp"
+#include "system/missing_file.hpp"
+
+namespace tessera::io {
+namespace {
+
+enum class Format { exr, png, jpeg, tiff, pfm, unknown };
+
+Format image_format_of(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : static_cast<char>(c);
+  });
+  if (extension == ".exr") return Format::exr;
+  if (extension == ".png") return Format::png;
+  if (extension == ".jpg" || extension == ".jpeg") return Format::jpeg;
+  if (extension == ".tif" || extension == ".tiff") return Format::tiff;
+  if (extension == ".pfm") return Format::pfm;
+  return Format::unknown;
+}
+
+scene::Error unknown_extension(const std::filesystem::path& file) {
+  return scene::bad_input(file.string() + ": is no image by its name; end it in .exr, .png, .jpg, .tif or .pfm");
+}
+
+}  // namespace
+
+void composited_row(const scene::Image& image, int y, const ImageFileOptions& options,
+                    const std::filesystem::path& file, float* rgba) {
+  const std::size_t first = image.index(0, y);
+  const auto width = static_cast<std::size_t>(image.size.width);
+  const float* source = image.rgba.data() + 4 * first;
+  const glm::vec3 background(options.background.value_or(glm::dvec3(0)));
+  for (std::size_t x = 0; x < width; ++x) {
+    const float* in = source + 4 * x;
+    float* out = rgba + 4 * x;
+    for (int k = 0; k < 4; ++k) {
+      if (!std::isfinite(in[k]))
+        throw scene::Error(
+            scene::ErrorCode::system_failure,
+            fmt::format("{}: pixel ({}, {}) came out as {}; not written, please report", file.string(), x, y, in[k]));
+      out[k] = in[k];
+    }
+    if (std::isnan(image.depth[first + x]))
+      throw scene::Error(
+          scene::ErrorCode::system_failure,
+          fmt::format("{}: the depth of pixel ({}, {}) is no number; not written, please report", file.string(), x, y));
+    if (options.background) {
+      for (int k = 0; k < 3; ++k) out[k] += (1 - in[3]) * background[k];
+      out[3] = 1;
+    }
+  }
+}
+
+namespace {
+
+void check(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
+  scene::validate(image.size);
+  const std::size_t pixels = static_cast<std::size_t>(image.size.width) * static_cast<std::size_t>(image.size.height);
+  if (image.rgba.size() != 4 * pixels || image.depth.size() != pixels)
+    throw scene::Error(scene::ErrorCode::system_failure,
+                       fmt::format("{}: {} colours and {} depths for {} pixels; please report", file.string(),
+                                   image.rgba.size(), image.depth.size(), pixels));
+  if (options.background)
+    for (int k = 0; k < 3; ++k)
+      if (!(std::isfinite((*options.background)[k]) && (*options.background)[k] >= 0))
+        throw scene::bad_input(
+            fmt::format("background {} is not finite or negative; give three numbers", (*options.background)[k]));
+}
+
+}  // namespace
+
+std::vector<std::byte> checked_png_bytes(const scene::Image& image, const ImageFileOptions& options) {
+  check(image, "picture", options);
+  return png_bytes(image, options);
+}
+
+std::vector<std::byte> checked_exr_bytes(const scene::Image& image, const ImageFileOptions& options) {
+  check(image, "picture", options);
+  return exr_bytes(image, options);
+}
+
+std::vector<std::byte> checked_jpeg_bytes(const scene::Image& image, const ImageFileOptions& options) {
+  check(image, "picture", options);
+  return jpeg_bytes(image, options);
+}
+
+void write_image(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
+  check(image, file, options);
+  switch (image_format_of(file)) {
+    case Format::exr:
+      return write_exr(image, file, options);
+    case Format::png:
+      return write_png(image, file, options);
+    case Format::jpeg:
+      return write_jpeg(image, file, options);
+    case Format::tiff:
+      return write_tiff(image, file, options);
+    case Format::pfm:
+      return write_pfm(image, file, options);
+    case Format::unknown:
+      throw unknown_extension(file);
+  }
+}
+
+scene::Image read_image(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) throw system::missing_file(file);
+  if (std::filesystem::is_directory(status)) throw scene::bad_input(file.string() + ": is a folder; name a file in it");
+  try {
+    switch (image_format_of(file)) {
+      case Format::exr:
+        return read_exr(file);
+      case Format::pfm:
+        return read_pfm(file);
+      default:
+        throw scene::bad_input(file.string() + ": cannot be read back by its name; .exr and .pfm can");
+    }
+  } catch (const std::bad_alloc&) {
+    throw scene::Error(scene::ErrorCode::system_failure, file.string() + ": no memory for the image");
+  }
+}
+
+void check_image_path(const std::filesystem::path& file) {
+  if (image_format_of(file) == Format::unknown) throw unknown_extension(file);
+  if (image_format_of(file) == Format::jpeg && !has_jpeg())
+    throw scene::bad_input(file.string() + ": this build leaves .jpg out; build with TESSERA_JPEG=ON, or write .png");
+  if (image_format_of(file) == Format::tiff && !has_tiff())
+    throw scene::bad_input(file.string() + ": this build leaves .tif out; build with TESSERA_TIFF=ON, or write .png");
+  // The only test that holds for every file system and user: begin such a file, and leave it.
+  system::check_writable(file);
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/foreign/client/foreign_file.hpp"
+
+namespace tessera::io {
+
+/// An image (kind image of foreign_data.hpp) of cells, or trees of them.
+struct OpenedAmrBlock {
+  const ForeignFile* file;  ///< null if no reader program holds it; then it has no ghosts
+  const ForeignPart* part;
+};
+
+/// Everything of a file with levels of refinement but its numbers, which are with the helper, or mapped.
+struct OpenedAmr {
+  std::deque<ForeignFile> files;       ///< that the helper holds; stay where they are
+  std::deque<ForeignPart> parts;       ///< of a parser of ours; stay too
+  std::vector<OpenedAmrBlock> blocks;  ///< images, or trees, of one of these
+  std::vector<cells::CellBlock>
+      fields;  ///< of each block, and its name; no cells. Of the helper's empty: not asked for yet
+  std::string format;
+  std::vector<std::string> notes;
+
+  void add(ForeignFile opened);
+};
+
+/// VTK's list of blocks, each read by itself, so that faults name the file. What level a block has is seen from its
+/// spacing.
+OpenedAmr open_amr_list(const std::filesystem::path& file);
+
+/// VTK's trees, whole or in pieces, each of which is read by itself.
+OpenedAmr open_hyper_trees(const std::filesystem::path& file);
+
+/// What a reader of helper/vtk_main.cpp makes blocks of.
+OpenedAmr open_amr_by(const char* reader, const std::filesystem::path& file);
+
+}  // namespace tessera::io

@@ -1,0 +1,163 @@
+#include "io/mesh/amrex_header.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+#include "io/text/text_file.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+constexpr std::string_view header_blanks = " \t\r\n";
+constexpr std::int64_t most_fields = 1 << 16, most_boxes = 1 << 20, most_levels = 64, most_cells = 1 << 29;
+
+/// Walks through words, and where their places are fixed through lines. Brackets and commas are between words.
+class Words {
+ public:
+  Words(std::string_view text, const std::string& source) : text_(text), source_(source) {}
+
+  /// What is left of the line, and on to the next.
+  std::string_view line() {
+    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    std::string_view line = text_.substr(at_, end - at_);
+    at_ = std::min(end + 1, text_.size());
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    return line;
+  }
+
+  std::string_view word(const char* what, std::string_view between = header_blanks) {
+    const std::size_t begin = text_.find_first_not_of(between, at_);
+    if (begin == std::string_view::npos)
+      fail(fmt::format("the file ends before {}; it is truncated, write it anew", what));
+    const std::size_t end = std::min(text_.find_first_of(between, begin), text_.size());
+    at_ = end;
+    return text_.substr(begin, end - begin);
+  }
+
+  std::int64_t count(const char* what, std::int64_t low, std::int64_t high) {
+    const std::string_view text = word(what, " \t\r\n(),");
+    std::int64_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || end != text.data() + text.size() || number < low || number > high)
+      fail(
+          fmt::format("{} is {}, a whole number from {} to {} is wanted; write it anew", what, quote(text), low, high));
+    return number;
+  }
+
+  double number(const char* what) {
+    const std::string_view text = word(what);
+    const std::optional<double> number = parse_number(text);
+    if (!number) fail(fmt::format("{} is {}, a number is wanted; write it anew", what, quote(text)));
+    return *number;
+  }
+
+  /// ((0,0,0) (7,7,7) (0,0,0)): the first cell, the last, and along which axes there are nodes instead of cells.
+  AmrexBox box(const char* what) {
+    AmrexBox box;
+    for (std::int64_t& n : box.low) n = count(what, -most_cells, most_cells);
+    for (std::int64_t& n : box.high) n = count(what, -most_cells, most_cells);
+    for (int axis = 0; axis < 3; ++axis)
+      if (count(what, 0, 1) != 0)
+        fail(fmt::format("{} has values at nodes, which are not read; write values of cells", what));
+    skip(")");
+    for (std::size_t a = 0; a < 3; ++a)
+      if (box.cells(a) < 1) fail(fmt::format("{} ends before it begins; write it anew", what));
+    return box;
+  }
+
+  /// Passes over such characters and blanks.
+  void skip(std::string_view characters) {
+    while (at_ < text_.size() && (characters.find(text_[at_]) != std::string_view::npos ||
+                                  header_blanks.find(text_[at_]) != std::string_view::npos))
+      ++at_;
+  }
+
+  [[noreturn]] void fail(const std::string& problem) const {
+    const auto number = std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n') + 1;
+    throw scene::bad_input(fmt::format("{}: line {}: {}", source_, number, problem));
+  }
+
+ private:
+  std::string_view text_;
+  const std::string& source_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace
+
+AmrexHeader parse_amrex_header(std::string_view text, const std::string& source) {
+  AmrexHeader header;
+  Words words(text, source);
+  words.line();  // the program's name and version
+  const auto fields = words.count("the number of fields", 1, most_fields);
+  words.line();
+  for (std::int64_t f = 0; f < fields; ++f) {
+    const std::string_view name = words.line();
+    const std::size_t first = name.find_first_not_of(header_blanks);
+    if (first == std::string_view::npos) words.fail(fmt::format("field {} has no name; write it anew", f));
+    header.fields.emplace_back(name.substr(first, name.find_last_not_of(header_blanks) + 1 - first));
+  }
+  if (const auto dimensions = words.count("the number of dimensions", 1, 3); dimensions != 3)
+    throw scene::bad_input(fmt::format("{}: it has {} dimensions; give a data set of three", source, dimensions));
+  words.word("the time");
+  header.levels.resize(static_cast<std::size_t>(words.count("the finest level", 0, most_levels - 1)) + 1);
+  for (double& low : header.low) low = words.number("the domain's low end");
+  for (int axis = 0; axis < 3; ++axis) words.number("the domain's high end");
+  for (std::size_t l = 1; l < header.levels.size(); ++l) words.word("a ratio of refinement");
+  for (AmrexLevel& level : header.levels) level.domain = words.box("a level's domain");
+  for (std::size_t l = 0; l < header.levels.size(); ++l) words.word("a level's step");
+  for (AmrexLevel& level : header.levels)
+    for (double& spacing : level.spacing) spacing = words.number("a level's cell size");
+  if (const auto system = words.count("the coordinate system", 0, 2); system != 0)
+    throw scene::bad_input(
+        fmt::format("{}: its coordinates are {}, only Cartesian ones are read; give another data set", source,
+                    system == 1 ? "cylindrical" : "spherical"));
+  words.word("the width of the boundary");
+  for (AmrexLevel& level : header.levels) {
+    words.word("a level's number");
+    const auto boxes = words.count("a level's number of boxes", 1, most_boxes);
+    words.word("a level's time");
+    words.word("a level's step");
+    for (std::int64_t n = 0; n < 6 * boxes; ++n) words.number("an end of a box");
+    level.cells = words.word("the name of a level's list of boxes");
+  }
+  return header;
+}
+
+std::vector<AmrexFab> parse_amrex_level(std::string_view text, std::size_t fields, const std::string& source) {
+  Words words(text, source);
+  if (const auto version = words.count("the version", 0, 1000); version != 1)
+    words.fail(fmt::format("its values have no lines of their own (version {}); write it with vismf.headerversion = 1",
+                           version));
+  words.word("how values are spread over files");
+  if (const auto stored = words.count("the number of fields", 0, most_fields);
+      stored != static_cast<std::int64_t>(fields))
+    words.fail(fmt::format("it has {} fields, the Header has {}; write it anew", stored, fields));
+  words.word("the number of cells around a box");
+  const auto boxes = words.count("the number of boxes", 1, most_boxes);
+  words.word("the number after that of boxes");
+  std::vector<AmrexFab> fabs;  // which grows as boxes are found
+  for (std::int64_t n = 0; n < boxes; ++n) fabs.emplace_back().box = words.box("a box");
+  words.skip(")");
+  words.count("the number of boxes' values", boxes, boxes);
+  for (AmrexFab& fab : fabs) {
+    if (const std::string_view key = words.word("FabOnDisk:"); key != "FabOnDisk:")
+      words.fail(fmt::format("{} where FabOnDisk: is wanted; write it anew", quote(key)));
+    fab.file = words.word("a file's name");
+    fab.offset = static_cast<std::uint64_t>(words.count("where values begin", 0, std::int64_t{1} << 50));
+  }
+  return fabs;
+}
+
+AmrexBox parse_amrex_fab(std::string_view text, std::size_t& fields, const std::string& source) {
+  Words words(text, source);
+  const AmrexBox box = words.box("the box of values");
+  fields = static_cast<std::size_t>(words.count("the number of fields", 1, most_fields));
+  return box;
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,151 @@
+#include "io/mesh/block_surface.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <optional>
+
+#include "cells/cell_split.hpp"
+#include "cells/field_choice.hpp"
+#include "cells/polygon_triangles.hpp"
+#include "io/mesh/mesh_formats.hpp"
+#include "io/text/clean_errors.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+/// The corners of a two-dimensional cell one after the other round it; none of other cells.
+std::vector<std::uint32_t> rim_of(std::uint8_t type, std::span<const std::uint32_t> points) {
+  std::size_t corners = 0;
+  switch (type) {
+    case 5:   // triangle
+    case 22:  // quadratic, biquadratic and Lagrange triangles
+    case 34:
+    case 69:
+      corners = 3;
+      break;
+    case 8:  // pixel
+      if (points.size() >= 4) return {points[0], points[1], points[3], points[2]};
+      break;
+    case 9:  // quadrilateral
+    case 23:
+    case 28:
+    case 30:
+    case 70:
+      corners = 4;
+      break;
+    case 7:  // polygon
+      corners = points.size();
+      break;
+    case 36:  // quadratic polygon: corners, then as many nodes between them
+      corners = points.size() / 2;
+      break;
+    default:
+      break;
+  }
+  if (corners < 3 || points.size() < corners) return {};
+  return {points.begin(), points.begin() + static_cast<std::ptrdiff_t>(corners)};
+}
+
+class Faces {
+ public:
+  Faces(const cells::FieldChoice* choice, BlockFaces& to) : choice_(choice), to_(to) {}
+
+  void add(const cells::CellBlock& block, const std::string& source) {
+    if (!block.tets.empty()) to_.has_volume = true;
+    read_values(block);
+    for (std::size_t c = 0; c < block.types.size(); ++c) {
+      const auto points =
+          std::span(block.connectivity).subspan(block.offsets[c], block.offsets[c + 1] - block.offsets[c]);
+      if (block.types[c] == 6) {  // triangle strip
+        for (std::size_t k = 0; k + 2 < points.size(); ++k)
+          add_face(block, c, std::array{points[k + k % 2], points[k + 1 - k % 2], points[k + 2]}, source);
+        continue;
+      }
+      const std::vector<std::uint32_t> rim = rim_of(block.types[c], points);
+      if (!rim.empty())
+        add_face(block, c, rim, source);
+      else if (cells::cell_shape(block.types[c]).kind != cells::CellKind::not_volumetric)
+        to_.has_volume = true;
+    }
+  }
+
+ private:
+  void read_values(const cells::CellBlock& block) {
+    values_.clear();
+    if (choice_ == nullptr) return;
+    const cells::BlockField* const field = cells::find_field(block, choice_->name, choice_->association);
+    const bool point = choice_->association == scene::Association::point;
+    values_.assign(point ? block.positions.size() : block.cell_count(), 0);
+    if (field != nullptr && field->tuples == values_.size())
+      field->read(choice_->component, 0, values_);
+    else
+      has_values_ = false;
+  }
+
+  /// Each face has points of its own, for those of cell data have several values.
+  void add_face(const cells::CellBlock& block, std::size_t cell, std::span<const std::uint32_t> rim,
+                const std::string& source) {
+    triangles_.clear();
+    cutter_.cut(rim, block.positions, triangles_);
+    for (const auto& triangle : triangles_) {
+      const auto first = static_cast<std::uint32_t>(to_.mesh.points.size());
+      for (const std::uint32_t v : triangle) {
+        const glm::dvec3& p = block.positions[v];
+        if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)))
+          throw scene::bad_input(fmt::format("{}: point {} of its faces is not finite; mend it", source, v));
+        to_.mesh.points.push_back(p);
+        if (choice_ == nullptr) continue;
+        const double value = values_[choice_->association == scene::Association::point ? v : cell];
+        to_.mesh.values.push_back(value);
+        if (!std::isfinite(value)) has_values_ = false;
+      }
+      to_.mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    if (!has_values_) to_.mesh.values.clear(), choice_ = nullptr;
+  }
+
+  const cells::FieldChoice* choice_;
+  BlockFaces& to_;
+  bool has_values_ = true;
+  std::vector<double> values_;
+  std::vector<std::array<std::uint32_t, 3>> triangles_;
+  cells::PolygonTriangles cutter_;
+};
+
+/// The field that is asked for, if the blocks have it.
+std::optional<cells::FieldChoice> field_of(std::span<const cells::CellBlock> blocks, const std::string& wish,
+                                           const std::string& source) {
+  if (wish.empty()) return std::nullopt;
+  const std::vector<cells::FieldTally> tallies = cells::tally_fields(blocks);
+  try {
+    return cells::choose_field(wish, cells::summarize_fields(std::span(&tallies, 1)), source);
+  } catch (const scene::Error&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+BlockFaces read_block_faces(std::span<const std::filesystem::path> files, cells::MeshOptions options) {
+  options.surfaces = true;
+  const std::string source = files.front().string();
+  return with_clean_errors(source, [&] {
+    std::vector<cells::CellBlock> blocks;
+    for (const std::filesystem::path& file : files) {
+      cells::MeshBlocks read = read_mesh_blocks(file, options);
+      std::move(read.blocks.begin(), read.blocks.end(), std::back_inserter(blocks));
+    }
+    const std::optional<cells::FieldChoice> choice = field_of(blocks, options.field, source);
+    BlockFaces result;
+    Faces faces(choice ? &*choice : nullptr, result);
+    for (const cells::CellBlock& block : blocks) faces.add(block, source);
+    return result;
+  });
+}
+
+}  // namespace tessera::io

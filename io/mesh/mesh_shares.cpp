@@ -1,0 +1,132 @@
+#include "io/mesh/mesh_shares.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+
+#include "cells/part_range.hpp"
+#include "io/foreign/client/foreign_file.hpp"
+#include "io/formats/inflated_file.hpp"
+#include "io/formats/input_file.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+/// The digits that a name ends in after a point, which are cut off.
+std::optional<std::string> last_number(std::string& name) {
+  const std::size_t point = name.rfind('.');
+  if (point == std::string::npos || point == 0) return std::nullopt;
+  const std::string digits = name.substr(point + 1);
+  constexpr std::size_t most = 7;
+  if (digits.empty() || digits.size() > most || digits.find_first_not_of("0123456789") != std::string::npos)
+    return std::nullopt;
+  name.resize(point);
+  return digits;
+}
+
+int number_in(const std::string& digits) {
+  int number = 0;
+  std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  return number;
+}
+
+bool is_exodus(const std::filesystem::path& file) {
+  const FormatRow* const row = format_of(file);
+  return row != nullptr && (row->kind == FileKind::exodus || row->kind == FileKind::hdf5);
+}
+
+nlohmann::json request_for(const char* reader, const cells::MeshOptions& options) {
+  nlohmann::json request{{"reader", reader}, {"blocks", options.blocks}};
+  if (options.time_step) request["time_step"] = *options.time_step;
+  return request;
+}
+
+void add_blocks(const ForeignFile& opened, cells::MeshBlocks& blocks, const std::string& source) {
+  cells::add_notes(opened.contents.notes, blocks.notes);
+  cells::add_notes(opened.contents.block_names, blocks.block_names);
+  cells::add_notes(opened.contents.surface_names, blocks.surface_names);
+  blocks.time_step = opened.contents.time_step;
+  for (cells::CellBlock& block : blocks_of(opened, blocks.notes, GridsAre::hexahedra)) {
+    block.source = source;
+    blocks.blocks.push_back(std::move(block));
+  }
+}
+
+cells::MeshBlocks read_exodus_files(std::span<const std::filesystem::path> files, const cells::MeshOptions& options,
+                                    int part, int parts) {
+  cells::MeshBlocks result;
+  result.format = fmt::format("Exodus II in {} files", files.size());
+  HelperTask task;
+  task.progress = options.progress;
+  const auto helper = std::make_shared<HelperProcess>(std::move(task));
+  const std::uint64_t last = cells::first_of_part(files.size(), part + 1, parts);
+  for (std::uint64_t k = cells::first_of_part(files.size(), part, parts); k < last; ++k) {
+    const char* const reader = format_of(files[k])->kind == FileKind::hdf5 ? "hdf5" : "exodus";
+    add_blocks(open_foreign(helper, files[k], request_for(reader, options)), result, files[k].string());
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> exodus_files(const std::filesystem::path& file) {
+  std::string name = file.filename().string();
+  const std::optional<std::string> number = last_number(name);
+  const std::optional<std::string> count = number ? last_number(name) : std::nullopt;
+  if (!count || name.empty() || number->size() < count->size()) return {};
+  const int files = number_in(*count);
+  if (files < 2 || number_in(*number) >= files || std::filesystem::is_directory(file) || !is_exodus(file)) return {};
+  std::vector<std::filesystem::path> all;
+  for (int k = 0; k < files; ++k) {
+    all.push_back(file.parent_path() / fmt::format("{}.{}.{:0{}}", name, *count, k, number->size()));
+    std::error_code unknown;
+    if (!std::filesystem::is_regular_file(all.back(), unknown))
+      throw scene::bad_input(
+          fmt::format("{}: it is one of {} files of a mesh, of which {} is missing; lay it beside, or "
+                      "give this one another name to see it alone",
+                      file.string(), files, all.back().filename().string()));
+    if (!is_exodus(all.back()))
+      throw scene::bad_input(fmt::format(
+          "{}: it is a part of a mesh in {} Exodus files, and none itself; write it anew", all.back().string(), files));
+  }
+  return all;
+}
+
+bool has_shares(const std::filesystem::path& file) {
+  const FormatRow* const row = format_of(file);
+  if (row == nullptr) return false;
+  if (row->kind == FileKind::solver && std::string_view(row->reader) == "openfoam") return true;
+  const FormatRow* const named = format_named(file);
+  if (std::string_view(row->reader) == "cgns" ||
+      (row->kind == FileKind::hdf5 && named != nullptr && std::string_view(named->reader) == "cgns"))
+    return !std::filesystem::is_directory(file);
+  return !exodus_files(file).empty();
+}
+
+cells::MeshBlocks read_share(const std::filesystem::path& file, const cells::MeshOptions& options, int part,
+                             int parts) {
+  if (const auto files = exodus_files(file); !files.empty()) return read_exodus_files(files, options, part, parts);
+  const FormatRow& row = *format_of(file);
+  require_beside_others(file);
+  nlohmann::json request = request_for(row.kind == FileKind::hdf5 ? "hdf5" : row.reader, options);
+  request["part"] = part;
+  request["parts"] = parts;
+  HelperTask task;
+  task.progress = options.progress;
+  const ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(std::move(task)), file, std::move(request));
+  if (opened.contents.has_levels)
+    throw scene::bad_input(
+        fmt::format("{}: it is named as CGNS and holds a mesh of several levels; give it another name", file.string()));
+  cells::MeshBlocks result;
+  result.format = opened.contents.format;
+  add_blocks(opened, result, "");
+  return result;
+}
+
+}  // namespace tessera::io

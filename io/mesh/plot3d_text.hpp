@@ -1,0 +1,20 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "io/mesh/plot3d_layout.hpp"
+
+namespace tessera::io {
+
+/// PLOT3D as text: the same numbers as in binary files, between blanks. All are looked at, since VTK's reader would
+/// take what is none for whatever it last read. Both throw Error(bad_input) with the line at fault.
+
+/// The only layout whose count of numbers is the text's; none if no layout has it.
+std::optional<Plot3dLayout> plot3d_text_layout(std::string_view text, const std::string& source);
+
+/// Throws unless a solution has the layout's dimensions and at least 4 + 5 n numbers a grid; how many come after them.
+std::uint64_t check_plot3d_text_solution(std::string_view text, const Plot3dLayout& layout, const std::string& source);
+
+}  // namespace tessera::io

@@ -1,0 +1,260 @@
+#include "io/mesh/ply_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <optional>
+
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+enum class Number { i8, u8, i16, u16, i32, u32, f32, f64 };
+constexpr std::array<std::size_t, 8> number_size = {1, 1, 2, 2, 4, 4, 4, 8};
+
+std::optional<Number> number_of(std::string_view name) {
+  static constexpr std::array<std::pair<const char*, Number>, 16> names = {{{"char", Number::i8},
+                                                                            {"int8", Number::i8},
+                                                                            {"uchar", Number::u8},
+                                                                            {"uint8", Number::u8},
+                                                                            {"short", Number::i16},
+                                                                            {"int16", Number::i16},
+                                                                            {"ushort", Number::u16},
+                                                                            {"uint16", Number::u16},
+                                                                            {"int", Number::i32},
+                                                                            {"int32", Number::i32},
+                                                                            {"uint", Number::u32},
+                                                                            {"uint32", Number::u32},
+                                                                            {"float", Number::f32},
+                                                                            {"float32", Number::f32},
+                                                                            {"double", Number::f64},
+                                                                            {"float64", Number::f64}}};
+  for (const auto& [known, number] : names)
+    if (name == known) return number;
+  return std::nullopt;
+}
+
+struct Property {
+  std::string name;
+  Number type = Number::f32;
+  std::optional<Number> count;  ///< a list: the type of its length
+};
+
+struct Element {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<Property> properties;
+};
+
+/// Colours, normals and texture coordinates describe the surface's looks, not a quantity in it.
+bool is_decoration(const std::string& name) {
+  static constexpr std::array names = {
+      "nx",           "ny", "nz", "red", "green", "blue",      "alpha",    "diffuse_red", "diffuse_green",
+      "diffuse_blue", "u",  "v",  "s",   "t",     "texture_u", "texture_v"};
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+class PlyParser {
+ public:
+  PlyParser(std::string_view text, const std::string& source) : text_(text), source_(source) {}
+
+  PlySurface parse() {
+    read_header();
+    for (const Element& element : elements_) read_element(element);
+    const std::size_t points = result_.surface.points.size();
+    for (std::size_t f = 0; f < result_.surface.facets.size(); ++f)
+      for (const std::uint32_t v : result_.surface.facets[f].polygons.front())
+        if (v >= points)
+          throw scene::bad_input(fmt::format("{}: face {} uses vertex {}, the file holds {}; write it anew", source_, f,
+                                             static_cast<std::int64_t>(v), points));
+    return std::move(result_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw scene::bad_input(fmt::format("{}: {}; the file is truncated or damaged, write it anew", source_, what));
+  }
+
+  static std::string printable(std::string_view text) {
+    std::string clean(text.substr(0, 30));
+    for (char& c : clean)
+      if (c < ' ' || c > '~') c = '?';
+    return clean;
+  }
+
+  std::vector<std::string_view> header_words() {
+    const std::size_t end = text_.find('\n', at_);
+    if (end > 1 << 20) fail("its header does not end");  // npos too
+    std::string_view line = text_.substr(at_, end - at_);
+    at_ = end + 1;
+    std::vector<std::string_view> words;
+    while (true) {
+      const std::size_t start = line.find_first_not_of(" \t\r");
+      if (start == std::string_view::npos) return words;
+      line.remove_prefix(start);
+      const std::size_t length = std::min(line.find_first_of(" \t\r"), line.size());
+      words.push_back(line.substr(0, length));
+      line.remove_prefix(length);
+    }
+  }
+
+  void read_header() {
+    if (header_words() != std::vector<std::string_view>{"ply"}) fail("it does not begin with 'ply'");
+    bool has_format = false;
+    while (true) {
+      const std::vector<std::string_view> words = header_words();
+      if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
+      if (words[0] == "end_header") break;
+      if (words[0] == "format" && words.size() >= 2) {
+        ascii_ = words[1] == "ascii";
+        big_endian_ = words[1] == "binary_big_endian";
+        if (!ascii_ && !big_endian_ && words[1] != "binary_little_endian")
+          fail(fmt::format("its format is '{}'", printable(words[1])));
+        has_format = true;
+      } else if (words[0] == "element" && words.size() == 3) {
+        Element element{std::string(words[1]), 0, {}};
+        const auto [end, error] = std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
+        if (error != std::errc() || end != words[2].data() + words[2].size() || element.count > text_.size())
+          fail(fmt::format("it promises '{}' of element {}", printable(words[2]), printable(words[1])));
+        elements_.push_back(std::move(element));
+      } else if (words[0] == "property" && !elements_.empty() && (words.size() == 3 || words.size() == 5)) {
+        Property property;
+        const bool is_list = words.size() == 5;
+        if (is_list) property.count = number_of(words[2]);
+        const std::optional<Number> type = number_of(words[is_list ? 3 : 1]);
+        if (!type || (is_list && (words[1] != "list" || !property.count || *property.count >= Number::f32)))
+          fail(fmt::format("a property of {} has an unknown type", printable(elements_.back().name)));
+        property.type = *type;
+        property.name = words.back();
+        elements_.back().properties.push_back(std::move(property));
+      } else {
+        fail(fmt::format("its header holds '{}'", printable(words[0])));
+      }
+    }
+    if (!has_format) fail("its header names no format");
+  }
+
+  void read_element(const Element& element) {
+    if (element.properties.empty()) return;
+    const bool vertex = element.name == "vertex", face = element.name == "face";
+    std::array<std::ptrdiff_t, 3> xyz{-1, -1, -1};
+    std::vector<std::ptrdiff_t> attribute(element.properties.size(), -1);
+    std::ptrdiff_t corners = -1;
+    for (std::size_t k = 0; k < element.properties.size(); ++k) {
+      const Property& property = element.properties[k];
+      if (face && property.count && (property.name == "vertex_indices" || property.name == "vertex_index"))
+        corners = static_cast<std::ptrdiff_t>(k);
+      if (!vertex || property.count) continue;
+      if (property.name.size() == 1 && property.name[0] >= 'x' && property.name[0] <= 'z') {
+        xyz[static_cast<std::size_t>(property.name[0] - 'x')] = static_cast<std::ptrdiff_t>(k);
+      } else if (!is_decoration(property.name)) {
+        attribute[k] = static_cast<std::ptrdiff_t>(result_.attribute_names.size());
+        result_.attribute_names.push_back(printable(property.name));
+        result_.surface.attributes.emplace_back();
+      }
+    }
+    if (vertex && (xyz[0] < 0 || xyz[1] < 0 || xyz[2] < 0)) fail("its vertices have no x, y and z");
+    // A second list of vertices would leave the first list's attributes shorter than the points.
+    if (vertex && !result_.surface.points.empty()) fail("it holds two lists of vertices");
+    if (face && corners < 0) fail("its faces have no vertex_indices");
+    for (std::uint64_t n = 0; n < element.count; ++n) {
+      glm::dvec3 p(0);
+      for (std::size_t k = 0; k < element.properties.size(); ++k) {
+        const Property& property = element.properties[k];
+        if (property.count) {
+          const bool wanted = face && static_cast<std::ptrdiff_t>(k) == corners;
+          read_list(property, wanted, n);
+          continue;
+        }
+        const double value = number(property.type);
+        for (int a = 0; a < 3; ++a)
+          if (xyz[static_cast<std::size_t>(a)] == static_cast<std::ptrdiff_t>(k)) p[a] = value;
+        if (attribute[k] >= 0) result_.surface.attributes[static_cast<std::size_t>(attribute[k])].push_back(value);
+      }
+      if (vertex) result_.surface.points.push_back(p);
+    }
+  }
+
+  void read_list(const Property& property, bool wanted, std::uint64_t face) {
+    const double length = number(*property.count);
+    if (!(length >= 0) || length > static_cast<double>(text_.size() - at_))
+      fail(fmt::format("a list of element {} has the length {}", face, length));
+    cells::Polygon polygon;
+    for (std::size_t k = 0; static_cast<double>(k) < length; ++k) {
+      const double v = number(property.type);
+      if (!wanted) continue;
+      if (!(v >= 0 && v < 4294967295.0 && v == std::floor(v))) fail(fmt::format("face {} uses vertex {}", face, v));
+      polygon.push_back(static_cast<std::uint32_t>(v));
+    }
+    if (wanted) result_.surface.facets.push_back({{std::move(polygon)}, {}});
+  }
+
+  double number(Number type) { return ascii_ ? ascii_number() : binary_number(type); }
+
+  double ascii_number() {
+    while (at_ < text_.size() && (text_[at_] == ' ' || (text_[at_] >= '\t' && text_[at_] <= '\r'))) ++at_;
+    if (at_ < text_.size() && text_[at_] == '+') ++at_;
+    double value = 0;
+    const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
+    if (error == std::errc::invalid_argument) {
+      if (at_ >= text_.size()) fail("it ends before its last element");
+      fail(fmt::format("'{}' is no number", printable(text_.substr(at_, 12))));
+    }
+    if (error == std::errc::result_out_of_range) value = std::numeric_limits<double>::quiet_NaN();
+    at_ = static_cast<std::size_t>(end - text_.data());
+    return value;
+  }
+
+  double binary_number(Number type) {
+    const std::size_t size = number_size[static_cast<std::size_t>(type)];
+    if (text_.size() - at_ < size) fail("it ends before its last element");
+    std::array<char, 8> raw{};
+    std::memcpy(raw.data(), text_.data() + at_, size);
+    at_ += size;
+    if (big_endian_ == (std::endian::native == std::endian::little)) std::reverse(raw.begin(), raw.begin() + size);
+    const auto as = [&](auto value) {
+      std::memcpy(&value, raw.data(), sizeof value);
+      return static_cast<double>(value);
+    };
+    switch (type) {
+      case Number::i8:
+        return as(std::int8_t{});
+      case Number::u8:
+        return as(std::uint8_t{});
+      case Number::i16:
+        return as(std::int16_t{});
+      case Number::u16:
+        return as(std::uint16_t{});
+      case Number::i32:
+        return as(std::int32_t{});
+      case Number::u32:
+        return as(std::uint32_t{});
+      case Number::f32:
+        return as(float{});
+      case Number::f64:
+        return as(double{});
+    }
+    return 0;
+  }
+
+  std::string_view text_;
+  const std::string& source_;
+  std::size_t at_ = 0;
+  bool ascii_ = true, big_endian_ = false;
+  std::vector<Element> elements_;
+  PlySurface result_;
+};
+
+}  // namespace
+
+PlySurface parse_ply(std::string_view text, const std::string& source) { return PlyParser(text, source).parse(); }
+
+}  // namespace tessera::io

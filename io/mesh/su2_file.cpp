@@ -1,0 +1,204 @@
+#include "io/mesh/su2_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <optional>
+#include <system_error>
+
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+constexpr std::string_view separators = " \t\r,";
+
+/// Points of a cell of VTK's types that SU2 has; 0 of others.
+std::size_t nodes_of(std::uint64_t type) {
+  switch (type) {
+    case 3:
+      return 2;
+    case 5:
+      return 3;
+    case 9:
+    case 10:
+      return 4;
+    case 12:
+      return 8;
+    case 13:
+      return 6;
+    case 14:
+      return 5;
+    default:
+      return 0;
+  }
+}
+
+/// Walks through lines; what follows a % is a comment, lines of nothing count for nothing.
+class Lines {
+ public:
+  Lines(std::string_view text, const std::string& source) : rest_(text), source_(source) {}
+
+  bool next() {
+    while (!rest_.empty()) {
+      const std::size_t end = rest_.find('\n');
+      line_ = rest_.substr(0, end);
+      rest_ = end == std::string_view::npos ? std::string_view() : rest_.substr(end + 1);
+      ++number_;
+      line_ = line_.substr(0, line_.find('%'));
+      if (skip_blanks()) return true;
+    }
+    return false;
+  }
+
+  void need_next(const char* what, std::size_t k, std::size_t count) {
+    if (!next()) fail(fmt::format("the file ends at {} {} of {}; it is truncated, write it anew", what, k, count));
+  }
+
+  /// The word before '=' of a line of that kind; empty of others. What follows is read by number().
+  std::string_view key() {
+    const std::size_t equals = line_.find('=');
+    if (equals == std::string_view::npos) return {};
+    std::string_view word = line_.substr(0, equals);
+    word = word.substr(0, word.find_last_not_of(separators) + 1);
+    line_.remove_prefix(equals + 1);
+    return word;
+  }
+
+  template <class T>
+  T number(const char* what) {
+    if (!skip_blanks()) fail(fmt::format("{} is missing; write it anew", what));
+    if (line_.front() == '+') line_.remove_prefix(1);
+    T value{};
+    const auto [end, error] = std::from_chars(line_.data(), line_.data() + line_.size(), value);
+    const bool is_cut = end != line_.data() + line_.size() && separators.find(*end) == std::string_view::npos;
+    if (error == std::errc::invalid_argument || is_cut)
+      fail(fmt::format("'{}' is no {}; mend it",
+                       line_.substr(0, std::min<std::size_t>(20, line_.find_first_of(separators))), what));
+    if (error == std::errc::result_out_of_range) {
+      if constexpr (std::is_integral_v<T>) fail(fmt::format("{} is too large; mend it", what));
+      value = std::numeric_limits<T>::quiet_NaN();  // 1e999: such a cell is blanked
+    }
+    line_.remove_prefix(static_cast<std::size_t>(end - line_.data()));
+    return value;
+  }
+
+  /// A count of lines, each of which has at least `least` bytes.
+  std::size_t count(const char* what, std::size_t least) {
+    const auto n = number<std::uint64_t>(what);
+    if (n > rest_.size() / least + 1)
+      fail(fmt::format("{} is {}, more than the file can hold; it is truncated, write it anew", what, n));
+    return static_cast<std::size_t>(n);
+  }
+
+  [[noreturn]] void fail(std::string what) const {
+    for (char& c : what)  // it may quote anything
+      if (c < ' ' || c > '~') c = '?';
+    throw scene::bad_input(fmt::format("{}: line {}: {}", source_, number_, what));
+  }
+
+ private:
+  bool skip_blanks() {
+    line_.remove_prefix(std::min(line_.find_first_not_of(separators), line_.size()));
+    return !line_.empty();
+  }
+
+  std::string_view rest_, line_;
+  const std::string& source_;
+  std::size_t number_ = 0;
+};
+
+/// A zone as it is read: points may come after the cells that use them.
+struct Zone {
+  cells::CellBlock block;
+  bool has_cells = false, has_points = false;
+};
+
+void read_cells(Lines& lines, Zone& zone) {
+  if (zone.has_cells) lines.fail("NELEM is given twice in one zone; mend it");
+  zone.has_cells = true;
+  constexpr std::size_t least = 9;  // "10 0 1 2 3", a triangle "5 0 1 2" and its line's end
+  const std::size_t count = lines.count("NELEM", least - 1);
+  cells::CellBlock& block = zone.block;
+  block.types.reserve(count);
+  block.offsets.reserve(count + 1);
+  block.offsets.push_back(0);
+  for (std::size_t c = 0; c < count; ++c) {
+    lines.need_next("cell", c, count);
+    const auto type = lines.number<std::uint64_t>("cell type");
+    const std::size_t nodes = nodes_of(type);
+    if (nodes == 0 && nodes_of(type % 100) > 0)
+      lines.fail(fmt::format("{} is a cell of order {}, which is not read; have SU2 write .vtu", type, type / 100 + 1));
+    if (nodes == 0) lines.fail(fmt::format("{} is no cell type of SU2 (3 5 9 10 12 13 14); mend it", type));
+    for (std::size_t k = 0; k < nodes; ++k) {
+      const auto point = lines.number<std::uint64_t>("point number");
+      if (point >= std::numeric_limits<std::uint32_t>::max()) lines.fail("a point number is too large; mend it");
+      block.connectivity.push_back(static_cast<std::uint32_t>(point));
+    }
+    block.types.push_back(static_cast<std::uint8_t>(type));
+    block.offsets.push_back(block.connectivity.size());
+  }
+}
+
+void read_points(Lines& lines, Zone& zone) {
+  if (zone.has_points) lines.fail("NPOIN is given twice in one zone; mend it");
+  zone.has_points = true;
+  constexpr std::size_t least = 6;  // "0 0 0" and its line's end
+  const std::size_t count = lines.count("NPOIN", least);
+  zone.block.positions.reserve(count);
+  for (std::size_t v = 0; v < count; ++v) {
+    lines.need_next("point", v, count);
+    const auto x = lines.number<double>("coordinate"), y = lines.number<double>("coordinate"),
+               z = lines.number<double>("coordinate");
+    zone.block.positions.emplace_back(x, y, z);
+  }
+}
+
+/// Throws unless all of a zone is there and its cells use its points.
+void check(const Zone& zone, const std::string& source) {
+  const std::string where = zone.block.name.empty() ? source : fmt::format("{}: {}", source, zone.block.name);
+  if (!zone.has_cells || !zone.has_points)
+    throw scene::bad_input(
+        fmt::format("{}: there is no {}; it is truncated, write it anew", where, zone.has_cells ? "NPOIN" : "NELEM"));
+  const std::size_t points = zone.block.positions.size();
+  for (std::size_t c = 0; c < zone.block.types.size(); ++c)
+    for (std::uint64_t k = zone.block.offsets[c]; k < zone.block.offsets[c + 1]; ++k)
+      if (zone.block.connectivity[k] >= points)
+        throw scene::bad_input(fmt::format("{}: cell {} uses point {}, the file has {}; points count from 0, mend it",
+                                           where, c, zone.block.connectivity[k], points));
+}
+
+}  // namespace
+
+std::vector<cells::CellBlock> parse_su2(std::string_view text, const std::string& source) {
+  Lines lines(text, source);
+  std::vector<Zone> zones(1);
+  bool has_zones = false;
+  while (lines.next()) {
+    const std::string_view key = lines.key();
+    if (key == "NDIME") {
+      if (const auto dimensions = lines.number<std::uint64_t>("NDIME"); dimensions != 3)
+        lines.fail(fmt::format("NDIME is {}: the mesh is no volume; give one of 3 dimensions", dimensions));
+    } else if (key == "IZONE") {
+      // The first zone's name stands before its counts.
+      if (zones.back().has_cells || zones.back().has_points) zones.emplace_back();
+      zones.back().block.name = fmt::format("zone {}", lines.number<std::uint64_t>("IZONE"));
+      has_zones = true;
+    } else if (key == "NELEM") {
+      read_cells(lines, zones.back());
+    } else if (key == "NPOIN") {
+      read_points(lines, zones.back());
+    }
+  }
+  std::vector<cells::CellBlock> blocks;
+  for (Zone& zone : zones) {
+    check(zone, source);
+    if (!has_zones) zone.block.name.clear();
+    blocks.push_back(std::move(zone.block));
+  }
+  return blocks;
+}
+
+}  // namespace tessera::io

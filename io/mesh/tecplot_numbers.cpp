@@ -1,0 +1,188 @@
+#include "io/mesh/tecplot_numbers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "scene/quote.hpp"
+
+namespace tessera::io {
+namespace {
+
+constexpr std::string_view tecplot_blanks = " \t\r\n,";
+
+/// A value of so many variables by the file's length: of those that a few letters repeat.
+constexpr double most_values_a_byte = 16;
+
+/// The numbers of a zone one after the other. "3*1.5" is one three times.
+class NumberStream {
+ public:
+  NumberStream(std::string_view text, const TecplotZone& zone, const std::string& source)
+      : text_(text), zone_(zone), source_(source), at_(zone.numbers_at) {}
+
+  double next(const char* what) {
+    if (left_ > 0) {
+      --left_;
+      return repeated_;
+    }
+    const std::string_view word = next_word();
+    if (word.empty())
+      refuse_tecplot(text_, zone_.end, source_,
+                     fmt::format("the zone ends before its {} do; it is truncated, export it again", what));
+    const std::size_t star = word.find('*');
+    if (star == std::string_view::npos) return number(word, what);
+    std::size_t count = 0;
+    const auto read = std::from_chars(word.data(), word.data() + star, count);
+    if (read.ec != std::errc() || read.ptr != word.data() + star || count == 0) refuse(word, what);
+    repeated_ = number(word.substr(star + 1), what);
+    left_ = count - 1;
+    return repeated_;
+  }
+
+  std::size_t next_index(const char* what) {
+    const double value = next(what);
+    if (!(value >= 0 && value <= std::numeric_limits<std::uint32_t>::max()) || value != std::floor(value))
+      refuse_tecplot(text_, at_, source_, fmt::format("{} is among the {}; export the file again", value, what));
+    return static_cast<std::size_t>(value);
+  }
+
+  /// Of a count that the text is too short for.
+  [[noreturn]] void refuse_count(std::size_t count, const char* what) const {
+    refuse_tecplot(
+        text_, zone_.record_at, source_,
+        fmt::format("the zone has {} {}, more than the file can hold; it is truncated, export it again", count, what));
+  }
+
+  /// How many numbers the first line with some has.
+  [[nodiscard]] std::size_t on_first_line() const {
+    const std::string_view rest = text_.substr(at_, zone_.end - at_);
+    std::string_view line = rest.substr(0, rest.find('\n'));
+    std::size_t count = 0;
+    while (true) {
+      const std::size_t first = line.find_first_not_of(tecplot_blanks);
+      if (first == std::string_view::npos) return count;
+      line.remove_prefix(first);
+      line.remove_prefix(std::min(line.find_first_of(tecplot_blanks), line.size()));
+      ++count;
+    }
+  }
+
+ private:
+  std::string_view next_word() {
+    for (;;) {
+      at_ = std::min(text_.find_first_not_of(tecplot_blanks, at_), zone_.end);
+      if (at_ >= zone_.end || text_[at_] != '#') break;
+      at_ = std::min(text_.find('\n', at_), zone_.end);
+    }
+    const std::size_t first = at_;
+    while (at_ < zone_.end && tecplot_blanks.find(text_[at_]) == std::string_view::npos) ++at_;
+    return text_.substr(first, at_ - first);
+  }
+
+  /// In Fortran's notation too ("1.5D+00", "+1"). What is no number, as "1.#QNAN", is one, and so are those too large.
+  double number(std::string_view word, const char* what) const {
+    const std::string_view given = word;
+    if (word.starts_with('+')) word.remove_prefix(1);
+    double value = 0;
+    const char* const end = word.data() + word.size();
+    auto read = std::from_chars(word.data(), end, value);
+    if (read.ec == std::errc() && read.ptr == end) return value;
+    std::string plain(word);
+    std::ranges::replace_if(
+        plain, [](char c) { return c == 'd' || c == 'D'; }, 'e');
+    const char* const plain_end = plain.data() + plain.size();
+    read = std::from_chars(plain.data(), plain_end, value);
+    if (read.ec == std::errc() && read.ptr == plain_end) return value;
+    if (read.ec == std::errc::result_out_of_range || word.find('#') != std::string_view::npos)
+      return std::numeric_limits<double>::quiet_NaN();
+    refuse(given, what);
+  }
+
+  [[noreturn]] void refuse(std::string_view word, const char* what) const {
+    refuse_tecplot(text_, at_, source_,
+                   fmt::format("{} is among the {}, and no number; export the file again", scene::quote(word), what));
+  }
+
+  std::string_view text_;
+  const TecplotZone& zone_;
+  const std::string& source_;
+  std::size_t at_;
+  double repeated_ = 0;
+  std::size_t left_ = 0;  ///< of what is repeated
+};
+
+std::size_t nodes_an_element(TecplotZoneType type) {
+  return type == TecplotZoneType::bricks ? 8 : type == TecplotZoneType::tetrahedra ? 4 : 0;
+}
+
+/// Without a word on it, a zone whose first line has a number for each variable is by points.
+bool is_by_point(const TecplotZone& zone, const NumberStream& numbers, std::size_t variables) {
+  if (zone.by_point) return *zone.by_point;
+  return variables != zone.nodes && numbers.on_first_line() == variables &&
+         std::ranges::count(zone.of_cells, true) == 0;
+}
+
+void read_values(std::string_view text, const TecplotZone& zone, const std::string& source, NumberStream& numbers,
+                 TecplotNumbers& read) {
+  std::vector<std::size_t> own;
+  double total = 0;
+  for (std::size_t v = 0; v < zone.of_cells.size(); ++v) {
+    if (zone.shared_from.contains(v) || zone.is_passive[v]) continue;
+    own.push_back(v);
+    total += static_cast<double>(zone.of_cells[v] ? zone.elements : zone.nodes);
+  }
+  if (total > most_values_a_byte * static_cast<double>(text.size()))
+    refuse_tecplot(
+        text, zone.record_at, source,
+        fmt::format("the zone has {} values, more than the file can hold; it is truncated, export it again", total));
+  const bool by_point = is_by_point(zone, numbers, own.size());
+  for (const std::size_t v : own) {
+    if (by_point && zone.of_cells[v])
+      refuse_tecplot(text, zone.record_at, source, "values of cells are by points; write DATAPACKING=BLOCK");
+    read.values[v].resize(zone.of_cells[v] ? zone.elements : zone.nodes);
+  }
+  if (by_point) {
+    for (std::size_t n = 0; n < zone.nodes; ++n)
+      for (const std::size_t v : own) read.values[v][n] = numbers.next("values");
+  } else {
+    for (const std::size_t v : own)
+      for (double& value : read.values[v]) value = numbers.next("values");
+  }
+}
+
+void read_polyhedra(const TecplotZone& zone, NumberStream& numbers, TecplotNumbers& read) {
+  std::size_t nodes = 0;
+  for (std::size_t f = 0; f < zone.faces; ++f) {
+    read.face_sizes.push_back(numbers.next_index("numbers of nodes of faces"));
+    nodes += read.face_sizes.back();
+  }
+  if (nodes > zone.end) numbers.refuse_count(nodes, "nodes of faces");
+  for (std::size_t n = 0; n < nodes; ++n) read.face_nodes.push_back(numbers.next_index("nodes of faces"));
+  for (auto* const side : {&read.left, &read.right})
+    for (std::size_t f = 0; f < zone.faces; ++f) {
+      // A negative number counts elements of other zones.
+      const double element = numbers.next("elements beside faces");
+      side->push_back(element > 0 && element <= static_cast<double>(zone.elements) ? static_cast<std::size_t>(element)
+                                                                                   : 0);
+    }
+}
+
+}  // namespace
+
+TecplotNumbers read_tecplot_numbers(std::string_view text, const TecplotZone& zone, const std::string& source) {
+  TecplotNumbers read;
+  read.values.resize(zone.of_cells.size());
+  NumberStream numbers(text, zone, source);
+  read_values(text, zone, source, numbers, read);
+  if (zone.connectivity_from) return read;
+  if (zone.type == TecplotZoneType::polyhedra) read_polyhedra(zone, numbers, read);
+  const std::size_t count = zone.elements * nodes_an_element(zone.type);
+  for (std::size_t k = 0; k < count; ++k) read.connectivity.push_back(numbers.next_index("nodes of elements"));
+  return read;
+}
+
+}  // namespace tessera::io

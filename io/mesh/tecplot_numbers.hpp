@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/mesh/tecplot_header.hpp"
+
+namespace tessera::io {
+
+/// A zone's own numbers, those that it shares left empty.
+struct TecplotNumbers {
+  std::vector<std::vector<double>> values;                       ///< by variable; of each node or element
+  std::vector<std::size_t> connectivity;                         ///< nodes from 1, 4 or 8 an element
+  std::vector<std::size_t> face_sizes, face_nodes, left, right;  ///< of polyhedra, nodes and elements from 1, 0 is none
+};
+
+/// Reads a zone's numbers. Throws Error(bad_input) with file, line and remedy.
+TecplotNumbers read_tecplot_numbers(std::string_view text, const TecplotZone& zone, const std::string& source);
+
+}  // namespace tessera::io

@@ -1,0 +1,235 @@
+#include "io/mesh/tetgen_files.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <system_error>
+
+#include "cells/curved/node_orders.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+/// Walks through TetGen's text: lines of numbers, `#` to the line's end is a comment, blank lines count for nothing.
+class Numbers {
+ public:
+  Numbers(std::string_view text, const std::string& source) : rest_(text), source_(source) {}
+
+  /// Goes to the next line that holds something; false at the end.
+  bool next_line() {
+    while (!rest_.empty()) {
+      const std::size_t end = rest_.find('\n');
+      line_ = rest_.substr(0, end);
+      rest_ = end == std::string_view::npos ? std::string_view() : rest_.substr(end + 1);
+      ++line_number_;
+      line_ = line_.substr(0, line_.find('#'));
+      if (skip_blanks()) return true;
+    }
+    line_ = {};
+    return false;
+  }
+
+  void need_line(const char* what) {
+    if (!next_line()) fail(fmt::format("the file ends where {} should be", what));
+  }
+
+  /// The next number of this line, or none.
+  template <class T>
+  std::optional<T> maybe() {
+    if (!skip_blanks()) return std::nullopt;
+    if (line_.front() == '+') line_.remove_prefix(1);
+    T value{};
+    const auto [end, error] = std::from_chars(line_.data(), line_.data() + line_.size(), value);
+    if (error == std::errc::invalid_argument || (end != line_.data() + line_.size() && !is_blank(*end)))
+      fail(fmt::format("'{}' is not {}", line_.substr(0, std::min<std::size_t>(20, line_.find_first_of(" \t\r,"))),
+                       std::is_integral_v<T> ? "a whole number" : "a number"));
+    if (error == std::errc::result_out_of_range) {
+      if constexpr (std::is_integral_v<T>) fail("a number is too large");
+      value = std::numeric_limits<T>::quiet_NaN();  // 1e999: such a cell is blanked
+    }
+    line_.remove_prefix(static_cast<std::size_t>(end - line_.data()));
+    return value;
+  }
+
+  template <class T>
+  T need(const char* what) {
+    if (const std::optional<T> value = maybe<T>()) return *value;
+    fail(fmt::format("{} is missing", what));
+  }
+
+  /// As need, but goes on to the following lines.
+  template <class T>
+  T need_across_lines(const char* what) {
+    if (!skip_blanks()) need_line(what);
+    return need<T>(what);
+  }
+
+  /// A count of things that take at least `least` bytes of text each.
+  std::size_t count(const char* what, std::size_t least) {
+    const auto n = need<std::int64_t>(what);
+    if (n < 0 || static_cast<std::uint64_t>(n) > (rest_.size() + line_.size()) / least + 1)
+      fail(fmt::format("{} is {}, more than the file can hold", what, n));
+    return static_cast<std::size_t>(n);
+  }
+
+  [[noreturn]] void fail(std::string what) const {
+    for (char& c : what)  // it may quote anything
+      if (c < ' ' || c > '~') c = '?';
+    throw scene::bad_input(fmt::format("{}: line {}: {}; write the file anew", source_, line_number_, what));
+  }
+
+ private:
+  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == ',' || c == '\v' || c == '\f'; }
+  bool skip_blanks() {
+    while (!line_.empty() && is_blank(line_.front())) line_.remove_prefix(1);
+    return !line_.empty();
+  }
+
+  std::string_view rest_, line_;
+  const std::string& source_;
+  std::size_t line_number_ = 0;
+};
+
+struct Nodes {
+  std::vector<glm::dvec3> points;
+  std::vector<std::vector<double>> attributes;
+  std::vector<double> markers;
+  std::int64_t first_index = 0;
+};
+
+/// The point list that a .node file is and .poly and .smesh files begin with.
+Nodes parse_nodes(Numbers& in) {
+  Nodes nodes;
+  in.need_line("the number of points");
+  const std::size_t n = in.count("the number of points", 8);
+  const auto dimensions = in.maybe<std::int64_t>().value_or(3);
+  if (dimensions != 3) in.fail(fmt::format("the points have {} coordinates, not 3", dimensions));
+  const auto attributes = in.maybe<std::int64_t>().value_or(0), markers = in.maybe<std::int64_t>().value_or(0);
+  if (attributes < 0 || attributes > 1000 || markers < 0 || markers > 1)
+    in.fail(fmt::format("{} attributes and {} markers a point are not possible", attributes, markers));
+  nodes.points.reserve(n);
+  nodes.attributes.resize(static_cast<std::size_t>(attributes));
+  for (std::size_t v = 0; v < n; ++v) {
+    in.need_line("a point");
+    const auto index = in.need<std::int64_t>("the point's number");
+    if (v == 0) nodes.first_index = index;
+    if (nodes.first_index < 0 || nodes.first_index > 1)
+      in.fail(fmt::format("points are numbered from {}, not from 0 or 1", nodes.first_index));
+    if (index != nodes.first_index + static_cast<std::int64_t>(v))
+      in.fail(
+          fmt::format("point {} stands where {} should be", index, nodes.first_index + static_cast<std::int64_t>(v)));
+    const auto x = in.need<double>("x"), y = in.need<double>("y"), z = in.need<double>("z");
+    nodes.points.emplace_back(x, y, z);
+    for (std::vector<double>& values : nodes.attributes) values.push_back(in.need<double>("an attribute"));
+    if (markers == 1) nodes.markers.push_back(in.maybe<double>().value_or(0));
+  }
+  return nodes;
+}
+
+std::uint32_t point_index(Numbers& in, std::int64_t given, const Nodes& nodes) {
+  const std::int64_t v = given - nodes.first_index;
+  if (v < 0 || v >= static_cast<std::int64_t>(nodes.points.size()))
+    in.fail(
+        fmt::format("point {} is used, there are {} numbered from {}", given, nodes.points.size(), nodes.first_index));
+  return static_cast<std::uint32_t>(v);
+}
+
+cells::Polygon read_polygon(Numbers& in, const Nodes& nodes) {
+  cells::Polygon polygon(in.count("a polygon's number of corners", 2));
+  for (std::uint32_t& v : polygon)
+    v = point_index(in, in.need_across_lines<std::int64_t>("a corner of the polygon"), nodes);
+  return polygon;
+}
+
+glm::dvec3 read_hole(Numbers& in) {
+  in.need_line("a hole");
+  in.need<std::int64_t>("the hole's number");
+  const auto x = in.need<double>("x"), y = in.need<double>("y"), z = in.need<double>("z");
+  return {x, y, z};
+}
+
+}  // namespace
+
+cells::CellBlock parse_node_ele(std::string_view node, std::string_view ele, const std::string& node_source,
+                                const std::string& ele_source) {
+  Numbers node_numbers(node, node_source), in(ele, ele_source);
+  Nodes nodes = parse_nodes(node_numbers);
+
+  in.need_line("the number of tets");
+  const std::size_t n = in.count("the number of tets", 10);
+  const auto corners = in.maybe<std::int64_t>().value_or(4), attributes = in.maybe<std::int64_t>().value_or(0);
+  if (corners != 4 && corners != 10) in.fail(fmt::format("tets have 4 or 10 nodes, not {}", corners));
+  if (attributes < 0 || attributes > 1000) in.fail(fmt::format("{} attributes a tet are not possible", attributes));
+  const auto nodes_each = static_cast<std::size_t>(corners);
+  const cells::NodeOrder& order = *find_node_order(cells::NodeConvention::tetgen, cells::CurvedFamily::tet, 10);
+  cells::CellBlock block;
+  nodes_each == 4 ? block.tets.resize(n) : block.connectivity.resize(nodes_each * n);
+  std::vector<std::vector<double>> cell_values(static_cast<std::size_t>(attributes));
+  for (std::size_t t = 0; t < n; ++t) {
+    in.need_line("a tet");
+    in.need<std::int64_t>("the tet's number");
+    for (std::size_t k = 0; k < nodes_each; ++k)
+      (nodes_each == 4 ? block.tets[t][k] : block.connectivity[nodes_each * t + k]) =
+          point_index(in, in.need<std::int64_t>("a corner"), nodes);
+    if (nodes_each == 10) cells::to_vtk_order(order, std::span(block.connectivity).subspan(nodes_each * t, nodes_each));
+    for (std::vector<double>& values : cell_values) values.push_back(in.need<double>("an attribute"));
+  }
+  if (nodes_each == 10) {
+    block.types.assign(n, order.vtk_type);
+    block.offsets.resize(n + 1);
+    for (std::size_t c = 0; c <= n; ++c) block.offsets[c] = 10 * c;
+  }
+  block.positions = std::move(nodes.points);
+  for (std::size_t a = 0; a < nodes.attributes.size(); ++a)
+    block.fields.push_back(cells::field_of_values(fmt::format("attribute{}", a), "double", scene::Association::point, 1,
+                                                  std::move(nodes.attributes[a])));
+  for (std::size_t a = 0; a < cell_values.size(); ++a)
+    block.fields.push_back(cells::field_of_values(fmt::format("attribute{}", a), "double", scene::Association::cell, 1,
+                                                  std::move(cell_values[a])));
+  if (!nodes.markers.empty())
+    block.fields.push_back(
+        cells::field_of_values("marker", "int32", scene::Association::point, 1, std::move(nodes.markers)));
+  return block;
+}
+
+cells::Surface parse_tetgen_surface(std::string_view text, bool smesh, std::string_view node, const std::string& source,
+                                    const std::string& node_source) {
+  Numbers in(text, source);
+  Nodes nodes = parse_nodes(in);
+  if (nodes.points.empty()) {
+    Numbers node_numbers(node, node_source);
+    nodes = parse_nodes(node_numbers);
+  }
+  cells::Surface surface;
+  in.need_line("the number of facets");
+  surface.facets.resize(in.count("the number of facets", 4));
+  for (cells::Facet& facet : surface.facets) {
+    in.need_line("a facet");
+    if (smesh) {
+      facet.polygons.push_back(read_polygon(in, nodes));
+      continue;  // a marker may follow
+    }
+    const std::size_t polygons = in.count("a facet's number of polygons", 2);
+    const auto holes = in.maybe<std::int64_t>().value_or(0);
+    if (holes < 0) in.fail(fmt::format("{} holes in a facet", holes));
+    for (std::size_t k = 0; k < polygons; ++k) {
+      in.need_line("a polygon");
+      facet.polygons.push_back(read_polygon(in, nodes));
+    }
+    for (std::int64_t k = 0; k < holes; ++k) facet.holes.push_back(read_hole(in));
+  }
+  if (in.next_line()) {
+    const std::size_t holes = in.count("the number of holes", 8);
+    for (std::size_t k = 0; k < holes; ++k) surface.cavities.push_back(read_hole(in));
+  }
+  surface.points = std::move(nodes.points);
+  surface.attributes = std::move(nodes.attributes);
+  return surface;
+}
+
+}  // namespace tessera::io

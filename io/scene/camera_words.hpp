@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "io/scene/camera_file.hpp"
+
+namespace tessera::io {
+
+/// Collects the words of one view, whatever the format, and checks that they make one.
+class CameraWords {
+ public:
+  /// `place` begins every message: the file, and where in it the view stands.
+  explicit CameraWords(std::string place) : place_(std::move(place)) {}
+
+  /// Throws Error(bad_input, "AT: ...") for an unknown or repeated word, or a wrong count of numbers.
+  void set(std::string_view word, std::span<const double> numbers, const std::string& at);
+
+  /// The view. Throws Error(bad_input) if a word is missing, both or neither of parallel_scale and view_angle are
+  /// there, or scene::validate refuses it.
+  [[nodiscard]] CameraFile finish() const;
+
+ private:
+  std::string place_;
+  std::optional<glm::dvec3> position_, focal_point_, view_up_;
+  std::optional<double> parallel_scale_, view_angle_;
+  std::optional<scene::ClippingRange> clipping_range_;
+  std::optional<scene::ImageSize> size_;
+};
+
+}  // namespace tessera::io

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "io/volume/streamed_bricks.hpp"
+#include "io/volume/volume_reader.hpp"
+#include "scene/sample_source.hpp"
+#include "system/scratch_file.hpp"
+
+namespace tessera::io {
+
+/// A brick file (.bricks): a volume cut into blocks that lie together, each with its range, so that a volume larger
+/// than memory is read by need and invisible blocks are never read.
+///
+///   bytes 0..7     "TESSBRK1"
+///   bytes 8..15    uint64 length H of the header
+///   bytes 16..     H bytes of JSON, blanks at its end: points [3], association, origin [3], direction [9, column by
+///   column], spacing [3],
+///                  coordinates [3 lists, empty where regular], type, scale, shift, field, block (a side, in samples),
+///                  low, high, blanks (of all values); where they are stated, by tag_words()
+///                  (volume_tags.hpp): space, modality, unit, length unit, intent
+///   then           for each block, i fastest: float64 low, float64 high, uint64 blanks (24 bytes)
+///   then           the samples of each block in the same order, i fastest in it, without padding; blocks at the upper
+///                  boundary are smaller
+/// Everything little endian. No sample is stored twice: a brick with a border reads from up to 27 blocks.
+///
+/// `name`: in the messages of later reads; empty: the file's.
+VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& options, const std::string& name = {});
+
+/// Writes one with blocks of `side` samples (8 to 1024). Reads `source` once, one row of blocks at a time, on the
+/// threads of the caller's arena. Appears by rename. Throws Error(bad_input) for a side out of range,
+/// Error(system_failure) if it cannot be written.
+void write_bricks(const scene::SampleSource& source, const std::filesystem::path& file, int side = 64,
+                  BodyAxes axes = BodyAxes::none, const VolumeTags& tags = {});
+
+/// The same as a file of this process's that others can open (scratch_file.hpp), for open_bricks(). Throws
+/// Error(bad_input) of `subject` if there is no room for it.
+std::unique_ptr<system::ScratchFile> scratch_bricks(const scene::SampleSource& source, const std::string& subject);
+
+/// Unpacks samples into such a file, a part at a time, and opens it: the volume's source and scratch. false, and
+/// nothing done, if they may stay in memory by VolumeOptions::most_in_memory or, if no room is no error, where there is
+/// none.
+bool unpacked_to_scratch(const StreamedSamples& samples, const VolumeOptions& options, const std::string& source,
+                         VolumeFile& volume);
+
+}  // namespace tessera::io

@@ -1,0 +1,209 @@
+// NRRD. Source: Kindlmann, "Definition of NRRD File Format", teem.sourceforge.net/nrrd/format.html. VTK's reader gives
+// up on files with space directions, so the header is read here.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+#include <vector>
+
+#include "io/formats/input_file.hpp"
+#include "io/text/header_text.hpp"
+#include "io/text/text_file.hpp"
+#include "io/volume/nrrd_axes.hpp"
+#include "io/volume/volume_formats.hpp"
+#include "system/positional_file.hpp"
+
+namespace tessera::io {
+namespace {
+
+using scene::SampleType;
+
+struct NrrdTypeName {
+  const char* name;
+  SampleType type;
+};
+constexpr std::array nrrd_type_names = {NrrdTypeName{"signed char", SampleType::int8},
+                                        NrrdTypeName{"int8", SampleType::int8},
+                                        NrrdTypeName{"int8_t", SampleType::int8},
+                                        NrrdTypeName{"uchar", SampleType::uint8},
+                                        NrrdTypeName{"unsigned char", SampleType::uint8},
+                                        NrrdTypeName{"uint8", SampleType::uint8},
+                                        NrrdTypeName{"uint8_t", SampleType::uint8},
+                                        NrrdTypeName{"short", SampleType::int16},
+                                        NrrdTypeName{"short int", SampleType::int16},
+                                        NrrdTypeName{"signed short", SampleType::int16},
+                                        NrrdTypeName{"signed short int", SampleType::int16},
+                                        NrrdTypeName{"int16", SampleType::int16},
+                                        NrrdTypeName{"int16_t", SampleType::int16},
+                                        NrrdTypeName{"ushort", SampleType::uint16},
+                                        NrrdTypeName{"unsigned short", SampleType::uint16},
+                                        NrrdTypeName{"unsigned short int", SampleType::uint16},
+                                        NrrdTypeName{"uint16", SampleType::uint16},
+                                        NrrdTypeName{"uint16_t", SampleType::uint16},
+                                        NrrdTypeName{"int", SampleType::int32},
+                                        NrrdTypeName{"signed int", SampleType::int32},
+                                        NrrdTypeName{"int32", SampleType::int32},
+                                        NrrdTypeName{"int32_t", SampleType::int32},
+                                        NrrdTypeName{"uint", SampleType::uint32},
+                                        NrrdTypeName{"unsigned int", SampleType::uint32},
+                                        NrrdTypeName{"uint32", SampleType::uint32},
+                                        NrrdTypeName{"uint32_t", SampleType::uint32},
+                                        NrrdTypeName{"float", SampleType::float32},
+                                        NrrdTypeName{"double", SampleType::float64}};
+
+constexpr std::array nrrd_int64_names = {
+    "longlong", "long long", "long long int", "signed long long", "signed long long int", "int64", "int64_t"};
+constexpr std::array nrrd_uint64_names = {"ulonglong", "unsigned long long", "unsigned long long int", "uint64",
+                                          "uint64_t"};
+
+const std::string& required_field(const NrrdFields& fields, const char* name, const std::filesystem::path& file) {
+  const auto* value = fields.find(name);
+  if (!value) throw damaged(file, fmt::format("its header has no field '{}'", name));
+  return *value;
+}
+
+/// Where the line after `lines` more of them begins.
+std::uint64_t after_lines(const std::filesystem::path& payload, std::uint64_t offset, std::int64_t lines) {
+  if (lines == 0) return offset;
+  const std::uint64_t size = require_file(payload);
+  const system::PositionalFile opened(payload);
+  std::vector<char> part(1 << 16);
+  while (offset < size) {
+    const std::uint64_t count = std::min<std::uint64_t>(part.size(), size - offset);
+    opened.read(offset, reinterpret_cast<std::byte*>(part.data()), count);
+    const std::string_view text(part.data(), count);
+    for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n', end + 1))
+      if (--lines == 0) return offset + end + 1;
+    offset += count;
+  }
+  throw damaged(payload, "it has fewer lines than are to be skipped");
+}
+
+/// Components and time steps.
+void set_other_axes(const NrrdAxes& axes, const std::vector<std::int64_t>& sizes, const std::filesystem::path& file,
+                    StoredVolume& volume) {
+  bool has_steps = false, has_components = false, is_first_steps = false;
+  for (std::size_t a = 0; a < sizes.size(); ++a) {
+    const bool before = axes.is_before(a);
+    if (axes.uses[a] == NrrdAxes::Use::steps) {
+      if (before && sizes[a] > 1 << 16)
+        throw scene::bad_input(
+            fmt::format("{}: axis {} holds {} time steps; write at most 65536", file.string(), a + 1, sizes[a]));
+      volume.steps *= static_cast<std::uint64_t>(sizes[a]);
+      is_first_steps = before;
+      volume.interleaved_steps = before && volume.steps > 1;
+      if (std::exchange(has_steps, true))
+        throw scene::bad_input(
+            fmt::format("{}: two of its axes hold time steps or lists; write one of them alone", file.string()));
+    } else if (axes.uses[a] == NrrdAxes::Use::components) {
+      if (sizes[a] > 64)
+        throw scene::bad_input(fmt::format("{}: axis {} holds {} numbers of a sample; write at most 64 components",
+                                           file.string(), a + 1, sizes[a]));
+      volume.components = static_cast<int>(sizes[a]);
+      volume.planar = !before && volume.components > 1;
+      if (std::exchange(has_components, true))
+        throw scene::bad_input(
+            fmt::format("{}: two of its axes hold components; write one of them alone", file.string()));
+    }
+  }
+  if (has_steps && has_components && (is_first_steps || volume.planar))
+    throw scene::bad_input(fmt::format(
+        "{}: with time steps and components, the components have to be its first axis and the steps its last; "
+        "reorder its axes (`unu permute`), or write one step alone",
+        file.string()));
+}
+
+/// Fields and the keys that other programs and write_volume() use.
+void set_nrrd_tags(const NrrdFields& fields, StoredVolume& volume) {
+  const auto first_quoted = [](std::string_view text) {
+    const std::size_t open = text.find('"');
+    if (open == std::string_view::npos) return std::string(trimmed(text));
+    return std::string(text.substr(open + 1, text.find('"', open + 1) - open - 1));
+  };
+  if (const auto* unit = fields.find("sampleunits")) volume.tags.unit = first_quoted(*unit);
+  if (const auto* units = fields.find("spaceunits")) volume.tags.length_unit = first_quoted(*units);
+  const auto key = [&](const char* name) {
+    const auto found = fields.keys.find(name);
+    return found == fields.keys.end() ? std::string() : found->second;
+  };
+  volume.tags.modality = key("modality");
+  // A segmentation of 3D Slicer lists its labels by number.
+  volume.tags.labels = key("intent") == "label" || fields.keys.contains("Segment0_LabelValue");
+}
+
+}  // namespace
+
+StoredVolume read_nrrd_header(const std::filesystem::path& file) {
+  constexpr std::size_t longest_nrrd_header = 1 << 20;
+  const std::string text = read_beginning(file, longest_nrrd_header);
+  const NrrdFields fields = nrrd_fields_of(text, file);
+  StoredVolume volume;
+  volume.format = "NRRD";
+  const auto sizes = header_count_list(required_field(fields, "sizes", file), file, "sizes");
+  const auto dimension = header_count(required_field(fields, "dimension", file), 1, 16, file, "dimension");
+  if (sizes.size() != static_cast<std::size_t>(dimension))
+    throw damaged(file, fmt::format("it has {} sizes for {} dimensions", sizes.size(), dimension));
+  const NrrdAxes axes = nrrd_axes_of(fields, sizes, file);
+  set_other_axes(axes, sizes, file, volume);
+  volume.times = nrrd_times(fields, axes, sizes, file);
+  volume.has_colors = has_color_axis(fields, axes);
+  for (std::size_t a = 0; a < 3; ++a) volume.grid.geometry.points[a] = sizes[axes.space[a]];
+
+  const std::string type = nrrd_lower(required_field(fields, "type", file));
+  const auto* known = std::find_if(nrrd_type_names.begin(), nrrd_type_names.end(),
+                                   [&](const NrrdTypeName& t) { return type == t.name; });
+  if (std::ranges::count(nrrd_int64_names, type) > 0)
+    volume.wide = StoredVolume::Wide::int64;
+  else if (std::ranges::count(nrrd_uint64_names, type) > 0)
+    volume.wide = StoredVolume::Wide::uint64;
+  else if (known == nrrd_type_names.end())
+    throw scene::bad_input(fmt::format("{}: its type {} is none that is read; write integers, float or double",
+                                       file.string(), quote(type)));
+  volume.number = volume.wide == StoredVolume::Wide::no ? known->type : SampleType::float64;
+  const std::string encoding = nrrd_lower(required_field(fields, "encoding", file));
+  volume.compressed = encoding == "gzip" || encoding == "gz";
+  if (encoding == "ascii" || encoding == "text" || encoding == "txt")
+    volume.coding = StoredVolume::Coding::text;
+  else if (encoding == "hex")
+    volume.coding = StoredVolume::Coding::hex;
+  else if (!volume.compressed && encoding != "raw")
+    throw scene::bad_input(
+        fmt::format("{}: its encoding {} is not read; write raw, gzip, ascii or hex", file.string(), quote(encoding)));
+  const auto* endian = fields.find("endian");
+  if (!endian && scene::size_of(volume.number) > 1 && volume.coding != StoredVolume::Coding::text)
+    throw scene::bad_input(fmt::format(
+        "{}: its header does not state the order of its samples' bytes; add a line 'endian: little', or big",
+        file.string()));
+  volume.swapped = endian && (nrrd_lower(*endian) == "big") != (std::endian::native == std::endian::big);
+  set_nrrd_geometry(fields, axes, sizes, file, volume);
+  set_nrrd_tags(fields, volume);
+
+  volume.payload = file;
+  volume.offset = fields.end;
+  if (const auto* detached = fields.find("datafile")) {
+    const auto most = static_cast<std::uint64_t>(sizes.back()) * static_cast<std::uint64_t>(sizes[sizes.size() - 2]);
+    volume.slices = header_slices(*detached, std::string_view(text).substr(fields.end), most, file, "data file");
+    volume.payload = volume.slices.empty() ? header_path(*detached, file, "data file") : volume.slices.front();
+    volume.offset = 0;
+  }
+  const auto* lines = fields.find("lineskip");
+  if (lines && !volume.slices.empty() && *lines != "0")
+    throw scene::bad_input(fmt::format("{}: 'line skip' is for one file of samples; leave it out", file.string()));
+  if (lines)
+    volume.offset = after_lines(volume.payload, volume.offset, header_count(*lines, 0, 1 << 20, file, "line skip"));
+  if (const auto* bytes = fields.find("byteskip")) {
+    // Lines are skipped before a gzip stream begins, bytes after it is inflated.
+    if (*bytes == "-1")
+      volume.at_end = true;
+    else
+      (volume.compressed ? volume.skip_inflated : volume.offset) +=
+          static_cast<std::uint64_t>(header_count(*bytes, 0, std::int64_t{1} << 40, file, "byte skip"));
+    if (volume.at_end && (volume.compressed || volume.coding != StoredVolume::Coding::binary))
+      throw scene::bad_input(
+          fmt::format("{}: 'byte skip: -1' is for raw samples only; say where they begin", file.string()));
+  }
+  return volume;
+}
+
+}  // namespace tessera::io

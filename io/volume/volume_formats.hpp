@@ -1,0 +1,71 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/text/clean_errors.hpp"
+#include "io/volume/plain_vtk_grid.hpp"
+#include "io/volume/volume_reader.hpp"
+#include "io/vtk/vtk_array.hpp"
+
+namespace tessera::io {
+
+/// What a header says of one array of samples and of where its bytes are.
+struct StoredVolume {
+  scene::Grid grid;  ///< geometry, scale, shift; type and name follow from the choice of a component
+  scene::SampleType number = scene::SampleType::uint8;  ///< of each component
+  int components = 1;
+  bool planar = false;                        ///< all samples of a component together, not all components of a sample
+  std::uint64_t steps = 1;                    ///< volumes in the payload, one after the other
+  std::vector<double> times{};                ///< of all steps, where the header states them; else none
+  bool interleaved_steps = false;             ///< instead, a sample of each step together; one component
+  bool swapped = false;                       ///< bytes are of the other order than this machine's
+  std::filesystem::path payload;              ///< the file itself, or another
+  std::vector<std::filesystem::path> slices;  ///< instead of one payload: files of equal parts of it, in order
+  std::uint64_t offset = 0;                   ///< of the payload in it, or of its part in each of them
+  bool at_end = false;                        ///< instead of an offset: the payload ends with the file
+  bool exact_size = false;                    ///< the file must end with the payload
+  bool compressed = false;  ///< gzip or zlib from `offset` on; with `compressed_whole` from the beginning
+  bool compressed_whole = false;
+  std::optional<VtkArrayPlace> vtk_array{};  ///< instead of an offset: a packed array of a VTK XML file
+  std::uint64_t skip_inflated = 0;           ///< compressed: bytes before the samples in what comes out
+  enum class Coding { binary, text, hex } coding = Coding::binary;
+  enum class Wide { no, int64, uint64 } wide = Wide::no;  ///< 64-bit integers; `number` is float64, which they become
+  std::string field = "samples";
+  bool active = false;               ///< the file marks it as its scalars
+  std::optional<bool> has_colors{};  ///< what the file says of its components; else look_like_colors() decides
+  std::string format;
+  std::vector<std::string> notes;
+  BodyAxes body_axes = BodyAxes::none;
+  BodyAxes axes_if_ct = BodyAxes::none;  ///< as VolumeFile::axes_if_ct
+  VolumeTags tags{};
+};
+
+StoredVolume read_nifti_header(const std::filesystem::path& file);
+/// An Analyze 7.5 header, or the .img beside one.
+StoredVolume read_analyze_header(const std::filesystem::path& file);
+StoredVolume read_nrrd_header(const std::filesystem::path& file);
+StoredVolume read_meta_image_header(const std::filesystem::path& file);
+StoredVolume describe_raw(const std::filesystem::path& file, const VolumeOptions& options);
+
+/// .vti .pvti .vtr .pvtr .vtk by VTK.
+VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions& options);
+
+/// Whether a file of VTK's other formats, by the name of a reader in helper/vtk_main.cpp, holds one regular or
+/// rectilinear grid, so that it is a volume; and that grid.
+bool holds_grid_by_vtk(const std::filesystem::path& file, const char* reader);
+VolumeFile read_by_vtk(const std::filesystem::path& file, const char* reader, const VolumeOptions& options);
+
+/// Whether an XDMF file holds one regular or rectilinear grid, so that it is a volume; and that grid.
+bool holds_xdmf_grid(const std::filesystem::path& file);
+VolumeFile read_xdmf_grid(const std::filesystem::path& file, const VolumeOptions& options);
+
+/// DICOM: a folder of slices, or one of its files, or frames in one file.
+VolumeFile read_dicom(const std::filesystem::path& file, const VolumeOptions& options);
+
+/// "float" for float32, "double" for float64, else the type's name: as meshes' fields are listed.
+std::string listed_type(scene::SampleType type);
+
+}  // namespace tessera::io

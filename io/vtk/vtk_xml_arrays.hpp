@@ -1,0 +1,52 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/foreign/messages/array_source.hpp"
+#include "system/byte_sink.hpp"
+#include "tessera/read_progress.hpp"
+
+namespace tessera::io {
+
+/// The arrays of a file that this process reads itself: each from the file whenever it is asked for, or from memory.
+class VtkXmlArrays final : public ArraySource {
+ public:
+  using Stream = std::function<void(const system::ByteSink& use)>;
+
+  /// `progress` is called with how much of what was expected has been copied; may be null.
+  explicit VtkXmlArrays(ReadProgressFunction progress = {}) : progress_(std::move(progress)) {}
+
+  /// Numbers the array and keeps what passes on its bytes, whole tuples at a time.
+  ForeignArray hold(ForeignArray array, Stream stream);
+
+  /// Of numbers in memory, which determine how many tuples there are.
+  template <class T>
+  ForeignArray hold_vector(ForeignArray array, std::vector<T> numbers) {
+    array.tuples = numbers.size() / static_cast<std::size_t>(array.components);
+    return hold(std::move(array), [kept = std::make_shared<const std::vector<T>>(std::move(numbers))](
+                                      const system::ByteSink& use) { use(std::as_bytes(std::span(*kept))); });
+  }
+
+  using ArraySource::stream;
+  void stream(const ForeignArray& array, const std::string& subject, const system::ByteSink& use, Then then) override;
+  void expect(std::uint64_t bytes) override { expected_ = bytes, came_ = 0; }
+  void drop(std::span<const std::uint64_t> arrays) noexcept override;
+
+ private:
+  std::mutex mutex_;
+  std::map<std::uint64_t, std::shared_ptr<const Stream>> held_;
+  std::uint64_t next_ = 0;
+  ReadProgressFunction progress_;
+  std::atomic<std::uint64_t> expected_ = 0, came_ = 0;  ///< bytes of stream(), but for fields that are read later
+};
+
+}  // namespace tessera::io

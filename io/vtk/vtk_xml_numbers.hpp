@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "io/vtk/vtk_text_numbers.hpp"
+#include "io/vtk/vtk_xml_grid.hpp"
+#include "system/byte_sink.hpp"
+
+namespace tessera::io {
+
+/// The first numbers of an array, as a piece of a file has them. Longer arrays are cut, as VTK does.
+struct VtkXmlSegment {
+  VtkXmlArray array;
+  std::uint64_t numbers = 0;
+};
+
+/// Throws Error(bad_input) of `source` if an array has fewer numbers than its segment, as far as that can be seen
+/// without unpacking it. To be called before memory is taken for them.
+void require_numbers(const system::PositionalFile& file, const VtkXmlSegment& segment, const std::string& source);
+
+/// Passes a segment's numbers to `use` in their order, in this machine's byte order, in multiples of `together`.
+/// Throws Error(bad_input) of `source` if they are damaged or too few.
+void stream_numbers(const system::PositionalFile& file, const VtkXmlSegment& segment, std::size_t together,
+                    const std::string& source, const system::ByteSink& use);
+
+/// The same of integers of any type; unsigned ones past int64's range are negative.
+void stream_whole_numbers(const system::PositionalFile& file, const VtkXmlSegment& segment, std::size_t together,
+                          const std::string& source, const std::function<void(std::span<const std::int64_t>)>& use);
+
+/// All of them.
+std::vector<std::int64_t> whole_numbers(const system::PositionalFile& file, const VtkXmlSegment& segment,
+                                        const std::string& source);
+
+}  // namespace tessera::io
