@@ -12,7 +12,7 @@
 
 #include "apps/empty_picture.hpp"
 #include "apps/frame_annotation.hpp"
-#include "apps/peel_options.hpp"
+#include "apps/layer_pictures.hpp"
 #include "apps/picture_queue.hpp"
 #include "apps/picture_writer.hpp"
 #include "apps/progress.hpp"

@@ -163,25 +163,6 @@ Json job_json(const RenderOptions& options, int ranks, const Roles& roles) {
           {"seed", settings.tile_seed}};
 }
 
-const char* exchange_word(Exchange exchange) { return exchange == Exchange::runs ? "runs" : "segments"; }
-
-const char* method_word(IntegratorKind kind) {
-  constexpr std::array words = {"exact", "sampled", "preintegrated", "partial", "auto"};
-  return words[static_cast<std::size_t>(kind)];
-}
-
-std::string method_line(const Integrator& integrator) {
-  std::string word = method_word(integrator.kind);
-  if (integrator.kind == IntegratorKind::sampled) return fmt::format("{}:{}", word, integrator.samples);
-  if (integrator.kind == IntegratorKind::preintegrated) return fmt::format("{}:{}", word, integrator.table_size);
-  if (integrator.kind == IntegratorKind::automatic) return fmt::format("{} to {:g}", word, integrator.accuracy);
-  return word;
-}
-
-bool takes_steps(const Integrator& integrator) {
-  return integrator.kind == IntegratorKind::sampled || integrator.kind == IntegratorKind::preintegrated;
-}
-
 Json frame_json(const RenderOptions& options, const FilmFrame& frame, const FrameRecord* record) {
   Json outputs = Json::array();
   for (const auto& output : frame.outputs) outputs.push_back(output.string());

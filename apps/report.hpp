@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/reports.hpp"
+#include "apps/method_words.hpp"
 #include "apps/render_options.hpp"
 #include "tessera/statistics.hpp"
 #include "tessera/transfer_function.hpp"
@@ -36,15 +37,6 @@ nlohmann::ordered_json job_json(const RenderOptions& options, int ranks, const R
 
 /// A frame's number, pictures, view, times, counters, balance and verification; without a record, that it was skipped.
 nlohmann::ordered_json frame_json(const RenderOptions& options, const FilmFrame& frame, const FrameRecord* record);
-
-/// `auto`, `exact`, ...: as --integrator has it, less what stands behind a colon. `runs`: as --exchange.
-const char* method_word(IntegratorKind kind);
-const char* exchange_word(Exchange exchange);
-/// `sampled:8`, `auto to 0.0001`, ...: of meshes.
-std::string method_line(const Integrator& integrator);
-
-/// Of grids: by steps of a length of their own.
-bool takes_steps(const Integrator& integrator);
 
 /// `18 of 20 cells kept as 36 tets, 1 ghost dropped, 1 tangled kept`
 std::string cells_line(const MeshCounts& counts);

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "apps/argument_values.hpp"
-#include "apps/report.hpp"
+#include "apps/method_words.hpp"
 #include "apps/time_options.hpp"
 #include "tessera/error.hpp"
 #include "tessera/input_file.hpp"

@@ -23,10 +23,10 @@
 
 #include "datasets/volumes.hpp"
 #include "exchange/loopback_transport.hpp"
-#include "frame/sort_first.hpp"
+#include "frame/grid/sort_first.hpp"
 #include "scene/error.hpp"
-#include "volume/brick_layout.hpp"
-#include "volume/cell_ranges.hpp"
+#include "volume/bricks/brick_layout.hpp"
+#include "volume/bricks/cell_ranges.hpp"
 #include "volume/render.hpp"
 
 namespace {

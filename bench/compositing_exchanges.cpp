@@ -1,7 +1,7 @@
 // What parts of a picture take on their way to the pixels that are composited of them, by several exchanges, for
 // bench/exchanges.py:
 //
-//   direct-send   exchange/direct_send.hpp, as `--distribution sort-last` has it
+//   direct-send   exchange/direct/direct_send.hpp, as `--distribution sort-last` has it
 //   binary-swap   Ma, Painter, Hansen, Krogh, "Parallel Volume Rendering Using Binary-Swap Compositing" (1994): rounds
 //   of
 //                 pairs, which give each other halves of what they have; for numbers of ranks that are no power of two
@@ -39,21 +39,21 @@
 #include "cpu_time.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/volumes.hpp"
-#include "exchange/direct_send.hpp"
+#include "exchange/direct/direct_send.hpp"
 #include "exchange/loopback_transport.hpp"
 #include "exchange/message.hpp"
 #include "exchange/packed_pixels.hpp"
-#include "frame/distributed.hpp"
-#include "frame/render.hpp"
+#include "frame/mesh/render.hpp"
+#include "frame/ranks/distributed.hpp"
 #include "io/mesh/mesh_reader.hpp"
 #include "projection/partition.hpp"
 #include "scene/error.hpp"
 #include "scene/mesh_facts.hpp"
 #include "scene/pixel_rect.hpp"
-#include "volume/cell_ranges.hpp"
-#include "volume/cost_map.hpp"
-#include "volume/object_split.hpp"
+#include "volume/bricks/cell_ranges.hpp"
 #include "volume/render.hpp"
+#include "volume/split/cost_map.hpp"
+#include "volume/split/object_split.hpp"
 
 namespace {
 

@@ -21,7 +21,7 @@
 #include "datasets/modify.hpp"
 #include "datasets/transfer_functions.hpp"
 #include "io/mesh/mesh_reader.hpp"
-#include "projection/scanline_rasterizer.hpp"
+#include "projection/scanline/scanline_rasterizer.hpp"
 #include "projection/tile_lists.hpp"
 #include "scene/camera.hpp"
 

@@ -12,11 +12,11 @@ not the faults of a film's first, fresh pictures) and writing. What happens when
   lane of its compositor; a lane sends messages of 256 KiB while the compositor has given it credit, and a thread that finds too much
   waiting stops (exchange/outbox.cpp);
 - a compositor merges a tile when all parts are there, and gives the credit of its first unfinished tile and of those before it back, an
-  eighth of the window at a time (frame/compositor_role.cpp);
+  eighth of the window at a time (frame/ranks/compositor_role.cpp);
 - tiles go to the first compositor, whose threads, 8 at most, put a message's tiles into the picture each; it tells all projectors that a frame has left, and writes the picture while one
   more may wait; a projector is at most F frames ahead of the last one that left;
 - a message of more than 64 KiB asks first (Open MPI's TCP); each rank looks for messages now and then, seldom while it projects
-  (exchange/mpi_transport.cpp), and takes up those of one sender in their order.
+  (exchange/mpi/mpi_transport.cpp), and takes up those of one sender in their order.
 
 A frame's losses are differences of runs of the model: the whole; without time on the wire; then without assembly and writing; then without
 compositing; then without the last tile (so many frames in flight that the end of one is always behind the next); then with projectors that

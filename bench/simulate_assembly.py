@@ -1,7 +1,7 @@
 """The rank that puts pictures together and writes them, in the model of bench/simulate.py."""
 import collections
 
-ASSEMBLING = 8  # threads at most that put a picture together (frame/compositor_role.cpp)
+ASSEMBLING = 8  # threads at most that put a picture together (frame/ranks/compositor_role.cpp)
 
 
 class Assembler:

@@ -1,7 +1,7 @@
 # The whole library, of the very objects that the folders' targets compile: libtessera.so, which shows what TESSERA_EXPORT
 # marks, and libtessera.a. In this build and installed: tessera::shared, tessera::static, and tessera::tessera, the shared
 # one where both are. tessera::mpi: what tessera/mpi.hpp needs beside.
-set(folders scene system colormaps cells io integrals exchange projection gl sorting compositor volume reference frame datasets annotation)
+set(folders scene system colormaps cells io integrals exchange projection gl sorting compositor volume reference frame api datasets annotation)
 if(TESSERA_CAIRO)
   list(APPEND folders analysis)
 endif()

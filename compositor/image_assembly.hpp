@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "compositor/deep_collector.hpp"
+#include "compositor/deep/deep_collector.hpp"
 #include "compositor/tile_merger.hpp"
 #include "exchange/wire.hpp"
 #include "projection/tile_lists.hpp"

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "compositor/deep_sink.hpp"
+#include "compositor/deep/deep_sink.hpp"
+#include "compositor/deep/peel_sink.hpp"
 #include "compositor/merge_kinds.hpp"
-#include "compositor/peel_sink.hpp"
 #include "compositor/picture_sink.hpp"
 #include "compositor/tuple_record.hpp"
 #include "projection/surface_crossings.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compositor/gl_merger.hpp"
+#include "compositor/gl/gl_merger.hpp"
 #include "compositor/merge_kinds.hpp"
 
 namespace tessera::compositor {

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "projection/segment_tuple.hpp"
-#include "projection/segment_windows.hpp"
+#include "projection/lattice/segment_windows.hpp"
+#include "projection/scanline/segment_tuple.hpp"
 
 namespace tessera::compositor {
 

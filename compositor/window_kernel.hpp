@@ -6,9 +6,9 @@
 
 #include "integrals/lane_table.hpp"
 #include "integrals/segment_integrator.hpp"
-#include "projection/lattice_rasterizer.hpp"
+#include "projection/lattice/lattice_rasterizer.hpp"
+#include "projection/lattice/segment_windows.hpp"
 #include "projection/pixel_space.hpp"
-#include "projection/segment_windows.hpp"
 #include "scene/lattice.hpp"
 #include "scene/surface_set.hpp"
 #include "scene/trace.hpp"

@@ -15,7 +15,7 @@
 
 #include "compositor/surface_lights-inl.h"
 #include "compositor/window_kernel.hpp"
-#include "projection/pack_lanes-inl.h"
+#include "projection/lattice/pack_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 #if HWY_TARGET != HWY_SCALAR

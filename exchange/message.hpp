@@ -30,24 +30,25 @@ enum class MessageKind : std::uint16_t {
   parts = 2,  ///< u64 frame; until the end: PartHeader, `bytes` bytes of records
   end = 3,    ///< u64 frame, FrameEnd: the sender has no more of this frame, and this is what it took. Also on channel
               ///< tiles
-  packet = 51,  ///< PacketHeader (exchange/direct_send.cpp); unless stopped or empty, pixels (packed_pixels.hpp), and
-                ///< if they are kept f32 error estimates row by row
+  packet =
+      51,  ///< PacketHeader (exchange/direct/direct_send.cpp); unless stopped or empty, pixels (packed_pixels.hpp), and
+           ///< if they are kept f32 error estimates row by row
   // Channel credit.
   credit = 4,  ///< u64 bytes that the receiver may send again
   // Channel tiles.
-  tiles = 5,  ///< u64 frame; until the end: u64 tile, its pixels (packed_pixels.hpp), u64 deep samples in the tile;
-              ///< unless that is 0 u32 samples of each pixel, scene::DeepImageSample each
-  region =
-      6,  ///< RegionHeader (frame/region_gather.cpp), list of the rectangles it is made of; unless stopped, of each
-          ///< pixels (packed_pixels.hpp) of 64 rows at a time, and if they are kept f32 error estimates row by row
+  tiles = 5,   ///< u64 frame; until the end: u64 tile, its pixels (packed_pixels.hpp), u64 deep samples in the tile;
+               ///< unless that is 0 u32 samples of each pixel, scene::DeepImageSample each
+  region = 6,  ///< RegionHeader (frame/grid/region_gather.cpp), list of the rectangles it is made of; unless stopped,
+               ///< of each
+               ///< pixels (packed_pixels.hpp) of 64 rows at a time, and if they are kept f32 error estimates row by row
   deep_rows = 7,  ///< u64 samples of each pixel of the sender's rows, scene::DeepImageSample each
   // Channel frames.
   frame_left = 8,  ///< nothing: one frame less is on its way
   // Channel stop.
   stop = 9,  ///< u64 number of the run to stop, 0: to oneself, the run is over
   // Channel mesh.
-  mesh_chunk = 10,   ///< MeshChunkHeader and arrays (frame/mesh_chunk.hpp)
-  cell_keys = 61,    ///< u8: 1: no more come from the sender; list of u64: of cells (frame/shared_repetitions.cpp)
+  mesh_chunk = 10,  ///< MeshChunkHeader and arrays (frame/ranks/mesh_chunk.hpp)
+  cell_keys = 61,   ///< u8: 1: no more come from the sender; list of u64: of cells (frame/ranks/shared_repetitions.cpp)
   cell_ranges = 11,  ///< u64 first cell, u64 cells, f32 lowest value of each, f32 highest
   // Channel timing.
   clock_question = 12,  ///< nothing
@@ -56,7 +57,7 @@ enum class MessageKind : std::uint16_t {
   // Channel agreement: collectives (collectives.hpp) and what they carry.
   gathered = 15,          ///< list of messages, each a list of bytes: of all ranks, from rank 0
   barrier = 16,           ///< nothing
-  reduction = 17,         ///< list of u64 (frame/reduce.hpp)
+  reduction = 17,         ///< list of u64 (frame/ranks/reduce.hpp)
   instruction_sets = 18,  ///< i64 of Highway's target bits
   host = 19,              ///< text: the machine's name
   device = 20,            ///< text: the compositing device's name, empty where none composites
@@ -82,20 +83,22 @@ enum class MessageKind : std::uint16_t {
   higher_order = 37,     ///< u64[128]: tets by how far they are off (cells/curved/higher_order_plan.hpp)
   process_on_host = 38,  ///< exchange/one_line.cpp
   arguments = 58,        ///< list of bytes: what the sender was started with (first_contact.cpp)
-  field_samples = 39,    ///< list of scene::FieldSample: of a rank's part (frame/field_samples.cpp)
-  open_faces = 47,       ///< list of OpenFace (frame/boundary_faces.cpp): that one tet of a rank's part has alone
-  ray_tets = 48,         ///< list of RayTet (frame/probe.cpp): those of a rank's part that a ray meets
-  curved_part = 40,  ///< frame/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
-  fill_tally = 62,   ///< scene::FillTally: of a rank's part of a field (frame/dataset.cpp)
+  field_samples = 39,    ///< list of scene::FieldSample: of a rank's part (api/queries/field_samples.cpp)
+  open_faces = 47,       ///< list of OpenFace (frame/mesh/boundary_faces.cpp): that one tet of a rank's part has alone
+  ray_tets = 48,         ///< list of RayTet (api/queries/probe.cpp): those of a rank's part that a ray meets
+  curved_part =
+      40,  ///< frame/ranks/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
+  fill_tally = 62,   ///< scene::FillTally: of a rank's part of a field (api/dataset.cpp)
   next_frame = 52,   ///< u8: 1: there is one more
   machine = 53,      ///< text: which machine's memory the sender sees, empty: it shares none (shared_pages.cpp)
   pages_offer = 54,  ///< u64 process, u64 key, i64 descriptor of pages for ranks of one machine, -1: none
   pages_seen = 55,   ///< u8: 1: the sender sees the pages
   tile_times = 59,   ///< u8: 1: the last frame was not stopped, u64 process, f64 its processor time, list of TileTime
   image_split = 60,  ///< u8: 1: it is known; then list of i32 rows, of each a list of i32 columns, of each one of steps
-  volume_facts = 57,   ///< what the sender has read of a volume, and where its samples are (frame/shared_volume.cpp)
-  files_read = 64,     ///< until the end: text name, u64 bytes, u64 checksum (frame/same_files.cpp)
-  volume_labels = 63,  ///< u8 whether values are labels, list of f64: these (frame/shared_labels.cpp)
+  volume_facts =
+      57,           ///< what the sender has read of a volume, and where its samples are (frame/grid/shared_volume.cpp)
+  files_read = 64,  ///< until the end: text name, u64 bytes, u64 checksum (api/same_files.cpp)
+  volume_labels = 63,  ///< u8 whether values are labels, list of f64: these (frame/grid/shared_labels.cpp)
   // Channel fragments, to oneself.
   wake = 56,  ///< nothing: all frames of the list are finished
   // All channels.

@@ -26,9 +26,10 @@
 ///   lit_chains the same as chains, with a LinkNormal behind each ChainLink: what light there is on the matter is of
 ///              the compositor's making.
 ///   lattice    LatticeHeader and `segments` LatticeSegments each: segments of one pixel in any order, on the frame's
-///              integer lattice, 16 bytes each (projection/segment_windows.hpp: front, back, scalars): the compositor's
-///              picture has the bits of a single process's. Where a segment begins at a surface in the volume its front
-///              scalar is a mark, as in chains that of a segment of length zero is (projection/surface_crossings.hpp).
+///              integer lattice, 16 bytes each (projection/lattice/segment_windows.hpp: front, back, scalars): the
+///              compositor's picture has the bits of a single process's. Where a segment begins at a surface in the
+///              volume its front scalar is a mark, as in chains that of a segment of length zero is
+///              (projection/surface_crossings.hpp).
 ///   lattice_runs  RunsHeader, `runs` LatticeRuns and `segments` LatticeSegments each: runs of one pixel. A run of one
 ///              segment is that segment, 16 bytes, integrated by the compositor.
 ///   tuples     TupleRecord each (compositor/tuple_record.hpp), in the order of their cells: Juliachs et al. 2007, 4.1

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "projection/project_lanes.hpp"
+#include "projection/lattice/project_lanes.hpp"
 
 namespace tessera::projection {
 namespace {

@@ -13,7 +13,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "projection/pack_lanes-inl.h"
+#include "projection/lattice/pack_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {

@@ -8,9 +8,9 @@
 #include <glm/vec3.hpp>
 #include <span>
 
+#include "projection/lattice/segment_windows.hpp"
 #include "projection/pixel_space.hpp"
 #include "projection/prepared_mesh.hpp"
-#include "projection/segment_windows.hpp"
 #include "scene/lattice.hpp"
 #include "scene/surface_set.hpp"
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "reference/dense_matrix.hpp"
+#include "reference/curved/dense_matrix.hpp"
 
 namespace tessera::reference {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "reference/surface_on_ray.hpp"
+#include "reference/mesh/surface_on_ray.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::reference {

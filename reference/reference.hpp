@@ -10,9 +10,9 @@
 
 #include "reference/layers.hpp"
 #include "reference/matter_light.hpp"
+#include "reference/mesh/ray_tet.hpp"
+#include "reference/mesh/surface_on_ray.hpp"
 #include "reference/ray_reference.hpp"
-#include "reference/ray_tet.hpp"
-#include "reference/surface_on_ray.hpp"
 #include "reference/view.hpp"
 #include "scene/camera.hpp"
 #include "scene/optical_model.hpp"

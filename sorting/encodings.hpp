@@ -4,8 +4,8 @@
 #include <limits>
 #include <vector>
 
-#include "projection/lattice_rasterizer.hpp"
-#include "projection/segment_windows.hpp"
+#include "projection/lattice/lattice_rasterizer.hpp"
+#include "projection/lattice/segment_windows.hpp"
 #include "sorting/segment_lists.hpp"
 
 namespace tessera::sorting {

@@ -15,7 +15,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "projection/segment_windows.hpp"
+#include "projection/lattice/segment_windows.hpp"
 #include "sorting/sort_lanes-inl.h"
 #include "sorting/window_order.hpp"
 

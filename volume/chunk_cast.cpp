@@ -14,11 +14,11 @@
 #include "scene/frame_watch.hpp"
 #include "scene/threads.hpp"
 #include "volume/frame_setup.hpp"
+#include "volume/precise/voxel_cast.hpp"
 #include "volume/render.hpp"
 #include "volume/renderer_state.hpp"
+#include "volume/split/tile_order.hpp"
 #include "volume/tile_caster.hpp"
-#include "volume/tile_order.hpp"
-#include "volume/voxel_cast.hpp"
 
 namespace tessera::volume {
 

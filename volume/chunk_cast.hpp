@@ -9,7 +9,7 @@
 #include "scene/transfer_function.hpp"
 #include "tessera/frame_counters.hpp"
 #include "volume/fragment_sink.hpp"
-#include "volume/voxel_box.hpp"
+#include "volume/split/voxel_box.hpp"
 
 namespace tessera::volume {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "scene/frame_watch.hpp"
+#include "volume/split/tile_order.hpp"
 #include "volume/tile_caster.hpp"
-#include "volume/tile_order.hpp"
 
 namespace tessera::volume {
 namespace {

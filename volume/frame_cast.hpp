@@ -7,9 +7,9 @@
 #include "scene/pixel_rect.hpp"
 #include "volume/fragment_sink.hpp"
 #include "volume/frame_setup.hpp"
-#include "volume/tile_costs.hpp"
-#include "volume/voxel_box.hpp"
-#include "volume/voxel_cast.hpp"
+#include "volume/precise/voxel_cast.hpp"
+#include "volume/split/tile_costs.hpp"
+#include "volume/split/voxel_box.hpp"
 
 namespace tessera::volume {
 

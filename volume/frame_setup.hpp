@@ -6,7 +6,7 @@
 
 #include "volume/frame_view.hpp"
 #include "volume/lane_error_bound.hpp"
-#include "volume/preintegrated_table.hpp"
+#include "volume/lanes/preintegrated_table.hpp"
 #include "volume/renderer_state.hpp"
 
 namespace tessera::volume {

@@ -10,13 +10,13 @@
 #include "scene/camera.hpp"
 #include "scene/grid.hpp"
 #include "scene/selection.hpp"
-#include "volume/brick_cache.hpp"
-#include "volume/cell_ranges.hpp"
+#include "volume/bricks/brick_cache.hpp"
+#include "volume/bricks/cell_ranges.hpp"
 #include "volume/lane_error_bound.hpp"
-#include "volume/learned_work.hpp"
-#include "volume/preintegrated_table.hpp"
+#include "volume/lanes/preintegrated_table.hpp"
+#include "volume/precise/surface_view.hpp"
 #include "volume/render.hpp"
-#include "volume/surface_view.hpp"
+#include "volume/split/learned_work.hpp"
 
 namespace tessera::volume {
 

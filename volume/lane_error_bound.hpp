@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "integrals/lane_table.hpp"
-#include "volume/cell_ranges.hpp"
+#include "volume/bricks/cell_ranges.hpp"
 
 namespace tessera::volume {
 

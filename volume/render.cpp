@@ -14,14 +14,14 @@
 #include "scene/error_budget.hpp"
 #include "scene/surface_set.hpp"
 #include "scene/threads.hpp"
-#include "volume/cell_ranges.hpp"
-#include "volume/cost_map.hpp"
+#include "volume/bricks/cell_ranges.hpp"
 #include "volume/frame_cast.hpp"
 #include "volume/image_sink.hpp"
-#include "volume/object_split.hpp"
+#include "volume/precise/voxel_cast.hpp"
 #include "volume/renderer_state.hpp"
-#include "volume/voxel_box.hpp"
-#include "volume/voxel_cast.hpp"
+#include "volume/split/cost_map.hpp"
+#include "volume/split/object_split.hpp"
+#include "volume/split/voxel_box.hpp"
 
 namespace tessera::volume {
 namespace {

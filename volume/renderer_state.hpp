@@ -13,12 +13,12 @@
 
 #include "integrals/lane_table.hpp"
 #include "scene/error_budget.hpp"
-#include "volume/brick_cache.hpp"
-#include "volume/cell_ranges.hpp"
-#include "volume/grid_surfaces.hpp"
-#include "volume/look_ahead.hpp"
+#include "volume/bricks/brick_cache.hpp"
+#include "volume/bricks/cell_ranges.hpp"
+#include "volume/bricks/look_ahead.hpp"
+#include "volume/precise/grid_surfaces.hpp"
+#include "volume/precise/voxel_cast.hpp"
 #include "volume/render.hpp"
-#include "volume/voxel_cast.hpp"
 
 namespace tessera::volume {
 

@@ -2,11 +2,11 @@
 
 #include <vector>
 
+#include "volume/bricks/slab_block.hpp"
 #include "volume/frame_view.hpp"
-#include "volume/slab_block.hpp"
+#include "volume/split/voxel_box.hpp"
 #include "volume/tile_rays.hpp"
 #include "volume/tile_state.hpp"
-#include "volume/voxel_box.hpp"
 
 namespace tessera::volume {
 

@@ -9,8 +9,8 @@
 #include "volume/fragment_sink.hpp"
 #include "volume/frame_view.hpp"
 #include "volume/lane_error_bound.hpp"
+#include "volume/split/voxel_box.hpp"
 #include "volume/tile_rays.hpp"
-#include "volume/voxel_box.hpp"
 
 namespace tessera::volume {
 

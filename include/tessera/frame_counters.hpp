@@ -32,8 +32,8 @@ struct FrameCounters {
   FrameCounters& operator+=(const FrameCounters& other);
 };
 
-/// What a frame of a grid took, counted. Processes send it as it stands (frame/sort_first.hpp); grid_counters is the
-/// list of them.
+/// What a frame of a grid took, counted. Processes send it as it stands (frame/grid/sort_first.hpp); grid_counters is
+/// the list of them.
 struct GridCounters {
   std::uint64_t rays = 0;
   std::uint64_t voxels_visited = 0;

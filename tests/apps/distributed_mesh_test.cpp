@@ -1,4 +1,4 @@
-#include "frame/distributed_mesh.hpp"
+#include "frame/ranks/distributed_mesh.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

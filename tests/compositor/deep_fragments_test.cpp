@@ -1,4 +1,4 @@
-#include "compositor/deep_fragments.hpp"
+#include "compositor/deep/deep_fragments.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "compositor/deep_pieces.hpp"
-#include "compositor/deep_sink.hpp"
+#include "compositor/deep/deep_pieces.hpp"
+#include "compositor/deep/deep_sink.hpp"
 #include "integrals/segment_batch.hpp"
 #include "integrals/segment_integrator.hpp"
 #include "support/deep_pixels.hpp"

@@ -1,4 +1,4 @@
-#include "compositor/gl_merger.hpp"
+#include "compositor/gl/gl_merger.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "compositor/gl_compositor.hpp"
+#include "compositor/gl/gl_compositor.hpp"
 #include "compositor/tuple_record.hpp"
 #include "exchange/part_writer.hpp"
 #include "support/gl_context.hpp"

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "integrals/segment_integrator.hpp"
+#include "projection/lattice/segment_windows.hpp"
 #include "projection/pixel_space.hpp"
-#include "projection/segment_windows.hpp"
 #include "scene/lattice.hpp"
 #include "scene/pixel_rect.hpp"
 #include "scene/transfer_function.hpp"

@@ -9,7 +9,7 @@
 
 #include "compositor/tile_merger.hpp"
 #include "integrals/lane_table.hpp"
-#include "projection/segment_windows.hpp"
+#include "projection/lattice/segment_windows.hpp"
 
 namespace tessera::compositor::run_merger_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "exchange/direct_send.hpp"
+#include "exchange/direct/direct_send.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include "datasets/modify.hpp"
 #include "datasets/shapes.hpp"
 #include "datasets/transfer_functions.hpp"
-#include "frame/render.hpp"
+#include "frame/mesh/render.hpp"
 #include "reference/judge.hpp"
 #include "support/some_cases.hpp"
 

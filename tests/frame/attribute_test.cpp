@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "datasets/boxes.hpp"
-#include "frame/double_source.hpp"
+#include "frame/mesh/double_source.hpp"
 #include "projection/tile_lists.hpp"
 #include "reference/view.hpp"
 

@@ -7,9 +7,9 @@
 #include "cells/mesh_selection.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/transfer_functions.hpp"
+#include "frame/mesh/render.hpp"
 #include "frame/random_cases.hpp"
 #include "frame/random_clips.hpp"
-#include "frame/render.hpp"
 #include "reference/judge.hpp"
 
 namespace tessera::frame::clipped_surfaces_test {

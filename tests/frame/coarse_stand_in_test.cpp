@@ -7,8 +7,8 @@
 #include <glm/geometric.hpp>
 #include <stop_token>
 
+#include "api/dataset.hpp"
 #include "datasets/modify.hpp"
-#include "frame/dataset.hpp"
 #include "frame/query_data.hpp"
 #include "scene/error.hpp"
 #include "tessera/session.hpp"

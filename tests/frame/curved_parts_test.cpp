@@ -5,8 +5,8 @@
 #include <cmath>
 #include <mutex>
 
+#include "api/communicator.hpp"
 #include "exchange/loopback_transport.hpp"
-#include "frame/communicator.hpp"
 #include "io/curved_meshes.hpp"
 #include "support/some_cases.hpp"
 #include "tessera/dataset.hpp"

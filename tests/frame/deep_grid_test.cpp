@@ -1,13 +1,13 @@
 // The promise of deep pictures, for volumes: flattened they are the picture, and with an opaque plane put in at any
 // depth they are within the accuracy of a rendering that ends there. The truth is reference/'s.
-#include "frame/deep_grid.hpp"
+#include "frame/grid/deep_grid.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "reference/grid_reference.hpp"
+#include "reference/grid/grid_reference.hpp"
 #include "scene/error.hpp"
 #include "support/deep_pixels.hpp"
 #include "support/some_cases.hpp"

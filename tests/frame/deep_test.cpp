@@ -15,7 +15,7 @@
 #include "datasets/modify.hpp"
 #include "datasets/shapes.hpp"
 #include "datasets/transfer_functions.hpp"
-#include "frame/render.hpp"
+#include "frame/mesh/render.hpp"
 #include "io/image/image_deep_exr.hpp"
 #include "io/mesh/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"

@@ -1,4 +1,4 @@
-#include "frame/distributed.hpp"
+#include "frame/ranks/distributed.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "exchange/loopback_transport.hpp"
 #include "frame/leaning_stack.hpp"
 #include "frame/plateaus.hpp"
-#include "projection/segment_tuple.hpp"
+#include "projection/scanline/segment_tuple.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
 #include "scene/mesh_facts.hpp"

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "api/communicator.hpp"
 #include "exchange/loopback_transport.hpp"
-#include "frame/communicator.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/volume_bytes.hpp"
 #include "tessera/dataset.hpp"

@@ -10,8 +10,8 @@
 
 #include "datasets/boxes.hpp"
 #include "exchange/loopback_transport.hpp"
-#include "frame/distributed.hpp"
-#include "projection/segment_tuple.hpp"
+#include "frame/ranks/distributed.hpp"
+#include "projection/scanline/segment_tuple.hpp"
 #include "scene/mesh_facts.hpp"
 #include "support/gl_context.hpp"
 

@@ -1,5 +1,5 @@
 // Which instruction set serves a frame, and that none without lanes serves the lattice.
-#include "frame/lattice_frame.hpp"
+#include "frame/mesh/lattice_frame.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 
 #include "datasets/boxes.hpp"
-#include "frame/render.hpp"
+#include "frame/mesh/render.hpp"
 #include "reference/judge.hpp"
 #include "reference/reference.hpp"
 #include "support/instruction_sets.hpp"

@@ -1,4 +1,4 @@
-#include "frame/mesh_check.hpp"
+#include "api/queries/mesh_check.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "frame/mesh_exchange.hpp"
+#include "frame/ranks/mesh_exchange.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "datasets/boxes.hpp"
 #include "exchange/loopback_transport.hpp"
-#include "frame/mesh_chunk.hpp"
+#include "frame/ranks/mesh_chunk.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::frame::mesh_exchange_test {

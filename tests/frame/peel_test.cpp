@@ -1,4 +1,4 @@
-#include "frame/peel.hpp"
+#include "frame/mesh/peel.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,13 +9,13 @@
 #include <span>
 #include <vector>
 
+#include "api/dataset.hpp"
 #include "datasets/arrays.hpp"
 #include "datasets/modify.hpp"
 #include "datasets/shapes.hpp"
 #include "datasets/transfer_functions.hpp"
-#include "frame/dataset.hpp"
 #include "frame/query_data.hpp"
-#include "reference/grid_reference.hpp"
+#include "reference/grid/grid_reference.hpp"
 #include "reference/reference.hpp"
 #include "scene/error.hpp"
 #include "support/deep_pixels.hpp"

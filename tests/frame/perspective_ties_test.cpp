@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "datasets/boxes.hpp"
-#include "frame/render.hpp"
+#include "frame/mesh/render.hpp"
 #include "reference/reference.hpp"
 #include "support/some_cases.hpp"
 

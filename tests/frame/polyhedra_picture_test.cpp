@@ -5,8 +5,8 @@
 #include <glm/vec3.hpp>
 
 #include "cells/mesh_assembly.hpp"
+#include "frame/mesh/render.hpp"
 #include "frame/random_cases.hpp"
-#include "frame/render.hpp"
 #include "io/polyhedral_meshes.hpp"
 #include "reference/judge.hpp"
 #include "reference/small_meshes.hpp"

@@ -10,7 +10,7 @@
 #include <random>
 #include <string>
 
-#include "frame/render.hpp"
+#include "frame/mesh/render.hpp"
 #include "reference/judge.hpp"
 #include "support/some_cases.hpp"
 

@@ -4,7 +4,7 @@
 #include <glm/geometric.hpp>
 
 #include "datasets/transfer_functions.hpp"
-#include "frame/render.hpp"
+#include "frame/mesh/render.hpp"
 #include "frame/shared_meshes.hpp"
 #include "io/mesh/mesh_reader.hpp"
 #include "reference/judge.hpp"

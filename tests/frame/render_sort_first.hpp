@@ -4,7 +4,7 @@
 #include <span>
 #include <utility>
 
-#include "frame/sort_first.hpp"
+#include "frame/grid/sort_first.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::frame {

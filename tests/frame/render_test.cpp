@@ -1,4 +1,4 @@
-#include "frame/render.hpp"
+#include "frame/mesh/render.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "datasets/boxes.hpp"
 #include "datasets/kuhn.hpp"
 #include "frame/leaning_stack.hpp"
-#include "projection/lattice_rasterizer.hpp"
+#include "projection/lattice/lattice_rasterizer.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
 #include "support/some_cases.hpp"

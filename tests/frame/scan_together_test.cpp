@@ -1,4 +1,4 @@
-#include "frame/scan_together.hpp"
+#include "frame/grid/scan_together.hpp"
 
 #include <gtest/gtest.h>
 

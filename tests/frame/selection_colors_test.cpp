@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
+#include "api/communicator.hpp"
 #include "datasets/boxes.hpp"
 #include "exchange/loopback_transport.hpp"
-#include "frame/communicator.hpp"
 #include "io/mesh/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 #include "query_data.hpp"

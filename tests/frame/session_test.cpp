@@ -9,11 +9,11 @@
 #include <random>
 #include <thread>
 
+#include "api/communicator.hpp"
+#include "api/dataset.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
 #include "exchange/loopback_transport.hpp"
-#include "frame/communicator.hpp"
-#include "frame/dataset.hpp"
 #include "scene/error.hpp"
 #include "tessera/communicator.hpp"
 

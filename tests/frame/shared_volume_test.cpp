@@ -1,5 +1,5 @@
 // Volumes that are read as a whole, by several ranks.
-#include "frame/shared_volume.hpp"
+#include "frame/grid/shared_volume.hpp"
 
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "exchange/loopback_transport.hpp"
-#include "frame/brick_memory.hpp"
+#include "frame/grid/brick_memory.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/volume_bytes.hpp"
 #include "scene/error.hpp"

@@ -1,4 +1,4 @@
-#include "frame/sort_last.hpp"
+#include "frame/grid/sort_last.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,12 +16,12 @@
 #include "exchange/loopback_transport.hpp"
 #include "frame/random_cases.hpp"
 #include "frame/small_grid.hpp"
-#include "reference/grid_reference.hpp"
+#include "reference/grid/grid_reference.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
 #include "scene/sample_source.hpp"
-#include "volume/cell_ranges.hpp"
-#include "volume/object_split.hpp"
+#include "volume/bricks/cell_ranges.hpp"
+#include "volume/split/object_split.hpp"
 
 namespace tessera::frame::sort_last_test {
 namespace {

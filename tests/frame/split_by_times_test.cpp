@@ -1,5 +1,5 @@
 // Splits by what pictures before took: rank 0, which gathers them, gets less of the tiles.
-#include "frame/split_by_times.hpp"
+#include "frame/grid/split_by_times.hpp"
 
 #include <gtest/gtest.h>
 

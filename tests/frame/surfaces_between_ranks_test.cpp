@@ -7,8 +7,8 @@
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
 #include "exchange/loopback_transport.hpp"
-#include "frame/boundary_faces.hpp"
-#include "frame/distributed.hpp"
+#include "frame/mesh/boundary_faces.hpp"
+#include "frame/ranks/distributed.hpp"
 #include "scene/mesh_facts.hpp"
 
 /// Surfaces that several ranks render have the place and the light that one gives them.

@@ -1,4 +1,4 @@
-#include "frame/verify.hpp"
+#include "api/queries/verify.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Lists of pictures of a volume, of which the next one is cast while the one before is gathered.
-#include "frame/volume_frames.hpp"
+#include "frame/grid/volume_frames.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "exchange/loopback_transport.hpp"
+#include "frame/grid/sort_first.hpp"
+#include "frame/grid/sort_last.hpp"
 #include "frame/small_grid.hpp"
-#include "frame/sort_first.hpp"
-#include "frame/sort_last.hpp"
 #include "scene/error.hpp"
 #include "scene/sample_source.hpp"
-#include "volume/cell_ranges.hpp"
+#include "volume/bricks/cell_ranges.hpp"
 
 namespace tessera::frame::volume_frames_test {
 namespace {

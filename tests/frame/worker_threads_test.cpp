@@ -1,4 +1,4 @@
-#include "frame/worker_threads.hpp"
+#include "frame/ranks/worker_threads.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Sources and pages that README.md, docs/ and the folders' READMEs name are there.
 
-Three kinds of names: a source by its folder (`frame/session.cpp`, in drawings too; tessera/NAME.hpp is in include/), a
+Three kinds of names: a source by its folder (`api/session.cpp`, in drawings too; tessera/NAME.hpp is in include/), a
 source without one in a folder's README, which is that folder's, and the target of a link. Says file:line of each that
 is not there; exit status 1 if there is one.
 

@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-#include "frame/mesh_check.hpp"
+#include "api/queries/mesh_check.hpp"
 #include "io/mesh/mesh_reader.hpp"
 #include "io/streamed_fixture.hpp"
 #include "io/temporary_folder.hpp"

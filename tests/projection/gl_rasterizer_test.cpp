@@ -1,4 +1,4 @@
-#include "projection/gl_rasterizer.hpp"
+#include "projection/gl/gl_rasterizer.hpp"
 
 #include <gtest/gtest.h>
 

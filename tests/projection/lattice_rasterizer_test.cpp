@@ -1,4 +1,4 @@
-#include "projection/lattice_rasterizer.hpp"
+#include "projection/lattice/lattice_rasterizer.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "projection/scanline_rasterizer.hpp"
+#include "projection/scanline/scanline_rasterizer.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "reference/curved_reference.hpp"
-#include "reference/curved_shapes.hpp"
+#include "reference/curved/curved_reference.hpp"
+#include "reference/curved/curved_shapes.hpp"
 
 /// Cells of every type, made from maps of their own coordinates to space.
 namespace tessera::reference {

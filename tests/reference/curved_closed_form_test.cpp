@@ -5,7 +5,7 @@
 
 #include "curved_cells.hpp"
 #include "polynomial.hpp"
-#include "reference/grid_integral.hpp"
+#include "reference/grid/grid_integral.hpp"
 #include "reference/reference.hpp"
 #include "small_meshes.hpp"
 #include "support/some_cases.hpp"

@@ -4,10 +4,10 @@
 #include <glm/geometric.hpp>
 #include <random>
 
-#include "reference/curved_integral.hpp"
-#include "reference/face_piece.hpp"
-#include "reference/grid_integral.hpp"
+#include "reference/curved/curved_integral.hpp"
+#include "reference/grid/grid_integral.hpp"
 #include "reference/integral.hpp"
+#include "reference/mesh/face_piece.hpp"
 #include "reference/smooth_scalar.hpp"
 
 namespace tessera::reference::curved_pieces_test {

@@ -1,4 +1,4 @@
-#include "reference/curved_reference.hpp"
+#include "reference/curved/curved_reference.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "reference/curved_shapes.hpp"
+#include "reference/curved/curved_shapes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "reference/exact_determinant.hpp"
+#include "reference/mesh/exact_determinant.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "reference/grid_reference.hpp"
+#include "reference/grid/grid_reference.hpp"
 
 #include <gtest/gtest.h>
 

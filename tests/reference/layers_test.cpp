@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "reference/grid_reference.hpp"
+#include "reference/grid/grid_reference.hpp"
 #include "reference/reference.hpp"
 #include "reference/small_meshes.hpp"
 

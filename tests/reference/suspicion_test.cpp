@@ -6,9 +6,9 @@
 #include <cmath>
 #include <set>
 
-#include "reference/edge_walk.hpp"
 #include "reference/image_suspicion.hpp"
 #include "reference/light_error.hpp"
+#include "reference/mesh/edge_walk.hpp"
 #include "reference/verification.hpp"
 
 namespace tessera::reference::suspicion_test {

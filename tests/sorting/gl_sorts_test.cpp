@@ -7,8 +7,8 @@
 #include <tuple>
 #include <vector>
 
-#include "sorting/gl_bitonic_texture.hpp"
-#include "sorting/gl_list_sort.hpp"
+#include "sorting/gl/gl_bitonic_texture.hpp"
+#include "sorting/gl/gl_list_sort.hpp"
 #include "support/gl_context.hpp"
 
 namespace tessera::sorting::gl_sorts_test {

@@ -7,10 +7,10 @@
 #include <random>
 
 #include "scene/error.hpp"
-#include "volume/cost_map.hpp"
-#include "volume/image_split.hpp"
-#include "volume/learned_work.hpp"
 #include "volume/render.hpp"
+#include "volume/split/cost_map.hpp"
+#include "volume/split/image_split.hpp"
+#include "volume/split/learned_work.hpp"
 
 namespace tessera::volume::balance_test {
 namespace {

@@ -12,7 +12,7 @@
 #include "scene/error.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/some_cases.hpp"
-#include "volume/brick_cache.hpp"
+#include "volume/bricks/brick_cache.hpp"
 #include "volume/double_caster.hpp"
 #include "volume/render.hpp"
 #include "volume/small_volume.hpp"

@@ -1,4 +1,4 @@
-#include "volume/cell_ranges.hpp"
+#include "volume/bricks/cell_ranges.hpp"
 
 #include <gtest/gtest.h>
 

@@ -13,7 +13,7 @@
 #include "scene/frame_watch.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/some_cases.hpp"
-#include "volume/cell_ranges.hpp"
+#include "volume/bricks/cell_ranges.hpp"
 #include "volume/image_sink.hpp"
 #include "volume/small_volume.hpp"
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <random>
 
-#include "reference/grid_reference.hpp"
+#include "reference/grid/grid_reference.hpp"
 #include "reference/judge.hpp"
 #include "scene/camera.hpp"
 #include "scene/sample_source.hpp"

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <random>
 
-#include "reference/grid_reference.hpp"
+#include "reference/grid/grid_reference.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
 #include "support/instruction_sets.hpp"

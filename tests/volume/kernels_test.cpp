@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "reference/grid_reference.hpp"
+#include "reference/grid/grid_reference.hpp"
 #include "reference/judge.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/some_cases.hpp"

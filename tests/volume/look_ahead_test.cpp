@@ -1,4 +1,4 @@
-#include "volume/look_ahead.hpp"
+#include "volume/bricks/look_ahead.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 
 #include "small_volume.hpp"
 #include "support/await.hpp"
-#include "volume/view_frustum.hpp"
-#include "volume/view_motion.hpp"
+#include "volume/bricks/view_frustum.hpp"
+#include "volume/bricks/view_motion.hpp"
 
 namespace tessera::look_ahead_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "volume/object_split.hpp"
+#include "volume/split/object_split.hpp"
 
 #include <gtest/gtest.h>
 

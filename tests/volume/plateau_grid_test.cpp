@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-#include "reference/grid_reference.hpp"
+#include "reference/grid/grid_reference.hpp"
 #include "reference/judge.hpp"
 #include "scene/camera.hpp"
 #include "scene/sample_source.hpp"

@@ -6,7 +6,7 @@
 
 #include "small_volume.hpp"
 #include "support/some_cases.hpp"
-#include "volume/cell_ranges.hpp"
+#include "volume/bricks/cell_ranges.hpp"
 
 namespace tessera::preintegrated_culling_test {
 namespace {

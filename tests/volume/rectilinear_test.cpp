@@ -6,13 +6,13 @@
 #include <cstring>
 #include <random>
 
-#include "reference/grid_reference.hpp"
+#include "reference/grid/grid_reference.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
 #include "scene/sample_source.hpp"
 #include "support/some_cases.hpp"
-#include "volume/cost_map.hpp"
 #include "volume/render.hpp"
+#include "volume/split/cost_map.hpp"
 
 namespace tessera::rectilinear_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "volume/tile_costs.hpp"
+#include "volume/split/tile_costs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <random>
 #include <set>
 
-#include "volume/balanced_split.hpp"
-#include "volume/image_split.hpp"
+#include "volume/split/balanced_split.hpp"
+#include "volume/split/image_split.hpp"
 
 namespace tessera::volume::tile_costs_test {
 namespace {

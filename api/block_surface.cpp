@@ -1,0 +1,41 @@
+#include "io/mesh/block_surface.hpp"
+
+#include <fmt/format.h>
+#include <tbb/task_arena.h>
+
+#include "api/dataset.hpp"
+#include "frame/mesh/boundary_faces.hpp"
+#include "scene/error.hpp"
+#include "scene/quote.hpp"
+#include "scene/threads.hpp"
+#include "tessera/triangle_file.hpp"
+
+namespace tessera {
+
+TriangleMesh read_block_surface(std::span<const std::filesystem::path> files, const std::string& block,
+                                const ReadOptions& options) {
+  if (files.empty()) throw scene::bad_input("input: no file is named; name one");
+  ReadOptions read = options;
+  read.blocks = {block};
+  read.selection = {};
+  io::BlockFaces faces = io::read_block_faces(files, frame::mesh_options(read));
+  if (!faces.has_volume) {
+    if (faces.mesh.triangles.empty())
+      throw scene::bad_input(fmt::format("{}: the block {} has neither faces nor cells; name another",
+                                         files.front().string(), scene::quote(block)));
+    return std::move(faces.mesh);
+  }
+  read.grid_as_mesh = true;
+  const Dataset volume = Dataset::open(files, read);
+  TriangleMesh boundary;
+  tbb::task_arena(scene::threads_for(options.threads)).execute([&] {
+    boundary = frame::boundary_faces(volume.state().mesh).mesh;
+  });
+  if (boundary.triangles.empty())
+    throw scene::bad_input(
+        fmt::format("{}: the block {} has no boundary; name another", files.front().string(), scene::quote(block)));
+  if (volume.field_name() != options.field && !options.field.empty() && volume.shows_shape()) boundary.values.clear();
+  return boundary;
+}
+
+}  // namespace tessera

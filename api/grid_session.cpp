@@ -1,0 +1,305 @@
+// A grid, by any number of ranks.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <optional>
+#include <utility>
+
+#include "api/queries/verify.hpp"
+#include "api/session_state.hpp"
+#include "exchange/collectives.hpp"
+#include "frame/grid/balance_picture.hpp"
+#include "frame/grid/brick_memory.hpp"
+#include "frame/grid/deep_rows.hpp"
+#include "frame/grid/sort_first.hpp"
+#include "frame/grid/sort_last.hpp"
+#include "frame/mesh/peel.hpp"
+#include "frame/ranks/run_error.hpp"
+#include "scene/error.hpp"
+
+namespace tessera {
+namespace {
+
+using frame::stopped_frame;
+using frame::tiles_to;
+
+FrameStatistics statistics_of(const frame::FinishedVolumeFrame& frame, const char* integrator) {
+  FrameStatistics statistics;
+  const volume::RenderStatistics& s = frame.statistics;
+  statistics.grid = s;
+  statistics.instruction_set = s.instruction_set;
+  statistics.integrator = integrator;
+  statistics.milliseconds = frame.frame_ms;
+  statistics.rectangles = frame.regions;
+  statistics.ranks = frame.ranks;
+  for (const GridCounters& rank : frame.ranks) statistics.samples.push_back(rank.samples);
+  for (const volume::VoxelBox& part : frame.parts) statistics.parts.push_back({part.low, part.high});
+  statistics.cpu_seconds = frame.cpu_seconds;
+  statistics.split_cpu_seconds = frame.split_cpu_seconds;
+  return statistics;
+}
+
+const char* name_of(IntegratorKind kind) {
+  switch (kind) {
+    case IntegratorKind::sampled:
+      return "sampled";
+    case IntegratorKind::preintegrated:
+      return "preintegrated";
+    default:
+      return "exact";
+  }
+}
+
+/// A grid, by any number of processes.
+class GridByRays final : public Session::State {
+ public:
+  GridByRays(Dataset dataset, const Settings& settings, std::shared_ptr<exchange::Transport> transport)
+      : State(std::move(dataset), settings), transport_(std::move(transport)), trace_(settings.trace) {
+    check();
+    make_renderer({});
+    make_frames();
+  }
+
+  std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
+                     Sink& sink, const std::stop_token& stop) override {
+    if (settings.deep || settings.peel) check_deep(settings);
+    if (settings.keep_uncertainty != keeps_uncertainty_ || settings.keep_cost != keeps_cost_) {
+      keeps_uncertainty_ = settings.keep_uncertainty, keeps_cost_ = settings.keep_cost;
+      make_frames();
+    }
+    if (!settings.deep && !settings.peel && !settings.keep_cost) return render_list(views, function, sink, stop);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      make_renderer(views[i].size);
+      bool stopped = false;
+      std::exception_ptr of_sink;
+      try {
+        stopped = !make(i, views[i], function, settings, sink, stop, of_sink);
+      } catch (const std::exception& fault) {
+        tell_others(fault);
+        throw;
+      }
+      if (of_sink) std::rethrow_exception(of_sink);
+      if (stopped) {
+        sink.frame(stopped_frame(i));
+        return i;
+      }
+      if (!give(i + 1 == views.size(), sink)) return i;
+    }
+    return views.size();
+  }
+
+  [[nodiscard]] bool assembles() const override { return transport_->rank() == 0; }
+
+  [[nodiscard]] BalancePictures balance_pictures(const RenderedFrame& frame, const View& view,
+                                                 const TransferFunction& function) const override {
+    if (!keeps_cost_ || !renderer_)
+      throw scene::bad_input("balance: the last frame did not keep its cost; ask for it in the frame's settings");
+    const scene::GridGeometry& geometry = data().samples->geometry();
+    if (sorts_last()) {
+      BalancePictures of_parts{
+          frame.image, frame::cost_of_parts(view.camera, view.size, geometry, parts_, frame.statistics.cpu_seconds)};
+      frame::draw_bricks(of_parts.bricks, view.camera, geometry, renderer_->visible_bricks(function), parts_);
+      return of_parts;
+    }
+    BalancePictures pictures{frame.image, frame::cost_picture(cost_, view.size, split_)};
+    frame::draw_bricks(pictures.bricks, view.camera, geometry, renderer_->visible_bricks(function), split_);
+    return pictures;
+  }
+
+ private:
+  [[nodiscard]] bool sorts_last() const { return settings().ranks.distribution == Distribution::sort_last; }
+
+  void make_frames() {
+    if (sorts_last()) {
+      frames_ = std::make_unique<frame::SortLast>(
+          *transport_, frame::SortLastSettings{settings().ranks.direct_send, keeps_uncertainty_, trace_});
+      return;
+    }
+    frame::SortFirstSettings sort_first = frame::sort_first_settings(settings());
+    sort_first.keep_error_bounds = keeps_uncertainty_;
+    sort_first.keep_cost = keeps_cost_;
+    sort_first.trace = trace_;
+    frames_ = std::make_unique<frame::SortFirst>(*transport_, std::move(sort_first));
+  }
+
+  void check() const {
+    if (settings().mesh.rasterizer != Rasterizer::planes)
+      throw scene::bad_input("`rasterizer`: is for meshes, and the data set is a grid; leave it out");
+    if (settings().ranks.frames_in_flight < 1)
+      throw scene::bad_input(
+          fmt::format("`frames_in_flight` {}: it must be at least 1", settings().ranks.frames_in_flight));
+    if (sorts_last() && settings().integrator.kind == IntegratorKind::preintegrated)
+      throw scene::bad_input(
+          "`distribution` sort-last: a pre-integrated step from one process's part to the next would be missed; use "
+          "`integrator` automatic, exact or sampled, or sort-first");
+  }
+  void check_deep(const FrameSettings& frame) const {
+    if (!(frame.deep_accuracy >= 1e-6 && frame.deep_accuracy <= 1))
+      throw scene::bad_input(fmt::format("`deep_accuracy` {}: it must be 1e-6 to 1", frame.deep_accuracy));
+    if (!frame::promised_error(frame::grid_settings(settings())))
+      throw scene::bad_input(
+          fmt::format("{}: steps along rays give light other than that of their parts; set `integrator` automatic or "
+                      "exact",
+                      frame::deep_word(frame.peel.has_value())));
+    if (settings().grid.shading && !frame.peel)
+      throw scene::bad_input("deep picture: it is not shaded; leave `shade` out");
+  }
+
+  /// Bricks get what the budget leaves beside a picture of this size: the renderer is made once it is known.
+  void make_renderer(std::optional<ImageSize> size) {
+    volume::RenderSettings grid = frame::grid_settings(settings());
+    grid.clip = data().clip;
+    if (sorts_last()) grid.parts = transport_->size();
+    if (!size) {
+      // Only for its checks.
+      const volume::Renderer checked(*data().samples, grid, data().ranges);
+      return;
+    }
+    if (renderer_) return;
+    const scene::TraceScope timing(trace_, "prepare");
+    grid.trace = trace_;
+    const scene::Grid& samples = data().samples->grid();
+    const std::uint64_t frames = frame::bytes_of_frames(samples.geometry, *data().ranges, grid, *size);
+    const std::uint64_t brick =
+        volume::BrickCache::bytes_of({samples.geometry, grid.brick_size, grid.edge_bricks}, 0, samples.type);
+    grid.memory_bytes = frame::brick_memory(grid.memory_bytes, {resident_, frames, *size, grid.threads}, brick);
+    renderer_.emplace(*data().samples, grid, data().ranges);
+  }
+
+  /// The others wait for a rank that has failed; throws what ends the run on all.
+  void tell_others(const std::exception& fault) {
+    if (transport_->size() == 1) return;
+    transport_->fail(frame::run_error(*transport_, fault));
+    transport_->check();
+  }
+
+  /// A trace's numbers are its caller's.
+  [[nodiscard]] std::size_t traced(std::size_t number) const {
+    return trace_ != nullptr ? static_cast<std::size_t>(std::max(trace_->frame(), 0)) : number;
+  }
+
+  /// Pictures that overlap.
+  std::size_t render_list(std::span<const View> views, const TransferFunction& function, Sink& sink,
+                          const std::stop_token& stop) {
+    if (views.empty()) return 0;
+    ImageSize largest = views.front().size;
+    std::vector<frame::VolumeJob> jobs;
+    for (const View& view : views) {
+      jobs.push_back({view.camera, view.size});
+      if (std::int64_t{view.size.width} * view.size.height > std::int64_t{largest.width} * largest.height)
+        largest = view.size;
+    }
+    frame::VolumeCallbacks callbacks;
+    callbacks.frame = [&](frame::FinishedVolumeFrame&& finished) {
+      if (finished.stopped) return;  // every rank is told below
+      RenderedFrame frame;
+      frame.number = finished.frame;
+      frame.statistics = statistics_of(finished, name_of(this->settings().integrator.kind));
+      frame.image = std::move(finished.image);
+      frame.uncertainty = std::move(finished.error_bounds);
+      sink.frame(std::move(frame));
+    };
+    if (sink.wants_tiles())
+      callbacks.tile = [&](std::size_t number, const PixelRect& rect, const Image& image) {
+        sink.tile({number, rect, image});
+      };
+    try {
+      make_renderer(largest);
+    } catch (const std::exception& fault) {
+      tell_others(fault);
+      throw;
+    }
+    const std::size_t complete =
+        frames_->render(*renderer_, function, jobs, traced(0), callbacks, stop, settings().ranks.frames_in_flight);
+    if (complete < views.size()) sink.frame(stopped_frame(complete));
+    return complete;
+  }
+
+  /// False if it was stopped; what the sink threw, if that stopped it, is in `of_sink`.
+  bool make(std::size_t number, const View& view, const TransferFunction& function, const FrameSettings& settings,
+            Sink& sink, const std::stop_token& stop, std::exception_ptr& of_sink) {
+    scene::FrameWatch watch(stop, tiles_to(sink, number));
+    std::optional<frame::FinishedVolumeFrame> finished;
+    try {
+      finished = frames_->render(*renderer_, function, {view.camera, view.size}, traced(number), &watch);
+    } catch (const frame::SinkFailure& failure) {
+      of_sink = failure.cause;
+    }
+    if (agreed(of_sink || (finished && finished->stopped))) return false;
+    std::optional<DeepImage> deep;
+    const auto flat = std::chrono::steady_clock::now();
+    if (settings.deep || settings.peel) try {
+        const scene::TraceScope timing(trace_, "project");
+        frame::StopRelay::Run relayed(frames_->relay(), stop);
+        const volume::GridSurfaces surfaces(this->settings().surfaces, function, *data().ranges);
+        deep = frame::deep_rows(
+            *transport_, *data().samples, view.camera, view.size, function,
+            {settings.deep_accuracy, this->settings().emission, this->settings().threads, this->settings().memory_bytes,
+             data().clip, &surfaces, settings.peel, this->settings().grid.shading},
+            static_cast<std::int32_t>(number), relayed.token());
+      } catch (const scene::FrameStopped&) {
+        return false;
+      }
+    RenderedFrame& frame = made_;
+    frame = {};
+    frame.number = number;
+    if (finished) {
+      frame.statistics = statistics_of(*finished, name_of(this->settings().integrator.kind));
+      if (deep)  // a pass of its own
+        frame.statistics.milliseconds +=
+            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - flat).count();
+      frame.image = std::move(finished->image);
+      frame.uncertainty = std::move(finished->error_bounds);
+      split_ = std::move(finished->split);
+      cost_ = std::move(finished->cost);
+      parts_ = finished->parts;
+    }
+    if (deep) frame::put_deep(std::move(*deep), settings, frame);
+    return true;
+  }
+
+  /// Hands out what was made. False if rank 0's sink threw and this rank is another; not asked for the last frame.
+  bool give(bool last, Sink& sink) {
+    std::exception_ptr thrown;
+    try {
+      RenderedFrame made = std::exchange(made_, {});
+      if (assembles()) sink.frame(std::move(made));
+    } catch (...) {
+      thrown = std::current_exception();
+    }
+    const bool failed = !last && agreed(thrown != nullptr);
+    if (thrown) std::rethrow_exception(thrown);
+    return !failed;
+  }
+
+  /// What rank 0 says, on all.
+  bool agreed(bool mine) {
+    if (transport_->size() == 1) return mine;
+    return exchange::broadcast_value(*transport_, 0, exchange::MessageKind::sink_failed, std::uint8_t{mine}) != 0;
+  }
+
+  std::shared_ptr<exchange::Transport> transport_;
+  scene::Trace* trace_;
+  RenderedFrame made_;  ///< on its way to the sink
+  volume::ImageSplit split_;
+  volume::CostMap cost_;
+  std::vector<volume::VoxelBox> parts_;
+  const std::uint64_t resident_ = frame::resident_bytes();
+  std::optional<volume::Renderer> renderer_;
+  bool keeps_uncertainty_ = false, keeps_cost_ = false;
+  std::unique_ptr<frame::VolumeFrames> frames_;
+};
+
+}  // namespace
+
+namespace frame {
+
+std::unique_ptr<Session::State> grid_by_rays(Dataset dataset, const Settings& settings,
+                                             std::shared_ptr<exchange::Transport> transport) {
+  return std::make_unique<GridByRays>(std::move(dataset), settings, std::move(transport));
+}
+
+}  // namespace frame
+}  // namespace tessera

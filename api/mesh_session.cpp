@@ -1,0 +1,279 @@
+// A mesh, by one process or by all ranks of a job.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <optional>
+
+#include "api/session_state.hpp"
+#include "exchange/collectives.hpp"
+#include "frame/mesh/mesh_input.hpp"
+#include "frame/mesh/peel.hpp"
+#include "frame/ranks/distributed.hpp"
+#include "integrals/segment_integrator.hpp"
+#include "projection/partition.hpp"
+#include "projection/scanline/segment_tuple.hpp"
+#include "scene/error.hpp"
+
+namespace tessera {
+namespace {
+
+/// Throws Error(bad_input) for a method that is out of range, before anybody waits for a frame.
+void check_method(const Settings& settings) {
+  integrals::SegmentIntegrator(TransferFunction({Knot{}}), settings.integrator, settings.emission);
+}
+
+using Clock = std::chrono::steady_clock;
+using frame::stopped_frame;
+using frame::tiles_to;
+
+FrameStatistics statistics_of(const frame::FrameStatistics& s, double milliseconds) {
+  FrameStatistics statistics;
+  statistics.mesh = s;
+  statistics.on_lattice = s.on_lattice;
+  statistics.instruction_set = s.instruction_set;
+  statistics.integrator = s.integrator;
+  statistics.composited_on = s.composited_on;
+  statistics.milliseconds = milliseconds;
+  return statistics;
+}
+
+/// A mesh, by this process.
+class MeshAlone final : public Session::State {
+ public:
+  MeshAlone(Dataset dataset, const Settings& settings)
+      : State(std::move(dataset), settings),
+        renderer_(data().prepared(settings.threads, settings.trace), data().facts, traced(settings)) {
+    check_method(settings);
+    frame::check_surfaces(traced(settings), data().mesh.association);
+    frame::check_shading(traced(settings));
+    frame::check_device_rasterizer(traced(settings), frame::compositing_settings(settings.mesh.device));
+    frame::assign_roles(1, settings.ranks.projectors, settings.ranks.compositors);  // of one rank there are not more
+  }
+
+  std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
+                     Sink& sink, const std::stop_token& stop) override {
+    renderer_.set_deep(settings.deep_accuracy, settings.peel);
+    const bool deep = settings.deep || settings.peel;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      RenderedFrame frame;
+      frame.number = i;
+      DeepImage made;
+      frame::FrameStatistics statistics;
+      scene::FrameWatch watch(stop, tiles_to(sink, i));
+      const auto start = Clock::now();
+      try {
+        frame.image =
+            renderer_.render(views[i].camera, views[i].size, function, &statistics, deep ? &made : nullptr, &watch);
+      } catch (const scene::FrameStopped&) {
+        sink.frame(stopped_frame(i));
+        return i;
+      } catch (const frame::SinkFailure& failure) {
+        std::rethrow_exception(failure.cause);
+      }
+      frame.statistics =
+          statistics_of(statistics, std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+      if (deep) frame::put_deep(std::move(made), settings, frame);
+      sink.frame(std::move(frame));
+    }
+    return views.size();
+  }
+
+ private:
+  static frame::RenderSettings traced(const Settings& settings) {
+    frame::RenderSettings mesh = frame::mesh_settings(settings);
+    mesh.trace = settings.trace;
+    return mesh;
+  }
+
+  frame::Renderer renderer_;
+};
+
+/// A mesh, by several processes.
+class MeshOnRanks final : public Session::State {
+ public:
+  MeshOnRanks(Dataset dataset, const Settings& settings, std::shared_ptr<exchange::Transport> transport)
+      : State(std::move(dataset), settings),
+        distributed_(frame::distributed_settings(settings, transport->size())),
+        transport_(std::move(transport)) {
+    check_method(settings);
+    if (settings.trace != nullptr) {
+      distributed_.projecting = &projecting_.emplace(*settings.trace, TraceRole::projector);
+      distributed_.compositing = &compositing_.emplace(*settings.trace, TraceRole::compositor);
+    }
+    const Dataset::State& state = data();
+    frame::check_surfaces(distributed_.render, state.mesh.association);
+    frame::check_shading(distributed_.render);
+    check_exchange(distributed_.exchange);
+    const auto projects = [&](int rank) { return distributed_.roles.projects(rank); };
+    if (state.ranks > 1 && state.ranks != transport_->size())
+      throw scene::bad_input(fmt::format("{}: was opened by {} ranks, the session has {}; give both one communicator",
+                                         state.source, state.ranks, transport_->size()));
+    if (!projects(transport_->rank()) && state.ranks > 1 && !state.mesh.tets.empty()) {
+      const Error error = scene::bad_input(
+          fmt::format("{}: rank {} has cells and does not project; give data set and session the same `projectors` and "
+                      "`compositors`",
+                      state.source, transport_->rank()));
+      transport_->fail(error);  // other ranks may find nothing wrong
+      throw error;
+    }
+    renderer_.emplace(*transport_, distributed_, [this](std::size_t) { return part(); });
+    if (projecting_) transport_->trace_to(&*projecting_, &*compositing_);
+  }
+
+  ~MeshOnRanks() override {
+    renderer_.reset();
+    if (projecting_) transport_->trace_to(nullptr, nullptr);
+  }
+
+  std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
+                     Sink& sink, const std::stop_token& stop) override {
+    const bool deep = settings.deep || settings.peel;
+    Part part;
+    do {
+      const Exchange exchange = overlapping_ ? Exchange::segments : exchange_of(this->settings(), deep);
+      check_exchange(exchange);
+      renderer_->set_deep(deep, settings.deep_accuracy, settings.peel, exchange);
+      part = render_from(part.complete, views, function, settings, sink, stop);
+      overlapping_ |= part.overlapping != 0;
+    } while (part.overlapping != 0);
+    if (!assembles() && part.complete < views.size()) sink.frame(stopped_frame(part.complete));
+    return part.complete;
+  }
+
+  [[nodiscard]] bool assembles() const override { return transport_->rank() == distributed_.roles.assembler(); }
+
+ private:
+  /// How many frames are complete, on every rank, and whether the next one has to be made of segments.
+  struct Part {
+    std::uint64_t complete = 0, overlapping = 0;
+  };
+  /// Thrown where a frame's runs overlap: ends the frames on all ranks in order.
+  struct Overlap {};
+
+  Part render_from(std::size_t first, std::span<const View> views, const TransferFunction& function,
+                   const FrameSettings& settings, Sink& sink, const std::stop_token& stop) {
+    std::vector<frame::FrameJob> jobs;
+    for (const View& view : views.subspan(first)) jobs.push_back({view.camera, view.size, 0});
+    Part part{first, 0};
+    bool ended = false;
+    frame::DistributedCallbacks callbacks;
+    callbacks.frame = [&](frame::FinishedFrame finished) {
+      if (ended) return;
+      if (finished.overlapping && !finished.stopped) throw Overlap();
+      finished.frame += first;
+      if (finished.stopped) {
+        ended = true;
+        frame::call_sink([&] { sink.frame(stopped_frame(finished.frame)); });
+        return;
+      }
+      ++part.complete;
+      RenderedFrame frame;
+      frame.number = finished.frame;
+      frame.image = std::move(finished.image);
+      frame.statistics = statistics_of(finished.statistics, finished.frame_ms);
+      frame.statistics.overlapping = overlapping_;
+      if (settings.deep || settings.peel) frame::put_deep(std::move(finished.deep), settings, frame);
+      frame::call_sink([&] { sink.frame(std::move(frame)); });
+    };
+    if (sink.wants_tiles())
+      callbacks.tile = [&](std::size_t number, const PixelRect& rect, const Image& image) {
+        frame::call_sink([&] { sink.tile({first + number, rect, image}); });
+      };
+    callbacks.memory = [&](ImageSize size) {
+      Image memory;
+      frame::call_sink([&] { memory = sink.spare_image(size); });
+      return memory;
+    };
+    std::exception_ptr thrown;
+    try {
+      renderer_->render(jobs, function, callbacks, stop);
+    } catch (const frame::SinkFailure& failure) {
+      thrown = failure.cause;  // the others have ended in order too
+    } catch (const Overlap&) {
+      part.overlapping = 1;
+    }
+    part = exchange::broadcast_value(*transport_, distributed_.roles.assembler(),
+                                     exchange::MessageKind::frames_complete, part);
+    if (thrown) std::rethrow_exception(thrown);
+    return part;
+  }
+
+  /// Raw segments are sent with the number of their tet, in 32 bits.
+  void check_exchange(Exchange exchange) const {
+    if (exchange == Exchange::segments && data().facts.tets > 0xffffffffull)
+      throw scene::bad_input(
+          fmt::format("`exchange` segments: {} tets are more than 2^32; use runs", data().facts.tets));
+  }
+
+  /// What this rank projects: the part it was opened with, or its share of the whole that every rank has.
+  frame::ProjectorMesh part() {
+    const Dataset::State& state = data();
+    frame::ProjectorMesh mesh;
+    mesh.diagonal = frame::diagonal(state.facts.box);
+    mesh.box = state.facts.box;
+    mesh.scalar_range = state.facts.scalar_range;
+    if (distributed_.render.rasterizer == Rasterizer::scanline) {
+      mesh.longest_edge = projection::longest_edge(state.mesh);
+      if (state.ranks > 1) mesh.longest_edge = longest_of_all(mesh.longest_edge);
+    }
+    const auto& projectors = distributed_.roles.projectors;
+    const bool is_only_projector = projectors.size() == 1 && projectors.front() == transport_->rank();
+    if (state.ranks > 1 || is_only_projector) {
+      mesh.part = state.mesh;
+      mesh.global_tet = state.global_tet;
+      mesh.prepared = state.prepared(settings().threads, distributed_.projecting);
+      return mesh;
+    }
+    const auto own = std::find(projectors.begin(), projectors.end(), transport_->rank());
+    struct Share {
+      scene::TetMesh mesh;
+      std::vector<std::uint64_t> numbers;
+    };
+    auto share = std::make_shared<Share>();
+    share->mesh.association = state.mesh.association;
+    if (own != projectors.end()) {
+      const auto part_of =
+          projection::parts_of_whole(state.mesh, settings().ranks.partition, static_cast<int>(projectors.size()));
+      std::vector<std::uint32_t> mine;
+      for (std::uint32_t tet = 0; tet < part_of.size(); ++tet)
+        if (part_of[tet] == static_cast<std::uint32_t>(own - projectors.begin())) mine.push_back(tet);
+      share->mesh = scene::subset(state.mesh, mine);
+      share->numbers.assign(mine.begin(), mine.end());
+    }
+    frame::order_corners(share->mesh, distributed_.render);
+    mesh.part = share->mesh;
+    mesh.global_tet = share->numbers;
+    mesh.owner = std::move(share);
+    return mesh;
+  }
+
+  float longest_of_all(float longest) {
+    for (const float other : exchange::gather_values(*transport_, exchange::MessageKind::longest_edge, longest))
+      longest = std::max(longest, other);
+    return longest;
+  }
+
+  frame::DistributedSettings distributed_;
+  std::shared_ptr<exchange::Transport> transport_;
+  bool overlapping_ = false;  ///< cells of several ranks overlap: from now on segments are exchanged
+  std::optional<Trace> projecting_, compositing_;  ///< faces of the caller's trace
+  std::optional<frame::DistributedRenderer> renderer_;
+};
+
+}  // namespace
+
+namespace frame {
+
+std::unique_ptr<Session::State> mesh_alone(Dataset dataset, const Settings& settings) {
+  return std::make_unique<MeshAlone>(std::move(dataset), settings);
+}
+
+std::unique_ptr<Session::State> mesh_on_ranks(Dataset dataset, const Settings& settings,
+                                              std::shared_ptr<exchange::Transport> transport) {
+  return std::make_unique<MeshOnRanks>(std::move(dataset), settings, std::move(transport));
+}
+
+}  // namespace frame
+}  // namespace tessera

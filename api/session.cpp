@@ -1,0 +1,191 @@
+#include "tessera/session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "api/communicator.hpp"
+#include "api/queries/verify.hpp"
+#include "api/session_state.hpp"
+#include "frame/mesh/peel.hpp"
+#include "frame/mesh/uncut_mesh.hpp"
+#include "scene/directions.hpp"
+#include "scene/error.hpp"
+#include "scene/pixel_view.hpp"
+
+namespace tessera {
+namespace {
+
+/// The view with pixels no smaller than 1e-60 of what they see: far below what positions are told apart by, so that the
+/// picture is the same, and products of pixel coordinates stay in a double's range.
+View within_range(View view, const Box& box) {
+  constexpr double least = 1e-60;
+  Camera& camera = view.camera;
+  if (camera.projection == ProjectionKind::perspective) {
+    camera.view_angle = std::max(camera.view_angle, least);
+  } else if (!box.empty()) {
+    const double reach =
+        std::max(scene::largest(box.low - camera.position), scene::largest(box.high - camera.position));
+    camera.parallel_scale = std::max(camera.parallel_scale, least * reach);
+  }
+  return view;
+}
+
+/// Whether products of pixel coordinates of all places in a box are numbers. They are linear in the place: its corners
+/// say it.
+bool has_coordinates(const View& view, const Box& box) {
+  const scene::PixelView seen(view.camera, view.size);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p((corner & 1) != 0 ? box.high.x : box.low.x, (corner & 2) != 0 ? box.high.y : box.low.y,
+                       (corner & 4) != 0 ? box.high.z : box.low.z);
+    const scene::PixelPlace place = seen.project(p);
+    // Of three of the first, of two depths.
+    if (!(std::max({std::abs(place.x), std::abs(place.y), std::abs(place.w)}) < 1e100)) return false;
+    if (!(std::abs(place.depth) < 1e150)) return false;
+  }
+  return true;
+}
+
+void check_view(const View& view) {
+  try {
+    validate(view.camera);
+  } catch (const Error& error) {
+    throw Error(error.code(), std::string("view: ") + error.what());
+  }
+  validate(view.size);
+}
+
+void check_reach(const View& view, const Box& bounds) {
+  if (!bounds.empty() && !has_coordinates(view, bounds))
+    throw scene::bad_input(
+        "view: data and camera are so far apart that places in the picture are no numbers; move the camera nearer");
+}
+
+/// Gives a film of one frame to whoever asked for it alone.
+class OneFrame final : public Sink {
+ public:
+  explicit OneFrame(Sink* tiles) : tiles_(tiles) {}
+  [[nodiscard]] bool wants_tiles() const override { return tiles_ != nullptr && tiles_->wants_tiles(); }
+  void tile(const Tile& tile) override { tiles_->tile(tile); }
+  void frame(RenderedFrame&& frame) override { frame_ = std::move(frame); }
+  Image spare_image(ImageSize size) override { return tiles_ != nullptr ? tiles_->spare_image(size) : Image(); }
+  RenderedFrame take() { return std::move(frame_); }
+
+ private:
+  Sink* tiles_;
+  RenderedFrame frame_;
+};
+
+Verification public_form(const frame::Verified& verified) {
+  const reference::Verification& v = verified.picture;
+  const auto reason = [](const std::optional<reference::Suspicion>& why) -> std::string {
+    return why ? reference::name_of(*why) : "random";
+  };
+  const auto tally = [](std::string name, const reference::Tally& t) {
+    return Verification::Tally{std::move(name), t.pixels, t.max_error, t.over_bound, t.excused};
+  };
+  Verification result;
+  const reference::Judgement& j = v.judgement;
+  result.pixels_checked = j.pixels_checked, result.over_bound = j.over_bound, result.excused = j.excused;
+  result.max_error = j.max_error, result.max_error_not_excused = j.max_error_not_excused;
+  result.rms_error = j.rms_error;
+  result.worst_x = j.worst_x, result.worst_y = j.worst_y;
+  result.worst_value = j.worst_value, result.worst_reference = j.worst_reference;
+  result.worst_reason = reason(v.worst);
+  result.tallies.push_back(tally("random", v.random));
+  for (std::size_t kind = 0; kind < reference::suspicions; ++kind)
+    if (v.chosen[kind].pixels > 0)
+      result.tallies.push_back(tally(reference::name_of(static_cast<reference::Suspicion>(kind)), v.chosen[kind]));
+  result.bound = v.bound;
+  result.met = v.met() && verified.layers.met;
+  result.layer_bound = verified.layers.bound, result.layers_met = verified.layers.met;
+  for (const reference::Tally& layer : verified.layers.layers)
+    result.layers.push_back(tally(fmt::format("layer {}", result.layers.size() + 1), layer));
+  return result;
+}
+
+std::unique_ptr<Session::State> make_state(Dataset dataset, const Settings& settings,
+                                           std::shared_ptr<exchange::Transport> transport) {
+  if (dataset.is_grid()) return frame::grid_by_rays(std::move(dataset), settings, std::move(transport));
+  if (transport->size() == 1 && settings.mesh.device.backends.empty())
+    return frame::mesh_alone(std::move(dataset), settings);
+  return frame::mesh_on_ranks(std::move(dataset), settings, std::move(transport));
+}
+
+}  // namespace
+
+Session::Session(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+Session::Session(Dataset dataset, const Settings& settings, const Communicator& communicator)
+    : Session(make_state(std::move(dataset), settings, communicator.state().connect())) {}
+
+Session::~Session() = default;
+Session::Session(Session&&) noexcept = default;
+Session& Session::operator=(Session&&) noexcept = default;
+
+RenderedFrame Session::render(const View& view, const TransferFunction& transfer_function,
+                              const FrameSettings& settings, Sink* sink, const std::stop_token& stop) {
+  OneFrame one(sink);
+  render(std::span(&view, 1), transfer_function, settings, one, stop);
+  return one.take();
+}
+
+std::size_t Session::render(std::span<const View> views, const TransferFunction& transfer_function,
+                            const FrameSettings& settings, Sink& sink, const std::stop_token& stop) {
+  if (transfer_function.knots().empty())
+    throw scene::bad_input("transfer function: it has no knots; give at least one, or load a preset");
+  std::vector<View> seen;
+  seen.reserve(views.size());
+  for (const View& view : views) {
+    check_view(view);
+    seen.push_back(within_range(view, dataset().bounds()));
+    check_reach(seen.back(), dataset().bounds());
+    if (settings.peel) frame::check_peel(*settings.peel, view.size, this->settings().memory_bytes);
+  }
+  return state_->render(seen, transfer_function, settings, sink, stop);
+}
+
+bool Session::assembles() const { return state_->assembles(); }
+
+std::optional<double> Session::promised_error() const {
+  return dataset().is_grid() ? frame::promised_error(frame::grid_settings(settings()))
+                             : frame::promised_error(frame::mesh_settings(settings()));
+}
+
+Verification Session::verify(const RenderedFrame& frame, const View& view, const TransferFunction& transfer_function,
+                             std::size_t count) const {
+  check_view(view);
+  if (frame.image.size != view.size)
+    throw scene::bad_input("verify: the frame is not of this view's size; give the view it was rendered with");
+  const frame::Layers layers{frame.layers, frame.peel};
+  const Dataset::State& data = dataset().state();
+  if (dataset().is_grid()) {
+    volume::RenderSettings grid = frame::grid_settings(settings());
+    grid.clip = data.clip;
+    return public_form(frame::verify_all(frame.image, layers, *data.samples, view.camera, transfer_function, grid,
+                                         frame.uncertainty, count));
+  }
+  const frame::RenderSettings settings = frame::mesh_settings(this->settings());
+  return public_form(
+      frame::verify_all(frame.image, layers, frame::uncut_mesh(data), view.camera, transfer_function, settings, count));
+}
+
+BalancePictures Session::State::balance_pictures(const RenderedFrame&, const View&, const TransferFunction&) const {
+  throw scene::bad_input("balance: pictures are of grids, and the data set is a mesh; leave them out");
+}
+
+BalancePictures Session::balance_pictures(const RenderedFrame& frame, const View& view,
+                                          const TransferFunction& transfer_function) const {
+  return state_->balance_pictures(frame, view, transfer_function);
+}
+
+const Dataset& Session::dataset() const { return state_->dataset(); }
+const Settings& Session::settings() const { return state_->settings(); }
+}  // namespace tessera

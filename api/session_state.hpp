@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstddef>
+#include <exception>
+#include <memory>
+#include <span>
+#include <stop_token>
+#include <utility>
+
+#include "api/dataset.hpp"
+#include "api/session_settings.hpp"
+#include "exchange/transport.hpp"
+#include "scene/frame_watch.hpp"
+#include "tessera/session.hpp"
+
+namespace tessera {
+
+/// How a kind of data is rendered by a number of processes.
+class TESSERA_HIDDEN Session::State {
+ public:
+  State(Dataset dataset, const Settings& settings) : dataset_(std::move(dataset)), settings_(settings) {}
+  virtual ~State() = default;
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  virtual std::size_t render(std::span<const View> views, const TransferFunction& function,
+                             const FrameSettings& settings, Sink& sink, const std::stop_token& stop) = 0;
+  [[nodiscard]] virtual bool assembles() const { return true; }
+
+  [[nodiscard]] const Dataset& dataset() const { return dataset_; }
+  [[nodiscard]] const Settings& settings() const { return settings_; }
+  /// Of grids.
+  [[nodiscard]] virtual BalancePictures balance_pictures(const RenderedFrame& frame, const View& view,
+                                                         const TransferFunction& function) const;
+
+ protected:
+  [[nodiscard]] const Dataset::State& data() const { return dataset_.state(); }
+
+ private:
+  Dataset dataset_;
+  Settings settings_;
+};
+
+namespace frame {
+
+/// Of a mesh: by this process alone, or by all ranks.
+std::unique_ptr<Session::State> mesh_alone(Dataset dataset, const Settings& settings);
+std::unique_ptr<Session::State> mesh_on_ranks(Dataset dataset, const Settings& settings,
+                                              std::shared_ptr<exchange::Transport> transport);
+/// Of a grid, by any number of ranks.
+std::unique_ptr<Session::State> grid_by_rays(Dataset dataset, const Settings& settings,
+                                             std::shared_ptr<exchange::Transport> transport);
+
+/// What a caller's sink threw, told apart from errors of the run: it stops a frame and harms nothing.
+struct SinkFailure {
+  std::exception_ptr cause;
+};
+
+template <class Call>
+void call_sink(const Call& call) {
+  try {
+    call();
+  } catch (...) {
+    throw SinkFailure{std::current_exception()};
+  }
+}
+
+/// A watch that tells `sink` of frame `number`; throws SinkFailure.
+inline scene::FrameWatch::Finished tiles_to(Sink& sink, std::size_t number) {
+  if (!sink.wants_tiles()) return {};
+  return [&sink, number](const PixelRect& rect, const Image& image) {
+    call_sink([&] { sink.tile({number, rect, image}); });
+  };
+}
+
+inline RenderedFrame stopped_frame(std::size_t number) {
+  RenderedFrame frame;
+  frame.number = number;
+  frame.stopped = true;
+  return frame;
+}
+
+}  // namespace frame
+}  // namespace tessera

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "compositor/deep/deep_collector.hpp"
+#include "compositor/deep/deep_fragments.hpp"
+#include "compositor/deep/deep_pieces.hpp"
+#include "compositor/tile_pixels.hpp"
+#include "compositor/tile_sink.hpp"
+#include "integrals/segment_batch.hpp"
+#include "integrals/segment_integrator.hpp"
+
+namespace tessera::compositor {
+
+/// A picture and, beside it, deep samples: cuts a tile's ray segments into pieces, integrates these, merges them. The
+/// integrator must be `exact`, so that the light of a segment is that of its pieces. Deep pixels close as a picture's
+/// do, by their own sums; a pixel is open while either wants it.
+class DeepSink final : public TileSink<DoubleEncoding> {
+ public:
+  /// The scene's values, the window's image and `collector` must outlive this object; threads share the collector.
+  DeepSink(const TileScene& scene, const ImageWindow& window, const scene::TransferFunction& function,
+           scene::Emission emission, double accuracy, DeepTarget& collector);
+
+  void start(const scene::PixelRect& rect) override;
+  void take(Store& lists, double final_depth, std::size_t at_least, scene::StageTimer& timer) override;
+  bool take_unordered(Store&, double, scene::StageTimer&) override { return false; }
+  [[nodiscard]] const std::vector<std::uint8_t>& open() const override { return open_; }
+  [[nodiscard]] bool any_open() const override { return picture_.any_open() || deep_open_count_ > 0; }
+  void finish() override;
+  [[nodiscard]] std::uint64_t segments() const override { return segments_; }
+
+  /// Working memory a pixel of the tile.
+  static constexpr std::size_t bytes_a_pixel = sizeof(DeepMerger) + 3 * sizeof(double);
+
+ private:
+  void integrate_pieces(scene::StageTimer& timer);
+  void add_crossing(std::uint32_t pixel, double depth, const projection::Crossing& crossing, double value);
+
+  TileScene scene_;
+  TilePixels<DoubleEncoding> picture_;
+  ImageWindow window_;
+  PieceCutter cutter_;
+  double accuracy_;
+  DeepTarget* collector_;
+  scene::PixelRect rect_{0, 0, 0, 0};
+  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< of finished rectangles, of this one
+  std::vector<DeepMerger> mergers_;                 ///< one a pixel
+  std::vector<double> transmittance_before_, length_per_depth_;
+  std::vector<std::uint8_t> open_, deep_open_;
+  std::size_t deep_open_count_ = 0;
+  std::vector<DeepPiece> pieces_;  ///< that wait for the integrator
+  std::vector<std::uint32_t> piece_pixels_;
+  std::vector<std::uint32_t> piece_tets_;   ///< with light on the matter
+  std::vector<CrossingInBatch> crossings_;  ///< among the pieces
+  integrals::SegmentBatch batch_;
+  struct PixelSample {
+    std::uint32_t pixel;
+    DeepSample sample;
+  };
+  std::vector<DeepSample> ended_;
+  std::vector<PixelSample> samples_;  ///< in each pixel's order
+};
+
+/// The samples of one pixel, in order, as floats, tidy: depths are rounded, which keeps their order; samples that
+/// rounding makes points at one depth become one; samples without alpha and light are left out.
+void append_tidy(std::span<const DeepSample> samples, std::vector<scene::DeepImageSample>& to);
+
+}  // namespace tessera::compositor

@@ -1,0 +1,139 @@
+#include "compositor/deep/peel_sink.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "compositor/finite_float.hpp"
+#include "compositor/picture_sink.hpp"
+
+namespace tessera::compositor {
+namespace {
+
+/// Segments that are integrated together: they stay in a core's second-level cache.
+constexpr std::size_t batch_segments = 8192;
+
+}  // namespace
+
+void append_layers(std::span<const integrals::RayLayer> layers, std::vector<scene::DeepImageSample>& to) {
+  for (const integrals::RayLayer& l : layers)
+    to.push_back({finite_float(l.front), finite_float(l.back), finite_float(std::max(0.0, l.red)),
+                  finite_float(std::max(0.0, l.green)), finite_float(std::max(0.0, l.blue)),
+                  static_cast<float>(-std::expm1(-l.optical_depth))});
+}
+
+PeelSink::PeelSink(const TileScene& scene, const ImageWindow& window, const scene::TransferFunction& function,
+                   scene::Emission emission, const Peel& peel, DeepTarget& target)
+    : scene_(scene),
+      picture_(scene, false),
+      window_(window),
+      layers_(function, emission, peel, scene.integrator->termination_error() > 0),
+      target_(&target) {}
+
+void PeelSink::start(const scene::PixelRect& rect) {
+  rect_ = rect;
+  segments_here_ = 0;
+  picture_.start(rect);
+  const auto n = static_cast<std::size_t>(rect.area());
+  rays_.assign(n, {});
+  open_.assign(n, 1);
+  layers_open_.assign(n, 1);
+  layers_open_count_ = n;
+  length_per_depth_.resize(n);
+  std::size_t i = 0;
+  for (int y = rect.y0; y < rect.y1; ++y)
+    for (int x = rect.x0; x < rect.x1; ++x) length_per_depth_[i++] = scene_.space->length_per_depth(x + 0.5, y + 0.5);
+  waiting_.clear();
+  made_.clear();
+}
+
+bool PeelSink::is_crossing(const Waiting& w) const {
+  return scene_.surfaces != nullptr && projection::is_crossing(w.scalar_front);
+}
+
+void PeelSink::take(Store& lists, double final_depth, std::size_t /*at_least*/, scene::StageTimer& timer) {
+  picture_.composite(lists, final_depth, timer);
+  const projection::RaySegments& segments = lists.segments;
+  for (std::uint32_t p = 0; p < layers_open_.size(); ++p) {
+    if (!layers_open_[p]) continue;
+    for (const auto& entry : lists.pixel(p)) {
+      if (!(entry.depth < final_depth)) break;
+      const std::uint32_t i = entry.segment;
+      const std::uint32_t tet = scene_.light != nullptr ? segments.tet(i) : 0;
+      waiting_.push_back(
+          {p, tet, segments.front[i], segments.back[i], segments.scalar_front[i], segments.scalar_back[i]});
+      if (waiting_.size() >= batch_segments) integrate_waiting(timer);
+    }
+  }
+  integrate_waiting(timer);
+  for (std::size_t p = 0; p < open_.size(); ++p)
+    open_[p] = static_cast<std::uint8_t>(picture_.open()[p] | layers_open_[p]);
+  segments_here_ += lists.remove(final_depth, open_);
+  timer.record("composite");
+}
+
+void PeelSink::integrate_waiting(scene::StageTimer& timer) {
+  timer.record("composite");
+  batch_.reserve(waiting_.size());
+  batch_.size = waiting_.size();
+  for (std::size_t k = 0; k < waiting_.size(); ++k) {
+    const Waiting& w = waiting_[k];
+    batch_.length[k] = (w.back - w.front) * length_per_depth_[w.pixel];
+    // A crossing's first scalar is none.
+    batch_.scalar_front[k] = is_crossing(w) ? w.scalar_back : w.scalar_front;
+    batch_.scalar_back[k] = w.scalar_back;
+  }
+  layers_.integrator().integrate(batch_);
+  timer.record("integrate");
+  for (std::size_t k = 0; k < waiting_.size(); ++k)
+    if (layers_open_[waiting_[k].pixel]) add(k);
+  waiting_.clear();
+}
+
+void PeelSink::add(std::size_t k) {
+  const Waiting& w = waiting_[k];
+  integrals::OpenLayer& ray = rays_[w.pixel];
+  ended_.clear();
+  if (is_crossing(w)) {
+    const projection::Crossing crossing = projection::crossing_of(w.scalar_front);
+    const scene::SurfaceSet::Light light = scene_.surfaces->light(crossing.number, crossing.cosine, w.scalar_back);
+    layers_.add_surface(w.front, light.red, light.green, light.blue, light.opacity, ray, ended_);
+  } else {
+    integrals::RayLayers::Stretch stretch{w.front, w.back, w.scalar_front, w.scalar_back, batch_.length[k]};
+    if (scene_.light != nullptr && batch_.optical_depth[k] > 0) {
+      const auto p = static_cast<int>(w.pixel);
+      const int x = rect_.x0 + p % rect_.width(), y = rect_.y0 + p / rect_.width();
+      const MatterLight::Light light =
+          scene_.light->on(scene_.normals->of(w.tet), scene_.space->direction(x + 0.5, y + 0.5));
+      stretch.own = light.own, stretch.white = light.white;
+    }
+    layers_.add(stretch, batch_, k, ray, ended_);
+  }
+  for (const integrals::RayLayer& layer : ended_) made_.push_back({w.pixel, layer});
+  if (layers_.transmittance(ray) * scene_.left_out_per_transmittance < layers_.integrator().termination_error()) {
+    layers_open_[w.pixel] = 0;
+    --layers_open_count_;
+  }
+}
+
+void PeelSink::finish() {
+  segments_ += segments_here_;
+  write_pixels(picture_, rect_, window_);
+  const auto n = static_cast<std::uint32_t>(rect_.area());
+  for (std::uint32_t p = 0; p < n; ++p) {
+    ended_.clear();
+    layers_.end(rays_[p], ended_);
+    for (const integrals::RayLayer& layer : ended_) made_.push_back({p, layer});
+  }
+  std::stable_sort(made_.begin(), made_.end(),
+                   [](const PixelLayer& a, const PixelLayer& b) { return a.pixel < b.pixel; });
+  std::vector<std::uint32_t> counts(n, 0);
+  std::vector<scene::DeepImageSample> samples;
+  for (const PixelLayer& made : made_) {
+    append_layers(std::span(&made.layer, 1), samples);
+    ++counts[made.pixel];
+  }
+  target_->add(rect_, std::move(counts), std::move(samples));
+}
+
+}  // namespace tessera::compositor

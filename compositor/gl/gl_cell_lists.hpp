@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "compositor/gl/gl_kernel.hpp"
+#include "gl/buffer.hpp"
+#include "gl/shader.hpp"
+#include "gl/timer.hpp"
+#include "projection/gl/gl_rasterizer.hpp"
+
+namespace tessera::compositor {
+
+/// What the compute kernel does where jobs have cells: the device rasterizes them into the jobs' lists, beside the
+/// fragments that were given. Used on the context's thread.
+class GlCellLists {
+ public:
+  GlCellLists(const gl::Context& context, std::size_t most_cells, scene::Trace* trace);
+
+  /// GlKernel::count().
+  std::vector<std::uint32_t> count(const GlCount& job);
+
+  /// For every pixel of jobs with cells, job by job: its list's first element that is the device's to make.
+  /// `first`: where a job's lists begin among those of its batch.
+  static std::vector<std::uint32_t> next_elements(std::span<const GlJob> jobs, std::span<const std::uint32_t> first);
+
+  /// A batch in mapped memory: keys of `given` fragments, their values behind them, and next_elements() from byte
+  /// `next_at` on.
+  struct Batch {
+    std::span<const GlJob> jobs;
+    const gl::Buffer* upload;
+    std::size_t given, fragments;  ///< `fragments`: those that the device is to make included
+    std::size_t next_at, pixels;
+  };
+  /// Queues commands that fill both, which have room for all fragments.
+  void fill(const Batch& batch, const gl::Buffer& keys, const gl::Buffer& values);
+
+  /// Queues what completes the lights (GlLight::rasterized_one) of the batch that was filled last. `tables`: list
+  /// entries from `first_list` on, as composite.comp has them, with the number of fragments given last.
+  void complete(const gl::Buffer& keys, const gl::Buffer& tables, const gl::Buffer& lights, GLuint first_list,
+                GLuint lists, GlIntegrals& integrals, const GlRules& rules);
+
+ private:
+  const gl::Context* context_;
+  projection::GlRasterizer rasterizer_;
+  gl::Program place_, first_crossings_;
+  gl::Buffer given_keys_, given_values_, next_, scalars_, readback_;
+  gl::Fence fence_;
+  gl::StageTimer timer_;
+};
+
+}  // namespace tessera::compositor

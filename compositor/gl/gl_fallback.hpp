@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "compositor/gl/gl_fragments.hpp"
+#include "integrals/segment_integrator.hpp"
+#include "scene/lattice.hpp"
+
+namespace tessera::compositor {
+
+/// What a device would make of the fragments, made here in double: for compositors whose device failed under way.
+/// `units`: those of the fragments' depths and scalars.
+std::vector<GlLight> composite_on_cpu(const GlFragments& fragments, const GlRules& rules,
+                                      const integrals::SegmentIntegrator& integrator, const scene::Lattice& units);
+
+}  // namespace tessera::compositor

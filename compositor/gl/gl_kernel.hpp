@@ -1,0 +1,62 @@
+#pragma once
+
+#include <future>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "compositor/gl/gl_compositor.hpp"
+#include "compositor/gl/gl_fragments.hpp"
+#include "gl/buffer.hpp"
+#include "gl/shader.hpp"
+
+/// The ways a device composites, for GlCompositor alone.
+namespace tessera::compositor {
+
+struct GlJob {
+  GlFragments fragments;
+  GlRules rules;
+  std::promise<std::vector<GlLight>> done;
+};
+
+/// Cells whose segments are to be counted.
+struct GlCount {
+  std::shared_ptr<const GlCells> cells;
+  scene::PixelRect rect;
+  std::uint32_t frame;
+  std::promise<std::vector<std::uint32_t>> done;
+};
+
+/// Lives on the context's thread. Batches are begun and finished in turn, at most `in_flight()` at once.
+class GlKernel {
+ public:
+  virtual ~GlKernel() = default;
+  /// Queues the batch's commands; the jobs, all of one frame, live until finish().
+  virtual void begin(std::span<GlJob> jobs) = 0;
+  /// Waits for the oldest batch and gives its lights, job by job, list by list.
+  virtual std::vector<std::vector<GlLight>> finish() = 0;
+  [[nodiscard]] virtual int in_flight() const = 0;
+  /// Every pixel's number of segments, row by row; waits for the device, batches begun included. Of `compute` alone, to
+  /// which cells go alone.
+  virtual std::vector<std::uint32_t> count(const GlCount& /*job*/) { return {}; }
+};
+
+std::unique_ptr<GlKernel> make_compute_kernel(const gl::Context& context, const GlSettings& settings,
+                                              scene::Trace* trace);
+std::unique_ptr<GlKernel> make_fragment_kernel(const gl::Context& context, const GlSettings& settings,
+                                               scene::Trace* trace);
+
+/// Sets the uniforms of shaders/integrals.glsl, and uploads the table if it is another frame's.
+class GlIntegrals {
+ public:
+  explicit GlIntegrals(const gl::Context& context)
+      : upload_(context, gl::Buffer::Use::upload), table_(context, gl::Buffer::Use::device), fence_(context) {}
+  void prepare(const gl::Program& program, const GlRules& rules);
+
+ private:
+  gl::Buffer upload_, table_;
+  gl::Fence fence_;
+  std::int64_t frame_ = -1;
+};
+
+}  // namespace tessera::compositor

@@ -1,0 +1,192 @@
+#include "frame/grid/shared_volume.hpp"
+
+#include <fmt/format.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "exchange/collectives.hpp"
+#include "exchange/shared_pages.hpp"
+#include "frame/ranks/field_message.hpp"
+#include "io/volume/brick_file.hpp"
+#include "scene/error.hpp"
+#include "scene/threads.hpp"
+
+namespace tessera::frame {
+namespace {
+
+using exchange::append;
+using exchange::append_text;
+using exchange::Bytes;
+using exchange::MessageKind;
+using exchange::MessageReader;
+
+/// By rank: the lowest rank of its machine; who does not know where it is shares with nobody.
+std::vector<std::size_t> leaders(exchange::Transport& transport) {
+  Bytes own = exchange::begin_message(MessageKind::host);
+  append_text(own, exchange::machine());
+  std::vector<std::string> machines;
+  for (const Bytes& message : exchange::gather_all(transport, std::move(own)))
+    machines.push_back(MessageReader(message, static_cast<int>(machines.size()), MessageKind::host).take_text());
+  std::vector<std::size_t> leaders;
+  leaders.reserve(machines.size());
+  for (const std::string& name : machines)
+    leaders.push_back(name.empty() ? leaders.size()
+                                   : static_cast<std::size_t>(std::ranges::find(machines, name) - machines.begin()));
+  return leaders;
+}
+
+/// Where a leader has put the samples; no path: they are in the file itself.
+struct Place {
+  std::string path, folder;
+  std::uint64_t bytes = 0;
+};
+
+/// Text path, text folder, u64 bytes, fields, texts of notes, text format, u8 axes of a body and of one if it is CT,
+/// texts modality, unit and unit of length, u8 labels, a time step, u8 whether z is beside degrees.
+/// Nothing of a rank that has not read the file.
+Bytes message_of(const io::VolumeFile& volume, const Place& place) {
+  Bytes message = exchange::begin_message(MessageKind::volume_facts);
+  append_text(message, place.path);
+  append_text(message, place.folder);
+  append(message, place.bytes);
+  append_fields(message, volume.fields);
+  append_texts(message, volume.notes);
+  append_text(message, volume.format);
+  append(message, static_cast<std::uint8_t>(volume.body_axes));
+  append(message, static_cast<std::uint8_t>(volume.axes_if_ct));
+  append_text(message, volume.tags.modality);
+  append_text(message, volume.tags.unit);
+  append_text(message, volume.tags.length_unit);
+  append(message, static_cast<std::uint8_t>(volume.tags.labels));
+  append_time_step(message, volume.time_step);
+  append(message, std::uint8_t{volume.beside_degrees});
+  return message;
+}
+
+Place place_in(MessageReader& reader) {
+  Place place;
+  place.path = reader.take_text();
+  place.folder = reader.take_text();
+  place.bytes = reader.take<std::uint64_t>();
+  return place;
+}
+
+/// All but the samples.
+io::VolumeFile description_in(MessageReader& reader) {
+  io::VolumeFile volume;
+  volume.fields = take_fields(reader);
+  volume.notes = take_texts(reader);
+  volume.format = reader.take_text();
+  volume.body_axes = static_cast<BodyAxes>(reader.take<std::uint8_t>());
+  volume.axes_if_ct = static_cast<BodyAxes>(reader.take<std::uint8_t>());
+  volume.tags.modality = reader.take_text();
+  volume.tags.unit = reader.take_text();
+  volume.tags.length_unit = reader.take_text();
+  volume.tags.labels = reader.take<std::uint8_t>() != 0;
+  volume.time_step = take_time_step(reader);
+  volume.beside_degrees = reader.take<std::uint8_t>() != 0;
+  reader.finish();
+  return volume;
+}
+
+/// What a leader has read, and where the others of its machine find it.
+class Leader {
+ public:
+  Leader(const std::filesystem::path& file, const io::VolumeOptions& options, bool shares, int threads) {
+    tbb::task_arena(scene::threads_for(threads)).execute([&] {
+      volume_ = io::open_unscanned_volume(file, options);
+      // Some come as a whole only.
+      if (shares && volume_.in_memory) volume_.scratch = io::scratch_bricks(*volume_.source, file.string());
+    });
+    if (shares && volume_.in_memory) volume_.source.reset();
+  }
+
+  [[nodiscard]] Bytes message() const {
+    const system::ScratchFile* const written = volume_.scratch.get();
+    if (written == nullptr) return message_of(volume_, {});
+    return message_of(volume_, {written->path(), written->folder(), written->bytes()});
+  }
+  [[nodiscard]] bool in_memory() const { return volume_.in_memory && !volume_.scratch; }
+  /// Null once they are written.
+  std::unique_ptr<scene::SampleSource> take_samples() { return std::move(volume_.source); }
+
+ private:
+  io::VolumeFile volume_;
+};
+
+std::unique_ptr<scene::SampleSource> samples_at(const Place& place, const std::filesystem::path& file,
+                                                const io::VolumeOptions& options) {
+  if (place.path.empty()) return io::open_unscanned_volume(file, options).source;
+  try {
+    return io::open_bricks(place.path, {}, file.string()).source;
+  } catch (const scene::Error&) {
+    throw scene::bad_input(fmt::format(
+        "{}: a rank cannot open what another has unpacked for it in {}; convert it to .bricks once and render that",
+        file.string(), place.folder));
+  }
+}
+
+std::string note_on(const std::filesystem::path& file, const Place& place, std::size_t ranks, std::size_t machines) {
+  return fmt::format(
+      "{} is read as a whole: its samples are kept {}, in a file of {} without a name in {}{}, which "
+      "goes with the run",
+      file.filename().string(),
+      ranks > 1 ? fmt::format("once for {} ranks", ranks) : "on disk, as memory may not hold them",
+      system::size_in_words(place.bytes), place.folder,
+      machines > 1 ? fmt::format(" on each of {} machines", machines) : "");
+}
+
+/// By one process, which keeps in memory what may be there.
+io::VolumeFile open_alone(const std::filesystem::path& file, const io::VolumeOptions& options, int threads) {
+  io::VolumeFile volume;
+  tbb::task_arena(scene::threads_for(threads)).execute([&] { volume = io::open_unscanned_volume(file, options); });
+  if (!volume.scratch) return volume;
+  const system::ScratchFile& scratch = *volume.scratch;
+  volume.notes.push_back(note_on(file, {scratch.path(), scratch.folder(), scratch.bytes()}, 1, 1));
+  return volume;
+}
+
+}  // namespace
+
+io::VolumeFile open_shared_volume(exchange::Transport& transport, const std::filesystem::path& file,
+                                  io::VolumeOptions options, int threads) {
+  if (transport.size() == 1) return open_alone(file, options, threads);
+  const std::vector<std::size_t> leader_of = leaders(transport);
+  const auto self = static_cast<std::size_t>(transport.rank());
+  const auto ranks_of = [&](std::size_t leader) { return std::ranges::count(leader_of, leader); };
+  if (ranks_of(leader_of[self]) > 1) options.most_in_memory = 0, options.scratch_is_needed = true;
+  std::optional<Leader> own;
+  if (leader_of[self] == self) own.emplace(file, options, ranks_of(self) > 1, threads);
+  const std::vector<Bytes> all =
+      exchange::gather_all(transport, own ? own->message() : exchange::begin_message(MessageKind::volume_facts));
+
+  std::optional<Place> first;
+  std::size_t sharing = 0, machines = 0;
+  io::VolumeFile volume;
+  for (std::size_t rank = 0; rank < all.size(); ++rank) {
+    if (leader_of[rank] != rank) continue;
+    MessageReader reader(all[rank], static_cast<int>(rank), MessageKind::volume_facts);
+    const Place place = place_in(reader);
+    if (!place.path.empty()) {
+      if (!first) first = place;
+      ++machines, sharing += static_cast<std::size_t>(ranks_of(rank));
+    }
+    if (rank != leader_of[self]) continue;
+    volume = description_in(reader);
+    volume.in_memory = own && own->in_memory();
+    if (own) volume.source = own->take_samples();
+    if (!volume.source) volume.source = samples_at(place, file, options);
+  }
+  if (first) volume.notes.push_back(note_on(file, *first, sharing, machines));
+  // Until then the leader has its file open, by which the others find it.
+  exchange::barrier(transport);
+  return volume;
+}
+
+}  // namespace tessera::frame

@@ -1,0 +1,97 @@
+#include "frame/grid/split_by_times.hpp"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <numeric>
+
+#include "volume/split/balanced_split.hpp"
+
+namespace tessera::frame {
+
+namespace {
+
+// At ten degrees from picture to picture their times are as good as pilot rays, and free.
+constexpr double near_enough = 0.3;
+/// Of what one picture says of the tiles' times that were not foreseen: less would be learned late, more is noise.
+constexpr double part_of_missed = 0.3;
+
+}  // namespace
+
+bool is_near(const scene::Camera& camera, const scene::Camera& other, const scene::Box& box, double most) {
+  if (camera.projection != other.projection) return false;
+  const double distance = glm::length(0.5 * (box.low + box.high) - camera.position);
+  return glm::length(scene::view_basis(camera).forward - scene::view_basis(other).forward) < most &&
+         glm::length(camera.position - other.position) < most * distance;
+}
+
+void SplitByTimes::learn(const VolumeJob& job, const scene::Box& box, const std::vector<CastTimes>& ranks) {
+  if (!std::ranges::all_of(ranks, &CastTimes::whole)) return;
+  std::vector<volume::TileTime> tiles;
+  std::vector<double> beside, tiles_of;
+  tiles_ = 0;
+  for (const CastTimes& times : ranks) {
+    double own = 0;
+    for (const volume::TileTime& time : times.tiles) own += 1e3 * static_cast<double>(time.microseconds);
+    beside.push_back(std::max(0.0, 1e9 * times.cpu_seconds - own));
+    tiles.insert(tiles.end(), times.tiles.begin(), times.tiles.end());
+    tiles_of.push_back(own);
+    tiles_ += own;
+  }
+  // Of ranks in one process nobody knows who took its time.
+  for (auto rank = ranks.begin(); rank != ranks.end(); ++rank)
+    if (std::any_of(ranks.begin(), rank, [&](const CastTimes& other) { return other.process == rank->process; }))
+      beside.assign(ranks.size(), 0.0);
+  beside_.resize(ranks.size());
+  ++pictures_;
+  // The first pictures are unlike all others: of one none is gathered beside it, and memory is new. From then on little
+  // is taken of one picture: gathering one may fall into the time of another.
+  const double weight = std::max(0.2, 1.0 / std::max(1, pictures_ - 2));
+  for (std::size_t rank = 0; rank < beside.size(); ++rank) beside_[rank] += weight * (beside[rank] - beside_[rank]);
+  if (tiles.empty()) return;
+  compare_with_foreseen(tiles_of);
+  if (!costs_ || costs_->size() != job.size || !is_near(job.camera, costs_->camera(), box, near_enough))
+    costs_.emplace(job.camera, job.size, 0.5 * (box.low + box.high));
+  else
+    costs_->turn_to(job.camera);
+  costs_->learn(tiles);
+}
+
+void SplitByTimes::compare_with_foreseen(const std::vector<double>& tiles_of) {
+  if (foreseen_.empty() || tiles_ <= 0) {
+    missed_.assign(tiles_of.size(), 0.0);
+    return;
+  }
+  const double all = std::accumulate(foreseen_.begin(), foreseen_.end(), 0.0);
+  for (std::size_t rank = 0; rank < tiles_of.size(); ++rank)
+    missed_[rank] += part_of_missed * (tiles_of[rank] / tiles_ - foreseen_[rank] / all - missed_[rank]);
+}
+
+std::vector<double> SplitByTimes::weights() const {
+  const double each =
+      (tiles_ + std::accumulate(beside_.begin(), beside_.end(), 0.0)) / static_cast<double>(beside_.size());
+  std::vector<double> weights;
+  if (tiles_ > 0)
+    for (const double beside : beside_) weights.push_back(std::max(0.1, 1 - beside / each));
+  return weights;
+}
+
+std::optional<volume::ImageSplit> SplitByTimes::find(const VolumeJob& job, const scene::Box& box) {
+  foreseen_.clear();
+  if (!costs_ || costs_->size() != job.size || !is_near(job.camera, costs_->camera(), box, near_enough))
+    return std::nullopt;
+  volume::TileCosts costs = *costs_;
+  costs.turn_to(job.camera);
+  costs.sum();
+  std::vector<double> more = beside_;
+  const double all = costs.of({0, 0, job.size.width, job.size.height});
+  for (std::size_t rank = 0; rank < more.size(); ++rank) more[rank] += missed_[rank] * all;
+  const volume::ImageSplit split = volume::balanced_split(costs, more);
+  for (int rank = 0; rank < split.processes(); ++rank) {
+    double cost = 0;
+    for (const scene::PixelRect& part : split.parts(rank)) cost += costs.of(part);
+    foreseen_.push_back(cost);
+  }
+  return split;
+}
+
+}  // namespace tessera::frame

@@ -1,0 +1,122 @@
+#include "frame/mesh/lattice_frame.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "projection/lattice/lattice_rasterizer.hpp"
+#include "scene/error_budget.hpp"
+
+namespace tessera::frame {
+namespace {
+
+namespace budget = scene::error_budget;
+
+constexpr double most_optical_depth = 2000;
+/// What scalars' rounding may change a pixel by.
+double most_error_of(const scene::Integrator& integrator) {
+  const bool automatic = integrator.kind == scene::IntegratorKind::automatic;
+  return automatic ? budget::lattice_scalars(integrator.accuracy) : budget::lattice_scalars_of_exact;
+}
+/// Whether float lanes are near enough, where a ray may be as bright as that.
+bool lanes_suffice(const scene::Integrator& integrator, double brightest) {
+  return integrator.kind == scene::IntegratorKind::automatic
+             ? budget::mesh_on_lattice(integrator.accuracy, brightest) <= integrator.accuracy
+             : budget::exact_mesh_on_lattice(brightest) <= budget::exact_mesh;
+}
+// Extinction wrong by at most D where the scalar is in a piece of the function changes light and opacity by at most
+// D int T dt over what the ray spends there, times the most that can lie behind. Transmittance T falls by exp(-sigma t)
+// at least, sigma being the piece's least extinction, so with x_i for piece i's integral sum x_i <= L and
+// sum sigma_i x_i <= 1: where D_i <= E (1 / L + sigma_i) / 2 for all pieces they change it by E together, at most.
+double seen_length(double length, double least_extinction) {
+  return std::min(length, 2 / (1 / length + least_extinction));
+}
+// What is deeper than this is dark: only rays at the foot of a very steep ramp could show more.
+constexpr double most_change_of_depth = 64;
+constexpr double margin = 1.001;  // keeps rounding and the planes' error inside the lattice
+
+/// Planar depths between which the box lies, in front of the eye and inside the clipping range.
+std::array<double, 2> depth_range(const projection::PixelSpace& space, const scene::Box& box) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p((corner & 1) != 0 ? box.high.x : box.low.x, (corner & 2) != 0 ? box.high.y : box.low.y,
+                       (corner & 4) != 0 ? box.high.z : box.low.z);
+    const double depth = space.project(p).depth;
+    low = std::min(low, depth), high = std::max(high, depth);
+  }
+  return {std::max(low, space.near_depth()), std::min(high, space.far_depth())};
+}
+
+/// The most world length per planar depth of any ray of the picture.
+double most_length_per_depth(const projection::PixelSpace& space) { return space.length_per_depth(0, 0); }
+
+}  // namespace
+
+std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
+                                         const std::array<double, 2>& scalar_range,
+                                         const scene::TransferFunction& function, const RenderSettings& settings) {
+  using scene::Lattice;
+  const bool exact = settings.integrator.kind == scene::IntegratorKind::exact ||
+                     settings.integrator.kind == scene::IntegratorKind::automatic;
+  if (!settings.use.lattice || settings.rasterizer == Rasterizer::scanline || !exact || box.empty() ||
+      settings.surfaces.has_faces() || settings.shading || !projection::lattice_available())
+    return std::nullopt;
+  const auto [near, far] = depth_range(space, box);
+  if (!(near <= far) || !std::isfinite(far - near)) return std::nullopt;
+
+  Lattice lattice{};
+  lattice.depth_origin = near + (far - near) / 2;
+  // The eye's distance rounds the lattice's origin: thin cells of a mesh that is flat beside it keep their thickness in
+  // double precision alone.
+  const double half_depth = (far - near) / 2;
+  if (half_depth < 1e-6 * std::abs(far)) return std::nullopt;
+  lattice.depth_unit = Lattice::unit_for(margin * half_depth);
+  const double longest = (far - near) * most_length_per_depth(space);
+  if (function.max_extinction() * longest > most_optical_depth) return std::nullopt;
+
+  const auto knots = function.knots();
+  const auto [low, high] = scalar_range;
+  const double first = std::clamp(knots.front().value, low, high), last = std::clamp(knots.back().value, low, high);
+  lattice.scalar_origin = first + (last - first) / 2;
+  const double reach =
+      std::max({high - lattice.scalar_origin, lattice.scalar_origin - low, 1e-12 * std::abs(lattice.scalar_origin)});
+  if (!std::isfinite(reach)) return std::nullopt;
+  lattice.scalar_unit = Lattice::unit_for(margin * reach);
+  const double length = std::min(longest, glm::length(box.high - box.low));
+  const bool independent = settings.emission == scene::Emission::independent;
+  const double most_error = most_error_of(settings.integrator);
+  const double brightest = std::max(1.0, function.max_color() * (independent ? length : 1));
+  if (!lanes_suffice(settings.integrator, scene::most_light(function, settings.emission, length))) return std::nullopt;
+  for (std::size_t i = 1; i < knots.size(); ++i) {
+    const scene::Knot &a = knots[i - 1], &b = knots[i];
+    if (a.value == b.value || b.value < low || a.value > high) continue;
+    const auto on_lanes = [&](double v) { return static_cast<float>(lattice.scalar_step(v)); };
+    if (on_lanes(a.value) == on_lanes(b.value)) return std::nullopt;
+    // A scalar is known to 16 steps (gradients over a square) or half a float's last place.
+    const double reached =
+        std::max(std::abs(a.value - lattice.scalar_origin), std::abs(b.value - lattice.scalar_origin));
+    // Just below a step it is a whole last place: what rounds to the step goes to the next float below it.
+    const bool step_above = i + 1 < knots.size() && knots[i + 1].value == b.value;
+    const double scalar_error =
+        std::max(16 * lattice.scalar_unit, std::min(reached, reach) * (step_above ? 0x1p-23 : 0x1p-24));
+    const glm::dvec3 color = glm::abs(b.color - a.color);
+    const double seen = seen_length(length, std::min(a.extinction, b.extinction));
+    const double depth = std::min(std::abs(b.extinction - a.extinction) * seen, most_change_of_depth) * brightest;
+    const double most_color = std::max({color.x, color.y, color.z}) * (independent ? seen : 1);
+    if (std::max(most_color, depth) * scalar_error > most_error * (b.value - a.value)) return std::nullopt;
+  }
+  return lattice;
+}
+
+projection::DepthLimits depth_limits_of(const projection::PixelSpace& space, const scene::Lattice& lattice,
+                                        const scene::TransferFunction& function, scene::Emission emission,
+                                        double longest_ray) {
+  const bool independent = emission == scene::Emission::independent;
+  const double brightest = std::max(1.0, function.max_color() * (independent ? longest_ray : 1));
+  const double light_per_length = function.max_extinction() * brightest + (independent ? function.max_color() : 0);
+  return {light_per_length * most_length_per_depth(space) * lattice.depth_unit, space.perspective()};
+}
+
+}  // namespace tessera::frame

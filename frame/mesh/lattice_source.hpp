@@ -1,0 +1,43 @@
+#pragma once
+
+#include "frame/mesh/tile_renderer.hpp"
+#include "projection/lattice/lattice_rasterizer.hpp"
+#include "sorting/encodings.hpp"
+
+namespace tessera::frame {
+
+/// A tile renderer's source on the integer lattice, for frames that fit it (frame/mesh/lattice_frame.hpp): sixteen
+/// cells are rasterized at once, and their segments given to the pixels' windows.
+///
+/// Windows hold a few dozen segments a pixel; the store is full when one of them is.
+class LatticeSource {
+ public:
+  using Encoding = sorting::LatticeEncoding;
+
+  LatticeSource(const TileContext& context, TileCounts& counts, const projection::LatticeView& view);
+
+  bool start(const scene::PixelRect& rect, const projection::DepthOrder& order);
+  bool fill(const compositor::TileSink<Encoding>& sink);
+  [[nodiscard]] std::int64_t final_depth() const;
+  [[nodiscard]] std::size_t at_least() const { return at_least_; }
+  bool make_room();
+  projection::SegmentWindows& store() { return windows_; }
+  [[nodiscard]] std::size_t capacity() const { return windows_.capacity(); }
+  [[nodiscard]] std::uint64_t alive() const { return windows_.total(); }
+
+ private:
+  TileContext context_;
+  TileCounts* counts_;
+  projection::LatticeView view_;
+  std::size_t first_capacity_, at_least_;
+  scene::PixelRect rect_{0, 0, 0, 0};
+  const projection::DepthOrder* order_ = nullptr;
+  std::size_t cells_ = 0;   ///< rasterized, the stream's included
+  std::size_t from_ = 0;    ///< the stream's first cell
+  std::size_t placed_ = 0;  ///< segments of the stream that are in the windows
+  projection::LatticeScratch scratch_;
+  projection::SegmentStream stream_;
+  projection::SegmentWindows windows_;
+};
+
+}  // namespace tessera::frame

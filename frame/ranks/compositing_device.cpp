@@ -1,0 +1,97 @@
+#include "frame/ranks/compositing_device.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+
+#include "exchange/collectives.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::frame {
+namespace {
+
+/// Every rank's text, in rank order.
+std::vector<std::string> gather_texts(exchange::Transport& transport, exchange::MessageKind kind,
+                                      std::string_view text) {
+  exchange::Bytes mine = exchange::begin_message(kind);
+  exchange::append_text(mine, text);
+  std::vector<std::string> texts;
+  for (const exchange::Bytes& message : exchange::gather_all(transport, std::move(mine)))
+    texts.push_back(exchange::MessageReader(message, static_cast<int>(texts.size()), kind).take_text());
+  return texts;
+}
+
+/// How many ranks of lower number are on this machine. Collective.
+int local_rank(exchange::Transport& transport) {
+  std::array<char, 256> host{};
+  gethostname(host.data(), host.size() - 1);
+  const std::string mine = host.data();
+  const auto hosts = gather_texts(transport, exchange::MessageKind::host, mine);
+  return static_cast<int>(
+      std::count_if(hosts.begin(), hosts.begin() + transport.rank(), [&](const auto& h) { return h == mine; }));
+}
+
+/// What went wrong, without the advice: that was taken.
+std::string reason(const scene::Error& error) {
+  const std::string words = error.what();
+  return words.substr(0, words.find(';'));
+}
+
+}  // namespace
+
+void check_device_rasterizer(const RenderSettings& render, const CompositingSettings& settings) {
+  if (render.rasterizer != Rasterizer::device) return;
+  const std::vector<Backend>& backends = settings.backends;
+  const auto on_cpu = static_cast<std::size_t>(std::count(backends.begin(), backends.end(), Backend::cpu));
+  if (on_cpu == backends.size())
+    throw scene::bad_input(
+        "`rasterizer` device: it is for `compositor` gl-compute; add that, or use `rasterizer` planes");
+  if (on_cpu > 0)
+    throw scene::bad_input(
+        "`rasterizer` device: `backend` leaves some compositors to the CPU; name a device for each, or use "
+        "`rasterizer` planes");
+  if (settings.gl.method == compositor::GlMethod::fragment)
+    throw scene::bad_input(
+        "`rasterizer` device: `compositor` gl-fragment takes ray segments; use gl-compute, or `rasterizer` planes");
+}
+
+void open_compositing_device(const CompositingSettings& settings, const Roles& roles, exchange::Transport& transport,
+                             scene::Trace* trace, CompositingDevice& made) {
+  const std::vector<Backend>& backends = settings.backends;
+  if (std::all_of(backends.begin(), backends.end(), [](Backend b) { return b == Backend::cpu; })) {
+    made.name = "cpu";
+    return;
+  }
+  if (backends.size() != 1 && backends.size() != roles.compositors.size())
+    throw scene::bad_input(fmt::format("`backend`: {} words for {} compositors; give one, or one for each",
+                                       backends.size(), roles.compositors.size()));
+  compositor::GlSettings gl = settings.gl;
+  if (gl.by_local_rank) gl.egl_device.local_rank = local_rank(transport);
+  std::string name;
+  const auto self = std::find(roles.compositors.begin(), roles.compositors.end(), transport.rank());
+  if (self != roles.compositors.end()) {
+    const auto place = static_cast<std::size_t>(self - roles.compositors.begin());
+    const Backend backend = backends[backends.size() == 1 ? 0 : place];
+    name = "cpu";
+    made.may_fail = backend == Backend::automatic;
+    gl.egl_device.hardware_only = backend == Backend::automatic && !settings.software_will_do;
+    if (backend != Backend::cpu) try {
+        made.device = std::make_unique<compositor::GlCompositor>(
+            backend == Backend::osmesa ? gl::Platform::osmesa : gl::Platform::egl, gl, trace);
+        name = made.device->name();
+      } catch (const scene::Error& error) {
+        if (backend != Backend::automatic || error.code() != scene::ErrorCode::system_failure) throw;
+        name = fmt::format("cpu ({})", reason(error));
+      }
+  }
+  std::vector<std::string> names;
+  for (std::string& other : gather_texts(transport, exchange::MessageKind::device, name))
+    if (!other.empty() && std::find(names.begin(), names.end(), other) == names.end())
+      names.push_back(std::move(other));
+  made.everywhere = std::none_of(names.begin(), names.end(), [](const auto& n) { return n.starts_with("cpu"); });
+  made.name = fmt::format("{}", fmt::join(names, " + "));
+}
+
+}  // namespace tessera::frame

@@ -1,0 +1,227 @@
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <memory>
+#include <optional>
+
+#include "compositor/gl/cell_sink.hpp"
+#include "compositor/pixel_sink.hpp"
+#include "compositor/run_sink.hpp"
+#include "compositor/segment_sink.hpp"
+#include "exchange/outbox.hpp"
+#include "frame/mesh/frame_projector.hpp"
+#include "frame/mesh/lattice_frame.hpp"
+#include "frame/ranks/distributed_roles.hpp"
+#include "scene/frame_watch.hpp"
+
+namespace tessera::frame {
+namespace {
+
+using exchange::Channel;
+
+/// Waits until one frame more has left the assembling rank.
+void await_frame(const DistributedRun& run) {
+  exchange::MessageReader(run.transport.receive(Channel::frames), exchange::MessageKind::frame_left).finish();
+}
+
+/// Waits until no more than `in_flight - 1` frames before this one are on their way.
+void wait_for_turn(const DistributedRun& run, std::size_t frame, std::size_t& left) {
+  const auto in_flight = static_cast<std::size_t>(run.settings.frames_in_flight);
+  if (frame < left + in_flight) return;
+  const scene::TraceScope timing(run.settings.projecting, "wait", static_cast<std::int32_t>(run.first + frame));
+  for (; frame >= left + in_flight; ++left) await_frame(run);
+}
+
+/// Which projector this rank is, 0 .. N-1.
+int number_of(const DistributedRun& run) {
+  const auto& projectors = run.settings.roles.projectors;
+  return static_cast<int>(std::find(projectors.begin(), projectors.end(), run.transport.rank()) - projectors.begin());
+}
+
+exchange::FrameEnd counts_of(const FrameStatistics& s) { return {s, s.on_lattice ? 1u : 0u, 0, 0}; }
+
+/// What a frame's sinks refer to, and the sinks.
+class FrameSinks {
+ public:
+  /// `packs(tile)`: whether its pixels leave this process.
+  FrameSinks(const DistributedRun& run, const FrameJob& job, const ProjectorMesh& mesh, bool has_all_cells,
+             std::function<bool(std::size_t tile)> packs, exchange::PartWriter::Deliver deliver)
+      : settings_(run.settings),
+        makes_pixels_(has_all_cells && run.settings.exchange == Exchange::runs &&
+                      run.settings.compositing_on.backends.empty()),
+        packs_(std::move(packs)),
+        mesh_(mesh),
+        deliver_(std::move(deliver)),
+        cut_(exchange_budget(run.settings).cut),
+        space_(job.camera, job.size),
+        integrator_(run.function, settings_.render.integrator, settings_.render.emission),
+        surfaces_(settings_.render.surfaces, run.function),
+        normals_(mesh.part),
+        scene_{&space_, &integrator_, 1} {
+    if (settings_.render.shading) light_.emplace(*settings_.render.shading, job.camera);
+    const double max_color = light_ ? light_->brightest(run.function.max_color()) : run.function.max_color();
+    scene_.left_out_per_transmittance =
+        std::max(integrals::opacity_weight(max_color, mesh.diagonal, settings_.render.emission), surfaces_.max_color());
+    if (!surfaces_.empty()) scene_.surfaces = &surfaces_;
+    if (light_) scene_.light = &*light_, scene_.normals = &normals_;
+    if (!settings_.deep) lattice_ = lattice_of(space_, mesh.box, mesh.scalar_range, run.function, settings_.render);
+    if (!lattice_) return;
+    table_.emplace(run.function, *lattice_, settings_.render.emission);
+    surfaces_.place_on(*lattice_);
+    scene_.table = &*table_;
+    scene_.lattice = *lattice_;
+  }
+  FrameSinks(const FrameSinks&) = delete;
+  FrameSinks& operator=(const FrameSinks&) = delete;
+
+  [[nodiscard]] const projection::PixelSpace& space() const { return space_; }
+  [[nodiscard]] const std::optional<scene::Lattice>& lattice() const { return lattice_; }
+  [[nodiscard]] const scene::SurfaceSet& surfaces() const { return surfaces_; }
+
+  [[nodiscard]] std::unique_ptr<compositor::TileSink<sorting::DoubleEncoding>> make() const {
+    if (makes_pixels_)
+      return std::make_unique<compositor::PixelSink<sorting::DoubleEncoding>>(scene_, packs_, deliver_);
+    if (settings_.render.rasterizer == Rasterizer::scanline)
+      return std::make_unique<compositor::TupleSink>(mesh_.longest_edge, deliver_);
+    if (settings_.exchange == Exchange::segments)
+      return std::make_unique<compositor::SegmentSink<sorting::DoubleEncoding>>(
+          mesh_.part.association == scene::Association::cell, mesh_.global_tet, deliver_, scene_.normals);
+    return std::make_unique<compositor::RunSink<sorting::DoubleEncoding>>(scene_, cut_, deliver_);
+  }
+  /// Whether devices rasterize: where light of segments is beyond them (GlMerger), the CPU does it all.
+  [[nodiscard]] bool have_cells() const {
+    return settings_.render.rasterizer == Rasterizer::device && (lattice_ || integrator_.samples() > 0);
+  }
+  [[nodiscard]] std::unique_ptr<compositor::CellSink> make_for_cells() const {
+    return std::make_unique<compositor::CellSink>(mesh_.global_tet, deliver_);
+  }
+  [[nodiscard]] std::unique_ptr<compositor::TileSink<sorting::LatticeEncoding>> make_on_lattice() const {
+    if (makes_pixels_)
+      return std::make_unique<compositor::PixelSink<sorting::LatticeEncoding>>(scene_, packs_, deliver_);
+    if (settings_.exchange == Exchange::segments)
+      return std::make_unique<compositor::SegmentSink<sorting::LatticeEncoding>>(*lattice_, deliver_);
+    return std::make_unique<compositor::RunSink<sorting::LatticeEncoding>>(scene_, cut_, deliver_);
+  }
+
+ private:
+  const DistributedSettings& settings_;
+  bool makes_pixels_;  ///< in place of runs
+  std::function<bool(std::size_t tile)> packs_;
+  const ProjectorMesh& mesh_;
+  exchange::PartWriter::Deliver deliver_;
+  std::uint64_t cut_;
+  projection::PixelSpace space_;
+  integrals::SegmentIntegrator integrator_;
+  scene::SurfaceSet surfaces_;
+  compositor::MeshNormals normals_;
+  std::optional<compositor::MatterLight> light_;
+  compositor::TileScene scene_;
+  std::optional<scene::Lattice> lattice_;
+  std::optional<integrals::LaneTable> table_;
+};
+
+/// Which member of a team is compositor c, by c; -1: none.
+std::vector<int> members_that_composite(const DistributedRun& run, const exchange::HostTeam& team) {
+  std::vector<int> members;
+  for (const int rank : run.settings.roles.compositors) {
+    const auto found = std::find(team.ranks().begin(), team.ranks().end(), rank);
+    members.push_back(found != team.ranks().end() ? static_cast<int>(found - team.ranks().begin()) : -1);
+  }
+  return members;
+}
+
+/// Projects frame `number` and sends what its sinks make.
+void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t number, LoadedMesh& loaded,
+                   exchange::Outbox& outbox) {
+  const DistributedSettings& settings = run.settings;
+  const ProjectorMesh& mesh = loaded.mesh();
+  const projection::TileGrid grid{job.size, settings.render.tile_size};
+  const exchange::TileMap map(grid.count(), static_cast<int>(settings.roles.compositors.size()), settings.tile_seed);
+  const std::size_t projectors = loaded.team() != nullptr ? loaded.team()->ranks().size() : 1;
+  const auto packs = [&](std::size_t tile) {
+    const int compositor = settings.roles.compositors[static_cast<std::size_t>(map.owner(tile))];
+    return compositor != run.transport.rank() || compositor != settings.roles.assembler();
+  };
+  const bool has_all_cells = projectors == settings.roles.projectors.size();
+  const FrameSinks sinks(run, job, mesh, has_all_cells, packs, [&](exchange::TilePart part) {
+    const scene::TraceScope timing(settings.projecting, "pack", number, part.records.size(), 0);
+    outbox.put(std::move(part));
+  });
+  FrameProjector::Task task;
+  task.space = &sinks.space();
+  task.grid = grid;
+  task.function = &run.function;
+  task.surfaces = &sinks.surfaces();
+  const std::vector<projection::SurfaceFaces> faces = faces_of(
+      settings.render.surfaces, sinks.surfaces(), loaded.boundary(), static_cast<std::uint32_t>(number_of(run)),
+      static_cast<std::uint32_t>(settings.roles.projectors.size()));
+  task.faces = faces;
+  task.frame = number;
+  task.longest_edge = mesh.longest_edge;
+  task.longest_ray = mesh.box.empty() ? 0 : glm::length(mesh.box.high - mesh.box.low);
+  task.make_sink = [&] { return sinks.make(); };
+  if (sinks.lattice()) {
+    task.lattice = &*sinks.lattice();
+    task.make_lattice_sink = [&] { return sinks.make_on_lattice(); };
+  }
+  if (run.device.everywhere && sinks.have_cells()) task.make_cell_sink = [&] { return sinks.make_for_cells(); };
+  std::vector<int> members;
+  if (loaded.team() != nullptr) {
+    task.team = loaded.team();
+    task.pass = [&](std::size_t tile) { outbox.pass(static_cast<std::uint32_t>(tile)); };
+    task.before_waiting = [&] { outbox.flush(); };
+    members = members_that_composite(run, *loaded.team());
+    task.preferred = [&](std::size_t tile) { return members[static_cast<std::size_t>(map.owner(tile))]; };
+  }
+  bool announced = false, stopped = false;
+  task.announce = [&](const std::vector<bool>& has_any) {
+    announced = true;
+    outbox.begin_frame(static_cast<std::uint32_t>(number), map, has_any,
+                       {.longest_ray = mesh.diagonal,
+                        .tiles = 0,
+                        .longest_edge = mesh.longest_edge,
+                        .stopped = stopped ? 1u : 0u,
+                        .lattice = sinks.lattice().value_or(scene::Lattice{})});
+  };
+  scene::FrameWatch watch(run.stop);
+  task.watch = &watch;
+  exchange::FrameEnd end{};
+  run.transport.set_working(true);
+  if (loaded.team() != nullptr) loaded.team()->begin();
+  try {
+    end = counts_of(loaded.projector().project(task));
+  } catch (const scene::FrameStopped&) {
+    // The others wait for what they were told of: it ends here, empty.
+    stopped = true;
+    if (loaded.team() != nullptr) loaded.team()->leave();
+    if (!announced) task.announce(std::vector<bool>(task.grid.count(), false));
+    outbox.end_tiles();
+    end.stopped = 1;
+  }
+  run.transport.set_working(false);
+  outbox.end_frame(end);
+}
+
+}  // namespace
+
+void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
+  const DistributedSettings& settings = run.settings;
+  const ExchangeBudget budget = exchange_budget(settings);
+  scene::Trace* const trace = settings.projecting;
+  exchange::Outbox outbox(run.transport,
+                          {settings.roles.compositors, budget.window, budget.backlog, trace, number_of(run)});
+  std::size_t left = 0;  // frames that have left the assembling rank
+  for (std::size_t frame = 0; frame < run.jobs.size(); ++frame) {
+    const FrameJob& job = run.jobs[frame];
+    loaded.load(job.mesh);
+    const auto number = static_cast<std::int32_t>(run.first + frame);
+    if (trace != nullptr) trace->set_frame(number);
+    wait_for_turn(run, frame, left);
+    const double start_us = trace != nullptr ? trace->now_us() : 0;
+    project_frame(run, job, number, loaded, outbox);
+    if (trace != nullptr) trace->add_frame(number, start_us);
+  }
+  // The next list begins with none on their way.
+  for (; left < run.jobs.size(); ++left) await_frame(run);
+}
+
+}  // namespace tessera::frame

@@ -1,0 +1,264 @@
+// Which pixels a batch's cells cover: the outline's edges alone, a cell a lane or a pixel a lane; included once per
+// instruction set (Highway's include guard idiom).
+
+#if defined(TESSERA_PROJECTION_LATTICE_COVER_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_PROJECTION_LATTICE_COVER_INL_H_
+#undef TESSERA_PROJECTION_LATTICE_COVER_INL_H_
+#else
+#define TESSERA_PROJECTION_LATTICE_COVER_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <bit>
+
+#include "projection/lattice/lattice_parts-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+#if HWY_TARGET != HWY_SCALAR
+namespace tessera::projection {
+namespace HWY_NAMESPACE {
+
+/// A block of pixels is a vector of lanes: as good as square, or half as high and twice as wide, or the other way
+/// round, whichever takes the fewest to cover a cell's box.
+struct BlockShape {
+  alignas(64) std::int32_t column[lanes], row[lanes];
+  std::int32_t width, height;
+};
+constexpr BlockShape block_of(int width) {
+  BlockShape shape{{}, {}, width, lanes / width};
+  for (int lane = 0; lane < lanes; ++lane) shape.column[lane] = lane % width, shape.row[lane] = lane / width;
+  return shape;
+}
+constexpr int usual_width = lanes >= 8 ? 4 : 2;
+constexpr BlockShape block_shapes[] = {block_of(usual_width), block_of(2 * usual_width), block_of(usual_width / 2)};
+
+/// An outline's sign is certain beyond this: 1 (2^-22 of the largest value), and a sum over blocks rounds a quarter of
+/// that each time, as to make the step did; beside a narrow rectangle, whose blocks reach out of it, values are up to
+/// 1.4 times as large.
+constexpr int most_blocks = SegmentWindows::most_pixels / lanes;
+constexpr float outline_uncertainty = 2.0f + 0.75f * static_cast<float>(most_blocks);
+
+/// first, first + 1... (Iota() of what is no constant goes through memory, lane by lane.)
+HWY_INLINE VI numbers_from(int first) { return hn::Add(hn::Iota(I(), 0), hn::Set(I(), first)); }
+
+/// Puts the lanes that are hit, or may be, behind `size` hits; returns how many there are then.
+HWY_INLINE std::size_t push_hits(VF least, MF among, VI hits, HitQueue& queue, std::size_t size) {
+  const F df;
+  const I d;
+  const VF bound = hn::Set(df, outline_uncertainty), minus_bound = hn::Set(df, -outline_uncertainty);
+  const VI mark = hn::Set(d, Hit::uncertain);
+#if HWY_TARGET <= HWY_AVX3
+  const MF near{_mm512_mask_cmp_ps_mask(among.raw, least.raw, minus_bound.raw, _CMP_GT_OQ)};
+  const MF uncertain = hn::Le(least, bound);
+  hits = VI{_mm512_mask_or_epi32(hits.raw, uncertain.raw, hits.raw, mark.raw)};
+#else
+  const MF near = hn::And(among, hn::Gt(least, minus_bound));
+  hits = hn::Or(hits, hn::IfThenElseZero(hn::RebindMask(d, hn::Le(least, bound)), mark));
+#endif
+  const LanePacker pack(hn::RebindMask(d, near));
+  hn::StoreU(pack(hits), d, queue.hit + size);
+  return size + pack.count();
+}
+
+/// Cells of a few pixels: as many of a batch as lanes, those from `from` on, go through their candidate pixels
+/// together, row by row, each from its own corner.
+struct SmallCells {
+  // Cycles, roughly as measured with AVX-512: of blocks, and of a step of all lanes here.
+  static constexpr int block_cost = 8, cell_cost = 45, step_cost = 9, start_cost = 60;
+
+  /// Those of `cells` (a bit each of the batch) that are faster this way: up to some size, if the most candidate pixels
+  /// of them all cost less than their blocks.
+  HWY_INLINE static unsigned worth_while(const CellBatch& batch, unsigned cells, int from) {
+    const I d;
+    const auto takes = mask_of(cells, from);
+    const VI width = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.x1 + from), hn::Load(d, batch.x0 + from)));
+    const VI height = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.y1 + from), hn::Load(d, batch.y0 + from)));
+    const VI side = hn::Max(width, height);
+    constexpr int across = usual_width, down = lanes / usual_width;
+    const VI blocks =
+        hn::Mul(hn::ShiftRight<std::countr_zero(unsigned{across})>(hn::Add(width, hn::Set(d, across - 1))),
+                hn::ShiftRight<std::countr_zero(unsigned{down})>(hn::Add(height, hn::Set(d, down - 1))));
+    const VI cost = hn::IfThenElseZero(takes, hn::Add(hn::Mul(blocks, hn::Set(d, block_cost)), hn::Set(d, cell_cost)));
+    for (const int most_side : {16, 10, 6}) {
+      const auto small = hn::Lt(side, hn::Set(d, most_side + 1));
+      const int candidates = hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElseZero(small, width))) *
+                             hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElseZero(small, height)));
+      if (candidates * step_cost + start_cost < hn::GetLane(hn::SumOfLanes(d, hn::IfThenElseZero(small, cost))))
+        return cells & lane_bits(hn::RebindMask(F(), small)) << from;
+    }
+    return 0;
+  }
+
+  /// Covers `cells` (a bit each of the batch). drain() makes room in the queue.
+  template <class Drain>
+  HWY_INLINE static void cover(const CellBatch& batch, const CellParts& parts, unsigned cells, int from,
+                               HitQueue& queue, const Drain& drain) {
+    const I d;
+    const F df;
+    const auto takes = mask_of(cells, from);
+    const VI x0 = hn::Load(d, batch.x0 + from), y0 = hn::Load(d, batch.y0 + from);
+    const VI width = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.x1 + from), x0));
+    const VI height = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.y1 + from), y0));
+    const int rows = hn::GetLane(hn::MaxOfLanes(d, height));
+    VI row_hits =
+        hn::Or(numbers_from(from), hn::Or(hn::ShiftLeft<Hit::column_bit>(x0), hn::ShiftLeft<Hit::row_bit>(y0)));
+    const VF one = hn::Set(df, 1.0f), center = hn::Set(df, static_cast<float>(CellBatch::center));
+    const VF first_x = hn::Sub(hn::ConvertTo(df, x0), center);
+    VF y = hn::Sub(hn::ConvertTo(df, y0), center);
+    for (int r = 0; r < rows; ++r) {
+      const VI row_width = hn::IfThenElseZero(hn::Gt(height, hn::Set(d, r)), width);
+      const int columns = hn::GetLane(hn::MaxOfLanes(d, row_width));
+      VF row_edge[4];
+      for (int k = 0; k < 4; ++k)
+        row_edge[k] =
+            hn::MulAdd(hn::Load(df, parts.outline[k].y + from), y, hn::Load(df, parts.outline[k].start + from));
+      VF x = first_x;
+      VI hits = row_hits, column = hn::Zero(d);
+      std::size_t size = queue.size;
+      for (int c = 0; c < columns; ++c) {
+        VF edge[4];
+        for (int k = 0; k < 4; ++k) edge[k] = hn::MulAdd(hn::Load(df, parts.outline[k].x + from), x, row_edge[k]);
+        const VF least = hn::Min(hn::Min(edge[0], edge[1]), hn::Min(edge[2], edge[3]));
+        size = push_hits(least, hn::RebindMask(df, hn::Gt(row_width, column)), hits, queue, size);
+        x = hn::Add(x, one);
+        column = hn::Add(column, hn::Set(d, 1));
+        hits = hn::Add(hits, hn::Set(d, 1 << Hit::column_bit));
+      }
+      queue.size = size;
+      if (size >= HitQueue::worth_draining) drain();
+      y = hn::Add(y, one);
+      row_hits = hn::Add(row_hits, hn::Set(d, 1 << Hit::row_bit));
+    }
+  }
+
+ private:
+  HWY_INLINE static hn::Mask<I> mask_of(unsigned cells, int from) {
+    cells >>= from;
+    const std::uint8_t bits[8] = {static_cast<std::uint8_t>(cells), static_cast<std::uint8_t>(cells >> 8)};
+    return hn::LoadMaskBits(I(), bits);
+  }
+};
+
+/// Blocks of pixels over each of a batch's cells.
+class CellBlocks {
+ public:
+  /// Lays blocks over all cells at once. Blocks that would reach out of the rectangle move inwards: what is not the
+  /// cell's its edges tell. Only in the narrowest of rectangles does that not help; those are `clipped`.
+  HWY_INLINE void lay(const CellBatch& batch, const CellParts& parts, const scene::PixelRect& rect,
+                      const scene::PixelRect& square) {
+    right_ = rect.x1 - square.x0, bottom_ = rect.y1 - square.y0;
+    const I d;
+    const F df;
+    const auto number = [](int n) HWY_ATTR { return hn::Set(I(), n); };
+    const VI right = number(right_), bottom = number(bottom_);
+    const VI first_x = number(rect.x0 - square.x0), first_y = number(rect.y0 - square.y0);
+    const VI center = number(CellBatch::center), one = number(1);
+    for (int t = 0; t < CellBatch::most; t += lanes) {
+      const VI x0 = hn::Load(d, batch.x0 + t), y0 = hn::Load(d, batch.y0 + t);
+      const VI box_width = hn::Sub(hn::Load(d, batch.x1 + t), x0), box_height = hn::Sub(hn::Load(d, batch.y1 + t), y0);
+      VI shape = hn::Zero(d), columns = shape, rows = shape, blocks = number(0x7fffffff);
+      VI block_width = shape, block_height = shape;
+      for (int i = 0; i < 3; ++i) {
+        const BlockShape& of = block_shapes[i];
+        const auto blocks_over = [&](VI box, int side) HWY_ATTR {
+          return hn::ShiftRightSame(hn::Add(box, number(side - 1)), __builtin_ctz(static_cast<unsigned>(side)));
+        };
+        const VI across = blocks_over(box_width, of.width), down = blocks_over(box_height, of.height);
+        const VI count = hn::Mul(across, down);
+        const auto fewer = hn::Lt(count, blocks);
+        blocks = hn::IfThenElse(fewer, count, blocks), shape = hn::IfThenElse(fewer, number(i), shape);
+        columns = hn::IfThenElse(fewer, across, columns), rows = hn::IfThenElse(fewer, down, rows);
+        block_width = hn::IfThenElse(fewer, number(of.width), block_width);
+        block_height = hn::IfThenElse(fewer, number(of.height), block_height);
+      }
+      const VI across = hn::Mul(columns, block_width), down = hn::Mul(rows, block_height);
+      const VI left = hn::Max(first_x, hn::Min(x0, hn::Sub(right, across)));
+      const VI top = hn::Max(first_y, hn::Min(y0, hn::Sub(bottom, down)));
+      const auto clipped = hn::Or(hn::Gt(hn::Add(left, across), right), hn::Gt(hn::Add(top, down), bottom));
+      const VI last_pixel = hn::Mul(hn::Sub(columns, one), block_width);
+      hn::Store(shape, d, shape_ + t);
+      hn::Store(left, d, left_ + t), hn::Store(top, d, top_ + t);
+      hn::Store(columns, d, columns_ + t), hn::Store(blocks, d, blocks_ + t);
+      hn::Store(hn::VecFromMask(d, clipped), d, clipped_ + t);
+      hn::Store(hn::Or(numbers_from(t), hn::Or(hn::ShiftLeft<Hit::column_bit>(left), hn::ShiftLeft<Hit::row_bit>(top))),
+                d, first_hit_ + t);
+      hn::Store(hn::ShiftLeft<Hit::column_bit>(block_width), d, hit_step_ + t);
+      hn::Store(hn::Sub(hn::ShiftLeft<Hit::row_bit>(block_height), hn::ShiftLeft<Hit::column_bit>(last_pixel)), d,
+                hit_step_ + CellBatch::most + t);
+      const VF x = hn::ConvertTo(df, hn::Sub(left, center)), y = hn::ConvertTo(df, hn::Sub(top, center));
+      const VF back = hn::ConvertTo(df, last_pixel);
+      const VF across_f = hn::ConvertTo(df, block_width), down_f = hn::ConvertTo(df, block_height);
+      for (int k = 0; k < 4; ++k) {
+        const CellParts::Edge& edge = parts.outline[k];
+        const VF along_x = hn::Load(df, edge.x + t), along_y = hn::Load(df, edge.y + t);
+        hn::Store(hn::MulAdd(along_x, x, hn::MulAdd(along_y, y, hn::Load(df, edge.start + t))), df, edge_[k] + t);
+        hn::Store(hn::Mul(along_x, across_f), df, edge_step_[k] + t);
+        hn::Store(hn::NegMulAdd(along_x, back, hn::Mul(along_y, down_f)), df, edge_step_[k] + CellBatch::most + t);
+      }
+    }
+  }
+
+  /// Block after block, row by row, in one loop. (How many blocks a row has is hard to predict.)
+  HWY_INLINE void cover(const CellParts& parts, int t, HitQueue& queue) const {
+    const I d;
+    const F df;
+    const BlockShape& shape = block_shapes[shape_[t]];
+    const VI column = hn::Load(d, shape.column), row = hn::Load(d, shape.row);
+    const VF x = hn::ConvertTo(df, column), y = hn::ConvertTo(df, row);
+    VF edge[4];
+    for (int k = 0; k < 4; ++k)
+      edge[k] = hn::MulAdd(hn::Set(df, parts.outline[k].x[t]), x,
+                           hn::MulAdd(hn::Set(df, parts.outline[k].y[t]), y, hn::Set(df, edge_[k][t])));
+    VI hits = hn::Add(hn::Set(d, first_hit_[t]),
+                      hn::Or(hn::ShiftLeft<Hit::column_bit>(column), hn::ShiftLeft<Hit::row_bit>(row)));
+    const bool clipped = clipped_[t] != 0;
+    const int columns = columns_[t];
+    int left = columns;
+    std::size_t size = queue.size;
+    for (int block = 0, count = blocks_[t]; block < count; ++block) {
+      const VF least = hn::Min(hn::Min(edge[0], edge[1]), hn::Min(edge[2], edge[3]));
+      MF among = hn::Eq(x, x);
+      if (HWY_UNLIKELY(clipped)) among = in_rectangle(shape, t, block);
+      size = push_hits(least, among, hits, queue, size);
+      // All ones behind the last of a row. (A comparison's result would come in a part of a register: it would wait for
+      // the count of hits to be done with the rest.)
+      const int wraps = (--left - 1) >> 31;
+      left += columns & wraps;
+      const int step = (wraps & CellBatch::most) + t;
+      for (int k = 0; k < 4; ++k) edge[k] = hn::Add(edge[k], hn::Set(df, edge_step_[k][step]));
+      hits = hn::Add(hits, hn::Set(d, hit_step_[step]));
+    }
+    queue.size = size;
+  }
+
+ private:
+  /// The lanes of a block that lie in the rectangle.
+  HWY_NOINLINE MF in_rectangle(const BlockShape& shape, int t, int block) const {
+    const I d;
+    const VI x = hn::Add(hn::Load(d, shape.column), hn::Set(d, left_[t] + block % columns_[t] * shape.width));
+    const VI y = hn::Add(hn::Load(d, shape.row), hn::Set(d, top_[t] + block / columns_[t] * shape.height));
+    return hn::RebindMask(F(), hn::And(hn::Lt(x, hn::Set(d, right_)), hn::Lt(y, hn::Set(d, bottom_))));
+  }
+
+  int right_, bottom_;
+  // By cell: the first block's corner, how many blocks in a row and in all, and what is added from each to the next, in
+  // the second half after the last of a row.
+  alignas(64) std::int32_t left_[CellBatch::most], top_[CellBatch::most], columns_[CellBatch::most];
+  alignas(64) std::int32_t blocks_[CellBatch::most], shape_[CellBatch::most], clipped_[CellBatch::most];
+  alignas(64) std::int32_t first_hit_[CellBatch::most], hit_step_[2 * CellBatch::most];
+  alignas(64) float edge_[4][CellBatch::most], edge_step_[4][2 * CellBatch::most];
+};
+
+/// Working memory of rasterizing a batch.
+struct CoverScratch {
+  HitQueue hits;
+  CellBlocks blocks;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::projection
+#endif  // HWY_SCALAR
+HWY_AFTER_NAMESPACE();
+
+#endif

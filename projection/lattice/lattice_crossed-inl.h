@@ -1,0 +1,68 @@
+// Which of a batch's segments may cross a surface; included once per instruction set (Highway's include guard idiom).
+
+#if defined(TESSERA_PROJECTION_LATTICE_CROSSED_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_PROJECTION_LATTICE_CROSSED_INL_H_
+#undef TESSERA_PROJECTION_LATTICE_CROSSED_INL_H_
+#else
+#define TESSERA_PROJECTION_LATTICE_CROSSED_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include "projection/lattice/lattice_shapes-inl.h"
+#include "projection/lattice/lattice_surfaces.hpp"
+
+HWY_BEFORE_NAMESPACE();
+#if HWY_TARGET != HWY_SCALAR
+namespace tessera::projection {
+namespace HWY_NAMESPACE {
+
+/// Numbers of segments, as many as `count` says and then any for a vector of lanes, and their cells, a bit each.
+struct CrossedSegments {
+  const std::int32_t* numbers;
+  std::size_t count;
+  unsigned cells;
+};
+
+/// The segments from `first` on whose scalars reach from below the last of their cell's surfaces to the first or above.
+HWY_NOINLINE inline CrossedSegments crossed_segments(const SegmentStream& stream, std::size_t first,
+                                                     LatticeSurfaces& surfaces) {
+  const I d;
+  const F df;
+  std::int32_t* const crossed = surfaces.numbers(stream.size - first);
+  std::size_t count = 0;
+  VI cells = hn::Zero(d);
+  VI number = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(first)));
+  const auto of_cell = [&](const float* numbers, VI cell) HWY_ATTR {
+    if constexpr (lanes == static_cast<int>(LatticeSurfaces::most_cells))
+      return hn::TableLookupLanes(hn::Load(df, numbers), hn::IndicesFromVec(df, cell));
+    else
+      return hn::GatherIndex(df, numbers, cell);
+  };
+  for (std::size_t i = first; i < stream.size; i += lanes) {
+    const VI cell = hn::And(hn::LoadU(d, stream.hit.data() + i),
+                            hn::Set(d, static_cast<std::int32_t>(LatticeSurfaces::most_cells) - 1));
+    const VF from = hn::LoadU(df, stream.scalar_front.data() + i), to = hn::LoadU(df, stream.scalar_back.data() + i);
+    const auto reaches = hn::And(hn::Ge(hn::Max(from, to), of_cell(surfaces.low, cell)),
+                                 hn::Lt(hn::Min(from, to), of_cell(surfaces.high, cell)));
+    const auto is = hn::And(reaches, hn::FirstN(df, stream.size - i));
+    // Without a branch, which would go either way.
+    const LanePacker pack(hn::RebindMask(d, is));
+    hn::StoreU(pack(number), d, crossed + count);
+    count += pack.count();
+    number = hn::Add(number, hn::Set(d, lanes));
+    cells = hn::Or(cells, hn::IfThenElseZero(hn::RebindMask(d, is), hn::Shl(hn::Set(d, 1), cell)));
+  }
+  alignas(64) std::int32_t of_lane[lanes];
+  hn::Store(cells, d, of_lane);
+  unsigned all = 0;
+  for (const std::int32_t bits : of_lane) all |= static_cast<unsigned>(bits);
+  return {crossed, count, all};
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::projection
+#endif  // HWY_SCALAR
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,166 @@
+// Which cells of a batch have surfaces, and how these lie, a cell a lane; included once per instruction set (Highway's
+// include guard idiom).
+
+#if defined(TESSERA_PROJECTION_LATTICE_NORMALS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_PROJECTION_LATTICE_NORMALS_INL_H_
+#undef TESSERA_PROJECTION_LATTICE_NORMALS_INL_H_
+#else
+#define TESSERA_PROJECTION_LATTICE_NORMALS_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <limits>
+
+#include "projection/lattice/lattice_shapes-inl.h"
+#include "projection/lattice/lattice_surfaces.hpp"
+#include "projection/surface_crossings.hpp"
+
+HWY_BEFORE_NAMESPACE();
+#if HWY_TARGET != HWY_SCALAR
+namespace tessera::projection {
+namespace HWY_NAMESPACE {
+
+/// Three coordinates of as many cells as lanes.
+struct Vectors {
+  V x, y, z;
+};
+HWY_INLINE Vectors difference(const Vectors& a, const Vectors& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE Vectors product(const Vectors& a, V b) { return {hn::Mul(a.x, b), hn::Mul(a.y, b), hn::Mul(a.z, b)}; }
+HWY_INLINE V dot(const Vectors& a, const Vectors& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+HWY_INLINE Vectors cross(const Vectors& a, const Vectors& b) {
+  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(b.y, a.z)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(b.z, a.x)),
+          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(b.x, a.y))};
+}
+HWY_INLINE V largest(const Vectors& v) { return hn::Max(hn::Max(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z)); }
+
+/// unit(gradient_direction()) of surface_crossings.hpp but for rounding, a cell a lane.
+HWY_INLINE Vectors unit_gradient(const Vectors (&corner)[4], const V (&scalar)[4]) {
+  const V zero = hn::Zero(D());
+  Vectors edge[3];
+  V change[3], size = zero, most = zero;
+  for (std::size_t i = 0; i < 3; ++i) {
+    edge[i] = difference(corner[i + 1], corner[0]);
+    change[i] = hn::Sub(scalar[i + 1], scalar[0]);
+    size = hn::Max(size, largest(edge[i])), most = hn::Max(most, hn::Abs(change[i]));
+  }
+  // Edges of size one: of no mesh do squares or products of them leave a double's range.
+  const V one = hn::Set(D(), 1), per_size = hn::Div(one, size), per_change = hn::Div(one, most);
+  const Vectors e0 = product(edge[0], per_size), e1 = product(edge[1], per_size), e2 = product(edge[2], per_size);
+  const Vectors n0 = cross(e1, e2), n1 = cross(e2, e0), n2 = cross(e0, e1);
+  const V c0 = hn::Mul(change[0], per_change), c1 = hn::Mul(change[1], per_change), c2 = hn::Mul(change[2], per_change);
+  const auto sum = [&](V a, V b, V c)
+                       HWY_ATTR { return hn::Add(hn::Add(hn::Mul(c0, a), hn::Mul(c1, b)), hn::Mul(c2, c)); };
+  const Vectors direction{sum(n0.x, n1.x, n2.x), sum(n0.y, n1.y, n2.y), sum(n0.z, n1.z, n2.z)};
+  const V square = dot(direction, direction);
+  const Vectors unit = product(direction, hn::Div(one, hn::Sqrt(square)));
+  // Of a cell of no size, of one scalar, or flat, divisions gave no numbers.
+  const V least = hn::Set(D(), 1e-300);
+  const auto is = hn::And(hn::Gt(square, zero), hn::And(hn::Gt(size, least), hn::Gt(most, least)));
+  return {hn::IfThenElseZero(is, unit.x), hn::IfThenElseZero(is, unit.y), hn::IfThenElseZero(is, unit.z)};
+}
+
+/// Normals and cosines of some of a batch's cells, a bit each. To be called once find_surfaces()'s prefetches have had
+/// their time.
+HWY_NOINLINE inline void find_normals(const LatticeView& view, const CellBatch& batch, unsigned cells,
+                                      LatticeSurfaces& surfaces) {
+  const D d;
+  const hn::RebindToSigned<D> di;
+  constexpr std::size_t most = hn::MaxLanes(D());
+  const PreparedMesh& prepared = *view.projected.mesh;
+  const scene::TetMeshView& mesh = prepared.mesh();
+  const double* const positions = &mesh.positions.front().x;
+  static_assert(sizeof(glm::dvec3) == 3 * sizeof(double));
+  const glm::dvec3 towards = view.perspective ? glm::dvec3(0) : view.projected.iso->space->direction(0, 0);
+  const Vectors ray{hn::Set(d, towards.x), hn::Set(d, towards.y), hn::Set(d, towards.z)};
+  while (cells != 0) {
+    // Lanes beyond the last read vertex 0.
+    alignas(64) std::int64_t vertices[4][most] = {};
+    std::size_t of_lane[most], count = 0;
+    for (; cells != 0 && count < most; cells &= cells - 1, ++count) {
+      of_lane[count] = static_cast<std::size_t>(__builtin_ctz(cells));
+      const scene::Tet& corners = prepared.tets()[batch.tet[of_lane[count]]];
+      for (std::size_t i = 0; i < 4; ++i) vertices[i][count] = corners[i];
+    }
+    Vectors corner[4];
+    V scalar[4];
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto vertex = hn::Load(di, vertices[i]);
+      const auto first = hn::Add(hn::Add(vertex, vertex), vertex);
+      corner[i] = {hn::GatherIndex(d, positions, first), hn::GatherIndex(d, positions + 1, first),
+                   hn::GatherIndex(d, positions + 2, first)};
+      scalar[i] = hn::GatherIndex(d, mesh.scalars.data(), vertex);
+    }
+    const Vectors normal = unit_gradient(corner, scalar);
+    const V one = hn::Set(d, 1), zero = hn::Zero(d);
+    const V least = hn::IfThenElse(hn::Gt(largest(normal), zero), zero, one);
+    alignas(64) double found[5][most];
+    hn::Store(normal.x, d, found[0]), hn::Store(normal.y, d, found[1]), hn::Store(normal.z, d, found[2]);
+    hn::Store(least, d, found[3]);
+    hn::Store(hn::Min(hn::Max(hn::Abs(dot(ray, normal)), least), one), d, found[4]);
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      const std::size_t t = of_lane[lane];
+      for (std::size_t axis = 0; axis < 3; ++axis) surfaces.normal[axis][t] = found[axis][lane];
+      surfaces.least_cosine[t] = found[3][lane];
+      const auto cosine = static_cast<float>(found[4][lane]);
+      surfaces.cosine_code[t] = static_cast<std::int32_t>(LatticeMark::cosine_code(cosine));
+    }
+  }
+}
+
+/// What find_normals() will read of cell t.
+HWY_INLINE void prefetch_corners(const LatticeView& view, const CellBatch& batch, int t) {
+  const scene::TetMeshView& mesh = view.projected.mesh->mesh();
+  for (const std::uint32_t v : view.projected.mesh->tets()[batch.tet[t]]) {
+    __builtin_prefetch(&mesh.positions[v]);
+    __builtin_prefetch(&mesh.scalars[v]);
+  }
+}
+
+/// Which of a batch's cells have surfaces, a bit each; irregular ones are taken to have none.
+HWY_NOINLINE inline unsigned find_surfaces(const LatticeView& view, const CellBatch& batch, LatticeSurfaces& surfaces) {
+  // Rounding may move a scalar over a value: a float's last place (64 steps at most), the value's own, and a gradient's
+  // over the square.
+  constexpr float margin = 256;
+  const F df;
+  const I d;
+  const std::span<const float> values = view.projected.iso->surfaces->on_lattice();
+  unsigned with = 0;
+  for (int from = 0; from < batch.size; from += lanes) {
+    const VF below = hn::Sub(hn::Load(df, batch.scalar_low + from), hn::Set(df, margin));
+    const VF above = hn::Add(hn::Load(df, batch.scalar_high + from), hn::Set(df, margin));
+    VI first = hn::Zero(d), last = hn::Zero(d);
+    const auto count_if = [&](MF mask, VI& count)
+                              HWY_ATTR { count = hn::Sub(count, hn::VecFromMask(d, hn::RebindMask(d, mask))); };
+    for (const float value : values) {
+      count_if(hn::Lt(hn::Set(df, value), below), first);
+      count_if(hn::Le(hn::Set(df, value), above), last);
+    }
+    const unsigned at_all = (1u << batch.size) - 1, here = ((1u << lanes) - 1) << from;
+    const unsigned regular = at_all & here & ~batch.irregular;
+    const unsigned some = lane_bits(hn::RebindMask(df, hn::Lt(first, last))) << from & regular;
+    with |= some;
+    hn::Store(first, d, surfaces.first + from);
+    hn::Store(hn::Sub(last, first), d, surfaces.count + from);
+    hn::Store(hn::Set(df, std::numeric_limits<float>::infinity()), df, surfaces.low + from);
+    hn::Store(hn::Set(df, -std::numeric_limits<float>::infinity()), df, surfaces.high + from);
+  }
+  for (unsigned left = with; left != 0; left &= left - 1) {
+    const int t = __builtin_ctz(left);
+    surfaces.low[t] = values[static_cast<std::size_t>(surfaces.first[t])];
+    prefetch_corners(view, batch, t);
+    surfaces.high[t] = values[static_cast<std::size_t>(surfaces.first[t] + surfaces.count[t] - 1)];
+  }
+  return with;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::projection
+#endif  // HWY_SCALAR
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,197 @@
+// A batch's cells with their edges and faces in the order of the parts that they play, so that lanes with unlike cells
+// do the same; included once per instruction set (Highway's include guard idiom).
+
+#if defined(TESSERA_PROJECTION_LATTICE_PARTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_PROJECTION_LATTICE_PARTS_INL_H_
+#undef TESSERA_PROJECTION_LATTICE_PARTS_INL_H_
+#else
+#define TESSERA_PROJECTION_LATTICE_PARTS_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <utility>
+
+#include "projection/lattice/lattice_shapes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+#if HWY_TARGET != HWY_SCALAR
+namespace tessera::projection {
+namespace HWY_NAMESPACE {
+
+/// Which edge or face plays a part: [part][front faces].
+struct PartTable {
+  alignas(64) std::int32_t outline[4][16];  ///< Roles::outline
+  /// Of one face against three: Roles::inner. Of two against two: none, the front faces', the back faces'.
+  alignas(64) std::int32_t inner[3][16];
+  alignas(64) std::int32_t face[4][16];                       ///< Roles::face
+  alignas(64) std::int32_t three[16], behind[16], valid[16];  ///< 1 or 0; Roles::single_behind, Roles::valid
+};
+constexpr std::int32_t no_edge = 6;
+constexpr PartTable make_part_table() {
+  PartTable p{};
+  for (unsigned front = 0; front < 16; ++front) {
+    const Roles r = role_table.roles[front];
+    for (int k = 0; k < 4; ++k) p.outline[k][front] = r.outline[k], p.face[k][front] = r.face[k];
+    p.inner[0][front] = r.three ? std::int32_t{r.inner[0]} : no_edge;
+    p.inner[1][front] = r.three ? r.inner[1] : r.inner[0];
+    p.inner[2][front] = r.three ? r.inner[2] : r.inner[1];
+    p.three[front] = r.three, p.behind[front] = r.single_behind, p.valid[front] = r.valid;
+  }
+  return p;
+}
+constexpr PartTable part_table = make_part_table();
+
+/// Whether some valid cell has `what` in a part.
+constexpr bool occurs(const std::int32_t (&part)[16], std::int32_t what) {
+  for (unsigned front = 0; front < 16; ++front)
+    if (role_table.roles[front].valid && part[front] == what) return true;
+  return false;
+}
+
+/// Numbers by cell of the batch. Edge functions are start + x column + y row, counted from the square's centre
+/// (CellBatch); planes likewise, where x is 2^16 high.x + low.x, with (x, y) in one number's lower and upper 16 bits.
+struct CellParts {
+  struct Edge {
+    alignas(64) float start[CellBatch::most], x[CellBatch::most], y[CellBatch::most];
+  };
+  struct Plane {
+    alignas(64) std::int32_t start[CellBatch::most], low[CellBatch::most], high[CellBatch::most];
+  };
+  /// A quantity on the faces in the order of Roles::face.
+  using Planes = Plane[4];
+
+  Edge outline[4], inner[3];
+  Planes depth, scalar, weight;
+  alignas(64) std::int32_t depth_c[4][CellBatch::most], scalar_c[4][CellBatch::most];  ///< the latter floats
+  unsigned three, behind;  ///< bit t: one face against three; that one is the back face
+};
+
+/// table[front faces], 16 numbers.
+HWY_INLINE VI by_front(const std::int32_t* table, VI front) {
+  if constexpr (lanes == 16)
+    return hn::TableLookupLanes(hn::Load(I(), table), hn::IndicesFromVec(I(), front));
+  else
+    return hn::GatherIndex(I(), table, front);
+}
+
+/// Orders the parts of a batch's cells [from, from + lanes).
+class PartOrder {
+ public:
+  HWY_INLINE PartOrder(const CellBatch& batch, int from, CellParts& parts)
+      : batch_(batch),
+        from_(from),
+        front_(hn::And(hn::BitCast(I(), hn::Load(hn::RebindToUnsigned<I>(), batch.bits + from)), hn::Set(I(), 15))),
+        parts_(parts) {}
+
+  /// Sets `three` and `behind`, to be zero before the first. Returns the cells that have candidate pixels, a bit each.
+  HWY_INLINE unsigned shapes() const {
+    const I d;
+    const auto is = [&](const std::int32_t* table) HWY_ATTR { return hn::Ne(by_front(table, front_), hn::Zero(d)); };
+    const auto bits = [&](hn::Mask<I> mask) HWY_ATTR { return lane_bits(hn::RebindMask(F(), mask)) << from_; };
+    parts_.three |= bits(is(part_table.three));
+    parts_.behind |= bits(is(part_table.behind));
+    const auto columns = hn::Lt(hn::Load(d, batch_.x0 + from_), hn::Load(d, batch_.x1 + from_));
+    const auto rows = hn::Lt(hn::Load(d, batch_.y0 + from_), hn::Load(d, batch_.y1 + from_));
+    return bits(hn::And(is(part_table.valid), hn::And(columns, rows)));
+  }
+
+  /// Sets all the rest that such a view of such a mesh uses.
+  template <bool perspective, bool per_cell>
+  HWY_INLINE void order() const {
+    edges<0>(), edges<1>(), edges<2>(), edges<3>();
+    inner_edges<0>(), inner_edges<1>(), inner_edges<2>();
+    VI face[4];
+    for (int k = 0; k < 4; ++k) face[k] = by_front(part_table.face[k], front_);
+    planes(face, batch_.depth, parts_.depth);
+    if constexpr (!per_cell) planes(face, batch_.scalar, parts_.scalar);
+    if constexpr (perspective) {
+      planes(face, batch_.weight, parts_.weight);
+      for (int k = 0; k < 4; ++k) hn::Store(number_of(face[k], batch_.depth_c), I(), parts_.depth_c[k] + from_);
+      if constexpr (!per_cell)
+        for (int k = 0; k < 4; ++k)
+          hn::Store(number_of(face[k], reinterpret_cast<const std::int32_t(*)[CellBatch::most]>(batch_.scalar_c)), I(),
+                    parts_.scalar_c[k] + from_);
+    }
+  }
+
+ private:
+  template <int k>
+  HWY_INLINE void edges() const {
+    edge<k, false>(part_table.outline[k], parts_.outline[k]);
+  }
+  template <int k>
+  HWY_INLINE void inner_edges() const {
+    edge<k, true>(part_table.inner[k], parts_.inner[k]);
+  }
+  template <int k, bool inner>
+  HWY_INLINE void edge(const std::int32_t* part, CellParts::Edge& to) const {
+    const F df;
+    const VI which = by_front(part, front_);
+    // Where there is none, surely not positive.
+    VF start = hn::Set(df, -4.0f), x = hn::Zero(df), y = x;
+    edges_of<k, inner>(which, start, x, y, std::make_integer_sequence<int, 6>());
+    hn::Store(start, df, to.start + from_), hn::Store(x, df, to.x + from_), hn::Store(y, df, to.y + from_);
+  }
+  template <int k, bool inner, int... e>
+  HWY_INLINE void edges_of(VI which, VF& start, VF& x, VF& y, std::integer_sequence<int, e...>) const {
+    (edge_if<k, inner, e>(which, start, x, y), ...);
+  }
+  template <int k, bool inner, int e>
+  HWY_INLINE void edge_if(VI which, VF& start, VF& x, VF& y) const {
+    if constexpr (occurs(inner ? part_table.inner[k] : part_table.outline[k], e)) {
+      const F df;
+      const MF is = hn::RebindMask(df, hn::Eq(which, hn::Set(I(), e)));
+      start = hn::IfThenElse(is, hn::Load(df, batch_.edge[e] + from_), start);
+      x = hn::IfThenElse(is, hn::Load(df, batch_.edge_x[e] + from_), x);
+      y = hn::IfThenElse(is, hn::Load(df, batch_.edge_y[e] + from_), y);
+    }
+  }
+  HWY_INLINE VI number_of(VI face, const std::int32_t (*all)[CellBatch::most]) const {
+    const I d;
+    VI v = hn::Load(d, all[0] + from_);
+    for (int f = 1; f < 4; ++f) v = hn::IfThenElse(hn::Eq(face, hn::Set(d, f)), hn::Load(d, all[f] + from_), v);
+    return v;
+  }
+  HWY_INLINE void planes(const VI (&face)[4], const CellBatch::FacePlanes& all, CellParts::Planes& to) const {
+    const I d;
+    for (int k = 0; k < 4; ++k) {
+      const VI x = number_of(face[k], all.x), y = number_of(face[k], all.y);
+      hn::Store(number_of(face[k], all.start), d, to[k].start + from_);
+      const VI low = hn::Set(d, 0xffff);
+      hn::Store(hn::Or(hn::And(x, low), hn::ShiftLeft<16>(y)), d, to[k].low + from_);
+      // The lower part is signed: where it is negative the upper one is one more.
+      const auto high = [](VI v) HWY_ATTR { return hn::Add(v, hn::Set(I(), 0x8000)); };
+      hn::Store(hn::Or(hn::BitCast(d, hn::ShiftRight<16>(hn::BitCast(hn::RebindToUnsigned<I>(), high(x)))),
+                       hn::AndNot(low, high(y))),
+                d, to[k].high + from_);
+    }
+  }
+
+  const CellBatch& batch_;
+  int from_;
+  VI front_;
+  CellParts& parts_;
+};
+
+/// Pixels that rays of a batch's cells may hit, a number each: the cell, and column and row in the square, 16 bits
+/// apart as in CellParts. `uncertain` marks those at an edge of the outline, where float does not tell.
+struct Hit {
+  static constexpr int column_bit = 4, row_bit = column_bit + 16;
+  static constexpr std::int32_t uncertain = 1 << 15;
+};
+/// Hits that wait to be crossed.
+struct HitQueue {
+  static constexpr std::size_t worth_draining = 512;
+  static constexpr std::size_t most = worth_draining + SegmentWindows::most_pixels;  ///< with what one cell adds
+
+  std::size_t size = 0;
+  alignas(64) std::int32_t hit[most + lanes];
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::projection
+#endif  // HWY_SCALAR
+HWY_AFTER_NAMESPACE();
+
+#endif

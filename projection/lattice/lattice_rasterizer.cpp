@@ -1,0 +1,170 @@
+#include "projection/lattice/lattice_rasterizer.hpp"
+
+#include <algorithm>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "projection/lattice/lattice_rasterizer.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "projection/lattice/lattice_cover-inl.h"
+#include "projection/lattice/lattice_cross-inl.h"
+#include "projection/lattice/lattice_cut-inl.h"
+#include "projection/lattice/lattice_normals-inl.h"
+#include "projection/lattice/lattice_surfaces.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::projection {
+namespace HWY_NAMESPACE {
+
+/// Not by Highway's emulated lanes: double precision does the same in less time.
+bool available() { return HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128; }
+
+#if HWY_TARGET == HWY_SCALAR
+void rasterize(const LatticeView&, std::span<const TileEntry>, std::span<const TileEntry>, const scene::PixelRect&,
+               const OpenPixels&, LatticeScratch&, SegmentStream&, RasterCounts&) {}
+#else
+template <bool perspective, bool per_cell>
+void rasterize_cells(const LatticeView& view, CellBatch& batch, const scene::PixelRect& rect,
+                     const scene::PixelRect& square, const OpenPixels& open, CoverScratch& scratch, SegmentStream& out,
+                     RasterCounts& counts) {
+  HitQueue& hits = scratch.hits;
+  const std::uint32_t all = static_cast<std::uint32_t>((std::uint64_t{1} << rect.width()) - 1) << (rect.x0 - square.x0);
+  bool all_open = true;
+  for (int y = rect.y0 - square.y0; y < rect.y1 - square.y0; ++y) all_open = all_open && open[y] == all;
+  const auto shut = [&](int t) {
+    std::uint32_t takes = 0;
+    for (int y = batch.y0[t]; y < batch.y1[t]; ++y) takes |= open[y];
+    const std::uint64_t columns = (std::uint64_t{1} << batch.x1[t]) - (std::uint64_t{1} << batch.x0[t]);
+    return (takes & columns) == 0;
+  };
+  unsigned cells = 0;
+  CellParts parts;
+  parts.three = parts.behind = 0;
+  for (int from = 0; from < batch.size; from += lanes) cells |= PartOrder(batch, from, parts).shapes();
+  cells &= ~batch.irregular & ((1u << batch.size) - 1);
+  if (!all_open)
+    for (unsigned left = cells; left != 0; left &= left - 1)
+      if (shut(__builtin_ctz(left))) cells &= ~(left & -left);
+  if (cells == 0) return;
+
+  for (int from = 0; from < batch.size; from += lanes)
+    PartOrder(batch, from, parts).template order<perspective, per_cell>();
+  using Crossing = HitCrossing<perspective, per_cell>;
+  Crossing crossing(view, batch, parts, rect, square, out, counts);
+  if constexpr (Crossing::together) {
+    for (int from = 0; from < batch.size; from += lanes) {
+      const unsigned small = SmallCells::worth_while(batch, cells, from);
+      if (small == 0) continue;
+      SmallCells::cover(batch, parts, small, from, hits,
+                        [&]() HWY_ATTR { crossing.template drain<true, true>(hits, from); });
+      crossing.template finish<true, true>(hits, from);
+      cells &= ~small;
+    }
+  }
+  if (cells == 0) return;
+  scratch.blocks.lay(batch, parts, rect, square);
+  // Cells of one shape after the other, so that branches go the same way.
+  const auto cover = [&](unsigned of_shape) HWY_ATTR {
+    for (; of_shape != 0; of_shape &= of_shape - 1) {
+      const int t = __builtin_ctz(of_shape);
+      scratch.blocks.cover(parts, t, hits);
+      crossing.drain_cell(hits, t);
+    }
+  };
+  cover(cells & ~parts.three);
+  crossing.template finish_cells<true, false>(hits);
+  cover(cells & parts.three);
+  crossing.template finish_cells<false, true>(hits);
+}
+
+/// An irregular cell, from double precision to the lattice.
+HWY_NOINLINE void rasterize_irregular(const LatticeView& view, const TileEntry& entry, const scene::PixelRect& rect,
+                                      LatticeScratch& scratch, SegmentStream& out, RasterCounts& counts) {
+  const RaySegments& s = scratch.splitter.rasterize(view.projected, view.steps, entry, rect, counts);
+  out.reserve(out.size + s.size);
+  for (std::size_t i = 0; i < s.size; ++i) {
+    out.pixel[out.size] = static_cast<std::int32_t>(s.pixel(i));
+    if (view.projected.iso != nullptr && is_crossing(s.scalar_front[i])) {
+      out.front[out.size] = out.back[out.size] = view.lattice.depth_step(s.front[i]);
+      out.scalar_front[out.size] = LatticeMark::of(crossing_of(s.scalar_front[i]));
+      out.scalar_back[out.size] = 0;
+      ++out.size;
+      continue;
+    }
+    out.front[out.size] = view.lattice.depth_step(s.front[i]);
+    out.back[out.size] = view.lattice.depth_step(s.back[i]);
+    const LatticeScalars scalars = lattice_scalars(s.scalar_front[i], s.scalar_back[i], view.steps, view.lattice);
+    out.scalar_front[out.size] = scalars.front;
+    out.scalar_back[out.size] = scalars.back;
+    ++out.size;
+  }
+}
+
+void rasterize(const LatticeView& view, std::span<const TileEntry> entries, std::span<const TileEntry> ahead,
+               const scene::PixelRect& rect, const OpenPixels& open, LatticeScratch& scratch, SegmentStream& out,
+               RasterCounts& counts) {
+  const scene::PixelRect square{rect.x0 & ~(SegmentWindows::side - 1), rect.y0 & ~(SegmentWindows::side - 1), 0, 0};
+  const bool per_cell = view.projected.mesh->mesh().association == scene::Association::cell;
+  CellBatch batch;
+  CoverScratch cover_scratch;
+  LatticeSurfaces surfaces;
+  for (std::size_t from = 0; from < entries.size(); from += CellBatch::most) {
+    const auto cells = entries.subspan(from, std::min<std::size_t>(CellBatch::most, entries.size() - from));
+    if (from == 0) prefetch_cells(view, ahead);
+    if (view.perspective)
+      set_up_cells<true>(view, cells, rect, batch);
+    else
+      set_up_cells<false>(view, cells, rect, batch);
+    for (unsigned irregular = batch.irregular; irregular != 0; irregular &= irregular - 1)
+      rasterize_irregular(view, cells[static_cast<std::size_t>(__builtin_ctz(irregular))], rect, scratch, out, counts);
+    const unsigned crossed = view.projected.iso != nullptr ? find_surfaces(view, batch, surfaces) : 0;
+    const std::size_t first = out.size;
+    out.keeps_hits = crossed != 0;
+    out.reserve(out.size + cells.size() * static_cast<std::size_t>(rect.area()));
+    if (view.perspective)
+      per_cell ? rasterize_cells<true, true>(view, batch, rect, square, open, cover_scratch, out, counts)
+               : rasterize_cells<true, false>(view, batch, rect, square, open, cover_scratch, out, counts);
+    else
+      per_cell ? rasterize_cells<false, true>(view, batch, rect, square, open, cover_scratch, out, counts)
+               : rasterize_cells<false, false>(view, batch, rect, square, open, cover_scratch, out, counts);
+    if (crossed == 0) continue;
+    const CrossedSegments segments = crossed_segments(out, first, surfaces);
+    if (segments.count == 0) continue;
+    find_normals(view, batch, segments.cells, surfaces);
+    SurfaceCuts(view, surfaces, square.x0, square.y0, out).cut(segments);
+  }
+}
+#endif  // HWY_SCALAR
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::projection
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tessera::projection {
+HWY_EXPORT(rasterize);
+HWY_EXPORT(available);
+
+void make_lattice_vertices(std::span<const PixelVertex> vertices, std::span<const double> scalars,
+                           const scene::Lattice& lattice, bool perspective, std::span<LatticeVertex> out) {
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const PixelVertex& v = vertices[i];
+    LatticeVertex& to = out[i];
+    to = {v.x, v.y, 1, lattice.depth_step(v.depth), scalars.empty() ? 0 : lattice.scalar_step(scalars[i])};
+    if (!perspective) continue;
+    to.inverse_w = v.w > 0 ? 1 / v.w : 0;
+    to.x *= to.inverse_w, to.y *= to.inverse_w;
+  }
+}
+
+bool lattice_available() { return HWY_DYNAMIC_DISPATCH(available)(); }
+
+void rasterize_lattice(const LatticeView& view, std::span<const TileEntry> entries, std::span<const TileEntry> ahead,
+                       const scene::PixelRect& rect, const OpenPixels& open, LatticeScratch& scratch,
+                       SegmentStream& out, RasterCounts& counts) {
+  HWY_DYNAMIC_DISPATCH(rasterize)(view, entries, ahead, rect, open, scratch, out, counts);
+}
+
+}  // namespace tessera::projection
+#endif  // HWY_ONCE

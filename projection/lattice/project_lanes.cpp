@@ -1,0 +1,72 @@
+#include "projection/lattice/project_lanes.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "projection/lattice/project_lanes.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::projection {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_TARGET == HWY_SCALAR
+std::size_t project_points(const LinearMap&, const double*, std::size_t, PixelVertex*) { return 0; }
+#else
+using D = hn::ScalableTag<double>;
+using V = hn::Vec<D>;
+
+/// A dot product as glm takes it: no fused sums, left to right.
+HWY_INLINE V along(const double (&axis)[3], V x, V y, V z) {
+  const D d;
+  return hn::Add(hn::Add(hn::Mul(hn::Set(d, axis[0]), x), hn::Mul(hn::Set(d, axis[1]), y)),
+                 hn::Mul(hn::Set(d, axis[2]), z));
+}
+
+HWY_INLINE V on_grid(V pixel) {
+  const D d;
+  const V scaled = hn::Mul(pixel, hn::Set(d, 0x1p32));
+  return hn::IfThenElse(hn::IsFinite(scaled), hn::Mul(hn::Round(scaled), hn::Set(d, 0x1p-32)), pixel);
+}
+
+std::size_t project_points(const LinearMap& map, const double* points, std::size_t count, PixelVertex* out) {
+  const D d;
+  const std::size_t lanes = hn::Lanes(d);
+  const V half_width = hn::Set(d, map.half_width), half_height = hn::Set(d, map.half_height);
+  const V scale = hn::Set(d, map.pixels_per_unit);
+  std::size_t i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    V x, y, z;
+    hn::LoadInterleaved3(d, points + 3 * i, x, y, z);
+    x = hn::Sub(x, hn::Set(d, map.position[0]));
+    y = hn::Sub(y, hn::Set(d, map.position[1]));
+    z = hn::Sub(z, hn::Set(d, map.position[2]));
+    const V across = hn::Mul(along(map.right, x, y, z), scale), upward = hn::Mul(along(map.up, x, y, z), scale);
+    const V depth = along(map.forward, x, y, z);
+    if (map.perspective)
+      hn::StoreInterleaved4(hn::Add(hn::Mul(half_width, depth), across), hn::Sub(hn::Mul(half_height, depth), upward),
+                            depth, depth, d, &out[i].x);
+    else
+      hn::StoreInterleaved4(on_grid(hn::Add(half_width, across)), on_grid(hn::Sub(half_height, upward)),
+                            hn::Set(d, 1.0), depth, d, &out[i].x);
+  }
+  return i;
+}
+#endif  // HWY_TARGET == HWY_SCALAR
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::projection
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tessera::projection {
+HWY_EXPORT(project_points);
+
+std::size_t project_lanes(const LinearMap& map, std::span<const glm::dvec3> p_world, std::span<PixelVertex> out) {
+  static_assert(sizeof(glm::dvec3) == 3 * sizeof(double) && sizeof(PixelVertex) == 4 * sizeof(double));
+  if (p_world.empty()) return 0;
+  return HWY_DYNAMIC_DISPATCH(project_points)(map, &p_world[0].x, p_world.size(), out.data());
+}
+
+}  // namespace tessera::projection
+#endif  // HWY_ONCE

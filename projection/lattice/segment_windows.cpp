@@ -1,0 +1,88 @@
+#include "projection/lattice/segment_windows.hpp"
+
+#include <algorithm>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "projection/lattice/segment_windows.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::projection {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_TARGET == HWY_SCALAR
+std::size_t scatter(const SegmentStream& s, std::size_t, std::size_t, std::size_t, LatticeSegment*, std::uint32_t*) {
+  return s.size;
+}
+#else
+/// Segments are made records a vector at a time (a transposition in registers), then stored one by one: one 16-byte
+/// load and store each, in a loop that has no branch to mispredict but its end.
+std::size_t scatter(const SegmentStream& s, std::size_t from, std::size_t capacity, std::size_t stride,
+                    LatticeSegment* lists, std::uint32_t* counts) {
+  const hn::ScalableTag<std::int32_t> d;
+  const hn::RebindToFloat<decltype(d)> df;
+  constexpr std::size_t most = 16;
+  const std::size_t lanes = hn::Lanes(d);
+  alignas(64) LatticeSegment records[most];
+  for (std::size_t i = from; i < s.size; i += lanes) {
+    hn::StoreInterleaved4(hn::LoadU(d, s.front.data() + i), hn::LoadU(d, s.back.data() + i),
+                          hn::BitCast(d, hn::LoadU(df, s.scalar_front.data() + i)),
+                          hn::BitCast(d, hn::LoadU(df, s.scalar_back.data() + i)), d,
+                          reinterpret_cast<std::int32_t*>(records));
+    const std::size_t end = s.size - i < lanes ? s.size - i : lanes;
+    // The lines that segments 48 ahead go to, or thereabouts, as their lists may grow until then. Every second one's:
+    // neighbours in the stream mostly go to one line.
+    const std::size_t ahead = i + 4 * lanes < s.size ? i + 4 * lanes : s.size;
+    for (std::size_t n = i + 3 * lanes; n < ahead; n += 2) {
+      const auto pixel = static_cast<std::size_t>(s.pixel[n]);
+      __builtin_prefetch(&lists[counts[pixel] * stride + pixel], 1);
+    }
+    for (std::size_t k = 0; k < end; ++k) {
+      const auto pixel = static_cast<std::size_t>(s.pixel[i + k]);
+      const std::uint32_t count = counts[pixel];
+      if (HWY_UNLIKELY(count == capacity)) return i + k;
+      lists[count * stride + pixel] = records[k];
+      counts[pixel] = count + 1;
+    }
+  }
+  return s.size;
+}
+#endif  // HWY_SCALAR
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::projection
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tessera::projection {
+HWY_EXPORT(scatter);
+
+std::size_t SegmentWindows::scatter(const SegmentStream& stream, std::size_t from) {
+  return HWY_DYNAMIC_DISPATCH(scatter)(stream, from, capacity_, stride(), segments_.data(), counts_.data());
+}
+
+void SegmentWindows::reset(std::size_t pixels, std::size_t capacity) {
+  pixels_ = pixels;
+  capacity_ = capacity;
+  fit();
+  clear();
+}
+
+void SegmentWindows::grow() {
+  capacity_ *= 2;
+  fit();
+}
+
+void SegmentWindows::fit() {
+  const std::size_t elements = capacity_ * stride() + pixel_padding;
+  const std::size_t before = segments_.size();
+  if (before >= elements) return;
+  segments_.grow(elements);
+  // Lanes read lists' unused elements, which have to be numbers.
+  std::fill(segments_.data() + before, segments_.data() + elements, LatticeSegment{});
+}
+
+}  // namespace tessera::projection
+#endif  // HWY_ONCE

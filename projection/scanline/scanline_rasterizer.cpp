@@ -1,0 +1,368 @@
+#include "projection/scanline/scanline_rasterizer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "projection/scanline/scanline_rasterizer.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::projection {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// The paper's four SSE lanes, on wider machines too; fewer only on those that have no four.
+using F = hn::CappedTag<float, 4>;
+using I = hn::CappedTag<std::int32_t, 4>;
+using VF = hn::Vec<F>;
+constexpr std::size_t most_lanes = hn::MaxLanes(F());
+
+HWY_INLINE int lane_count() { return static_cast<int>(hn::Lanes(F())); }
+
+constexpr std::int32_t taken = 0;  ///< owner of a fragment that is paired already, or was never written
+
+/// A projected vertex: pixels, eye depth, scalar; and the first row of the cell's box whose centre is not above it.
+struct Vertex {
+  float x, y, z, s;
+  int row;  ///< counted from the rectangle's top
+};
+
+/// The arrays of ScanlineBuffers and RaySegments by plain pointers. A SIMD store may alias anything, so through the
+/// vectors every store would cost the next one a reload of its pointer.
+struct EdgeArrays {
+  float *x, *z, *s;
+};
+struct Arrays {
+  EdgeArrays left, right;
+  std::int32_t *first, *last;
+  float* inverse_width;
+  float *b_z, *b_s;
+  std::int32_t* b_owner;
+  std::uint64_t* pixel_and_tet;
+  double *front, *back, *scalar_front, *scalar_back;
+  std::size_t size;  ///< segments so far
+  std::uint64_t unpaired;
+};
+
+/// What the fragments of one cell need.
+struct Cell {
+  scene::PixelRect box;  ///< pixels it may cover, inside the rectangle
+  float nearest;         ///< depth of its nearest vertex
+  float near_clip, far_clip;
+  bool clipped;  ///< reaches beyond one of them
+  float longest_edge;
+  std::uint32_t tet;
+  std::int32_t owner;  ///< its mark in B
+};
+
+/// The first row (or pixel) of [low, high] whose centre is not before `position`.
+HWY_INLINE int first_centre(float position, int low, int high) {
+  return static_cast<int>(std::clamp(std::ceil(position - 0.5f), static_cast<float>(low), static_cast<float>(high)));
+}
+
+/// Intersections of the edge start -> end (start.y <= end.y) with the scanlines of the cell's box, four at a time. The
+/// arrays have four elements more than the rectangle has rows: the last step may write past the edge's end, where
+/// either the next edge overwrites or nothing is read.
+HWY_INLINE void walk_edge(const Vertex& start, const Vertex& end, int rect_y0, const EdgeArrays& side) {
+  if (start.row >= end.row) return;
+  const F f;
+  const float per_row = 1 / (end.y - start.y);
+  const VF inverse_dy = hn::Set(f, per_row), inverse_slope = hn::Set(f, (end.x - start.x) * per_row);
+  const VF x_start = hn::Set(f, start.x), z_start = hn::Set(f, start.z), s_start = hn::Set(f, start.s);
+  const VF dz = hn::Set(f, end.z - start.z), ds = hn::Set(f, end.s - start.s);
+  const VF y_start = hn::Set(f, start.y), stride = hn::Set(f, static_cast<float>(lane_count()));
+  VF y = hn::Iota(f, static_cast<float>(rect_y0 + start.row) + 0.5f);  // exact: below 2^20
+  for (int row = start.row; row < end.row; row += lane_count(), y = hn::Add(y, stride)) {
+    const VF step = hn::Sub(y, y_start);  // of the first: the sub-pixel pre-step
+    const VF factor = hn::Mul(step, inverse_dy);
+    hn::StoreU(hn::MulAdd(step, inverse_slope, x_start), f, side.x + row);
+    hn::StoreU(hn::MulAdd(factor, dz, z_start), f, side.z + row);
+    hn::StoreU(hn::MulAdd(factor, ds, s_start), f, side.s + row);
+  }
+}
+
+/// Integer ends and inverse width of the face's rows, four rows at a time, before the rows are filled.
+HWY_INLINE void set_up_rows(int row0, int row1, const scene::PixelRect& box, const Arrays& to) {
+  const F f;
+  const I i;
+  const VF half = hn::Set(f, 0.5f), one = hn::Set(f, 1.0f);
+  const VF x0 = hn::Set(f, static_cast<float>(box.x0)), x1 = hn::Set(f, static_cast<float>(box.x1));
+  const auto first_pixel = [&](VF x) { return hn::ConvertTo(i, hn::Min(hn::Max(hn::Ceil(hn::Sub(x, half)), x0), x1)); };
+  for (int row = row0; row < row1; row += lane_count()) {
+    const VF left = hn::LoadU(f, to.left.x + row), right = hn::LoadU(f, to.right.x + row);
+    hn::StoreU(first_pixel(left), i, to.first + row);
+    hn::StoreU(first_pixel(right), i, to.last + row);
+    hn::StoreU(hn::Div(one, hn::Sub(right, left)), f, to.inverse_width + row);
+  }
+}
+
+/// Up to four segments on their way from lanes to RaySegments.
+struct Lanes {
+  alignas(16) float z_back[4], length[4], s_front[4], s_back[4];
+};
+
+/// Appends the first `count` lanes. Writes all: the arrays have padding.
+HWY_INLINE void store_segments(const Lanes& lanes, std::uint64_t pixel_and_tet, std::size_t count, double longest_edge,
+                               Arrays& to) {
+  const std::size_t at = to.size;
+  for (std::size_t k = 0; k < most_lanes; ++k) to.pixel_and_tet[at + k] = pixel_and_tet + k;
+  for (std::size_t k = 0; k < most_lanes; ++k) to.back[at + k] = lanes.z_back[k];
+  // depths_of(): the product is exact (24 bits times 24), so a fused instruction makes no difference.
+  for (std::size_t k = 0; k < most_lanes; ++k) to.front[at + k] = lanes.z_back[k] - lanes.length[k] * longest_edge;
+  for (std::size_t k = 0; k < most_lanes; ++k) to.scalar_front[at + k] = lanes.s_front[k];
+  for (std::size_t k = 0; k < most_lanes; ++k) to.scalar_back[at + k] = lanes.s_back[k];
+  to.size += count;
+}
+
+/// The lanes one by one: where some have no partner in B, or the clipping range cuts.
+HWY_NOINLINE void store_some(VF z_back, VF z_front, VF s_front, VF s_back, hn::Mask<F> paired,
+                             std::uint64_t pixel_and_tet, const Cell& cell, Arrays& to) {
+  const F f;
+  alignas(16) float zb[4], zf[4], sf[4], sb[4], mine[4];
+  hn::Store(z_back, f, zb);
+  hn::Store(z_front, f, zf);
+  hn::Store(s_front, f, sf);
+  hn::Store(s_back, f, sb);
+  hn::Store(hn::IfThenElseZero(paired, hn::Set(f, 1.0f)), f, mine);
+  for (std::size_t k = 0; k < hn::Lanes(f); ++k) {
+    if (mine[k] == 0) continue;
+    if (cell.clipped) {
+      if (!(zb[k] > cell.near_clip && zf[k] < cell.far_clip)) continue;
+      const float slope = (sb[k] - sf[k]) / (zb[k] - zf[k]), front = zf[k], scalar = sf[k];
+      if (front < cell.near_clip) zf[k] = cell.near_clip, sf[k] = scalar + (zf[k] - front) * slope;
+      if (zb[k] > cell.far_clip) zb[k] = cell.far_clip, sb[k] = scalar + (zb[k] - front) * slope;
+    }
+    const float length = std::max(0.0f, zb[k] - zf[k]) * (1 / cell.longest_edge);
+    store_segments({{zb[k]}, {length}, {sf[k]}, {sb[k]}}, pixel_and_tet + k, 1, cell.longest_edge, to);
+  }
+}
+
+enum class Side { back, front };
+
+/// Fills the face's rows, four pixels at a time.
+template <Side side>
+HWY_INLINE void fill_rows(int row0, int row1, const Cell& cell, const scene::PixelRect& rect, Arrays& to) {
+  const F f;
+  const I i;
+  const int step = lane_count();
+  const auto owner = hn::Set(i, cell.owner);
+  const VF stride = hn::Set(f, static_cast<float>(step)), nearest = hn::Set(f, cell.nearest),
+           inverse_edge = hn::Set(f, 1 / cell.longest_edge);
+  for (int row = row0; row < row1; ++row) {
+    const int first = to.first[row];
+    int left = to.last[row] - first;
+    if (left <= 0) continue;
+    const VF x_left = hn::Set(f, to.left.x[row]), inverse_width = hn::Set(f, to.inverse_width[row]);
+    const VF z_left = hn::Set(f, to.left.z[row]), s_left = hn::Set(f, to.left.s[row]);
+    const VF dz = hn::Set(f, to.right.z[row] - to.left.z[row]), ds = hn::Set(f, to.right.s[row] - to.left.s[row]);
+    int at = row * rect.width() + first - rect.x0;
+    VF x = hn::Iota(f, static_cast<float>(first) + 0.5f);
+    for (; left > 0; left -= step, at += step, x = hn::Add(x, stride)) {
+      const VF factor = hn::Mul(hn::Sub(x, x_left), inverse_width);
+      const VF z = hn::MulAdd(factor, dz, z_left), s = hn::MulAdd(factor, ds, s_left);
+      const auto lanes = hn::FirstN(i, static_cast<std::size_t>(left));
+      if constexpr (side == Side::back) {
+        hn::BlendedStore(hn::Max(z, nearest), hn::RebindMask(f, lanes), f, to.b_z + at);
+        hn::BlendedStore(s, hn::RebindMask(f, lanes), f, to.b_s + at);
+        hn::BlendedStore(owner, lanes, i, to.b_owner + at);
+      } else {
+        const VF z_back = hn::LoadU(f, to.b_z + at), s_back = hn::LoadU(f, to.b_s + at);
+        const auto paired = hn::And(lanes, hn::Eq(hn::LoadU(i, to.b_owner + at), owner));
+        hn::BlendedStore(hn::Set(i, taken), paired, i, to.b_owner + at);
+        const auto wanted = static_cast<std::size_t>(std::min(left, step)), found = hn::CountTrue(i, paired);
+        const std::uint64_t pixel_and_tet = static_cast<std::uint64_t>(cell.tet) << 32 | static_cast<unsigned>(at);
+        if (HWY_LIKELY(found == wanted && !cell.clipped)) {
+          Lanes segments;
+          hn::Store(z_back, f, segments.z_back);
+          hn::Store(hn::Mul(hn::Max(hn::Sub(z_back, z), hn::Zero(f)), inverse_edge), f, segments.length);
+          hn::Store(s, f, segments.s_front);
+          hn::Store(s_back, f, segments.s_back);
+          store_segments(segments, pixel_and_tet, wanted, cell.longest_edge, to);
+        } else {
+          to.unpaired += wanted - found;
+          store_some(z_back, z, s, s_back, hn::RebindMask(f, paired), pixel_and_tet, cell, to);
+        }
+      }
+    }
+  }
+}
+
+/// Scan-converts one face. `area` is twice its signed area in (x, y), not zero.
+HWY_INLINE void rasterize_face(const Vertex& a, const Vertex& b, const Vertex& c, double area, Side side,
+                               const Cell& cell, const scene::PixelRect& rect, Arrays& to) {
+  const Vertex *min = &a, *mid = &b, *max = &c;
+  bool turned = false;  // an odd permutation turns the area's sign
+  const auto sort = [&](const Vertex*& p, const Vertex*& q) {
+    if (q->y < p->y) std::swap(p, q), turned = !turned;
+  };
+  sort(min, mid), sort(mid, max), sort(min, mid);
+  if (min->row >= max->row) return;
+  // y points down, so of a positive area (min, mid, max) the long edge is the left one.
+  const bool long_left = (area > 0) != turned;
+  const EdgeArrays &long_side = long_left ? to.left : to.right, &short_side = long_left ? to.right : to.left;
+  walk_edge(*min, *mid, rect.y0, short_side);
+  walk_edge(*mid, *max, rect.y0, short_side);
+  walk_edge(*min, *max, rect.y0, long_side);
+  set_up_rows(min->row, max->row, cell.box, to);
+  if (side == Side::back)
+    fill_rows<Side::back>(min->row, max->row, cell, rect, to);
+  else
+    fill_rows<Side::front>(min->row, max->row, cell, rect, to);
+}
+
+// Faces by their corners; `outward` as in planes: seen from outside, (a, b, c) turns the way that (0, 1, 2) does.
+struct Face {
+  int a, b, c;
+  bool outward;
+};
+constexpr Face faces[4] = {{0, 1, 2, true}, {0, 1, 3, false}, {0, 2, 3, true}, {1, 2, 3, false}};
+
+void rasterize_cell(const std::array<PixelVertex, 4>& corners, const Vertex (&v)[4], const Cell& cell,
+                    const scene::PixelRect& rect, Arrays& to) {
+  // Six times the signed volume: which way the cell's faces turn. In double, as a thin cell's would be noise in float.
+  const auto across = [&](int i) { return corners[i].x - corners[0].x; };
+  const auto down = [&](int i) { return corners[i].y - corners[0].y; };
+  const auto deep = [&](int i) { return corners[i].depth - corners[0].depth; };
+  const double volume = across(1) * (down(2) * deep(3) - down(3) * deep(2)) -
+                        down(1) * (across(2) * deep(3) - across(3) * deep(2)) +
+                        deep(1) * (across(2) * down(3) - across(3) * down(2));
+  if (volume == 0) return;
+  double area[4];
+  bool front[4];
+  for (int k = 0; k < 4; ++k) {
+    const Vertex &a = v[faces[k].a], &b = v[faces[k].b], &c = v[faces[k].c];
+    // Of the rounded vertices, that is of the triangle that is drawn.
+    area[k] = (static_cast<double>(b.x) - a.x) * (static_cast<double>(c.y) - a.y) -
+              (static_cast<double>(b.y) - a.y) * (static_cast<double>(c.x) - a.x);
+    // In front of the cell if going deeper from the face leads to its fourth corner.
+    front[k] = ((area[k] > 0) == (volume > 0)) == faces[k].outward;
+  }
+  for (const Side side : {Side::back, Side::front})
+    for (int k = 0; k < 4; ++k)
+      if (area[k] != 0 && front[k] == (side == Side::front))
+        rasterize_face(v[faces[k].a], v[faces[k].b], v[faces[k].c], area[k], side, cell, rect, to);
+}
+
+std::size_t rasterize(const ProjectedMesh& projected, float longest_edge, std::span<const TileEntry> entries,
+                      const scene::PixelRect& rect, ScanlineBuffers& buffers, RaySegments& out, RasterCounts& counts) {
+  const scene::TetMeshView& mesh = projected.mesh->mesh();
+  const bool per_cell = mesh.association == scene::Association::cell;
+  const auto room = static_cast<std::size_t>(rect.area());
+  const auto side = [](ScanlineBuffers::EdgeArrays& e) { return EdgeArrays{e.x.data(), e.z.data(), e.s.data()}; };
+  Arrays to{side(buffers.left),
+            side(buffers.right),
+            buffers.first.data(),
+            buffers.last.data(),
+            buffers.inverse_width.data(),
+            buffers.z.data(),
+            buffers.s.data(),
+            buffers.owner.data(),
+            out.pixel_and_tet.data(),
+            out.front.data(),
+            out.back.data(),
+            out.scalar_front.data(),
+            out.scalar_back.data(),
+            out.size,
+            0};
+  std::size_t done = 0;
+  for (; done < entries.size() && to.size + room <= out.capacity(); ++done) {
+    const std::uint32_t tet = entries[done].tet;
+    const scene::Tet& t = mesh.tets[tet];
+    const std::array<PixelVertex, 4> corners{projected.vertices[t[0]], projected.vertices[t[1]],
+                                             projected.vertices[t[2]], projected.vertices[t[3]]};
+    Cell cell;
+    // The box of the exact vertices: with it the pixels of a cell do not depend on which tiles it was listed for.
+    cell.box = footprint(corners, rect);
+    if (cell.box.empty()) continue;
+    Vertex v[4];
+    for (int k = 0; k < 4; ++k) {
+      v[k] = {static_cast<float>(corners[k].x), static_cast<float>(corners[k].y), static_cast<float>(corners[k].depth),
+              static_cast<float>(mesh.scalars[per_cell ? tet : t[k]]), 0};
+      v[k].row = first_centre(v[k].y, cell.box.y0, cell.box.y1) - rect.y0;
+    }
+    const auto [nearest, farthest] = std::minmax({v[0].z, v[1].z, v[2].z, v[3].z});
+    cell.nearest = nearest;
+    cell.near_clip = static_cast<float>(projected.near_depth);
+    cell.far_clip = static_cast<float>(projected.far_depth);
+    cell.clipped = nearest < cell.near_clip || farthest > cell.far_clip;
+    cell.longest_edge = longest_edge;
+    cell.tet = tet;
+    if (++buffers.cells == std::numeric_limits<std::int32_t>::max()) {
+      std::fill(buffers.owner.begin(), buffers.owner.end(), taken);
+      buffers.cells = 1;
+    }
+    cell.owner = buffers.cells;
+    rasterize_cell(corners, v, cell, rect, to);
+  }
+  out.size = to.size;
+  counts.unpaired += to.unpaired;
+  return done;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::projection
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+namespace tessera::projection {
+HWY_EXPORT(rasterize);
+
+namespace {
+constexpr std::size_t padding = 4;  // a step of four lanes may begin at the last element
+}
+
+std::size_t ScanlineBuffers::bytes_for(const scene::PixelRect& rect) {
+  return (static_cast<std::size_t>(rect.area()) + padding) * (2 * sizeof(float) + sizeof(std::int32_t)) +
+         (static_cast<std::size_t>(rect.height()) + padding) * (7 * sizeof(float) + 2 * sizeof(std::int32_t));
+}
+
+std::size_t rasterize_scanline(const ProjectedMesh& projected, float longest_edge, std::span<const TileEntry> entries,
+                               const scene::PixelRect& rect, ScanlineBuffers& buffers, RaySegments& out,
+                               RasterCounts& counts) {
+  const std::size_t pixels = static_cast<std::size_t>(rect.area()) + padding,
+                    rows = static_cast<std::size_t>(rect.height()) + padding;
+  // Grown, never shrunk: a new element's owner is 0, `taken`, and a kept one's is stale.
+  if (buffers.z.size() < pixels) {
+    buffers.z.resize(pixels);
+    buffers.s.resize(pixels);
+    buffers.owner.resize(pixels);
+  }
+  if (buffers.first.size() < rows) {
+    for (ScanlineBuffers::EdgeArrays* side : {&buffers.left, &buffers.right})
+      for (std::vector<float>* array : {&side->x, &side->z, &side->s}) array->resize(rows);
+    buffers.first.resize(rows);
+    buffers.last.resize(rows);
+    buffers.inverse_width.resize(rows);
+  }
+  return HWY_DYNAMIC_DISPATCH(rasterize)(projected, longest_edge, entries, rect, buffers, out, counts);
+}
+
+bool fits_scanline(const ProjectedMesh& projected, float longest_edge) {
+  const auto most = [](std::size_t count, const auto& size_of) {
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, count, 4096), 0.0,
+        [&](const auto& range, double largest) {
+          for (std::size_t i = range.begin(); i != range.end(); ++i) largest = std::max(largest, size_of(i));
+          return largest;
+        },
+        [](double a, double b) { return std::max(a, b); });
+  };
+  const auto& vertices = projected.vertices;
+  const auto& scalars = projected.mesh->mesh().scalars;
+  return longest_edge >= 1e-30f &&
+         most(vertices.size(), [&](std::size_t v) { return std::abs(vertices[v].depth); }) < 1e37 &&
+         most(vertices.size(),
+              [&](std::size_t v) { return std::max(std::abs(vertices[v].x), std::abs(vertices[v].y)); }) <= 1e30 &&
+         most(scalars.size(), [&](std::size_t i) { return std::abs(scalars[i]); }) < 1e37;
+}
+
+}  // namespace tessera::projection
+#endif  // HWY_ONCE

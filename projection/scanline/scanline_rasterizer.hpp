@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "projection/footprint.hpp"
+#include "projection/planes_rasterizer.hpp"
+#include "projection/ray_segments.hpp"
+#include "projection/scanline/segment_tuple.hpp"
+
+namespace tessera::projection {
+
+/// Whether float32 can hold the frame: depths and scalars below 1e37, pixel coordinates up to 1e30, the longest edge at
+/// least 1e-30.
+bool fits_scanline(const ProjectedMesh& projected, float longest_edge);
+
+/// Working memory of rasterize_scanline(), kept from call to call. Content carries nothing over.
+struct ScanlineBuffers {
+  /// Where a face's edges on one side meet the scanlines: x, depth and scalar by row of the rectangle.
+  struct EdgeArrays {
+    std::vector<float> x, z, s;
+  };
+  EdgeArrays left, right;
+  std::vector<std::int32_t> first, last;  ///< pixels [first, last) of the face in each row
+  std::vector<float> inverse_width;       ///< 1 / (x_right - x_left) of each row
+
+  /// Buffer B: depth and scalar of the back-face fragment of each pixel of the rectangle, and which cell wrote it.
+  std::vector<float> z, s;
+  std::vector<std::int32_t> owner;
+  std::int32_t cells = 0;  ///< number of the cell at work: owners before it are stale
+
+  [[nodiscard]] static std::size_t bytes_for(const scene::PixelRect& rect);
+};
+
+/// The `scanline` rasterizer: Juliachs, Carrard, Nominé, "Hybrid CPU-GPU Unstructured Meshes Parallel Volume Rendering
+/// on PC Clusters" (EGPGV 2007), 4.1 and 4.2. The paper's own way, to compare with.
+///
+/// Float32 throughout. A cell's faces are told into back and front ones. Each face is scan-converted: its edges are
+/// walked four scanline intersections at a time, from a sub-pixel pre-step, into arrays for the left and the right
+/// side; its rows are filled four pixels at a time. Back faces write depth and scalar into buffer B; front faces read B
+/// and make {z_back, length, s_front, s_back}, length over the longest edge of the data set. Segments come in the order
+/// of the cells. Orthographic views only, as in the paper. Cell data: s_front = s_back.
+///
+/// As printed there is no tie rule and nothing is exact: vertices are rounded to float pixels, so a ray that passes
+/// within that rounding of an edge may lose a cell or meet one too many, and depths on steep faces are magnified
+/// rounding. docs/ACCURACY.md has the measured price. Where the paper is silent or we differ:
+/// - Rows and pixels are those with centres in [start, end), the usual reading of its integer end points.
+/// - Interpolation factors are computed from a row's or pixel's number, not by adding up increments: as many
+///   instructions within one, no drift, and the bits do not depend on where a rectangle cuts an edge.
+/// - B is as large as the rectangle of a tile, not the image: 12 bytes a pixel that stay in the first-level cache, and
+///   bounded for any picture.
+/// - B says which cell wrote a fragment, and each is taken once. A front fragment without its partner makes no segment
+///   (RasterCounts::unpaired); the paper would pair it with whatever an earlier cell left there.
+/// - A length is at least 0, and z_back not before the cell's nearest vertex: the streaming of tiles relies on it.
+/// - Segments are cut at the clipping range.
+/// - A flat cell, whose faces have no front and back, makes none.
+///
+/// Four lanes through Highway rather than SSE intrinsics: one source for every processor, dispatched as `planes` is,
+/// with masks and compiler flags of the newest instruction set but never more than the paper's four lanes.
+///
+/// Takes cells as rasterize_planes() does; at most one segment a cell and pixel. Requires fits_scanline(). Writes stay
+/// inside the buffers whatever the coordinates are.
+std::size_t rasterize_scanline(const ProjectedMesh& projected, float longest_edge, std::span<const TileEntry> entries,
+                               const scene::PixelRect& rect, ScanlineBuffers& buffers, RaySegments& out,
+                               RasterCounts& counts);
+
+}  // namespace tessera::projection

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "reference/curved/curved_crossing.hpp"
+#include "reference/mesh/cell_on_ray.hpp"
+
+namespace tessera::reference {
+
+/// The way of a ray through the inside of a cell, in the cell's own coordinates: isoparametric inversion, warm-started
+/// from the nearest depth at which the place is known.
+class InnerPath {
+ public:
+  /// From two crossings, and a place between them.
+  InnerPath(const CellOnRay& cell, const Crossing& front, const Crossing& middle, const Crossing& back);
+
+  /// Depths beyond the crossings are taken as theirs.
+  [[nodiscard]] glm::dvec3 place(double depth);
+
+  [[nodiscard]] double front() const { return known_.begin()->first; }
+  [[nodiscard]] double back() const { return known_.rbegin()->first; }
+  [[nodiscard]] const CellOnRay& cell() const { return cell_; }
+  BasisValues& room() { return room_; }
+
+ private:
+  /// From the place known at `from`, following the ray; in halves where a single step does not arrive in the domain. In
+  /// a folded cell, where that does not help, it stays where it came to, and soon stops trying.
+  [[nodiscard]] glm::dvec3 follow(double from, glm::dvec3 place, double to, int halvings);
+
+  CellOnRay cell_;
+  std::map<double, glm::dvec3> known_;
+  BasisValues room_;
+  int failures_ = 0;
+};
+
+/// The stretches of a ray inside a cell, front to back: between two neighbouring crossings it is inside if the point in
+/// the middle has a place in the domain. That is looked for by Newton's method from between the crossings' places, from
+/// either of them along the ray, and from a lattice of places. `crossings` may be in any order, and hold some twice.
+std::vector<InnerPath> inner_paths(const CellOnRay& cell, std::vector<Crossing> crossings);
+
+}  // namespace tessera::reference

@@ -1,0 +1,459 @@
+#include "reference/curved/curved_shapes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <initializer_list>
+
+#include "reference/curved/curved_nodes.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::reference {
+namespace {
+
+/// A polynomial over a domain.
+using Function = std::function<double(const glm::dvec3&)>;
+
+double power(double x, int n) { return n == 0 ? 1 : x * power(x, n - 1); }
+
+/// (2r - 1)^i (2s - 1)^j (2t - 1)^k: monomials about the middle, which are better conditioned.
+Function monomial(int i, int j, int k) {
+  return [=](const glm::dvec3& p) { return power(2 * p.x - 1, i) * power(2 * p.y - 1, j) * power(2 * p.z - 1, k); };
+}
+
+/// r^i s^j t^k.
+Function corner_monomial(int i, int j, int k) {
+  return [=](const glm::dvec3& p) { return power(p.x, i) * power(p.y, j) * power(p.z, k); };
+}
+
+/// Shape functions that span the whole of the basis.
+CellShape full(const BernsteinBasis& basis, std::vector<glm::dvec3> nodes) {
+  // The nodes are the lattice in another order.
+  const std::vector<glm::dvec3> lattice = basis.lattice();
+  const Matrix from_lattice = basis.from_lattice();
+  CellShape shape{basis, std::move(nodes), Matrix(basis.size(), basis.size()), basis.faces()};
+  for (std::size_t node = 0; node < shape.nodes.size(); ++node) {
+    std::size_t at = 0;
+    const auto distance = [&](std::size_t n) {
+      const glm::dvec3 d = lattice[n] - shape.nodes[node];
+      return std::abs(d.x) + std::abs(d.y) + std::abs(d.z);
+    };
+    for (std::size_t n = 0; n < lattice.size(); ++n)
+      if (distance(n) < distance(at)) at = n;
+    for (std::size_t row = 0; row < basis.size(); ++row) shape.to_bernstein(row, node) = from_lattice(row, at);
+  }
+  return shape;
+}
+
+/// Shape functions that span `space`, of as many functions as there are nodes, within the basis.
+CellShape spanned(const BernsteinBasis& basis, std::vector<glm::dvec3> nodes, const std::vector<Function>& space) {
+  const auto values_at = [&](const std::vector<glm::dvec3>& places) {
+    Matrix values(places.size(), space.size());
+    for (std::size_t i = 0; i < places.size(); ++i)
+      for (std::size_t j = 0; j < space.size(); ++j) values(i, j) = space[j](places[i]);
+    return values;
+  };
+  const Matrix at_lattice = product(values_at(basis.lattice()), inverse(values_at(nodes)));
+  return {basis, std::move(nodes), product(basis.from_lattice(), at_lattice), basis.faces()};
+}
+
+/// Control points are the nodes.
+CellShape bezier(const BernsteinBasis& basis, std::vector<glm::dvec3> nodes) {
+  CellShape shape = full(basis, std::move(nodes));
+  const std::vector<glm::dvec3> lattice = basis.lattice();
+  for (std::size_t row = 0; row < basis.size(); ++row)
+    for (std::size_t node = 0; node < basis.size(); ++node) {
+      const glm::dvec3 d = lattice[row] - shape.nodes[node];
+      shape.to_bernstein(row, node) = std::abs(d.x) + std::abs(d.y) + std::abs(d.z) < 1e-6 ? 1 : 0;
+    }
+  return shape;
+}
+
+std::vector<glm::dvec3> first(std::size_t count, std::vector<glm::dvec3> places) {
+  places.resize(count);
+  return places;
+}
+
+/// Eight-node serendipity in (r, s), with powers of t up to `most_t`.
+void add_serendipity(int most_t, std::vector<Function>& space) {
+  constexpr std::array<std::array<int, 2>, 8> exponents{
+      {{0, 0}, {1, 0}, {0, 1}, {1, 1}, {2, 0}, {0, 2}, {2, 1}, {1, 2}}};
+  for (int k = 0; k <= most_t; ++k)
+    for (const auto& e : exponents) space.push_back(monomial(e[0], e[1], k));
+}
+
+/// Of 20 nodes: the monomials whose degree is two at most if variables to the first power are not counted (Arnold,
+/// Awanou, "The Serendipity Family of Finite Elements", Foundations of Computational Mathematics 2011).
+CellShape quadratic_hexahedron() {
+  std::vector<Function> space;
+  add_serendipity(1, space);
+  for (const auto& [i, j] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) space.push_back(monomial(i, j, 2));
+  return spanned(BernsteinBasis(Domain::box, {2, 2, 2}), first(20, hexahedron_nodes({2, 2, 2})), space);
+}
+
+/// Of 24 nodes: serendipity across, quadratic along.
+CellShape biquadratic_hexahedron() {
+  std::vector<Function> space;
+  add_serendipity(2, space);
+  return spanned(BernsteinBasis(Domain::box, {2, 2, 2}), first(24, hexahedron_nodes({2, 2, 2})), space);
+}
+
+/// Of 15 nodes: quadratic in the triangle times linear along, and linear times quadratic.
+CellShape quadratic_wedge() {
+  std::vector<Function> space;
+  for (int k = 0; k < 2; ++k)
+    for (int j = 0; j <= 2; ++j)
+      for (int i = 0; i + j <= 2; ++i) space.push_back(corner_monomial(i, j, k));
+  for (const auto& [i, j] : {std::pair{0, 0}, {1, 0}, {0, 1}}) space.push_back(corner_monomial(i, j, 2));
+  return spanned(BernsteinBasis(Domain::prism, {2, 0, 2}), first(15, wedge_nodes(2, 2)), space);
+}
+
+/// The bilinear functions in the box that are one function at the apex.
+CellShape linear_pyramid() {
+  std::vector<Function> space{corner_monomial(0, 0, 0), corner_monomial(0, 0, 1)};
+  space.emplace_back([](const glm::dvec3& p) { return p.x * (1 - p.z); });
+  space.emplace_back([](const glm::dvec3& p) { return p.y * (1 - p.z); });
+  space.emplace_back([](const glm::dvec3& p) { return p.x * p.y * (1 - p.z); });
+  return spanned(BernsteinBasis(Domain::box, {1, 1, 1}), first(5, pyramid_nodes()), space);
+}
+
+/// Functions of x = 2r - 1, y = 2s - 1 and w = 2 - 2t, which vanishes at the apex.
+Function towards_apex(std::function<double(double x, double y, double w)> f) {
+  return [f = std::move(f)](const glm::dvec3& p) { return f(2 * p.x - 1, 2 * p.y - 1, 2 - 2 * p.z); };
+}
+
+/// What both quadratic pyramids have: quadratic on every edge, and apart from xy complete to second degree but for
+/// x^2 + y^2, which is rational.
+std::vector<Function> quadratic_pyramid_space() {
+  std::vector<Function> space;
+  for (int k = 0; k <= 2; ++k) space.push_back(corner_monomial(0, 0, k));
+  for (int k = 1; k <= 2; ++k) {
+    space.push_back(towards_apex([k](double x, double, double w) { return x * power(w, k); }));
+    space.push_back(towards_apex([k](double, double y, double w) { return y * power(w, k); }));
+    space.push_back(towards_apex([k](double x, double y, double w) { return x * y * power(w, k); }));
+  }
+  space.push_back(towards_apex([](double x, double y, double w) { return x * y * y * w * w; }));
+  space.push_back(towards_apex([](double x, double y, double w) { return x * x * y * w * w; }));
+  return space;
+}
+
+/// Of 13 nodes: the serendipity hexahedron of 20 nodes with the nodes of one face at one place, corrected to be
+/// quadratic on the triangles (Felippa, "Advanced Finite Element Methods", chapter on pyramids).
+CellShape quadratic_pyramid() {
+  std::vector<Function> space = quadratic_pyramid_space();
+  space.push_back(towards_apex([](double x, double y, double w) { return (x * x - y * y) * w * w; }));
+  space.push_back(towards_apex([](double x, double y, double w) {
+    const double xx = x * x, yy = y * y;
+    return 2 * w * (xx + yy - xx * yy) - w * w * ((xx + yy) / 2 - xx * yy);
+  }));
+  return spanned(BernsteinBasis(Domain::box, {2, 2, 2}), first(13, pyramid_nodes()), space);
+}
+
+/// Of 19 nodes: bubbles on faces and inside besides.
+CellShape triquadratic_pyramid() {
+  std::vector<Function> space = quadratic_pyramid_space();
+  space.push_back(towards_apex([](double x, double y, double w) { return x * (1 - y * y) * w * w * w; }));
+  space.push_back(towards_apex([](double x, double y, double w) { return y * (1 - x * x) * w * w * w; }));
+  space.push_back(towards_apex([](double x, double y, double w) { return x * x * (1 - y * y) * w * w * w; }));
+  space.push_back(towards_apex([](double x, double y, double w) { return y * y * (1 - x * x) * w * w * w; }));
+  space.push_back(towards_apex([](double x, double, double w) { return x * x * w * w; }));
+  space.push_back(towards_apex([](double, double y, double w) { return y * y * w * w; }));
+  space.push_back(towards_apex([](double x, double y, double w) { return x * x * y * y * w * w; }));
+  space.push_back(towards_apex([](double x, double y, double w) { return w * (x * x + y * y - x * x * y * y); }));
+  return spanned(BernsteinBasis(Domain::box, {2, 2, 3}), pyramid_nodes(), space);
+}
+
+/// The Lagrange pyramid: of the rational functions of Bergot, Cohen and Durufle ("Higher-order finite elements for
+/// hybrid meshes using new nodal pyramidal elements", Journal of Scientific Computing 2010), in the box x^i y^j times
+/// powers of w from the larger of i and j up to the order.
+CellShape lagrange_pyramid(int order) {
+  std::vector<Function> space;
+  for (int i = 0; i <= order; ++i)
+    for (int j = 0; j <= order; ++j)
+      for (int k = std::max(i, j); k <= order; ++k)
+        space.push_back(
+            towards_apex([=](double x, double y, double w) { return power(x, i) * power(y, j) * power(w / 2, k); }));
+  return spanned(BernsteinBasis(Domain::box, {order, order, order}), lagrange_pyramid_nodes(order), space);
+}
+
+/// Places in the middle of a tet's faces, and of the tet, in the order of the cell of 15 nodes.
+std::vector<glm::dvec3> tet_middles() {
+  constexpr double third = 1.0 / 3;
+  return {{third, third, 0}, {third, 0, third}, {third, third, third}, {0, third, third}, glm::dvec3(0.25)};
+}
+
+/// All polynomials of the tet up to a degree.
+void add_complete(int degree, std::vector<Function>& space) {
+  for (int k = 0; k <= degree; ++k)
+    for (int j = 0; j + k <= degree; ++j)
+      for (int i = 0; i + j + k <= degree; ++i) space.push_back(corner_monomial(i, j, k));
+}
+
+/// What is 1 - r - s - t in the tet.
+double fourth(const glm::dvec3& p) { return 1 - p.x - p.y - p.z; }
+
+/// Cubic bubbles of the tet's faces.
+void add_face_bubbles(std::vector<Function>& space) {
+  space.emplace_back([](const glm::dvec3& p) { return p.x * p.y * p.z; });
+  space.emplace_back([](const glm::dvec3& p) { return p.x * p.y * fourth(p); });
+  space.emplace_back([](const glm::dvec3& p) { return p.x * p.z * fourth(p); });
+  space.emplace_back([](const glm::dvec3& p) { return p.y * p.z * fourth(p); });
+}
+
+/// The tets of 5, 7, 8, 11, 14 and 15 nodes: complete to first degree, of 11 nodes on to second, with a cubic bubble
+/// for each face and a quartic one inside that have a node. Of 7 nodes the base's edges are quadratic.
+CellShape enriched_tet(std::size_t count) {
+  const bool is_quadratic = count > 10, has_faces = count == 8 || count >= 14,
+             has_inside = count != 7 && count != 8 && count != 14;
+  std::vector<glm::dvec3> nodes = count == 7 ? first(7, tet_nodes(2)) : tet_nodes(is_quadratic ? 2 : 1);
+  const std::vector<glm::dvec3> middles = tet_middles();
+  if (has_faces) nodes.insert(nodes.end(), middles.begin(), middles.begin() + 4);
+  if (has_inside) nodes.push_back(middles.back());
+  std::vector<Function> space;
+  add_complete(is_quadratic ? 2 : 1, space);
+  if (count == 7) {
+    space.emplace_back([](const glm::dvec3& p) { return p.x * fourth(p); });
+    space.emplace_back([](const glm::dvec3& p) { return p.x * p.y; });
+    space.emplace_back([](const glm::dvec3& p) { return p.y * fourth(p); });
+  }
+  if (has_faces) add_face_bubbles(space);
+  if (has_inside) space.emplace_back([](const glm::dvec3& p) { return p.x * p.y * p.z * fourth(p); });
+  return spanned(BernsteinBasis(Domain::tet, {4, 4, 4}), std::move(nodes), space);
+}
+
+/// (1 - x^2)(1 - y^2) z^k along each axis in turn, for k = 0 and 1, and (1 - x^2)(1 - y^2)(1 - z^2).
+Function hexahedron_bubble(int along, int k, bool inside) {
+  return [=](const glm::dvec3& p) {
+    double value = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double x = 2 * p[axis] - 1;
+      value *= axis == along && !inside ? power(x, k) : 1 - x * x;
+    }
+    return value;
+  };
+}
+
+/// The hexahedra of 9, 16, 21 and 26 nodes: trilinear, or of 16 nodes serendipity across and linear along, of more
+/// the 20 nodes' functions; with bubbles for the faces, and inside, that have a node.
+CellShape incomplete_hexahedron(std::size_t count) {
+  const std::vector<glm::dvec3> all = hexahedron_nodes({2, 2, 2});
+  std::vector<Function> space;
+  if (count == 16) {
+    add_serendipity(1, space);
+    return spanned(BernsteinBasis(Domain::box, {2, 2, 2}), first(16, all), space);
+  }
+  std::vector<glm::dvec3> nodes = first(count == 9 ? 8 : count == 21 ? 20 : 26, all);
+  if (count == 9) {
+    for (int k = 0; k < 2; ++k)
+      for (int j = 0; j < 2; ++j)
+        for (int i = 0; i < 2; ++i) space.push_back(monomial(i, j, k));
+  } else {
+    add_serendipity(1, space);
+    for (const auto& [i, j] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) space.push_back(monomial(i, j, 2));
+  }
+  for (int along = 0; along < 3 && count == 26; ++along)
+    for (int k = 0; k < 2; ++k) space.push_back(hexahedron_bubble(along, k, false));
+  if (count != 26) {
+    nodes.push_back(all.back());
+    space.push_back(hexahedron_bubble(0, 0, true));
+  }
+  return spanned(BernsteinBasis(Domain::box, {2, 2, 2}), std::move(nodes), space);
+}
+
+/// The wedges of 16 and 20 nodes: the 15 nodes' functions, with bubbles inside, or for the five faces.
+CellShape incomplete_wedge(std::size_t count) {
+  const std::vector<glm::dvec3> quadratic = wedge_nodes(2, 2);
+  std::vector<glm::dvec3> nodes(quadratic.begin(), quadratic.begin() + 15);
+  std::vector<Function> space;
+  for (int k = 0; k < 2; ++k)
+    for (int j = 0; j <= 2; ++j)
+      for (int i = 0; i + j <= 2; ++i) space.push_back(corner_monomial(i, j, k));
+  for (const auto& [i, j] : {std::pair{0, 0}, {1, 0}, {0, 1}}) space.push_back(corner_monomial(i, j, 2));
+  constexpr double third = 1.0 / 3;
+  const auto bubble = [](const glm::dvec3& p) { return p.x * p.y * (1 - p.x - p.y); };
+  const auto along = [](const glm::dvec3& p) { return p.z * (1 - p.z); };
+  if (count == 16) {
+    nodes.emplace_back(third, third, 0.5);
+    space.emplace_back([=](const glm::dvec3& p) { return bubble(p) * along(p); });
+  } else {
+    for (const double t : {0.0, 1.0}) nodes.emplace_back(third, third, t);
+    nodes.insert(nodes.end(), quadratic.begin() + 15, quadratic.end());
+    space.emplace_back(bubble);
+    space.emplace_back([=](const glm::dvec3& p) { return bubble(p) * p.z; });
+    space.emplace_back([=](const glm::dvec3& p) { return p.x * p.y * along(p); });
+    space.emplace_back([=](const glm::dvec3& p) { return p.x * (1 - p.x - p.y) * along(p); });
+    space.emplace_back([=](const glm::dvec3& p) { return p.y * (1 - p.x - p.y) * along(p); });
+  }
+  return spanned(BernsteinBasis(Domain::prism, {3, 0, 2}), std::move(nodes), space);
+}
+
+/// The wedge of 21 nodes: quadratic with a cubic bubble in the triangle, quadratic along.
+CellShape enriched_wedge() {
+  const std::vector<glm::dvec3> quadratic = wedge_nodes(2, 2);
+  const double third = 1.0 / 3;
+  std::vector<glm::dvec3> nodes(quadratic.begin(), quadratic.begin() + 15);
+  for (const double t : {0.0, 1.0}) nodes.emplace_back(third, third, t);
+  nodes.insert(nodes.end(), quadratic.begin() + 15, quadratic.end());
+  nodes.emplace_back(third, third, 0.5);
+  std::vector<Function> space;
+  for (int k = 0; k <= 2; ++k) {
+    for (int j = 0; j <= 2; ++j)
+      for (int i = 0; i + j <= 2; ++i) space.push_back(corner_monomial(i, j, k));
+    space.emplace_back([k](const glm::dvec3& p) { return p.x * p.y * (1 - p.x - p.y) * power(p.z, k); });
+  }
+  return spanned(BernsteinBasis(Domain::prism, {3, 0, 2}), std::move(nodes), space);
+}
+
+/// Node counts of the types that have one.
+std::size_t nodes_of(std::uint8_t vtk_type) {
+  switch (vtk_type) {
+    case 10:
+      return 4;
+    case 11:
+    case 12:
+      return 8;
+    case 13:
+      return 6;
+    case 14:
+      return 5;
+    case 24:
+      return 10;
+    case 25:
+      return 20;
+    case 26:
+      return 15;
+    case 27:
+      return 13;
+    case 29:
+      return 27;
+    case 31:
+      return 12;
+    case 32:
+      return 18;
+    case 33:
+      return 24;
+    case 37:
+      return 19;
+    default:
+      return 0;
+  }
+}
+
+CellShape fixed_shape(std::uint8_t vtk_type) {
+  switch (vtk_type) {
+    case 10:
+      return full(BernsteinBasis(Domain::tet, {1, 1, 1}), tet_nodes(1));
+    case 11: {
+      std::vector<glm::dvec3> nodes = hexahedron_nodes({1, 1, 1});
+      std::swap(nodes[2], nodes[3]);
+      std::swap(nodes[6], nodes[7]);
+      return full(BernsteinBasis(Domain::box, {1, 1, 1}), std::move(nodes));
+    }
+    case 12:
+      return full(BernsteinBasis(Domain::box, {1, 1, 1}), hexahedron_nodes({1, 1, 1}));
+    case 13:
+      return full(BernsteinBasis(Domain::prism, {1, 1, 1}), wedge_nodes(1, 1));
+    case 14:
+      return linear_pyramid();
+    case 24:
+      return full(BernsteinBasis(Domain::tet, {2, 2, 2}), tet_nodes(2));
+    case 25:
+      return quadratic_hexahedron();
+    case 26:
+      return quadratic_wedge();
+    case 27:
+      return quadratic_pyramid();
+    case 29:
+      return full(BernsteinBasis(Domain::box, {2, 2, 2}), hexahedron_nodes({2, 2, 2}));
+    case 31:
+      return full(BernsteinBasis(Domain::prism, {2, 2, 1}), wedge_nodes(2, 1));
+    case 32:
+      return full(BernsteinBasis(Domain::prism, {2, 2, 2}), wedge_nodes(2, 2));
+    case 33:
+      return biquadratic_hexahedron();
+    default:
+      return triquadratic_pyramid();
+  }
+}
+
+constexpr int highest_order = 10;
+
+}  // namespace
+
+bool without_volume(std::uint8_t vtk_type) {
+  constexpr std::array<std::uint8_t, 24> types{0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  21, 22,
+                                               23, 28, 30, 34, 35, 36, 68, 69, 70, 75, 76, 77};
+  return std::find(types.begin(), types.end(), vtk_type) != types.end();
+}
+
+CellShape cell_shape(std::uint8_t vtk_type, std::size_t nodes, std::array<int, 3> orders, const std::string& where) {
+  if (const std::size_t wanted = nodes_of(vtk_type); wanted > 0) {
+    if (nodes != wanted)
+      throw scene::bad_input(fmt::format("{}: type {} has {} nodes, this cell {}; write all of its nodes", where,
+                                         vtk_type, wanted, nodes));
+    return fixed_shape(vtk_type);
+  }
+  if (vtk_type == 74) {
+    const auto count = [](std::size_t n) { return (n + 1) * (n + 2) * (2 * n + 3) / 6; };
+    std::size_t order = 1;
+    while (order < highest_order && count(order) < nodes) ++order;
+    if (count(order) != nodes)
+      throw scene::bad_input(
+          fmt::format("{}: {} nodes do not fit a Lagrange pyramid of order 1 to {}; write all of its "
+                      "nodes",
+                      where, nodes, highest_order));
+    return lagrange_pyramid(static_cast<int>(order));
+  }
+  const bool of_tet = vtk_type == 71 || vtk_type == 78, of_hexahedron = vtk_type == 72 || vtk_type == 79,
+             of_wedge = vtk_type == 73 || vtk_type == 80, is_bezier = vtk_type >= 78;
+  if (!of_tet && !of_hexahedron && !of_wedge)
+    throw scene::bad_input(
+        fmt::format("{}: cells of type {} are not known to the reference; leave them out", where, vtk_type));
+  const auto has = [&](std::initializer_list<std::size_t> counts) {
+    return std::find(counts.begin(), counts.end(), nodes) != counts.end();
+  };
+  if (vtk_type == 71 && has({5, 7, 8, 11, 14, 15})) return enriched_tet(nodes);
+  if (vtk_type == 72 && orders == std::array{0, 0, 0} && has({9, 16, 21, 26})) return incomplete_hexahedron(nodes);
+  if (vtk_type == 73 && orders == std::array{0, 0, 0} && has({16, 20})) return incomplete_wedge(nodes);
+  if (vtk_type == 73 && nodes == 21) return enriched_wedge();
+  const auto count = [&](const std::array<int, 3>& o) {
+    const auto [a, b, c] =
+        std::array{static_cast<std::size_t>(o[0]), static_cast<std::size_t>(o[1]), static_cast<std::size_t>(o[2])};
+    if (of_tet) return (a + 1) * (a + 2) * (a + 3) / 6;
+    if (of_wedge) return (a + 1) * (a + 2) / 2 * (c + 1);
+    return (a + 1) * (b + 1) * (c + 1);
+  };
+  if (of_tet || orders == std::array{0, 0, 0}) {
+    orders = {1, 1, 1};
+    while (orders[0] < highest_order && count(orders) < nodes) orders = {orders[0] + 1, orders[0] + 1, orders[0] + 1};
+  }
+  for (const int order : orders)
+    if (order < 1 || order > highest_order)
+      throw scene::bad_input(
+          fmt::format("{}: order {} is not one of 1 to {}; write a lower one", where, order, highest_order));
+  if (count(orders) != nodes || (of_wedge && orders[0] != orders[1]))
+    throw scene::bad_input(
+        fmt::format("{}: {} nodes do not fit type {} of orders {}, {} and {}; write the orders in "
+                    "HigherOrderDegrees",
+                    where, nodes, vtk_type, orders[0], orders[1], orders[2]));
+  const Domain domain = of_tet ? Domain::tet : of_wedge ? Domain::prism : Domain::box;
+  std::vector<glm::dvec3> places = of_tet     ? tet_nodes(orders[0])
+                                   : of_wedge ? wedge_nodes(orders[0], orders[2])
+                                              : hexahedron_nodes(orders);
+  const BernsteinBasis basis(domain, orders);
+  return is_bezier ? bezier(basis, std::move(places)) : full(basis, std::move(places));
+}
+
+std::vector<double> shape_functions(const CellShape& shape, const glm::dvec3& place) {
+  std::vector<double> values(shape.basis.size()), result(shape.nodes.size());
+  std::vector<glm::dvec3> gradients(shape.basis.size());
+  shape.basis.evaluate(place, values, gradients);
+  for (std::size_t row = 0; row < values.size(); ++row)
+    for (std::size_t node = 0; node < result.size(); ++node)
+      result[node] += values[row] * shape.to_bernstein(row, node);
+  return result;
+}
+
+}  // namespace tessera::reference

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "scene/sample_source.hpp"
+#include "scene/trace.hpp"
+#include "volume/bricks/brick_layout.hpp"
+
+namespace tessera::volume {
+
+/// Bricks in memory, loaded from the source as they are asked for, within a budget of bytes (Moloney, "Ray Coherence in
+/// Parallel Volume Rendering", SFU 2008, 3.3).
+///
+/// Samples  as stored; i fastest, rows and slices as far apart as BrickLayout::room() says.
+/// Threads  any number. A thread holds at most one brick at a time: acquire() may wait until another lets go of its
+///          own.
+class BrickCache {
+ public:
+  struct Counts {
+    std::uint64_t hits = 0, loads = 0, evictions = 0, bytes_loaded = 0, bytes = 0, peak_bytes = 0;
+    std::uint64_t preloads = 0;               ///< ahead of their use, not among `loads`
+    std::uint64_t load_ns = 0, evict_ns = 0;  ///< of acquire(): all of its reading, and making room
+  };
+  enum class Ahead { loaded, was_there, no_room };
+
+  /// Throws Error(bad_input) if the budget does not hold the largest brick.
+  BrickCache(const scene::SampleSource& source, const BrickLayout& layout, std::uint64_t budget_bytes,
+             CachePolicy policy);
+
+  /// A brick's samples, kept until release(). Throws what the source's read() throws.
+  const std::byte* acquire(std::size_t brick, scene::Trace* trace);
+  void release(std::size_t brick);
+
+  /// proximity: distances by brick number that the next evictions go by, the largest first. A brick no farther than
+  /// `in_use` may be needed at any time, and makes no room for what is loaded ahead.
+  void set_distances(std::vector<float> distances, float in_use = 0);
+
+  /// proximity: loads a brick that nobody has asked for yet, unless that would throw out one that is no farther, or one
+  /// in use; with `evicts` false, any. On any thread; waits while acquire() reads on another, which goes first. Throws
+  /// as acquire() does.
+  Ahead preload(std::size_t brick, bool evicts, scene::Trace* trace);
+
+  /// Of the samples of a brick.
+  static std::uint64_t bytes_of(const BrickLayout& layout, std::size_t brick, scene::SampleType type);
+  /// Of memory for where the bricks are, held or not, their distances, and which of them a frame shows.
+  static std::uint64_t bytes_of_table(const BrickLayout& layout) {
+    return layout.count() * (sizeof(Entry) + 2 * sizeof(float) + 2);
+  }
+  /// Of memory for a brick's places in the orders of use and distance, and what the heap adds to it.
+  static constexpr std::uint64_t bytes_beside_brick = 128;
+
+  [[nodiscard]] Counts counts() const;
+  [[nodiscard]] const BrickLayout& layout() const { return layout_; }
+  [[nodiscard]] const scene::SampleSource& source() const { return source_; }
+  [[nodiscard]] bool resident(std::size_t brick) const;
+  [[nodiscard]] bool holds_all() const { return holds_all_; }
+
+ private:
+  struct Entry {
+    std::unique_ptr<std::byte[]> bytes;
+    std::atomic<const std::byte*> ready{nullptr};
+    std::uint32_t users = 0;
+    bool loading = false;
+    std::list<std::size_t>::iterator used;  ///< in by_use_, while ready
+  };
+
+  std::uint64_t bytes_of(std::size_t brick) const;
+  std::uint64_t room_for(std::uint64_t bytes) const;
+  float distance_of(std::size_t brick) const { return distances_.empty() ? 0.0f : distances_[brick]; }
+  std::size_t victim(float beyond) const;
+  bool make_room(std::uint64_t bytes, float beyond, std::unique_ptr<std::byte[]>& buffer);
+  bool make_room_timed(std::uint64_t bytes, std::unique_ptr<std::byte[]>& buffer);
+  void forget(std::size_t brick);
+  void load(std::size_t brick, std::unique_ptr<std::byte[]> buffer, bool ahead, std::unique_lock<std::mutex>& lock,
+            scene::Trace* trace);
+
+  const scene::SampleSource& source_;
+  BrickLayout layout_;
+  std::uint64_t budget_;
+  CachePolicy policy_;
+  bool holds_all_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<Entry> entries_;
+  std::list<std::size_t> by_use_;                        ///< least recently used first
+  std::set<std::pair<float, std::size_t>> by_distance_;  ///< proximity: nearest first
+  std::vector<float> distances_;
+  float in_use_ = 0;
+  int loading_for_rays_ = 0;
+  Counts counts_;
+  std::atomic<std::uint64_t> unlocked_hits_ = 0;
+};
+
+}  // namespace tessera::volume

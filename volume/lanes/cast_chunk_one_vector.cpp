@@ -1,0 +1,32 @@
+#include "volume/lanes/chunk_view.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "volume/lanes/cast_chunk_one_vector.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "volume/lanes/cast_slabs-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::volume {
+namespace HWY_NAMESPACE {
+
+void cast_chunk_one_vector_here(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
+  cast_chunk<CL::TableForm::one_vector>(chunk, rays, counts);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::volume
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tessera::volume {
+
+HWY_EXPORT(cast_chunk_one_vector_here);
+void cast_chunk_one_vector(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
+  if (chunk.frame.surfaces != nullptr) return cast_surfaces_one_vector(chunk, rays, counts);
+  HWY_DYNAMIC_DISPATCH(cast_chunk_one_vector_here)(chunk, rays, counts);
+}
+
+}  // namespace tessera::volume
+#endif  // HWY_ONCE

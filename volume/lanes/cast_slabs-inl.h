@@ -1,0 +1,480 @@
+// Packets of rays through one chunk of 32 slabs; included once per instruction set.
+//
+// Slabs go in groups of eight. First the field of all slabs in the group that every live ray crosses from plane to
+// plane is found as lines (slab_lines-inl.h), one slab independent of the next, then their light is added front to
+// back: so the processor overlaps slabs. Where the field is smooth enough for it, one line stands for two slabs. Slabs
+// in which rays begin or end, shaded ones and cell data go voxel by voxel (voxel_pieces-inl.h); so do lanes whose field
+// may meet the value of a surface (surface_pieces-inl.h), while the others of their slab go on as they are.
+
+#if defined(TESSERA_VOLUME_CAST_SLABS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_VOLUME_CAST_SLABS_INL_H_
+#undef TESSERA_VOLUME_CAST_SLABS_INL_H_
+#else
+#define TESSERA_VOLUME_CAST_SLABS_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "volume/lanes/packet_slabs-inl.h"
+#include "volume/lanes/slab_lines-inl.h"
+#include "volume/lanes/surface_pieces-inl.h"
+#include "volume/lanes/voxel_pieces-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::volume {
+namespace HWY_NAMESPACE {
+
+/// One packet, or some lanes of it, on its way through a chunk.
+template <bool cell_data, class Surfaces, class Window, class Lookup>
+class PacketCast {
+ public:
+  HWY_INLINE PacketCast(const ChunkView& chunk, const Lookup& lookup, const PacketSlabs& slabs, const Lanes& lanes,
+                        VF before, CurrentInterval& current, TileCounts& counts)
+      : chunk_(chunk),
+        frame_(chunk.frame),
+        lookup_(lookup),
+        slabs_(slabs),
+        lanes_(lanes),
+        mirrored_(lanes, std::is_same_v<Window, GatherWindow> ? static_cast<int>(chunk.block.pitch) : Window::columns),
+        current_(current),
+        counts_(counts),
+        surfaces_(chunk.frame),
+        before_(before),
+        has_steps_(chunk.frame.error_bound != nullptr && !chunk.frame.error_bound->step.empty()) {
+    const DF d;
+    const VF zero = HN::Zero(d);
+    progress_ = {zero, HN::Set(d, 1.0f), zero, zero, zero, zero};
+    crossings_ = zero;
+    find_ends();
+  }
+
+  Progress progress_;
+  RayNotes notes_;
+
+  HWY_INLINE void run(const Reach& reach) {
+    const DF d;
+    const bool tallies = frame_.tally != nullptr;
+    GroupWork work{};
+    for (int n = 0; n < chunk_.box.slabs; n += SlabLines::most) {
+      if (HWY_UNLIKELY(tallies)) {
+        if (n > 0) work.add_to(chunk_, lanes_, reach, n, progress_, counts_);
+        work = {n, lanes_.k_out, progress_.optical_depth, counts_.samples};
+      }
+      if (!go_on(n)) break;
+      if (frame_.some_hidden && !any_visible_ahead(n)) continue;
+      group(n, std::min(n + SlabLines::most, chunk_.box.slabs));
+    }
+    if (HWY_UNLIKELY(tallies)) work.add_to(chunk_, lanes_, reach, chunk_.box.slabs, progress_, counts_);
+    counts_.voxels_visited += static_cast<std::uint64_t>(HN::GetLane(HN::SumOfLanes(d, crossings_)));
+  }
+
+ private:
+  /// The slabs that all live lanes cross from plane to plane: [plain_from_, plain_to_).
+  HWY_INLINE void find_ends() {
+    const DF d;
+    mirrored_.live = HN::Lt(lanes_.k_in, lanes_.k_out);
+    all_live_ = HN::AllTrue(d, mirrored_.live);
+    live_count_ = HN::CountTrue(d, mirrored_.live);
+    plain_from_ = HN::GetLane(HN::MaxOfLanes(d, HN::IfThenElse(mirrored_.live, lanes_.k_in, HN::Set(d, -1.0f))));
+    plain_to_ = HN::GetLane(HN::MinOfLanes(d, HN::IfThenElse(mirrored_.live, lanes_.k_out, HN::Set(d, 64.0f))));
+  }
+
+  /// Rays that let nothing through any more are done. False if all are, or have left the volume.
+  HWY_INLINE bool go_on(int n) {
+    const DF d;
+    const MF dark = HN::And(mirrored_.live,
+                            HN::Lt(HN::Mul(before_, progress_.transmittance), HN::Set(d, frame_.least_transmittance)));
+    if (!HN::AllFalse(d, dark)) {
+      lanes_.k_out = HN::IfThenElse(dark, HN::Set(d, -1.0f), lanes_.k_out);
+      find_ends();
+    }
+    return !HN::AllFalse(d, HN::And(mirrored_.live, HN::Gt(lanes_.k_out, HN::Set(d, static_cast<float>(n)))));
+  }
+
+  /// Whether the eight slabs from n on may meet a visible cell.
+  HWY_INLINE bool any_visible_ahead(int n) const {
+    const int m = n + SlabLines::most - 1;
+    const std::int64_t end_k = frame_.voxels[static_cast<std::size_t>(chunk_.axes.k)];
+    const std::int64_t k_first = chunk_.box.first_k + n, k_last = std::min(chunk_.box.first_k + m, end_k - 1);
+    std::int64_t low[3], high[3];
+    low[chunk_.axes.i] = std::min(slabs_.i_first[n], slabs_.i_first[m]);
+    high[chunk_.axes.i] = std::max(slabs_.i_last[n], slabs_.i_last[m]);
+    low[chunk_.axes.j] = std::min(slabs_.j_first[n], slabs_.j_first[m]);
+    high[chunk_.axes.j] = std::max(slabs_.j_last[n], slabs_.j_last[m]);
+    low[chunk_.axes.k] = chunk_.axes.mirrored ? end_k - 1 - k_last : k_first;
+    high[chunk_.axes.k] = chunk_.axes.mirrored ? end_k - 1 - k_first : k_last;
+    return any_visible(frame_, low, high);
+  }
+
+  HWY_INLINE WindowPlace place_of(int n) const {
+    const float* const samples = chunk_.block.slice(0);
+    const float* const front = samples + slabs_.front[n];
+    return {front, cell_data ? front : samples + slabs_.back[n], slabs_.origin[n], slabs_.border[n] == 0};
+  }
+
+  /// Lanes in slab n.
+  HWY_INLINE MF here(int n) const {
+    const DF d;
+    return HN::And(mirrored_.live, HN::And(HN::Gt(lanes_.k_out, HN::Set(d, static_cast<float>(n))),
+                                           HN::Lt(lanes_.k_in, HN::Set(d, static_cast<float>(n + 1)))));
+  }
+
+  enum class Kind { empty, lines, parts };
+
+  HWY_INLINE Kind kind_of(int n) const {
+    const DF d;
+    const auto from = static_cast<float>(n), to = static_cast<float>(n + 1);
+    const bool by_lines = !cell_data && frame_.shading == nullptr;
+    if (HWY_LIKELY(plain_from_ <= from && to <= plain_to_)) return by_lines ? Kind::lines : Kind::parts;
+    const MF some = here(n);
+    if (HN::AllFalse(d, some)) return Kind::empty;
+    const MF whole = HN::And(HN::Le(lanes_.k_in, HN::Set(d, from)), HN::Ge(lanes_.k_out, HN::Set(d, to)));
+    return by_lines && HN::AllFalse(d, HN::AndNot(whole, some)) ? Kind::lines : Kind::parts;
+  }
+
+  HWY_INLINE void group(int begin, int end) {
+    SlabLines lines;
+    Kind kinds[SlabLines::most + 1];
+    for (int n = begin; n < end; ++n) {
+      Kind& kind = kinds[n - begin];
+      kind = kind_of(n);
+      if (kind != Kind::lines) continue;
+      if constexpr (!cell_data) {
+        const WindowPlace place = place_of(n);
+        const Window window(place.front, place.back, chunk_.block.pitch);
+        if (frame_.some_clear && current_.holds(window, *place.front) && current_.clear() &&
+            surfaces_.none_in(window, *place.front)) {
+          kind = Kind::empty;
+          continue;
+        }
+        // A gather reads where every lane is: only those that cross this slab are sure to be in the block.
+        MirroredLanes gathered = mirrored_;
+        if (std::is_same_v<Window, GatherWindow>) gathered.live = here(n);
+        const MirroredLanes& found = std::is_same_v<Window, GatherWindow> ? gathered : mirrored_;
+        find_line(found, window, place, chunk_.block.pitch, n, n - begin, lines, crossings_);
+        if (n + 1 == end || kind_of(n + 1) != Kind::lines || frame_.some_clear)
+          find_back(found, window, place, chunk_.block.pitch, n, n - begin, lines);
+      }
+    }
+    kinds[end - begin] = Kind::empty;
+    for (int n = begin; n < end;) {
+      const int m = n - begin;
+      if (n == begin + SlabLines::most / 2 && !go_on(n)) return;
+      if (kinds[m] == Kind::lines) {
+        if constexpr (!cell_data) n += add_lines(lines, m, n, kinds[m + 1] == Kind::lines && m % 2 == 0);
+      } else {
+        if (kinds[m] == Kind::parts) add_parts(n);
+        ++n;
+      }
+    }
+  }
+
+  static HWY_INLINE Line kept(const Line& line, MF live) {
+    const auto keep = [&](VF v) HWY_ATTR { return HN::IfThenElseZero(live, v); };
+    return {keep(line.s_0), keep(line.s_1), keep(line.span), keep(line.shift), keep(line.rho)};
+  }
+
+  /// Adds slab n, in place m of the lines, or n and the next if `two` and they may be taken as one: how many.
+  HWY_INLINE int add_lines(const SlabLines& lines, int m, int n, bool two) {
+    const DF d;
+    const VF half = HN::Set(d, 0.5f);
+    const bool plain = all_live_ && plain_from_ <= static_cast<float>(n) && static_cast<float>(n + 2) <= plain_to_;
+    const UniformLookup& table = current_.uniform();
+    Line a = line_of(lines, m);
+    if (two && plain) {
+      const Line b = line_of(lines, m + 1);
+      // Not a number where either slab's field is not, which Max alone may leave out.
+      const VF r = HN::MulAdd(HN::Zero(d), HN::Add(a.rho, b.rho), HN::Max(a.rho, b.rho));
+      const VF low = HN::Sub(HN::Min(HN::Min(a.s_0, a.s_1), b.s_1), r),
+               high = HN::Add(HN::Max(HN::Max(a.s_0, a.s_1), b.s_1), r);
+      if (HWY_LIKELY(current_.around(low, high, mirrored_.live)) && surfaces_.none_between(low, high, mirrored_.live)) {
+        if (current_.clear()) return 2;
+        const VF length = HN::Add(lanes_.length, lanes_.length), span = HN::Sub(b.s_1, a.s_0);
+        const VF middle = HN::Mul(half, HN::Add(a.s_0, b.s_1)), tent = HN::Sub(a.s_1, middle);
+        const VF rho = HN::Add(HN::Abs(tent), r), tilt = HN::Mul(HN::Abs(span), HN::Set(d, 0.25f));
+        const VF even = HN::MulAdd(rho, rho, HN::Mul(r, tilt)), any = HN::Mul(rho, HN::Add(rho, tilt));
+        const VF dimmed = HN::Mul(HN::Mul(length, HN::Set(d, table.dimming_bound)),
+                                  HN::MulAdd(HN::Mul(HN::Abs(tent), HN::Mul(length, HN::Set(d, table.extinction))),
+                                             HN::Set(d, 1 / 60.0f), HN::Mul(r, HN::Set(d, 0.25f))));
+        const VF error =
+            HN::MulAdd(length, dimmed,
+                       HN::Mul(length, HN::MulAdd(HN::Set(d, 10 * table.product_bound), even,
+                                                  HN::Mul(HN::Mul(length, HN::Set(d, table.shadow_bound)), any))));
+        if (HN::AllTrue(d, HN::Le(error, HN::Set(d, 1.0f)))) {
+          const VF shift = HN::Mul(half, HN::Add(tent, HN::Add(a.shift, b.shift)));
+          add_uniform_line(a.s_0, b.s_1, span, shift, length, n);
+          return 2;
+        }
+      }
+    }
+    VF length = lanes_.length;
+    MF live = mirrored_.live;
+    if (!plain) {
+      live = here(n);
+      a = kept(a, live);
+      length = HN::IfThenElseZero(live, length);
+    }
+    const VF low = HN::Sub(HN::Min(a.s_0, a.s_1), a.rho), high = HN::Add(HN::Max(a.s_0, a.s_1), a.rho);
+    if constexpr (has_surfaces) {
+      if (HWY_UNLIKELY(!surfaces_.none_between(low, high, live))) {
+        live = add_met(n, low, high, live);
+        if (HN::AllFalse(d, live)) return 1;
+        a = kept(a, live);
+        length = HN::IfThenElseZero(live, length);
+      }
+    }
+    const bool uniform = current_.around(low, high, live) || (has_steps_ && on_one_side(n));
+    if (HWY_LIKELY(uniform)) {
+      if (current_.clear()) return 1;
+      const VF spread = HN::Mul(HN::Mul(length, a.rho), HN::MulAdd(HN::Abs(a.span), HN::Set(d, 0.25f), a.rho));
+      const VF scale = HN::MulAdd(length, HN::Set(d, table.shadow_bound), HN::Set(d, 10 * table.product_bound));
+      const VF dimmed = HN::Mul(HN::Mul(length, HN::Set(d, table.dimming_bound / 9)), HN::Mul(length, a.rho));
+      if (HWY_LIKELY(HN::AllFalse(d, HN::Gt(HN::MulAdd(spread, scale, dimmed), HN::Set(d, 1.0f))))) {
+        add_uniform_line(a.s_0, a.s_1, a.span, a.shift, length, n);
+        return 1;
+      }
+      if (!table.independent && add_bent_line(lines, a, m, live, length, spread, dimmed, n)) return 1;
+    }
+    add_slowly(lines, a, m, n, live, length);
+    return 1;
+  }
+
+  /// Whether all samples that lanes may meet in slab n are in one interval for certain, which then is the current one:
+  /// then the field is, too, though its rounding may be beyond a step that it is near, or on.
+  HWY_NOINLINE bool on_one_side(int n) {
+    const auto all_held = [&] {
+      const int corner = cell_data ? 0 : 1;
+      for (int slice = n; slice <= n + corner; ++slice)
+        for (int j = slabs_.j_first[n]; j <= slabs_.j_last[n] + corner; ++j) {
+          const float* const row = chunk_.block.at(slice, slabs_.i_first[n], j);
+          for (int i = 0; i <= slabs_.i_last[n] + corner - slabs_.i_first[n]; ++i)
+            if (!current_.holds(row[i])) return false;
+        }
+      return true;
+    };
+    if (all_held()) return true;
+    const float some = *chunk_.block.at(n, slabs_.i_first[n], slabs_.j_first[n]);
+    if (!(some == some)) return false;
+    current_.move_to(current_.interval_of(some));
+    return all_held();
+  }
+
+  /// A slab too rough for a line: a line, and what the field's bend adds to it to first order in the slab's optical
+  /// depth. False, and nothing added, if what is left may be too much. Where extinction k and colour c are linear in
+  /// the field, light is more by k' c' times the product of its rests, and less by c' k^2 times their covariance with
+  /// the way, as the front dims the back.
+  HWY_INLINE bool add_bent_line(const SlabLines& lines, const Line& line, int m, MF live, VF length, VF spread,
+                                VF dimmed, int n) {
+    const DF d;
+    const UniformLookup& table = current_.uniform();
+    const Bend found = bend_of(lines, m, line);
+    const auto kept = [&](VF v) HWY_ATTR { return HN::IfThenElseZero(live, v); };
+    const VF product = kept(found.product), covariance = kept(found.covariance), odd = kept(found.odd);
+    const VF depth = HN::Mul(length, HN::Set(d, table.extinction)), span = HN::Abs(line.span);
+    const VF beside_odd = HN::MulAdd(HN::Set(d, 0.5f), span, HN::MulAdd(HN::Set(d, 2.0f), line.rho, odd));
+    const VF next_order =
+        HN::MulAdd(HN::Mul(line.rho, HN::Set(d, 1 / 9.0f)), HN::Add(span, line.rho), HN::Abs(product));
+    const VF products = HN::Mul(HN::Mul(length, HN::Set(d, 10 * table.product_bound)),
+                                HN::MulAdd(odd, beside_odd, HN::Mul(depth, next_order)));
+    const VF shadows = HN::Mul(HN::Mul(length, HN::Set(d, table.shadow_bound)), spread);
+    if (!HN::AllFalse(d, HN::Gt(HN::MulAdd(dimmed, depth, HN::Add(products, shadows)), HN::Set(d, 1.0f)))) return false;
+    const float slope = 2 * table.row[LaneTable::half_extinction_slope];
+    const VF middle =
+        HN::MulAdd(HN::Set(d, 0.5f), line.span, HN::Sub(line.s_0, HN::Set(d, table.row[LaneTable::base])));
+    const VF here =
+        HN::Mul(length, HN::MulAdd(HN::Set(d, slope), middle, HN::Set(d, 2 * table.row[LaneTable::half_extinction])));
+    const VF more =
+        HN::NegMulAdd(HN::Mul(here, here), covariance, HN::Mul(HN::Mul(length, HN::Set(d, slope)), product));
+    const VF seen = HN::Mul(progress_.transmittance, more);
+    progress_.red = HN::MulAdd(seen, HN::Set(d, table.row[LaneTable::red_slope]), progress_.red);
+    progress_.green = HN::MulAdd(seen, HN::Set(d, table.row[LaneTable::green_slope]), progress_.green);
+    progress_.blue = HN::MulAdd(seen, HN::Set(d, table.row[LaneTable::blue_slope]), progress_.blue);
+    add_uniform_line(line.s_0, line.s_1, line.span, line.shift, length, n);
+    return true;
+  }
+
+  HWY_INLINE void add_uniform_line(VF s_0, VF s_1, VF span, VF shift, VF length, int n) {
+    const DF d;
+    const VF before = progress_.transmittance;
+    CL::lanes::add_piece<false>(current_.uniform(), 0, HN::Add(s_0, shift), HN::Add(s_1, shift), span, length,
+                                progress_);
+    counts_.samples += live_count_;
+    if (HWY_UNLIKELY(!HN::AllTrue(d, notes_.seen)))
+      note_first_light(progress_, HN::Set(d, static_cast<float>(n)), notes_);
+    if (HWY_UNLIKELY(current_.uniform().ramp > 0))
+      note_ramps(current_.uniform(), length, before, progress_.transmittance, notes_);
+  }
+
+  /// A slab that crosses knots, or is rough.
+  HWY_NOINLINE void add_slowly(const SlabLines& lines, const Line& line, int m, int n, MF live, VF length) {
+    const MF apart = cast_mixed(frame_, lookup_, line, live, HN::Set(DF(), static_cast<float>(n)), length, current_,
+                                progress_, notes_, counts_);
+    if (HN::AllFalse(DF(), apart)) return;
+    cast_stretches(frame_, lookup_, lanes_.length, lines, m, n, apart, progress_, notes_, counts_);
+  }
+
+  /// Adds the lanes that may meet surfaces in slab n, where they are between `low` and `high`: those that are left.
+  HWY_NOINLINE MF add_met(int n, VF low, VF high, MF live) {
+    const MF met = surfaces_.met(low, high, live);
+    const WindowPlace place = place_of(n);
+    const Window window(place.front, place.back, chunk_.block.pitch);
+    add_surfaces(path_of(lanes_, n, slabs_.i_window[n], slabs_.j_window[n]), window, rest_at(place), met);
+    return HN::AndNot(met, live);
+  }
+  HWY_INLINE RestOfSamples rest_at(const WindowPlace& place) const { return {chunk_.block, place.front, place.back}; }
+  HWY_INLINE void add_surfaces(const SlabPath& path, const Window& window, const RestOfSamples& rest, MF lanes) {
+    SurfaceCast<Lookup>(frame_, chunk_.axes, lookup_, lanes_, current_, surfaces_, progress_, notes_, counts_)
+        .cast(path, window, rest, lanes);
+  }
+
+  /// A slab in which lanes begin or end, cell data, shaded.
+  HWY_NOINLINE void add_parts(int n) {
+    const DF d;
+    const WindowPlace place = place_of(n);
+    const Window window(place.front, place.back, chunk_.block.pitch);
+    const bool uniform =
+        current_.holds(window, *place.front) || (has_steps_ && std::is_same_v<Window, GatherWindow> && on_one_side(n));
+    const bool meets_none = surfaces_.none_in(window, *place.front);
+    if (uniform && current_.clear() && meets_none) return;
+    const SlabPath path = path_of(lanes_, n, slabs_.i_window[n], slabs_.j_window[n]);
+    for (const Stretch& stretch : path.stretches)
+      counts_.voxels_visited += HN::CountTrue(d, HN::Gt(stretch.end, stretch.begin));
+    const VF before = progress_.transmittance, light[3] = {progress_.red, progress_.green, progress_.blue};
+    if constexpr (has_surfaces) {
+      if (!meets_none) {
+        const MF there = HN::Gt(path.to, path.from);
+        add_surfaces(path, window, rest_at(place), there);
+        if (HWY_UNLIKELY(frame_.shading == nullptr && frame_.error_bound != nullptr && frame_.error_bound->ends))
+          note_ends(*frame_.error_bound, lookup_, part_line(lanes_, path, window), path, there, lanes_.length, before,
+                    light, progress_, notes_);
+        return;
+      }
+    }
+    if (cell_data || frame_.shading != nullptr) {
+      cast_voxels<cell_data>(frame_, chunk_.axes, lookup_, lanes_, path, window, rest_at(place),
+                             uniform ? &current_.uniform() : nullptr, HN::Gt(path.to, path.from), progress_, notes_,
+                             counts_);
+      return;
+    }
+    if constexpr (!cell_data) {
+      const MF there = HN::Gt(path.to, path.from);
+      const VF length = HN::IfThenElseZero(there, HN::Mul(lanes_.length, HN::Sub(path.to, path.from)));
+      const Line line = part_line(lanes_, path, window);
+      MF apart = there;
+      if (!(uniform && has_steps_))
+        apart = cast_mixed(frame_, lookup_, line, there, HN::Add(path.from, path.k), length, current_, progress_,
+                           notes_, counts_);
+      if (!HN::AllFalse(d, apart))
+        cast_voxels<false>(frame_, chunk_.axes, lookup_, lanes_, path, window, rest_at(place),
+                           uniform && has_steps_ ? &current_.uniform() : nullptr, apart, progress_, notes_, counts_);
+      if (HWY_UNLIKELY(frame_.error_bound != nullptr && frame_.error_bound->ends))
+        note_ends(*frame_.error_bound, lookup_, line, path, there, lanes_.length, before, light, progress_, notes_);
+    }
+  }
+
+  static constexpr bool has_surfaces = std::is_same_v<Surfaces, LaneSurfaces>;
+
+  const ChunkView& chunk_;
+  const FrameView& frame_;
+  const Lookup& lookup_;
+  const PacketSlabs& slabs_;
+  Lanes lanes_;
+  MirroredLanes mirrored_;
+  CurrentInterval& current_;
+  TileCounts& counts_;
+  [[no_unique_address]] Surfaces surfaces_;
+  VF before_;       ///< transmittance up to the chunk
+  bool has_steps_;  ///< of the transfer function, that matter
+  VF crossings_;
+  float plain_from_, plain_to_;
+  bool all_live_;
+  std::size_t live_count_;
+};
+
+/// Lanes [ray, ray + Lanes()) of a packet through the chunk.
+template <bool cell_data, class Surfaces, class Window, class Lookup>
+HWY_NOINLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int ray, const Reach& reach,
+                             const PacketSlabs& slabs, CurrentInterval& current, TileRays& rays, TileCounts& counts) {
+  const DF d;
+  constexpr std::size_t most = HN::MaxLanes(DF());
+  const std::size_t lane_count = HN::Lanes(d);
+  Lanes lanes = lanes_of(chunk, ray, slabs.i_first[0], slabs.j_first[0], rays);
+  const VF before = HN::LoadU(d, rays.transmittance + ray);
+  lanes.k_out =
+      HN::IfThenElse(HN::Lt(before, HN::Set(d, chunk.frame.least_transmittance)), HN::Set(d, -1.0f), lanes.k_out);
+  PacketCast<cell_data, Surfaces, Window, Lookup> cast(chunk, lookup, slabs, lanes, before, current, counts);
+  const VF alpha_before = HN::LoadU(d, rays.alpha + ray);
+  const MF seen_before = HN::Gt(alpha_before, HN::Zero(d));
+  cast.notes_ = {HN::Set(d, -1.0f), seen_before, HN::Zero(d), HN::Zero(d)};
+  cast.run(reach);
+
+  const Progress& progress = cast.progress_;
+  const auto add = [&](float* sum, VF part)
+                       HWY_ATTR { HN::StoreU(HN::MulAdd(before, part, HN::LoadU(d, sum + ray)), d, sum + ray); };
+  add(rays.alpha, progress.alpha);
+  add(rays.red, progress.red);
+  add(rays.green, progress.green);
+  add(rays.blue, progress.blue);
+  HN::StoreU(HN::Mul(before, progress.transmittance), d, rays.transmittance + ray);
+  add(rays.error_bound, cast.notes_.error_bound);
+  const VF rough = HN::Mul(HN::Mul(before, before), cast.notes_.rough);
+  HN::StoreU(HN::Add(rough, HN::LoadU(d, rays.rough + ray)), d, rays.rough + ray);
+  if (!HN::AllFalse(d, HN::AndNot(seen_before, cast.notes_.seen))) {
+    const auto first_k = static_cast<double>(chunk.box.first_k);
+    HWY_ALIGN float place[most];
+    HN::Store(HN::IfThenElse(seen_before, HN::Set(d, -1.0f), cast.notes_.first), d, place);
+    for (std::size_t l = 0; l < lane_count; ++l)
+      if (place[l] >= 0) rays.first_k[static_cast<std::size_t>(ray) + l] = first_k + static_cast<double>(place[l]);
+  }
+}
+
+template <bool cell_data, class Surfaces, CL::TableForm form>
+HWY_NOINLINE void cast_chunk_as(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
+  const CL::Lookup<form> lookup(*chunk.frame.table);
+  CurrentInterval current(*chunk.frame.table, chunk.frame);
+  for (int packet = 0; packet < TileRays::packets; ++packet) {
+    const Reach& reach = chunk.reach[packet];
+    if (!reach.any) continue;
+    PacketSlabs slabs(reach, chunk.box);
+    // Begins where this packet does: what others find must not change its bits.
+    const int first = chunk.box.first_slab;
+    current.begin_at(*chunk.block.at(first, slabs.i_first[first], slabs.j_first[first]));
+    const auto cast = [&]<class Window>() HWY_ATTR {
+      slabs.template place_windows<Window>(chunk.block, chunk.box.slabs);
+      for (int lane = 0; lane < TileRays::packet_rays; lane += static_cast<int>(HN::Lanes(DF())))
+        cast_lanes<cell_data, Surfaces, Window>(chunk, lookup, packet * TileRays::packet_rays + lane, reach, slabs,
+                                                current, rays, counts);
+    };
+#if HWY_TARGET <= HWY_AVX3
+    if (slabs.widest_i <= SmallWindow::columns - 2 && slabs.widest_j <= SmallWindow::rows - 2)
+      cast.template operator()<SmallWindow>();
+    else if (slabs.widest_i <= LargeWindow::columns - 2 && slabs.widest_j <= LargeWindow::rows - 2)
+      cast.template operator()<LargeWindow>();
+    else
+#endif
+      cast.template operator()<GatherWindow>();
+  }
+}
+
+template <CL::TableForm form>
+HWY_INLINE void cast_chunk(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
+  if (chunk.frame.cell_data)
+    cast_chunk_as<true, NoSurfaces, form>(chunk, rays, counts);
+  else
+    cast_chunk_as<false, NoSurfaces, form>(chunk, rays, counts);
+}
+
+/// Point data with surfaces (FrameView::surfaces).
+template <CL::TableForm form>
+HWY_INLINE void cast_chunk_with_surfaces(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
+  cast_chunk_as<false, LaneSurfaces, form>(chunk, rays, counts);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::volume
+HWY_AFTER_NAMESPACE();
+
+#endif

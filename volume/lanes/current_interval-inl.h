@@ -1,0 +1,111 @@
+// The interval of the transfer function in which a packet was last; included once per instruction set.
+
+#if defined(TESSERA_VOLUME_CURRENT_INTERVAL_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_VOLUME_CURRENT_INTERVAL_INL_H_
+#undef TESSERA_VOLUME_CURRENT_INTERVAL_INL_H_
+#else
+#define TESSERA_VOLUME_CURRENT_INTERVAL_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "volume/frame_view.hpp"
+#include "volume/lanes/ray_piece-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::volume {
+namespace HWY_NAMESPACE {
+
+/// The interval of the transfer function in which a packet was last, ready for use.
+class CurrentInterval {
+ public:
+  HWY_INLINE CurrentInterval(const LaneTable& table, const FrameView& frame) : table_(table), frame_(frame) {
+    uniform_.independent = table.emission == scene::Emission::independent;
+    set(0);
+  }
+  /// Whether all samples of the window are in one interval, for certain, which then is the current one.
+  template <class Window>
+  HWY_INLINE bool holds(const Window& window, float some_sample) {
+    if (window.all_in(held_low_, held_high_)) return true;
+    const std::size_t n = interval_of(some_sample);
+    if (n == interval_) return false;
+    set(n);
+    return window.all_in(held_low_, held_high_);
+  }
+  /// The interval of a lane scalar.
+  [[nodiscard]] HWY_INLINE std::size_t interval_of(float s) const {
+    const float* const knots = table_.column(LaneTable::edge) + 1;
+    return static_cast<std::size_t>(std::upper_bound(knots, knots + table_.knot_count, s) - knots);
+  }
+  /// Whether [low, high] lies in the current interval, and for certain if that ends at a step, in the lanes that are
+  /// live.
+  [[nodiscard]] HWY_INLINE bool around(VF low, VF high, MF live) const {
+    const DF d;
+    const MF below = HN::Lt(high, HN::Set(d, guarded_high_));
+    return HN::AllFalse(d, HN::AndNot(HN::And(HN::Ge(low, HN::Set(d, guarded_low_)), below), live));
+  }
+  /// Whether a sample lies in the current interval for certain.
+  [[nodiscard]] HWY_INLINE bool holds(float s) const { return held_low_ <= s && s < held_high_; }
+  /// Makes a sample's interval the current one; that of a blank is the first.
+  HWY_INLINE void begin_at(float sample) { move_to(sample == sample ? interval_of(sample) : 0); }
+  /// Makes interval n the current one.
+  HWY_INLINE void move_to(std::size_t n) {
+    if (n != interval_) set(n);
+  }
+  [[nodiscard]] HWY_INLINE bool clear() const { return clear_; }
+  [[nodiscard]] HWY_INLINE const UniformLookup& uniform() const { return uniform_; }
+
+ private:
+  HWY_NOINLINE void set(std::size_t n) {
+    interval_ = n;
+    low_ = table_.column(LaneTable::edge)[n];
+    high_ = table_.column(LaneTable::edge)[n + 1];
+    guarded_low_ = held_low_ = low_, guarded_high_ = held_high_ = high_;
+    uniform_.ramp = uniform_.ramp_steady = uniform_.ramp_color = 0;
+    if (frame_.error_bound != nullptr) {
+      const LaneErrorBound& bound = *frame_.error_bound;
+      if (!bound.step.empty() && bound.step[n] > 0) guarded_low_ += bound.noise;
+      if (!bound.step.empty() && bound.step[n + 1] > 0) guarded_high_ -= bound.noise;
+      // Samples that lanes hold exactly are on their side of a step, and so is the field where they all are.
+      if (bound.sharp[n] == 0) held_low_ = guarded_low_;
+      if (bound.sharp[n + 1] == 0) held_high_ = guarded_high_;
+      if (!bound.ramp.empty() && bound.ramp[n] > 0)
+        uniform_.ramp = bound.ramp[n], uniform_.ramp_steady = bound.steady * bound.ramp[n],
+        uniform_.ramp_color = bound.ramp_color[n];
+    }
+    clear_ = true;
+    for (int c = 0; c < LaneTable::column_count; ++c) {
+      uniform_.row[c] = table_.column(c)[n];
+      const bool color = c >= LaneTable::red;
+      if (c >= LaneTable::half_extinction && (!color || uniform_.independent) && uniform_.row[c] != 0) clear_ = false;
+    }
+    const float slope = 2 * std::abs(uniform_.row[LaneTable::half_extinction_slope]);
+    const float color_slope =
+        std::max({std::abs(uniform_.row[LaneTable::red_slope]), std::abs(uniform_.row[LaneTable::green_slope]),
+                  std::abs(uniform_.row[LaneTable::blue_slope])});
+    uniform_.product_bound = uniform_.independent ? 0 : 0.1f * slope * color_slope / frame_.piece_tolerance;
+    uniform_.shadow_bound = 0.03f * slope * slope * frame_.largest_color / frame_.piece_tolerance;
+    uniform_.extinction = 2 * uniform_.row[LaneTable::half_extinction];
+    if (slope > 0) uniform_.extinction += slope * (high_ - low_);
+    uniform_.dimming_bound =
+        uniform_.extinction * (uniform_.independent ? 1 : uniform_.extinction) * color_slope / frame_.piece_tolerance;
+  }
+
+  const LaneTable& table_;
+  const FrameView& frame_;
+  std::size_t interval_ = 0;
+  float low_, high_;
+  float guarded_low_, guarded_high_;  ///< further in by the field's noise where the interval ends at a step
+  float held_low_, held_high_;        ///< the same, but for steps that samples are on one side of for certain
+  bool clear_ = false;
+  UniformLookup uniform_;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::volume
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,97 @@
+// Between which values of surfaces the field of each lane is; included once per instruction set.
+
+#if defined(TESSERA_VOLUME_LANE_SURFACES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_VOLUME_LANE_SURFACES_INL_H_
+#undef TESSERA_VOLUME_LANE_SURFACES_INL_H_
+#else
+#define TESSERA_VOLUME_LANE_SURFACES_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <limits>
+
+#include "volume/frame_view.hpp"
+#include "volume/lanes/windows-inl.h"
+#include "volume/precise/surface_view.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::volume {
+namespace HWY_NAMESPACE {
+
+/// A row of SurfaceView at edges.
+HWY_INLINE VF surface_row(const SurfaceView& view, const std::vector<float>& row, VI edge) {
+  const DF d;
+  if (view.count + 2 <= HN::Lanes(d))
+    return HN::TableLookupLanes(HN::LoadU(d, row.data()), HN::IndicesFromVec(d, edge));
+  return HN::GatherIndex(d, row.data(), edge);
+}
+
+/// The gap that a scalar is in (SurfaceView); the first for what is none.
+HWY_INLINE VI surface_gap(const SurfaceView& view, VF s) {
+  const DF d;
+  const DI di;
+  VI gap = HN::Zero(di);
+  for (std::size_t n = 1; n <= view.count; ++n)
+    gap = HN::Add(gap, HN::IfThenElseZero(HN::RebindMask(di, HN::Ge(s, HN::Set(d, view.edge[n]))), HN::Set(di, 1)));
+  return gap;
+}
+
+/// A frame without surfaces.
+struct NoSurfaces {
+  explicit HWY_INLINE NoSurfaces(const FrameView&) {}
+  HWY_INLINE bool none_between(VF, VF, MF) { return true; }
+  template <class Window>
+  HWY_INLINE bool none_in(const Window&, float) {
+    return true;
+  }
+};
+
+/// The gap between two surfaces' values in which each lane's field was last, narrower by the field's noise at either
+/// end, and one for all samples of a window. They only make it quick to tell that there is no surface: whatever they
+/// are, answers are the same.
+class LaneSurfaces {
+ public:
+  explicit HWY_INLINE LaneSurfaces(const FrameView& frame)
+      : view_(*frame.surfaces), low_(HN::Zero(DF())), high_(HN::Zero(DF())) {}
+
+  /// Whether lanes that are live meet no surface for certain where their field is in [low, high].
+  HWY_INLINE bool none_between(VF low, VF high, MF live) {
+    return HWY_LIKELY(HN::AllFalse(DF(), outside(low, high, live))) || HN::AllFalse(DF(), met(low, high, live));
+  }
+  /// The lanes that may.
+  HWY_NOINLINE MF met(VF low, VF high, MF live) {
+    const DF d;
+    const VI gap = surface_gap(view_, low);
+    const VF noise = HN::Set(d, view_.noise);
+    low_ = HN::Add(surface_row(view_, view_.edge, gap), noise);
+    high_ = HN::Sub(surface_row(view_, view_.edge, HN::Add(gap, HN::Set(DI(), 1))), noise);
+    return outside(low, high, live);
+  }
+
+  /// Whether none is where all samples are those of the window.
+  template <class Window>
+  HWY_INLINE bool none_in(const Window& window, float some_sample) {
+    if (window.all_in(window_low_, window_high_)) return true;
+    if (!(some_sample == some_sample)) return false;
+    std::size_t gap = 0;
+    while (gap < view_.count && view_.edge[gap + 1] <= some_sample) ++gap;
+    window_low_ = view_.edge[gap] + view_.noise, window_high_ = view_.edge[gap + 1] - view_.noise;
+    return window.all_in(window_low_, window_high_);
+  }
+
+ private:
+  HWY_INLINE MF outside(VF low, VF high, MF live) const {
+    return HN::AndNot(HN::And(HN::Ge(low, low_), HN::Lt(high, high_)), live);
+  }
+
+  const SurfaceView& view_;
+  VF low_, high_;
+  float window_low_ = 0, window_high_ = 0;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::volume
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,169 @@
+// A packet's rays in one chunk of 32 slabs: where they may be, where each is, and its way through a slab voxel by
+// voxel; included once per instruction set.
+//
+// In a slab a ray (|bx|, |by| <= 1) crosses at most one plane of either other axis: three stretches at most, each in
+// one voxel.
+//
+// Numbers  positions are float, relative to the voxel in which the ray is at the chunk's first plane, from double at
+//          each chunk: 2e-6 voxel at most. So they depend on ray and chunk only.
+
+#if defined(TESSERA_VOLUME_PACKET_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_VOLUME_PACKET_LANES_INL_H_
+#undef TESSERA_VOLUME_PACKET_LANES_INL_H_
+#else
+#define TESSERA_VOLUME_PACKET_LANES_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "volume/lanes/chunk_view.hpp"
+#include "volume/lanes/windows-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::volume {
+namespace HWY_NAMESPACE {
+
+/// Lowest and highest voxel of [least, most] that rays in slab n may be in along an axis.
+HWY_INLINE void slab_range(const float (&low)[2], const float (&high)[2], int n, int least, int most, int& first,
+                           int& last) {
+  constexpr float each = 1.0f / SlabBlock::slabs, slack = 2e-3f;
+  const float l0 = low[0] + (low[1] - low[0]) * (each * static_cast<float>(n)),
+              l1 = low[0] + (low[1] - low[0]) * (each * static_cast<float>(n + 1)),
+              h0 = high[0] + (high[1] - high[0]) * (each * static_cast<float>(n)),
+              h1 = high[0] + (high[1] - high[0]) * (each * static_cast<float>(n + 1));
+  const float begin = static_cast<float>(least), end = static_cast<float>(most);
+  first = static_cast<int>(std::min(std::max(std::min(l0, l1) - slack, begin), end));
+  last = static_cast<int>(std::min(std::max(std::max(h0, h1) + slack, begin), end));
+}
+
+/// A packet's lanes at one chunk.
+struct Lanes {
+  VF bx, by, per_bx, per_by;            ///< slopes and their inverses
+  VF x, y;                              ///< at the chunk's first plane, relative to voxel (i, j)
+  VF i, j;                              ///< of that voxel, relative to (i_base, j_base)
+  VF i_least, i_most, j_least, j_most;  ///< voxels of the box, relative to (i, j)
+  VF k_in, k_out;                       ///< relative to the chunk's first plane
+  VF light_view;                        ///< shading: cosine between light and view
+  VF length, bends;                     ///< of the ray per slab; bx by
+  int i_base, j_base;
+};
+
+/// A lane's way through one voxel of a slab: the voxel, relative to (i, j) of the chunk's first plane, and where it
+/// begins and ends, 0 to 1 from plane to plane.
+struct Stretch {
+  VF i, j, begin, end;
+};
+
+/// A packet's way through a slab.
+struct SlabPath {
+  VF k, x, y;             ///< the front plane, and where the rays meet it
+  VF from, to;            ///< the part of the slab that counts
+  Stretch stretches[3];   ///< front to back
+  VF i_offset, j_offset;  ///< of a voxel in the window
+};
+
+HWY_INLINE SlabPath path_of(const Lanes& lanes, int n, int i_window, int j_window) {
+  const DF d;
+  const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f);
+  SlabPath path;
+  const VF k = HN::Set(d, static_cast<float>(n));
+  const VF from = HN::Min(HN::Max(HN::Sub(lanes.k_in, k), zero), one),
+           to = HN::Max(HN::Min(HN::Sub(lanes.k_out, k), one), from);
+  const VF x = HN::MulAdd(k, lanes.bx, lanes.x), y = HN::MulAdd(k, lanes.by, lanes.y);
+  const auto cell = [&](VF position, VF slope, VF u, VF least, VF most)
+                        HWY_ATTR { return HN::Min(HN::Max(HN::Floor(HN::MulAdd(u, slope, position)), least), most); };
+  // By rounding a ray may seem to cross two planes; the second is at its very end.
+  const auto next_cell = [&](VF first_cell, VF last_cell) HWY_ATTR {
+    return HN::Min(HN::Max(last_cell, HN::Sub(first_cell, one)), HN::Add(first_cell, one));
+  };
+  const VF i_0 = cell(x, lanes.bx, from, lanes.i_least, lanes.i_most),
+           i_1 = next_cell(i_0, cell(x, lanes.bx, to, lanes.i_least, lanes.i_most)),
+           j_0 = cell(y, lanes.by, from, lanes.j_least, lanes.j_most),
+           j_1 = next_cell(j_0, cell(y, lanes.by, to, lanes.j_least, lanes.j_most));
+  const auto crossing = [&](VF c_0, VF c_1, VF position, VF per_slope) HWY_ATTR {
+    const VF u = HN::Mul(HN::Sub(HN::Max(c_0, c_1), position), per_slope);
+    return HN::IfThenElse(HN::Eq(c_0, c_1), to, HN::Min(HN::Max(u, from), to));
+  };
+  const VF u_i = crossing(i_0, i_1, x, lanes.per_bx), u_j = crossing(j_0, j_1, y, lanes.per_by);
+  const VF u_1 = HN::Min(u_i, u_j), u_2 = HN::Max(u_i, u_j);
+  const MF i_first = HN::Lt(u_i, u_j);
+  path.k = k, path.x = x, path.y = y, path.from = from, path.to = to;
+  path.stretches[0] = {i_0, j_0, from, u_1};
+  path.stretches[1] = {HN::IfThenElse(i_first, i_1, i_0), HN::IfThenElse(i_first, j_0, j_1), u_1, u_2};
+  path.stretches[2] = {i_1, j_1, u_2, to};
+  path.i_offset = HN::Sub(lanes.i, HN::Set(d, static_cast<float>(i_window - lanes.i_base)));
+  path.j_offset = HN::Sub(lanes.j, HN::Set(d, static_cast<float>(j_window - lanes.j_base)));
+  return path;
+}
+
+template <class Window>
+HWY_INLINE VI window_index(const Window& window, const SlabPath& path, const Stretch& stretch) {
+  VF i = HN::Add(stretch.i, path.i_offset), j = HN::Add(stretch.j, path.j_offset);
+  if constexpr (std::is_same_v<Window, GatherWindow>) {
+    // Lanes without a stretch may be anywhere.
+    const MF there = HN::Gt(path.to, path.from);
+    i = HN::IfThenElseZero(there, i);
+    j = HN::IfThenElseZero(there, j);
+  }
+  return window.index(i, j);
+}
+
+/// Lanes [ray, ray + Lanes()) at the chunk's first plane; voxels relative to (i_base, j_base).
+HWY_INLINE Lanes lanes_of(const ChunkView& chunk, int ray, int i_base, int j_base, const TileRays& rays) {
+  const DF d;
+  const FrameView& frame = chunk.frame;
+  constexpr std::size_t most = HN::MaxLanes(DF());
+  const std::size_t lane_count = HN::Lanes(d);
+  const ChunkBox& box = chunk.box;
+  const auto first_k = static_cast<double>(box.first_k);
+  Lanes lanes;
+  const VF one = HN::Set(d, 1.0f);
+  // In double up to here.
+  HWY_ALIGN float x[most], y[most], i[most], j[most], bx[most], by[most], k_in[most], k_out[most];
+  const HN::Rebind<double, HN::Half<DF>> dd;
+  const HN::Rebind<float, decltype(dd)> dh;
+  const auto k_0 = HN::Set(dd, first_k);
+  for (std::size_t l = 0; l < lane_count; l += HN::Lanes(dd)) {
+    const std::size_t r = static_cast<std::size_t>(ray) + l;
+    const auto axis = [&](const double* a, const double* b, int base, float* place, float* cell,
+                          float* slope) HWY_ATTR {
+      const auto slopes = HN::Load(dd, b + r), places = HN::MulAdd(slopes, k_0, HN::Load(dd, a + r));
+      const auto floors = HN::Floor(places);
+      HN::Store(HN::DemoteTo(dh, HN::Sub(places, floors)), dh, place + l);
+      HN::Store(HN::DemoteTo(dh, HN::Sub(floors, HN::Set(dd, base))), dh, cell + l);
+      HN::Store(HN::DemoteTo(dh, slopes), dh, slope + l);
+    };
+    axis(rays.ax, rays.bx, i_base, x, i, bx);
+    axis(rays.ay, rays.by, j_base, y, j, by);
+    const auto end = [&](const double* k, float* out) HWY_ATTR {
+      const auto relative = HN::Sub(HN::Load(dd, k + r), k_0);
+      HN::Store(HN::DemoteTo(dh, HN::Min(HN::Max(relative, HN::Set(dd, -1.0)), HN::Set(dd, SlabBlock::slabs + 4.0))),
+                dh, out + l);
+    };
+    end(rays.from, k_in);
+    end(rays.to, k_out);
+  }
+  lanes.bx = HN::Load(d, bx), lanes.by = HN::Load(d, by);
+  lanes.per_bx = HN::Div(one, lanes.bx), lanes.per_by = HN::Div(one, lanes.by);
+  lanes.x = HN::Load(d, x), lanes.y = HN::Load(d, y);
+  lanes.i = HN::Load(d, i), lanes.j = HN::Load(d, j);
+  lanes.i_least = HN::Sub(HN::Set(d, static_cast<float>(box.i_low - i_base)), lanes.i);
+  lanes.j_least = HN::Sub(HN::Set(d, static_cast<float>(box.j_low - j_base)), lanes.j);
+  lanes.i_most = HN::Add(lanes.i_least, HN::Set(d, static_cast<float>(box.i_last - box.i_low)));
+  lanes.j_most = HN::Add(lanes.j_least, HN::Set(d, static_cast<float>(box.j_last - box.j_low)));
+  lanes.k_in = HN::Load(d, k_in), lanes.k_out = HN::Load(d, k_out);
+  lanes.length = HN::LoadU(d, rays.length_k + ray);
+  lanes.light_view = frame.shading != nullptr ? HN::LoadU(d, rays.light_view + ray) : one;
+  lanes.bends = HN::Mul(lanes.bx, lanes.by);
+  lanes.i_base = i_base, lanes.j_base = j_base;
+  return lanes;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::volume
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,98 @@
+// What a packet's lanes share in a chunk: the voxels they may meet slab by slab, and the work they are counted for;
+// included once per instruction set.
+
+#if defined(TESSERA_VOLUME_PACKET_SLABS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_VOLUME_PACKET_SLABS_INL_H_
+#undef TESSERA_VOLUME_PACKET_SLABS_INL_H_
+#else
+#define TESSERA_VOLUME_PACKET_SLABS_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <type_traits>
+
+#include "volume/bricks/fill_block-inl.h"
+#include "volume/lanes/packet_lanes-inl.h"
+#include "volume/lanes/ray_piece-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::volume {
+namespace HWY_NAMESPACE {
+
+/// Voxels that a packet may meet, by slab of the chunk, and the windows that hold their corners.
+struct PacketSlabs {
+  static constexpr int slabs = SlabBlock::slabs;
+  HWY_ALIGN int i_first[slabs], i_last[slabs], j_first[slabs], j_last[slabs];
+  int widest_i = 0, widest_j = 0;  ///< most of last - first
+  HWY_ALIGN int i_window[slabs], j_window[slabs], front[slabs], back[slabs], border[slabs];
+  HWY_ALIGN float origin[slabs];
+
+  HWY_INLINE PacketSlabs(const Reach& reach, const ChunkBox& box) {
+    for (int n = 0; n < slabs; ++n)
+      slab_range(reach.x_low, reach.x_high, n, box.i_low, box.i_last, i_first[n], i_last[n]);
+    for (int n = 0; n < slabs; ++n)
+      slab_range(reach.y_low, reach.y_high, n, box.j_low, box.j_last, j_first[n], j_last[n]);
+    for (int n = 0; n < slabs; ++n) {
+      widest_i = std::max(widest_i, i_last[n] - i_first[n]);
+      widest_j = std::max(widest_j, j_last[n] - j_first[n]);
+      border[n] =
+          i_first[n] <= box.i_low || i_last[n] >= box.i_last || j_first[n] <= box.j_low || j_last[n] >= box.j_last;
+    }
+  }
+
+  /// Where the windows lie in the block. They may not reach beyond what both slices hold.
+  template <class Window>
+  HWY_INLINE void place_windows(const SlabBlock& block, int slab_count) {
+    constexpr bool gathers = std::is_same_v<Window, GatherWindow>;
+    const auto pitch = static_cast<int>(block.pitch), rows = static_cast<int>(block.rows);
+    const int columns = gathers ? pitch : Window::columns;
+    for (int n = 0; n < slab_count; ++n) {
+      const auto s = static_cast<std::size_t>(n);
+      i_window[n] = std::max(block.slab_i[s], std::min(i_first[n], block.slab_i_last[s] - Window::columns + 1));
+      j_window[n] = std::max(block.slab_j[s], std::min(j_first[n], block.slab_j_last[s] - Window::rows + 1));
+      front[n] = (n * rows + j_window[n] - block.low_j[s]) * pitch + i_window[n] - block.low_i[s];
+      back[n] = ((n + 1) * rows + j_window[n] - block.low_j[s + 1]) * pitch + i_window[n] - block.low_i[s + 1];
+      origin[n] = static_cast<float>(i_first[0] - i_window[n] + columns * (j_first[0] - j_window[n]));
+    }
+  }
+};
+
+/// A packet's work in a group of eight slabs, for the tally.
+struct GroupWork {
+  int first;
+  VF k_out, depth_before;
+  std::uint64_t samples_before;
+
+  /// As the work stands before slab `next`, or where the packet stopped.
+  HWY_NOINLINE void add_to(const ChunkView& chunk, const Lanes& lanes, const Reach& reach, int next,
+                           const Progress& progress, const TileCounts& counts) const {
+    const DF d;
+    const VF begin = HN::Max(lanes.k_in, HN::Set(d, static_cast<float>(first))),
+             end = HN::Min(k_out, HN::Set(d, static_cast<float>(std::min(next, first + 8))));
+    const float slabs = HN::GetLane(HN::SumOfLanes(d, HN::Max(HN::Zero(d), HN::Sub(end, begin))));
+    if (!(slabs > 0)) return;
+    const VF depth = HN::Div(HN::Sub(progress.optical_depth, depth_before), lanes.length);
+    const float thick = HN::GetLane(HN::SumOfLanes(d, HN::Min(HN::Max(depth, HN::Zero(d)), HN::Set(d, 1e4f))));
+    const float along = (static_cast<float>(first) + 4) / SlabBlock::slabs;
+    const auto middle = [&](const float(&low)[2], const float(&high)[2]) {
+      return static_cast<std::int64_t>(0.5f * ((low[0] + high[0]) * (1 - along) + (low[1] + high[1]) * along));
+    };
+    const std::int64_t k = std::min<std::int64_t>(chunk.box.first_k + first + 4,
+                                                  chunk.frame.voxels[static_cast<std::size_t>(chunk.axes.k)] - 1);
+    std::int64_t place[3];
+    place[chunk.axes.i] = middle(reach.x_low, reach.x_high);
+    place[chunk.axes.j] = middle(reach.y_low, reach.y_high);
+    place[chunk.axes.k] = chunk.axes.mirrored ? chunk.frame.voxels[static_cast<std::size_t>(chunk.axes.k)] - 1 - k : k;
+    chunk.frame.tally->add(chunk.frame.tally->cells().number(place[0], place[1], place[2]),
+                           counts.samples - samples_before, slabs, thick);
+  }
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::volume
+HWY_AFTER_NAMESPACE();
+
+#endif

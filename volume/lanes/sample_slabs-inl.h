@@ -1,0 +1,307 @@
+// Packets of rays through one chunk of slabs, a step at a time: `sampled` and `preintegrated`; included once per
+// instruction set.
+//
+// Steps    Along each ray from where it enters the volume, all of one length but the last, which ends where the ray
+//          leaves. Step n of a ray belongs to the chunk that holds its place: its middle (sampled), its end
+//          (preintegrated). The place is the same double in either chunk, so none is taken twice or left out.
+// Sampled  one sample in the middle; extinction and colour are taken as constant over the step.
+// Pre-integrated  Engel, Kraus, Ertl, "High-Quality Pre-Integrated Volume Rendering Using Hardware-Accelerated Pixel
+//          Shading" (2001), section 3: optical depth and light of a step between two scalars from a table, bilinear. A
+//          last, shorter step takes its share of the optical depth, and of the light in proportion to its opacity.
+
+#if defined(TESSERA_VOLUME_SAMPLE_SLABS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_VOLUME_SAMPLE_SLABS_INL_H_
+#undef TESSERA_VOLUME_SAMPLE_SLABS_INL_H_
+#else
+#define TESSERA_VOLUME_SAMPLE_SLABS_INL_H_
+#endif
+
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "volume/lanes/cast_slabs-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::volume {
+namespace HWY_NAMESPACE {
+
+/// The steps of one ray.
+struct RaySteps {
+  double k_in, each, last;  ///< where it enters, length of a step and of the last one, in k
+  std::int64_t count;
+
+  HWY_INLINE RaySteps(double k_in_, double k_out, double each_)
+      : k_in(k_in_),
+        each(each_),
+        count(std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil((k_out - k_in_) / each_ - 1e-6)))) {
+    last = k_out - (k_in + static_cast<double>(count - 1) * each);
+  }
+  [[nodiscard]] HWY_INLINE double place(std::int64_t n, bool at_end) const {
+    const double begin = k_in + static_cast<double>(n) * each, length = n == count - 1 ? last : each;
+    return at_end ? begin + length : begin + 0.5 * length;
+  }
+  /// Steps whose place is before k.
+  [[nodiscard]] HWY_INLINE std::int64_t before(double k, bool at_end) const {
+    auto n = static_cast<std::int64_t>(std::min(std::max((k - k_in) / each - 1, 0.0), static_cast<double>(count)));
+    while (n < count && place(n, at_end) < k) ++n;
+    return n;
+  }
+};
+
+/// The trilinear field at (x, y, k) of the chunk, lanes anywhere in the block; NaN near blanks.
+template <bool cell_data>
+HWY_INLINE VF field_in_block(const ChunkView& chunk, const std::int32_t* slice_offsets, const Lanes& lanes, VF k,
+                             MF active) {
+  const DF d;
+  const VF first = HN::Set(d, static_cast<float>(chunk.box.first_slab)),
+           last = HN::Set(d, static_cast<float>(chunk.box.slabs - 1));
+  const VF plane = HN::Min(HN::Max(HN::Floor(k), first), last);
+  const VF x = HN::MulAdd(k, lanes.bx, lanes.x), y = HN::MulAdd(k, lanes.by, lanes.y);
+  const VF i = HN::Min(HN::Max(HN::Floor(x), lanes.i_least), lanes.i_most),
+           j = HN::Min(HN::Max(HN::Floor(y), lanes.j_least), lanes.j_most);
+  const VI n = HN::ConvertTo(DI(), HN::IfThenElseZero(active, plane));
+  const VI column = HN::ConvertTo(DI(), HN::IfThenElseZero(active, HN::Add(i, lanes.i))),
+           row = HN::ConvertTo(DI(), HN::IfThenElseZero(active, HN::Add(j, lanes.j)));
+  const VI in_slice = HN::Add(HN::Mul(row, HN::Set(DI(), static_cast<std::int32_t>(chunk.block.pitch))), column);
+  const float* const samples = chunk.block.samples.data();
+  const auto pitch = chunk.block.pitch;
+  // Lanes that are not active read the first sample.
+  const auto offset = [&](int slice) HWY_ATTR {
+    const VI at = HN::Add(in_slice, HN::GatherIndex(DI(), slice_offsets + slice, n));
+    return HN::IfThenElseZero(HN::RebindMask(DI(), active), at);
+  };
+  const VI a = offset(0);
+  if constexpr (cell_data) return HN::GatherIndex(d, samples, a);
+  const VI b = offset(1);
+  const auto at = [&](std::ptrdiff_t corner, VI index) HWY_ATTR { return HN::GatherIndex(d, samples + corner, index); };
+  const Corners s{at(0, a), at(1, a), at(pitch, a), at(pitch + 1, a),
+                  at(0, b), at(1, b), at(pitch, b), at(pitch + 1, b)};
+  const VoxelField field(s, HN::Sub(x, i), HN::Sub(y, j));
+  const VF fx = field.x, fy = field.y;
+  const VF front = HN::MulAdd(fy, HN::MulAdd(fx, field.aij, field.aj), HN::MulAdd(fx, field.ai, field.a00));
+  const VF change = HN::MulAdd(fy, HN::MulAdd(fx, field.cij, field.cj), HN::MulAdd(fx, field.ci, field.c00));
+  return HN::MulAdd(HN::Sub(k, plane), change, front);
+}
+
+/// Bilinear look-up of the pre-integrated table: optical depth and light.
+HWY_INLINE void look_up(const PreintegratedTable& table, VF front, VF back, VF (&out)[4]) {
+  const DF d;
+  const VF last = HN::Set(d, static_cast<float>(table.size - 1)), zero = HN::Zero(d);
+  const auto place = [&](VF s) HWY_ATTR {
+    return HN::Min(HN::Max(HN::Mul(HN::Sub(s, HN::Set(d, table.low)), HN::Set(d, table.scale)), zero), last);
+  };
+  const VF f = place(front), b = place(back);
+  const VF f0 = HN::Min(HN::Floor(f), HN::Sub(last, HN::Set(d, 1.0f))),
+           b0 = HN::Min(HN::Floor(b), HN::Sub(last, HN::Set(d, 1.0f)));
+  const VF wf = HN::Sub(f, f0), wb = HN::Sub(b, b0);
+  const VI index = HN::ConvertTo(DI(), HN::MulAdd(f0, HN::Set(d, static_cast<float>(table.size)), b0));
+  for (int c = 0; c < 4; ++c) {
+    const float* const t = table.channel(c);
+    const VF s00 = HN::GatherIndex(d, t, index), s01 = HN::GatherIndex(d, t + 1, index),
+             s10 = HN::GatherIndex(d, t + table.size, index), s11 = HN::GatherIndex(d, t + table.size + 1, index);
+    const VF low = HN::MulAdd(wb, HN::Sub(s01, s00), s00), high = HN::MulAdd(wb, HN::Sub(s11, s10), s10);
+    out[c] = HN::MulAdd(wf, HN::Sub(high, low), low);
+  }
+}
+
+/// The steps of a packet's lanes [ray, ray + Lanes()) whose places are in a chunk, relative to its first plane.
+struct ChunkSteps {
+  static constexpr std::size_t most = HN::MaxLanes(DF());
+  HWY_ALIGN float begin[most], each[most], last[most], count[most];
+  HWY_ALIGN float final_step[most];  ///< number of the ray's last step; -1 if it is not in the chunk
+  HWY_ALIGN float entry[most];       ///< where the ray enters the volume; -1 if not in the chunk
+  std::int64_t longest = 0;          ///< most of count
+  bool some_enter = false;
+
+  HWY_INLINE ChunkSteps(const ChunkView& chunk, int ray, const TileRays& rays) {
+    const FrameView& frame = chunk.frame;
+    const double from = static_cast<double>(chunk.box.first_k), to = from + chunk.box.slabs;
+    const bool final_chunk =
+        chunk.box.first_k + chunk.box.slabs >= frame.voxels[static_cast<std::size_t>(chunk.axes.k)];
+    for (std::size_t l = 0; l < HN::Lanes(DF()); ++l) {
+      const std::size_t r = static_cast<std::size_t>(ray) + l;
+      begin[l] = each[l] = last[l] = 0, count[l] = 0, final_step[l] = entry[l] = -1;
+      if (!(rays.from[r] < rays.to[r]) || rays.transmittance[r] < frame.least_transmittance) continue;
+      const RaySteps s(rays.k_in[r], rays.k_out[r], frame.step / static_cast<double>(rays.length_k[r]));
+      const bool at_end = frame.preintegrated != nullptr;
+      // Chunks share the steps of a ray by planes, boxes by where the ray goes from one to the next.
+      const std::int64_t first_step =
+          s.before(rays.from[r] > rays.k_in[r] ? std::max(from, rays.from[r]) : from, at_end);
+      const std::int64_t end_step = rays.to[r] < rays.k_out[r] ? s.before(std::min(to, rays.to[r]), at_end)
+                                    : final_chunk              ? s.count
+                                                               : s.before(to, at_end);
+      count[l] = static_cast<float>(end_step - first_step);
+      longest = std::max(longest, end_step - first_step);
+      begin[l] = static_cast<float>(s.k_in + static_cast<double>(first_step) * s.each - from);
+      each[l] = static_cast<float>(s.each), last[l] = static_cast<float>(s.last);
+      if (end_step == s.count) final_step[l] = static_cast<float>(s.count - 1 - first_step);
+      if (rays.k_in[r] >= from && rays.k_in[r] < to && rays.from[r] <= rays.k_in[r])
+        entry[l] = static_cast<float>(rays.k_in[r] - from), some_enter = true;
+    }
+  }
+};
+
+/// Optical depth of a step, and its light relative to what passes.
+struct StepLight {
+  VF depth, color[3];
+};
+
+/// Of a step with scalar s all along, as long as `extent` in k; nothing where s is blank or lanes are not active.
+template <class Lookup>
+HWY_INLINE StepLight sampled_step(const Lookup& lookup, VF s, VF extent, VF length_k, MF active) {
+  const DF d;
+  const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f);
+  const MF good = HN::And(active, HN::Eq(s, s));
+  const VF scalar = HN::IfThenElseZero(good, s);
+  const auto index = lookup.index(lookup.locate(scalar, HN::Eq(zero, zero)), good);
+  const VF off = HN::Sub(scalar, lookup.at(LaneTable::base, index));
+  const VF kappa = HN::Max(zero, HN::MulAdd(lookup.at(LaneTable::half_extinction_slope, index), off,
+                                            lookup.at(LaneTable::half_extinction, index)));
+  const VF length = HN::IfThenElseZero(good, HN::Mul(extent, length_k));
+  StepLight light;
+  light.depth = HN::Mul(HN::Add(kappa, kappa), length);
+  const VF opacity = HN::Sub(one, HN::Exp(d, HN::Neg(light.depth)));
+  // Independent emission: the mean transmittance of the step, 1 where it is thin.
+  const VF mean = HN::IfThenElse(HN::Lt(light.depth, HN::Set(d, 1e-3f)),
+                                 HN::NegMulAdd(HN::Set(d, 0.5f), light.depth, one), HN::Div(opacity, light.depth));
+  const VF weight = lookup.independent ? HN::Mul(length, mean) : opacity;
+  for (int c = 0; c < 3; ++c)
+    light.color[c] = HN::Mul(weight, HN::MulAdd(lookup.at(LaneTable::red_slope + 2 * c, index), off,
+                                                lookup.at(LaneTable::red + 2 * c, index)));
+  return light;
+}
+
+/// Of a step between two scalars by the table; of those that are the ray's last and shorter, as the table is made.
+template <class Lookup>
+HWY_INLINE StepLight preintegrated_step(const PreintegratedTable& table, const Lookup& lookup, VF front, VF back,
+                                        VF length, MF active, MF last) {
+  const DF d;
+  // Blank samples give NaN, at either end.
+  const MF good = HN::And(active, HN::And(HN::Eq(back, back), HN::Eq(front, front)));
+  VF found[4];
+  look_up(table, HN::IfThenElseZero(good, front), HN::IfThenElseZero(good, back), found);
+  StepLight light;
+  light.depth = HN::IfThenElseZero(good, found[0]);
+  for (int c = 0; c < 3; ++c) light.color[c] = HN::IfThenElseZero(good, found[c + 1]);
+  // The last step is shorter than the table's, and its light is no share of theirs: integrated as the table is.
+  const MF final_one = HN::And(good, last);
+  if (!HN::AllFalse(d, final_one)) {
+    const CL::Light exact = CL::integrate_lanes(lookup, length, front, back, final_one);
+    light.depth = HN::IfThenElse(final_one, exact.optical_depth, light.depth);
+    const VF own[] = {exact.red, exact.green, exact.blue};
+    for (int c = 0; c < 3; ++c) light.color[c] = HN::IfThenElse(final_one, own[c], light.color[c]);
+  }
+  return light;
+}
+
+template <bool cell_data, class Lookup>
+HWY_INLINE void sample_lanes(const ChunkView& chunk, const Lookup& lookup, const std::int32_t* slice_offsets, int ray,
+                             TileRays& rays, TileCounts& counts) {
+  const DF d;
+  const PreintegratedTable* const table = chunk.frame.preintegrated;
+  const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f);
+  const Lanes lanes = lanes_of(chunk, ray, 0, 0, rays);
+  const ChunkSteps steps(chunk, ray, rays);
+  if (table != nullptr && steps.some_enter) {
+    const VF place = HN::Load(d, steps.entry);
+    const MF enters = HN::Ge(place, zero);
+    const VF front = field_in_block<cell_data>(chunk, slice_offsets, lanes, place, enters);
+    HN::StoreU(HN::IfThenElse(enters, front, HN::LoadU(d, rays.carried + ray)), d, rays.carried + ray);
+  }
+  if (steps.longest == 0) return;
+  const VF step_begin = HN::Load(d, steps.begin), step_each = HN::Load(d, steps.each),
+           step_last = HN::Load(d, steps.last), step_count = HN::Load(d, steps.count),
+           step_final = HN::Load(d, steps.final_step);
+  VF through = HN::LoadU(d, rays.transmittance + ray), alpha = HN::LoadU(d, rays.alpha + ray);
+  VF light[3] = {HN::LoadU(d, rays.red + ray), HN::LoadU(d, rays.green + ray), HN::LoadU(d, rays.blue + ray)};
+  VF carried = HN::LoadU(d, rays.carried + ray);
+  const VF least = HN::Set(d, chunk.frame.least_transmittance);
+  RayNotes notes{HN::Set(d, -1.0f), HN::Gt(alpha, zero), zero, zero};
+  for (std::int64_t m = 0; m < steps.longest; ++m) {
+    const VF number = HN::Set(d, static_cast<float>(m));
+    const MF active = HN::And(HN::Lt(number, step_count), HN::Ge(through, least));
+    if (HN::AllFalse(d, active)) break;
+    counts.samples += HN::CountTrue(d, active);
+    const MF last = HN::Eq(number, step_final);
+    const VF extent = HN::IfThenElse(last, step_last, step_each);
+    const VF k = HN::MulAdd(number, step_each, step_begin);
+    StepLight step;
+    if (table == nullptr) {
+      const VF s =
+          field_in_block<cell_data>(chunk, slice_offsets, lanes, HN::MulAdd(extent, HN::Set(d, 0.5f), k), active);
+      step = sampled_step(lookup, s, extent, lanes.length, active);
+    } else {
+      const VF back = field_in_block<cell_data>(chunk, slice_offsets, lanes, HN::Add(k, extent), active);
+      step = preintegrated_step(*table, lookup, carried, back, HN::Mul(extent, lanes.length), active, last);
+      carried = HN::IfThenElse(active, back, carried);
+    }
+    for (int c = 0; c < 3; ++c) light[c] = HN::MulAdd(through, step.color[c], light[c]);
+    const VF hidden = HN::Mul(through, HN::Sub(one, HN::Exp(d, HN::Neg(step.depth))));
+    alpha = HN::Add(alpha, hidden);
+    through = HN::Sub(through, hidden);
+    const MF now = HN::AndNot(notes.seen, HN::Gt(alpha, zero));
+    notes.first = HN::IfThenElse(now, k, notes.first);
+    notes.seen = HN::Or(notes.seen, now);
+  }
+  HN::StoreU(through, d, rays.transmittance + ray);
+  HN::StoreU(alpha, d, rays.alpha + ray);
+  HN::StoreU(light[0], d, rays.red + ray);
+  HN::StoreU(light[1], d, rays.green + ray);
+  HN::StoreU(light[2], d, rays.blue + ray);
+  HN::StoreU(carried, d, rays.carried + ray);
+  HWY_ALIGN float place[HN::MaxLanes(DF())];
+  HN::Store(notes.first, d, place);
+  for (std::size_t l = 0; l < HN::Lanes(d); ++l) {
+    double& first_k = rays.first_k[static_cast<std::size_t>(ray) + l];
+    if (std::isnan(first_k) && rays.alpha[static_cast<std::size_t>(ray) + l] > 0)
+      first_k = std::max(0.0, static_cast<double>(chunk.box.first_k) + static_cast<double>(place[l]));
+  }
+}
+
+template <bool cell_data, CL::TableForm form>
+HWY_NOINLINE void sample_chunk_as(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
+  const CL::Lookup<form> lookup(*chunk.frame.table);
+  // From lattice numbers to places in the block, slice by slice.
+  HWY_ALIGN std::int32_t slice_offsets[SlabBlock::slices + 1];
+  const int slices = chunk.box.slabs + (cell_data ? 0 : 1);
+  for (int n = 0; n < slices; ++n)
+    slice_offsets[n] = static_cast<std::int32_t>(chunk.block.at(n, 0, 0) - chunk.block.samples.data());
+  for (int packet = 0; packet < TileRays::packets; ++packet) {
+    if (!chunk.reach[packet].any) continue;
+    for (int lane = 0; lane < TileRays::packet_rays; lane += static_cast<int>(HN::Lanes(DF())))
+      sample_lanes<cell_data>(chunk, lookup, slice_offsets, packet * TileRays::packet_rays + lane, rays, counts);
+  }
+}
+
+/// Where a ray's field is not known, as the chunk is hidden, a blank is carried on: its next step then shows nothing,
+/// as it would with the field (visible_to_steps() in cell_ranges.hpp).
+HWY_INLINE void skip_chunk(const ChunkView& chunk, TileRays& rays) {
+  const auto lanes = static_cast<int>(HN::Lanes(DF()));
+  for (int ray = 0; ray < TileRays::count; ray += lanes) {
+    if (!chunk.reach[ray / TileRays::packet_rays].any) continue;
+    const ChunkSteps steps(chunk, ray, rays);
+    for (int l = 0; l < lanes; ++l)
+      if (steps.count[l] > 0 || steps.entry[l] >= 0) rays.carried[ray + l] = std::numeric_limits<float>::quiet_NaN();
+  }
+}
+
+HWY_INLINE void sample_chunk(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
+  const auto as = [&]<CL::TableForm form>() HWY_ATTR {
+    if (chunk.frame.cell_data)
+      sample_chunk_as<true, form>(chunk, rays, counts);
+    else
+      sample_chunk_as<false, form>(chunk, rays, counts);
+  };
+  // One form is enough where samples are gathered anyway.
+  as.template operator()<CL::TableForm::many>();
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::volume
+HWY_AFTER_NAMESPACE();
+
+#endif

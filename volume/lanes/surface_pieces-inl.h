@@ -1,0 +1,460 @@
+// Rays through a slab voxel by voxel where they may meet iso-surfaces; included once per instruction set.
+//
+// Places    Between two turns of its cubic a ray meets surfaces in the order of their values: from the gap between two
+//           of them that the field is in it goes to the next one as it reaches the upper value or falls below the lower
+//           one. The light up to there is that of the piece, then comes the surface's.
+// Roots     of differences from the value, so that what they err is a part of what the field changes by in the voxel.
+// Unsure    whether a surface is met at all, or in which of two voxels, where the field is near its value at a turn, in
+//           a side of a voxel or at a ray's end: those rays are cast again in double precision (SurfaceWalk).
+// Level     sides of voxels all of whose corners have the value, as whole numbers often do, are no such places: where
+//           lanes and value are exact the field has the value there, hence is not below it.
+// Errors    of places and normals go with those of ramps: roundings, each its own (piece_errors-inl.h).
+
+#if defined(TESSERA_VOLUME_SURFACE_PIECES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_VOLUME_SURFACE_PIECES_INL_H_
+#undef TESSERA_VOLUME_SURFACE_PIECES_INL_H_
+#else
+#define TESSERA_VOLUME_SURFACE_PIECES_INL_H_
+#endif
+
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#include "volume/lanes/current_interval-inl.h"
+#include "volume/lanes/lane_surfaces-inl.h"
+#include "volume/lanes/packet_lanes-inl.h"
+#include "volume/lanes/shading-inl.h"
+#include "volume/lanes/voxel_pieces-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::volume {
+namespace HWY_NAMESPACE {
+
+/// How far off places of rays may be, voxels, at most and mostly.
+constexpr float place_off = 2e-6f, place_mostly_off = 5e-7f;
+
+/// The largest difference of a voxel's corners, and the largest of them.
+struct CornerRange {
+  VF width, largest;
+
+  explicit HWY_INLINE CornerRange(const Corners& s) {
+    const auto low = [](VF a, VF b) HWY_ATTR { return HN::Min(a, b); };
+    const auto high = [](VF a, VF b) HWY_ATTR { return HN::Max(a, b); };
+    const VF least = low(low(low(s.a00, s.a10), low(s.a01, s.a11)), low(low(s.b00, s.b10), low(s.b01, s.b11))),
+             most = high(high(high(s.a00, s.a10), high(s.a01, s.a11)), high(high(s.b00, s.b10), high(s.b01, s.b11)));
+    width = HN::Sub(most, least);
+    largest = HN::Max(HN::Abs(least), HN::Abs(most));
+  }
+};
+
+/// A stretch of lanes in one voxel each.
+struct VoxelStretch {
+  VoxelField field;
+  Corners corners;
+  VF begin, extent;  ///< of the slab
+  Piece piece;
+  Cubic cubic;
+  // Of the slab's path, and what floats leave of its samples.
+  const SlabPath& path;
+  const Stretch& place;
+  const RestOfSamples& rest;
+};
+
+/// A packet, where its lanes meet surfaces.
+template <class Lookup>
+class SurfaceCast {
+ public:
+  HWY_INLINE SurfaceCast(const FrameView& frame, const RayAxes& axes, const Lookup& lookup, const Lanes& lanes,
+                         const CurrentInterval& current, LaneSurfaces& surfaces, Progress& progress, RayNotes& notes,
+                         TileCounts& counts)
+      : frame_(frame),
+        view_(*frame.surfaces),
+        axes_(axes),
+        lookup_(lookup),
+        lanes_(lanes),
+        current_(current),
+        surfaces_(surfaces),
+        progress_(progress),
+        notes_(notes),
+        counts_(counts),
+        per_length_(HN::Div(HN::Set(DF(), static_cast<float>(view_.unit / frame.length_unit)), lanes.length)) {}
+
+  /// The lanes that are `wanted` through a slab.
+  template <class Window>
+  HWY_NOINLINE void cast(const SlabPath& path, const Window& window, const RestOfSamples& rest, MF wanted) {
+    const DF d;
+    const VF half = HN::Set(d, 0.5f), zero = HN::Zero(d), one = HN::Set(d, 1.0f);
+    for (const Stretch& s : path.stretches) {
+      const VF extent = HN::Sub(s.end, s.begin);
+      const MF there = HN::And(wanted, HN::Gt(extent, zero));
+      if (HN::AllFalse(d, there)) continue;
+      const Corners corners = window.corners(window_index(window, path, s));
+      VoxelStretch stretch{VoxelField(corners, HN::Sub(path.x, s.i), HN::Sub(path.y, s.j)),
+                           corners,
+                           s.begin,
+                           extent,
+                           {},
+                           {},
+                           path,
+                           s,
+                           rest};
+      const VoxelField& field = stretch.field;
+      Piece& piece = stretch.piece;
+      piece.s_0 = field.at(s.begin, lanes_.bx, lanes_.by);
+      piece.s_mid = field.at(HN::Mul(half, HN::Add(s.begin, s.end)), lanes_.bx, lanes_.by);
+      piece.s_1 = field.at(s.end, lanes_.bx, lanes_.by);
+      piece.p_3 = HN::Mul(HN::Mul(field.cij, lanes_.bends), HN::Mul(extent, HN::Mul(extent, extent)));
+      piece.length = HN::IfThenElseZero(there, HN::Mul(extent, lanes_.length));
+      piece.begin = HN::Add(s.begin, path.k);
+      piece.extent = extent;
+      const MF whole = HN::And(there, HN::Eq(piece.s_mid, piece.s_mid));
+      stretch.cubic = cubic_of(piece, whole);
+      const VF bump = bump_of(piece.s_0, piece.s_mid, piece.s_1, piece.p_3);
+      const VF low = HN::Sub(HN::Min(piece.s_0, piece.s_1), bump), high = HN::Add(HN::Max(piece.s_0, piece.s_1), bump);
+      if (surfaces_.none_between(low, high, whole))
+        add_light(stretch, zero, one, piece.s_0, piece.s_1, whole);
+      else
+        walk(stretch, whole);
+    }
+  }
+
+ private:
+  /// The gap between two values that lanes are in.
+  struct Gap {
+    VI number;
+    VF low, high;
+  };
+  HWY_INLINE Gap gap(VI number) const {
+    return {number, surface_row(view_, view_.edge, number),
+            surface_row(view_, view_.edge, HN::Add(number, HN::Set(DI(), 1)))};
+  }
+
+  /// Lanes whose field `s` is nearer to a value that ends the gap than noise lets tell.
+  static HWY_INLINE MF touches(const Gap& in, VF s, VF noise, MF lanes) {
+    return HN::And(lanes,
+                   HN::Or(HN::Lt(HN::Abs(HN::Sub(s, in.low)), noise), HN::Lt(HN::Abs(HN::Sub(in.high, s)), noise)));
+  }
+
+  /// Where a stretch begins or ends in a level side (see Level above), and along which axes that lies.
+  struct LevelSide {
+    MF any, across_i, across_j;
+  };
+  /// For the end at u of lanes that are near a value there: their field `s` then is exact.
+  HWY_NOINLINE LevelSide level_side(const VoxelStretch& stretch, const Gap& in, VF u, MF near, VF& s) const {
+    const DF d;
+    const DI di;
+    const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f);
+    const MF upper = HN::Lt(HN::Abs(HN::Sub(in.high, s)), HN::Abs(HN::Sub(s, in.low)));
+    const VF level = HN::IfThenElse(upper, in.high, in.low);
+    const VI edge = HN::Add(in.number, HN::IfThenElseZero(HN::RebindMask(di, upper), HN::Set(di, 1)));
+    const MF exact = HN::And(near, HN::Gt(surface_row(view_, view_.exact, edge), zero));
+    const Corners& c = stretch.corners;
+    const auto all = [&](VF a, VF b, VF e, VF f) HWY_ATTR {
+      return HN::And(HN::And(HN::Eq(a, level), HN::Eq(b, level)), HN::And(HN::Eq(e, level), HN::Eq(f, level)));
+    };
+    const VF off = HN::Set(d, place_off);
+    const auto across = [&](VF place, MF low, MF high) HWY_ATTR {
+      return HN::And(exact, HN::Or(HN::And(HN::Lt(HN::Abs(place), off), low),
+                                   HN::And(HN::Lt(HN::Abs(HN::Sub(place, one)), off), high)));
+    };
+    LevelSide side;
+    side.across_i = across(HN::MulAdd(u, lanes_.bx, stretch.field.x), all(c.a00, c.a01, c.b00, c.b01),
+                           all(c.a10, c.a11, c.b10, c.b11));
+    side.across_j = across(HN::MulAdd(u, lanes_.by, stretch.field.y), all(c.a00, c.a10, c.b00, c.b10),
+                           all(c.a01, c.a11, c.b01, c.b11));
+    const MF across_k = HN::And(exact, HN::Or(HN::And(HN::Le(u, zero), all(c.a00, c.a10, c.a01, c.a11)),
+                                              HN::And(HN::Ge(u, one), all(c.b00, c.b10, c.b01, c.b11))));
+    side.any = HN::Or(across_k, HN::Or(side.across_i, side.across_j));
+    s = HN::IfThenElse(side.any, level, s);
+    return side;
+  }
+
+  HWY_NOINLINE void walk(const VoxelStretch& stretch, MF whole) {
+    const DF d;
+    const DI di;
+    const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f);
+    const Cubic& c = stretch.cubic;
+    const CornerRange range(stretch.corners);
+    const VF noise = HN::MulAdd(HN::Set(d, place_off), range.width, HN::Mul(HN::Set(d, 0x1p-22f), range.largest));
+    const MF none = HN::Ne(zero, zero);
+    LevelSide front{none, none, none}, back = front;
+    VF s_0 = c.p_0, s_1 = HN::IfThenElseZero(whole, stretch.piece.s_1);
+    VF turn_1 = one, turn_2 = one;
+    if (!HN::AllFalse(d, HN::AndNot(is_monotone(c), whole))) find_extrema(c, turn_1, turn_2);
+    Gap in = gap(surface_gap(view_, s_0));
+    if (const MF near = touches(in, s_0, noise, whole); HWY_UNLIKELY(!HN::AllFalse(d, near))) {
+      if (view_.any_exact) front = level_side(stretch, in, stretch.begin, near, s_0);
+      in = gap(surface_gap(view_, s_0));
+      note(HN::AndNot(front.any, near));
+    }
+    VF v = zero, s = s_0, lit = zero, s_lit = s_0;  // light has been added up to `lit`
+    MF going = whole;
+    // Each round ends at a surface, a turn or the stretch's end.
+    for (int round = 0; round < 4096; ++round) {
+      const VF turn = HN::IfThenElse(HN::Lt(v, turn_1), turn_1, HN::IfThenElse(HN::Lt(v, turn_2), turn_2, one));
+      const MF last = HN::Eq(turn, one);
+      VF s_turn = HN::IfThenElse(last, s_1, c.at(turn));
+      if (const MF near = touches(in, s_turn, noise, going); HWY_UNLIKELY(!HN::AllFalse(d, near))) {
+        const MF at_back = HN::And(near, last);
+        if (view_.any_exact && !HN::AllFalse(d, at_back)) {
+          add_level(level_side(stretch, in, HN::Add(stretch.begin, stretch.extent), at_back, s_1), back);
+          s_turn = HN::IfThenElse(last, s_1, s_turn);
+        }
+        // Before the surface is met, as it may hide what is behind it.
+        note(HN::AndNot(HN::And(last, back.any), near));
+      }
+      const MF up = HN::Ge(s_turn, s);
+      const MF crosses =
+          HN::And(going, HN::Or(HN::And(up, HN::Ge(s_turn, in.high)), HN::AndNot(up, HN::Lt(s_turn, in.low))));
+      if (!HN::AllFalse(d, crosses)) {
+        const VF level = HN::IfThenElse(up, in.high, in.low);
+        const VI upward = HN::IfThenElseZero(HN::RebindMask(di, up), HN::Set(di, 1)), edge = HN::Add(in.number, upward);
+        const VF guess = HN::IfThenElse(crosses, find_crossing(c, v, turn, s, s_turn, level, crosses), v);
+        const Place place = place_of(stretch, v, turn, guess, level, surface_row(view_, view_.rest, edge));
+        const VF at = HN::IfThenElse(crosses, place.at, v);
+        add_light(stretch, lit, at, s_lit, level, crosses);
+        // In a level side it is met in this voxel, not beside another one.
+        const MF at_front = HN::And(HN::Eq(v, zero), HN::Eq(level, s_0)), at_back = HN::And(last, HN::Eq(level, s_1));
+        const auto beside = [&](MF of_front, MF of_back) HWY_ATTR {
+          return HN::AndNot(HN::Or(HN::And(at_front, of_front), HN::And(at_back, of_back)), crosses);
+        };
+        note_beside(stretch, place, beside(front.across_i, back.across_i), beside(front.across_j, back.across_j));
+        add_surface(stretch, range, place, edge, level, crosses);
+        lit = HN::IfThenElse(crosses, at, lit), s_lit = HN::IfThenElse(crosses, level, s_lit);
+        v = HN::IfThenElse(crosses, at, v), s = HN::IfThenElse(crosses, level, s);
+        const VI number = HN::Add(edge, HN::Sub(upward, HN::Set(di, 1)));
+        in = gap(HN::IfThenElse(HN::RebindMask(di, crosses), number, in.number));
+      }
+      const MF ends = HN::AndNot(crosses, going);
+      v = HN::IfThenElse(ends, turn, v), s = HN::IfThenElse(ends, s_turn, s);
+      going = HN::AndNot(HN::And(ends, HN::Ge(v, one)), going);
+      if (HN::AllFalse(d, going)) break;
+    }
+    note(going);
+    add_light(stretch, lit, one, s_lit, s_1, whole);
+  }
+
+  static HWY_INLINE void add_level(const LevelSide& more, LevelSide& side) {
+    side.any = HN::Or(side.any, more.any);
+    side.across_i = HN::Or(side.across_i, more.across_i), side.across_j = HN::Or(side.across_j, more.across_j);
+  }
+
+  /// Notes that lanes are to be cast again, if something is seen of them.
+  HWY_INLINE void note(MF unsure) {
+    const VF seen = HN::Mul(progress_.transmittance, HN::Set(DF(), view_.brightest));
+    notes_.error_bound = HN::Add(notes_.error_bound, HN::IfThenElseZero(unsure, seen));
+  }
+
+  /// A place of the cubic, of the slab, and what the field is like there.
+  struct Place {
+    VF at, u;
+    VF g_i, g_j, g_k, slope;
+  };
+
+  /// The place near `at`, between v and `turn`, where the field has a surface's value: its level and rest.
+  HWY_INLINE Place place_of(const VoxelStretch& stretch, VF v, VF turn, VF at, VF level, VF rest) const {
+    VoxelField from_level = stretch.field;
+    from_level.a00 = HN::Sub(HN::Sub(from_level.a00, level), rest);
+    const VF low = HN::MulAdd(v, stretch.extent, stretch.begin), high = HN::MulAdd(turn, stretch.extent, stretch.begin);
+    Place place;
+    place.u = HN::MulAdd(at, stretch.extent, stretch.begin);
+    // find_crossing() goes by values that are rounded beside their level: two steps by differences to it, of which the
+    // first is near enough for the field's slopes. Where it is level that may be anything.
+    for (int n = 0; n < 2; ++n) {
+      const VF height = from_level.at(place.u, lanes_.bx, lanes_.by);
+      from_level.gradient(place.u, lanes_.bx, lanes_.by, place.g_i, place.g_j, place.g_k);
+      stretch.rest.add(stretch.path, stretch.place, lanes_, place.u, place.g_i, place.g_j, place.g_k);
+      place.slope = HN::MulAdd(lanes_.bx, place.g_i, HN::MulAdd(lanes_.by, place.g_j, place.g_k));
+      const VF next = HN::Sub(place.u, HN::Div(height, place.slope));
+      place.u = HN::IfThenElse(HN::And(HN::Ge(next, low), HN::Le(next, high)), next, place.u);
+    }
+    const VF in_stretch = HN::Div(HN::Sub(place.u, stretch.begin), stretch.extent);
+    place.at = HN::Min(HN::Max(in_stretch, v), turn);
+    return place;
+  }
+
+  HWY_INLINE VF power_of(VF cosine) const {
+    const DF d;
+    if (HWY_UNLIKELY(view_.whole_shininess < 0)) {
+      const VF c = HN::Max(cosine, HN::Set(d, 1e-30f));
+      return HN::Exp(d, HN::Mul(HN::Set(d, view_.shininess), HN::Log(d, c)));
+    }
+    VF result = HN::Set(d, 1.0f);
+    for (int n = view_.whole_shininess; n > 0; n /= 2, cosine = HN::Mul(cosine, cosine))
+      if (n % 2 != 0) result = HN::Mul(result, cosine);
+    return result;
+  }
+
+  /// Squares of world gradients: their products with the metric, in the ray's axes.
+  HWY_INLINE VF square_of(const Place& p) const {
+    const float flip = axes_.mirrored ? -1.0f : 1.0f;
+    const auto times = [&](VF v, int a, int b, float by)
+                           HWY_ATTR { return HN::Mul(v, HN::Set(DF(), by * static_cast<float>(view_.metric[a][b]))); };
+    const VF m_i = HN::Add(times(p.g_i, axes_.i, axes_.i, 1),
+                           HN::Add(times(p.g_j, axes_.i, axes_.j, 2), times(p.g_k, axes_.i, axes_.k, 2 * flip)));
+    const VF m_j = HN::Add(times(p.g_j, axes_.j, axes_.j, 1), times(p.g_k, axes_.j, axes_.k, 2 * flip));
+    return HN::MulAdd(p.g_i, m_i, HN::MulAdd(p.g_j, m_j, HN::Mul(p.g_k, times(p.g_k, axes_.k, axes_.k, 1))));
+  }
+
+  HWY_INLINE void add_surface(const VoxelStretch& stretch, const CornerRange& range, const Place& place, VI edge,
+                              VF level, MF crosses) {
+    const DF d;
+    const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f);
+    const auto row = [&](const std::vector<float>& of) HWY_ATTR { return surface_row(view_, of, edge); };
+    const VF square = square_of(place);
+    const MF flat = HN::Not(HN::Gt(square, zero));
+    const VF steepness = HN::Sqrt(HN::IfThenElse(flat, one, square));
+    const VF cosine =
+        HN::IfThenElse(flat, one, HN::Min(one, HN::Div(HN::Mul(HN::Abs(place.slope), per_length_), steepness)));
+    const VF matte = HN::MulAdd(HN::Set(d, view_.diffuse), cosine, HN::Set(d, view_.ambient)),
+             shine = HN::Mul(HN::Set(d, view_.specular), power_of(cosine));
+    const VF before = progress_.transmittance;
+    const VF hidden = HN::IfThenElseZero(crosses, HN::Mul(before, row(view_.opacity)));
+    if (HWY_UNLIKELY(frame_.has_rest)) {
+      const float turn = view_.diffuse + view_.specular * std::max(1.0f, view_.shininess);
+      const float noise = frame_.rest_noise * turn *
+                          static_cast<float>(std::sqrt(view_.metric[0][0] + view_.metric[1][1] + view_.metric[2][2]));
+      const VF error = HN::IfThenElseZero(HN::Not(flat), HN::Div(HN::Set(d, noise), steepness));
+      notes_.error_bound = HN::MulAdd(hidden, error, notes_.error_bound);
+    }
+    const auto add = [&](const std::vector<float>& color, VF& sum)
+                         HWY_ATTR { sum = HN::MulAdd(hidden, HN::MulAdd(row(color), matte, shine), sum); };
+    add(view_.red, progress_.red);
+    add(view_.green, progress_.green);
+    add(view_.blue, progress_.blue);
+    progress_.alpha = HN::Add(progress_.alpha, hidden);
+    progress_.transmittance = HN::Sub(before, hidden);
+    if (HWY_UNLIKELY(!HN::AllTrue(d, notes_.seen)))
+      note_first_light(progress_, HN::Add(HN::Sub(stretch.piece.begin, stretch.begin), place.u), notes_);
+    note_surface(stretch, range, place, edge, level, steepness, hidden, crosses);
+  }
+
+  /// Lanes that meet a surface beside another voxel, where normals differ, but for rays that are put on their side of a
+  /// plane (keep_side()).
+  HWY_INLINE void note_beside(const VoxelStretch& stretch, const Place& place, MF beside_i, MF beside_j) {
+    const DF d;
+    const auto near = [&](VF at, VF slope) HWY_ATTR {
+      const VF in = HN::MulAdd(place.u, slope, at);
+      const VF away = HN::Min(HN::Abs(in), HN::Abs(HN::Sub(HN::Set(d, 1.0f), in)));
+      return HN::And(HN::Lt(away, HN::Set(d, place_off)), HN::Ne(slope, HN::Zero(d)));
+    };
+    note(HN::Or(HN::And(beside_i, near(stretch.field.x, lanes_.bx)),
+                HN::And(beside_j, near(stretch.field.y, lanes_.by))));
+  }
+
+  /// What a surface errs: its normal, and the matter before it that may be behind it.
+  HWY_INLINE void note_surface(const VoxelStretch& stretch, const CornerRange& range, const Place& place, VI edge,
+                               VF level, VF steepness, VF hidden, MF crosses) {
+    const DF d;
+    const VoxelField& f = stretch.field;
+    const VF fx = HN::MulAdd(place.u, lanes_.bx, f.x), fy = HN::MulAdd(place.u, lanes_.by, f.y);
+    const VF bend = HN::Add(HN::Abs(HN::MulAdd(place.u, f.cij, f.aij)),
+                            HN::Add(HN::Abs(HN::MulAdd(fy, f.cij, f.ci)), HN::Abs(HN::MulAdd(fx, f.cij, f.cj))));
+    const VF aside = HN::Set(d, place_mostly_off);
+    const VF values =
+        HN::MulAdd(HN::Set(d, 0x1p-24f), range.width, HN::Mul(HN::Set(d, view_.value_noise), range.largest));
+    const VF noise = HN::MulAdd(aside, range.width, values);
+    const VF per_slope = HN::Div(HN::Set(d, 1.0f), HN::Max(HN::Abs(place.slope), HN::Set(d, 1e-30f)));
+    // What two steps of Newton's method leave of the error of the place that they begin at.
+    const VF guess = HN::Mul(HN::Mul(HN::Set(d, 0x1p-22f), range.largest), per_slope);
+    const VF ratio = HN::Min(HN::Mul(HN::Mul(guess, bend), per_slope), HN::Set(d, 1.0f));
+    const VF off = HN::MulAdd(noise, per_slope, HN::Mul(guess, HN::Mul(ratio, HN::Mul(ratio, ratio))));
+    const VF tilt = HN::MulAdd(bend, HN::Add(off, aside), values);
+    const VF angle = HN::Min(HN::Div(HN::Mul(tilt, HN::Set(d, view_.stretched)), steepness), HN::Set(d, 4.0f));
+    const VF error =
+        HN::IfThenElseZero(crosses, HN::Mul(HN::Mul(hidden, angle), surface_row(view_, view_.angle_weight, edge)));
+    notes_.rough = HN::MulAdd(error, error, notes_.rough);
+    if (HWY_UNLIKELY(frame_.error_bound != nullptr && frame_.error_bound->ends))
+      note_matter(off, level, hidden, crosses);
+  }
+
+  HWY_NOINLINE void note_matter(VF off, VF level, VF hidden, MF crosses) {
+    const DF d;
+    const VF zero = HN::Zero(d), scalar = HN::IfThenElseZero(crosses, level);
+    const VI interval = lookup_.locate(scalar, HN::Eq(zero, zero));
+    const auto index = lookup_.index(interval, crosses);
+    const VF from = HN::Sub(scalar, lookup_.at(LaneTable::base, index));
+    VF sent = HN::Mul(extinction_at(lookup_, index, scalar), HN::Set(d, view_.brightest));
+    if (lookup_.independent)
+      for (int c = 0; c < 3; ++c)
+        sent = HN::Max(sent, HN::MulAdd(lookup_.at(LaneTable::red_slope + 2 * c, index), from,
+                                        lookup_.at(LaneTable::red + 2 * c, index)));
+    const VF length = HN::Mul(HN::Min(off, HN::Set(d, 1.0f)), lanes_.length);
+    const VF error = HN::Min(HN::Mul(length, sent), HN::Set(d, view_.brightest));
+    notes_.error_bound = HN::MulAdd(error, hidden, notes_.error_bound);
+  }
+
+  /// The light of the stretch from place `a` to `b`, where its field is s_a and s_b.
+  HWY_NOINLINE void add_light(const VoxelStretch& stretch, VF a, VF b, VF s_a, VF s_b, MF lanes) {
+    const DF d;
+    const VF half = HN::Set(d, 0.5f), zero = HN::Zero(d), one = HN::Set(d, 1.0f);
+    const VF extent = HN::Sub(b, a), middle = HN::Mul(half, HN::Add(a, b));
+    // What nothing gets through to is done, though its packet is not.
+    const MF seen = HN::Ge(progress_.transmittance, HN::Set(d, frame_.least_transmittance));
+    const MF there = HN::And(HN::And(lanes, seen), HN::Gt(extent, zero));
+    if (HN::AllFalse(d, there)) return;
+    const auto kept = [&](VF v) HWY_ATTR { return HN::IfThenElseZero(there, v); };
+    const Piece piece{kept(s_a),
+                      kept(stretch.cubic.at(middle)),
+                      kept(s_b),
+                      kept(HN::Mul(stretch.cubic.p_3, HN::Mul(extent, HN::Mul(extent, extent)))),
+                      kept(HN::Mul(extent, stretch.piece.length)),
+                      HN::MulAdd(a, stretch.piece.extent, stretch.piece.begin),
+                      HN::Mul(extent, stretch.piece.extent)};
+    const bool lit_part = frame_.shading != nullptr;
+    Progress part{zero, one, zero, zero, zero, zero};
+    Progress& target = lit_part ? part : progress_;
+    const VF before = progress_.transmittance, through = lit_part ? before : one;
+    const VF bump = bump_of(piece.s_0, piece.s_mid, piece.s_1, piece.p_3);
+    const VF low = HN::Sub(HN::Min(piece.s_0, piece.s_1), bump), high = HN::Add(HN::Max(piece.s_0, piece.s_1), bump);
+    const UniformLookup& uniform = current_.uniform();
+    const bool in_one = current_.around(low, high, there);
+    if (in_one && current_.clear()) return;
+    if (in_one && add_uniform<false>(uniform, piece, target)) {
+      counts_.samples += HN::CountTrue(d, there);
+      if (HWY_UNLIKELY(!HN::AllTrue(d, notes_.seen))) note_first_light(target, piece.begin, notes_);
+      if (HWY_UNLIKELY(uniform.ramp > 0))
+        note_ramps(uniform, piece.length, before, HN::Mul(through, target.transmittance), notes_);
+    } else {
+      const VF error_bound = notes_.error_bound, rough = notes_.rough;
+      notes_.error_bound = notes_.rough = zero;
+      add_any(lookup_, frame_, piece, target, notes_, counts_.samples);
+      notes_.error_bound = HN::MulAdd(through, notes_.error_bound, error_bound);
+      notes_.rough = HN::MulAdd(HN::Mul(through, through), notes_.rough, rough);
+    }
+    if (lit_part && !HN::AllFalse(d, HN::Gt(part.alpha, zero))) put_lit(stretch, middle, there, part, piece.begin);
+  }
+
+  HWY_NOINLINE void put_lit(const VoxelStretch& stretch, VF middle, MF there, const Progress& part, VF begin) {
+    VF g_i, g_j, g_k;
+    const VF u = HN::MulAdd(middle, stretch.extent, stretch.begin);
+    stretch.field.gradient(u, lanes_.bx, lanes_.by, g_i, g_j, g_k);
+    stretch.rest.add(stretch.path, stretch.place, lanes_, u, g_i, g_j, g_k);
+    const auto kept = [&](VF v) HWY_ATTR { return HN::IfThenElseZero(HN::And(there, HN::Eq(v, v)), v); };
+    g_i = kept(g_i), g_j = kept(g_j), g_k = kept(g_k);
+    const VF slope = HN::MulAdd(lanes_.bx, g_i, HN::MulAdd(lanes_.by, g_j, g_k));
+    const Lit lit =
+        shade(*frame_.shading, axes_, g_i, g_j, g_k, slope, per_length_, lanes_.light_view, frame_.rest_noise);
+    notes_.error_bound = HN::MulAdd(HN::Mul(progress_.transmittance, part.alpha), lit.error, notes_.error_bound);
+    put_behind(part, lit, progress_);
+    note_first_light(progress_, begin, notes_);
+  }
+
+  const FrameView& frame_;
+  const SurfaceView& view_;
+  const RayAxes& axes_;
+  const Lookup& lookup_;
+  const Lanes& lanes_;
+  const CurrentInterval& current_;
+  LaneSurfaces& surfaces_;
+  Progress& progress_;
+  RayNotes& notes_;
+  TileCounts& counts_;
+  VF per_length_;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::volume
+HWY_AFTER_NAMESPACE();
+
+#endif
