@@ -4,11 +4,11 @@
 
 #include <CLI/CLI.hpp>
 
-#include "apps/generate_command.hpp"
-#include "apps/help_pages.hpp"
-#include "apps/like_report.hpp"
-#include "apps/method_preset.hpp"
-#include "apps/scene_file.hpp"
+#include "apps/commands/generate_command.hpp"
+#include "apps/help/help_pages.hpp"
+#include "apps/options/like_report.hpp"
+#include "apps/options/method_preset.hpp"
+#include "apps/options/scene_file.hpp"
 #include "tessera/version.hpp"
 
 namespace tessera::apps {

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/chart_command.hpp"
-#include "apps/render_options.hpp"
-#include "apps/serve_command.hpp"
-#include "apps/stall_options.hpp"
+#include "apps/commands/chart_command.hpp"
+#include "apps/commands/serve_command.hpp"
+#include "apps/options/render_options.hpp"
+#include "apps/options/stall_options.hpp"
 
 namespace tessera::apps {
 

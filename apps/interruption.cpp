@@ -12,7 +12,7 @@
 #include <string>
 #include <thread>
 
-#include "apps/progress.hpp"
+#include "apps/render/progress.hpp"
 #include "tessera/job.hpp"
 #include "tessera/output_file.hpp"
 

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "apps/completion.hpp"
-#include "apps/manual_page.hpp"
-#include "apps/scene_file.hpp"
+#include "apps/help/completion.hpp"
+#include "apps/help/manual_page.hpp"
+#include "apps/options/scene_file.hpp"
 #include "tessera/error.hpp"
 #include "tessera/nearest_name.hpp"
 

@@ -1,4 +1,4 @@
-#include "apps/argument_values.hpp"
+#include "apps/options/argument_values.hpp"
 
 #include <gtest/gtest.h>
 

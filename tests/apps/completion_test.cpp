@@ -1,6 +1,6 @@
 // What a shell is told when somebody presses Tab, and manual pages.
 
-#include "apps/completion.hpp"
+#include "apps/help/completion.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "apps/command_line.hpp"
-#include "apps/help_pages.hpp"
+#include "apps/help/help_pages.hpp"
 #include "apps/program.hpp"
 
 namespace tessera::apps {

@@ -2,7 +2,7 @@
 """No library's message names an option: it names the setting, `tile_size`, and apps/ makes --tile-size of it.
 
 Looks at every string literal of the library folders' C++ sources, comments left aside. Says file:line of each that
-holds an option, or a name in backquotes that is no option's (apps/setting_words.cpp lists those that are), which the
+holds an option, or a name in backquotes that is no option's (apps/options/setting_words.cpp lists those that are), which the
 program would print as it stands. Exit status 1 if there is one.
 
     option_names.py SOURCE_TREE
@@ -39,7 +39,7 @@ def in_literals(pattern, source):
 
 
 def settings_known(tree):
-    table = (tree / "apps/setting_words.cpp").read_text(encoding="utf-8").split("setting_names =")[1].split(";")[0]
+    table = (tree / "apps/options/setting_words.cpp").read_text(encoding="utf-8").split("setting_names =")[1].split(";")[0]
     return set("".join(re.findall(r'"([a-z_ ]+)"', table)).split())
 
 
@@ -57,7 +57,7 @@ def main():
                 faults.append(f"{name}:{line}: names --{option}; write `{option.replace('-', '_')}`")
             for line, setting in in_literals(SETTING, source):
                 if setting not in known | COLUMNS:
-                    faults.append(f"{name}:{line}: names `{setting}`, which is no option; see apps/setting_words.cpp")
+                    faults.append(f"{name}:{line}: names `{setting}`, which is no option; see apps/options/setting_words.cpp")
     if looked_at < 100:
         sys.exit(f"{tree}: only {looked_at} sources of libraries found; give the source tree")
     print(*faults, f"{looked_at} sources, {len(known)} settings, {len(faults)} faults", sep="\n")

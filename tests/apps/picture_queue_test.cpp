@@ -1,4 +1,4 @@
-#include "apps/picture_queue.hpp"
+#include "apps/render/picture_queue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/spare_images.hpp"
+#include "apps/render/spare_images.hpp"
 #include "support/await.hpp"
 
 namespace tessera::apps {

@@ -1,5 +1,5 @@
 // What a run says of how far it is.
-#include "apps/progress.hpp"
+#include "apps/render/progress.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Settings of libraries' messages are options in what the program says, and nothing else that stands in backquotes is.
 
-#include "apps/setting_words.hpp"
+#include "apps/options/setting_words.hpp"
 
 #include <gtest/gtest.h>
 

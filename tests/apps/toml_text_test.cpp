@@ -1,4 +1,4 @@
-#include "apps/toml_text.hpp"
+#include "apps/options/toml_text.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "apps/state_words.hpp"
+#include "apps/options/state_words.hpp"
 #include "io/fuzz_check.hpp"
 #include "server/messages.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/state_words.hpp"
+#include "apps/options/state_words.hpp"
 #include "server/access.hpp"
 #include "server/messages.hpp"
 #include "tessera/error.hpp"

@@ -1,4 +1,4 @@
-#include "apps/state_words.hpp"
+#include "apps/options/state_words.hpp"
 
 #include <gtest/gtest.h>
 

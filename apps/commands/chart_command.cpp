@@ -1,0 +1,253 @@
+#include "apps/commands/chart_command.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "analysis/canvas.hpp"
+#include "analysis/chart_figure.hpp"
+#include "analysis/chart_measure.hpp"
+#include "analysis/chart_peers.hpp"
+#include "analysis/chart_sweep.hpp"
+#include "apps/options/argument_values.hpp"
+#include "apps/options/setting_words.hpp"
+#include "apps/render/progress.hpp"
+#include "apps/render/report.hpp"
+#include "apps/render/run_output.hpp"
+#include "tessera/film.hpp"
+#include "tessera/output_file.hpp"
+#include "tessera/printable.hpp"
+#include "tessera/statistics.hpp"
+
+namespace tessera::apps {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using analysis::no_room;
+using OrderedJson = nlohmann::ordered_json;
+
+constexpr double bounds[] = {1e-2, 1e-3, 1e-4, 1e-5};
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// What makes `tessera render` do it.
+std::string options_text(const analysis::ChartMethod& method, bool is_grid) {
+  if (method.by_slices) return "--renderer slice";
+  if (!method.preset.empty()) return "--preset " + method.preset;
+  const Settings& s = method.settings;
+  if (method.ranks > 1)
+    return fmt::format("mpirun -n {}, --exchange {} --partition random", method.ranks,
+                       exchange_word(exchange_of(s, false)));
+  std::vector<std::string> words;
+  if (!s.mesh.device.backends.empty()) {
+    const bool fragment = s.mesh.device.method == GlMethod::fragment;
+    words.push_back(fmt::format("--backend osmesa --compositor {}", fragment ? "gl-fragment" : "gl-compute"));
+    if (fragment) words.push_back(fmt::format("--framebuffer {}", s.mesh.device.half ? "half" : "float"));
+  }
+  if (s.mesh.rasterizer == Rasterizer::device) words.emplace_back("--rasterizer device");
+  if (s.mesh.rasterizer == Rasterizer::scanline) words.emplace_back("--rasterizer scanline");
+  if (s.integrator.kind == IntegratorKind::automatic)
+    words.push_back(fmt::format("--accuracy {:g}", s.integrator.accuracy));
+  else
+    words.push_back("--integrator " + (is_grid ? method_word(s.integrator.kind) : method_line(s.integrator)));
+  if (is_grid && takes_steps(s.integrator)) words.push_back(fmt::format("--step {:g}", s.grid.step));
+  if (!s.use.lattice) words.emplace_back("--without lattice");
+  if (!s.integrator.terminates) words.emplace_back("--without termination");
+  return fmt::format("{}", fmt::join(words, " "));
+}
+
+std::string error_words(double error) { return error == 0 ? "0" : fmt::format("{:.2e}", error); }
+
+void print_table(const std::vector<analysis::ChartPoint>& points) {
+  std::size_t widest = 8;
+  for (const analysis::ChartPoint& p : points) widest = std::max(widest, p.name.size());
+  fmt::print("  {:<{}}  {:>9} {:>9} {:>9}  {:>8}  {:>8}  {:>8}  {:>8}\n", "method", widest, "median ms", "min", "max",
+             "max err", "RMS", "99.9 %", "visible");
+  std::vector<const analysis::ChartPoint*> sorted;
+  for (const analysis::ChartPoint& p : points)
+    if (p.measured()) sorted.push_back(&p);
+  std::sort(sorted.begin(), sorted.end(), [](auto* a, auto* b) { return a->error.max < b->error.max; });
+  for (const analysis::ChartPoint* p : sorted)
+    fmt::print("{} {:<{}}  {:>9.4g} {:>9.4g} {:>9.4g}  {:>8}  {:>8}  {:>8}  {:>7.3g}%\n", p->on_front ? "*" : " ",
+               p->name, widest, p->median_ms(), p->min_ms(), p->max_ms(), error_words(p->error.max),
+               error_words(p->error.rms), error_words(p->error.p999), 100 * p->error.visible_share);
+  std::string crowded;
+  for (const analysis::ChartPoint& p : points) {
+    if (p.left_out == no_room)
+      crowded += fmt::format("{}{}", crowded.empty() ? "" : ", ", p.name);
+    else if (!p.left_out.empty())
+      fmt::print("  {:<{}}  left out: {}\n", p.name, widest, printable(p.left_out));
+  }
+  if (!crowded.empty()) fmt::print("  {}: {}\n", no_room, crowded);
+}
+
+OrderedJson point_json(const analysis::ChartPoint& p) {
+  OrderedJson json = {{"family", p.family}, {"name", p.name}, {"options", p.options}};
+  if (!p.measured()) {
+    json["left_out"] = p.left_out;
+    return json;
+  }
+  json["prepare_ms"] = p.prepare_ms;
+  json["frame_ms"] = p.frame_ms;
+  json["median_ms"] = p.median_ms();
+  json["max_error"] = p.error.finite ? OrderedJson(p.error.max) : OrderedJson("not finite");
+  json["rms_error"] = p.error.rms;
+  json["error_999"] = p.error.finite ? OrderedJson(p.error.p999) : OrderedJson("not finite");
+  json["visible_share"] = p.error.visible_share;
+  json["front"] = p.on_front;
+  return json;
+}
+
+std::string csv_of(const std::vector<analysis::ChartPoint>& points) {
+  std::string csv =
+      "family,name,options,median_ms,min_ms,max_ms,repeats,max_error,rms_error,error_999,visible_share,"
+      "front,left_out\n";
+  const auto quoted = [](std::string text) {
+    for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos; at += 2) text.insert(at, 1, '"');
+    return fmt::format("\"{}\"", text);
+  };
+  for (const analysis::ChartPoint& p : points)
+    if (p.measured())
+      csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{},{:.6g},{:.6g},{:.6g},{:.6g},{},\n", quoted(p.family),
+                         quoted(p.name), quoted(p.options), p.median_ms(), p.min_ms(), p.max_ms(), p.frame_ms.size(),
+                         p.error.max, p.error.rms, p.error.p999, p.error.visible_share, p.on_front ? 1 : 0);
+    else
+      csv += fmt::format("{},{},{},,,,,,,,,,{}\n", quoted(p.family), quoted(p.name), quoted(p.options),
+                         quoted(p.left_out));
+  return csv;
+}
+
+}  // namespace
+
+void add_chart_options(CLI::App& command, RenderWords& words, ChartWords& chart) {
+  add_mesh_options(command, words);
+  command.add_option("--transfer-function", words.transfer_function, "file or preset")->type_name("FILE|PRESET|JSON");
+  command.add_flag("--rescale", words.rescale, "stretch a transfer function file's values over the field's range");
+  command.add_option("--unit-distance", words.unit_distance, "as of render")->type_name("LENGTH");
+  command.add_option("--opacity-scale", words.opacity_scale, "multiplies the extinction")->type_name("FACTOR");
+  command.add_option("--camera", words.camera, "view; of a list the first one")->type_name("FILE|JSON");
+  command.add_option("--size", words.size, "pixels (default: the camera file's, else 1024x1024)")->type_name("WxH");
+  command.add_option("--projection", words.projection, "of the default view")->type_name("orthographic|perspective");
+  command.add_option("--emission", words.emission, "source term")->type_name("absorption|independent");
+  command.add_option("--threads", words.threads, "threads (default: all cores)")->type_name("T");
+  command.add_option("--memory", words.memory, "budget of frame buffers or bricks")->type_name("SIZE");
+  command.add_option("--budget-seconds", chart.budget, "time for all of it but reading (default 60)")->type_name("S");
+  command.add_option("--repeat", chart.repeat, "frames a method, if the budget allows (default 5)")->type_name("K");
+  command.add_option("--pixels", chart.pixels, "random pixels that errors are taken over (default: what fits)")
+      ->type_name("N");
+  command.add_option("--peer", chart.peers, "measured pictures of other programs (JSON)")->type_name("FILE");
+  command.add_option("--json", chart.json, "everything measured")->type_name("FILE");
+  command.add_option("--csv", chart.csv, "the same as a table")->type_name("FILE");
+  command.add_option("--figure", chart.figures, "the chart, .svg or .png; may be repeated")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  command.add_flag("--quiet", words.quiet, "nothing on stderr but errors");
+}
+
+void chart(const RenderWords& words, const ChartWords& chart) {
+  const auto begin = Clock::now();
+  const RenderOptions options = render_options(words);
+  const double budget = parse_positive("--budget-seconds", chart.budget);
+  const int repeat = parse_count("--repeat", chart.repeat, 1, 1000);
+  std::optional<std::size_t> pixels;
+  if (!chart.pixels.empty())
+    pixels = static_cast<std::size_t>(parse_count("--pixels", chart.pixels, 1, std::numeric_limits<int>::max()));
+  for (const auto& figure : chart.figures) analysis::check_figure_path(figure);
+  for (const auto& file : chart.figures) check_output(file, options.input());
+  for (const auto& file : {chart.json, chart.csv})
+    if (!file.empty()) check_output(file, options.input());
+
+  const FilmFrame frame = plan_film(options.plan).front();
+  StatusLine line(shows_progress(options.quiet));
+  ReadOptions read_options = options.read;
+  read_options.progress = line.listener();
+  line.begin("reading " + options.input().filename().string());
+  const Dataset data = Dataset::open(frame.data.files, read_options);
+  OrderedJson report = analysis::program_json();
+  report[data.is_grid() ? "volume" : "mesh"] = analysis::data_json(options.input(), described(data));
+  const auto loaded = transfer_function_of(data, options);
+  const View view{frame.view(data.bounds(), options.projection), frame.size};
+  report["transfer_function"] = analysis::transfer_function_json(loaded);
+  report["view"] = analysis::view_json(view.camera, view.size);
+  const Settings& settings = options.settings;
+  const analysis::ChartScene scene{
+      data, view, loaded.function, settings.emission, settings.threads, settings.memory_bytes};
+
+  // Reading is what any use of the data takes, and no choice of the chart's.
+  const double reading = seconds_since(begin);
+  const auto read = Clock::now();
+  line.begin("rendering the reference");
+  const analysis::ChartTruth truth = analysis::chart_truth(scene, budget / 3, pixels);
+  const auto methods = analysis::chart_methods(scene);
+  std::size_t said = 0;
+  const auto say = [&](const analysis::ChartPoint& point) {
+    line.advance(static_cast<double>(++said) / static_cast<double>(methods.size()));
+    if (options.quiet) return;
+    const auto away = StatusLine::away();
+    fmt::print(stderr, "{}: {:.4g} ms, max {:.3g}\n", point.name, point.median_ms(), point.error.max);
+  };
+  line.begin("measuring methods");
+  analysis::ChartSweep measured = analysis::sweep(scene, methods, truth, {read, budget, repeat}, say);
+  line.begin("");
+  auto& points = measured.points;
+  std::vector<analysis::ChartPoint> alone;
+  for (std::size_t i = 0; i < methods.size(); ++i) {
+    points[i].options = options_text(methods[i], data.is_grid());
+    points[i].left_out = with_options(points[i].left_out);
+    // What needs mpirun, or leaves out what saves work, is on the chart, but no setting to recommend.
+    if (methods[i].recommended()) alone.push_back(points[i]);
+  }
+  for (const auto& file : chart.peers)
+    for (analysis::ChartPoint& peer : analysis::read_peers(file, view.size, truth.pixels, truth.values)) {
+      alone.push_back(peer);
+      points.push_back(std::move(peer));
+    }
+  analysis::mark_front(points);
+
+  const std::string what =
+      fmt::format("{}, {}x{}, {}", options.input().filename().string(), view.size.width, view.size.height,
+                  truth.whole_image ? "every pixel" : fmt::format("{} random pixels", truth.pixels.size()));
+  const std::string where = fmt::format("{}, {}, {:.0f} s and {:.0f} s for reading", transfer_function_line(loaded),
+                                        instruction_set(), seconds_since(read), reading);
+  fmt::print("{}; {}\n", printable(what), printable(where));
+  print_table(points);
+  fmt::print(
+      "errors: largest, RMS and 99.9 % of differences in linear RGBA to the double-precision reference, over {};\n"
+      "visible: share of these pixels above Delta E 2000 of 1, over black; * none is faster and nearer; tables of the\n"
+      "transfer function are made before a method's first frame, in prepare_ms of the JSON\n",
+      truth.whole_image ? "every pixel" : "a random sample of the pixels: the image's largest may be larger");
+  if (measured.missing_seconds > 0)
+    fmt::print("--budget-seconds {:.0f} would, by a rough guess, have room for all\n",
+               std::ceil(1.1 * (seconds_since(read) + measured.missing_seconds)));
+  OrderedJson fastest = OrderedJson::array();
+  for (const double bound : bounds) {
+    const analysis::ChartPoint* best = analysis::fastest_within(alone, bound);
+    OrderedJson entry = {{"bound", bound}};
+    if (best != nullptr) {
+      fmt::print("fastest within {:g}: {} ({:.4g} ms){}\n", bound, best->name, best->median_ms(),
+                 best->options.empty() ? "" : fmt::format(": {}", best->options));
+      entry["name"] = best->name;
+      entry["median_ms"] = best->median_ms();
+    } else {
+      fmt::print("fastest within {:g}: none\n", bound);
+    }
+    fastest.push_back(entry);
+  }
+  report["pixels"] = {{"count", truth.pixels.size()}, {"whole_image", truth.whole_image}, {"seconds", truth.seconds}};
+  report["instruction_set"] = instruction_set();
+  report["seconds"] = seconds_since(read);
+  report["reading_seconds"] = reading;
+  report["methods"] = OrderedJson::array();
+  for (const analysis::ChartPoint& p : points) report["methods"].push_back(point_json(p));
+  report["fastest"] = fastest;
+  if (!chart.json.empty()) write_json(report, chart.json);
+  if (!chart.csv.empty()) write_text(chart.csv, csv_of(points));
+  for (const auto& figure : chart.figures) analysis::write_chart(points, what, where, figure);
+}
+
+}  // namespace tessera::apps

@@ -1,0 +1,97 @@
+#include "apps/commands/convert_command.hpp"
+
+#include <fmt/format.h>
+
+#include "apps/options/argument_values.hpp"
+#include "apps/render/progress.hpp"
+#include "apps/render/report.hpp"
+#include "apps/stderr_lines.hpp"
+#include "datasets/arrays.hpp"
+#include "datasets/modify.hpp"
+#include "tessera/error.hpp"
+#include "tessera/output_file.hpp"
+#include "tessera/write.hpp"
+
+namespace tessera::apps {
+namespace {
+
+const char* order_words(PartitionKind kind) {
+  switch (kind) {
+    case PartitionKind::file:
+      return "file order";
+    case PartitionKind::random:
+      return "random";
+    case PartitionKind::curve:
+      break;
+  }
+  return "curve";
+}
+
+}  // namespace
+
+std::optional<ConvertPieces> convert_pieces(const std::string& pieces, const std::string& partition) {
+  ConvertPieces result;
+  if (partition == "file")
+    result.partition.kind = PartitionKind::file;
+  else if (partition == "random")
+    result.partition.kind = PartitionKind::random;
+  else if (partition != "curve")
+    throw bad_input(fmt::format("--partition: '{}' is none; use curve, file or random", partition));
+  if (pieces.empty()) {
+    if (partition != "curve") throw bad_input("--partition: is of --pieces; give their number too");
+    return std::nullopt;
+  }
+  result.count = parse_count("--pieces", pieces, 1, 100000);
+  return result;
+}
+
+void convert_mesh(const std::filesystem::path& input, const std::filesystem::path& output, ReadOptions options,
+                  int subdivide, const std::optional<ConvertPieces>& pieces, bool quiet) {
+  check_mesh_output(output, input, pieces ? std::optional(pieces->count) : std::nullopt);
+  options.keep_corners = true;
+  StatusLine line(shows_progress(quiet));
+  const Dataset data = open_watched(input, options, line);
+  line.begin("making tets");
+  MeshArrays mesh = data.mesh_arrays();
+  for (int time = 0; time < subdivide; ++time)
+    mesh = datasets::arrays_of(datasets::subdivided(datasets::mesh_of(mesh)));
+  line.begin("writing " + output.filename().string());
+  pieces ? write_mesh_pieces(mesh, output, pieces->count, pieces->partition) : write_mesh(mesh, output);
+  line.begin("");
+  if (quiet) return;
+  std::string parts;
+  if (pieces)
+    parts = fmt::format(
+        " and {} pieces ({}{})", pieces->count, order_words(pieces->partition.kind),
+        pieces->partition.kind == PartitionKind::random ? fmt::format(", seed {}", pieces->partition.seed) : "");
+  say_lines(fmt::format("{}: {}; field {} written to {}{}", input.string(), cells_line(data.mesh_counts()),
+                        data.field_name(), output.string(), parts));
+}
+
+void convert_grid(const std::filesystem::path& input, const std::filesystem::path& output, const ReadOptions& options,
+                  int block, bool quiet) {
+  if (!is_grid_output(output))
+    throw bad_input(fmt::format("{}: '{}' is no volume format to write; choose .vti, .vtr, .nrrd, .raw or .bricks",
+                                output.string(), output.extension().string()));
+  check_output(output, input);
+  if (!options.selection.clip.empty())
+    throw bad_input("--clip: volumes are written whole; leave it out, and clip when they are rendered");
+  StatusLine line(shows_progress(quiet));
+  ReadOptions as_stored = options;
+  as_stored.labels = false;
+  const Dataset data = open_watched(input, as_stored, line);
+  line.begin("writing " + output.filename().string());
+  write_grid(data, output, block);
+  line.begin("");
+  if (quiet) return;
+  const GridGeometry& g = data.grid_geometry();
+  std::string how_to_read;
+  if (output.extension() == ".raw")
+    how_to_read = fmt::format("; read it with --dims {}x{}x{} --type {} --spacing {},{},{} --origin {},{},{}",
+                              g.points[0], g.points[1], g.points[2], name_of(written_type(data)), g.spacing.x,
+                              g.spacing.y, g.spacing.z, g.origin.x, g.origin.y, g.origin.z);
+  say_lines(fmt::format("{}: {}; field {} written to {}{}", input.string(), samples_line(described(data)),
+                        data.field_name(), output.string(), how_to_read));
+}
+
+}  // namespace tessera::apps

@@ -1,0 +1,446 @@
+#include "apps/commands/serve_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <list>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "apps/options/argument_values.hpp"
+#include "apps/options/series_choice.hpp"
+#include "apps/options/setting_words.hpp"
+#include "apps/options/volume_options.hpp"
+#include "apps/render/frame_annotation.hpp"
+#include "apps/render/progress.hpp"
+#include "tessera/error.hpp"
+#include "tessera/film.hpp"
+#include "tessera/higher_order.hpp"
+#include "tessera/view.hpp"
+
+namespace tessera::apps {
+namespace {
+
+using server::Json;
+
+/// Of `render`, those that `serve` has: what shows data, not what becomes of pictures.
+constexpr std::string_view served_options =
+    " field scale smooth warp q max-volume time-step block drop-duplicates clip threshold cut-planes "
+    "higher-order-tolerance "
+    "higher-order-tets "
+    "dims "
+    "type spacing origin endian skip labels transfer-function rescale unit-distance opacity-scale range log "
+    "opacity-points "
+    "iso "
+    "surface blend camera view up azimuth elevation zoom fit size projection integrator accuracy emission step shade "
+    "no-shade light background color-bar color-bar-title color-bar-range color-bar-scale field-unit axes outline "
+    "scale-bar length-unit annotate annotation-color annotation-size threads memory half png-bits help ";
+
+constexpr std::array<std::string_view, 22> data_options = {"q",
+                                                           "warp",
+                                                           "scale",
+                                                           "max-volume",
+                                                           "time-step",
+                                                           "block",
+                                                           "drop-duplicates",
+                                                           "smooth",
+                                                           "clip",
+                                                           "threshold",
+                                                           "cut-planes",
+                                                           "higher-order-tolerance",
+                                                           "higher-order-tets",
+                                                           "dims",
+                                                           "type",
+                                                           "spacing",
+                                                           "origin",
+                                                           "endian",
+                                                           "skip",
+                                                           "labels",
+                                                           "threads",
+                                                           "memory"};
+constexpr std::array<std::string_view, 13> look_options = {
+    "transfer-function", "rescale", "range", "log",     "opacity",  "opacity-scale", "opacity-points",
+    "unit-distance",     "blend",   "iso",   "surface", "no-shade", "emission"};
+constexpr std::array<std::string_view, 9> settings_options = {"integrator", "accuracy", "iso",      "surface", "shade",
+                                                              "no-shade",   "light",    "emission", "step"};
+/// What JSON of a transfer function says by itself.
+constexpr std::array<std::string_view, 8> function_options = {
+    "transfer-function", "rescale", "range", "log", "opacity", "opacity-scale", "opacity-points", "unit-distance"};
+constexpr std::array<std::string_view, 3> range_options = {"rescale", "range", "log"};
+/// Options that change no picture, of which a command line need not tell.
+constexpr std::array<std::string_view, 2> unsaid_options = {"threads", "memory"};
+
+template <std::size_t count>
+bool among(const std::array<std::string_view, count>& names, std::string_view name) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+/// Options of these names as one text. Values are quoted, so that different words never look alike.
+template <std::size_t count>
+std::string key_of(const OptionWords& words, const std::array<std::string_view, count>& names) {
+  Json key = Json::object();
+  for (const auto& [name, values] : words)
+    if (among(names, name)) key[name] = values;
+  return key.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string first_of(const OptionWords& words, const std::string& option) {
+  const auto* const values = find_words(words, option);
+  return values == nullptr || values->empty() ? "" : values->front();
+}
+
+/// The field as `--field` takes it.
+std::string field_word_of(const Dataset& data) {
+  const std::string& name = data.field_name();
+  const std::string bare = name.substr(0, name.rfind(':'));
+  std::size_t alike = 0;
+  for (const FieldInfo& field : data.fields())
+    alike += static_cast<std::size_t>(field.name == name || field.name == bare);
+  if (alike < 2) return name;
+  return (data.association() == Association::cell ? "cell:" : "point:") + name;
+}
+
+bool preset_is_named(const std::string& function) {
+  const std::vector<std::string> names = preset_names();
+  return std::ranges::find(names, function.substr(0, function.find(':'))) != names.end();
+}
+
+/// What options say but for camera and size, and what follows from it.
+struct ParsedWords {
+  RenderOptions options;
+  FilmFrame frame;
+  std::string data, field, look, settings;  ///< keys
+  bool shape = false;
+  std::string accuracy;
+  std::shared_ptr<const LoadedTransferFunction> series_function{};     ///< null: that of the step
+  mutable std::optional<std::pair<std::string, Surfaces>> surfaces{};  ///< with those of blocks, by field; read once
+};
+
+/// Of what is read: the field may be named or not, and of cells that are not curved the accuracy does not count.
+std::string data_key(const ParsedWords& parsed, const std::string& field, bool shape, bool linear) {
+  return fmt::format("{} {} {} {}", parsed.data, Json(field).dump(-1, ' ', false, Json::error_handler_t::replace),
+                     shape, linear ? "linear" : parsed.accuracy);
+}
+
+class RenderScene final : public server::Scene {
+ public:
+  RenderScene(std::shared_ptr<const ParsedWords> parsed, const std::optional<Camera>& camera, ImageSize size)
+      : parsed_(std::move(parsed)), frame_(parsed_->frame), size_(size) {
+    frame_.camera = camera;
+    frame_.size = size;
+    for (const bool linear : {false, true}) keys_.push_back(data_key(*parsed_, parsed_->field, parsed_->shape, linear));
+  }
+
+  [[nodiscard]] const std::vector<std::string>& data_keys() const override { return keys_; }
+  [[nodiscard]] std::vector<std::string> keys_of(const Dataset& data) const override {
+    std::vector<std::string> keys;
+    const bool is_linear = data.is_grid() || data.higher_order_cells().divided == 0;
+    const auto add = [&](const std::string& field, bool shape) {
+      keys.push_back(data_key(*parsed_, field, shape, false));
+      if (is_linear) keys.push_back(data_key(*parsed_, field, shape, true));
+    };
+    add(parsed_->field, parsed_->shape);
+    if (data.shows_shape()) return keys;
+    const std::string name = field_word(data);
+    const char* const side = data.association() == Association::cell ? "cell:" : "point:";
+    add(name, false);
+    if (!name.starts_with(side)) add(side + name, false);
+    // Not named, it is what is chosen with a function or without, but for labels and constants, of which the shape is.
+    if (parsed_->field.empty() && parsed_->shape) add("", false);
+    return keys;
+  }
+  [[nodiscard]] const std::string& look_key() const override { return parsed_->look; }
+  [[nodiscard]] const std::string& settings_key() const override { return parsed_->settings; }
+
+  [[nodiscard]] std::string field_word(const Dataset& data) const override { return field_word_of(data); }
+
+  [[nodiscard]] Dataset open(const Communicator& communicator, const ReadProgressFunction& progress) const override {
+    ReadOptions read = options().read;
+    if (frame_.data.in_file) read.time_step = frame_.data.in_file;
+    read.progress = progress;
+    frame_.require_still_there();
+    const auto open_with = [&](const ReadOptions& with) {
+      return Dataset::open(frame_.data.files, with, communicator, options().settings.ranks);
+    };
+    Dataset data = open_with(read);
+    if (!options().higher_order_accuracy || data.higher_order_cells().divided == 0) return data;
+    // As `render` comes near enough to higher-order cells.
+    return read_for_accuracy(
+               read, options().higher_order_accuracy,
+               [&, is_open = true](const ReadOptions& with) mutable {
+                 const bool is_same = with.higher_order_tolerance == read.higher_order_tolerance;
+                 return std::exchange(is_open, false) && is_same ? std::move(data) : open_with(with);
+               },
+               [&](const Dataset& each) { return function(each).function; },
+               [&](const Dataset& each) { return view(each); }, options().settings, communicator)
+        .dataset;
+  }
+
+  [[nodiscard]] LoadedTransferFunction function(const Dataset& data) const override {
+    return parsed_->series_function ? *parsed_->series_function : transfer_function_of(data, options());
+  }
+
+  [[nodiscard]] Settings settings(const Dataset& data, const LoadedTransferFunction& function) const override {
+    Settings settings = options().settings;
+    if (!options().block_surfaces.empty() || data.axis_scale() != glm::dvec3(1))
+      settings.surfaces = block_surfaces(data);
+    if (shades_by_default(function, options())) settings.grid.shading.emplace();
+    return settings;
+  }
+
+  [[nodiscard]] View view(const Dataset& data) const override {
+    return {frame_.view(data.bounds(), options().projection, options().view, data.body_axes()), size_};
+  }
+  [[nodiscard]] ImageFileOptions image_options() const override { return options().image; }
+  [[nodiscard]] bool explains() const override { return options().annotation.annotation.has_value(); }
+  void explain(Image& image, const View& view, const Dataset& data, const TransferFunction& function) const override {
+    draw_annotation(image, {frame_, view.camera, data, function, options()});
+  }
+
+ private:
+  [[nodiscard]] const RenderOptions& options() const { return parsed_->options; }
+
+  /// Those of the last field that they were asked for with.
+  [[nodiscard]] const Surfaces& block_surfaces(const Dataset& data) const {
+    std::string field = field_word(data);
+    if (!parsed_->surfaces || parsed_->surfaces->first != field) {
+      ReadOptions read = options().read;
+      if (frame_.data.in_file) read.time_step = frame_.data.in_file;
+      parsed_->surfaces.emplace(std::move(field), with_block_surfaces(options().settings.surfaces,
+                                                                      found_blocks(options().block_surfaces, data),
+                                                                      data, frame_.data.files, std::move(read)));
+    }
+    return parsed_->surfaces->second;
+  }
+
+  std::shared_ptr<const ParsedWords> parsed_;
+  FilmFrame frame_;
+  ImageSize size_;
+  std::vector<std::string> keys_;
+};
+
+/// What `render` would choose for all steps of a series.
+struct SeriesStart {
+  std::string field;
+  std::vector<std::string> names;  ///< of that field
+  std::array<double, 2> range{};
+  std::shared_ptr<const LoadedTransferFunction> function;  ///< null: options state its values
+  std::string look;                                        ///< key of the options that it follows
+};
+
+class RenderSceneReader final : public server::SceneReader {
+ public:
+  RenderSceneReader(const RenderWords& words, const CLI::App& serve)
+      : input_(words.input), is_grid_(draws_grids(words)) {
+    for (const CLI::Option* option : serve.get_options()) {
+      if (option->count() == 0 || option->get_lnames().empty()) continue;
+      std::string name = option->get_lnames().front();
+      if (name == "opacity-scale") name = "opacity";
+      if (served_options.find(" " + option->get_lnames().front() + " ") != std::string_view::npos)
+        base_.emplace_back(std::move(name), option->results());
+    }
+    if (!is_time_series(input_)) return;
+    for (const TimeStep& step : read_time_series(input_)) times_.push_back(step.time);
+    shows_all_ = find_words(base_, "time-step") == nullptr;
+    if (shows_all_) base_.emplace_back("time-step", std::vector<std::string>{"0"});
+  }
+
+  /// Field and colors of a series as `render` chooses them for all its steps. A first step that cannot be read is left
+  /// to the scene that opens it. Collective.
+  void choose_for_all_steps(Job& job) {
+    if (!shows_all_) return;
+    const auto parsed = parse(base_);
+    const RenderOptions& options = parsed->options;
+    if (!goes_by_steps(times_.size(), options)) return;
+    const std::vector<TimeStep> series = read_time_series(input_);
+    StatusLine line(shows_progress(false) && job.rank() == 0);
+    try {
+      job.attempt([&](const Communicator& ranks) {
+        std::optional<Dataset> data;
+        const OpenStep open_step = [&](std::size_t step, const ReadOptions& read) -> const Dataset* {
+          data.reset();  // one step's memory at a time
+          line.begin("reading " + series[step].files.front().filename().string());
+          ReadOptions watched = read;
+          watched.progress = line.listener();
+          try {
+            data.emplace(Dataset::open(series[step].files, watched, ranks, options.settings.ranks));
+          } catch (const Error&) {
+            if (step == 0 || job.size() > 1) throw;
+            return nullptr;
+          }
+          return &*data;
+        };
+        const SeriesChoice choice = choose_by_steps(steps_to_look_at(series.size()), options, options.read, open_step);
+        if (choice.field.empty()) return;
+        start_ = {choice.field, {choice.field, field_word_of(*data)}, choice.range, nullptr, parsed->look};
+        if (choice.function) start_->function = std::make_shared<LoadedTransferFunction>(*choice.function);
+      });
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::bad_input) throw;
+    }
+  }
+
+  std::shared_ptr<const server::Scene> scene(const Json& state) override {
+    OptionWords words = state_words(base_, state);
+    const std::string camera = first_of(words, "camera"), size = first_of(words, "size");
+    const auto parsed = parsed_words(words, !camera.empty());
+    std::optional<Camera> view;
+    ImageSize picture;
+    if (!camera.empty()) {
+      const CameraFile file = cameras_of(camera).front();
+      view = file.camera;
+      if (file.size) picture = *file.size;
+    }
+    if (!size.empty()) picture = parse_size("--size", size);
+    return std::make_shared<RenderScene>(parsed, view, picture);
+  }
+
+  std::string command(const Json& state) override {
+    static_cast<void>(scene(state));  // what is no picture has no command
+    OptionWords words = state_words(base_, state);
+    if (const auto function = series_function(words)) {
+      std::erase_if(words, [](const auto& option) { return among(function_options, option.first); });
+      words.emplace_back("transfer-function", std::vector{transfer_function_json(function->function)});
+      const bool says_shading = find_words(words, "shade") != nullptr || find_words(words, "no-shade") != nullptr;
+      if (function->shaded && !says_shading) words.emplace_back("shade", std::vector<std::string>{"true"});
+    }
+    words = with_series_start(std::move(words));
+    std::erase_if(words, [](const auto& option) { return among(unsaid_options, option.first); });
+    std::vector<std::string> all = {"tessera", "render", input_};
+    const std::vector<std::string> arguments = arguments_of(words);
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    all.insert(all.end(), {"-o", "picture.png"});
+    return shell_words(all);
+  }
+
+  [[nodiscard]] Json base() const override { return state_of_words(base_); }
+  [[nodiscard]] bool fixes(const std::string& option) const override { return find_words(base_, option) != nullptr; }
+  [[nodiscard]] std::string input_name() const override { return std::filesystem::path(input_).filename().string(); }
+  [[nodiscard]] std::vector<double> times() const override { return times_; }
+  [[nodiscard]] std::string worded(const std::string& message) const override { return with_options(message); }
+
+  [[nodiscard]] Json exact(const Json& state) const override {
+    const auto integrator = state.find("integrator");
+    if (integrator != state.end() && *integrator == "exact") return state;
+    Json exact = state;
+    exact["integrator"] = "exact";
+    for (const char* of_others : {"accuracy", "step"}) exact[of_others] = nullptr;
+    return exact;
+  }
+
+ private:
+  static constexpr std::size_t most_parsed = 32;
+
+  [[nodiscard]] bool shows_series_field(const OptionWords& words) const {
+    const std::string field = first_of(words, "field");
+    return start_ && (field.empty() || std::ranges::find(start_->names, field) != start_->names.end());
+  }
+
+  /// Null where words ask for another one.
+  [[nodiscard]] std::shared_ptr<const LoadedTransferFunction> series_function(const OptionWords& words) const {
+    const bool is_its_own = shows_series_field(words) && key_of(words, look_options) == start_->look;
+    return is_its_own ? start_->function : nullptr;
+  }
+
+  /// Presets go over the range of all steps, too.
+  [[nodiscard]] OptionWords with_series_start(OptionWords words) const {
+    if (!start_) return words;
+    const std::string function = first_of(words, "transfer-function");
+    const bool has_range = std::ranges::any_of(
+        range_options, [&](std::string_view name) { return find_words(words, std::string(name)) != nullptr; });
+    const auto [low, high] = start_->range;
+    if (shows_series_field(words) && !series_function(words) && preset_is_named(function) && !has_range && low < high)
+      words.emplace_back("range", std::vector{fmt::format("{},{}", low, high)});
+    // Smoothed, a field of cells is one of points.
+    if (find_words(words, "field") == nullptr)
+      words.emplace_back("field",
+                         std::vector{find_words(words, "smooth") == nullptr ? start_->field : start_->names.back()});
+    return words;
+  }
+
+  /// Parsed once for all cameras and sizes, which change most.
+  std::shared_ptr<const ParsedWords> parsed_words(const OptionWords& words, bool has_camera) {
+    Json rest = {has_camera};
+    for (const auto& [name, values] : words)
+      if (name != "camera" && name != "size") rest.push_back({name, values});
+    std::string key = rest.dump(-1, ' ', false, Json::error_handler_t::replace);
+    for (auto kept = kept_.begin(); kept != kept_.end(); ++kept)
+      if (kept->first == key) {
+        kept_.splice(kept_.begin(), kept_, kept);
+        return kept_.front().second;
+      }
+    kept_.emplace_front(std::move(key), parse(words));
+    if (kept_.size() > most_parsed) kept_.pop_back();
+    return kept_.front().second;
+  }
+
+  [[nodiscard]] std::shared_ptr<const ParsedWords> parse(const OptionWords& state) const {
+    const OptionWords words = with_series_start(state);
+    CLI::App app("", "render");
+    RenderWords given;
+    add_render_options(app, given);
+    std::vector<std::string> arguments = {"--output=picture.png", "--quiet"};
+    for (std::string& argument : arguments_of(words)) arguments.push_back(std::move(argument));
+    std::ranges::reverse(arguments);  // as CLI11 takes them
+    app.get_option("INPUT")->required(false);
+    try {
+      app.parse(std::move(arguments));
+    } catch (const CLI::ParseError& error) {
+      throw bad_input(fmt::format("state: {}; see `tessera render --help-all`", error.what()));
+    }
+    given.input = input_;
+    if (!given.time_step.empty() && given.time_step.find_first_not_of("0123456789") != std::string::npos)
+      throw bad_input(fmt::format("--time-step: '{}' is no step; give one, counted from 0", given.time_step));
+    auto parsed = std::make_shared<ParsedWords>();
+    parsed->options = render_options(given, is_grid_);
+    RenderOptions& options = parsed->options;
+    if (options.is_grid()) refuse_mesh_options(given, options);
+    check_annotation(options.annotation);
+    parsed->frame = plan_film(options.plan).front();
+    parsed->data = key_of(words, data_options);
+    if (!given.clip.clip.empty() && !given.surfaces.iso.empty()) parsed->data += Json(given.surfaces.iso).dump();
+    parsed->field = given.field;
+    parsed->shape = given.field.empty() && given.transfer_function.empty() && !is_grid_;
+    parsed->accuracy = fmt::format("{:a}", options.higher_order_accuracy.value_or(options.read.higher_order_tolerance));
+    parsed->look = key_of(words, look_options);
+    parsed->settings = key_of(words, settings_options);
+    parsed->series_function = series_function(state);
+    return parsed;
+  }
+
+  std::string input_;
+  bool is_grid_;
+  OptionWords base_;
+  std::vector<double> times_;
+  bool shows_all_ = false;  ///< steps of a series
+  std::optional<SeriesStart> start_;
+  std::list<std::pair<std::string, std::shared_ptr<const ParsedWords>>> kept_;
+};
+
+}  // namespace
+
+std::unique_ptr<server::SceneReader> scene_reader(const RenderWords& words, const CLI::App& serve, Job& job) {
+  auto reader = std::make_unique<RenderSceneReader>(words, serve);
+  reader->choose_for_all_steps(job);
+  return reader;
+}
+
+void add_scene_reader_options(CLI::App& serve, RenderWords& words) {
+  const std::vector<CLI::Option*> own = serve.get_options();
+  add_render_options(serve, words);
+  std::vector<CLI::Option*> others;
+  for (CLI::Option* option : serve.get_options()) {
+    if (std::ranges::find(own, option) != own.end()) continue;
+    const std::string name = option->get_lnames().empty() ? "" : option->get_lnames().front();
+    const bool is_input = option->get_positional() && option->get_name(true) == "INPUT";
+    if (!is_input && served_options.find(" " + name + " ") == std::string_view::npos) others.push_back(option);
+  }
+  for (CLI::Option* option : others) serve.remove_option(option);
+}
+
+}  // namespace tessera::apps

@@ -1,0 +1,73 @@
+#include "apps/render/frame_annotation.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace tessera::apps {
+namespace {
+
+/// What stands for the words in braces, in their order.
+constexpr std::array word_names = {"field", "time", "file", "frame", "min", "max"};
+using WordValues = std::array<std::string, word_names.size()>;
+
+Annotation filled(const Annotation& annotation, const WordValues& values) {
+  std::vector<AnnotationWord> words;
+  for (std::size_t i = 0; i < values.size(); ++i) words.emplace_back(word_names[i], values[i]);
+  Annotation result = annotation;
+  for (Text& text : result.texts) text.text = fill_in(text.text, words);
+  if (result.color_bar) result.color_bar->title = fill_in(result.color_bar->title, words);
+  return result;
+}
+
+Annotation filled(const Annotation& annotation, const FilmFrame& frame, const Dataset& data) {
+  const auto [low, high] = data.range();
+  const double time = frame.data.has_time ? frame.data.time : data.time().value_or(frame.data.time);
+  return filled(annotation, {data.field_name(), fmt::format("{:g}", time), frame.data.files.front().filename().string(),
+                             fmt::format("{}", frame.number), fmt::format("{:.6g}", low), fmt::format("{:.6g}", high)});
+}
+
+}  // namespace
+
+void check_annotation(const AnnotationOptions& options) {
+  if (!options.annotation) return;
+  Annotation annotation = filled(*options.annotation, WordValues{});
+  // The bar's range may be the transfer function's.
+  if (annotation.color_bar && !annotation.color_bar->range) annotation.color_bar.reset();
+  validate(annotation, {});
+}
+
+void check_annotation(const AnnotationOptions& options, const FilmFrame& frame, const Dataset& data,
+                      const TransferFunction& function) {
+  if (options.annotation) validate(filled(*options.annotation, frame, data), function);
+}
+
+void draw_annotation(Image& picture, const AnnotatedFrame& annotated) {
+  const auto& [frame, camera, data, function, options] = annotated;
+  if (!options.annotation.annotation) return;
+  const Annotation annotation = filled(*options.annotation.annotation, frame, data);
+  annotate(picture, annotation, {camera, picture.size}, data.bounds(), function);
+}
+
+void write_annotated(const Image& image, const DeepImage& deep, const AnnotatedFrame& annotated,
+                     PictureWriter& writer) {
+  const auto& [frame, camera, data, function, options] = annotated;
+  const AnnotationOptions& asked = options.annotation;
+  if (!asked.annotation) return writer.write(image, deep, frame);
+  if (asked.layer.empty()) {
+    Image picture = image;  // the bare one is verified yet
+    draw_annotation(picture, annotated);
+    return writer.write(picture, deep, frame);
+  }
+  const Annotation annotation = filled(*asked.annotation, frame, data);
+  const View view{camera, frame.size};
+  FilmFrame bare = frame;
+  bare.outputs.pop_back();
+  writer.write(image, deep, bare);
+  ImageFileOptions transparent = options.image;
+  transparent.background.reset();
+  PictureWriter::write_file(annotation_layer(image, annotation, view, data.bounds(), function), frame.outputs.back(),
+                            transparent);
+}
+
+}  // namespace tessera::apps

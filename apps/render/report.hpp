@@ -1,0 +1,61 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/reports.hpp"
+#include "apps/options/method_words.hpp"
+#include "apps/options/render_options.hpp"
+#include "tessera/statistics.hpp"
+#include "tessera/transfer_function.hpp"
+#include "tessera/verification.hpp"
+
+/// What a run chose and did, as JSON (--report, info --json) and as the one line on stderr: of meshes and grids alike.
+namespace tessera::apps {
+
+/// What happened to one frame that was rendered, of all ranks together.
+struct FrameRecord {
+  Camera camera;
+  FrameStatistics statistics;
+  std::vector<double> frame_ms;  ///< one a repetition
+  std::optional<Verification> verification;
+};
+
+/// What lines and reports say of a data set: the notes in the program's words.
+analysis::Description described(const Dataset& data);
+
+/// By how much the tets of higher-order cells change pixels, and that it is more than `accuracy` if it is.
+std::string higher_order_note(double error, double accuracy);
+
+/// What the settings and command line chose but for data, view and transfer function.
+nlohmann::ordered_json method_json(const RenderOptions& options, int ranks);
+
+/// The shape of a job that renders a mesh.
+nlohmann::ordered_json job_json(const RenderOptions& options, int ranks, const Roles& roles);
+
+/// A frame's number, pictures, view, times, counters, balance and verification; without a record, that it was skipped.
+nlohmann::ordered_json frame_json(const RenderOptions& options, const FilmFrame& frame, const FrameRecord* record);
+
+/// `18 of 20 cells kept as 36 tets, 1 ghost dropped, 1 tangled kept`
+std::string cells_line(const MeshCounts& counts);
+/// `256x256x128 uint8 samples, 12 blank`
+std::string samples_line(const analysis::Description& grid);
+std::string view_line(const Camera& camera);
+std::string transfer_function_line(const LoadedTransferFunction& loaded);
+
+/// `frame 12 of 50: mesh_0012.vtu, 842113 tets projected, 512 ms`: one a frame of a run of several.
+std::string frame_line(const RenderOptions& options, const std::vector<FilmFrame>& frames, const FilmFrame& frame,
+                       const FrameRecord& record);
+
+/// The one line of a run, after its first frame: what was read, chosen and culled, and how long the frame took.
+std::string run_line(const RenderOptions& options, const analysis::Description& data,
+                     const LoadedTransferFunction& loaded, const std::vector<FilmFrame>& frames, const FilmFrame& first,
+                     const FrameRecord& record);
+
+/// `verify frame 3: 1000 pixels, max 1.2e-06 rms 2.1e-08, worst at (512, 33), 0 excused; bound 2e-05 met; worst: edge;
+/// chosen: 334 random, 223 edge, 222 tie, 221 step`
+std::string verification_line(const Verification& verification, int frame_number);
+
+}  // namespace tessera::apps

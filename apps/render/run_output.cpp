@@ -1,0 +1,117 @@
+#include "apps/render/run_output.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "apps/standard_streams.hpp"
+#include "apps/stderr_lines.hpp"
+#include "tessera/output_file.hpp"
+#include "tessera/version.hpp"
+
+namespace tessera::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+}  // namespace
+
+std::string frame_ms_line(std::vector<double> times) {
+  std::sort(times.begin(), times.end());
+  const std::size_t middle = times.size() / 2;
+  const double median = times.size() % 2 == 1 ? times[middle] : (times[middle - 1] + times[middle]) / 2;
+  return fmt::format("frame_ms median {:.3f} min {:.3f}", median, times.front());
+}
+
+void write_json(const Json& json, const std::filesystem::path& path) {
+  // A file name need not be UTF-8; JSON must.
+  write_text(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+RunOutput::RunOutput(const RenderOptions& options, const std::vector<FilmFrame>& frames, int ranks)
+    : frames_(frames),
+      line_(options.progress, frames.size()),
+      report_(analysis::program_json()),
+      frame_reports_(!options.report.empty()) {
+  report_["method"] = method_json(options, ranks);
+}
+
+void RunOutput::describe(const RenderOptions& options, analysis::Description data,
+                         LoadedTransferFunction transfer_function) {
+  std::vector<std::string> warnings = data.warnings;
+  warnings.insert(warnings.end(), transfer_function.warnings.begin(), transfer_function.warnings.end());
+  for (const std::string& warning : warnings) warn(options, warning);
+  data_ = std::move(data);
+  transfer_function_ = std::move(transfer_function);
+}
+
+void RunOutput::warn(const RenderOptions& options, const std::string& warning) {
+  const auto away = StatusLine::away();
+  say_lines(fmt::format("tessera: warning: {}: {}", options.input().string(), warning));
+}
+
+void RunOutput::skip(const RenderOptions& options, const FilmFrame& frame) {
+  if (frame_reports_.kept()) frame_reports_.add(frame_json(options, frame, nullptr));
+  line_.finish_frames(++done_, rendered_);
+}
+
+void RunOutput::add(const RenderOptions& options, const FilmFrame& frame, const FrameRecord& record) {
+  if (frame_reports_.kept()) frame_reports_.add(frame_json(options, frame, &record));
+  {
+    const auto away = StatusLine::away();
+    if (rendered_ == 0 && !options.quiet) {
+      say_lines(run_line(options, *data_, *transfer_function_, frames_, frame, record));
+      for (const std::string& note : data_->notes) say_lines("note: " + note);
+    }
+    if (frames_.size() > 1 && !options.quiet) {
+      say_lines(frame_line(options, frames_, frame, record));
+    }
+    // Standard output that a picture or the report goes to holds nothing else.
+    std::FILE* const lines = options.to_standard_output || options.report_to_standard_output ? stderr : stdout;
+    if (options.repeat > 0) fmt::print(lines, "{}\n", frame_ms_line(record.frame_ms));
+    if (record.verification) {
+      fmt::print(lines, "{}\n", verification_line(*record.verification, frame.number));
+      met_ = met_ && record.verification->met;
+    }
+  }
+  line_.finish_frames(++done_, ++rendered_);
+}
+
+ExitCode RunOutput::finish(const RenderOptions& options) {
+  line_.begin("");
+  const auto away = StatusLine::away();
+  if (data_) {
+    report_[data_->is_mesh ? "mesh" : "volume"] = analysis::data_json(options.input(), *data_);
+    report_["transfer_function"] = analysis::transfer_function_json(*transfer_function_);
+  } else if (!options.quiet) {
+    say_lines(
+        fmt::format("{}: all {} frames are there already, nothing rendered", options.input().string(), frames_.size()));
+  }
+  if (options.report_to_standard_output)
+    write_standard_output(with_stream_names(frame_reports_.text(report_)));
+  else if (!options.report.empty())
+    write_text(options.report, with_stream_names(frame_reports_.text(report_)));
+  if (!options.saved_scene.empty()) write_text(options.saved_scene, options.scene);
+  return met_ ? ExitCode::complete : ExitCode::accuracy_not_met;
+}
+
+TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const FilmFrame& frame, std::size_t rendered) {
+  const Json method = method_json(options, 1);
+  TraceRun traced;
+  traced.version = version();
+  traced.commit = commit();
+  traced.build = build_facts();
+  traced.input = options.input().string();
+  traced.tets = tets;
+  traced.frames = static_cast<int>(rendered) * std::max(options.repeat, 1);
+  traced.width = frame.size.width;
+  traced.height = frame.size.height;
+  traced.threads = threads_for(options.settings.threads);
+  traced.rasterizer = method.value("rasterizer", "");
+  traced.integrator = method.at("integrator");
+  return traced;
+}
+
+}  // namespace tessera::apps

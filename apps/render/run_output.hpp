@@ -1,0 +1,63 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <vector>
+
+#include "apps/exit_code.hpp"
+#include "apps/render/frame_reports.hpp"
+#include "apps/render/progress.hpp"
+#include "apps/render/report.hpp"
+#include "tessera/film.hpp"
+#include "tessera/trace_file.hpp"
+
+namespace tessera::apps {
+
+/// What a run says while it goes on and at its end: its line, times, verifications, progress, and the report. Used by
+/// the one process or rank that speaks.
+class RunOutput {
+ public:
+  /// `options` for what is shown; `ranks` of the job.
+  RunOutput(const RenderOptions& options, const std::vector<FilmFrame>& frames, int ranks);
+
+  /// What the run line and the report say of the data; before the first add().
+  void describe(const RenderOptions& options, analysis::Description data, LoadedTransferFunction transfer_function);
+  /// A line of its own on stderr, unless that is to be quiet.
+  void warn(const RenderOptions& options, const std::string& warning);
+  /// More for the report's head, like the job's shape.
+  void note(const char* name, nlohmann::ordered_json value) { report_[name] = std::move(value); }
+
+  /// A frame that --resume left alone.
+  void skip(const RenderOptions& options, const FilmFrame& frame);
+  /// A frame that was rendered and written.
+  void add(const RenderOptions& options, const FilmFrame& frame, const FrameRecord& record);
+
+  /// Writes the report, if asked. Complete, or accuracy_not_met.
+  ExitCode finish(const RenderOptions& options);
+
+  /// What the run is at.
+  [[nodiscard]] StatusLine& line() { return line_; }
+
+  [[nodiscard]] std::size_t rendered() const { return rendered_; }
+
+ private:
+  const std::vector<FilmFrame>& frames_;
+  StatusLine line_;
+  std::optional<analysis::Description> data_;
+  std::optional<LoadedTransferFunction> transfer_function_;
+  nlohmann::ordered_json report_;
+  FrameReports frame_reports_;
+  bool met_ = true;
+  std::size_t done_ = 0, rendered_ = 0;
+};
+
+/// `frame_ms median X min Y`, milliseconds. The median of an even number is the mean of the middle two.
+std::string frame_ms_line(std::vector<double> times);
+
+/// Appears by rename. Text that is not UTF-8 is replaced.
+void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);
+
+/// What a trace says of the run it is of.
+TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const FilmFrame& frame, std::size_t rendered);
+
+}  // namespace tessera::apps
