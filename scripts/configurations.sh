@@ -13,7 +13,7 @@ common=(-G Ninja -DTESSERA_APPS=OFF -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_B
 tests=(fast_tests)
 if [ "${CI:-}" = true ]; then
   common+=(-DCMAKE_BUILD_TYPE=None -DTESSERA_QUICK=ON)
-  tests=(annotation_test callers_test opening_trials io_messages_test io_mesh_test io_missing_readers_test io_values_test io_volume_test)
+  tests=(annotation_test callers_test cells_test io_mesh_test io_values_test io_volume_test missing_readers_test opening_trials readers_messages_test readers_test)
 else
   common+=(-DCMAKE_BUILD_TYPE=Release)
 fi

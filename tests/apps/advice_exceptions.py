@@ -7,7 +7,7 @@ a reason of its own.
 
 OTHER_BUILD = "only a build without the library says so; scripts/configurations.sh makes one"
 DEFECT = "a defect of ours, which users are to report"
-BIG = "of samples that half of `--memory` has no room for; io/streamed_volumes_test.cpp"
+BIG = "of samples that half of `--memory` has no room for; io/volume/streamed_volumes_test.cpp"
 HUGE = "takes more than 2^31 or 2^32 points or cells, or gigabytes"
 DISK = "needs a disk that fails while it is read or written"
 ROOT = "rights do not bind root, as which tests may run"
@@ -15,8 +15,8 @@ RANKS = "needs several processes; apps/mpirun_test.cpp, apps/shared_volumes_test
 LIBRARY = "only callers of the library can; the program asks the same sooner, in its own words, or has no such option"
 ANSWER = "checks a reader's answer; the reader refuses such files sooner, so that a row would need a damaged helper"
 HDF5 = "needs HDF5 files, which nothing but HDF5's library writes; io's tests of the format write them"
-HELPER = "needs a helper program that speaks and then dies or lies; io/helper_test.cpp has one"
-VTK_XML = "the damage that each names is in io/vtu_damaged_test.cpp"
+HELPER = "needs a helper program that speaks and then dies or lies; readers/helper_test.cpp has one"
+VTK_XML = "the damage that each names is in io/mesh/vtu_damaged_test.cpp"
 RARE = "needs rare cells or bounds that no small file has; io's tests of the format"
 SERVER = "said by a server, which does not end; server/serve_test.py and server/state_words_test.cpp"
 TIME = "takes minutes: a limit of time or of tets that sound files do not come near"
@@ -27,13 +27,13 @@ EXCEPTIONS = {
     r"this build has no server; configure": (1, OTHER_BUILD),
     r"^apps/options/state_words\.cpp:\d+: state|^apps/commands/serve_scene\.cpp:\d+": (11, SERVER),
     r"^apps/commands/serve_command\.cpp:\d+|: arguments: serve shows one file": (3, SERVER),
-    r"^io/text/json_text\.cpp:\d+: \{\}: has more than": (1, "takes twenty million values; io/json_text_test.cpp has fewer"),
+    r"^io/text/json_text\.cpp:\d+: \{\}: has more than": (1, "takes twenty million values; io/text/json_text_test.cpp has fewer"),
     r"^io/scene/json_transfer_function\.cpp:\d+: transfer function: it has no knot": (1, LIBRARY),
     r"please report": (6, DEFECT),
     r"^io/vtk/vtk_array\.cpp:\d+: \{\}: its samples end or break": (1, BIG),
     r"2\^32|points are too many for|it lists more than \{\} blocks": (10, HUGE),
     r"(;|:\d+:) check the disk$|^io/image_(jpeg|tiff)\.cpp:\d+: \{\}: cannot be written": (8, DISK),
-    r"raise the limit of open files": (1, "needs a process without descriptors; io/input_files_test.cpp has one"),
+    r"raise the limit of open files": (1, "needs a process without descriptors; io/formats/input_files_test.cpp has one"),
     r"^io/mesh/pvtu_writer\.cpp:\d+: \{\}: cannot be written": (1, "a folder that takes files and refuses to rename them"),
     r"cannot be opened; check (its permissions|that you may read it)": (3, ROOT),
     r"^io/(brick_file\.cpp:\d+: `block`|surface_files\.cpp:\d+: \{\}: the largest tet)": (2, LIBRARY),

@@ -8,7 +8,7 @@
 
 #include "analysis/chart_measure.hpp"
 #include "analysis/delta_e.hpp"
-#include "program.hpp"
+#include "apps/program.hpp"
 
 namespace tessera::apps {
 namespace {

@@ -9,9 +9,9 @@
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
 #include "exchange/loopback_transport.hpp"
-#include "io/foam_case.hpp"
 #include "io/mesh/mesh_parts.hpp"
 #include "scene/error.hpp"
+#include "support/foam_case.hpp"
 
 namespace tessera::apps {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "program.hpp"
+#include "apps/program.hpp"
 
 namespace tessera::apps {
 namespace {

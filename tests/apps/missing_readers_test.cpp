@@ -1,5 +1,5 @@
 // The program on a machine without reader programs: commands that open a file refuse it in one line that names
-// the reader. Which formats there are, io/missing_readers_test.cpp goes through.
+// the reader. Which formats there are, readers/missing_readers_test.cpp goes through.
 #include <gtest/gtest.h>
 
 #include <algorithm>

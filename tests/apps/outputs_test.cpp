@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "program.hpp"
+#include "apps/program.hpp"
 
 namespace tessera::apps {
 namespace {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <utility>
 
-#include "program.hpp"
+#include "apps/program.hpp"
 
 namespace tessera::apps {
 namespace {

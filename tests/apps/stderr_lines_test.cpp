@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-#include "program.hpp"
+#include "apps/program.hpp"
 #include "support/some_cases.hpp"
 
 namespace tessera::apps {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cubes.hpp"
+#include "callers/cubes.hpp"
 #include "tessera/mpi.hpp"
 #include "tessera/tessera.hpp"
 

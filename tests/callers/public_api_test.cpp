@@ -14,7 +14,7 @@
 #include <numeric>
 #include <set>
 
-#include "cubes.hpp"
+#include "callers/cubes.hpp"
 #include "tessera/tessera.hpp"
 
 namespace tessera {

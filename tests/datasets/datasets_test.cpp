@@ -3,8 +3,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "conformity.hpp"
 #include "datasets/boxes.hpp"
+#include "datasets/conformity.hpp"
 #include "datasets/demo.hpp"
 #include "datasets/generate.hpp"
 #include "datasets/shapes.hpp"

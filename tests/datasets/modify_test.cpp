@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 #include <set>
 
-#include "conformity.hpp"
 #include "datasets/boxes.hpp"
+#include "datasets/conformity.hpp"
 #include "datasets/shapes.hpp"
 #include "scene/error.hpp"
 

@@ -4,12 +4,12 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "api/random_cases.hpp"
 #include "cells/mesh_selection.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
 #include "datasets/transfer_functions.hpp"
 #include "frame/mesh/render.hpp"
-#include "frame/random_cases.hpp"
 #include "frame/random_clips.hpp"
 #include "frame/shared_meshes.hpp"
 #include "io/mesh/mesh_reader.hpp"

@@ -4,11 +4,11 @@
 
 #include <glm/geometric.hpp>
 
+#include "api/random_cases.hpp"
 #include "cells/mesh_selection.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/transfer_functions.hpp"
 #include "frame/mesh/render.hpp"
-#include "frame/random_cases.hpp"
 #include "frame/random_clips.hpp"
 #include "reference/judge.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "api/communicator.hpp"
 #include "exchange/loopback_transport.hpp"
-#include "io/curved_meshes.hpp"
+#include "support/curved_meshes.hpp"
 #include "support/some_cases.hpp"
 #include "tessera/dataset.hpp"
 

@@ -6,12 +6,12 @@
 #include <cstdio>
 #include <utility>
 
-#include "frame/random_cases.hpp"
-#include "io/curved_meshes.hpp"
-#include "io/mesh_checks.hpp"
+#include "api/random_cases.hpp"
 #include "reference/curved/curved_reference.hpp"
 #include "reference/curved/curved_shapes.hpp"
 #include "reference/judge.hpp"
+#include "support/curved_meshes.hpp"
+#include "support/mesh_checks.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/higher_order.hpp"
 #include "tessera/session.hpp"

@@ -18,10 +18,10 @@
 #include "frame/mesh/render.hpp"
 #include "io/image/image_deep_exr.hpp"
 #include "io/mesh/mesh_reader.hpp"
-#include "io/temporary_folder.hpp"
-#include "io/vtk_or_skip.hpp"
 #include "scene/error.hpp"
 #include "support/deep_pixels.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/vtk_or_skip.hpp"
 
 /// The promise of deep pictures: flattened they are the image, and with an opaque plane put in at any depth they are
 /// within --deep-accuracy of a rendering with that plane.

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <memory>
 
+#include "api/random_cases.hpp"
 #include "cells/mesh_selection.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
@@ -14,7 +15,6 @@
 #include "datasets/transfer_functions.hpp"
 #include "frame/mesh/boundary_faces.hpp"
 #include "frame/mesh/render.hpp"
-#include "frame/random_cases.hpp"
 #include "frame/random_clips.hpp"
 #include "frame/shared_meshes.hpp"
 #include "frame/surface_scenes.hpp"

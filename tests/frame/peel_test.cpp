@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "api/dataset.hpp"
+#include "api/query_data.hpp"
 #include "datasets/arrays.hpp"
 #include "datasets/modify.hpp"
 #include "datasets/shapes.hpp"
 #include "datasets/transfer_functions.hpp"
-#include "frame/query_data.hpp"
 #include "reference/grid/grid_reference.hpp"
 #include "reference/reference.hpp"
 #include "scene/error.hpp"

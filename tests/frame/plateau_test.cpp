@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "api/random_cases.hpp"
 #include "frame/mesh/render.hpp"
 #include "frame/plateaus.hpp"
-#include "frame/random_cases.hpp"
 #include "reference/judge.hpp"
 
 /// Fields that lie within some last places of a step's value over whole regions, as saturated ones do.

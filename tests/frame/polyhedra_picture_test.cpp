@@ -4,12 +4,12 @@
 #include <cstdio>
 #include <glm/vec3.hpp>
 
+#include "api/random_cases.hpp"
 #include "cells/mesh_assembly.hpp"
 #include "frame/mesh/render.hpp"
-#include "frame/random_cases.hpp"
-#include "io/polyhedral_meshes.hpp"
 #include "reference/judge.hpp"
 #include "reference/small_meshes.hpp"
+#include "support/polyhedral_meshes.hpp"
 
 /// Pictures of polyhedra that fill a box with a linear field, against the reference's of the same box and field in a
 /// few tets that no polyhedron had a part in.

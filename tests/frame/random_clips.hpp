@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "frame/random_cases.hpp"
+#include "api/random_cases.hpp"
 #include "scene/selection.hpp"
 
 namespace tessera::frame {

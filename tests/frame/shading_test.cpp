@@ -10,9 +10,9 @@
 #include <glm/trigonometric.hpp>
 #include <tuple>
 
+#include "api/query_data.hpp"
+#include "api/random_cases.hpp"
 #include "datasets/modify.hpp"
-#include "frame/query_data.hpp"
-#include "frame/random_cases.hpp"
 #include "frame/surface_scenes.hpp"
 #include "scene/error.hpp"
 #include "support/deep_pixels.hpp"

@@ -13,9 +13,9 @@
 
 #include "exchange/loopback_transport.hpp"
 #include "frame/grid/brick_memory.hpp"
-#include "io/temporary_folder.hpp"
-#include "io/volume_bytes.hpp"
 #include "scene/error.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/volume_bytes.hpp"
 
 namespace tessera::frame::shared_volume_test {
 namespace {

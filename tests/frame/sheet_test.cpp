@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "api/random_cases.hpp"
 #include "datasets/boxes.hpp"
 #include "frame/mesh/render.hpp"
-#include "frame/random_cases.hpp"
 #include "reference/judge.hpp"
 
 /// Thin dense sheets, through which a ray goes a hundred-thousandth of what their faces span in depth.

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "api/random_cases.hpp"
 #include "exchange/loopback_transport.hpp"
-#include "frame/random_cases.hpp"
 #include "frame/small_grid.hpp"
 #include "reference/grid/grid_reference.hpp"
 #include "reference/judge.hpp"

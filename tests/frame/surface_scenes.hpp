@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
+#include "api/random_cases.hpp"
 #include "frame/mesh/render.hpp"
-#include "frame/random_cases.hpp"
 
 /// What tests of surfaces in a cube [-1, 1]^3 share.
 namespace tessera::frame {

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "api/random_cases.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
 #include "datasets/shapes.hpp"
 #include "datasets/transfer_functions.hpp"
 #include "frame/mesh/render.hpp"
 #include "frame/plateaus.hpp"
-#include "frame/random_cases.hpp"
 #include "frame/shared_meshes.hpp"
 #include "frame/surface_scenes.hpp"
 #include "io/mesh/mesh_reader.hpp"

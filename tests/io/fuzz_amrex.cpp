@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <string_view>
 
-#include "fuzz_check.hpp"
 #include "io/formats/file_beginnings.hpp"
 #include "io/mesh/amrex_header.hpp"
+#include "support/fuzz_check.hpp"
 
 namespace {
 

@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <string_view>
 
-#include "fuzz_check.hpp"
 #include "io/mesh/plot3d_list.hpp"
 #include "io/scene/camera_file.hpp"
 #include "io/scene/json_transfer_function.hpp"
 #include "io/scene/paraview_color_map.hpp"
 #include "io/scene/time_series.hpp"
+#include "support/fuzz_check.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tessera;

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "fuzz_check.hpp"
-#include "fuzz_file.hpp"
 #include "io/volume/volume_formats.hpp"
 #include "io/volume/volume_reader.hpp"
+#include "support/fuzz_check.hpp"
+#include "support/fuzz_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tessera;

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "fuzz_check.hpp"
-#include "fuzz_file.hpp"
 #include "io/vtk/vtk_xml_file.hpp"
+#include "support/fuzz_check.hpp"
+#include "support/fuzz_file.hpp"
 
 namespace {
 

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <random>
 
-#include "curved_cells.hpp"
-#include "polynomial.hpp"
+#include "reference/curved_cells.hpp"
 #include "reference/grid/grid_integral.hpp"
+#include "reference/polynomial.hpp"
 #include "reference/reference.hpp"
-#include "small_meshes.hpp"
+#include "reference/small_meshes.hpp"
 #include "support/some_cases.hpp"
 
 namespace tessera::reference::curved_closed_form_test {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "curved_cells.hpp"
+#include "reference/curved_cells.hpp"
 #include "reference/judge.hpp"
-#include "small_meshes.hpp"
+#include "reference/small_meshes.hpp"
 
 namespace tessera::reference::curved_judge_test {
 namespace {

@@ -7,9 +7,9 @@
 #include <limits>
 #include <random>
 
-#include "curved_cells.hpp"
+#include "reference/curved_cells.hpp"
+#include "reference/small_meshes.hpp"
 #include "scene/error.hpp"
-#include "small_meshes.hpp"
 #include "support/some_cases.hpp"
 
 namespace tessera::reference::curved_reference_test {

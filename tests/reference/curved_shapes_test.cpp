@@ -6,7 +6,7 @@
 #include <numeric>
 #include <random>
 
-#include "curved_cells.hpp"
+#include "reference/curved_cells.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::reference::curved_shapes_test {

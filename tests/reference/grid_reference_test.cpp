@@ -9,8 +9,8 @@
 
 #include "reference/judge.hpp"
 #include "reference/reference.hpp"
+#include "reference/small_meshes.hpp"
 #include "scene/error.hpp"
-#include "small_meshes.hpp"
 
 namespace tessera::reference::grid_reference_test {
 namespace {

@@ -7,8 +7,8 @@
 #include <set>
 
 #include "reference/reference.hpp"
+#include "reference/small_meshes.hpp"
 #include "scene/error.hpp"
-#include "small_meshes.hpp"
 
 namespace tessera::reference::judge_test {
 namespace {

@@ -5,8 +5,8 @@
 #include <random>
 
 #include "reference/reference.hpp"
+#include "reference/small_meshes.hpp"
 #include "scene/error.hpp"
-#include "small_meshes.hpp"
 
 namespace tessera::reference::reference_closed_form_test {
 namespace {

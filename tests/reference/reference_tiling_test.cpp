@@ -4,7 +4,7 @@
 #include <set>
 
 #include "reference/reference.hpp"
-#include "small_meshes.hpp"
+#include "reference/small_meshes.hpp"
 
 namespace tessera::reference::reference_tiling_test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "small_meshes.hpp"
+#include "reference/small_meshes.hpp"
 
 namespace tessera::reference::view_test {
 namespace {

@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "apps/options/state_words.hpp"
-#include "io/fuzz_check.hpp"
 #include "server/messages.hpp"
+#include "support/fuzz_check.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tessera;

@@ -9,10 +9,10 @@
 #include <random>
 #include <thread>
 
-#include "small_volume.hpp"
 #include "support/await.hpp"
 #include "volume/bricks/view_frustum.hpp"
 #include "volume/bricks/view_motion.hpp"
+#include "volume/small_volume.hpp"
 
 namespace tessera::look_ahead_test {
 namespace {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "small_volume.hpp"
 #include "support/some_cases.hpp"
 #include "volume/bricks/cell_ranges.hpp"
+#include "volume/small_volume.hpp"
 
 namespace tessera::preintegrated_culling_test {
 namespace {

@@ -1,0 +1,161 @@
+// What VTK's own writers write, in all their encodings.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkFloatArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkRectilinearGrid.h>
+#include <vtkUnsignedShortArray.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkUnstructuredGridWriter.h>
+#include <vtkXMLRectilinearGridWriter.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "api/queries/mesh_check.hpp"
+#include "io/mesh/mesh_reader.hpp"
+#include "io/volume/plain_vtk_grid.hpp"
+#include "io/volume/volume_formats.hpp"
+#include "support/streamed_fixture.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace tessera::io::vtk_written_test {
+namespace {
+
+/// `n` hexahedra side by side along x, each with points of its own, of which the second is moved halfway into the
+/// first, and a twin of the last.
+vtkNew<vtkUnstructuredGrid> hexahedra(int n) {
+  vtkNew<vtkUnstructuredGrid> grid;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkDoubleArray> field;
+  field->SetName("f");
+  for (int cell = 0; cell <= n; ++cell) {
+    const double x = cell == 1 ? 0.5 : cell == n ? n - 1 : cell;
+    vtkIdType corners[8];
+    for (int k = 0; k < 8; ++k) {
+      const int u = (k == 1 || k == 2 || k == 5 || k == 6) ? 1 : 0, v = k % 4 >= 2 ? 1 : 0, w = k / 4;
+      corners[k] = points->InsertNextPoint(x + u, v, w);
+      field->InsertNextValue(x + u + 2 * v + 3 * w);
+    }
+    grid->InsertNextCell(VTK_HEXAHEDRON, 8, corners);
+  }
+  grid->SetPoints(points);
+  grid->GetPointData()->AddArray(field);
+  return grid;
+}
+
+/// Cells 0 and 1, and n - 1 with its twin.
+void expect_pairs(const std::filesystem::path& file, int n) {
+  const cells::MeshFile read = read_mesh(file);
+  ASSERT_EQ(read.mesh.tets.size(), 6u * static_cast<std::size_t>(n + 1)) << file;
+  const frame::MeshCheck check = frame::check_mesh(read.mesh);
+  EXPECT_EQ(check.overlaps.count, 2u) << file;
+  EXPECT_EQ(check.overlapping_cells, 4u) << file;
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> pairs;
+  for (const auto& place : check.overlaps.places) pairs.emplace_back(place.cell, place.other);
+  std::sort(pairs.begin(), pairs.end());
+  const auto last = static_cast<std::uint64_t>(n);
+  EXPECT_EQ(pairs, (std::vector<std::pair<std::uint64_t, std::uint64_t>>{{0, 1}, {last - 1, last}})) << file;
+}
+
+TEST(VtkWritten, OverlappingHexahedraAreOnePairEachInEveryEncoding) {
+  constexpr int n = 5;
+  const auto grid = hexahedra(n);
+  const test::TemporaryFolder folder;
+  for (const int mode : {vtkXMLWriter::Ascii, vtkXMLWriter::Binary, vtkXMLWriter::Appended})
+    for (const bool compressed : {false, true})
+      for (const bool base64 : {false, true}) {
+        vtkNew<vtkXMLUnstructuredGridWriter> writer;
+        const auto file = folder / fmt::format("{}-{}-{}.vtu", mode, compressed, base64);
+        writer->SetFileName(file.c_str());
+        writer->SetDataMode(mode);
+        writer->SetEncodeAppendedData(base64);
+        if (!compressed) writer->SetCompressorTypeToNone();
+        writer->SetInputData(grid);
+        ASSERT_EQ(writer->Write(), 1);
+        expect_pairs(file, n);
+      }
+  for (const int type : {VTK_ASCII, VTK_BINARY}) {
+    vtkNew<vtkUnstructuredGridWriter> writer;
+    const auto file = folder / fmt::format("{}.vtk", type);
+    writer->SetFileName(file.c_str());
+    writer->SetFileType(type);
+    writer->SetInputData(grid);
+    ASSERT_EQ(writer->Write(), 1);
+    expect_pairs(file, n);
+  }
+}
+
+/// Even along z, along x and y too only if it is `even`; falling along y.
+template <class Array>
+vtkNew<vtkRectilinearGrid> rectilinear(bool even, bool of_cells) {
+  const std::array<int, 3> n{21, 30, 47};
+  vtkNew<vtkRectilinearGrid> grid;
+  grid->SetExtent(2, n[0] + 1, -4, n[1] - 5, 0, n[2] - 1);
+  std::array<vtkNew<Array>, 3> axes;
+  for (std::size_t a = 0; a < 3; ++a)
+    for (int i = 0; i < n[a]; ++i) {
+      const double x = even || a == 2 ? i : i + 0.01 * i * i;
+      axes[a]->InsertNextValue(static_cast<typename Array::ValueType>(a == 0 ? 0.1 * x : a == 1 ? 5 - 0.3 * x : x));
+    }
+  grid->SetXCoordinates(axes[0]);
+  grid->SetYCoordinates(axes[1]);
+  grid->SetZCoordinates(axes[2]);
+  vtkNew<vtkUnsignedShortArray> field;
+  field->SetName("f");
+  const vtkIdType samples = of_cells ? grid->GetNumberOfCells() : grid->GetNumberOfPoints();
+  for (vtkIdType k = 0; k < samples; ++k) field->InsertNextValue(static_cast<unsigned short>(k * k % 65521));
+  if (of_cells)
+    grid->GetCellData()->SetScalars(field);
+  else
+    grid->GetPointData()->SetScalars(field);
+  return grid;
+}
+
+class RectilinearWritten : public test::StreamedVolumes {
+ protected:
+  void expect_the_same(vtkRectilinearGrid* grid, const std::string& name, bool regular) const {
+    for (const int mode : {vtkXMLWriter::Ascii, vtkXMLWriter::Binary, vtkXMLWriter::Appended})
+      for (const bool compressed : {false, true})
+        for (const bool base64 : {false, true}) {
+          vtkNew<vtkXMLRectilinearGridWriter> writer;
+          const auto file = folder / fmt::format("{}-{}-{}-{}.vtr", name, mode, compressed, base64);
+          writer->SetFileName(file.c_str());
+          writer->SetDataMode(mode);
+          writer->SetEncodeAppendedData(base64);
+          writer->SetBlockSize(4096);
+          writer->SetHeaderTypeToUInt64();
+          if (!compressed) writer->SetCompressorTypeToNone();
+          writer->SetInputData(grid);
+          ASSERT_EQ(writer->Write(), 1);
+          const auto plain = read_plain_vtk_grid(file, 0);
+          ASSERT_EQ(plain.has_value(), mode != vtkXMLWriter::Ascii) << file;
+          EXPECT_TRUE(!plain || plain->grid.geometry.rectilinear() == !regular) << file;
+          const bool in_place = mode == vtkXMLWriter::Appended && !compressed && !base64;
+          EXPECT_EQ(is_the_same_streamed(file), !in_place) << file;
+        }
+  }
+};
+
+TEST_F(RectilinearWritten, GridsAreReadAlikeWithAndWithoutVtkInEveryEncoding) {
+  for (const bool even : {false, true})
+    for (const bool of_cells : {false, true}) {
+      const std::string name = fmt::format("{}-{}", even, of_cells);
+      expect_the_same(rectilinear<vtkFloatArray>(even, of_cells), "float-" + name, even);
+      expect_the_same(rectilinear<vtkDoubleArray>(even, of_cells), "double-" + name, even);
+    }
+}
+
+}  // namespace
+}  // namespace tessera::io::vtk_written_test
