@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "callers/cubes.hpp"
+#include "cubes.hpp"
 #include "tessera/mpi.hpp"
 #include "tessera/tessera.hpp"
 

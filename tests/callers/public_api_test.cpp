@@ -14,7 +14,7 @@
 #include <numeric>
 #include <set>
 
-#include "callers/cubes.hpp"
+#include "cubes.hpp"
 #include "tessera/tessera.hpp"
 
 namespace tessera {

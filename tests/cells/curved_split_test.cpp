@@ -109,8 +109,8 @@ TEST(CurvedCell, HasItsNodesWhereTheLatticeSays) {
       bool is_whole = true;  // a third has no place in units
       for (std::size_t x = 0; x < 3; ++x) {
         const int steps = lattice->order[x] * lattice->refined;
-        is_whole = is_whole && std::int64_t{lattice->nodes[k][x]} * cell_unit % steps == 0;
-        place[x] = static_cast<std::int32_t>(std::int64_t{lattice->nodes[k][x]} * cell_unit / steps);
+        is_whole = is_whole && std::int64_t{lattice->nodes[k][x]} * cells::cell_unit % steps == 0;
+        place[x] = static_cast<std::int32_t>(std::int64_t{lattice->nodes[k][x]} * cells::cell_unit / steps);
       }
       if (!is_whole) continue;
       EXPECT_NEAR(cell.at(place, 0).w, values[k], 1e-12) << k;

@@ -81,7 +81,7 @@ cells::CellBlock warped_box(const Kind& kind, int n, const Warp& warp, const Fie
     for (std::size_t k = 0; k < kind.nodes; ++k) {
       glm::dvec3 p = to_box(place_of(*lattice, k));
       for (int x = 0; x < 3; ++x) p[x] = std::round(p[x] * 360360) / 360360;  // one point for all cells that have it
-      p = cells::warp(p);
+      p = warp(p);
       block.connectivity.push_back(static_cast<std::uint32_t>(block.positions.size()));
       block.positions.push_back(p);
       values.push_back(field(p));
