@@ -437,6 +437,10 @@ double Dataset::default_unit_distance() const { return frame::default_unit_dista
 
 Camera Dataset::default_camera(ImageSize size, ProjectionKind projection) const { return view({}, size, projection); }
 
+View Dataset::default_view(ImageSize size, ProjectionKind projection) const {
+  return {default_camera(size, projection), size};
+}
+
 Camera Dataset::view(const ViewRequest& request, ImageSize size, ProjectionKind projection, bool turning) const {
   validate(size);
   return view_of_box(bounds(), size, request, projection, body_axes(), turning);

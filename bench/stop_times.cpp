@@ -40,7 +40,7 @@ int measure(tessera::Job& job, const Asked& asked) {
   const std::vector<std::filesystem::path> files{asked.file};
   const tessera::Dataset data =
       job.size() > 1 ? tessera::Dataset::open(files, {}, job.communicator()) : tessera::Dataset::open(asked.file);
-  const tessera::View view{data.default_camera({asked.width, asked.width}), {asked.width, asked.width}};
+  const tessera::View view = data.default_view({asked.width, asked.width});
   const tessera::TransferFunction function = data.transfer_function().function;
   tessera::Session session(data, asked.settings, job.communicator());
   session.render(view, function);

@@ -6,7 +6,7 @@
 int main(int argc, char** argv) try {
   if (argc != 2) throw tessera::bad_input("arguments: give a mesh or a grid");
   const tessera::Dataset data = tessera::Dataset::open(argv[1]);
-  const tessera::View view{data.default_camera({640, 480}), {640, 480}};
+  const tessera::View view = data.default_view({640, 480});
   const tessera::TransferFunction function = data.transfer_function("viridis").function;
 
   tessera::Annotation annotation;

@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
     grid.samples = samples;
 
     const tessera::Dataset data = tessera::Dataset::of(grid);
-    const tessera::View view{data.default_camera({640, 480}), {640, 480}};
+    const tessera::View view = data.default_view({640, 480});
     tessera::Session session(data, {}, tessera::communicator(MPI_COMM_WORLD));
     const auto frame = session.render(view, data.transfer_function().function);
     if (session.assembles()) {

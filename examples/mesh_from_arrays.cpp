@@ -27,7 +27,7 @@ int main() try {
   mesh.types = types;
 
   const tessera::Dataset data = tessera::Dataset::of(mesh);
-  const tessera::View view{data.default_camera({640, 480}), {640, 480}};
+  const tessera::View view = data.default_view({640, 480});
   const auto frame = tessera::Session(data).render(view, data.transfer_function("viridis").function);
   tessera::write_image(frame.image, "mesh.png");
   std::cout << data.tet_count() << " tets, " << frame.statistics.milliseconds << " ms: mesh.png\n";

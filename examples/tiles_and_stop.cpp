@@ -23,7 +23,7 @@ class Client : public tessera::Sink {
 int main(int argc, char** argv) try {
   if (argc != 2) throw tessera::Error(tessera::ErrorCode::bad_input, "arguments: name one mesh or grid");
   const tessera::Dataset data = tessera::Dataset::open(argv[1]);
-  const tessera::View view{data.default_camera({800, 600}), {800, 600}};
+  const tessera::View view = data.default_view({800, 600});
   const tessera::TransferFunction function = data.transfer_function().function;
   tessera::Session session(data);
   for (const long wanted : {240'000L, 1'000'000L}) {

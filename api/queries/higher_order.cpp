@@ -97,8 +97,7 @@ class HigherOrderLevels {
 
  private:
   [[nodiscard]] Image picture(const Dataset& data) {
-    if (!scene_)
-      scene_.emplace(view_ ? small(view_(data)) : View{data.default_camera({128, 128}), {128, 128}}, function_(data));
+    if (!scene_) scene_.emplace(view_ ? small(view_(data)) : data.default_view({128, 128}), function_(data));
     Session session(data, settings_, communicator_);
     return session.render(scene_->first, scene_->second).image;
   }

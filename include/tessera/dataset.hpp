@@ -23,6 +23,7 @@
 #include "tessera/selection.hpp"
 #include "tessera/settings.hpp"
 #include "tessera/transfer_function.hpp"
+#include "tessera/view.hpp"
 #include "tessera/warp.hpp"
 
 namespace tessera {
@@ -247,6 +248,8 @@ class TESSERA_EXPORT Dataset {
   [[nodiscard]] double default_unit_distance() const;
   /// The view that frames all of it: heads up, what is flat from above (tessera/default_view.hpp).
   [[nodiscard]] Camera default_camera(ImageSize size, ProjectionKind projection = ProjectionKind::orthographic) const;
+  /// That camera with its size, as Session::render() takes them.
+  [[nodiscard]] View default_view(ImageSize size, ProjectionKind projection = ProjectionKind::orthographic) const;
   /// Another view of all of it. `turning`: wide enough for every turn of orbit(). Throws as view_of_box().
   [[nodiscard]] Camera view(const ViewRequest& request, ImageSize size,
                             ProjectionKind projection = ProjectionKind::orthographic, bool turning = false) const;

@@ -51,7 +51,7 @@ TEST(CoarseStandIn, LooksLikeAMesh) {
   EXPECT_EQ(coarse.field_name(), data.field_name());
   EXPECT_EQ(coarse.blank_samples(), 0u);
   const TransferFunction function = data.transfer_function("viridis").function;
-  const View view{data.default_camera({200, 200}), {200, 200}};
+  const View view = data.default_view({200, 200});
   const Image truth = Session(data).render(view, function).image, seen = Session(coarse).render(view, function).image;
   EXPECT_LT(mean_difference(truth, seen), 2e-3);
 }
@@ -106,7 +106,7 @@ TEST(CoarseStandIn, LooksLikeAGrid) {
   EXPECT_EQ(n, (GridIndex{32, 32, 32}));
   EXPECT_NEAR(glm::distance(coarse.bounds().high, data.bounds().high), 0, 1e-12);
   const TransferFunction function = data.transfer_function("viridis").function;
-  const View view{data.default_camera({200, 200}), {200, 200}};
+  const View view = data.default_view({200, 200});
   const Image truth = Session(data).render(view, function).image, seen = Session(coarse).render(view, function).image;
   EXPECT_LT(mean_difference(truth, seen), 3e-3);
 }

@@ -136,7 +136,7 @@ TransferFunction any_function(Random& random) {
 std::size_t draw_any_function(const Dataset& data, const Settings& settings, std::uint64_t seed, std::size_t count) {
   Random random(seed);
   Session session(data, settings);
-  const View view{data.default_camera({33, 21}), {33, 21}};
+  const View view = data.default_view({33, 21});
   std::size_t drawn = 0;
   for (std::size_t i = 0; i < count; ++i) {
     try {

@@ -295,7 +295,7 @@ TEST(Probe, RanksWithoutCellsAreAskedToo) {
   for (const scene::TetMesh& mesh :
        {scene::subset(one, two_tets), datasets::with_cell_data(scene::subset(one, two_tets))}) {
     const Dataset data = Dataset::of(datasets::arrays_of(mesh));
-    const View view{data.default_camera({9, 9}), {9, 9}};
+    const View view = data.default_view({9, 9});
     const RayProbe alone = probe(data, view, soft, {4, 4}, 9);
     const Dataset coarse = *coarse_stand_in(data, {.samples = 1000});
     run_ranks(4, [&](const Communicator& communicator) {

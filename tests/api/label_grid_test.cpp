@@ -41,7 +41,7 @@ std::filesystem::path write(const test::TemporaryFolder& folder, const char* nam
 }
 
 Image picture(const Dataset& data) {
-  const View view{data.default_camera({64, 64}), {64, 64}};
+  const View view = data.default_view({64, 64});
   Session session(data, {});
   return session.render(view, data.transfer_function().function).image;
 }

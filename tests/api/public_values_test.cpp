@@ -61,7 +61,7 @@ TEST(PublicValues, CamerasAreReadFromTextAsFromFiles) {
 /// What is exported and read back renders as what it was.
 TEST(PublicValues, FunctionsAsTextRenderAlike) {
   const Dataset data = Dataset::of(datasets::arrays_of(datasets::cube(8)));
-  const View view{data.default_camera({80, 60}), {80, 60}};
+  const View view = data.default_view({80, 60});
   Settings settings;
   settings.integrator.kind = IntegratorKind::exact;
   Session session(data, settings);

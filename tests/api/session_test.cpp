@@ -60,7 +60,7 @@ std::vector<float> waves(std::int64_t n) {
   return samples;
 }
 
-View view_of(const Dataset& data) { return {data.default_camera(size), size}; }
+View view_of(const Dataset& data) { return data.default_view(size); }
 
 bool same_bits(const Image& a, const Image& b) { return a.size == b.size && a.rgba == b.rgba && a.depth == b.depth; }
 

@@ -31,7 +31,7 @@ class StopAtFirstTile final : public tessera::Sink {
 void render(MPI_Comm two, int rank) {
   const tessera::Cubes mesh(12);
   const tessera::Dataset data = tessera::Dataset::of(mesh.arrays());
-  const tessera::View view{data.default_camera({160, 120}), {160, 120}};
+  const tessera::View view = data.default_view({160, 120});
   const tessera::TransferFunction function = data.transfer_function("viridis").function;
   const tessera::RenderedFrame alone = tessera::Session(data).render(view, function);
 
@@ -55,7 +55,7 @@ void render(MPI_Comm two, int rank) {
     whole(session, "the picture after a stop has other bits");
   }
   // Of a picture so large that its tiles come in many messages.
-  const tessera::View large{data.default_camera({1600, 1200}), {1600, 1200}};
+  const tessera::View large = data.default_view({1600, 1200});
   StopAtFirstTile sink;
   expect(session.render(large, function, {}, &sink, sink.source.get_token()).stopped, "the sink's stop was not heard");
   whole(session, "the picture after the sink's stop has other bits");

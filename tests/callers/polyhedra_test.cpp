@@ -49,7 +49,7 @@ TEST(CallersPolyhedra, AreRenderedAsTheCellsTheyAre) {
   native.faces.clear(), native.locations.clear();
   const Dataset same = Dataset::of(native.arrays());
   EXPECT_EQ(data.tet_count(), same.tet_count());
-  const View view{data.default_camera({48, 40}), {48, 40}};
+  const View view = data.default_view({48, 40});
   const TransferFunction function = data.transfer_function().function;
   EXPECT_EQ(Session(data).render(view, function).image.rgba, Session(same).render(view, function).image.rgba);
 }

@@ -79,7 +79,7 @@ class Waves final : public SampleSource {
 };
 
 Image picture_of(const Dataset& data, const Settings& settings = {}) {
-  return Session(data, settings).render({data.default_camera(size), size}, data.transfer_function().function).image;
+  return Session(data, settings).render(data.default_view(size), data.transfer_function().function).image;
 }
 
 Settings on_one_thread() {
@@ -104,13 +104,23 @@ TEST(CallersSamples, GiveThePictureOfTheSameSamplesInMemory) {
   EXPECT_EQ(picture.rgba, picture_of(in_memory).rgba);
 }
 
+TEST(CallersViews, TheDefaultViewIsTheDefaultCameraWithItsSize) {
+  const Cubes cubes(3);
+  const Dataset data = Dataset::of(cubes.arrays());
+  EXPECT_EQ(data.default_view(size), (View{data.default_camera(size), size}));
+  const View deep = data.default_view(size, ProjectionKind::perspective);
+  EXPECT_EQ(deep, (View{data.default_camera(size, ProjectionKind::perspective), size}));
+  EXPECT_EQ(deep.camera.projection, ProjectionKind::perspective);
+  EXPECT_THROW((void)data.default_view({0, 5}), Error);
+}
+
 TEST(CallersReference, PicturesKeepThePromiseAgainstIt) {
   const Cubes cubes(3);
   const Dataset data = Dataset::of(cubes.arrays());
   Settings settings;
   settings.integrator.kind = IntegratorKind::exact;
   Session session(data, settings);
-  const View view{data.default_camera(size), size};
+  const View view = data.default_view(size);
   const TransferFunction function = data.transfer_function().function;
   const Image picture = session.render(view, function).image;
   const auto pixels = random_pixels(size, 200, 3);
@@ -138,7 +148,7 @@ TEST(CallersRanks, ThreadsMakeThePictureOfOneProcess) {
   std::mutex mutex;
   run_ranks(3, [&](const Communicator& communicator) {
     Session session(data, settings, communicator);
-    RenderedFrame frame = session.render({data.default_camera(size), size}, data.transfer_function().function);
+    RenderedFrame frame = session.render(data.default_view(size), data.transfer_function().function);
     const std::lock_guard lock(mutex);
     ranks.insert(communicator.rank());
     EXPECT_EQ(communicator.size(), 3);
@@ -239,7 +249,7 @@ TEST(CallersTrace, RanksSpansGoIntoOneFileWithTheirRoles) {
       Settings settings = on_one_thread();
       settings.trace = &trace;
       Session session(data, settings, communicator);
-      session.render({data.default_camera(size), size}, data.transfer_function().function);
+      session.render(data.default_view(size), data.transfer_function().function);
     }
     write_trace(trace, "rank " + std::to_string(communicator.rank()), {}, folder / "trace.json", communicator, 1);
   });
@@ -253,7 +263,7 @@ TEST(CallersTrace, RanksSpansGoIntoOneFileWithTheirRoles) {
 TEST(CallersBalance, PicturesAreOfAFrameThatKeptItsCost) {
   const Dataset data = Dataset::of(std::make_shared<const Waves>());
   Session session(data);
-  const View view{data.default_camera(size), size};
+  const View view = data.default_view(size);
   const TransferFunction function = data.transfer_function().function;
   RenderedFrame frame = session.render(view, function);
   EXPECT_THROW(static_cast<void>(session.balance_pictures(frame, view, function)), Error);
@@ -272,7 +282,7 @@ TEST(CallersBalance, PicturesAreOfAFrameThatKeptItsCost) {
 
 TEST(CallersBalance, OfSortLastBricksHaveTheColoursOfThePartsTheyLieIn) {
   const Dataset data = Dataset::of(std::make_shared<const Waves>());
-  const View view{data.default_camera(size), size};
+  const View view = data.default_view(size);
   const TransferFunction function = data.transfer_function().function;
   run_ranks(2, [&](const Communicator& communicator) {
     Settings settings;
@@ -473,7 +483,7 @@ TEST(CallersLevels, MakeThePictureOfTheFinestGridEverywhere) {
     Settings settings;
     settings.integrator.kind = IntegratorKind::exact;
     Session first(levels, settings), second(finest, settings);
-    const View view{finest.default_camera(size), size};
+    const View view = finest.default_view(size);
     const TransferFunction function = finest.transfer_function().function;
     const Image picture = first.render(view, function).image, expected = second.render(view, function).image;
     double worst = 0;

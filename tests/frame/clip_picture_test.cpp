@@ -252,7 +252,7 @@ TEST(SelectedDataset, IsVerifiedByTheWhole) {
   EXPECT_GT(part.mesh_counts().cells_out_of_range, 0u);
   EXPECT_GT(part.mesh_counts().cells_cut, 0u);
   EXPECT_GT(part.bounds().low.x, -0.5);
-  const View view{part.default_camera({50, 50}), {50, 50}};
+  const View view = part.default_view({50, 50});
   const TransferFunction function = whole.transfer_function("viridis").function;
   Settings settings;
   settings.integrator.kind = IntegratorKind::exact;
