@@ -23,7 +23,7 @@ int main() try {
       }
   tessera::MeshArrays mesh;
   mesh.points = points, mesh.connectivity = connectivity, mesh.offsets = offsets, mesh.scalars = pressure;
-  const std::vector<std::uint8_t> types(offsets.size() - 1, 12);  // VTK_HEXAHEDRON
+  const std::vector<tessera::CellType> types(offsets.size() - 1, tessera::CellType::hexahedron);
   mesh.types = types;
 
   const tessera::Dataset data = tessera::Dataset::of(mesh);

@@ -8,6 +8,8 @@
 #include <span>
 #include <type_traits>
 
+#include "tessera/cell_type.hpp"
+
 namespace tessera {
 
 /// How a number is stored.
@@ -26,8 +28,9 @@ constexpr NumberType number_type_of() {
   }
 }
 
-/// Numbers in the caller's memory, next to each other: any vector, array or span of numbers, or of glm::dvec3, which
-/// counts as three. Keeps nothing: the memory must stay for as long as the view is used.
+/// Numbers in the caller's memory, next to each other: any vector, array or span of numbers, of glm::dvec3, which
+/// counts as three, or of CellType, which counts as uint8. Keeps nothing: the memory must stay for as long as the view
+/// is used.
 class ArrayView {
  public:
   ArrayView() = default;
@@ -43,6 +46,11 @@ class ArrayView {
   requires std::ranges::sized_range<Range> && std::same_as<std::ranges::range_value_t<Range>, glm::dvec3> ArrayView(
       const Range& vectors)  // NOLINT(google-explicit-constructor): a view of what is there
       : data_(std::ranges::data(vectors)), size_(3 * std::ranges::size(vectors)), type_(NumberType::float64) {}
+
+  template <std::ranges::contiguous_range Range>
+  requires std::ranges::sized_range<Range> && std::same_as<std::ranges::range_value_t<Range>, CellType> ArrayView(
+      const Range& types)  // NOLINT(google-explicit-constructor): a view of what is there
+      : data_(std::ranges::data(types)), size_(std::ranges::size(types)), type_(NumberType::uint8) {}
 
   ArrayView(const void* data, std::size_t size, NumberType type) : data_(data), size_(size), type_(type) {}
 

@@ -99,12 +99,13 @@ struct ReadOptions {
 
 /// A mesh in the caller's arrays.
 ///
-/// Cells   either `tets`, or `types`, `offsets` and `connectivity` as VTK has them: cell c has type types[c] (VTK's
-///         number) and points connectivity[offsets[c]] up to connectivity[offsets[c + 1]]; offsets are one more than
-///         cells.
-/// Faces   of polyhedra (type 42), as VTK has them up to 9.3: at face_locations[c] `faces` has the number of the cell's
-///         faces, then of each the number of its points and these, in either direction round. The location of other
-///         cells is -1. Without polyhedra both may be empty. A polyhedron's points in `connectivity` are not looked at.
+/// Cells   either `tets`, or `types`, `offsets` and `connectivity` as VTK has them: cell c has type types[c]
+///         (CellType, or VTK's number as an integer) and points connectivity[offsets[c]] up to
+///         connectivity[offsets[c + 1]]; offsets are one more than cells.
+/// Faces   of CellType::polyhedron, as VTK has them up to 9.3: at face_locations[c] `faces` has the number of the
+///         cell's faces, then of each the number of its points and these, in either direction round. The location of
+///         other cells is -1. Without polyhedra both may be empty. A polyhedron's points in `connectivity` are not
+///         looked at.
 ///         One whose faces are no closed surface is left out (MeshCounts::cells_open, Dataset::warnings()).
 /// Copies  float64 points and scalars and uint32 tets are borrowed as they stand, for point data that is finite
 ///         everywhere and tets whose corners are in range; anything else is converted. One copy of tets (16 bytes each)

@@ -4,6 +4,7 @@
 #include "tessera/annotation.hpp"
 #include "tessera/array.hpp"
 #include "tessera/camera.hpp"
+#include "tessera/cell_type.hpp"
 #include "tessera/coarse_stand_in.hpp"
 #include "tessera/communicator.hpp"
 #include "tessera/dataset.hpp"

@@ -423,7 +423,7 @@ TEST(MeshArrays, AreBorrowedWhereTheLayoutAllows) {
   // The same numbers in other layouts make the same picture.
   std::vector<std::int64_t> connectivity(cube.tets.begin(), cube.tets.end()), offsets;
   for (std::size_t i = 0; i <= connectivity.size(); i += 4) offsets.push_back(static_cast<std::int64_t>(i));
-  const std::vector<std::uint8_t> types(cube.tets.size() / 4, 10);  // VTK_TETRA
+  const std::vector<CellType> types(cube.tets.size() / 4, CellType::tetra);
   MeshArrays others;
   others.points = cube.points;
   others.types = types, others.offsets = offsets, others.connectivity = connectivity;

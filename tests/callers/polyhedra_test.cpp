@@ -12,7 +12,7 @@ namespace {
 /// A hexahedron over [0, 1]^3 and on it a pyramid given as a polyhedron, with a field that is linear.
 struct House {
   std::vector<double> points = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1, 0.5, 0.5, 2};
-  std::vector<std::uint8_t> types = {12, 42};
+  std::vector<CellType> types = {CellType::hexahedron, CellType::polyhedron};
   std::vector<std::int64_t> offsets = {0, 8, 13}, connectivity = {0, 1, 2, 3, 4, 5, 6, 7, 4, 5, 6, 7, 8};
   std::vector<std::int64_t> faces = {5, 4, 4, 5, 6, 7, 3, 4, 5, 8, 3, 6, 5, 8, 3, 6, 7, 8, 3, 7, 4, 8};
   std::vector<std::int64_t> locations = {-1, 0};
@@ -45,7 +45,7 @@ TEST(CallersPolyhedra, AreRenderedAsTheCellsTheyAre) {
   EXPECT_TRUE(data.warnings().empty());
   EXPECT_TRUE(data.check().clean());
   House native;
-  native.types[1] = 14;
+  native.types[1] = CellType::pyramid;
   native.faces.clear(), native.locations.clear();
   const Dataset same = Dataset::of(native.arrays());
   EXPECT_EQ(data.tet_count(), same.tet_count());
@@ -80,7 +80,7 @@ TEST(CallersPolyhedra, FacesThatCannotBeAreRefusedWithTheirPlace) {
   EXPECT_NE(house.fault().find("2 face locations for 2 cells and 0 numbers of faces"), std::string::npos);
   house = House(), house.locations[1] = -1;
   EXPECT_NE(house.fault().find("cell 1 is a polyhedron without a list of its faces"), std::string::npos);
-  house = House(), house.types[0] = 42, house.locations[0] = 0;
+  house = House(), house.types[0] = CellType::polyhedron, house.locations[0] = 0;
   EXPECT_NE(house.fault().find("mesh: cell 1 is a polyhedron that has faces of another cell"), std::string::npos);
   MeshArrays tets;
   const std::vector<std::uint32_t> corners = {0, 1, 2, 4};

@@ -23,11 +23,13 @@
 #include <vector>
 
 #include "api/queries/mesh_check.hpp"
+#include "cells/cell_split.hpp"
 #include "io/mesh/mesh_reader.hpp"
 #include "io/volume/plain_vtk_grid.hpp"
 #include "io/volume/volume_formats.hpp"
 #include "support/streamed_fixture.hpp"
 #include "support/temporary_folder.hpp"
+#include "tessera/cell_type.hpp"
 
 namespace tessera::io::vtk_written_test {
 namespace {
@@ -67,6 +69,70 @@ void expect_pairs(const std::filesystem::path& file, int n) {
   std::sort(pairs.begin(), pairs.end());
   const auto last = static_cast<std::uint64_t>(n);
   EXPECT_EQ(pairs, (std::vector<std::pair<std::uint64_t, std::uint64_t>>{{0, 1}, {last - 1, last}})) << file;
+}
+
+/// All enumerators, with the names and values that VTK gives them.
+constexpr std::pair<CellType, int> cell_types[] = {
+    {CellType::tetra, VTK_TETRA},
+    {CellType::voxel, VTK_VOXEL},
+    {CellType::hexahedron, VTK_HEXAHEDRON},
+    {CellType::wedge, VTK_WEDGE},
+    {CellType::pyramid, VTK_PYRAMID},
+    {CellType::pentagonal_prism, VTK_PENTAGONAL_PRISM},
+    {CellType::hexagonal_prism, VTK_HEXAGONAL_PRISM},
+    {CellType::convex_point_set, VTK_CONVEX_POINT_SET},
+    {CellType::polyhedron, VTK_POLYHEDRON},
+    {CellType::quadratic_tetra, VTK_QUADRATIC_TETRA},
+    {CellType::quadratic_hexahedron, VTK_QUADRATIC_HEXAHEDRON},
+    {CellType::quadratic_wedge, VTK_QUADRATIC_WEDGE},
+    {CellType::quadratic_pyramid, VTK_QUADRATIC_PYRAMID},
+    {CellType::triquadratic_hexahedron, VTK_TRIQUADRATIC_HEXAHEDRON},
+    {CellType::quadratic_linear_wedge, VTK_QUADRATIC_LINEAR_WEDGE},
+    {CellType::biquadratic_quadratic_wedge, VTK_BIQUADRATIC_QUADRATIC_WEDGE},
+    {CellType::biquadratic_quadratic_hexahedron, VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON},
+    {CellType::triquadratic_pyramid, VTK_TRIQUADRATIC_PYRAMID},
+    {CellType::lagrange_tetrahedron, VTK_LAGRANGE_TETRAHEDRON},
+    {CellType::lagrange_hexahedron, VTK_LAGRANGE_HEXAHEDRON},
+    {CellType::lagrange_wedge, VTK_LAGRANGE_WEDGE},
+    {CellType::lagrange_pyramid, VTK_LAGRANGE_PYRAMID},
+    {CellType::bezier_tetrahedron, VTK_BEZIER_TETRAHEDRON},
+    {CellType::bezier_hexahedron, VTK_BEZIER_HEXAHEDRON},
+    {CellType::bezier_wedge, VTK_BEZIER_WEDGE},
+    {CellType::bezier_pyramid, VTK_BEZIER_PYRAMID},
+    {CellType::empty_cell, VTK_EMPTY_CELL},
+    {CellType::vertex, VTK_VERTEX},
+    {CellType::poly_vertex, VTK_POLY_VERTEX},
+    {CellType::line, VTK_LINE},
+    {CellType::poly_line, VTK_POLY_LINE},
+    {CellType::triangle, VTK_TRIANGLE},
+    {CellType::triangle_strip, VTK_TRIANGLE_STRIP},
+    {CellType::polygon, VTK_POLYGON},
+    {CellType::pixel, VTK_PIXEL},
+    {CellType::quad, VTK_QUAD},
+    {CellType::quadratic_edge, VTK_QUADRATIC_EDGE},
+    {CellType::quadratic_triangle, VTK_QUADRATIC_TRIANGLE},
+    {CellType::quadratic_quad, VTK_QUADRATIC_QUAD},
+    {CellType::biquadratic_quad, VTK_BIQUADRATIC_QUAD},
+    {CellType::quadratic_linear_quad, VTK_QUADRATIC_LINEAR_QUAD},
+    {CellType::biquadratic_triangle, VTK_BIQUADRATIC_TRIANGLE},
+    {CellType::cubic_line, VTK_CUBIC_LINE},
+    {CellType::quadratic_polygon, VTK_QUADRATIC_POLYGON},
+    {CellType::lagrange_curve, VTK_LAGRANGE_CURVE},
+    {CellType::lagrange_triangle, VTK_LAGRANGE_TRIANGLE},
+    {CellType::lagrange_quadrilateral, VTK_LAGRANGE_QUADRILATERAL},
+    {CellType::bezier_curve, VTK_BEZIER_CURVE},
+    {CellType::bezier_triangle, VTK_BEZIER_TRIANGLE},
+    {CellType::bezier_quadrilateral, VTK_BEZIER_QUADRILATERAL}};
+
+TEST(VtkWritten, CellTypesHaveTheNumbersOfVtk) {
+  for (const auto& [type, number] : cell_types) EXPECT_EQ(vtk_number(type), number);
+  for (int number = 0; number < 256; ++number) {
+    // VTK's curves and surfaces that no file has are accepted and have no name.
+    const bool is_unused = (number >= 51 && number <= 54) || (number >= 60 && number <= 63);
+    const bool is_accepted = cell_shape(static_cast<std::uint8_t>(number)).kind != CellKind::unsupported;
+    const bool is_listed = std::ranges::count(cell_types, number, &std::pair<CellType, int>::second) == 1;
+    EXPECT_EQ(is_listed, is_accepted && !is_unused) << number;
+  }
 }
 
 TEST(VtkWritten, OverlappingHexahedraAreOnePairEachInEveryEncoding) {
