@@ -6,6 +6,7 @@
 #include <span>
 
 #include "cells/curved/curved_lattice.hpp"
+#include "tessera/cell_type.hpp"
 
 namespace tessera::cells {
 
@@ -38,7 +39,7 @@ struct NodeOrder {
   NodeConvention convention;
   CurvedFamily shape;
   std::uint8_t nodes;
-  std::uint8_t vtk_type;  ///< as curved_lattice() has it, or a linear one
+  CellType type;  ///< as curved_lattice() has it, or a linear one
   /// Of each of VTK's nodes the number in the format's list, from 0; empty: its own.
   std::span<const std::uint8_t> from;
 };

@@ -14,6 +14,7 @@
 #include "io/mesh/nastran_deck.hpp"
 #include "io/mesh/nastran_systems.hpp"
 #include "scene/error.hpp"
+#include "tessera/cell_type.hpp"
 
 namespace tessera::io {
 namespace {
@@ -26,8 +27,8 @@ struct NastranEdge {
 struct SolidElement {
   std::string_view name;
   std::size_t corners;
-  std::uint8_t linear_type, curved_type;  ///< VTK's
-  std::vector<NastranEdge> edges;         ///< in VTK's order
+  CellType linear_type, curved_type;
+  std::vector<NastranEdge> edges;  ///< in VTK's order
 };
 
 SolidElement solid_of(std::string_view name, cells::CurvedFamily shape, std::size_t nodes) {
@@ -35,10 +36,10 @@ SolidElement solid_of(std::string_view name, cells::CurvedFamily shape, std::siz
   const cells::NodeOrder& curved = *find_node_order(cells::NodeConvention::nastran, shape, nodes);
   SolidElement element{name,
                        corners.size(),
-                       cells::find_node_order(cells::NodeConvention::nastran, shape, corners.size())->vtk_type,
-                       curved.vtk_type,
+                       cells::find_node_order(cells::NodeConvention::nastran, shape, corners.size())->type,
+                       curved.type,
                        {}};
-  const cells::CurvedLattice lattice = *cells::curved_lattice(curved.vtk_type, nodes);
+  const cells::CurvedLattice lattice = *curved_lattice(vtk_number(curved.type), nodes);
   const auto place = [&](std::size_t corner) {
     return glm::dvec3(corners[corner][0], corners[corner][1], corners[corner][2]);
   };
@@ -93,7 +94,7 @@ class NastranCells {
     for (std::size_t k = 0; k < kind.corners; ++k) block_.connectivity.push_back(point(nodes[k], id));
     const bool is_curved =
         std::ranges::any_of(nodes.subspan(kind.corners), [](std::int64_t node) { return node != 0; });
-    block_.types.push_back(is_curved ? kind.curved_type : kind.linear_type);
+    block_.types.push_back(vtk_number(is_curved ? kind.curved_type : kind.linear_type));
     for (const NastranEdge& edge : kind.edges) {
       if (!is_curved) break;
       const std::int64_t node = nodes[edge.node];

@@ -180,7 +180,7 @@ cells::CellBlock parse_node_ele(std::string_view node, std::string_view ele, con
     for (std::vector<double>& values : cell_values) values.push_back(in.need<double>("an attribute"));
   }
   if (nodes_each == 10) {
-    block.types.assign(n, order.vtk_type);
+    block.types.assign(n, vtk_number(order.type));
     block.offsets.resize(n + 1);
     for (std::size_t c = 0; c <= n; ++c) block.offsets[c] = 10 * c;
   }

@@ -11,20 +11,27 @@
 
 #include "cells/cell_block.hpp"
 #include "scene/time_step_read.hpp"
+#include "tessera/cell_type.hpp"
 
 namespace tessera::readers {
 
 /// Cells of volume that MED and VTK both know; cells/curved/node_orders.hpp has the order of their nodes.
 struct MedCellKind {
   med_geometry_type med;
-  std::uint8_t vtk;
+  CellType type;
   int nodes;
 };
-inline constexpr std::array med_cell_kinds = {
-    MedCellKind{MED_TETRA4, 10, 4},  MedCellKind{MED_PYRA5, 14, 5},    MedCellKind{MED_PENTA6, 13, 6},
-    MedCellKind{MED_HEXA8, 12, 8},   MedCellKind{MED_TETRA10, 24, 10}, MedCellKind{MED_OCTA12, 16, 12},
-    MedCellKind{MED_PYRA13, 27, 13}, MedCellKind{MED_PENTA15, 26, 15}, MedCellKind{MED_PENTA18, 32, 18},
-    MedCellKind{MED_HEXA20, 25, 20}, MedCellKind{MED_HEXA27, 29, 27}};
+inline constexpr std::array med_cell_kinds = {MedCellKind{MED_TETRA4, CellType::tetra, 4},
+                                              MedCellKind{MED_PYRA5, CellType::pyramid, 5},
+                                              MedCellKind{MED_PENTA6, CellType::wedge, 6},
+                                              MedCellKind{MED_HEXA8, CellType::hexahedron, 8},
+                                              MedCellKind{MED_TETRA10, CellType::quadratic_tetra, 10},
+                                              MedCellKind{MED_OCTA12, CellType::hexagonal_prism, 12},
+                                              MedCellKind{MED_PYRA13, CellType::quadratic_pyramid, 13},
+                                              MedCellKind{MED_PENTA15, CellType::quadratic_wedge, 15},
+                                              MedCellKind{MED_PENTA18, CellType::biquadratic_quadratic_wedge, 18},
+                                              MedCellKind{MED_HEXA20, CellType::quadratic_hexahedron, 20},
+                                              MedCellKind{MED_HEXA27, CellType::triquadratic_hexahedron, 27}};
 
 /// An open file. Every call that fails ends in Error.
 class MedFile {

@@ -55,7 +55,7 @@ void read_points(const MedFile& file, const MeshAt& mesh, cells::CellBlock& bloc
 /// Null for hexagonal prisms, whose order is VTK's.
 const cells::NodeOrder* order_of(const MedCellKind& kind) {
   for (const cells::NodeOrder& order : cells::all_node_orders())
-    if (order.convention == cells::NodeConvention::med && order.vtk_type == kind.vtk && order.nodes == kind.nodes)
+    if (order.convention == cells::NodeConvention::med && order.type == kind.type && order.nodes == kind.nodes)
       return &order;
   return nullptr;
 }
@@ -79,7 +79,7 @@ void read_cells(const MedFile& file, const MeshAt& mesh, MedMesh& to) {
         block.connectivity.push_back(node < 1 ? UINT32_MAX : static_cast<std::uint32_t>(node - 1));
       }
       if (order != nullptr) cells::to_vtk_order(*order, std::span(block.connectivity).last(nodes));
-      block.types.push_back(kind.vtk);
+      block.types.push_back(vtk_number(kind.type));
       block.offsets.push_back(block.connectivity.size());
     }
   }

@@ -13,13 +13,12 @@
 
 #include "cells/curved/node_orders.hpp"
 #include "scene/error.hpp"
+#include "tessera/cell_type.hpp"
 
 namespace tessera::readers {
 namespace {
 
 using ElementType = CGNS_ENUMT(ElementType_t);
-
-constexpr std::uint8_t polyhedron = 42;  // VTK's cell type number
 
 /// The order of nodes of an element of three dimensions that is read; null for others.
 const cells::NodeOrder* order_of(ElementType type) {
@@ -226,7 +225,7 @@ class Cells {
     }
     if (nodes.size() < solid->nodes)
       refuse(zone_, section, "has an element with too few nodes; the file is damaged, export it again");
-    block_.types.push_back(solid->vtk_type);
+    block_.types.push_back(vtk_number(solid->type));
     for (std::size_t k = 0; k < solid->nodes; ++k)
       block_.connectivity.push_back(point(nodes[solid->from.empty() ? k : solid->from[k]]));
     block_.offsets.push_back(block_.connectivity.size());
@@ -271,7 +270,7 @@ class Cells {
     std::ranges::sort(corners);
     const auto repeated = std::ranges::unique(corners);
     block_.connectivity.resize(block_.connectivity.size() - repeated.size());
-    block_.types.push_back(polyhedron);
+    block_.types.push_back(vtk_number(CellType::polyhedron));
     block_.offsets.push_back(block_.connectivity.size());
   }
 

@@ -18,7 +18,7 @@ struct Middle {
   std::initializer_list<std::uint8_t> corners;
 };
 
-/// Cells of this VTK type and number of nodes, which no other of Exodus' elements becomes, whose middle nodes come in
+/// Cells of this type and number of nodes, which no other of Exodus' elements becomes, whose middle nodes come in
 /// either of two orders.
 void settle(cells::CellBlock& block, const cells::NodeOrder& other, std::initializer_list<Middle> middles) {
   const cells::NodeOrder& manual = *find_node_order(other.convention, other.shape, other.nodes);
@@ -41,7 +41,7 @@ void settle(cells::CellBlock& block, const cells::NodeOrder& other, std::initial
   std::vector<std::span<std::uint32_t>> cells;
   double as_manual = 0, as_other = 0;
   for (std::size_t c = 0; c < block.types.size(); ++c) {
-    if (block.types[c] != other.vtk_type || block.offsets[c + 1] - block.offsets[c] != other.nodes) continue;
+    if (block.types[c] != vtk_number(other.type) || block.offsets[c + 1] - block.offsets[c] != other.nodes) continue;
     cells.push_back(std::span(block.connectivity).subspan(block.offsets[c], other.nodes));
     as_manual += far_from_middles(cells.back());
     as_other += far_from_middles(in_other_order(cells.back()));
@@ -64,22 +64,22 @@ ExodusElement exodus_element(const std::string& topology, std::int64_t nodes) {
     std::string_view beginning;
     cells::CurvedFamily shape;
     std::int64_t corners;
-    std::uint8_t other;  ///< its type for other numbers of nodes
+    CellType other;  ///< its type for other numbers of nodes
   };
-  static constexpr Solid solids[] = {{"HEX", cells::CurvedFamily::hexahedron, 8, 72},
-                                     {"TET", cells::CurvedFamily::tet, 4, 71},
-                                     {"WED", cells::CurvedFamily::wedge, 6, 73},
-                                     {"PYR", cells::CurvedFamily::pyramid, 5, 74}};
+  static constexpr Solid solids[] = {{"HEX", cells::CurvedFamily::hexahedron, 8, CellType::lagrange_hexahedron},
+                                     {"TET", cells::CurvedFamily::tet, 4, CellType::lagrange_tetrahedron},
+                                     {"WED", cells::CurvedFamily::wedge, 6, CellType::lagrange_wedge},
+                                     {"PYR", cells::CurvedFamily::pyramid, 5, CellType::lagrange_pyramid}};
   for (const Solid& solid : solids) {
     if (!topology.starts_with(solid.beginning) || nodes < solid.corners) continue;
     const cells::NodeOrder* const order =
         cells::find_node_order(cells::NodeConvention::exodus, solid.shape, static_cast<std::size_t>(nodes));
-    return {order != nullptr ? order->vtk_type : solid.other, order};
+    return {order != nullptr ? order->type : solid.other, order};
   }
-  if (topology.starts_with("NFA")) return {42, nullptr};
+  if (topology.starts_with("NFA")) return {CellType::polyhedron, nullptr};
   for (const char* flat :
        {"SHE", "QUA", "TRI", "BAR", "BEA", "TRU", "SPH", "CIR", "NSI", "EDG", "LIN", "POI", "RIG", "CON"})
-    if (topology.starts_with(flat)) return {9, nullptr};
+    if (topology.starts_with(flat)) return {CellType::quad, nullptr};
   return {};
 }
 

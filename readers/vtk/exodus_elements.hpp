@@ -3,11 +3,13 @@
 #include <vtk_exodusII.h>
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "cells/cell_block.hpp"
 #include "cells/curved/node_orders.hpp"
+#include "tessera/cell_type.hpp"
 
 namespace tessera::readers {
 
@@ -16,7 +18,7 @@ std::string exodus_topology(const ex_block& info);
 
 /// What a block's elements are. Solids with nodes that no type of ours has are drawn by their corners.
 struct ExodusElement {
-  std::uint8_t vtk = 255;                   ///< 9 for all that is no solid, 42 for polyhedra, 255 for what is not known
+  std::optional<CellType> type{};           ///< `quad` for all that is no solid, none for what is not known
   const cells::NodeOrder* order = nullptr;  ///< null unless it is a solid of the table
 };
 

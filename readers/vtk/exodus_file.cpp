@@ -23,6 +23,7 @@
 #include "readers/vtk/exodus_sets.hpp"
 #include "readers/vtk/netcdf/netcdf_size.hpp"
 #include "scene/error.hpp"
+#include "tessera/cell_type.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -300,13 +301,13 @@ class Reading {
         continue;
       }
       const std::string topology = exodus_topology(info);
-      const ExodusElement type = exodus_element(topology, info.num_nodes_per_entry);
-      if (type.vtk == 255)
+      const ExodusElement element = exodus_element(topology, info.num_nodes_per_entry);
+      if (!element.type)
         throw scene::bad_input(
             fmt::format("{}: element block {} holds '{}' of {} nodes, which is not known; write tetrahedra, wedges, "
                         "pyramids or hexahedra",
                         source_, id, topology.substr(0, 20), info.num_nodes_per_entry));
-      add_block(id, info, type);
+      add_block(id, info, element);
       if (of.empty()) continue;
       keep_cells(block_, blocks_.back().first, of);
       blocks_.back().count = of.size();
@@ -325,17 +326,18 @@ class Reading {
   }
 
   void add_block(std::int64_t id, const ex_block& info, const ExodusElement& element) {
-    const std::uint8_t type = element.vtk;
+    const CellType type = *element.type;
     const auto count = static_cast<std::size_t>(info.num_entry);
     blocks_.push_back({id, block_.types.size(), count});
-    const bool has_corners = (type != 9 || is_faces(info)) && type != 42;
+    const bool has_corners = (type != CellType::quad || is_faces(info)) && type != CellType::polyhedron;
     const auto nodes = static_cast<std::size_t>(std::max<std::int64_t>(has_corners ? info.num_nodes_per_entry : 0, 0));
     if (nodes > 0 && count > most_values_ / nodes)
       file_->fail(fmt::format("it promises {} elements of {} nodes", count, nodes));
     // Of faces the corners are used.
     const std::string topology = exodus_topology(info);
     const bool is_triangle = topology.starts_with("TRI") || nodes == 3 || nodes == 6 || nodes == 7;
-    block_.types.insert(block_.types.end(), count, type == 9 && is_triangle ? std::uint8_t{5} : type);
+    block_.types.insert(block_.types.end(), count,
+                        vtk_number(type == CellType::quad && is_triangle ? CellType::triangle : type));
     if (nodes > 0) {
       std::vector<std::int64_t> corner(count * nodes);
       file_->require_values(ex_get_conn(file_->id(), EX_ELEM_BLOCK, id, corner.data(), nullptr, nullptr),
@@ -356,7 +358,7 @@ class Reading {
         cells::to_vtk_order(*element.order,
                             std::span(block_.connectivity).subspan(block_.offsets[block_.offsets.size() - 2], nodes));
     }
-    if (type == 42) faces_.add(id, info, init_.num_nodes, block_);
+    if (type == CellType::polyhedron) faces_.add(id, info, init_.num_nodes, block_);
     report_progress(static_cast<double>(block_.types.size()) /
                     static_cast<double>(std::max<std::int64_t>(init_.num_elem, 1)));
   }

@@ -9,6 +9,7 @@
 #include "readers/vtk/exodus_elements.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
+#include "tessera/cell_type.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -90,7 +91,7 @@ std::vector<std::uint64_t> ExodusSets::chosen_of(std::uint64_t first, std::uint6
 
 namespace {
 
-constexpr std::uint8_t polygon = 7;
+constexpr std::uint8_t polygon = vtk_number(CellType::polygon);
 
 /// The faces that solids' sides are; false, and nothing added, where one is no solid's.
 bool add_sides_of_solids(int file, std::span<const std::int64_t> elements, std::span<const std::int64_t> sides,
