@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "scene/position_order.hpp"
+#include "tessera/cell_type.hpp"
 
-namespace tessera::cells {
+namespace tessera::io {
 namespace {
 
 struct Face {
@@ -110,68 +110,72 @@ bool split_off_far_corner(std::uint8_t apex, std::span<const Triangle> triangles
 }  // namespace
 
 CellShape cell_shape(std::uint8_t vtk_type) {
-  switch (vtk_type) {
-    case 10:
+  const CellType type{vtk_type};
+  switch (type) {
+    case CellType::tetra:
       return {CellKind::tet, 4, 4, false};
-    case 11:
+    case CellType::voxel:
       return {CellKind::voxel, 8, 8, false};
-    case 12:
+    case CellType::hexahedron:
       return {CellKind::hexahedron, 8, 8, false};
-    case 13:
+    case CellType::wedge:
       return {CellKind::wedge, 6, 6, false};
-    case 14:
+    case CellType::pyramid:
       return {CellKind::pyramid, 5, 5, false};
-    case 15:
+    case CellType::pentagonal_prism:
       return {CellKind::pentagonal_prism, 10, 10, false};
-    case 16:
+    case CellType::hexagonal_prism:
       return {CellKind::hexagonal_prism, 12, 12, false};
-    case 41:
+    case CellType::convex_point_set:
       return {CellKind::convex_point_set, 0, 0, false};
-    case 42:
+    case CellType::polyhedron:
       return {CellKind::polyhedron, 0, 0, false};
-    case 24:
+    case CellType::quadratic_tetra:
       return {CellKind::tet, 4, 10, true};
-    case 25:
+    case CellType::quadratic_hexahedron:
       return {CellKind::hexahedron, 8, 20, true};
-    case 26:
+    case CellType::quadratic_wedge:
       return {CellKind::wedge, 6, 15, true};
-    case 27:
+    case CellType::quadratic_pyramid:
       return {CellKind::pyramid, 5, 13, true};
-    case 29:
+    case CellType::triquadratic_hexahedron:
       return {CellKind::hexahedron, 8, 27, true};
-    case 31:
+    case CellType::quadratic_linear_wedge:
       return {CellKind::wedge, 6, 12, true};
-    case 32:
+    case CellType::biquadratic_quadratic_wedge:
       return {CellKind::wedge, 6, 18, true};
-    case 33:
+    case CellType::biquadratic_quadratic_hexahedron:
       return {CellKind::hexahedron, 8, 24, true};
-    case 37:
+    case CellType::triquadratic_pyramid:
       return {CellKind::pyramid, 5, 19, true};
-    case 71:
-    case 78:
+    case CellType::lagrange_tetrahedron:
+    case CellType::bezier_tetrahedron:
       return {CellKind::tet, 4, 0, true};
-    case 72:
-    case 79:
+    case CellType::lagrange_hexahedron:
+    case CellType::bezier_hexahedron:
       return {CellKind::hexahedron, 8, 0, true};
-    case 73:
-    case 80:
+    case CellType::lagrange_wedge:
+    case CellType::bezier_wedge:
       return {CellKind::wedge, 6, 0, true};
-    case 74:
-    case 81:
+    case CellType::lagrange_pyramid:
+    case CellType::bezier_pyramid:
       return {CellKind::pyramid, 5, 0, true};
     default:
       break;
   }
-  const bool flat = vtk_type <= 9 || (vtk_type >= 21 && vtk_type <= 23) || vtk_type == 28 || vtk_type == 30 ||
-                    (vtk_type >= 34 && vtk_type <= 36) || (vtk_type >= 51 && vtk_type <= 54) ||
-                    (vtk_type >= 60 && vtk_type <= 63) || (vtk_type >= 68 && vtk_type <= 70) ||
-                    (vtk_type >= 75 && vtk_type <= 77);
+  // The last two ranges are of VTK's parametric and first higher-order curves and surfaces.
+  const bool flat = type <= CellType::quad || (type >= CellType::quadratic_edge && type <= CellType::quadratic_quad) ||
+                    type == CellType::biquadratic_quad || type == CellType::quadratic_linear_quad ||
+                    (type >= CellType::biquadratic_triangle && type <= CellType::quadratic_polygon) ||
+                    (type >= CellType::lagrange_curve && type <= CellType::lagrange_quadrilateral) ||
+                    (type >= CellType::bezier_curve && type <= CellType::bezier_quadrilateral) ||
+                    (vtk_type >= 51 && vtk_type <= 54) || (vtk_type >= 60 && vtk_type <= 63);
   return {flat ? CellKind::not_volumetric : CellKind::unsupported, 0, 0, false};
 }
 
 std::string cell_type_name(std::uint8_t vtk_type) {
-  if (vtk_type == 41) return "convex point set";
-  if (vtk_type == 42) return "polyhedron";
+  if (vtk_type == vtk_number(CellType::convex_point_set)) return "convex point set";
+  if (vtk_type == vtk_number(CellType::polyhedron)) return "polyhedron";
   const CellShape shape = cell_shape(vtk_type);
   static constexpr const char* names[] = {"tetrahedron",      "voxel",           "hexahedron",  "wedge", "pyramid",
                                           "pentagonal prism", "hexagonal prism", "face or line"};
@@ -216,4 +220,4 @@ void split_cell(CellKind kind, std::span<const std::uint32_t> corner, std::span<
   }
 }
 
-}  // namespace tessera::cells
+}  // namespace tessera::io

@@ -7,16 +7,26 @@
 #include <stdexcept>
 
 #include "cells/cell_split.hpp"
+#include "tessera/cell_type.hpp"
 
 namespace tessera::cells {
 namespace {
 
-bool is_bezier(std::uint8_t type) { return type >= 78 && type <= 80; }
+bool is_bezier(std::uint8_t number) {
+  const CellType type{number};
+  return type >= CellType::bezier_tetrahedron && type <= CellType::bezier_wedge;
+}
 /// Whose orders may be told by HigherOrderDegrees.
-bool has_degrees(std::uint8_t type) { return (type >= 71 && type <= 73) || is_bezier(type); }
-bool is_curved(std::uint8_t type) {
-  return (type >= 24 && type <= 27) || type == 29 || (type >= 31 && type <= 33) || type == 37 || type == 74 ||
-         has_degrees(type);
+bool has_degrees(std::uint8_t number) {
+  const CellType type{number};
+  return (type >= CellType::lagrange_tetrahedron && type <= CellType::lagrange_wedge) || is_bezier(number);
+}
+bool is_curved(std::uint8_t number) {
+  const CellType type{number};
+  return (type >= CellType::quadratic_tetra && type <= CellType::quadratic_pyramid) ||
+         type == CellType::triquadratic_hexahedron ||
+         (type >= CellType::quadratic_linear_wedge && type <= CellType::biquadratic_quadratic_hexahedron) ||
+         type == CellType::triquadratic_pyramid || type == CellType::lagrange_pyramid || has_degrees(number);
 }
 
 /// Of one cell's weights: beyond it, a few bits are left of what has the smallest.

@@ -5,6 +5,7 @@
 
 #include "cells/curved/bernstein.hpp"
 #include "cells/curved/curved_pyramid.hpp"
+#include "tessera/cell_type.hpp"
 
 namespace tessera::cells {
 namespace {
@@ -277,43 +278,45 @@ CurvedLattice bubble_lattice(CurvedFamily family) {
 }
 
 /// Quadratic cells of VTK, whose mid-edge nodes come in rounds of their own.
-std::optional<CurvedLattice> quadratic_lattice(std::uint8_t vtk_type) {
+std::optional<CurvedLattice> quadratic_lattice(CellType type) {
   static constexpr Edge hexahedron_rounds[] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
                                                {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
   static constexpr LatticePlace face_centres[] = {{0, 1, 1}, {2, 1, 1}, {1, 0, 1}, {1, 2, 1}, {1, 1, 0}, {1, 1, 2}};
   CurvedLattice lattice;
-  switch (vtk_type) {
-    case 25:
-    case 29:
-    case 33: {
+  switch (type) {
+    case CellType::quadratic_hexahedron:
+    case CellType::triquadratic_hexahedron:
+    case CellType::biquadratic_quadratic_hexahedron: {
       lattice = quadratic(CurvedFamily::hexahedron);
       Numbering numbering(lattice);
       numbering.add_corners();
       numbering.add_edges(hexahedron_rounds);
-      const int centres = vtk_type == 25 ? 0 : vtk_type == 33 ? 4 : 6;
+      const int centres = type == CellType::quadratic_hexahedron               ? 0
+                          : type == CellType::biquadratic_quadratic_hexahedron ? 4
+                                                                               : 6;
       for (int k = 0; k < centres; ++k) numbering.add(face_centres[k]);
-      if (vtk_type == 29) numbering.add({1, 1, 1});
+      if (type == CellType::triquadratic_hexahedron) numbering.add({1, 1, 1});
       return lattice;
     }
-    case 26:
-    case 31:
-    case 32: {
-      lattice = quadratic(CurvedFamily::wedge, vtk_type == 31 ? 1 : 2);
+    case CellType::quadratic_wedge:
+    case CellType::quadratic_linear_wedge:
+    case CellType::biquadratic_quadratic_wedge: {
+      lattice = quadratic(CurvedFamily::wedge, type == CellType::quadratic_linear_wedge ? 1 : 2);
       Numbering numbering(lattice);
       numbering.add_corners();
-      numbering.add_edges(std::span(wedge_edges).first(vtk_type == 31 ? 6 : 9));
-      if (vtk_type == 32)
+      numbering.add_edges(std::span(wedge_edges).first(type == CellType::quadratic_linear_wedge ? 6 : 9));
+      if (type == CellType::biquadratic_quadratic_wedge)
         for (const LatticePlace& p : {LatticePlace{1, 0, 1}, {1, 1, 1}, {0, 1, 1}}) numbering.add(p);
       return lattice;
     }
-    case 27: {
+    case CellType::quadratic_pyramid: {
       lattice = quadratic(CurvedFamily::pyramid);
       Numbering numbering(lattice);
       numbering.add_corners();
       numbering.add_edges(pyramid_edges);
       return lattice;
     }
-    case 37:
+    case CellType::triquadratic_pyramid:
       return bubble_lattice(CurvedFamily::pyramid);
     default:
       return std::nullopt;
@@ -321,24 +324,30 @@ std::optional<CurvedLattice> quadratic_lattice(std::uint8_t vtk_type) {
 }
 
 /// The cells of second order that VTK has not; by their numbers of nodes.
-std::optional<CurvedLattice> incomplete_lattice(std::uint8_t vtk_type, std::size_t nodes) {
+std::optional<CurvedLattice> incomplete_lattice(CellType type, std::size_t nodes) {
   struct Row {
-    std::uint8_t type;
+    CellType type;
     std::size_t nodes;
     CurvedFamily family;
     std::size_t first, from, to;  ///< of a complete cell's nodes the first ones, then [from, to)
   };
-  static constexpr Row rows[] = {
-      {71, 5, CurvedFamily::tet, 4, 14, 15},        {71, 7, CurvedFamily::tet, 7, 0, 0},
-      {71, 8, CurvedFamily::tet, 4, 10, 14},        {71, 11, CurvedFamily::tet, 10, 14, 15},
-      {71, 14, CurvedFamily::tet, 14, 0, 0},        {72, 9, CurvedFamily::hexahedron, 8, 26, 27},
-      {72, 16, CurvedFamily::hexahedron, 16, 0, 0}, {72, 21, CurvedFamily::hexahedron, 20, 26, 27},
-      {72, 26, CurvedFamily::hexahedron, 26, 0, 0}, {73, 16, CurvedFamily::wedge, 15, 20, 21},
-      {73, 20, CurvedFamily::wedge, 20, 0, 0},      {74, 18, CurvedFamily::pyramid, 18, 0, 0}};
+  static constexpr Row rows[] = {{CellType::lagrange_tetrahedron, 5, CurvedFamily::tet, 4, 14, 15},
+                                 {CellType::lagrange_tetrahedron, 7, CurvedFamily::tet, 7, 0, 0},
+                                 {CellType::lagrange_tetrahedron, 8, CurvedFamily::tet, 4, 10, 14},
+                                 {CellType::lagrange_tetrahedron, 11, CurvedFamily::tet, 10, 14, 15},
+                                 {CellType::lagrange_tetrahedron, 14, CurvedFamily::tet, 14, 0, 0},
+                                 {CellType::lagrange_hexahedron, 9, CurvedFamily::hexahedron, 8, 26, 27},
+                                 {CellType::lagrange_hexahedron, 16, CurvedFamily::hexahedron, 16, 0, 0},
+                                 {CellType::lagrange_hexahedron, 21, CurvedFamily::hexahedron, 20, 26, 27},
+                                 {CellType::lagrange_hexahedron, 26, CurvedFamily::hexahedron, 26, 0, 0},
+                                 {CellType::lagrange_wedge, 16, CurvedFamily::wedge, 15, 20, 21},
+                                 {CellType::lagrange_wedge, 20, CurvedFamily::wedge, 20, 0, 0},
+                                 {CellType::lagrange_pyramid, 18, CurvedFamily::pyramid, 18, 0, 0}};
   for (const Row& row : rows) {
-    if (row.type != vtk_type || row.nodes != nodes) continue;
+    if (row.type != type || row.nodes != nodes) continue;
     const bool is_hexahedron = row.family == CurvedFamily::hexahedron;
-    CurvedLattice lattice = is_hexahedron ? *quadratic_lattice(29) : bubble_lattice(row.family);
+    CurvedLattice lattice =
+        is_hexahedron ? *quadratic_lattice(CellType::triquadratic_hexahedron) : bubble_lattice(row.family);
     const std::vector<LatticePlace> all = lattice.nodes;
     lattice.nodes.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(row.first));
     lattice.nodes.insert(lattice.nodes.end(), all.begin() + static_cast<std::ptrdiff_t>(row.from),
@@ -352,37 +361,37 @@ std::optional<CurvedLattice> incomplete_lattice(std::uint8_t vtk_type, std::size
   return std::nullopt;
 }
 
-/// Of Lagrange cells, 71 to 74.
-std::optional<CurvedLattice> lagrange_lattice(std::uint8_t vtk_type, std::size_t nodes,
-                                              const std::array<int, 3>& degrees) {
-  if (vtk_type == 71 && nodes == 15) return bubble_lattice(CurvedFamily::tet);
-  if (vtk_type == 73 && nodes == 21 && degrees[2] <= 2) return bubble_lattice(CurvedFamily::wedge);
-  const bool given = degrees[0] > 0 && degrees[1] > 0 && degrees[2] > 0 && (vtk_type == 72 || vtk_type == 73);
+/// Of Lagrange cells.
+std::optional<CurvedLattice> lagrange_lattice(CellType type, std::size_t nodes, const std::array<int, 3>& degrees) {
+  if (type == CellType::lagrange_tetrahedron && nodes == 15) return bubble_lattice(CurvedFamily::tet);
+  if (type == CellType::lagrange_wedge && nodes == 21 && degrees[2] <= 2) return bubble_lattice(CurvedFamily::wedge);
+  const bool given = degrees[0] > 0 && degrees[1] > 0 && degrees[2] > 0 &&
+                     (type == CellType::lagrange_hexahedron || type == CellType::lagrange_wedge);
   constexpr int highest = 100;  // of 10^6 nodes a cell
   if (given) {
     if (std::max({degrees[0], degrees[1], degrees[2]}) > highest) return std::nullopt;
     const std::size_t p = static_cast<std::size_t>(degrees[0]) + 1, q = static_cast<std::size_t>(degrees[1]) + 1,
                       n = static_cast<std::size_t>(degrees[2]) + 1;
-    if (nodes != (vtk_type == 72 ? p * q * n : p * (p + 1) / 2 * n)) return std::nullopt;
+    if (nodes != (type == CellType::lagrange_hexahedron ? p * q * n : p * (p + 1) / 2 * n)) return std::nullopt;
   }
   CurvedLattice lattice;
-  if (vtk_type == 24 || vtk_type == 71) {
+  if (type == CellType::quadratic_tetra || type == CellType::lagrange_tetrahedron) {
     const int n = order_with(nodes, [](std::size_t k) { return (k + 1) * (k + 2) * (k + 3) / 6; });
     lattice.family = CurvedFamily::tet;
     lattice.order = {n, n, n};
     Numbering numbering(lattice);
     if (n > 0 && n <= highest) add_tet(numbering, {0, 0, 0}, n);
-  } else if (vtk_type == 72) {
+  } else if (type == CellType::lagrange_hexahedron) {
     const int n = order_with(nodes, [](std::size_t k) { return (k + 1) * (k + 1) * (k + 1); });
     lattice.family = CurvedFamily::hexahedron;
     lattice.order = given ? degrees : std::array{n, n, n};
     if ((given || n > 0) && lattice.order[0] <= highest) number_lagrange_hexahedron(lattice);
-  } else if (vtk_type == 73) {
+  } else if (type == CellType::lagrange_wedge) {
     const int n = order_with(nodes, [](std::size_t k) { return (k + 1) * (k + 2) / 2 * (k + 1); });
     lattice.family = CurvedFamily::wedge;
     lattice.order = given ? std::array{degrees[0], degrees[0], degrees[2]} : std::array{n, n, n};
     if ((given || n > 0) && lattice.order[0] <= highest) number_lagrange_wedge(lattice);
-  } else if (vtk_type == 74) {
+  } else if (type == CellType::lagrange_pyramid) {
     const int n = order_with(nodes, [](std::size_t k) { return (k + 1) * (k + 2) * (2 * k + 3) / 6; });
     lattice.family = CurvedFamily::pyramid;
     lattice.order = {n, n, n};
@@ -392,27 +401,31 @@ std::optional<CurvedLattice> lagrange_lattice(std::uint8_t vtk_type, std::size_t
 }
 
 /// The cells of third order that have only the first of their lattice's nodes, those of edges or of edges and faces.
-std::optional<CurvedLattice> incomplete_cubic_lattice(std::uint8_t vtk_type, std::size_t nodes) {
+std::optional<CurvedLattice> incomplete_cubic_lattice(CellType type, std::size_t nodes) {
   struct Row {
-    std::uint8_t type;
+    CellType type;
     std::size_t nodes, all;
   };
-  static constexpr Row rows[] = {{71, 16, 20}, {72, 32, 64}, {72, 56, 64}, {73, 24, 40},
-                                 {73, 38, 40}, {74, 21, 30}, {74, 29, 30}};
+  static constexpr Row rows[] = {{CellType::lagrange_tetrahedron, 16, 20}, {CellType::lagrange_hexahedron, 32, 64},
+                                 {CellType::lagrange_hexahedron, 56, 64},  {CellType::lagrange_wedge, 24, 40},
+                                 {CellType::lagrange_wedge, 38, 40},       {CellType::lagrange_pyramid, 21, 30},
+                                 {CellType::lagrange_pyramid, 29, 30}};
   for (const Row& row : rows) {
-    if (row.type != vtk_type || row.nodes != nodes) continue;
-    std::optional<CurvedLattice> lattice = lagrange_lattice(vtk_type, row.all, {});
+    if (row.type != type || row.nodes != nodes) continue;
+    std::optional<CurvedLattice> lattice = lagrange_lattice(type, row.all, {});
     lattice->given = nodes;
     return lattice;
   }
   return std::nullopt;
 }
 
-/// Of Bezier cells, 78 to 80: those of Lagrange's.
-std::optional<CurvedLattice> bezier_lattice(std::uint8_t vtk_type, std::size_t nodes,
-                                            const std::array<int, 3>& degrees) {
-  if (vtk_type < 78 || vtk_type > 80) return std::nullopt;
-  std::optional<CurvedLattice> lattice = lagrange_lattice(static_cast<std::uint8_t>(vtk_type - 7), nodes, degrees);
+/// Of Bezier cells: those of Lagrange's.
+std::optional<CurvedLattice> bezier_lattice(CellType type, std::size_t nodes, const std::array<int, 3>& degrees) {
+  if (type < CellType::bezier_tetrahedron || type > CellType::bezier_wedge) return std::nullopt;
+  const CellType lagrange = type == CellType::bezier_tetrahedron  ? CellType::lagrange_tetrahedron
+                            : type == CellType::bezier_hexahedron ? CellType::lagrange_hexahedron
+                                                                  : CellType::lagrange_wedge;
+  std::optional<CurvedLattice> lattice = lagrange_lattice(lagrange, nodes, degrees);
   if (!lattice || lattice->has_bubbles) return std::nullopt;
   if (std::max({lattice->order[0], lattice->order[1], lattice->order[2]}) > highest_degree) return std::nullopt;
   lattice->has_control_points = true;
@@ -423,11 +436,12 @@ std::optional<CurvedLattice> bezier_lattice(std::uint8_t vtk_type, std::size_t n
 
 std::optional<CurvedLattice> curved_lattice(std::uint8_t vtk_type, std::size_t nodes,
                                             const std::array<int, 3>& degrees) {
-  std::optional<CurvedLattice> lattice = quadratic_lattice(vtk_type);
-  if (!lattice && degrees == std::array<int, 3>{}) lattice = incomplete_lattice(vtk_type, nodes);
-  if (!lattice && degrees == std::array<int, 3>{}) lattice = incomplete_cubic_lattice(vtk_type, nodes);
-  if (!lattice) lattice = lagrange_lattice(vtk_type, nodes, degrees);
-  if (!lattice) lattice = bezier_lattice(vtk_type, nodes, degrees);
+  const CellType type{vtk_type};
+  std::optional<CurvedLattice> lattice = quadratic_lattice(type);
+  if (!lattice && degrees == std::array<int, 3>{}) lattice = incomplete_lattice(type, nodes);
+  if (!lattice && degrees == std::array<int, 3>{}) lattice = incomplete_cubic_lattice(type, nodes);
+  if (!lattice) lattice = lagrange_lattice(type, nodes, degrees);
+  if (!lattice) lattice = bezier_lattice(type, nodes, degrees);
   if (!lattice) return std::nullopt;
   if (lattice->given == 0) lattice->given = lattice->nodes.size();
   if (lattice->given != nodes) return std::nullopt;
