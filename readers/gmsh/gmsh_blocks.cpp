@@ -215,7 +215,7 @@ class Blocks {
   }
 
   void add_cells(const GmshElements& elements, cells::CellBlock& block) {
-    block.types.insert(block.types.end(), elements.tags.size(), elements.cell->vtk_type);
+    block.types.insert(block.types.end(), elements.tags.size(), vtk_number(elements.cell->type));
     for (std::size_t c = 0; c < elements.tags.size(); ++c) {
       const std::span cell = std::span(elements.nodes).subspan(c * elements.nodes_a_cell, elements.nodes_a_cell);
       for (const std::size_t node : elements.cell->nodes)

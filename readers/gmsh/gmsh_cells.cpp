@@ -11,22 +11,26 @@
 namespace tessera::readers {
 namespace {
 
-/// VTK's types of linear cells.
-std::uint8_t linear_type(std::size_t corners) { return corners == 4 ? 10 : corners == 5 ? 14 : corners == 6 ? 13 : 12; }
+CellType linear_type(std::size_t corners) {
+  return corners == 4   ? CellType::tetra
+         : corners == 5 ? CellType::pyramid
+         : corners == 6 ? CellType::wedge
+                        : CellType::hexahedron;
+}
 
 /// VTK's type of so many corners and nodes; none if it has no such.
-std::optional<std::uint8_t> curved_type(std::size_t order, std::size_t corners, std::size_t nodes) {
+std::optional<CellType> curved_type(std::size_t order, std::size_t corners, std::size_t nodes) {
   const std::size_t n = order + 1;
-  if (corners == 4 && nodes == 10) return 24;
-  if (corners == 4 && nodes == n * (n + 1) * (n + 2) / 6) return 71;
-  if (corners == 5 && nodes == 13) return 27;
-  if (corners == 5 && nodes == n * (n + 1) * (2 * n + 1) / 6) return 74;
-  if (corners == 6 && nodes == 15) return 26;
-  if (corners == 6 && nodes == 18) return 32;
-  if (corners == 6 && nodes == n * n * (n + 1) / 2) return 73;
-  if (corners == 8 && nodes == 20) return 25;
-  if (corners == 8 && nodes == 27) return 29;
-  if (corners == 8 && nodes == n * n * n) return 72;
+  if (corners == 4 && nodes == 10) return CellType::quadratic_tetra;
+  if (corners == 4 && nodes == n * (n + 1) * (n + 2) / 6) return CellType::lagrange_tetrahedron;
+  if (corners == 5 && nodes == 13) return CellType::quadratic_pyramid;
+  if (corners == 5 && nodes == n * (n + 1) * (2 * n + 1) / 6) return CellType::lagrange_pyramid;
+  if (corners == 6 && nodes == 15) return CellType::quadratic_wedge;
+  if (corners == 6 && nodes == 18) return CellType::biquadratic_quadratic_wedge;
+  if (corners == 6 && nodes == n * n * (n + 1) / 2) return CellType::lagrange_wedge;
+  if (corners == 8 && nodes == 20) return CellType::quadratic_hexahedron;
+  if (corners == 8 && nodes == 27) return CellType::triquadratic_hexahedron;
+  if (corners == 8 && nodes == n * n * n) return CellType::lagrange_hexahedron;
   return std::nullopt;
 }
 
@@ -106,13 +110,14 @@ std::vector<double> gmsh_prism_places(int order) {
 GmshCell gmsh_cell(int order, std::size_t corners, std::span<const double> places) {
   const std::size_t nodes = places.size() / 3;
   GmshCell cell;
-  cell.vtk_type = linear_type(corners);
+  cell.type = linear_type(corners);
   cell.nodes.resize(corners);
   std::iota(cell.nodes.begin(), cell.nodes.end(), std::size_t{0});
   if (nodes == corners) return cell;
   cell.by_corners = true;
-  const std::optional<std::uint8_t> type = curved_type(static_cast<std::size_t>(order), corners, nodes);
-  const std::optional<cells::CurvedLattice> lattice = type ? cells::curved_lattice(*type, nodes) : std::nullopt;
+  const std::optional<CellType> type = curved_type(static_cast<std::size_t>(order), corners, nodes);
+  const std::optional<cells::CurvedLattice> lattice =
+      type ? cells::curved_lattice(vtk_number(*type), nodes) : std::nullopt;
   if (!lattice) return cell;
 
   std::vector<glm::dvec3> theirs;
@@ -131,7 +136,7 @@ GmshCell gmsh_cell(int order, std::size_t corners, std::span<const double> place
       if (std::abs(d.x) + std::abs(d.y) + std::abs(d.z) < apart) order_of_nodes.push_back(k);
     }
   if (order_of_nodes.size() != nodes) return cell;
-  cell.vtk_type = *type;
+  cell.type = *type;
   cell.nodes = std::move(order_of_nodes);
   cell.by_corners = false;
   return cell;

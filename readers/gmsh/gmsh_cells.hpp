@@ -4,11 +4,13 @@
 #include <span>
 #include <vector>
 
-namespace tessera::readers {
+#include "tessera/cell_type.hpp"
+
+namespace tessera::io::helper {
 
 /// How an element of Gmsh's becomes a cell of VTK's.
 struct GmshCell {
-  std::uint8_t vtk_type = 0;
+  CellType type = CellType::empty_cell;
   std::vector<std::size_t> nodes;  ///< for each of VTK's nodes, in its order, the number of Gmsh's
   bool by_corners = false;         ///< there is no such cell here: the linear one of its corners
 };
@@ -23,4 +25,4 @@ GmshCell gmsh_cell(int order, std::size_t corners, std::span<const double> place
 /// quadrilaterals as smaller ones, then of the cell, upright line by upright line.
 std::vector<double> gmsh_prism_places(int order);
 
-}  // namespace tessera::readers
+}  // namespace tessera::io::helper

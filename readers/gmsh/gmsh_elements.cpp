@@ -187,7 +187,7 @@ GmshVolumes gmsh_volumes(const std::filesystem::path& file, const std::string& s
     for (std::size_t k = 0; k < element_types.size(); ++k) {
       if (tags[k].empty()) continue;
       const GmshCell& cell = cell_of(element_types[k], volumes.cells, notes);
-      if (cell.vtk_type == 0)
+      if (cell.type == CellType::empty_cell)
         throw scene::bad_input(
             fmt::format("{}: its cells of Gmsh's type {} are not rendered; split them into "
                         "tetrahedra",

@@ -12,25 +12,41 @@
 
 #include "readers/xdmf/xdmf_elements.hpp"
 #include "scene/error.hpp"
+#include "tessera/cell_type.hpp"
 
 namespace tessera::readers {
 namespace {
 
-struct CellType {
+struct XdmfCell {
   unsigned xdmf;  ///< in topologies of mixed cells, "XDMF Model and Format"
-  std::uint8_t vtk;
+  CellType type;
   std::uint8_t nodes;  ///< 0: the number comes first
 };
-constexpr std::array cell_types = {
-    CellType{1, 2, 0},    CellType{2, 4, 0},    CellType{3, 7, 0},    CellType{4, 5, 3},    CellType{5, 9, 4},
-    CellType{6, 10, 4},   CellType{7, 14, 5},   CellType{8, 13, 6},   CellType{9, 12, 8},   CellType{34, 21, 3},
-    CellType{35, 28, 9},  CellType{36, 22, 6},  CellType{37, 23, 8},  CellType{38, 24, 10}, CellType{39, 27, 13},
-    CellType{40, 26, 15}, CellType{41, 32, 18}, CellType{48, 25, 20}, CellType{49, 33, 24}, CellType{50, 29, 27}};
+constexpr std::array xdmf_cells = {XdmfCell{1, CellType::poly_vertex, 0},
+                                   XdmfCell{2, CellType::poly_line, 0},
+                                   XdmfCell{3, CellType::polygon, 0},
+                                   XdmfCell{4, CellType::triangle, 3},
+                                   XdmfCell{5, CellType::quad, 4},
+                                   XdmfCell{6, CellType::tetra, 4},
+                                   XdmfCell{7, CellType::pyramid, 5},
+                                   XdmfCell{8, CellType::wedge, 6},
+                                   XdmfCell{9, CellType::hexahedron, 8},
+                                   XdmfCell{34, CellType::quadratic_edge, 3},
+                                   XdmfCell{35, CellType::biquadratic_quad, 9},
+                                   XdmfCell{36, CellType::quadratic_triangle, 6},
+                                   XdmfCell{37, CellType::quadratic_quad, 8},
+                                   XdmfCell{38, CellType::quadratic_tetra, 10},
+                                   XdmfCell{39, CellType::quadratic_pyramid, 13},
+                                   XdmfCell{40, CellType::quadratic_wedge, 15},
+                                   XdmfCell{41, CellType::biquadratic_quadratic_wedge, 18},
+                                   XdmfCell{48, CellType::quadratic_hexahedron, 20},
+                                   XdmfCell{49, CellType::biquadratic_quadratic_hexahedron, 24},
+                                   XdmfCell{50, CellType::triquadratic_hexahedron, 27}};
 
-const CellType& type_of(unsigned xdmf, const std::string& name, const std::string& where) {
+const XdmfCell& cell_of(unsigned xdmf, const std::string& name, const std::string& where) {
   const auto* const type =
-      std::find_if(cell_types.begin(), cell_types.end(), [&](const CellType& t) { return t.xdmf == xdmf; });
-  if (type == cell_types.end())
+      std::find_if(xdmf_cells.begin(), xdmf_cells.end(), [&](const XdmfCell& c) { return c.xdmf == xdmf; });
+  if (type == xdmf_cells.end())
     throw scene::bad_input(
         fmt::format("{}: it has cells of the type {}, which are not read; write tetrahedra, hexahedra, wedges or "
                     "pyramids of first or second order",
@@ -66,13 +82,13 @@ class Numbers {
           fmt::format("{}: its topology ends within a cell; it is truncated or damaged, write it anew", where_));
     return numbers_[at_++];
   }
-  void add_cell(std::uint8_t type, std::int64_t nodes, XdmfCells& cells) {
+  void add_cell(CellType type, std::int64_t nodes, XdmfCells& cells) {
     if (nodes < 0 || static_cast<std::uint64_t>(nodes) > numbers_.size() - at_) at_ = numbers_.size(), next();
     for (std::int64_t n = 0; n < nodes; ++n) {
       const std::int64_t node = numbers_[at_++] - base_;
       cells.connectivity.push_back(node < 0 || node >= UINT32_MAX ? UINT32_MAX : static_cast<std::uint32_t>(node));
     }
-    cells.types.push_back(type);
+    cells.types.push_back(vtk_number(type));
     cells.offsets.push_back(cells.connectivity.size());
   }
 
@@ -102,16 +118,16 @@ XdmfCells cells_of(XdmfTopology& topology, const std::string& where) {
   if (topology.getType() == XdmfTopologyType::Mixed()) {
     while (!numbers.at_end()) {
       const std::int64_t number = numbers.next();
-      const CellType& type = type_of(number < 0 ? 0 : static_cast<unsigned>(number), fmt::format("{}", number), where);
-      numbers.add_cell(type.vtk, type.nodes > 0 ? type.nodes : numbers.next(), cells);
+      const XdmfCell& cell = cell_of(number < 0 ? 0 : static_cast<unsigned>(number), fmt::format("{}", number), where);
+      numbers.add_cell(cell.type, cell.nodes > 0 ? cell.nodes : numbers.next(), cells);
     }
     return cells;
   }
-  const CellType& type = type_of(topology.getType()->getID(), topology.getType()->getName(), where);
+  const XdmfCell& cell = cell_of(topology.getType()->getID(), topology.getType()->getName(), where);
   const std::int64_t nodes = topology.getType()->getNodesPerElement();
-  if (nodes <= 0 || (type.nodes > 0 && nodes != type.nodes))
+  if (nodes <= 0 || (cell.nodes > 0 && nodes != cell.nodes))
     throw scene::bad_input(fmt::format("{}: its cells have {} nodes each; write it anew", where, nodes));
-  while (!numbers.at_end()) numbers.add_cell(type.vtk, nodes, cells);
+  while (!numbers.at_end()) numbers.add_cell(cell.type, nodes, cells);
   return cells;
 }
 
