@@ -10,6 +10,7 @@
 
 #include "scene/directions.hpp"
 #include "scene/error.hpp"
+#include "tessera/cell_type.hpp"
 
 namespace tessera::cells {
 namespace {
@@ -18,7 +19,6 @@ using scene::Tet;
 
 // vtkDataSetAttributes.h: CellGhostTypes and PointGhostTypes.
 constexpr std::uint8_t duplicate_cell = 1, refined_cell = 8, hidden_cell = 32, hidden_point = 2;
-constexpr std::uint8_t tetra = 10;  // VTK's cell type number
 
 /// Tets that each higher-order cell may become beside CurvedSettings::all of them together.
 constexpr std::uint64_t each_curved_cell = 64;
@@ -81,7 +81,7 @@ void BlockCells::split(std::size_t first, std::size_t last, BlockTets& out) cons
 
 void BlockCells::split_cell(std::size_t c, Workplace& work, BlockTets& out) const {
   const bool all_tets = block_.types.empty();
-  const std::uint8_t type = all_tets ? tetra : block_.types[c];
+  const std::uint8_t type = all_tets ? vtk_number(CellType::tetra) : block_.types[c];
   const CellShape& shape = shapes_[type];
   const std::size_t nodes = all_tets ? 4 : block_.offsets[c + 1] - block_.offsets[c];
   if (shape.kind == CellKind::not_volumetric) {

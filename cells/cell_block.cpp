@@ -7,6 +7,7 @@
 
 #include "cells/tuple_length.hpp"
 #include "scene/error.hpp"
+#include "tessera/cell_type.hpp"
 
 namespace tessera::cells {
 
@@ -30,7 +31,7 @@ BlockField field_of_values(std::string name, std::string type, scene::Associatio
 }
 
 void require_faces(const CellBlock& block, const std::string& where) {
-  constexpr std::uint8_t polyhedron = 42;  // VTK's cell type number
+  constexpr std::uint8_t polyhedron = vtk_number(CellType::polyhedron);
   if (block.face_locations.empty() && block.faces.empty()) return;
   if (block.face_locations.size() != block.types.size())
     throw scene::bad_input(fmt::format("{}: {} places of faces for {} cells; write one for each cell", where,

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 
-namespace tessera::cells {
+#include "tessera/cell_type.hpp"
+
+namespace tessera::io {
 namespace {
 
-constexpr std::uint8_t tetra = 10, voxel = 11;  // VTK's cell type numbers
+constexpr std::uint8_t tetra = vtk_number(CellType::tetra), voxel = vtk_number(CellType::voxel);
 
 AmrIndex moved(AmrIndex p, std::size_t axis, std::int32_t by) {
   p[axis] += by;
@@ -169,4 +171,4 @@ CellBlock conforming_cells(const AmrLattice& lattice, int steps, AmrCubes cubes,
   return block;
 }
 
-}  // namespace tessera::cells
+}  // namespace tessera::io

@@ -14,6 +14,7 @@
 #include "io/mesh/mesh_formats.hpp"
 #include "io/text/clean_errors.hpp"
 #include "scene/error.hpp"
+#include "tessera/cell_type.hpp"
 
 namespace tessera::io {
 namespace {
@@ -21,27 +22,27 @@ namespace {
 /// The corners of a two-dimensional cell one after the other round it; none of other cells.
 std::vector<std::uint32_t> rim_of(std::uint8_t type, std::span<const std::uint32_t> points) {
   std::size_t corners = 0;
-  switch (type) {
-    case 5:   // triangle
-    case 22:  // quadratic, biquadratic and Lagrange triangles
-    case 34:
-    case 69:
+  switch (CellType{type}) {
+    case CellType::triangle:
+    case CellType::quadratic_triangle:
+    case CellType::biquadratic_triangle:
+    case CellType::lagrange_triangle:
       corners = 3;
       break;
-    case 8:  // pixel
+    case CellType::pixel:
       if (points.size() >= 4) return {points[0], points[1], points[3], points[2]};
       break;
-    case 9:  // quadrilateral
-    case 23:
-    case 28:
-    case 30:
-    case 70:
+    case CellType::quad:
+    case CellType::quadratic_quad:
+    case CellType::biquadratic_quad:
+    case CellType::quadratic_linear_quad:
+    case CellType::lagrange_quadrilateral:
       corners = 4;
       break;
-    case 7:  // polygon
+    case CellType::polygon:
       corners = points.size();
       break;
-    case 36:  // quadratic polygon: corners, then as many nodes between them
+    case CellType::quadratic_polygon:  // corners, then as many nodes between them
       corners = points.size() / 2;
       break;
     default:
@@ -61,7 +62,7 @@ class Faces {
     for (std::size_t c = 0; c < block.types.size(); ++c) {
       const auto points =
           std::span(block.connectivity).subspan(block.offsets[c], block.offsets[c + 1] - block.offsets[c]);
-      if (block.types[c] == 6) {  // triangle strip
+      if (block.types[c] == vtk_number(CellType::triangle_strip)) {
         for (std::size_t k = 0; k + 2 < points.size(); ++k)
           add_face(block, c, std::array{points[k + k % 2], points[k + 1 - k % 2], points[k + 2]}, source);
         continue;

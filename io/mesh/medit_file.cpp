@@ -13,24 +13,25 @@
 #include "cells/block_groups.hpp"
 #include "io/text/clean_errors.hpp"
 #include "scene/error.hpp"
+#include "tessera/cell_type.hpp"
 
 namespace tessera::io {
 namespace {
 
 constexpr std::int32_t code_dimension = 3, code_vertices = 4, code_end = 54, last_known_code = 250;
 
-/// A keyword of cells and VTK's type of them.
+/// A keyword of cells and the type of them.
 struct MeditCells {
   std::int32_t code;
   std::string_view word;
-  std::uint8_t type;
+  CellType type;
   std::size_t nodes;
 };
-constexpr std::array<MeditCells, 5> medit_cells = {{{8, "Tetrahedra", 10, 4},
-                                                    {9, "Prisms", 13, 6},
-                                                    {10, "Hexahedra", 12, 8},
-                                                    {49, "Pyramids", 14, 5},
-                                                    {30, "TetrahedraP2", 24, 10}}};
+constexpr std::array<MeditCells, 5> medit_cells = {{{8, "Tetrahedra", CellType::tetra, 4},
+                                                    {9, "Prisms", CellType::wedge, 6},
+                                                    {10, "Hexahedra", CellType::hexahedron, 8},
+                                                    {49, "Pyramids", CellType::pyramid, 5},
+                                                    {30, "TetrahedraP2", CellType::quadratic_tetra, 10}}};
 
 /// Volumes that are not read, and another order of nodes.
 constexpr std::array<std::pair<std::int32_t, std::string_view>, 14> unread_cells = {{{33, "hexahedra of order 2"},
@@ -128,7 +129,7 @@ class MeditBinary {
         block_.connectivity.push_back(static_cast<std::uint32_t>(node - 1));
       }
       references_.push_back(whole("reference"));
-      block_.types.push_back(cells.type);
+      block_.types.push_back(vtk_number(cells.type));
       block_.offsets.push_back(block_.connectivity.size());
     }
   }
@@ -228,7 +229,7 @@ class MeditText {
         block_.connectivity.push_back(static_cast<std::uint32_t>(node - 1));
       }
       references_.push_back(whole("a reference"));
-      block_.types.push_back(cells.type);
+      block_.types.push_back(vtk_number(cells.type));
       block_.offsets.push_back(block_.connectivity.size());
     }
   }

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "scene/error.hpp"
+#include "tessera/cell_type.hpp"
 
 namespace tessera::io {
 namespace {
@@ -18,18 +19,18 @@ constexpr std::string_view separators = " \t\r,";
 /// Points of a cell of VTK's types that SU2 has; 0 of others.
 std::size_t nodes_of(std::uint64_t type) {
   switch (type) {
-    case 3:
+    case vtk_number(CellType::line):
       return 2;
-    case 5:
+    case vtk_number(CellType::triangle):
       return 3;
-    case 9:
-    case 10:
+    case vtk_number(CellType::quad):
+    case vtk_number(CellType::tetra):
       return 4;
-    case 12:
+    case vtk_number(CellType::hexahedron):
       return 8;
-    case 13:
+    case vtk_number(CellType::wedge):
       return 6;
-    case 14:
+    case vtk_number(CellType::pyramid):
       return 5;
     default:
       return 0;

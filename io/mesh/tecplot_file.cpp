@@ -12,12 +12,10 @@
 #include "io/mesh/tecplot_numbers.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
+#include "tessera/cell_type.hpp"
 
 namespace tessera::io {
 namespace {
-
-constexpr std::uint8_t tecplot_tetrahedron = 10, tecplot_hexahedron = 12, tecplot_wedge = 13, tecplot_pyramid = 14,
-                       tecplot_polyhedron = 42;  // VTK's numbers
 
 /// The letter of a coordinate that a name begins with: "X", "x [m]", "CoordinateX"; none of others.
 char tecplot_axis(std::string_view name) {
@@ -132,8 +130,8 @@ class TecplotZones {
   std::map<std::size_t, std::unique_ptr<TecplotNumbers>> read_;
 };
 
-void add_tecplot_cell(cells::CellBlock& block, std::uint8_t type, std::initializer_list<std::size_t> nodes) {
-  block.types.push_back(type);
+void add_tecplot_cell(cells::CellBlock& block, CellType type, std::initializer_list<std::size_t> nodes) {
+  block.types.push_back(vtk_number(type));
   for (const std::size_t node : nodes) block.connectivity.push_back(static_cast<std::uint32_t>(node));
   block.offsets.push_back(block.connectivity.size());
 }
@@ -142,13 +140,13 @@ void add_tecplot_cell(cells::CellBlock& block, std::uint8_t type, std::initializ
 void add_brick(cells::CellBlock& block, const std::array<std::size_t, 8>& n) {
   const bool is_top_point = n[4] == n[5] && n[5] == n[6] && n[6] == n[7];
   if (n[2] == n[3] && is_top_point)
-    add_tecplot_cell(block, tecplot_tetrahedron, {n[0], n[1], n[2], n[4]});
+    add_tecplot_cell(block, CellType::tetra, {n[0], n[1], n[2], n[4]});
   else if (is_top_point)
-    add_tecplot_cell(block, tecplot_pyramid, {n[0], n[1], n[2], n[3], n[4]});
+    add_tecplot_cell(block, CellType::pyramid, {n[0], n[1], n[2], n[3], n[4]});
   else if (n[2] == n[3] && n[6] == n[7])
-    add_tecplot_cell(block, tecplot_wedge, {n[0], n[1], n[2], n[4], n[5], n[6]});
+    add_tecplot_cell(block, CellType::wedge, {n[0], n[1], n[2], n[4], n[5], n[6]});
   else
-    add_tecplot_cell(block, tecplot_hexahedron, {n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7]});
+    add_tecplot_cell(block, CellType::hexahedron, {n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7]});
 }
 
 void add_ordered(const TecplotZone& zone, cells::CellBlock& block) {
@@ -158,12 +156,12 @@ void add_ordered(const TecplotZone& zone, cells::CellBlock& block) {
       for (std::size_t i = 0; i + 1 < zone.i; ++i) {
         const std::size_t p = i + j * row + k * layer;
         add_tecplot_cell(
-            block, tecplot_hexahedron,
+            block, CellType::hexahedron,
             {p, p + 1, p + row + 1, p + row, p + layer, p + layer + 1, p + layer + row + 1, p + layer + row});
       }
 }
 
-/// Each tecplot_polyhedron's faces are those that have it on their left or right.
+/// Each polyhedron's faces are those that have it on their left or right.
 void add_polyhedra(const TecplotZone& zone, const TecplotNumbers& numbers, cells::CellBlock& block) {
   std::vector<std::vector<std::size_t>> faces_of(zone.elements);
   std::vector<std::size_t> starts{0};
@@ -183,7 +181,7 @@ void add_polyhedra(const TecplotZone& zone, const TecplotNumbers& numbers, cells
         nodes.insert(numbers.face_nodes[n] - 1);
       }
     }
-    block.types.push_back(tecplot_polyhedron);
+    block.types.push_back(vtk_number(CellType::polyhedron));
     block.connectivity.insert(block.connectivity.end(), nodes.begin(), nodes.end());
     block.offsets.push_back(block.connectivity.size());
   }
@@ -203,7 +201,7 @@ void add_cells(const TecplotZone& zone, const TecplotNumbers& numbers, cells::Ce
   const std::vector<std::size_t>& all = numbers.connectivity;
   if (zone.type == TecplotZoneType::tetrahedra) {
     for (std::size_t k = 0; k + 4 <= all.size(); k += 4)
-      add_tecplot_cell(block, tecplot_tetrahedron, {all[k] - 1, all[k + 1] - 1, all[k + 2] - 1, all[k + 3] - 1});
+      add_tecplot_cell(block, CellType::tetra, {all[k] - 1, all[k + 1] - 1, all[k + 2] - 1, all[k + 3] - 1});
     return;
   }
   for (std::size_t k = 0; k + 8 <= all.size(); k += 8) {

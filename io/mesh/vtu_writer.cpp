@@ -12,6 +12,7 @@
 #include "io/mesh/mesh_reader.hpp"
 #include "io/text/xml_elements.hpp"
 #include "system/atomic_file.hpp"
+#include "tessera/cell_type.hpp"
 
 namespace tessera::io {
 namespace {
@@ -104,7 +105,8 @@ void write_vtu(const scene::TetMeshView& mesh, const std::filesystem::path& file
                              [&](std::size_t k) { return std::int64_t{mesh.tets[k / 4][k % 4]}; }),
       array_of<std::int64_t>("type=\"Int64\" Name=\"offsets\"", tets,
                              [](std::size_t k) { return static_cast<std::int64_t>(4 * (k + 1)); }),
-      array_of<std::uint8_t>("type=\"UInt8\" Name=\"types\"", tets, [](std::size_t) { return std::uint8_t{10}; })};
+      array_of<std::uint8_t>("type=\"UInt8\" Name=\"types\"", tets,
+                             [](std::size_t) { return vtk_number(CellType::tetra); })};
   const std::string name = xml_escaped(mesh.field_name.empty() ? "scalar" : std::string(mesh.field_name));
   const WrittenArray scalars = array_of<double>(fmt::format("type=\"Float64\" Name=\"{}\"", name), mesh.scalars.size(),
                                                 [&](std::size_t k) { return mesh.scalars[k]; });

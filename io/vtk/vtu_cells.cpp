@@ -12,13 +12,15 @@
 #include "io/vtk/vtu_faces.hpp"
 #include "scene/error.hpp"
 #include "system/large_vector.hpp"
+#include "tessera/cell_type.hpp"
 
 namespace tessera::io {
 namespace {
 
-constexpr std::uint8_t tetrahedron = 10;
-/// VTK's numbers of hexahedra of any order: those of its first classes, Lagrange's and Bezier's.
-constexpr std::array<std::uint8_t, 3> higher_order_hexahedra = {67, 72, 79};
+constexpr std::uint8_t tetrahedron = vtk_number(CellType::tetra);
+/// VTK's numbers of hexahedra of any order: those of its first classes (67), Lagrange's and Bezier's.
+constexpr std::array<std::uint8_t, 3> higher_order_hexahedra = {67, vtk_number(CellType::lagrange_hexahedron),
+                                                                vtk_number(CellType::bezier_hexahedron)};
 
 bool is_higher_order_hexahedron(std::uint8_t type) { return std::ranges::count(higher_order_hexahedra, type) > 0; }
 

@@ -10,6 +10,7 @@
 #include "io/foreign/client/foreign_file.hpp"
 #include "scene/error.hpp"
 #include "system/large_vector.hpp"
+#include "tessera/cell_type.hpp"
 
 namespace tessera::io {
 namespace {
@@ -153,7 +154,8 @@ void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, ce
     cells::require_faces(block, where);
   }
   // Tets in a file of mixed cells were looked for there; Exodus blocks come as they are.
-  const bool all_tets = std::all_of(block.types.begin(), block.types.end(), [](std::uint8_t t) { return t == 10; });
+  const bool all_tets = std::all_of(block.types.begin(), block.types.end(),
+                                    [](std::uint8_t t) { return t == vtk_number(CellType::tetra); });
   for (std::size_t c = 0; all_tets && c < block.types.size(); ++c)
     if (block.offsets[c] != 4 * c) return;
   if (!all_tets || block.types.empty() || block.connectivity.size() != 4 * block.types.size()) return;
@@ -178,11 +180,11 @@ void add_grid_cells(const std::array<std::int64_t, 3>& n, cells::CellBlock& bloc
   std::size_t cells = 1;
   for (const std::int64_t side : n) cells *= static_cast<std::size_t>(std::max<std::int64_t>(side - 1, 1));
   if (n[0] < 2 || n[1] < 2 || n[2] < 2) {
-    block.types.assign(cells, 9);
+    block.types.assign(cells, vtk_number(CellType::quad));
     block.offsets.assign(cells + 1, 0);
     return;
   }
-  block.types.assign(cells, 12);
+  block.types.assign(cells, vtk_number(CellType::hexahedron));
   block.offsets.resize(cells + 1);
   for (std::size_t c = 0; c <= cells; ++c) block.offsets[c] = 8 * c;
   block.connectivity.reserve(8 * cells);
@@ -240,8 +242,7 @@ void add_polygons(const ForeignFile& file, const ForeignPart& part, cells::CellB
   if (!part.offsets || !part.connectivity || part.offsets->tuples == 0) return;
   if (part.connectivity->type != NumberType::uint32)
     throw scene::bad_input(fmt::format("{}: its cells are lists of no known width; write it anew", where));
-  constexpr std::uint8_t polygon = 7;
-  block.types.assign(part.offsets->tuples - 1, polygon);
+  block.types.assign(part.offsets->tuples - 1, vtk_number(CellType::polygon));
   copy_offsets(file, *part.offsets, block, where);
   copy_numbers<std::uint32_t>(file, *part.connectivity, block.connectivity, where);
   check_cells(block, where);
