@@ -9,6 +9,7 @@
 
 #include "reference/curved/curved_nodes.hpp"
 #include "scene/error.hpp"
+#include "tessera/cell_type.hpp"
 
 namespace tessera::reference {
 namespace {
@@ -307,71 +308,71 @@ CellShape enriched_wedge() {
 }
 
 /// Node counts of the types that have one.
-std::size_t nodes_of(std::uint8_t vtk_type) {
-  switch (vtk_type) {
-    case 10:
+std::size_t nodes_of(CellType type) {
+  switch (type) {
+    case CellType::tetra:
       return 4;
-    case 11:
-    case 12:
+    case CellType::voxel:
+    case CellType::hexahedron:
       return 8;
-    case 13:
+    case CellType::wedge:
       return 6;
-    case 14:
+    case CellType::pyramid:
       return 5;
-    case 24:
+    case CellType::quadratic_tetra:
       return 10;
-    case 25:
+    case CellType::quadratic_hexahedron:
       return 20;
-    case 26:
+    case CellType::quadratic_wedge:
       return 15;
-    case 27:
+    case CellType::quadratic_pyramid:
       return 13;
-    case 29:
+    case CellType::triquadratic_hexahedron:
       return 27;
-    case 31:
+    case CellType::quadratic_linear_wedge:
       return 12;
-    case 32:
+    case CellType::biquadratic_quadratic_wedge:
       return 18;
-    case 33:
+    case CellType::biquadratic_quadratic_hexahedron:
       return 24;
-    case 37:
+    case CellType::triquadratic_pyramid:
       return 19;
     default:
       return 0;
   }
 }
 
-CellShape fixed_shape(std::uint8_t vtk_type) {
-  switch (vtk_type) {
-    case 10:
+CellShape fixed_shape(CellType type) {
+  switch (type) {
+    case CellType::tetra:
       return full(BernsteinBasis(Domain::tet, {1, 1, 1}), tet_nodes(1));
-    case 11: {
+    case CellType::voxel: {
       std::vector<glm::dvec3> nodes = hexahedron_nodes({1, 1, 1});
       std::swap(nodes[2], nodes[3]);
       std::swap(nodes[6], nodes[7]);
       return full(BernsteinBasis(Domain::box, {1, 1, 1}), std::move(nodes));
     }
-    case 12:
+    case CellType::hexahedron:
       return full(BernsteinBasis(Domain::box, {1, 1, 1}), hexahedron_nodes({1, 1, 1}));
-    case 13:
+    case CellType::wedge:
       return full(BernsteinBasis(Domain::prism, {1, 1, 1}), wedge_nodes(1, 1));
-    case 14:
+    case CellType::pyramid:
       return linear_pyramid();
-    case 24:
+    case CellType::quadratic_tetra:
       return full(BernsteinBasis(Domain::tet, {2, 2, 2}), tet_nodes(2));
-    case 25:
+    case CellType::quadratic_hexahedron:
       return quadratic_hexahedron();
-    case 26:
+    case CellType::quadratic_wedge:
       return quadratic_wedge();
-    case 27:
+    case CellType::quadratic_pyramid:
       return quadratic_pyramid();
-    case 29:
+    case CellType::triquadratic_hexahedron:
       return full(BernsteinBasis(Domain::box, {2, 2, 2}), hexahedron_nodes({2, 2, 2}));
-    case 31:
+    case CellType::quadratic_linear_wedge:
       return full(BernsteinBasis(Domain::prism, {2, 2, 1}), wedge_nodes(2, 1));
-    case 32:
+    case CellType::biquadratic_quadratic_wedge:
       return full(BernsteinBasis(Domain::prism, {2, 2, 2}), wedge_nodes(2, 2));
-    case 33:
+    case CellType::biquadratic_quadratic_hexahedron:
       return biquadratic_hexahedron();
     default:
       return triquadratic_pyramid();
@@ -383,19 +384,42 @@ constexpr int highest_order = 10;
 }  // namespace
 
 bool without_volume(std::uint8_t vtk_type) {
-  constexpr std::array<std::uint8_t, 24> types{0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  21, 22,
-                                               23, 28, 30, 34, 35, 36, 68, 69, 70, 75, 76, 77};
-  return std::find(types.begin(), types.end(), vtk_type) != types.end();
+  constexpr std::array types{CellType::empty_cell,
+                             CellType::vertex,
+                             CellType::poly_vertex,
+                             CellType::line,
+                             CellType::poly_line,
+                             CellType::triangle,
+                             CellType::triangle_strip,
+                             CellType::polygon,
+                             CellType::pixel,
+                             CellType::quad,
+                             CellType::quadratic_edge,
+                             CellType::quadratic_triangle,
+                             CellType::quadratic_quad,
+                             CellType::biquadratic_quad,
+                             CellType::quadratic_linear_quad,
+                             CellType::biquadratic_triangle,
+                             CellType::cubic_line,
+                             CellType::quadratic_polygon,
+                             CellType::lagrange_curve,
+                             CellType::lagrange_triangle,
+                             CellType::lagrange_quadrilateral,
+                             CellType::bezier_curve,
+                             CellType::bezier_triangle,
+                             CellType::bezier_quadrilateral};
+  return std::find(types.begin(), types.end(), CellType{vtk_type}) != types.end();
 }
 
 CellShape cell_shape(std::uint8_t vtk_type, std::size_t nodes, std::array<int, 3> orders, const std::string& where) {
-  if (const std::size_t wanted = nodes_of(vtk_type); wanted > 0) {
+  const CellType type{vtk_type};
+  if (const std::size_t wanted = nodes_of(type); wanted > 0) {
     if (nodes != wanted)
       throw scene::bad_input(fmt::format("{}: type {} has {} nodes, this cell {}; write all of its nodes", where,
                                          vtk_type, wanted, nodes));
-    return fixed_shape(vtk_type);
+    return fixed_shape(type);
   }
-  if (vtk_type == 74) {
+  if (type == CellType::lagrange_pyramid) {
     const auto count = [](std::size_t n) { return (n + 1) * (n + 2) * (2 * n + 3) / 6; };
     std::size_t order = 1;
     while (order < highest_order && count(order) < nodes) ++order;
@@ -406,18 +430,22 @@ CellShape cell_shape(std::uint8_t vtk_type, std::size_t nodes, std::array<int, 3
                       where, nodes, highest_order));
     return lagrange_pyramid(static_cast<int>(order));
   }
-  const bool of_tet = vtk_type == 71 || vtk_type == 78, of_hexahedron = vtk_type == 72 || vtk_type == 79,
-             of_wedge = vtk_type == 73 || vtk_type == 80, is_bezier = vtk_type >= 78;
+  const bool of_tet = type == CellType::lagrange_tetrahedron || type == CellType::bezier_tetrahedron,
+             of_hexahedron = type == CellType::lagrange_hexahedron || type == CellType::bezier_hexahedron,
+             of_wedge = type == CellType::lagrange_wedge || type == CellType::bezier_wedge,
+             is_bezier = type >= CellType::bezier_tetrahedron;
   if (!of_tet && !of_hexahedron && !of_wedge)
     throw scene::bad_input(
         fmt::format("{}: cells of type {} are not known to the reference; leave them out", where, vtk_type));
   const auto has = [&](std::initializer_list<std::size_t> counts) {
     return std::find(counts.begin(), counts.end(), nodes) != counts.end();
   };
-  if (vtk_type == 71 && has({5, 7, 8, 11, 14, 15})) return enriched_tet(nodes);
-  if (vtk_type == 72 && orders == std::array{0, 0, 0} && has({9, 16, 21, 26})) return incomplete_hexahedron(nodes);
-  if (vtk_type == 73 && orders == std::array{0, 0, 0} && has({16, 20})) return incomplete_wedge(nodes);
-  if (vtk_type == 73 && nodes == 21) return enriched_wedge();
+  if (type == CellType::lagrange_tetrahedron && has({5, 7, 8, 11, 14, 15})) return enriched_tet(nodes);
+  if (type == CellType::lagrange_hexahedron && orders == std::array{0, 0, 0} && has({9, 16, 21, 26}))
+    return incomplete_hexahedron(nodes);
+  if (type == CellType::lagrange_wedge && orders == std::array{0, 0, 0} && has({16, 20}))
+    return incomplete_wedge(nodes);
+  if (type == CellType::lagrange_wedge && nodes == 21) return enriched_wedge();
   const auto count = [&](const std::array<int, 3>& o) {
     const auto [a, b, c] =
         std::array{static_cast<std::size_t>(o[0]), static_cast<std::size_t>(o[1]), static_cast<std::size_t>(o[2])};
