@@ -29,7 +29,7 @@ TriangleMesh read_block_surface(std::span<const std::filesystem::path> files, co
   const Dataset volume = Dataset::open(files, read);
   TriangleMesh boundary;
   tbb::task_arena(scene::threads_for(options.threads)).execute([&] {
-    boundary = frame::boundary_faces(volume.state().mesh).mesh;
+    boundary = frame::boundary_faces(StateAccess::of(volume).mesh).mesh;
   });
   if (boundary.triangles.empty())
     throw scene::bad_input(

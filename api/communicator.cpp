@@ -38,7 +38,7 @@ void run_ranks(int ranks, const std::function<void(const Communicator&)>& work) 
 namespace frame {
 
 Communicator communicator_over(exchange::Transport& transport) {
-  return Communicator(std::make_shared<const Communicator::State>(Communicator::State{
+  return StateAccess::make(std::make_shared<const Communicator::State>(Communicator::State{
       transport.rank(), transport.size(),
       [&transport] { return std::shared_ptr<exchange::Transport>(std::shared_ptr<void>(), &transport); }}));
 }

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "exchange/transport.hpp"
+#include "frame/state_access.hpp"
 #include "tessera/communicator.hpp"
 
 namespace tessera {

@@ -277,7 +277,7 @@ class TracedMessages {
 
 Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOptions& options,
                       const Communicator& communicator, const RankSettings& ranks) {
-  const std::shared_ptr<exchange::Transport> transport = communicator.state().connect();
+  const std::shared_ptr<exchange::Transport> transport = StateAccess::of(communicator).connect();
   return together(*transport, [&] {
     std::shared_ptr<State> state;
     if (files.empty()) throw scene::bad_input("input: no file is named; name one");
@@ -368,7 +368,7 @@ Dataset Dataset::of(std::shared_ptr<const SampleSource> samples) {
 
 Dataset Dataset::of_parts(const MeshArrays& part, const Communicator& communicator) {
   if (communicator.size() == 1) return of(part);
-  const std::shared_ptr<exchange::Transport> transport = communicator.state().connect();
+  const std::shared_ptr<exchange::Transport> transport = StateAccess::of(communicator).connect();
   return together(*transport, [&] {
     auto state = std::make_shared<State>();
     frame::ArrayMesh mesh = frame::mesh_of_part(part, *transport);

@@ -98,7 +98,7 @@ void write_tets_of(const scene::TetMeshView& mesh, const std::filesystem::path& 
 }  // namespace
 
 void write_mesh(const Dataset& mesh, const std::filesystem::path& file) {
-  const Dataset::State& state = mesh.state();
+  const Dataset::State& state = StateAccess::of(mesh);
   if (mesh.is_grid()) throw scene::bad_input(state.source + ": is a grid, no mesh; use write_grid");
   if (state.ranks > 1)
     throw scene::bad_input(state.source + ": this rank has a part of the mesh; open it on one rank to write it");
@@ -165,7 +165,7 @@ void check_grid_name(const std::filesystem::path& file) {
 }  // namespace
 
 void write_grid(const Dataset& grid, const std::filesystem::path& file, int block) {
-  const Dataset::State& state = grid.state();
+  const Dataset::State& state = StateAccess::of(grid);
   if (grid.is_mesh()) throw scene::bad_input(state.source + ": is a mesh, no grid; use write_mesh");
   check_grid_name(file);
   // Labels as they are in the file, at points.
@@ -182,7 +182,7 @@ bool is_grid_output(const std::filesystem::path& file) { return io::is_volume_ou
 
 SampleType written_type(const Dataset& grid) {
   if (grid.is_mesh()) throw scene::bad_input(grid.source() + ": is a mesh, which has no samples; ask grids for it");
-  return io::written_type(grid.state().samples->grid());
+  return io::written_type(StateAccess::of(grid).samples->grid());
 }
 
 int threads_for(int asked) { return scene::threads_for(asked); }

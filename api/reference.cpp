@@ -21,7 +21,7 @@ namespace {
 std::unique_ptr<const reference::RayReference> rays_of(const Dataset& dataset, const frame::UncutMesh& mesh,
                                                        const View& view, const TransferFunction& function,
                                                        const Settings& settings) {
-  const Dataset::State& data = dataset.state();
+  const Dataset::State& data = StateAccess::of(dataset);
   if (dataset.is_grid())
     return std::make_unique<reference::GridReference>(*data.samples, view.camera, view.size, function,
                                                       settings.emission, settings.grid.shading, data.clip,
@@ -34,7 +34,7 @@ std::unique_ptr<const reference::RayReference> rays_of(const Dataset& dataset, c
 
 Reference::Reference(Dataset dataset, const View& view, const TransferFunction& transfer_function,
                      const Settings& settings) {
-  const Dataset::State& data = dataset.state();
+  const Dataset::State& data = StateAccess::of(dataset);
   if (data.ranks > 1)
     throw scene::bad_input(data.source + ": this rank has a part of the mesh; open it on one rank to judge pictures");
   frame::UncutMesh mesh;

@@ -54,7 +54,7 @@ Dataset selected_part(const std::shared_ptr<const Dataset::State>& from, const S
     state->clip = selection.clip;
     state->uncut = from;
   }
-  return Dataset(std::move(state));
+  return StateAccess::make(std::move(state));
 }
 
 }  // namespace

@@ -124,7 +124,7 @@ std::unique_ptr<Session::State> make_state(Dataset dataset, const Settings& sett
 Session::Session(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 Session::Session(Dataset dataset, const Settings& settings, const Communicator& communicator)
-    : Session(make_state(std::move(dataset), settings, communicator.state().connect())) {}
+    : Session(make_state(std::move(dataset), settings, StateAccess::of(communicator).connect())) {}
 
 Session::~Session() = default;
 Session::Session(Session&&) noexcept = default;
@@ -165,7 +165,7 @@ Verification Session::verify(const RenderedFrame& frame, const View& view, const
   if (frame.image.size != view.size)
     throw scene::bad_input("verify: the frame is not of this view's size; give the view it was rendered with");
   const frame::Layers layers{frame.layers, frame.peel};
-  const Dataset::State& data = dataset().state();
+  const Dataset::State& data = StateAccess::of(dataset());
   if (dataset().is_grid()) {
     volume::RenderSettings grid = frame::grid_settings(settings());
     grid.clip = data.clip;

@@ -34,7 +34,7 @@ class TESSERA_HIDDEN Session::State {
                                                          const TransferFunction& function) const;
 
  protected:
-  [[nodiscard]] const Dataset::State& data() const { return dataset_.state(); }
+  [[nodiscard]] const Dataset::State& data() const { return StateAccess::of(dataset_); }
 
  private:
   Dataset dataset_;

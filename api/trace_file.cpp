@@ -41,7 +41,7 @@ void write_trace(const Trace& trace, const TraceRun& run, const std::filesystem:
 
 void write_trace(const Trace& trace, const std::string& process_name, const TraceRun& run,
                  const std::filesystem::path& file, const Communicator& communicator, int writer) {
-  const std::shared_ptr<exchange::Transport> connection = communicator.state().connect();
+  const std::shared_ptr<exchange::Transport> connection = StateAccess::of(communicator).connect();
   exchange::Transport& transport = *connection;
   const int self = transport.rank();
   if (self != writer) {

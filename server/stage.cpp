@@ -122,7 +122,7 @@ void Stage::drop(const std::string& key) {
   const auto gone = std::ranges::find_if(entries_, [&](const Entry& entry) { return entry.keys.front() == key; });
   if (gone == entries_.end()) return;
   std::erase_if(sessions_,
-                [&](const KeptSession& kept) { return &kept.session->dataset().state() == &gone->held->data.state(); });
+                [&](const KeptSession& kept) { return kept.session->dataset().is_copy_of(gone->held->data); });
   entries_.erase(gone);
 }
 
@@ -315,7 +315,7 @@ Session& Stage::session(const Json& /*state*/, const Scene& scene, HeldData& hel
   Settings settings = session_settings(scene, held);
   const std::string key = scene.settings_key() + (loaded.shaded ? " shaded" : "");
   for (auto kept = sessions_.begin(); kept != sessions_.end(); ++kept) {
-    if (kept->key != key || &kept->session->dataset().state() != &held.data.state()) continue;
+    if (kept->key != key || !kept->session->dataset().is_copy_of(held.data)) continue;
     sessions_.splice(sessions_.begin(), sessions_, kept);
     return *sessions_.front().session;
   }

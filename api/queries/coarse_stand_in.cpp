@@ -41,7 +41,7 @@ Dataset dataset_of(std::shared_ptr<const scene::SampleSource> samples, const Dat
   state->fields = {{whole.field_name, state->facts.association, 1, "float", range.low, range.high, range.blanks, true}};
   const GridIndex n = geometry.samples();
   state->notes = {fmt::format("a coarse stand-in of {} x {} x {} samples", n[0], n[1], n[2])};
-  return Dataset(std::move(state));
+  return StateAccess::make(std::move(state));
 }
 
 /// A grid of samples as StandInSamples has them.
@@ -65,7 +65,7 @@ std::shared_ptr<const scene::SampleSource> source_of(const frame::StandInSamples
 
 std::optional<Dataset> coarse_stand_in(const Dataset& dataset, const StandInSettings& settings,
                                        const std::stop_token& stop, const Communicator& communicator) {
-  const Dataset::State& data = dataset.state();
+  const Dataset::State& data = StateAccess::of(dataset);
   if (settings.samples < least_samples || settings.samples > most_samples)
     throw scene::bad_input(
         fmt::format("stand-in: {} samples; choose {} to {}", settings.samples, least_samples, most_samples));
@@ -86,7 +86,7 @@ std::optional<Dataset> coarse_stand_in(const Dataset& dataset, const StandInSett
       [&] { samples = frame::stand_in_samples(data.mesh, data.global_tet, data.facts.scalar_range, geometry, stop); });
   bool stopped = stop.stop_requested();
   if (data.ranks > 1) {
-    const std::shared_ptr<exchange::Transport> transport = communicator.state().connect();
+    const std::shared_ptr<exchange::Transport> transport = StateAccess::of(communicator).connect();
     stopped = frame::reduce_all(*transport, {stopped ? 1U : 0U}, frame::Reduction::bit_or).front() != 0;
     if (!stopped) samples = frame::reduce_all(*transport, std::move(samples), frame::Reduction::minimum);
   }

@@ -64,7 +64,7 @@ glm::dvec3 place_of(const Dataset::State& data, const scene::FieldSample& sample
 }
 
 std::vector<Share> shares_of(const Dataset& dataset, const std::optional<View>& seen) {
-  const Dataset::State& data = dataset.state();
+  const Dataset::State& data = StateAccess::of(dataset);
   std::optional<Window> window;
   if (seen) window.emplace(*seen);
   const bool clipped = !data.clip.empty();

@@ -143,7 +143,7 @@ class HigherOrderLevels {
       found.root_mean_square = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, a.rgba.size())));
     }
     if (communicator_.size() == 1) return found;
-    const auto transport = communicator_.state().connect();
+    const auto transport = StateAccess::of(communicator_).connect();
     return exchange::broadcast_value(*transport, assembler, exchange::MessageKind::higher_order, found);
   }
 

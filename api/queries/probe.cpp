@@ -215,7 +215,7 @@ std::vector<RayTet> tets_on_ray(const Dataset::State& data, const View& view, Pi
 }
 
 std::vector<RayTet> gathered(std::vector<RayTet> mine, const Communicator& communicator) {
-  const std::shared_ptr<exchange::Transport> transport = communicator.state().connect();
+  const std::shared_ptr<exchange::Transport> transport = StateAccess::of(communicator).connect();
   exchange::Bytes message = exchange::begin_message(exchange::MessageKind::ray_tets);
   exchange::append_list(message, mine);
   mine.clear();
@@ -296,7 +296,7 @@ RayProbe probe(const Dataset& dataset, const View& view, const TransferFunction&
   if (samples < 2 || samples > most_samples)
     throw scene::bad_input(fmt::format("probe: {} samples along the ray; choose 2 to {}", samples, most_samples));
   if (transfer_function.knots().empty()) throw scene::bad_input("transfer function: it has no knot; give one or more");
-  const Dataset::State& data = dataset.state();
+  const Dataset::State& data = StateAccess::of(dataset);
   if (dataset.is_grid()) return probed(RayInGrid(data, view, pixel, transfer_function, settings), samples);
   if (data.ranks > 1 && data.ranks != communicator.size())
     throw scene::bad_input(fmt::format(

@@ -25,12 +25,12 @@ class TESSERA_EXPORT Communicator {
   [[nodiscard]] int rank() const;
   [[nodiscard]] int size() const;
 
-  struct State;
-  /// For the library itself.
-  explicit Communicator(std::shared_ptr<const State> state) : state_(std::move(state)) {}
-  [[nodiscard]] const State& state() const { return *state_; }
+  struct State;  ///< incomplete for callers
 
  private:
+  friend struct StateAccess;
+  explicit Communicator(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+
   std::shared_ptr<const State> state_;
 };
 

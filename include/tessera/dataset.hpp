@@ -268,12 +268,15 @@ class TESSERA_EXPORT Dataset {
   /// Error(bad_input) for a grid or a part. `progress` hears how much is done, 0 to 1, on the calling thread.
   [[nodiscard]] MeshCheck check(const CheckProgressFunction& progress = nullptr) const;
 
-  struct State;
-  /// For the library itself.
-  explicit Dataset(std::shared_ptr<const State> state) : state_(std::move(state)) {}
-  [[nodiscard]] const State& state() const { return *state_; }
+  /// Whether both are copies of one data set that was opened once.
+  [[nodiscard]] bool is_copy_of(const Dataset& other) const { return state_ == other.state_; }
+
+  struct State;  ///< incomplete for callers
 
  private:
+  friend struct StateAccess;
+  explicit Dataset(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+
   std::shared_ptr<const State> state_;
 };
 

@@ -81,12 +81,11 @@ class TESSERA_EXPORT Session {
   [[nodiscard]] const Dataset& dataset() const;
   [[nodiscard]] const Settings& settings() const;
 
-  class State;
-  /// For the library itself.
-  explicit Session(std::unique_ptr<State> state);
-  [[nodiscard]] State& state() const { return *state_; }
+  class State;  ///< incomplete for callers
 
  private:
+  explicit Session(std::unique_ptr<State> state);
+
   std::unique_ptr<State> state_;
 };
 

@@ -29,7 +29,7 @@ double mean_difference(const Image& a, const Image& b) {
 }
 
 std::vector<float> samples_of(const Dataset& data) {
-  const scene::SampleSource& source = *data.state().samples;
+  const scene::SampleSource& source = *StateAccess::of(data).samples;
   std::vector<float> samples(static_cast<std::size_t>(source.geometry().all_samples().count()));
   source.read(source.geometry().all_samples(), std::span(samples));
   return samples;
@@ -113,7 +113,7 @@ TEST(CoarseStandIn, LooksLikeAGrid) {
 
 TEST(CoarseStandIn, OfFewSamplesIsTheGridItself) {
   const Dataset data = grid_of(9, waves);
-  EXPECT_EQ(&coarse_stand_in(data, {})->state(), &data.state());
+  EXPECT_TRUE(coarse_stand_in(data, {})->is_copy_of(data));
 }
 
 TEST(CoarseStandIn, IsTheSameForAnyNumberOfThreadsAndRanks) {

@@ -414,9 +414,9 @@ TEST_P(AnyKind, ASinksOwnErrorIsNotTheRuns) {
 TEST(MeshArrays, AreBorrowedWhereTheLayoutAllows) {
   const Cube cube(4);
   const Dataset data = Dataset::of(cube.arrays());
-  EXPECT_EQ(data.state().mesh.positions.data(), cube.points.data());
-  EXPECT_EQ(data.state().mesh.scalars.data(), cube.scalars.data());
-  EXPECT_EQ(static_cast<const void*>(data.state().mesh.tets.data()), cube.tets.data());
+  EXPECT_EQ(StateAccess::of(data).mesh.positions.data(), cube.points.data());
+  EXPECT_EQ(StateAccess::of(data).mesh.scalars.data(), cube.scalars.data());
+  EXPECT_EQ(static_cast<const void*>(StateAccess::of(data).mesh.tets.data()), cube.tets.data());
   EXPECT_EQ(data.tet_count(), cube.tets.size() / 4);
   EXPECT_EQ(data.format(), "arrays");
 

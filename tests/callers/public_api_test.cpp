@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <new>
 #include <numeric>
@@ -112,6 +114,23 @@ TEST(CallersViews, TheDefaultViewIsTheDefaultCameraWithItsSize) {
   EXPECT_EQ(deep, (View{data.default_camera(size, ProjectionKind::perspective), size}));
   EXPECT_EQ(deep.camera.projection, ProjectionKind::perspective);
   EXPECT_THROW((void)data.default_view({0, 5}), Error);
+}
+
+template <class Class>
+concept ShowsItsState = requires(const Class& object) {
+  object.state();
+}
+|| std::constructible_from<Class, std::shared_ptr<const typename Class::State>> ||
+    std::constructible_from<Class, std::unique_ptr<typename Class::State>>;
+
+TEST(CallersClasses, KeepTheStateOfTheLibraryToThemselves) {
+  EXPECT_FALSE(ShowsItsState<Dataset>);
+  EXPECT_FALSE(ShowsItsState<Session>);
+  EXPECT_FALSE(ShowsItsState<Communicator>);
+  const Cubes cubes(2);
+  const Dataset data = Dataset::of(cubes.arrays());
+  EXPECT_TRUE(Session(data).dataset().is_copy_of(data));
+  EXPECT_FALSE(Dataset::of(cubes.arrays()).is_copy_of(data));
 }
 
 TEST(CallersReference, PicturesKeepThePromiseAgainstIt) {

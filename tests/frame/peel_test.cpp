@@ -158,7 +158,7 @@ TEST(Peel, LayersBeginWhereTheReferencesDo) {
   const scene::TetMesh mesh = tests::with_field(datasets::cube(5), waves);
   expect(Dataset::of(datasets::arrays_of(mesh)), reference::Reference(mesh, view.camera, size, function));
   const Dataset volume = grid(Association::point, false);
-  expect(volume, reference::GridReference(*volume.state().samples, view.camera, size, function));
+  expect(volume, reference::GridReference(*StateAccess::of(volume).samples, view.camera, size, function));
 }
 
 TEST(Peel, LayersOfLightThatNothingAbsorbsAreTheReferences) {

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "tessera/communicator.hpp"
+#include "tessera/dataset.hpp"
+
+namespace tessera {
+
+/// What the library alone sees of its public classes. No header that is installed defines it.
+struct StateAccess {
+  static const Communicator::State& of(const Communicator& communicator) { return *communicator.state_; }
+  static const Dataset::State& of(const Dataset& dataset) { return *dataset.state_; }
+  static Communicator make(std::shared_ptr<const Communicator::State> state) { return Communicator(std::move(state)); }
+  static Dataset make(std::shared_ptr<const Dataset::State> state) { return Dataset(std::move(state)); }
+};
+
+}  // namespace tessera
