@@ -114,6 +114,34 @@ from_pkg_config() {  # from_pkg_config PREFIX [--static]
 from_pkg_config "$first"
 if [ "$STATIC" = 1 ]; then from_pkg_config "$first" --static; fi
 
+# The README's program, by its command.
+awk '/^```cpp/ { on = 1; next } /^```/ && on { exit } on' "$SOURCE/README.md" >"$SCRATCH/snippet"
+{ grep '^#' "$SCRATCH/snippet" && echo 'int main() {' && grep -v '^#' "$SCRATCH/snippet" && echo '}'; } >"$SCRATCH/readme.cpp"
+(
+  export PKG_CONFIG_PATH=$first/$LIBDIR/pkgconfig
+  # shellcheck disable=SC2046
+  quietly "$CXX" -std=c++20 "$SCRATCH/readme.cpp" -o "$SCRATCH/readme" \
+    $(pkg-config --cflags --libs tessera) -Wl,-rpath,"$first/$LIBDIR"
+)
+if [ "$APPS" = 1 ]; then
+  quietly "$first/bin/tessera" generate cube "$SCRATCH/mesh.vtu" n=4
+  (cd "$SCRATCH" && quietly ./readme && [ -s mesh.png ]) || failed "the README's program"
+fi
+
+# Other minor versions are not taken for this one.
+mkdir "$SCRATCH/versions"
+IFS=. read -r major minor _ <<<"$VERSION"
+find_version() {  # find_version VERSION
+  printf '%s\n' 'cmake_minimum_required(VERSION 3.25)' 'project(versions LANGUAGES CXX)' "find_package(tessera $1 REQUIRED)" \
+    >"$SCRATCH/versions/CMakeLists.txt"
+  "$CMAKE" -S "$SCRATCH/versions" -B "$SCRATCH/versions/build" -G "$GENERATOR" -DCMAKE_CXX_COMPILER="$CXX" \
+    -DCMAKE_PREFIX_PATH="$first" >"$SCRATCH/log" 2>&1
+}
+find_version "$major.$minor" || failed "version $major.$minor is not found"
+for other in "$major.$((minor + 1))" "$((major + 1)).$minor"; do
+  if find_version "$other"; then failed "$VERSION is taken for $other"; fi
+done
+
 # What is not there is said.
 mkdir "$SCRATCH/lacking"
 cat >"$SCRATCH/lacking/CMakeLists.txt" <<'TEXT'
