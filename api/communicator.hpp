@@ -3,8 +3,8 @@
 #include <functional>
 #include <memory>
 
+#include "api/state_access.hpp"
 #include "exchange/transport.hpp"
-#include "frame/state_access.hpp"
 #include "tessera/communicator.hpp"
 
 namespace tessera {

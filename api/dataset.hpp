@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "api/state_access.hpp"
 #include "frame/ranks/field_of_all.hpp"
 #include "frame/ranks/mesh_exchange.hpp"
-#include "frame/state_access.hpp"
 #include "io/mesh/mesh_reader.hpp"
 #include "io/volume/volume_tags.hpp"
 #include "projection/prepared_mesh.hpp"

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "scene/position_order.hpp"
 #include "tessera/cell_type.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 struct Face {
@@ -220,4 +221,4 @@ void split_cell(CellKind kind, std::span<const std::uint32_t> corner, std::span<
   }
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

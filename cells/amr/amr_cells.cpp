@@ -5,7 +5,7 @@
 
 #include "tessera/cell_type.hpp"
 
-namespace tessera::io {
+namespace tessera::cells {
 namespace {
 
 constexpr std::uint8_t tetra = vtk_number(CellType::tetra), voxel = vtk_number(CellType::voxel);
@@ -171,4 +171,4 @@ CellBlock conforming_cells(const AmrLattice& lattice, int steps, AmrCubes cubes,
   return block;
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::cells

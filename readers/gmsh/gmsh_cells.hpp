@@ -6,7 +6,7 @@
 
 #include "tessera/cell_type.hpp"
 
-namespace tessera::io::helper {
+namespace tessera::readers {
 
 /// How an element of Gmsh's becomes a cell of VTK's.
 struct GmshCell {
@@ -25,4 +25,4 @@ GmshCell gmsh_cell(int order, std::size_t corners, std::span<const double> place
 /// quadrilaterals as smaller ones, then of the cell, upright line by upright line.
 std::vector<double> gmsh_prism_places(int order);
 
-}  // namespace tessera::io::helper
+}  // namespace tessera::readers
