@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "tessera/error.hpp"
-#include "tessera/output_file.hpp"
+#include "tessera/program/output_file.hpp"
 
 namespace tessera::analysis {
 namespace {

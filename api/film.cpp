@@ -1,4 +1,4 @@
-#include "tessera/film.hpp"
+#include "tessera/program/film.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "tessera/error.hpp"
 #include "tessera/image_file.hpp"
 #include "tessera/input_file.hpp"
-#include "tessera/output_file.hpp"
+#include "tessera/program/output_file.hpp"
 #include "tessera/view.hpp"
 
 namespace tessera {

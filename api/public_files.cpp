@@ -25,7 +25,7 @@
 #include "scene/threads.hpp"
 #include "tessera/image_file.hpp"
 #include "tessera/input_file.hpp"
-#include "tessera/output_file.hpp"
+#include "tessera/program/output_file.hpp"
 #include "tessera/statistics.hpp"
 #include "tessera/triangle_file.hpp"
 #include "tessera/view.hpp"

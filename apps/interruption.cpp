@@ -14,7 +14,7 @@
 
 #include "apps/render/progress.hpp"
 #include "tessera/job.hpp"
-#include "tessera/output_file.hpp"
+#include "tessera/program/output_file.hpp"
 
 namespace tessera::apps {
 namespace {

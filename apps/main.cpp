@@ -42,8 +42,8 @@
 #include "apps/standard_streams.hpp"
 #include "tessera/input_file.hpp"
 #include "tessera/job.hpp"
-#include "tessera/output_file.hpp"
-#include "tessera/printable.hpp"
+#include "tessera/program/output_file.hpp"
+#include "tessera/program/printable.hpp"
 #include "tessera/time_series.hpp"
 
 namespace tessera::apps {

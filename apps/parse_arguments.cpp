@@ -10,7 +10,7 @@
 #include "apps/help/manual_page.hpp"
 #include "apps/options/scene_file.hpp"
 #include "tessera/error.hpp"
-#include "tessera/nearest_name.hpp"
+#include "tessera/program/nearest_name.hpp"
 
 namespace tessera::apps {
 namespace {

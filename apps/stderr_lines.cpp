@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/standard_streams.hpp"
-#include "tessera/printable.hpp"
+#include "tessera/program/printable.hpp"
 
 namespace tessera::apps {
 namespace {

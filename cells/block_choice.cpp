@@ -7,7 +7,7 @@
 
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
-#include "tessera/nearest_name.hpp"
+#include "tessera/program/nearest_name.hpp"
 
 namespace tessera::cells {
 namespace {

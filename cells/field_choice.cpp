@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "scene/error.hpp"
-#include "tessera/nearest_name.hpp"
+#include "tessera/program/nearest_name.hpp"
 
 namespace tessera::cells {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "scene/error.hpp"
-#include "tessera/nearest_name.hpp"
+#include "tessera/program/nearest_name.hpp"
 
 namespace tessera::cells {
 namespace {

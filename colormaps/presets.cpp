@@ -11,7 +11,7 @@
 #include "colormaps/function_options.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
-#include "tessera/nearest_name.hpp"
+#include "tessera/program/nearest_name.hpp"
 
 namespace tessera::colormaps {
 namespace {

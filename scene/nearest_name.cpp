@@ -1,4 +1,4 @@
-#include "tessera/nearest_name.hpp"
+#include "tessera/program/nearest_name.hpp"
 
 #include <algorithm>
 #include <cctype>

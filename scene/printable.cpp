@@ -1,4 +1,4 @@
-#include "tessera/printable.hpp"
+#include "tessera/program/printable.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "scene/error.hpp"
-#include "tessera/output_file.hpp"
+#include "tessera/program/output_file.hpp"
 
 namespace tessera::system {
 

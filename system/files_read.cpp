@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "tessera/error.hpp"
-#include "tessera/output_file.hpp"
+#include "tessera/program/output_file.hpp"
 
 namespace tessera {
 namespace system {

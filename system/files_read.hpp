@@ -8,7 +8,7 @@
 namespace tessera::system {
 
 /// Remembers that this process, or a reader program for it, has opened a regular file to read: no output is to replace
-/// it (tessera/output_file.hpp), and all ranks are to have the same (api/same_files.hpp). From any thread.
+/// it (tessera/program/output_file.hpp), and all ranks are to have the same (api/same_files.hpp). From any thread.
 void note_read(const std::filesystem::path& file);
 
 /// Only protects it from outputs: for a file that an input names and this run may not open.

@@ -7,7 +7,7 @@
 #include <system_error>
 #include <vector>
 
-#include "tessera/nearest_name.hpp"
+#include "tessera/program/nearest_name.hpp"
 
 namespace tessera::system {
 

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <vector>
 
-#include "tessera/output_file.hpp"
+#include "tessera/program/output_file.hpp"
 
 namespace tessera::system {
 namespace {

@@ -19,9 +19,9 @@
 #include "apps/render/progress.hpp"
 #include "apps/render/report.hpp"
 #include "apps/render/run_output.hpp"
-#include "tessera/film.hpp"
-#include "tessera/output_file.hpp"
-#include "tessera/printable.hpp"
+#include "tessera/program/film.hpp"
+#include "tessera/program/output_file.hpp"
+#include "tessera/program/printable.hpp"
 #include "tessera/statistics.hpp"
 
 namespace tessera::apps {

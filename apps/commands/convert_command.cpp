@@ -9,7 +9,7 @@
 #include "datasets/arrays.hpp"
 #include "datasets/modify.hpp"
 #include "tessera/error.hpp"
-#include "tessera/output_file.hpp"
+#include "tessera/program/output_file.hpp"
 #include "tessera/write.hpp"
 
 namespace tessera::apps {

@@ -11,7 +11,7 @@
 #include "datasets/generate.hpp"
 #include "datasets/volumes.hpp"
 #include "tessera/error.hpp"
-#include "tessera/output_file.hpp"
+#include "tessera/program/output_file.hpp"
 #include "tessera/write.hpp"
 
 namespace tessera::apps {

@@ -14,7 +14,7 @@
 #include "apps/render/progress.hpp"
 #include "apps/render/report.hpp"
 #include "tessera/error.hpp"
-#include "tessera/printable.hpp"
+#include "tessera/program/printable.hpp"
 #include "tessera/time_series.hpp"
 
 namespace tessera::apps {

@@ -13,7 +13,7 @@
 #include "server/serve.hpp"
 #include "tessera/error.hpp"
 #include "tessera/input_file.hpp"
-#include "tessera/output_file.hpp"
+#include "tessera/program/output_file.hpp"
 
 namespace tessera::apps {
 namespace {

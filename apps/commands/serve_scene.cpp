@@ -19,8 +19,8 @@
 #include "apps/render/frame_annotation.hpp"
 #include "apps/render/progress.hpp"
 #include "tessera/error.hpp"
-#include "tessera/film.hpp"
 #include "tessera/higher_order.hpp"
+#include "tessera/program/film.hpp"
 #include "tessera/view.hpp"
 
 namespace tessera::apps {

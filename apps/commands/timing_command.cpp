@@ -6,7 +6,7 @@
 #include "analysis/timing_figure.hpp"
 #include "analysis/timing_text.hpp"
 #include "apps/render/progress.hpp"
-#include "tessera/output_file.hpp"
+#include "tessera/program/output_file.hpp"
 #include "tessera/trace_file.hpp"
 
 namespace tessera::apps {

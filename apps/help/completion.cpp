@@ -12,7 +12,7 @@
 #include "apps/render/report.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/presets.hpp"
-#include "tessera/printable.hpp"
+#include "tessera/program/printable.hpp"
 
 namespace tessera::apps {
 namespace {

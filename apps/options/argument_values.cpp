@@ -14,7 +14,7 @@
 
 #include "apps/options/color_names.hpp"
 #include "tessera/error.hpp"
-#include "tessera/nearest_name.hpp"
+#include "tessera/program/nearest_name.hpp"
 
 namespace tessera::apps {
 namespace {

@@ -10,7 +10,7 @@
 #include "apps/options/compositing_options.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/error.hpp"
-#include "tessera/nearest_name.hpp"
+#include "tessera/program/nearest_name.hpp"
 
 namespace tessera::apps {
 namespace {

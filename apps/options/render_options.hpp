@@ -12,8 +12,8 @@
 #include "apps/options/view_options.hpp"
 #include "tessera/camera.hpp"
 #include "tessera/dataset.hpp"
-#include "tessera/film.hpp"
 #include "tessera/image_file.hpp"
+#include "tessera/program/film.hpp"
 #include "tessera/settings.hpp"
 
 namespace tessera::apps {

@@ -9,7 +9,7 @@
 #include "apps/text_excerpt.hpp"
 #include "tessera/error.hpp"
 #include "tessera/input_file.hpp"
-#include "tessera/nearest_name.hpp"
+#include "tessera/program/nearest_name.hpp"
 
 namespace tessera::apps {
 namespace {

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "tessera/error.hpp"
-#include "tessera/film.hpp"
+#include "tessera/program/film.hpp"
 
 namespace tessera::apps {
 namespace {

@@ -11,7 +11,7 @@
 #include "apps/text_excerpt.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/error.hpp"
-#include "tessera/nearest_name.hpp"
+#include "tessera/program/nearest_name.hpp"
 #include "tessera/view.hpp"
 
 namespace tessera::apps {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "apps/options/cli_fwd.hpp"
-#include "tessera/film.hpp"
+#include "tessera/program/film.hpp"
 
 namespace tessera::apps {
 

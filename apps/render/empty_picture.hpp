@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "apps/options/render_options.hpp"
-#include "tessera/film.hpp"
 #include "tessera/job.hpp"
+#include "tessera/program/film.hpp"
 #include "tessera/sink.hpp"
 
 /// Pictures that are right and show nothing: why, and what shows something.

@@ -23,7 +23,7 @@
 #include "apps/render/spare_images.hpp"
 #include "tessera/higher_order.hpp"
 #include "tessera/image_file.hpp"
-#include "tessera/output_file.hpp"
+#include "tessera/program/output_file.hpp"
 #include "tessera/session.hpp"
 #include "tessera/statistics.hpp"
 #include "tessera/trace.hpp"

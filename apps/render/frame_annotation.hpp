@@ -5,8 +5,8 @@
 #include "apps/render/picture_writer.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/deep_image.hpp"
-#include "tessera/film.hpp"
 #include "tessera/image.hpp"
+#include "tessera/program/film.hpp"
 #include "tessera/transfer_function.hpp"
 
 namespace tessera::apps {

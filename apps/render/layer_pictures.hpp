@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "apps/options/render_options.hpp"
-#include "tessera/film.hpp"
+#include "tessera/program/film.hpp"
 #include "tessera/sink.hpp"
 
 namespace tessera::apps {

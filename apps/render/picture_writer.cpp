@@ -9,7 +9,7 @@
 #include "apps/standard_streams.hpp"
 #include "tessera/error.hpp"
 #include "tessera/image_file.hpp"
-#include "tessera/output_file.hpp"
+#include "tessera/program/output_file.hpp"
 
 namespace tessera::apps {
 

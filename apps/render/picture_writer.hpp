@@ -7,9 +7,9 @@
 
 #include "apps/options/render_options.hpp"
 #include "tessera/deep_image.hpp"
-#include "tessera/film.hpp"
 #include "tessera/film_file.hpp"
 #include "tessera/image.hpp"
+#include "tessera/program/film.hpp"
 
 namespace tessera::apps {
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "tessera/printable.hpp"
+#include "tessera/program/printable.hpp"
 
 namespace tessera::apps {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "apps/standard_streams.hpp"
 #include "apps/stderr_lines.hpp"
-#include "tessera/output_file.hpp"
+#include "tessera/program/output_file.hpp"
 #include "tessera/version.hpp"
 
 namespace tessera::apps {

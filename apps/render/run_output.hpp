@@ -8,7 +8,7 @@
 #include "apps/render/frame_reports.hpp"
 #include "apps/render/progress.hpp"
 #include "apps/render/report.hpp"
-#include "tessera/film.hpp"
+#include "tessera/program/film.hpp"
 #include "tessera/trace_file.hpp"
 
 namespace tessera::apps {

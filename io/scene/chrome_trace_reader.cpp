@@ -11,7 +11,7 @@
 #include "io/text/json_text.hpp"
 #include "io/text/text_file.hpp"
 #include "scene/error.hpp"
-#include "tessera/printable.hpp"
+#include "tessera/program/printable.hpp"
 
 namespace tessera::io {
 namespace {

@@ -15,7 +15,7 @@
 #include "io/text/text_file.hpp"
 #include "scene/error.hpp"
 #include "system/missing_file.hpp"
-#include "tessera/nearest_name.hpp"
+#include "tessera/program/nearest_name.hpp"
 
 namespace tessera::io {
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "scene/error.hpp"
-#include "tessera/printable.hpp"
+#include "tessera/program/printable.hpp"
 
 namespace tessera::io {
 

@@ -1,4 +1,4 @@
-// What callers get from the public headers and the whole library, and nothing else: films, traces, samples of their
+// What callers get from the public headers and the whole library, and nothing else: traces, samples of their
 // own, a mesh's arrays, the reference, ranks without MPI.
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -338,74 +338,6 @@ TEST(CallersDevice, WhatNoErrorIsPromisedOfSaysSo) {
   EXPECT_TRUE(Session(data, settings).promised_error().has_value());  // no device is asked for
 }
 
-TEST(CallersFilm, StepsTimesViewsAreNumberedAndFinishedOnesKnown) {
-  const Folder folder;
-  FilmPlan plan;
-  plan.inputs = {folder.touch("a.tets"), folder.touch("b.tets")};
-  plan.orbit = 2;
-  plan.size = size;
-  plan.outputs = {folder / "f_%02d.png", folder / "f_%02d.pfm"};
-  plan.resume = true;
-  folder.touch("f_00.png"), folder.touch("f_00.pfm"), folder.touch("f_02.png");
-  const auto frames = plan_film(plan);
-  ASSERT_EQ(frames.size(), 4u);
-  EXPECT_TRUE(is_series(plan));
-  for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_EQ(frames[i].number, static_cast<int>(i));
-    EXPECT_EQ(frames[i].step, i / 2);
-    EXPECT_EQ(frames[i].data.files.front(), plan.inputs[i / 2]);
-    EXPECT_EQ(frames[i].turn.value(), i % 2 == 0 ? 0.0 : 0.5);
-    EXPECT_EQ(frames[i].finished, i == 0) << i;  // of frame 2 one picture is missing
-  }
-  EXPECT_EQ(frames[3].outputs[1], folder / "f_03.pfm");
-  // Half a turn: the eye on the other side, the view still on the box.
-  const Box box{{0, 0, 0}, {2, 2, 2}};
-  const Camera first = frames[0].view(box, ProjectionKind::orthographic);
-  const Camera turned = frames[1].view(box, ProjectionKind::orthographic);
-  EXPECT_EQ(first.focal_point, turned.focal_point);
-  EXPECT_NEAR(first.position.x - 1, 1 - turned.position.x, 1e-12);
-
-  EXPECT_NO_THROW(frames[3].require_still_there());
-  fs::remove(plan.inputs[1]);
-  EXPECT_THROW(frames[3].require_still_there(), Error);
-  EXPECT_THROW(plan_film(plan), Error);
-}
-
-TEST(CallersFilm, LaterStepsHaveTheFieldOfTheFirst) {
-  Cubes cubes(1);
-  const Dataset of_points = Dataset::of(cubes.arrays());
-  EXPECT_EQ(read_of_later_steps({}, of_points).field, "point:scalar");
-  EXPECT_EQ(read_of_later_steps({.smooth = true}, of_points).field, "scalar");
-  EXPECT_EQ(read_of_later_steps({.field = "p"}, of_points).field, "p");
-  cubes.scalars.resize(6);
-  MeshArrays arrays = cubes.arrays();
-  arrays.association = Association::cell;
-  EXPECT_EQ(read_of_later_steps({}, Dataset::of(arrays)).field, "cell:scalar");
-}
-
-TEST(CallersFilm, NamesThatCannotBeAreRefusedBeforeRendering) {
-  const Folder folder;
-  FilmPlan plan;
-  plan.inputs = {folder.touch("a.tets")};
-  plan.outputs = {folder / "one.png"};
-  auto frames = plan_film(plan);
-  EXPECT_NO_THROW(check_film_outputs(frames, {}, {}));
-  const auto refused = [&](std::vector<fs::path> more, std::vector<fs::path> inputs) {
-    EXPECT_THROW(check_film_outputs(frames, more, inputs), Error);
-  };
-  refused({folder / "one.png"}, {});                    // named twice
-  refused({folder / "nowhere" / "report.json"}, {});    // no such folder
-  refused({folder / "a.tets"}, {plan.inputs.front()});  // an input
-  frames.front().outputs = {folder / "one.gif"};
-  refused({}, {});
-  frames.front().outputs = {plan.inputs.front()};
-  refused({}, {});
-  plan.orbit = 3;
-  EXPECT_THROW(plan_film(plan), Error);  // three frames of one name
-  plan.inputs.clear();
-  EXPECT_THROW(plan_film(plan), Error);
-}
-
 TEST(CallersJob, OneProcessIsAJobToo) {
   int spoken = 0;
   Job job({"test", "start again", [&](const Error&) { ++spoken; }});
@@ -514,17 +446,11 @@ TEST(CallersLevels, MakeThePictureOfTheFinestGridEverywhere) {
 }
 #endif
 
-TEST(CallersFiles, TextIsWrittenWholeAndJsonMeansWhatItSays) {
-  const Folder folder;
-  write_text(folder / "a.json", R"({"a": 1, "b": [2]})");
-  EXPECT_NO_THROW(check_json(read_text(folder / "a.json"), "a.json"));
+TEST(CallersFiles, JsonMeansWhatItSays) {
+  EXPECT_NO_THROW(check_json(R"({"a": 1, "b": [2]})", "a.json"));
   EXPECT_THROW(check_json(R"({"a": 1, "a": 2})", "twice"), Error);
   EXPECT_THROW(check_json("{", "short"), Error);
-  EXPECT_THROW(static_cast<void>(read_text(folder / "none.json")), Error);
-  EXPECT_THROW(write_text(folder / "nowhere" / "a.json", "x"), OutputFault);
-  EXPECT_THROW(check_output(folder / "a.json", folder / "a.json"), Error);
-  { const AtomicFile begun(folder / "b.json"); }
-  EXPECT_FALSE(fs::exists(folder / "b.json"));  // never committed
+  EXPECT_THROW(static_cast<void>(read_text("none.json")), Error);
 }
 
 }  // namespace

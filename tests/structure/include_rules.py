@@ -78,6 +78,8 @@ MAY_INCLUDE = {
 }
 # These may include neither scene/ nor system/, unless their row says so.
 PUBLIC_ONLY = {"include", "examples", "annotation", "analysis", "server", "apps"}
+# These may not include what is not installed (tessera/program/).
+INSTALLED = {"examples"}
 MOST_MODULES = 40
 
 # Foreign headers, and the directories or files that alone may include them. Tests of readers write VTK's files by VTK.
@@ -143,7 +145,7 @@ def allowances(directory):
 def allowance_of(directory, of):
     """What allows `directory` to include a header of the directory `of`: a word, or None if nothing does."""
     others = allowances(directory)
-    if others is None or top(of) == "tessera":
+    if others is None or (top(of) == "tessera" and (of == "tessera" or top(directory) not in INSTALLED)):
         return "tessera"
     if top(of) in ("scene", "system") and top(directory) not in PUBLIC_ONLY:
         return top(of)

@@ -9,7 +9,6 @@
 #include "tessera/camera.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/default_view.hpp"
-#include "tessera/export.hpp"
 #include "tessera/time_series.hpp"
 
 namespace tessera {
@@ -40,7 +39,7 @@ struct FilmPlan {
 };
 
 /// One picture of a plan, before any data is read.
-struct TESSERA_EXPORT FilmFrame {
+struct FilmFrame {
   int number = 0;                ///< from 0; what %d in a name stands for
   std::size_t step = 0;          ///< of the time series; 0 without one
   TimeStep data;                 ///< that step
@@ -62,30 +61,30 @@ struct TESSERA_EXPORT FilmFrame {
 };
 
 /// Whether the plan's input is a time series, be it of one step: several files, a name for several, or steps of one.
-TESSERA_EXPORT bool is_series(const FilmPlan& plan);
+bool is_series(const FilmPlan& plan);
 
 /// Whether what is shown of the plan's one file depends on how many steps it has: FilmPlan::file_steps is to be set.
-TESSERA_EXPORT bool takes_steps_of_file(const FilmPlan& plan);
+bool takes_steps_of_file(const FilmPlan& plan);
 
 /// The frames of a plan: all views of the first step, then of the second. Frame 0 is always of the first step. Throws
 /// Error(bad_input) if an input that is to be read is not there, if several frames would share one name, if an orbit is
 /// asked of several views, for steps that are not there, or for what cameras_of() refuses.
-TESSERA_EXPORT std::vector<FilmFrame> plan_film(const FilmPlan& plan);
+std::vector<FilmFrame> plan_film(const FilmPlan& plan);
 
 /// The default of ReadOptions::field for several steps together; `steps` has each step's fields. Each array counts as
 /// in the step where its range is widest; arrays that a step lacks are left out. The name has `point:` or `cell:`
 /// before it, without `smooth`. Empty if no array varies but labels.
-TESSERA_EXPORT std::string field_of_steps(std::span<const std::vector<FieldInfo>> steps, const ReadOptions& options);
+std::string field_of_steps(std::span<const std::vector<FieldInfo>> steps, const ReadOptions& options);
 
 /// How later steps of a time series are read: their field and axis scale are those that were chosen for the first step.
 /// A field that varies in one step and not in the next would else make the film jump to another.
-TESSERA_EXPORT ReadOptions read_of_later_steps(ReadOptions options, const Dataset& first);
+ReadOptions read_of_later_steps(ReadOptions options, const Dataset& first);
 
 /// Before any reading or rendering: can all pictures of the frames that are not finished be written, and the `more`
 /// files beside them? Throws Error(bad_input) for an unknown extension, a folder that is missing or closed to us, two
 /// outputs of one name, or an output that is one of the frames' data or of the `inputs` (empty ones count for nothing);
 /// Error(system_failure) if a picture cannot fit in this machine's memory.
-TESSERA_EXPORT void check_film_outputs(std::span<const FilmFrame> frames, std::span<const std::filesystem::path> more,
-                                       std::span<const std::filesystem::path> inputs);
+void check_film_outputs(std::span<const FilmFrame> frames, std::span<const std::filesystem::path> more,
+                        std::span<const std::filesystem::path> inputs);
 
 }  // namespace tessera

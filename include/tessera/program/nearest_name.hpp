@@ -5,8 +5,6 @@
 #include <string>
 #include <string_view>
 
-#include "tessera/export.hpp"
-
 namespace tessera {
 
 /// The name that was probably meant by `word`: the one that the fewest changes make of it, a change being a letter that
@@ -14,6 +12,6 @@ namespace tessera {
 /// last part may be meant. None if more than a third of the
 /// letters (at least one) would change, unless `word` begins just one name. The first of several as near.
 /// Source: F. J. Damerau, "A technique for computer detection and correction of spelling errors", CACM, 1964.
-TESSERA_EXPORT std::optional<std::string> nearest_name(std::string_view word, std::span<const std::string> names);
+std::optional<std::string> nearest_name(std::string_view word, std::span<const std::string> names);
 
 }  // namespace tessera

@@ -7,14 +7,13 @@
 #include <string_view>
 
 #include "tessera/error.hpp"
-#include "tessera/export.hpp"
 
 namespace tessera {
 
 /// An output cannot be written. Whose fault it is depends on when: Error(bad_input) where the user can mend it (no such
 /// folder, no permission, the target is a folder or device), as long as nothing has been begun; who has found before
 /// that it could be written calls since_changed().
-class TESSERA_EXPORT OutputFault : public Error {
+class OutputFault : public Error {
  public:
   OutputFault(ErrorCode code, const std::filesystem::path& target, const std::string& fault, const char* remedy);
   OutputFault(const OutputFault&) = default;
@@ -26,7 +25,7 @@ class TESSERA_EXPORT OutputFault : public Error {
 
 /// Before a run: begins such a file as AtomicFile is, and leaves it. Throws a plain Error, which is not OutputFault, so
 /// that a run's own faults can be told from those that were there before it.
-TESSERA_EXPORT void check_writable(const std::filesystem::path& target);
+void check_writable(const std::filesystem::path& target);
 
 /// An output file that appears whole, by rename, or not at all.
 ///
@@ -35,7 +34,7 @@ TESSERA_EXPORT void check_writable(const std::filesystem::path& target);
 /// Only commit() makes the target appear, or replaces it, after fsync. Throws OutputFault: bad_input only from the
 /// constructor, system_failure for a full or failing disk and for whatever happens after the constructor. The messages
 /// name the target.
-class TESSERA_EXPORT AtomicFile {
+class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path target);
   ~AtomicFile();
@@ -70,20 +69,20 @@ class TESSERA_EXPORT AtomicFile {
 /// For a program that ends in mid-run and runs no destructors (Ctrl-C): removes the `.part`s that AtomicFiles of this
 /// process have, ends the program that makes a film, and lets no output appear any more: who commits one waits for the
 /// end. From any thread, but not from a signal's handler.
-TESSERA_EXPORT void abandon_outputs() noexcept;
+void abandon_outputs() noexcept;
 
 /// Writes all of a text file, whole or not at all. Throws as AtomicFile.
-TESSERA_EXPORT void write_text(const std::filesystem::path& target, std::string_view text);
+void write_text(const std::filesystem::path& target, std::string_view text);
 
 /// From now on no output of this process replaces a file that it, or a reader program for it, has opened to read, also
 /// those that a file names: AtomicFile throws. For programs that do one job and end.
-TESSERA_EXPORT void protect_inputs();
+void protect_inputs();
 /// Throws Error(bad_input) if `target` has been read since protect_inputs(), by whatever name.
-TESSERA_EXPORT void check_not_read(const std::filesystem::path& target);
+void check_not_read(const std::filesystem::path& target);
 
 /// Before a run: check_writable(), and `target` is not this input (empty: none). Throws Error(bad_input).
-TESSERA_EXPORT void check_output(const std::filesystem::path& target, const std::filesystem::path& input);
+void check_output(const std::filesystem::path& target, const std::filesystem::path& input);
 /// That alone of it: throws if they are one file.
-TESSERA_EXPORT void check_not_input(const std::filesystem::path& target, const std::filesystem::path& input);
+void check_not_input(const std::filesystem::path& target, const std::filesystem::path& input);
 
 }  // namespace tessera
