@@ -9,8 +9,7 @@
 #include "tessera/annotation.hpp"
 #include "tessera/error.hpp"
 
-namespace tessera {
-namespace annotation {
+namespace tessera::annotation {
 namespace {
 
 constexpr double least_text = 4, largest_text = 1000;
@@ -98,7 +97,9 @@ void draw(const Image& picture, const Annotation& annotation, const View& view, 
 }
 
 }  // namespace
-}  // namespace annotation
+}  // namespace tessera::annotation
+
+namespace tessera::inline v0_1 {
 
 void annotate(Image& picture, const Annotation& annotation, const View& view, const Box& box,
               const TransferFunction& transfer_function) {
@@ -139,4 +140,4 @@ void validate(const Annotation& annotation, const TransferFunction& transfer_fun
   annotation::Typeface(12);  // finds a font, or says so
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -2,7 +2,7 @@
 #include "tessera/annotation.hpp"
 #include "tessera/error.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 void validate(const Annotation&, const TransferFunction&) {
   throw bad_input("annotation: needs Cairo, which this build leaves out; build with TESSERA_CAIRO=ON, or draw none");
@@ -18,4 +18,4 @@ Image annotation_layer(const Image&, const Annotation& annotation, const View&, 
   return {};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -5,7 +5,7 @@
 #include "tessera/annotation.hpp"
 #include "tessera/error.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 std::string fill_in(const std::string& text, std::span<const AnnotationWord> words) {
   std::string filled;
@@ -30,4 +30,4 @@ std::string fill_in(const std::string& text, std::span<const AnnotationWord> wor
   return filled;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

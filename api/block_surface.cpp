@@ -10,7 +10,7 @@
 #include "scene/threads.hpp"
 #include "tessera/triangle_file.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 TriangleMesh read_block_surface(std::span<const std::filesystem::path> files, const std::string& block,
                                 const ReadOptions& options) {
@@ -38,4 +38,4 @@ TriangleMesh read_block_surface(std::span<const std::filesystem::path> files, co
   return boundary;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -4,7 +4,7 @@
 #include "exchange/loopback_transport.hpp"
 #include "exchange/mpi/mpi_transport.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 std::shared_ptr<exchange::Transport> alone() {
@@ -44,4 +44,4 @@ Communicator communicator_over(exchange::Transport& transport) {
 }
 
 }  // namespace frame
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -7,7 +7,7 @@
 #include "exchange/transport.hpp"
 #include "tessera/communicator.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// How a Communicator becomes messages.
 struct TESSERA_HIDDEN Communicator::State {
@@ -23,4 +23,4 @@ namespace frame {
 Communicator communicator_over(exchange::Transport& transport);
 
 }  // namespace frame
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -39,7 +39,7 @@
 #include "system/files_read.hpp"
 #include "tessera/input_file.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 io::VolumeOptions volume_options(const ReadOptions& o) {
@@ -476,4 +476,4 @@ std::vector<double> times_of(const std::filesystem::path& file, const ReadOption
 
 std::vector<std::string> preset_names() { return colormaps::preset_names(); }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

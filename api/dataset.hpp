@@ -17,7 +17,7 @@
 #include "tessera/default_view.hpp"
 #include "volume/bricks/cell_ranges.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// What a Dataset holds. Nothing changes once it is made; what is prepared on demand is prepared once.
 struct TESSERA_HIDDEN Dataset::State {
@@ -76,4 +76,4 @@ namespace frame {
 cells::MeshOptions mesh_options(const ReadOptions& options);
 
 }  // namespace frame
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -15,7 +15,7 @@
 #include "tessera/program/output_file.hpp"
 #include "tessera/view.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 constexpr std::size_t max_frames = 10'000'000;
@@ -242,4 +242,4 @@ void check_film_outputs(std::span<const FilmFrame> frames, std::span<const std::
     }
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

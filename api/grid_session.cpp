@@ -19,7 +19,7 @@
 #include "frame/ranks/run_error.hpp"
 #include "scene/error.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 using frame::stopped_frame;
@@ -302,4 +302,4 @@ std::unique_ptr<Session::State> grid_by_rays(Dataset dataset, const Settings& se
 }
 
 }  // namespace frame
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -20,7 +20,7 @@
 #include "exchange/termination.hpp"
 #include "system/unfinished.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 struct Job::State {
   JobVoice voice;
@@ -115,4 +115,4 @@ void Job::say_once(const std::string& line) {
   std::fflush(stderr);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -16,7 +16,7 @@
 #include "projection/scanline/segment_tuple.hpp"
 #include "scene/error.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 /// Throws Error(bad_input) for a method that is out of range, before anybody waits for a frame.
@@ -276,4 +276,4 @@ std::unique_ptr<Session::State> mesh_on_ranks(Dataset dataset, const Settings& s
 }
 
 }  // namespace frame
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

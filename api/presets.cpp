@@ -5,7 +5,7 @@
 #include "colormaps/presets.hpp"
 #include "tessera/error.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 TransferFunction preset_function(std::string_view name) { return colormaps::preset(name, {}).function; }
 
@@ -23,4 +23,4 @@ std::vector<glm::dvec3> preset_colors(std::string_view name, std::size_t count) 
   return colors;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -31,7 +31,7 @@
 #include "tessera/view.hpp"
 #include "tessera/write.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 std::vector<CameraFile> read_cameras(const std::filesystem::path& file) { return io::read_cameras(file); }
 std::vector<CameraFile> parse_cameras(std::string_view text, const std::string& name) {
@@ -188,4 +188,4 @@ SampleType written_type(const Dataset& grid) {
 int threads_for(int asked) { return scene::threads_for(asked); }
 std::string instruction_set() { return projection::instruction_set(); }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

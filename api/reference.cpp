@@ -8,7 +8,7 @@
 #include "reference/reference.hpp"
 #include "scene/error.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 struct Reference::State {
   Dataset dataset;
@@ -49,4 +49,4 @@ std::vector<ReferencePixel> Reference::pixels(std::span<const PixelIndex> wanted
   return state_->rays->pixels(wanted, threads);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -14,7 +14,7 @@
 #include "frame/ranks/reduce.hpp"
 #include "scene/error.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 scene::TetMesh copy_of(const scene::TetMeshView& view) {
@@ -107,4 +107,4 @@ void clip_box(Dataset::State& grid, const Selection& selection, const std::strin
 }
 
 }  // namespace frame
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -20,7 +20,7 @@
 #include "scene/error.hpp"
 #include "scene/pixel_view.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 /// The view with pixels no smaller than 1e-60 of what they see: far below what positions are told apart by, so that the
@@ -188,4 +188,4 @@ BalancePictures Session::balance_pictures(const RenderedFrame& frame, const View
 
 const Dataset& Session::dataset() const { return state_->dataset(); }
 const Settings& Session::settings() const { return state_->settings(); }
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -27,7 +27,7 @@ volume::Method method_of(IntegratorKind kind) {
 }  // namespace
 }  // namespace tessera::frame
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 Exchange exchange_of(const Settings& settings, bool deep) {
   if (settings.ranks.exchange) return *settings.ranks.exchange;
@@ -38,7 +38,7 @@ Exchange exchange_of(const Settings& settings, bool deep) {
   return wants_segments ? Exchange::segments : Exchange::runs;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1
 
 namespace tessera::frame {
 

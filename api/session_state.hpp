@@ -13,7 +13,7 @@
 #include "scene/frame_watch.hpp"
 #include "tessera/session.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// How a kind of data is rendered by a number of processes.
 class TESSERA_HIDDEN Session::State {
@@ -81,4 +81,4 @@ inline RenderedFrame stopped_frame(std::size_t number) {
 }
 
 }  // namespace frame
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -6,7 +6,7 @@
 #include "tessera/communicator.hpp"
 #include "tessera/dataset.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// What the library alone sees of its public classes. No header that is installed defines it.
 struct StateAccess {
@@ -16,4 +16,4 @@ struct StateAccess {
   static Dataset make(std::shared_ptr<const Dataset::State> state) { return Dataset(std::move(state)); }
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -7,7 +7,7 @@
 #include "io/scene/chrome_trace.hpp"
 #include "io/scene/chrome_trace_reader.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 using exchange::Bytes;
@@ -70,4 +70,4 @@ void write_trace(const Trace& trace, const std::string& process_name, const Trac
 
 TraceFile read_trace(const std::filesystem::path& file) { return io::read_chrome_trace(file); }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -248,7 +248,7 @@ std::vector<PixelIndex> all_pixels(scene::ImageSize size) {
 
 }  // namespace tessera::reference
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 std::vector<PixelIndex> random_pixels(ImageSize size, std::size_t count, std::uint64_t seed) {
   const std::uint64_t width = static_cast<std::uint64_t>(size.width);
@@ -267,4 +267,4 @@ std::vector<PixelIndex> random_pixels(ImageSize size, std::size_t count, std::ui
   return pixels;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

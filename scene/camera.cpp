@@ -11,7 +11,7 @@
 #include "scene/directions.hpp"
 #include "scene/error.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 using scene::bad_input;
@@ -90,4 +90,4 @@ Camera orbit(const Camera& camera, double turn) {
   return turned;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

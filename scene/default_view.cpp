@@ -13,7 +13,7 @@
 #include "scene/directions.hpp"
 #include "scene/error.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 using scene::bad_input;
@@ -249,4 +249,4 @@ Camera adjusted_view(const Camera& camera, const Box& box, ImageSize size, const
   return zoomed(seen, request.zoom);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -10,7 +10,7 @@
 
 #include "scene/error.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 using scene::bad_input;
@@ -127,7 +127,7 @@ void validate(const Grid& grid, const std::string& source) {
     fail(fmt::format("samples are scaled by {} and shifted by {}", grid.scale, grid.shift));
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1
 
 namespace tessera::scene {
 

@@ -4,7 +4,7 @@
 #include <cctype>
 #include <vector>
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 std::string lower(std::string_view text) {
@@ -60,4 +60,4 @@ std::optional<std::string> nearest_name(std::string_view word, std::span<const s
   return nearest == nullptr ? std::nullopt : std::optional(*nearest);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

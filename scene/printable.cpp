@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 bool continues(char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; }
@@ -45,4 +45,4 @@ std::string printable(std::string_view text) {
   return shown;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

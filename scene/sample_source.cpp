@@ -156,7 +156,7 @@ ValueRange value_range(const SampleSource& source) {
 
 }  // namespace tessera::scene
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 SampleSource::~SampleSource() = default;
 
@@ -186,4 +186,4 @@ void SampleSource::read(const SampleBox& box, const SampleLayout& layout, std::s
   read_samples(box, pitched, destination.data());
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -7,7 +7,7 @@
 #include "scene/directions.hpp"
 #include "scene/error.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 std::array<HalfSpace, 6> half_spaces_of(const Box& box) {
   std::array<HalfSpace, 6> sides;
   for (int axis = 0; axis < 3; ++axis) {
@@ -33,4 +33,4 @@ void validate(const Selection& selection) {
         fmt::format("`threshold`: {:g} to {:g} is no range; give the smaller number first", low, high));
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -38,7 +38,7 @@ std::optional<Error> thread_fault(const std::exception& fault) {
 
 }  // namespace tessera::scene
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 Error error_of(const std::exception_ptr& thrown) {
   try {
@@ -56,4 +56,4 @@ Error error_of(const std::exception_ptr& thrown) {
   }
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -175,4 +175,4 @@ void TraceTile::begin(std::int32_t tile) { before_ = std::exchange(trace_->mine(
 void TraceTile::end() { trace_->mine().tile = before_; }
 
 }  // namespace scene
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -8,7 +8,7 @@
 
 #include "scene/error.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 using scene::bad_input;
@@ -95,4 +95,4 @@ double TransferFunction::max_color() const {
   return most;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -11,7 +11,7 @@
 
 #include "system/unfinished.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -211,4 +211,4 @@ void check_output(const fs::path& target, const fs::path& input) {
   check_writable(target);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -10,8 +10,7 @@
 #include "tessera/error.hpp"
 #include "tessera/program/output_file.hpp"
 
-namespace tessera {
-namespace system {
+namespace tessera::system {
 namespace {
 
 struct FilesRead {
@@ -54,7 +53,9 @@ std::vector<std::string> take_names_read() {
   return {names.begin(), names.end()};
 }
 
-}  // namespace system
+}  // namespace tessera::system
+
+namespace tessera::inline v0_1 {
 
 void protect_inputs() { system::inputs_are_protected = true; }
 
@@ -65,4 +66,4 @@ void check_not_read(const std::filesystem::path& target) {
                 "choose another name");
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -73,7 +73,7 @@ void abandon_in_handler() noexcept {
 
 }  // namespace tessera::system
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 void abandon_outputs() noexcept {
   system::Unfinished& all = system::unfinished();
@@ -85,4 +85,4 @@ void abandon_outputs() noexcept {
   static_cast<void>(lock.release());  // locked for good
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

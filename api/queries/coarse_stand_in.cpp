@@ -16,7 +16,7 @@
 #include "scene/threads.hpp"
 #include "volume/bricks/cell_ranges.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 constexpr std::uint64_t least_samples = 8, most_samples = std::uint64_t{1} << 26;
@@ -94,4 +94,4 @@ std::optional<Dataset> coarse_stand_in(const Dataset& dataset, const StandInSett
   return dataset_of(source_of(samples, data.facts.scalar_range, geometry, data.field_name), data, settings.threads);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -13,7 +13,7 @@
 #include "api/dataset.hpp"
 #include "scene/error.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 constexpr std::size_t most_bins = 65536;
@@ -155,4 +155,4 @@ std::vector<double> quantiles(const Dataset& dataset, std::span<const double> fr
   return values;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -3,7 +3,7 @@
 
 #include "api/dataset.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 const scene::FieldSamples& Dataset::State::field_samples() const {
   if (of_all) return of_all->samples;
@@ -18,4 +18,4 @@ void Dataset::State::gather_field_samples(exchange::Transport& transport) {
   if (ranks > 1 && !of_all) field_samples_ = frame::gather_field_samples(transport, mesh, global_tet, facts);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -13,7 +13,7 @@
 #include "exchange/collectives.hpp"
 #include "tessera/session.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -189,4 +189,4 @@ HigherOrderRead read_for_accuracy(const ReadOptions& options, std::optional<doub
   }
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

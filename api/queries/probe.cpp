@@ -20,7 +20,7 @@
 #include "scene/error.hpp"
 #include "tessera/field_queries.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
@@ -306,4 +306,4 @@ RayProbe probe(const Dataset& dataset, const View& view, const TransferFunction&
   return probed(RayInMesh(mesh_of(tets, data.facts.association), view, pixel, transfer_function, settings), samples);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -7,7 +7,7 @@
 
 #include "scene/error.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 bool contains(const std::vector<int>& ranks, int rank) {
@@ -41,4 +41,4 @@ Roles assign_roles(int ranks, std::optional<int> projectors, std::optional<int> 
                   n, p, ranks, ranks, ranks, n + p));
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

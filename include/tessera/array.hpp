@@ -10,7 +10,7 @@
 
 #include "tessera/cell_type.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// How a number is stored.
 enum class NumberType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
@@ -72,4 +72,4 @@ class ArrayView {
   NumberType type_ = NumberType::float64;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -1,8 +1,8 @@
 #pragma once
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// Which mesh element carries the scalar.
 enum class Association { point, cell };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

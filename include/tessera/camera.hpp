@@ -5,7 +5,7 @@
 
 #include "tessera/export.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// Width and height of the picture in pixels. Pixel (0,0) is the top left; its centre is at (0.5, 0.5).
 struct ImageSize {
@@ -71,4 +71,4 @@ TESSERA_EXPORT Camera frame_box(const Box& box, ImageSize size,
 /// frame.
 TESSERA_EXPORT Camera orbit(const Camera& camera, double turn);
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -4,7 +4,7 @@
 
 #include "tessera/camera.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// A view as a file gives it, with the picture's size if the file names one.
 struct CameraFile {
@@ -13,4 +13,4 @@ struct CameraFile {
   bool operator==(const CameraFile&) const = default;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

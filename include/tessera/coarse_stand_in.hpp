@@ -8,7 +8,7 @@
 #include "tessera/dataset.hpp"
 #include "tessera/export.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 struct StandInSettings {
   /// How many samples at most, about; the grid has as many as the data if they have fewer.
@@ -38,4 +38,4 @@ TESSERA_EXPORT std::optional<Dataset> coarse_stand_in(const Dataset& dataset, co
                                                       const std::stop_token& stop = {},
                                                       const Communicator& communicator = {});
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -5,7 +5,7 @@
 
 #include "tessera/export.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// The processes that work on one data set or picture together, numbered from 0: this process alone, or those of an MPI
 /// communicator (tessera/mpi.hpp makes it from an MPI_Comm).
@@ -38,4 +38,4 @@ class TESSERA_EXPORT Communicator {
 /// have: a job's shape without MPI. An exception of one rank ends the run for all; the run's one error is thrown here.
 TESSERA_EXPORT void run_ranks(int ranks, const std::function<void(const Communicator&)>& work);
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -26,7 +26,7 @@
 #include "tessera/view.hpp"
 #include "tessera/warp.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// What may be said about a file; the defaults read any file that describes itself.
 struct ReadOptions {
@@ -290,4 +290,4 @@ TESSERA_EXPORT std::vector<double> times_of(const std::filesystem::path& file, c
 /// The names of all presets' colours, the default first.
 TESSERA_EXPORT std::vector<std::string> preset_names();
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -6,7 +6,7 @@
 
 #include "tessera/camera.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// A stretch of one pixel's ray with matter in it, as OpenEXR's deep images have it.
 struct DeepImageSample {
@@ -31,4 +31,4 @@ struct DeepImage {
   }
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -15,7 +15,7 @@
 ///         a fifth of both its sides) is seen from 60 degrees above. The side towards the eye is the file's -y, or the
 ///         one at +x if the body is more than half again as deep as wide; of a patient always the face.
 /// Fit     the box is all in the picture, with a margin of 5 %.
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// What a file says of a patient's axes. z leads to the head in both.
 enum class BodyAxes {
@@ -76,4 +76,4 @@ TESSERA_EXPORT Camera adjusted_view(const Camera& camera, const Box& box, ImageS
 TESSERA_EXPORT Camera frame_box_along(const Box& box, ImageSize size, const glm::dvec3& to_eye, const glm::dvec3& up,
                                       ProjectionKind projection = ProjectionKind::orthographic, bool turning = false);
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

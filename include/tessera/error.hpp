@@ -8,7 +8,7 @@
 
 #include "tessera/export.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// What kind of trouble an error is. The values are also what the program `tessera` exits with.
 enum class ErrorCode : int {
@@ -59,4 +59,4 @@ inline Error bad_input(const std::string& line) { return {ErrorCode::bad_input, 
 /// threads, or unexpected.
 TESSERA_EXPORT Error error_of(const std::exception_ptr& thrown);
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -7,7 +7,7 @@
 
 #include "tessera/association.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// The field of ReadOptions::shape, which is no array of a file.
 inline constexpr const char* shape_field_name = "shape (depth)";
@@ -125,4 +125,4 @@ inline HigherOrderCells& HigherOrderCells::operator+=(const HigherOrderCells& ot
 }
 static_assert(sizeof(HigherOrderCells) == 6 * sizeof(double));  // one line above for each
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -17,7 +17,7 @@
 #include "tessera/view.hpp"
 
 /// What an editor of transfer functions asks of a field: how its values share the volume, and what one ray meets.
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// Histograms and quantiles are of some ten thousand places spread evenly over the volume, those by which the default
 /// transfer function is chosen: quick, the same for any number of threads and ranks, and to be called on any rank
@@ -81,4 +81,4 @@ TESSERA_EXPORT RayProbe probe(const Dataset& dataset, const View& view, const Tr
                               PixelIndex pixel, std::size_t samples = 256, const Settings& settings = {},
                               const Communicator& communicator = {});
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -6,7 +6,7 @@
 
 #include "tessera/export.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// What a file of a format holds.
 enum class FileHolds : std::uint8_t {
@@ -32,4 +32,4 @@ struct FileFormat {
 /// All formats, those that are not read last.
 TESSERA_EXPORT std::vector<FileFormat> file_formats();
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

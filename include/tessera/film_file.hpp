@@ -8,7 +8,7 @@
 #include "tessera/image.hpp"
 #include "tessera/image_file_options.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 struct FilmFileOptions {
   ImageFileOptions image;         ///< background and encode_srgb count: films have 8 bits and no alpha
@@ -49,4 +49,4 @@ class TESSERA_EXPORT FilmFile {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <type_traits>
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// What a frame of a mesh took, counted. Processes send it as it stands (exchange/wire.hpp); frame_counters says how
 /// they are put together and what reports and docs/REFERENCE.md say of them.
@@ -163,4 +163,4 @@ inline GridCounters& GridCounters::operator+=(const GridCounters& other) {
   return *this;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

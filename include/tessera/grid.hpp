@@ -13,7 +13,7 @@
 #include "tessera/camera.hpp"
 #include "tessera/export.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// How a sample is stored. Other types (64-bit integers, bits) become float64 or uint8 in the reader.
 enum class SampleType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
@@ -113,4 +113,4 @@ struct Grid {
 /// Throws Error(bad_input, "SOURCE: ...") if the invariants above are broken: what is wrong and along which axis.
 TESSERA_EXPORT void validate(const Grid& grid, const std::string& source);
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

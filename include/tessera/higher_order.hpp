@@ -10,7 +10,7 @@
 #include "tessera/transfer_function.hpp"
 #include "tessera/view.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// A mesh whose higher-order cells became tets, and what these change in a picture.
 struct HigherOrderRead {
@@ -48,4 +48,4 @@ TESSERA_EXPORT HigherOrderRead read_for_accuracy(const ReadOptions& options, std
                                                  const std::function<View(const Dataset&)>& view = {},
                                                  const Settings& settings = {}, const Communicator& communicator = {});
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

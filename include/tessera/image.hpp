@@ -6,7 +6,7 @@
 
 #include "tessera/camera.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// A finished picture. Row-major, row 0 at the top.
 /// `rgba`: 4 floats a pixel, linear RGB premultiplied by A; A = 1 - transmittance.
@@ -30,4 +30,4 @@ struct Image {
   }
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

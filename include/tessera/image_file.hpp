@@ -9,7 +9,7 @@
 #include "tessera/image.hpp"
 #include "tessera/image_file_options.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 // Files appear by rename, whole or not at all.
 
@@ -45,4 +45,4 @@ TESSERA_EXPORT bool is_deep_name(const std::filesystem::path& file);
 /// Before any rendering: throws Error(bad_input) unless write_image knows the extension and could create this file now.
 TESSERA_EXPORT void check_image_path(const std::filesystem::path& file);
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

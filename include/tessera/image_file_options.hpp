@@ -3,7 +3,7 @@
 #include <glm/vec3.hpp>
 #include <optional>
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// How a picture is written.
 struct ImageFileOptions {
@@ -17,4 +17,4 @@ struct ImageFileOptions {
   int threads = 0;        ///< .png, .tif, .exr: that compress; 0: all cores. The bytes are the same for any number
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

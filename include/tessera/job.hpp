@@ -12,7 +12,7 @@
 #include "tessera/error.hpp"
 #include "tessera/export.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// What is done about a rank that is silent: its process is stopped, or its machine hangs.
 struct StallSettings {
@@ -94,4 +94,4 @@ class TESSERA_EXPORT Job {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

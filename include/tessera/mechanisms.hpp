@@ -1,6 +1,6 @@
 #pragma once
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// What saves work and shows in no pixel by more than the accuracy asked. Each can be switched off, to see what it is
 /// worth (`--without`; bench/needed.py makes the table).
@@ -14,4 +14,4 @@ struct Mechanisms {
   friend bool operator==(const Mechanisms&, const Mechanisms&) = default;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

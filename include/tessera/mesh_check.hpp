@@ -5,7 +5,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// Hears which share of a check is done, 0 to 1: some hundred times, in order. It must not throw.
 using CheckProgressFunction = std::function<void(double)>;
@@ -63,4 +63,4 @@ struct MeshCheck {
   }
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// The source term of the volume rendering integral (Max, "Optical Models for Direct Volume Rendering", TVCG 1995).
 enum class Emission {
@@ -25,4 +25,4 @@ struct Integrator {
   bool terminates = true;  ///< rays end where what is left is below the accuracy; false: they never do
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// Half-open rectangle of pixels.
 struct PixelRect {
@@ -11,4 +11,4 @@ struct PixelRect {
   [[nodiscard]] int area() const { return width() * height(); }
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

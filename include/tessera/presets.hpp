@@ -9,7 +9,7 @@
 #include "tessera/export.hpp"
 #include "tessera/transfer_function.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// The transfer function of a name, COLOURS or COLOURS:OPACITY (preset_names()), over the values from 0 to 1, per unit
 /// distance 1. Throws Error(bad_input) for an unknown name, with those known.
@@ -22,4 +22,4 @@ TESSERA_EXPORT std::vector<glm::dvec3> preset_colors(std::string_view name, std:
 /// What OPACITY may be, the default first.
 TESSERA_EXPORT std::vector<std::string> preset_opacity_names();
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <functional>
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// How far the reading of a file is.
 struct ReadProgress {
@@ -25,4 +25,4 @@ struct ReadProgress {
 /// not call the library.
 using ReadProgressFunction = std::function<void(const ReadProgress&)>;
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

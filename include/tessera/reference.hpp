@@ -13,7 +13,7 @@
 #include "tessera/transfer_function.hpp"
 #include "tessera/view.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// What a ray sees.
 struct ReferencePixel {
@@ -53,4 +53,4 @@ class TESSERA_EXPORT Reference {
 /// the same pixels everywhere.
 TESSERA_EXPORT std::vector<PixelIndex> random_pixels(ImageSize size, std::size_t count, std::uint64_t seed);
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -10,7 +10,7 @@
 #include "tessera/export.hpp"
 #include "tessera/grid.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// Smallest and largest value (scale and shift applied) of the samples that are not blank; empty if low > high. With
 /// the number of blank samples.
@@ -103,4 +103,4 @@ constexpr SampleType sample_type_of() {
   return SampleType::float64;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

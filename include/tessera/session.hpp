@@ -14,7 +14,7 @@
 #include "tessera/verification.hpp"
 #include "tessera/view.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// Who rendered what of a grid's picture, and what it was thought to cost (Moloney 2008, Figures 1.2, 4.1, 4.4).
 struct BalancePictures {
@@ -89,4 +89,4 @@ class TESSERA_EXPORT Session {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -10,7 +10,7 @@
 #include "tessera/shading.hpp"
 #include "tessera/surfaces.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 class Trace;
 
@@ -201,4 +201,4 @@ struct FrameSettings {
   std::optional<Peel> peel{};
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -2,7 +2,7 @@
 
 #include <glm/vec3.hpp>
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// Blinn-Phong, two-sided. The normal n is the field's gradient: in a mesh's tet the one that it has there, in a grid
 /// that of the trilinear field, taken in the middle of every stretch of a ray inside a voxel, up to a surface, and kept
@@ -19,4 +19,4 @@ struct Shading {
   bool operator==(const Shading&) const = default;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -10,7 +10,7 @@
 #include "tessera/settings.hpp"
 #include "tessera/statistics.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// A finished picture, or one that was stopped.
 struct RenderedFrame {
@@ -57,4 +57,4 @@ class Sink {
   virtual Image spare_image(ImageSize /*size*/) { return {}; }
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -9,7 +9,7 @@
 #include "tessera/frame_counters.hpp"
 #include "tessera/pixel_rect.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// The instruction set that kernels of this process run on.
 TESSERA_EXPORT std::string instruction_set();
@@ -36,4 +36,4 @@ struct FrameStatistics {
   std::vector<std::array<std::array<std::int64_t, 3>, 2>> parts;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

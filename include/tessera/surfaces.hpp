@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// How surfaces are lit: Blinn-Phong, two-sided, by a light at the eye. With n the surface's unit normal and d the unit
 /// direction of the ray, colour c becomes c * (ambient + diffuse |n.d|) + specular |n.d|^shininess.
@@ -65,4 +65,4 @@ struct Surfaces {
   [[nodiscard]] bool has_faces() const { return !boundary.empty() || !triangles.empty(); }
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

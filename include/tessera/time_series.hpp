@@ -7,7 +7,7 @@
 
 #include "tessera/export.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// One mesh or grid of a time series.
 struct TimeStep {
@@ -35,4 +35,4 @@ TESSERA_EXPORT std::vector<TimeStep> read_time_series(const std::filesystem::pat
 /// % too, stays.
 TESSERA_EXPORT std::optional<std::string> numbered_name(const std::string& pattern, int number);
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -7,11 +7,12 @@
 
 #include "tessera/export.hpp"
 
-namespace tessera {
-namespace scene {
+namespace tessera::scene {
 class StageTimer;
 class TraceTile;
-}  // namespace scene
+}  // namespace tessera::scene
+
+namespace tessera::inline v0_1 {
 
 /// For whom a process worked. A rank may project and composite at once, and a projector composites its own runs, so
 /// that the stage alone does not say it.
@@ -128,4 +129,4 @@ class TESSERA_EXPORT TraceScope {
   double start_us_ = 0, start_cpu_us_ = 0;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

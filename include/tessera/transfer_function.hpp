@@ -9,7 +9,7 @@
 
 #include "tessera/export.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// Colour and extinction at one scalar value.
 struct Knot {
@@ -73,4 +73,4 @@ struct LoadedTransferFunction {
   std::vector<std::string> warnings{};  ///< one line each: that it shows little of the field, and what mends that
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

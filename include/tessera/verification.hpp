@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// Whether a picture keeps what its method promises, as some of its pixels tell. Errors are absolute differences in
 /// linear premultiplied RGBA to the double-precision reference.
@@ -39,4 +39,4 @@ struct Verification {
   bool met = true;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -9,7 +9,7 @@
 #include "tessera/camera_file.hpp"
 #include "tessera/export.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// A camera and the size of its picture.
 struct View {
@@ -36,4 +36,4 @@ TESSERA_EXPORT void write_camera(const CameraFile& camera, const std::filesystem
 /// What write_camera writes.
 TESSERA_EXPORT std::string camera_json(const CameraFile& camera);
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

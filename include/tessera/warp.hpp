@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// How far the points of a mesh are moved, by a vector that its file has for each of them.
 struct Warp {
@@ -12,4 +12,4 @@ struct Warp {
   bool operator==(const Warp&) const = default;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

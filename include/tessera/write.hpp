@@ -7,7 +7,7 @@
 #include "tessera/export.hpp"
 #include "tessera/image_file.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 // All files appear by rename, whole or not at all.
 
@@ -38,4 +38,4 @@ TESSERA_EXPORT bool is_grid_output(const std::filesystem::path& file);
 /// for up to 16 bits and float32, else float64.
 TESSERA_EXPORT SampleType written_type(const Dataset& grid);
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -19,7 +19,7 @@ const char* left_out(Needs needs) {
 
 }  // namespace tessera::io
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 std::vector<FileFormat> file_formats() {
   std::vector<FileFormat> formats;
@@ -37,4 +37,4 @@ std::vector<FileFormat> file_formats() {
   return formats;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

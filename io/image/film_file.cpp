@@ -28,7 +28,7 @@
 #include "system/spawn_plan.hpp"
 #include "system/unfinished.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 namespace {
 
 /// What ffmpeg is told of a kind of file: its format, and how pictures become it.
@@ -291,4 +291,4 @@ void FilmFile::commit() {
   state_->target.commit();
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

@@ -176,7 +176,7 @@ void require_input(const std::filesystem::path& input) {
 
 }  // namespace tessera::io
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 bool is_time_series(const std::filesystem::path& input) {
   if (io::is_pvd(input) || io::is_file_series(input)) return true;
@@ -214,4 +214,4 @@ std::optional<std::string> numbered_name(const std::string& pattern, int number)
   return fmt::format("{}{:0{}}{}", parts->before, number, parts->width, parts->after);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

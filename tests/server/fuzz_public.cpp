@@ -6,7 +6,7 @@
 #include "tessera/input_file.hpp"
 #include "tessera/view.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 void check_json(std::string_view text, const std::string& source, std::size_t most_values) {
   io::parse_json(text, source, most_values);
@@ -14,4 +14,4 @@ void check_json(std::string_view text, const std::string& source, std::size_t mo
 bool is_json_text(std::string_view file_or_json) { return io::is_json_text(file_or_json); }
 std::vector<std::string> preset_names() { return {"cool-warm", "viridis"}; }
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

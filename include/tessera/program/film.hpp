@@ -11,7 +11,7 @@
 #include "tessera/default_view.hpp"
 #include "tessera/time_series.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// Time steps from the first to the last, both included, counted from 0.
 struct StepRange {
@@ -87,4 +87,4 @@ ReadOptions read_of_later_steps(ReadOptions options, const Dataset& first);
 void check_film_outputs(std::span<const FilmFrame> frames, std::span<const std::filesystem::path> more,
                         std::span<const std::filesystem::path> inputs);
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

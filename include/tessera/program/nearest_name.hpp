@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// The name that was probably meant by `word`: the one that the fewest changes make of it, a change being a letter that
 /// is missing, too much or another, or two neighbours swapped; capitals do not count, and of a path its
@@ -14,4 +14,4 @@ namespace tessera {
 /// Source: F. J. Damerau, "A technique for computer detection and correction of spelling errors", CACM, 1964.
 std::optional<std::string> nearest_name(std::string_view word, std::span<const std::string> names);
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1

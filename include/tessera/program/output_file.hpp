@@ -8,7 +8,7 @@
 
 #include "tessera/error.hpp"
 
-namespace tessera {
+namespace tessera::inline v0_1 {
 
 /// An output cannot be written. Whose fault it is depends on when: Error(bad_input) where the user can mend it (no such
 /// folder, no permission, the target is a folder or device), as long as nothing has been begun; who has found before
@@ -85,4 +85,4 @@ void check_output(const std::filesystem::path& target, const std::filesystem::pa
 /// That alone of it: throws if they are one file.
 void check_not_input(const std::filesystem::path& target, const std::filesystem::path& input);
 
-}  // namespace tessera
+}  // namespace tessera::inline v0_1
