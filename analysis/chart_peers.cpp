@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/chart_peers.hpp"
 
 #include <fmt/format.h>

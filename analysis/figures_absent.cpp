@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Built in place of what draws with TESSERA_CAIRO=OFF.
 #include <fmt/format.h>
 

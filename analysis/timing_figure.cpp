@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/timing_figure.hpp"
 
 #include <fmt/format.h>

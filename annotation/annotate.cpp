@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The public functions: a sheet is sketched, painted in two layers, and composited.
 #include <fmt/format.h>
 
@@ -99,7 +100,8 @@ void draw(const Image& picture, const Annotation& annotation, const View& view, 
 }  // namespace
 }  // namespace tessera::annotation
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 void annotate(Image& picture, const Annotation& annotation, const View& view, const Box& box,
               const TransferFunction& transfer_function) {
@@ -140,4 +142,5 @@ void validate(const Annotation& annotation, const TransferFunction& transfer_fun
   annotation::Typeface(12);  // finds a font, or says so
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,8 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Built in place of what draws with TESSERA_CAIRO=OFF.
 #include "tessera/annotation.hpp"
 #include "tessera/error.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 void validate(const Annotation&, const TransferFunction&) {
   throw bad_input("annotation: needs Cairo, which this build leaves out; build with TESSERA_CAIRO=ON, or draw none");
@@ -18,4 +20,5 @@ Image annotation_layer(const Image&, const Annotation& annotation, const View&, 
   return {};
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

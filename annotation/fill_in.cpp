@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -5,7 +6,8 @@
 #include "tessera/annotation.hpp"
 #include "tessera/error.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 std::string fill_in(const std::string& text, std::span<const AnnotationWord> words) {
   std::string filled;
@@ -30,4 +32,5 @@ std::string fill_in(const std::string& text, std::span<const AnnotationWord> wor
   return filled;
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/mesh/block_surface.hpp"
 
 #include <fmt/format.h>
@@ -10,7 +11,8 @@
 #include "scene/threads.hpp"
 #include "tessera/triangle_file.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 TriangleMesh read_block_surface(std::span<const std::filesystem::path> files, const std::string& block,
                                 const ReadOptions& options) {
@@ -38,4 +40,5 @@ TriangleMesh read_block_surface(std::span<const std::filesystem::path> files, co
   return boundary;
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

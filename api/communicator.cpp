@@ -1,10 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "api/communicator.hpp"
 
 #include "exchange/bells.hpp"
 #include "exchange/loopback_transport.hpp"
 #include "exchange/mpi/mpi_transport.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 std::shared_ptr<exchange::Transport> alone() {
@@ -35,6 +37,8 @@ void run_ranks(int ranks, const std::function<void(const Communicator&)>& work) 
   exchange::run_ranks(ranks, [&](exchange::Transport& transport) { work(frame::communicator_over(transport)); });
 }
 
+}  // namespace v0_1
+
 namespace frame {
 
 Communicator communicator_over(exchange::Transport& transport) {
@@ -44,4 +48,4 @@ Communicator communicator_over(exchange::Transport& transport) {
 }
 
 }  // namespace frame
-}  // namespace tessera::inline v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <functional>
@@ -7,7 +8,8 @@
 #include "exchange/transport.hpp"
 #include "tessera/communicator.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// How a Communicator becomes messages.
 struct TESSERA_HIDDEN Communicator::State {
@@ -16,6 +18,8 @@ struct TESSERA_HIDDEN Communicator::State {
   std::function<std::shared_ptr<exchange::Transport>()> connect;
 };
 
+}  // namespace v0_1
+
 namespace frame {
 
 /// Ranks of a transport that somebody else has: everything made with it shares it, one after the other. It must outlive
@@ -23,4 +27,4 @@ namespace frame {
 Communicator communicator_over(exchange::Transport& transport);
 
 }  // namespace frame
-}  // namespace tessera::inline v0_1
+}  // namespace tessera

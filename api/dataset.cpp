@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "api/dataset.hpp"
 
 #include <fmt/format.h>
@@ -39,7 +40,8 @@
 #include "system/files_read.hpp"
 #include "tessera/input_file.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 io::VolumeOptions volume_options(const ReadOptions& o) {
@@ -208,6 +210,8 @@ auto together(exchange::Transport& transport, const Work& work) {
 
 }  // namespace
 
+}  // namespace v0_1
+
 namespace frame {
 
 cells::MeshOptions mesh_options(const ReadOptions& o) {
@@ -230,6 +234,8 @@ cells::MeshOptions mesh_options(const ReadOptions& o) {
 }
 
 }  // namespace frame
+
+inline namespace v0_1 {
 
 std::shared_ptr<const projection::PreparedMesh> Dataset::State::prepared(int threads, scene::Trace* trace) const {
   std::call_once(once_, [&] {
@@ -476,4 +482,5 @@ std::vector<double> times_of(const std::filesystem::path& file, const ReadOption
 
 std::vector<std::string> preset_names() { return colormaps::preset_names(); }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <memory>
@@ -17,7 +18,8 @@
 #include "tessera/default_view.hpp"
 #include "volume/bricks/cell_ranges.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// What a Dataset holds. Nothing changes once it is made; what is prepared on demand is prepared once.
 struct TESSERA_HIDDEN Dataset::State {
@@ -71,9 +73,11 @@ struct TESSERA_HIDDEN Dataset::State {
   mutable std::shared_ptr<const projection::PreparedMesh> prepared_;
 };
 
+}  // namespace v0_1
+
 namespace frame {
 
 cells::MeshOptions mesh_options(const ReadOptions& options);
 
 }  // namespace frame
-}  // namespace tessera::inline v0_1
+}  // namespace tessera

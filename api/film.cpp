@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tessera/program/film.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +16,8 @@
 #include "tessera/program/output_file.hpp"
 #include "tessera/view.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 constexpr std::size_t max_frames = 10'000'000;
@@ -242,4 +244,5 @@ void check_film_outputs(std::span<const FilmFrame> frames, std::span<const std::
     }
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

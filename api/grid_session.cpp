@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A grid, by any number of ranks.
 #include <fmt/format.h>
 
@@ -19,7 +20,8 @@
 #include "frame/ranks/run_error.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 using frame::stopped_frame;
@@ -294,6 +296,8 @@ class GridByRays final : public Session::State {
 
 }  // namespace
 
+}  // namespace v0_1
+
 namespace frame {
 
 std::unique_ptr<Session::State> grid_by_rays(Dataset dataset, const Settings& settings,
@@ -302,4 +306,4 @@ std::unique_ptr<Session::State> grid_by_rays(Dataset dataset, const Settings& se
 }
 
 }  // namespace frame
-}  // namespace tessera::inline v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tessera/job.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +21,8 @@
 #include "exchange/termination.hpp"
 #include "system/unfinished.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 struct Job::State {
   JobVoice voice;
@@ -115,4 +117,5 @@ void Job::say_once(const std::string& line) {
   std::fflush(stderr);
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A mesh, by one process or by all ranks of a job.
 #include <fmt/format.h>
 
@@ -16,7 +17,8 @@
 #include "projection/scanline/segment_tuple.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 /// Throws Error(bad_input) for a method that is out of range, before anybody waits for a frame.
@@ -264,6 +266,8 @@ class MeshOnRanks final : public Session::State {
 
 }  // namespace
 
+}  // namespace v0_1
+
 namespace frame {
 
 std::unique_ptr<Session::State> mesh_alone(Dataset dataset, const Settings& settings) {
@@ -276,4 +280,4 @@ std::unique_ptr<Session::State> mesh_on_ranks(Dataset dataset, const Settings& s
 }
 
 }  // namespace frame
-}  // namespace tessera::inline v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tessera/presets.hpp"
 
 #include <glm/common.hpp>
@@ -5,7 +6,8 @@
 #include "colormaps/presets.hpp"
 #include "tessera/error.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 TransferFunction preset_function(std::string_view name) { return colormaps::preset(name, {}).function; }
 
@@ -23,4 +25,5 @@ std::vector<glm::dvec3> preset_colors(std::string_view name, std::size_t count) 
   return colors;
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The public functions that read and write files, by io/'s.
 #include <fmt/format.h>
 
@@ -31,7 +32,8 @@
 #include "tessera/view.hpp"
 #include "tessera/write.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 std::vector<CameraFile> read_cameras(const std::filesystem::path& file) { return io::read_cameras(file); }
 std::vector<CameraFile> parse_cameras(std::string_view text, const std::string& name) {
@@ -188,4 +190,5 @@ SampleType written_type(const Dataset& grid) {
 int threads_for(int asked) { return scene::threads_for(asked); }
 std::string instruction_set() { return projection::instruction_set(); }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tessera/reference.hpp"
 
 #include <utility>
@@ -8,7 +9,8 @@
 #include "reference/reference.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 struct Reference::State {
   Dataset dataset;
@@ -49,4 +51,5 @@ std::vector<ReferencePixel> Reference::pixels(std::span<const PixelIndex> wanted
   return state_->rays->pixels(wanted, threads);
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

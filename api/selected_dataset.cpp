@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A part of a data set, and the whole that it was cut from.
 #include <fmt/format.h>
 
@@ -14,7 +15,8 @@
 #include "frame/ranks/reduce.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 scene::TetMesh copy_of(const scene::TetMeshView& view) {
@@ -72,6 +74,8 @@ Dataset Dataset::selected(const Selection& selection) const {
   return part;
 }
 
+}  // namespace v0_1
+
 namespace frame {
 
 UncutMesh uncut_mesh(const Dataset::State& data) {
@@ -107,4 +111,4 @@ void clip_box(Dataset::State& grid, const Selection& selection, const std::strin
 }
 
 }  // namespace frame
-}  // namespace tessera::inline v0_1
+}  // namespace tessera

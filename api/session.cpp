@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tessera/session.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +21,8 @@
 #include "scene/error.hpp"
 #include "scene/pixel_view.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 /// The view with pixels no smaller than 1e-60 of what they see: far below what positions are told apart by, so that the
@@ -188,4 +190,5 @@ BalancePictures Session::balance_pictures(const RenderedFrame& frame, const View
 
 const Dataset& Session::dataset() const { return state_->dataset(); }
 const Settings& Session::settings() const { return state_->settings(); }
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

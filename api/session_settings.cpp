@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "api/session_settings.hpp"
 
 #include <fmt/format.h>
@@ -27,7 +28,8 @@ volume::Method method_of(IntegratorKind kind) {
 }  // namespace
 }  // namespace tessera::frame
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 Exchange exchange_of(const Settings& settings, bool deep) {
   if (settings.ranks.exchange) return *settings.ranks.exchange;
@@ -38,7 +40,8 @@ Exchange exchange_of(const Settings& settings, bool deep) {
   return wants_segments ? Exchange::segments : Exchange::runs;
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera
 
 namespace tessera::frame {
 

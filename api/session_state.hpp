@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstddef>
@@ -13,7 +14,8 @@
 #include "scene/frame_watch.hpp"
 #include "tessera/session.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// How a kind of data is rendered by a number of processes.
 class TESSERA_HIDDEN Session::State {
@@ -40,6 +42,8 @@ class TESSERA_HIDDEN Session::State {
   Dataset dataset_;
   Settings settings_;
 };
+
+}  // namespace v0_1
 
 namespace frame {
 
@@ -81,4 +85,4 @@ inline RenderedFrame stopped_frame(std::size_t number) {
 }
 
 }  // namespace frame
-}  // namespace tessera::inline v0_1
+}  // namespace tessera

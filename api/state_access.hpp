@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <memory>
@@ -6,7 +7,8 @@
 #include "tessera/communicator.hpp"
 #include "tessera/dataset.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// What the library alone sees of its public classes. No header that is installed defines it.
 struct StateAccess {
@@ -16,4 +18,5 @@ struct StateAccess {
   static Dataset make(std::shared_ptr<const Dataset::State> state) { return Dataset(std::move(state)); }
 };
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tessera/trace_file.hpp"
 
 #include <limits>
@@ -7,7 +8,8 @@
 #include "io/scene/chrome_trace.hpp"
 #include "io/scene/chrome_trace_reader.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 using exchange::Bytes;
@@ -70,4 +72,5 @@ void write_trace(const Trace& trace, const std::string& process_name, const Trac
 
 TraceFile read_trace(const std::filesystem::path& file) { return io::read_chrome_trace(file); }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

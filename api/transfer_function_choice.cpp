@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "api/transfer_function_choice.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 /// Ctrl-C and its like. A run of one process that gets SIGINT, SIGTERM or SIGHUP ends at once and leaves nothing: no

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The `tessera` program: subcommands over the libraries. Everything that goes wrong ends here, in one line on stderr
 // and an exit status (ExitCode).
 

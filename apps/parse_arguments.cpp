@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "apps/parse_arguments.hpp"
 
 #include <fmt/format.h>

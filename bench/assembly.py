@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """What it takes to put a picture together on one rank: bytes that come, and CPU time of the stage `assemble`.
 
     bench/assembly.py --tessera PROGRAM [--tessera BEFORE ...] --work FOLDER [--results docs/SCALING.md] [--nodes 8] [--frames 20] [--repeat 3]

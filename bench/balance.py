@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Moloney, Ray Coherence in Parallel Volume Rendering (2008), Tables 6.4 and 6.5, Figures 6.8 to 6.10: how evenly processes share a picture.
 
     bench/balance.py --tessera PROGRAM [--document docs/EXPERIMENTS.md] [--only "table 6.4"] [--processes 6] [--size 1024x1024] [--brick-size 64] [--volume FILE]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Moloney, Ray Coherence in Parallel Volume Rendering (2008), Figures 1.1, 1.2, 4.1 and 4.4: who renders what, and what it is thought to cost.
 
     bench/balance_pictures.py --tessera PROGRAM [--images docs/images]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Moloney, Ray Coherence in Parallel Volume Rendering (2008), Figure 6.24: what a frame's time goes to, stage by stage.
 
     bench/breakdown.py --tessera PROGRAM [--document docs/EXPERIMENTS.md] [--processes 6] [--samples 400] [--frames 13] [--zoom 8]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Moloney, Ray Coherence in Parallel Volume Rendering (2008): Tables 6.2 and 6.3, Figures 6.21 to 6.23: bricks and their cache.
 
     bench/cache.py --tessera PROGRAM --frames-program build/release/bench/cache_frames [--document docs/EXPERIMENTS.md] [--only "table 6.3"]

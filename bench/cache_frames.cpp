@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Frames of an animation through the brick caches of several units, for bench/cache.py: what Moloney, "Ray Coherence in
 // Parallel Volume Rendering" (SFU 2008), prints of loading in 6.2.2 and 6.7.2.
 //

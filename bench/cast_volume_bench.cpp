@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The ray caster of regular grids: time of a 1024x1024 picture of 256^3 samples in memory, and CPU nanoseconds a voxel
 // visited, of all threads together; for each method, asked accuracy and kind of sample, shaded or not, and with an
 // opaque and a sparse transfer function, where early ends and skipped space show.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Compares `tessera render` with VTK's unstructured-grid ray caster on real meshes: same view, same transfer function.
 
     xvfb-run -a /usr/bin/python3 bench/compare_vtk.py --data FOLDER --output FOLDER

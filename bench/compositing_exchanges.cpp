@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What parts of a picture take on their way to the pixels that are composited of them, by several exchanges, for
 // bench/exchanges.py:
 //

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Tries every file of a folder, `tessera info` and a 256 x 256 `tessera render`, within limits, and sorts what comes of it.
 
     bench/corpus.py --tessera PROGRAM FOLDER [--seconds 60] [--mebibytes 8192] [--jobs 2] [--pictures FOLDER] [--json FILE]

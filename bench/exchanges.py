@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Which exchange composites the parts of a picture with the fewest bytes, messages and CPU time: direct send, binary swap, radix-k, and of meshes runs.
 
     bench/exchanges.py --program build/release/bench/compositing_exchanges [--document docs/EXPERIMENTS.md] [--only volumes]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """First pictures: what `tessera render FILE -o OUT` shows with no other option, in numbers and on contact sheets.
 
     bench/first_pictures.py --tessera PROGRAM [--before PROGRAM] [--data FOLDER] [--generated 40] [--sheets FOLDER] [--work FOLDER]

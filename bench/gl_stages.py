@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Stage times of the compositors on one mesh in one run: CPU, gl-compute, the same with cells rasterized by the device,
 gl-fragment.
 

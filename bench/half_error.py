@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Error of --compositor gl-fragment against depth complexity: 16-bit framebuffer (as printed) beside 32-bit.
 
 Cubes of more and more cells along the ray, and one pile of 20,000; all of one optical depth. The error is the maximum

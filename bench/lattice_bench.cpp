@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The lattice path's kernels: nanoseconds a cell (set up and rasterized), a segment (scattered to its pixel's window)
 // and a segment (sorted, integrated, composited), by the mean size of a cell in pixels and by instruction set, on one
 // thread; and whole frames on one and two threads.

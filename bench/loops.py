@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """The hot loops of a frame: how much of its time each takes, how many instructions it is, and in how many cycles the
 processor's ports alone could do them.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the machine can do, for figures in percent of it: fused multiply-adds of single precision (GFLOP/s) and the
 // STREAM triad a = b + s * c (GB/s, three arrays that no cache holds, what is read to be written counted too), on one
 // and two threads, by instruction set.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """What memory processes take that render volumes, and what they read again where a volume is larger than that.
 
     bench/memory.py --tessera PROGRAM [--document docs/EXPERIMENTS.md] [--only "of processes"] [--samples 512] [--large 2048] [--folder FOLDER]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """What the default skips, and what each mechanism that skips it saves: a table a data set, from the program's own counters.
 
     bench/needed.py --data FOLDER [--tessera build/release/apps/tessera] [--only NAME,...] [--document docs/ACCURACY.md]

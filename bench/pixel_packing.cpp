@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// What finished pixels take on their way to the rank that puts the picture together (exchange/packed_pixels.hpp):
 /// bytes a pixel, and nanoseconds a pixel of one core to pack and unpack them beside appending and placing them as they
 /// are.

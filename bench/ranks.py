@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """What ranks cost: the same frames by one process and by several, in pairs, old program and new.
 
     bench/ranks.py --tessera PROGRAM [--old PROGRAM] [--pairs 10] [--repeat 8] [--work FOLDER] [--results FILE]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Times reading: `tessera info` beside VTK's own reader, every format that VTK's Python module reads as a volume.
 
     bench/reading.py --tessera PROGRAM [--work FOLDER] [--repeat 5] [--only TEXT] [--results bench/RESULTS.md]

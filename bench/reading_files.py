@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Files that bench/reading.py reads: one cube of tets, hexahedra or samples in every format that VTK's packaged readers know.
 
 Each function writes into a folder and returns the file to open; `FORMATS` names them, with VTK's reader. Written by VTK's writers, or

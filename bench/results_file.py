@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Sections of bench/RESULTS.md: a table, and what it means nothing without.
 
 A section lies between two marks, `<!-- NAME begin -->` and `<!-- NAME end -->`, and is replaced whole by the next run of

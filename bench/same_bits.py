@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Draws the same scenes with two programs and compares the pictures to the bit: colours, opacity and depth.
 
     bench/same_bits.py --old PROGRAM --new PROGRAM [--seed 1] [--only meshes,grids,large,ranks,device] [--threads 2]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Times the same frames with two programs in turn, and compares time, CPU time and memory.
 
     bench/same_speed.py --old PROGRAM --new PROGRAM [--rounds 5] [--repeat 5] [--only TEXT] [--work FOLDER] [--json FILE]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Juliachs et al. 2007, Table 1 and Figure 9: how rendering scales with nodes.
 
     bench/scaling.py --tessera PROGRAM --work FOLDER [--results docs/SCALING.md] [--frames 50] [--nodes 2,4,8] [--millions 15.7,51.1]

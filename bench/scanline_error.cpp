@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// The error of the `scanline` rasterizer (Juliachs et al. 2007, 4.1-4.2) and where it comes from, and its time beside
 /// `planes`.
 ///

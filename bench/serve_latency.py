@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Latency of `tessera serve` on the server's side: from the moment a state is sent to the moment its frame has come.
 
     serve_latency.py --tessera PROGRAM FILE [--size 1024x768] [--frames 200] [--latency 100] [--ranks N]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """How long a frame takes on N nodes, and where it is lost: the stages of a real run, replayed on modelled cores and links.
 
     bench/simulate.py TRACE.json [--gbit 1] [--latency-us 50] [--cores 2 [--shared]] [--threads 1] [--frames-in-flight 2] [--memory-mib 4096]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The rank that puts pictures together and writes them, in the model of bench/simulate.py."""
 import collections
 

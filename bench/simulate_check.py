@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """bench/simulate.py against real runs: nodes that are network namespaces, on a bridge, with links limited by tc.
 
     bench/simulate_check.py --tessera PROGRAM --work FOLDER [--results docs/SCALING.md] [--nodes 2,4,8] [--mbit 100,1000] [--side 48]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """What bench/simulate.py foretells for machines that are not here: 8, 64 and 1024 nodes, 15.7 million to 10^10 tetrahedra.
 
     bench/simulate_cluster.py --tessera PROGRAM --work FOLDER [--results docs/SCALING.md] [--sides 69,138] [--frames 4] [--jobs 1]

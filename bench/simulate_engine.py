@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Time, cores and links of bench/simulate.py: what runs when several things share something. Knows nothing of rendering.
 
 Cores    processor sharing: of n running threads on C cores each advances at min(1, C/n).

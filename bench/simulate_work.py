@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What bench/simulate.py replays: the work of a traced run, by rank, frame and tile."""
 import collections
 import json

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Long runs: 2,000 frames each of a mesh, a grid, a series and a server. Resident memory and open descriptors are read
 again and again; from the first tenth of the frames to the last their peaks may grow by 3 MiB and by none.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Moloney, Ray Coherence in Parallel Volume Rendering (2008), Figures 1.1, 6.6, 6.7 and 6.15: rays in one place, or in pieces.
 
     bench/sort_last.py --tessera PROGRAM [--document docs/EXPERIMENTS.md] [--only "figure 6.15"] [--size 512x512] [--samples 192] [--frames 5]

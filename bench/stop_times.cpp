@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How long a frame goes on after it was asked to stop, at random times, through the public interface:
 //   stop_times FILE [STOPS] [WIDTH] [compute|fragment]   prints ms at 50, 95, 99 and 100 per cent of the stops
 //   mpirun -n 4 stop_times ...   ranks in turn ask, and the last to return counts

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """The speed of meshes where it was asked for: one table of what was wanted, what is reached, and by which command.
 
     bench/targets.py [--tessera build/release/apps/tessera] [--work FOLDER] [--data FOLDER] [--repeat 5]

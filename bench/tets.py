@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Times `tessera render` beside VTK's unstructured-grid ray caster: same mesh, view, transfer function, machine, run.
 
     bench/tets.py [--tessera build/release/apps/tessera] [--cubes 32,64] [--repeat 7] [--vtk-repeat 2]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a frame does before its first ray segment: vertices to pixels, cull and count, fill, order. CPU nanoseconds of
 // all threads together, a vertex (transform), a tet (cull, fill) or an entry of a list (order); by threads, by
 // instruction set, and with the transfer function that shows 5 % of the cells. For cull and fill also what they read:

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """What two processes cost: films of a volume by two processes of one thread, beside one process of two threads.
 
     bench/two_processes.py --tessera PROGRAM [--old PROGRAM] [--repeats 5] [--frames 12] [--samples 256] [--size 1024x1024] [--results FILE]

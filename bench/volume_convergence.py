@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """How the error of the caster's methods falls with step or asked accuracy: the tables of docs/ACCURACY.md, "Volumes".
 
     bench/volume_convergence.py --tessera build/release/apps/tessera [--volume FILE] [--size 200x200] [--pixels 2000]

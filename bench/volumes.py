@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Times `tessera render` of regular grids beside VTK's fixed-point ray caster: same volume, view, transfer function, run.
 
     bench/volumes.py [--tessera build/release/apps/tessera] [--data FOLDER] [--rounds 3] [--repeat 5] [--threads 2]

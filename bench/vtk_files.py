@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Writes one small data set by each of VTK's own writers, in every encoding they have: files that a corpus begins with.
 
     bench/vtk_files.py FOLDER

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "cells/axis_scale.hpp"
 
 #include <fmt/format.h>

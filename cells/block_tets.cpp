@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "cells/block_tets.hpp"
 
 #include <fmt/format.h>

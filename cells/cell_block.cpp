@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "cells/cell_block.hpp"
 
 #include <fmt/format.h>

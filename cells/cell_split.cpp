@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "cells/cell_split.hpp"
 
 #include <fmt/format.h>

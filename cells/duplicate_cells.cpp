@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "cells/duplicate_cells.hpp"
 
 #include <tbb/blocked_range.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "cells/field_choice.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "cells/mesh_blocks.hpp"
 
 #include <algorithm>

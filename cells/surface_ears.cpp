@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "cells/surface_ears.hpp"
 
 #include <algorithm>

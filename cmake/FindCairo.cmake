@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Cairo::cairo: the library, which programs link by its run-time name (Debian: libcairo2), and its headers (libcairo2-dev, or
 # those alone, as scripts/install_packages.sh unpacks them).
 find_library(CAIRO_LIBRARY libcairo.so.2)

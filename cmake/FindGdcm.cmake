@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Gdcm::gdcm, what reads files (Debian: libgdcm-dev). Its own CMake package wants all that it can be built with.
 find_path(GDCM_INCLUDE_DIR gdcmImageReader.h PATH_SUFFIXES gdcm-3.0 gdcm-3.1 gdcm)
 find_library(GDCM_FILES_LIBRARY gdcmMSFF)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Med::med, MED's library for C (Debian: libmedc-dev), which has no CMake package of its own, and HDF5's headers.
 find_path(MED_INCLUDE_DIR med.h)
 find_path(MED_HDF5_INCLUDE_DIR hdf5.h PATH_SUFFIXES hdf5/openmpi hdf5/mpich)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Minc::minc, MINC's library (Debian: libminc-dev), whose own CMake package wants what programs of its project need.
 find_path(MINC_INCLUDE_DIR minc2.h)
 find_library(MINC_LIBRARY minc2)

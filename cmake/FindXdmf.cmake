@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Xdmf::xdmf, XDMF's own library, and what its headers take (Debian: libxdmf-dev, libxml2-dev, libboost-dev). Its own CMake package
 # names files that Debian puts elsewhere; there the library lies in a folder of the HDF5 that it is built with.
 find_path(XDMF_INCLUDE_DIR XdmfReader.hpp)

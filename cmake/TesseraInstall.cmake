@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # cmake --install: libraries, headers, CMake and pkg-config packages, program, licence. The tree may be moved afterwards.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Tells Highway which instruction sets kernels are compiled for: TESSERA_INSTRUCTION_SETS. Quick sanitized builds, and
 # ThreadSanitizer's, where threads are watched and not lanes, have AVX2 alone.
 if((TESSERA_QUICK AND TESSERA_SANITIZE) OR TESSERA_SANITIZE MATCHES thread)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # The whole library, of the very objects that the folders' targets compile: libtessera.so, which shows what TESSERA_EXPORT
 # marks, and libtessera.a. In this build and installed: tessera::shared, tessera::static, and tessera::tessera, the shared
 # one where both are. tessera::mpi: what tessera/mpi.hpp needs beside.

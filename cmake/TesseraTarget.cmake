@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # One library a folder: tessera_library(NAME SOURCES ... LINK ... PRIVATE_LINK ...), alias tessera::NAME. Without SOURCES
 # it is headers only.
 # Each target sees only the folders it links to: headers are staged per folder as include/<folder>, so that an include

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Prints the instruction set that kernels compiled here would choose on this machine, as Highway calls it.
 #include <hwy/targets.h>
 

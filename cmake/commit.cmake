@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Writes OUTPUT, which defines TESSERA_COMMIT, if the commit of SOURCE has changed since: run at each build, so that a
 # program states the commit it was built from and nothing is compiled again while that stays the same.
 set(commit unknown) # sources outside a repository

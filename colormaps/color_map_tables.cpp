@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "colormaps/color_map_tables.hpp"
 
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "colormaps/default_function.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "colormaps/presets.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "compositor/image_assembly.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "compositor/matter_light.hpp"
 
 #include <algorithm>

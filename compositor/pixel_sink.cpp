@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "compositor/pixel_sink.hpp"
 
 #include "exchange/packed_pixels.hpp"

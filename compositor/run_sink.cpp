@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "compositor/run_sink.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The light of surfaces' crossings, a crossing a lane; included once per instruction set (Highway's include guard
 // idiom).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The light of windows' rows on its way into pixels, or runs; included once per instruction set (Highway's include
 // guard idiom).
 

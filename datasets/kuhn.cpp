@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "datasets/kuhn.hpp"
 
 #include <glm/geometric.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "datasets/transfer_functions.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "datasets/volume_fields.hpp"
 
 #include <algorithm>

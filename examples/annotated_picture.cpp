@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A file to a picture that explains itself, and the explanation alone as a layer.
 #include <iostream>
 

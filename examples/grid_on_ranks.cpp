@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A grid by several processes: mpirun -n 4 grid_on_ranks. Each has all samples here; of a file each reads what it
 // needs.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Eight hexahedra from arrays, as a solver has them, to a picture.
 #include <iostream>
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A file's tiles as they are finished; the frame is ended half way, then rendered whole: tiles_and_stop FILE
 #include <iostream>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "exchange/collectives.hpp"
 
 // All collectives pass through rank 0. A rank cannot begin the next one before rank 0 has everybody's part of this one,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "exchange/first_contact.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "exchange/frame_collector.hpp"
 
 #include <fmt/format.h>

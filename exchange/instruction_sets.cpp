@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "exchange/instruction_sets.hpp"
 
 #include <hwy/targets.h>

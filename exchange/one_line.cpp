@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "exchange/one_line.hpp"
 
 #include <fcntl.h>

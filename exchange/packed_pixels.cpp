@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "exchange/packed_pixels.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "exchange/shared_pages.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "exchange/termination.hpp"
 
 #include <fmt/format.h>

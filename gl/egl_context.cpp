@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <fmt/format.h>

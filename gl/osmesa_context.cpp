@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "gl/context.hpp"
 
 // Not before context.hpp: this brings gl.h, after which glcorearb.h would leave out what both have.

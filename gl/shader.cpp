@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "gl/shader.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "gl/texture.hpp"
 
 #include <fmt/format.h>

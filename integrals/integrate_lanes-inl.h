@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The exact integral of one ray segment a float lane, to be inlined in a loop over segments; included once per
 // instruction set (Highway's include guard idiom).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "integrals/integrate_lanes.hpp"
 
 #undef HWY_TARGET_INCLUDE

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A LaneTable in reach of float lanes; included once per instruction set (Highway's include guard idiom).
 
 #if defined(TESSERA_INTEGRALS_LANE_LOOKUP_INL_H_) == defined(HWY_TARGET_TOGGLE)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Lane code shared by the integrators; included once per instruction set (Highway's include guard idiom).
 
 #if defined(TESSERA_INTEGRALS_PIECEWISE_TABLE_INL_H_) == defined(HWY_TARGET_TOGGLE)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Interpolation in tables of floats by lanes of doubles; included once per instruction set (Highway's include guard
 // idiom).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "projection/depth_order.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "projection/edge_sign.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "projection/surface_crossings.hpp"
 
 #include <array>

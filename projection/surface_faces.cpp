@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "projection/surface_faces.hpp"
 
 #include <tbb/blocked_range.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "reference/layer_verification.hpp"
 
 #include <algorithm>

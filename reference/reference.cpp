@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "reference/reference.hpp"
 
 #include <tbb/parallel_for.h>
@@ -248,7 +249,8 @@ std::vector<PixelIndex> all_pixels(scene::ImageSize size) {
 
 }  // namespace tessera::reference
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 std::vector<PixelIndex> random_pixels(ImageSize size, std::size_t count, std::uint64_t seed) {
   const std::uint64_t width = static_cast<std::uint64_t>(size.width);
@@ -267,4 +269,5 @@ std::vector<PixelIndex> random_pixels(ImageSize size, std::size_t count, std::ui
   return pixels;
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

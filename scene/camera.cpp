@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "scene/camera.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +12,8 @@
 #include "scene/directions.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 using scene::bad_input;
@@ -90,4 +92,5 @@ Camera orbit(const Camera& camera, double turn) {
   return turned;
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tessera/default_view.hpp"
 
 #include <fmt/format.h>
@@ -13,7 +14,8 @@
 #include "scene/directions.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 using scene::bad_input;
@@ -249,4 +251,5 @@ Camera adjusted_view(const Camera& camera, const Box& box, ImageSize size, const
   return zoomed(seen, request.zoom);
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

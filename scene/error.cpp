@@ -1,8 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "scene/error.hpp"
 
 #include <algorithm>
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 constexpr std::string_view subject_mark = ": ", remedy_mark = "; ";
@@ -46,7 +48,8 @@ std::string_view Error::subject() const noexcept { return between(what(), 0, sub
 std::string_view Error::problem() const noexcept { return between(what(), problem_begin_, problem_end_); }
 std::string_view Error::remedy() const noexcept { return between(what(), remedy_begin_, std::string_view::npos); }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera
 
 namespace tessera::scene {
 

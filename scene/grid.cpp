@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "scene/grid.hpp"
 
 #include <fmt/format.h>
@@ -10,7 +11,8 @@
 
 #include "scene/error.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 using scene::bad_input;
@@ -127,7 +129,8 @@ void validate(const Grid& grid, const std::string& source) {
     fail(fmt::format("samples are scaled by {} and shifted by {}", grid.scale, grid.shift));
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera
 
 namespace tessera::scene {
 

@@ -1,10 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tessera/program/nearest_name.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <vector>
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 std::string lower(std::string_view text) {
@@ -60,4 +62,5 @@ std::optional<std::string> nearest_name(std::string_view word, std::span<const s
   return nearest == nullptr ? std::nullopt : std::optional(*nearest);
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

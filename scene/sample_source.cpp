@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "scene/sample_source.hpp"
 
 #include <fmt/format.h>
@@ -156,7 +157,8 @@ ValueRange value_range(const SampleSource& source) {
 
 }  // namespace tessera::scene
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 SampleSource::~SampleSource() = default;
 
@@ -186,4 +188,5 @@ void SampleSource::read(const SampleBox& box, const SampleLayout& layout, std::s
   read_samples(box, pitched, destination.data());
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "scene/selection.hpp"
 
 #include <fmt/format.h>
@@ -7,7 +8,8 @@
 #include "scene/directions.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 std::array<HalfSpace, 6> half_spaces_of(const Box& box) {
   std::array<HalfSpace, 6> sides;
   for (int axis = 0; axis < 3; ++axis) {
@@ -33,4 +35,5 @@ void validate(const Selection& selection) {
         fmt::format("`threshold`: {:g} to {:g} is no range; give the smaller number first", low, high));
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "scene/start_thread.hpp"
 
 #include <fmt/format.h>
@@ -38,7 +39,8 @@ std::optional<Error> thread_fault(const std::exception& fault) {
 
 }  // namespace tessera::scene
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 Error error_of(const std::exception_ptr& thrown) {
   try {
@@ -56,4 +58,5 @@ Error error_of(const std::exception_ptr& thrown) {
   }
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

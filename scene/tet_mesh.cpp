@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "scene/tet_mesh.hpp"
 
 #include <fmt/format.h>

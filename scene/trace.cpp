@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "scene/trace.hpp"
 
 #include <algorithm>
@@ -8,7 +9,8 @@
 #include <unordered_map>
 #include <utility>
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -126,6 +128,8 @@ void TraceScope::end() {
   mine.spans.push_back(span);
 }
 
+}  // namespace v0_1
+
 namespace scene {
 
 namespace {
@@ -175,4 +179,4 @@ void TraceTile::begin(std::int32_t tile) { before_ = std::exchange(trace_->mine(
 void TraceTile::end() { trace_->mine().tile = before_; }
 
 }  // namespace scene
-}  // namespace tessera::inline v0_1
+}  // namespace tessera

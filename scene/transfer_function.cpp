@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "scene/transfer_function.hpp"
 
 #include <fmt/format.h>
@@ -8,7 +9,8 @@
 
 #include "scene/error.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 using scene::bad_input;
@@ -95,4 +97,5 @@ double TransferFunction::max_color() const {
   return most;
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

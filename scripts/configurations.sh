@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # Builds the library with parts of it left out, by other compilers, and runs its fast tests: what is optional stays so.
 # Usage: scripts/configurations.sh [NAME...], all of them by default. Each lies in build/NAME.
 #   no-mpi no-gl   without reader programs and that

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # From a fresh Debian 12 machine to a picture: installs what is missing, builds the program, makes a mesh and renders
 # it to build/demo.png. Needs the network only for packages. Programs that read formats by other people's libraries are
 # left to scripts/readers.sh; MPI is used if the machine has one.

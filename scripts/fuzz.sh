@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # Fuzzes each parser of our own for SECONDS (default 60), as many at once as there are cores, from a small corpus of good
 # files. Fails on any crash, leak, undefined behaviour, hang or more than 2 GiB of memory; the input that did it stays in
 # build/fuzz/crashes.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # Installs what scripts/packages.txt lists for the scopes given, e.g. `install_packages.sh build test`, and with build
 # unpacks into build/headers the headers that are not on the machine.
 # Does nothing, and needs no rights, when all of it is there already.

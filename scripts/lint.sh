@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # lint.sh format   says which sources clang-format would change (lint.sh fix changes them)
 # lint.sh tidy     runs clang-tidy (.clang-tidy) over the sources, headers included by way of them, as build/tidy
 #                  is configured. Tests are left out, and readers/, which include VTK: its headers take minutes and the

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # Adds the programs that read formats by other people's libraries (VTK, Gmsh, GDCM, ...) to what scripts/demo.sh built, or
 # to another build: scripts/readers.sh [BUILD_FOLDER]. Installs what they need; `tessera` itself stays as it is.
 set -euo pipefail

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # test.sh        installs what is missing, checks the format, builds and runs all tests as released
 # test.sh --all  also under ASan and UBSan and TSan, without the parts that are options, fuzzes, and runs clang-tidy
 # With CI=true, as .ci/run calls it, all but TSan and most of the configurations; the sanitized build and the configuration

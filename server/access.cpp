@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "server/access.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "server/api.hpp"
 
 #include <fmt/format.h>

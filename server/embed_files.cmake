@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # cmake -DOUTPUT=web_files.cpp -DFOLDER=web -DFILES=a;b -P embed_files.cmake: files as arrays of bytes.
 set(text "#include \"server/web_page.hpp\"\n\nnamespace tessera::server {\nnamespace {\n\n")
 set(table "")

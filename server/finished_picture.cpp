@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "server/finished_picture.hpp"
 
 #include "server/frame_message.hpp"

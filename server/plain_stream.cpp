@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <boost/asio/post.hpp>
 #include <boost/beast/websocket/teardown.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "server/serve.hpp"
 
 #include <fmt/format.h>

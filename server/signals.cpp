@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "server/signals.hpp"
 
 #include <boost/asio/io_context.hpp>

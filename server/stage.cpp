@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "server/stage.hpp"
 
 #include <fmt/format.h>

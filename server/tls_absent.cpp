@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "server/byte_stream.hpp"
 #include "server/tls.hpp"
 #include "tessera/error.hpp"

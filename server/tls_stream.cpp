@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <boost/asio/ssl/stream.hpp>
 
 #include "server/byte_stream.hpp"

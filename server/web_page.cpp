@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "server/web_page.hpp"
 
 namespace tessera::server {

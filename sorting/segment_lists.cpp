@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sorting/segment_lists.hpp"
 
 namespace tessera::sorting {

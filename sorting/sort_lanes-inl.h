@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Depth order of sixteen (or eight, or four) pixels at once, a pixel a lane. Included once per instruction set
 // (Highway's include guard idiom).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Depth order of the windows that the default frame composites from: as many neighbouring pixels' lists at once as a
 // vector has lanes. Included once per instruction set (Highway's include guard idiom).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "system/atomic_file.hpp"
 
 #include <fcntl.h>
@@ -11,7 +12,8 @@
 
 #include "system/unfinished.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -211,4 +213,5 @@ void check_output(const fs::path& target, const fs::path& input) {
   check_writable(target);
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "system/files_read.hpp"
 
 #include <sys/stat.h>
@@ -55,7 +56,8 @@ std::vector<std::string> take_names_read() {
 
 }  // namespace tessera::system
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 void protect_inputs() { system::inputs_are_protected = true; }
 
@@ -66,4 +68,5 @@ void check_not_read(const std::filesystem::path& target) {
                 "choose another name");
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

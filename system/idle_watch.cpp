@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "system/idle_watch.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "system/spawn_plan.hpp"
 
 #include <csignal>

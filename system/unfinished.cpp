@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "system/unfinished.hpp"
 
 #include <unistd.h>
@@ -73,7 +74,8 @@ void abandon_in_handler() noexcept {
 
 }  // namespace tessera::system
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 void abandon_outputs() noexcept {
   system::Unfinished& all = system::unfinished();
@@ -85,4 +87,5 @@ void abandon_outputs() noexcept {
   static_cast<void>(lock.release());  // locked for good
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "volume/chunk_cast.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "volume/frame_cast.hpp"
 
 #include <tbb/enumerable_thread_specific.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "volume/lane_error_bound.hpp"
 
 #include <algorithm>

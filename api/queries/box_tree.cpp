@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "api/queries/box_tree.hpp"
 
 #include <algorithm>

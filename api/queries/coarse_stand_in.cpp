@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tessera/coarse_stand_in.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +17,8 @@
 #include "scene/threads.hpp"
 #include "volume/bricks/cell_ranges.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 constexpr std::uint64_t least_samples = 8, most_samples = std::uint64_t{1} << 26;
@@ -94,4 +96,5 @@ std::optional<Dataset> coarse_stand_in(const Dataset& dataset, const StandInSett
   return dataset_of(source_of(samples, data.facts.scalar_range, geometry, data.field_name), data, settings.threads);
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Histograms and quantiles of a data set's field samples.
 #include "tessera/field_queries.hpp"
 
@@ -13,7 +14,8 @@
 #include "api/dataset.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 constexpr std::size_t most_bins = 65536;
@@ -155,4 +157,5 @@ std::vector<double> quantiles(const Dataset& dataset, std::span<const double> fr
   return values;
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How a data set's samples are taken, once; of a mesh in parts by all ranks together.
 #include "scene/field_samples.hpp"
 
 #include "api/dataset.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 const scene::FieldSamples& Dataset::State::field_samples() const {
   if (of_all) return of_all->samples;
@@ -18,4 +20,5 @@ void Dataset::State::gather_field_samples(exchange::Transport& transport) {
   if (ranks > 1 && !of_all) field_samples_ = frame::gather_field_samples(transport, mesh, global_tet, facts);
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

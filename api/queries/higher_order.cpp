@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How far pixels are off because of the tets of higher-order cells, and how finely that makes them read.
 #include "tessera/higher_order.hpp"
 
@@ -13,7 +14,8 @@
 #include "exchange/collectives.hpp"
 #include "tessera/session.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -189,4 +191,5 @@ HigherOrderRead read_for_accuracy(const ReadOptions& options, std::optional<doub
   }
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What one ray meets: by the reference, of the few cells that are near it.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -20,7 +21,8 @@
 #include "scene/error.hpp"
 #include "tessera/field_queries.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
@@ -306,4 +308,5 @@ RayProbe probe(const Dataset& dataset, const View& view, const TransferFunction&
   return probed(RayInMesh(mesh_of(tets, data.facts.association), view, pixel, transfer_function, settings), samples);
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

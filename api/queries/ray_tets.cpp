@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "api/queries/ray_tets.hpp"
 
 #include <tbb/blocked_range.h>

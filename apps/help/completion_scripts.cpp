@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The scripts know nothing of options: they hand the words up to the cursor to the program that stands on the line.
 
 #include <fmt/format.h>

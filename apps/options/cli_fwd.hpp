@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 /// Declarations of CLI11's classes: its header takes a compiler five seconds, so that sources which declare options

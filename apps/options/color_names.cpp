@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "apps/options/color_names.hpp"
 
 namespace tessera::apps {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "apps/options/setting_words.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "apps/options/time_options.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "apps/options/volume_options.hpp"
 
 #include <fmt/format.h>

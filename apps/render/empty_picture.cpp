@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "apps/render/empty_picture.hpp"
 
 #include <fmt/format.h>

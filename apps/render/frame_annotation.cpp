@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "apps/render/frame_annotation.hpp"
 
 #include <fmt/format.h>

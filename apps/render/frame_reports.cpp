@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "apps/render/frame_reports.hpp"
 
 #include <nlohmann/json.hpp>

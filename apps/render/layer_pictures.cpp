@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "apps/render/layer_pictures.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "apps/render/progress.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """`tessera chart` with VTK's ray casters on it: the same data, view and transfer function, timed and judged alike.
 
     xvfb-run -a /usr/bin/python3 bench/peers/vtk_chart.py INPUT [words of tessera chart] [--tessera PROGRAM]

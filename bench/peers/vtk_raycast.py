@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Renders a tetrahedral mesh or a regular grid with VTK's software ray casters, timed.
 
     xvfb-run -a /usr/bin/python3 vtk_raycast.py MESH --camera CAM.txt --transfer-function TF.txt [--caster bunyk|zsweep]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """How often `--verify K` finds a broken promise.
 
     bench/stability/finding.py CLASS... [--tessera build/release/apps/tessera] [--cases 100] [--seed 1] [--first 0]

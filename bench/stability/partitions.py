@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Partitions that nobody would choose, over MPI, against one process: the same bits, or the difference.
 
 Each partition is a .pvtu whose pieces hold what it says, rendered by ranks of one thread; `--exchange segments` promises

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Random cases of one class against what `exact` and `auto` promise, every pixel judged.
 
     bench/stability/promises.py CLASS... [--tessera build/release/apps/tessera] [--cases 100] [--seed 1] [--first 0]

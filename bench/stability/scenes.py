@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The stresses: each turns one parameter until something breaks. `stresses()` lists them.
 
 A stress is a name, what its parameter is, its values from harmless to hopeless, and a function from a value to a scene:

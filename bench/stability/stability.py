@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Turns one parameter after the other until a method breaks.
 
     bench/stability/stability.py [--tessera build/release/apps/tessera] [--only WORD,...] [--methods WORD,...] [--reduced]

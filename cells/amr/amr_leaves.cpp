@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "cells/amr/amr_leaves.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "cells/amr/amr_vertices.hpp"
 
 #include "cells/mix_bits.hpp"

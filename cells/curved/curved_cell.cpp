@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "cells/curved/curved_cell.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The nodes that serendipity cells and cells of mixed order lack.
 #include <array>
 #include <cstddef>

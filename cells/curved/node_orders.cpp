@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "cells/curved/node_orders.hpp"
 
 #include <algorithm>

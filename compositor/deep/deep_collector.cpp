@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "compositor/deep/deep_collector.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "compositor/deep/peel_sink.hpp"
 
 #include <algorithm>

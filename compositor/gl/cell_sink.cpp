@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "compositor/gl/cell_sink.hpp"
 
 namespace tessera::compositor {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Built in place of what draws on a device with TESSERA_GL=OFF.
 #include "compositor/gl/gl_compositor.hpp"
 #include "scene/error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Built in place of mpi_port.cpp with TESSERA_MPI=OFF: nothing is launched by MPI, and no port opens.
 #include "exchange/mpi/mpi_port.hpp"
 #include "exchange/mpi/mpi_transport.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "exchange/mpi/mpi_transport.hpp"
 
 #include <fmt/format.h>

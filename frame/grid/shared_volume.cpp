@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "frame/grid/shared_volume.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "frame/grid/split_by_times.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "frame/grid/volume_frames.hpp"
 
 #include <chrono>

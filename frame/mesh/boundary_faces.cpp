@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "frame/mesh/boundary_faces.hpp"
 
 #include <tbb/parallel_sort.h>

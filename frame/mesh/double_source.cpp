@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "frame/mesh/double_source.hpp"
 
 #include <algorithm>

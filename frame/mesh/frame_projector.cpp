@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "frame/mesh/frame_projector.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "frame/mesh/render.hpp"
 
 #include <fmt/format.h>

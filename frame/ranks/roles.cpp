@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "frame/ranks/roles.hpp"
 
 #include <fmt/format.h>
@@ -7,7 +8,8 @@
 
 #include "scene/error.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 bool contains(const std::vector<int>& ranks, int rank) {
@@ -41,4 +43,5 @@ Roles assign_roles(int ranks, std::optional<int> projectors, std::optional<int> 
                   n, p, ranks, ranks, ranks, n + p));
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
@@ -22,7 +23,8 @@
 /// Text      UTF-8, one font; what is no UTF-8 is shown as U+FFFD. Too long a text loses its middle.
 /// Room      what has no room on a small picture is left out.
 /// Same bits for any number of threads and processes: all depends on the arguments alone. Fonts are the machine's.
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// Where something stands on the picture. What shares a place is stacked, away from the picture's edge.
 enum class Place { top_left, top, top_right, left, right, bottom_left, bottom, bottom_right };
@@ -106,4 +108,5 @@ using AnnotationWord = std::pair<std::string, std::string>;
 /// and _), naming those that there are; other braces stay.
 TESSERA_EXPORT std::string fill_in(const std::string& text, std::span<const AnnotationWord> words);
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

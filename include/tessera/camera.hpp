@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -5,7 +6,8 @@
 
 #include "tessera/export.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// Width and height of the picture in pixels. Pixel (0,0) is the top left; its centre is at (0.5, 0.5).
 struct ImageSize {
@@ -71,4 +73,5 @@ TESSERA_EXPORT Camera frame_box(const Box& box, ImageSize size,
 /// frame.
 TESSERA_EXPORT Camera orbit(const Camera& camera, double turn);
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

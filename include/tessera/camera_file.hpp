@@ -1,10 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <optional>
 
 #include "tessera/camera.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// A view as a file gives it, with the picture's size if the file names one.
 struct CameraFile {
@@ -13,4 +15,5 @@ struct CameraFile {
   bool operator==(const CameraFile&) const = default;
 };
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,8 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// The type of a mesh's cell (MeshArrays::types). Names, values and the order of the points are those of VTK
 /// (vtkCellType.h), so an array of VTK's numbers can be passed as it is. The comments give the number of points; n is
@@ -72,4 +74,5 @@ enum class CellType : std::uint8_t {
 /// VTK's number of a type.
 constexpr std::uint8_t vtk_number(CellType type) { return static_cast<std::uint8_t>(type); }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>
@@ -8,7 +9,8 @@
 #include "tessera/dataset.hpp"
 #include "tessera/export.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 struct StandInSettings {
   /// How many samples at most, about; the grid has as many as the data if they have fewer.
@@ -38,4 +40,5 @@ TESSERA_EXPORT std::optional<Dataset> coarse_stand_in(const Dataset& dataset, co
                                                       const std::stop_token& stop = {},
                                                       const Communicator& communicator = {});
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

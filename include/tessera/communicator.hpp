@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <functional>
@@ -5,7 +6,8 @@
 
 #include "tessera/export.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// The processes that work on one data set or picture together, numbered from 0: this process alone, or those of an MPI
 /// communicator (tessera/mpi.hpp makes it from an MPI_Comm).
@@ -38,4 +40,5 @@ class TESSERA_EXPORT Communicator {
 /// have: a job's shape without MPI. An exception of one rank ends the run for all; the run's one error is thrown here.
 TESSERA_EXPORT void run_ranks(int ranks, const std::function<void(const Communicator&)>& work);
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
@@ -26,7 +27,8 @@
 #include "tessera/view.hpp"
 #include "tessera/warp.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// What may be said about a file; the defaults read any file that describes itself.
 struct ReadOptions {
@@ -290,4 +292,5 @@ TESSERA_EXPORT std::vector<double> times_of(const std::filesystem::path& file, c
 /// The names of all presets' colours, the default first.
 TESSERA_EXPORT std::vector<std::string> preset_names();
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>
@@ -6,7 +7,8 @@
 
 #include "tessera/camera.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// A stretch of one pixel's ray with matter in it, as OpenEXR's deep images have it.
 struct DeepImageSample {
@@ -31,4 +33,5 @@ struct DeepImage {
   }
 };
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -15,7 +16,8 @@
 ///         a fifth of both its sides) is seen from 60 degrees above. The side towards the eye is the file's -y, or the
 ///         one at +x if the body is more than half again as deep as wide; of a patient always the face.
 /// Fit     the box is all in the picture, with a margin of 5 %.
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// What a file says of a patient's axes. z leads to the head in both.
 enum class BodyAxes {
@@ -76,4 +78,5 @@ TESSERA_EXPORT Camera adjusted_view(const Camera& camera, const Box& box, ImageS
 TESSERA_EXPORT Camera frame_box_along(const Box& box, ImageSize size, const glm::dvec3& to_eye, const glm::dvec3& up,
                                       ProjectionKind projection = ProjectionKind::orthographic, bool turning = false);
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstddef>
@@ -8,7 +9,8 @@
 
 #include "tessera/export.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// What kind of trouble an error is. The values are also what the program `tessera` exits with.
 enum class ErrorCode : int {
@@ -59,4 +61,5 @@ inline Error bad_input(const std::string& line) { return {ErrorCode::bad_input, 
 /// threads, or unexpected.
 TESSERA_EXPORT Error error_of(const std::exception_ptr& thrown);
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
@@ -7,7 +8,8 @@
 
 #include "tessera/association.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// The field of ReadOptions::shape, which is no array of a file.
 inline constexpr const char* shape_field_name = "shape (depth)";
@@ -125,4 +127,5 @@ inline HigherOrderCells& HigherOrderCells::operator+=(const HigherOrderCells& ot
 }
 static_assert(sizeof(HigherOrderCells) == 6 * sizeof(double));  // one line above for each
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
@@ -17,7 +18,8 @@
 #include "tessera/view.hpp"
 
 /// What an editor of transfer functions asks of a field: how its values share the volume, and what one ray meets.
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// Histograms and quantiles are of some ten thousand places spread evenly over the volume, those by which the default
 /// transfer function is chosen: quick, the same for any number of threads and ranks, and to be called on any rank
@@ -81,4 +83,5 @@ TESSERA_EXPORT RayProbe probe(const Dataset& dataset, const View& view, const Tr
                               PixelIndex pixel, std::size_t samples = 256, const Settings& settings = {},
                               const Communicator& communicator = {});
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

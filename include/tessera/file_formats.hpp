@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>
@@ -6,7 +7,8 @@
 
 #include "tessera/export.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// What a file of a format holds.
 enum class FileHolds : std::uint8_t {
@@ -32,4 +34,5 @@ struct FileFormat {
 /// All formats, those that are not read last.
 TESSERA_EXPORT std::vector<FileFormat> file_formats();
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <filesystem>
@@ -8,7 +9,8 @@
 #include "tessera/image.hpp"
 #include "tessera/image_file_options.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 struct FilmFileOptions {
   ImageFileOptions image;         ///< background and encode_srgb count: films have 8 bits and no alpha
@@ -49,4 +51,5 @@ class TESSERA_EXPORT FilmFile {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

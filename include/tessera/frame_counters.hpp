@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <algorithm>
@@ -7,7 +8,8 @@
 #include <string_view>
 #include <type_traits>
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// What a frame of a mesh took, counted. Processes send it as it stands (exchange/wire.hpp); frame_counters says how
 /// they are put together and what reports and docs/REFERENCE.md say of them.
@@ -163,4 +165,5 @@ inline GridCounters& GridCounters::operator+=(const GridCounters& other) {
   return *this;
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
@@ -13,7 +14,8 @@
 #include "tessera/camera.hpp"
 #include "tessera/export.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// How a sample is stored. Other types (64-bit integers, bits) become float64 or uint8 in the reader.
 enum class SampleType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
@@ -113,4 +115,5 @@ struct Grid {
 /// Throws Error(bad_input, "SOURCE: ...") if the invariants above are broken: what is wrong and along which axis.
 TESSERA_EXPORT void validate(const Grid& grid, const std::string& source);
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <functional>
@@ -10,7 +11,8 @@
 #include "tessera/transfer_function.hpp"
 #include "tessera/view.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// A mesh whose higher-order cells became tets, and what these change in a picture.
 struct HigherOrderRead {
@@ -48,4 +50,5 @@ TESSERA_EXPORT HigherOrderRead read_for_accuracy(const ReadOptions& options, std
                                                  const std::function<View(const Dataset&)>& view = {},
                                                  const Settings& settings = {}, const Communicator& communicator = {});
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstddef>
@@ -6,7 +7,8 @@
 
 #include "tessera/camera.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// A finished picture. Row-major, row 0 at the top.
 /// `rgba`: 4 floats a pixel, linear RGB premultiplied by A; A = 1 - transmittance.
@@ -30,4 +32,5 @@ struct Image {
   }
 };
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

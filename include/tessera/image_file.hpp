@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstddef>
@@ -9,7 +10,8 @@
 #include "tessera/image.hpp"
 #include "tessera/image_file_options.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 // Files appear by rename, whole or not at all.
 
@@ -45,4 +47,5 @@ TESSERA_EXPORT bool is_deep_name(const std::filesystem::path& file);
 /// Before any rendering: throws Error(bad_input) unless write_image knows the extension and could create this file now.
 TESSERA_EXPORT void check_image_path(const std::filesystem::path& file);
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <glm/vec3.hpp>
 #include <optional>
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// How a picture is written.
 struct ImageFileOptions {
@@ -17,4 +19,5 @@ struct ImageFileOptions {
   int threads = 0;        ///< .png, .tif, .exr: that compress; 0: all cores. The bytes are the same for any number
 };
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstddef>
@@ -9,7 +10,8 @@
 #include "tessera/export.hpp"
 
 /// What a file is, before it is opened as a data set (docs/FORMATS.md).
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// Whether Dataset::open would make a grid of it: by what it begins with, so that a .vtk may be a mesh or a grid and a
 /// name may be wrong; by its name where it is not there or is .raw. NetCDF, HDF5 and XDMF files are looked into.
@@ -35,4 +37,5 @@ TESSERA_EXPORT std::string read_text(const std::filesystem::path& file);
 /// and lists count too. Takes linear time.
 TESSERA_EXPORT void check_json(std::string_view text, const std::string& source, std::size_t most_values = 20'000'000);
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

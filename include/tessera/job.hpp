@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <chrono>
@@ -12,7 +13,8 @@
 #include "tessera/error.hpp"
 #include "tessera/export.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// What is done about a rank that is silent: its process is stopped, or its machine hangs.
 struct StallSettings {
@@ -94,4 +96,5 @@ class TESSERA_EXPORT Job {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

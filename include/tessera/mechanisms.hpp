@@ -1,6 +1,8 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// What saves work and shows in no pixel by more than the accuracy asked. Each can be switched off, to see what it is
 /// worth (`--without`; bench/needed.py makes the table).
@@ -14,4 +16,5 @@ struct Mechanisms {
   friend bool operator==(const Mechanisms&, const Mechanisms&) = default;
 };
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>
@@ -5,7 +6,8 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// Hears which share of a check is done, 0 to 1: some hundred times, in order. It must not throw.
 using CheckProgressFunction = std::function<void(double)>;
@@ -63,4 +65,5 @@ struct MeshCheck {
   }
 };
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 // The only public header that needs MPI (component `mpi` of the package).
@@ -5,10 +6,12 @@
 
 #include "tessera/communicator.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// The processes of an MPI communicator, which must stay valid for as long as anything made with it lives. MPI must
 /// have been started with MPI_THREAD_MULTIPLE (tessera/communicator.hpp).
 inline Communicator communicator(MPI_Comm mpi) { return Communicator::of_handle(static_cast<int>(MPI_Comm_c2f(mpi))); }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

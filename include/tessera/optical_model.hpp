@@ -1,6 +1,8 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// The source term of the volume rendering integral (Max, "Optical Models for Direct Volume Rendering", TVCG 1995).
 enum class Emission {
@@ -25,4 +27,5 @@ struct Integrator {
   bool terminates = true;  ///< rays end where what is left is below the accuracy; false: they never do
 };
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

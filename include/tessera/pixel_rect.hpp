@@ -1,6 +1,8 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// Half-open rectangle of pixels.
 struct PixelRect {
@@ -11,4 +13,5 @@ struct PixelRect {
   [[nodiscard]] int area() const { return width() * height(); }
 };
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstddef>
@@ -9,7 +10,8 @@
 #include "tessera/export.hpp"
 #include "tessera/transfer_function.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// The transfer function of a name, COLOURS or COLOURS:OPACITY (preset_names()), over the values from 0 to 1, per unit
 /// distance 1. Throws Error(bad_input) for an unknown name, with those known.
@@ -22,4 +24,5 @@ TESSERA_EXPORT std::vector<glm::dvec3> preset_colors(std::string_view name, std:
 /// What OPACITY may be, the default first.
 TESSERA_EXPORT std::vector<std::string> preset_opacity_names();
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

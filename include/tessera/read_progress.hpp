@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>
 #include <functional>
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// How far the reading of a file is.
 struct ReadProgress {
@@ -25,4 +27,5 @@ struct ReadProgress {
 /// not call the library.
 using ReadProgressFunction = std::function<void(const ReadProgress&)>;
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

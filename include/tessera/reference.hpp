@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstddef>
@@ -13,7 +14,8 @@
 #include "tessera/transfer_function.hpp"
 #include "tessera/view.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// What a ray sees.
 struct ReferencePixel {
@@ -53,4 +55,5 @@ class TESSERA_EXPORT Reference {
 /// the same pixels everywhere.
 TESSERA_EXPORT std::vector<PixelIndex> random_pixels(ImageSize size, std::size_t count, std::uint64_t seed);
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

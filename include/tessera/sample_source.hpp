@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstddef>
@@ -10,7 +11,8 @@
 #include "tessera/export.hpp"
 #include "tessera/grid.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// Smallest and largest value (scale and shift applied) of the samples that are not blank; empty if low > high. With
 /// the number of blank samples.
@@ -103,4 +105,5 @@ constexpr SampleType sample_type_of() {
   return SampleType::float64;
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

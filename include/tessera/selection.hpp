@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
@@ -8,7 +9,8 @@
 #include "tessera/camera.hpp"
 #include "tessera/export.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// All points p with dot(p - point, normal) >= 0: what lies where the normal points to from a plane through `point`,
 /// and the plane. World units; the normal may have any length but 0.
@@ -47,4 +49,5 @@ struct Selection {
 /// Throws Error(bad_input) for a plane that is not finite or has no normal, and a threshold that is no range.
 TESSERA_EXPORT void validate(const Selection& selection);
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

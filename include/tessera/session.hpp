@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <memory>
@@ -14,7 +15,8 @@
 #include "tessera/verification.hpp"
 #include "tessera/view.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// Who rendered what of a grid's picture, and what it was thought to cost (Moloney 2008, Figures 1.2, 4.1, 4.4).
 struct BalancePictures {
@@ -89,4 +91,5 @@ class TESSERA_EXPORT Session {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>
@@ -10,7 +11,8 @@
 #include "tessera/shading.hpp"
 #include "tessera/surfaces.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 class Trace;
 
@@ -201,4 +203,5 @@ struct FrameSettings {
   std::optional<Peel> peel{};
 };
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

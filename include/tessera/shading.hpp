@@ -1,8 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <glm/vec3.hpp>
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// Blinn-Phong, two-sided. The normal n is the field's gradient: in a mesh's tet the one that it has there, in a grid
 /// that of the trilinear field, taken in the middle of every stretch of a ray inside a voxel, up to a surface, and kept
@@ -19,4 +21,5 @@ struct Shading {
   bool operator==(const Shading&) const = default;
 };
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstddef>
@@ -10,7 +11,8 @@
 #include "tessera/settings.hpp"
 #include "tessera/statistics.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// A finished picture, or one that was stopped.
 struct RenderedFrame {
@@ -57,4 +59,5 @@ class Sink {
   virtual Image spare_image(ImageSize /*size*/) { return {}; }
 };
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
@@ -9,7 +10,8 @@
 #include "tessera/frame_counters.hpp"
 #include "tessera/pixel_rect.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// The instruction set that kernels of this process run on.
 TESSERA_EXPORT std::string instruction_set();
@@ -36,4 +38,5 @@ struct FrameStatistics {
   std::vector<std::array<std::array<std::int64_t, 3>, 2>> parts;
 };
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

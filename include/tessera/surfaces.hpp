@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
@@ -7,7 +8,8 @@
 #include <optional>
 #include <vector>
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// How surfaces are lit: Blinn-Phong, two-sided, by a light at the eye. With n the surface's unit normal and d the unit
 /// direction of the ray, colour c becomes c * (ambient + diffuse |n.d|) + specular |n.d|^shininess.
@@ -65,4 +67,5 @@ struct Surfaces {
   [[nodiscard]] bool has_faces() const { return !boundary.empty() || !triangles.empty(); }
 };
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

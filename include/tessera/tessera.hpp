@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 // All of the public API but tessera/mpi.hpp, which needs MPI.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <filesystem>
@@ -7,7 +8,8 @@
 
 #include "tessera/export.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// One mesh or grid of a time series.
 struct TimeStep {
@@ -35,4 +37,5 @@ TESSERA_EXPORT std::vector<TimeStep> read_time_series(const std::filesystem::pat
 /// % too, stays.
 TESSERA_EXPORT std::optional<std::string> numbered_name(const std::string& pattern, int number);
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <atomic>
@@ -12,7 +13,8 @@ class StageTimer;
 class TraceTile;
 }  // namespace tessera::scene
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// For whom a process worked. A rank may project and composite at once, and a projector composites its own runs, so
 /// that the stage alone does not say it.
@@ -129,4 +131,5 @@ class TESSERA_EXPORT TraceScope {
   double start_us_ = 0, start_cpu_us_ = 0;
 };
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

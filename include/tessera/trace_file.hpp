@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,8 @@
 
 /// Traces as files: Chrome's trace-event JSON, which Perfetto and chrome://tracing open and `tessera timing` reads, one
 /// file for all ranks and threads of a run. docs/FORMATS.md has every field.
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// What was run, for readers of its trace: the file's `otherData`. Words left empty and numbers left 0 are not written.
 struct TraceRun {
@@ -64,4 +66,5 @@ TESSERA_EXPORT void write_trace(const Trace& trace, const std::string& process_n
 /// span of ours in it.
 TESSERA_EXPORT TraceFile read_trace(const std::filesystem::path& file);
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
@@ -9,7 +10,8 @@
 
 #include "tessera/export.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// Colour and extinction at one scalar value.
 struct Knot {
@@ -73,4 +75,5 @@ struct LoadedTransferFunction {
   std::vector<std::string> warnings{};  ///< one line each: that it shows little of the field, and what mends that
 };
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <filesystem>
@@ -8,7 +9,8 @@
 #include "tessera/export.hpp"
 #include "tessera/surfaces.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// The triangles of a surface in a file: .ply, .stl, .vtp, .vtk, .poly or .smesh. It need not be closed. Polygons are
 /// cut into triangles; values are left out. Throws Error(bad_input, "FILE: ...") if it cannot be read, has no faces, or
@@ -23,4 +25,5 @@ TESSERA_EXPORT TriangleMesh read_triangles(const std::filesystem::path& file);
 TESSERA_EXPORT TriangleMesh read_block_surface(std::span<const std::filesystem::path> files, const std::string& block,
                                                const ReadOptions& options = {});
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

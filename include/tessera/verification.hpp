@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
@@ -6,7 +7,8 @@
 #include <string>
 #include <vector>
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// Whether a picture keeps what its method promises, as some of its pixels tell. Errors are absolute differences in
 /// linear premultiplied RGBA to the double-precision reference.
@@ -39,4 +41,5 @@ struct Verification {
   bool met = true;
 };
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

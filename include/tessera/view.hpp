@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <filesystem>
@@ -9,7 +10,8 @@
 #include "tessera/camera_file.hpp"
 #include "tessera/export.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// A camera and the size of its picture.
 struct View {
@@ -36,4 +38,5 @@ TESSERA_EXPORT void write_camera(const CameraFile& camera, const std::filesystem
 /// What write_camera writes.
 TESSERA_EXPORT std::string camera_json(const CameraFile& camera);
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,8 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <string>
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// How far the points of a mesh are moved, by a vector that its file has for each of them.
 struct Warp {
@@ -12,4 +14,5 @@ struct Warp {
   bool operator==(const Warp&) const = default;
 };
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

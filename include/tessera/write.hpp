@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <filesystem>
@@ -7,7 +8,8 @@
 #include "tessera/export.hpp"
 #include "tessera/image_file.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 // All files appear by rename, whole or not at all.
 
@@ -38,4 +40,5 @@ TESSERA_EXPORT bool is_grid_output(const std::filesystem::path& file);
 /// for up to 16 bits and float32, else float64.
 TESSERA_EXPORT SampleType written_type(const Dataset& grid);
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // DICOM series, read by a helper of their own.
 #include "io/foreign/foreign_mixed.hpp"
 #include "io/volume/volume_formats.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/foreign/foreign_mixed.hpp"
 
 namespace tessera::io {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Regular and rectilinear grids that a helper holds.
 #include "io/foreign/foreign_grids.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // MED, read by a helper of its own.
 #include "io/foreign/foreign_mixed.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes in other programs' formats, read by the helper.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Regular and rectilinear grids in VTK's formats.
 #include <fmt/format.h>
 

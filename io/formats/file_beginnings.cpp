@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/formats/file_beginnings.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tessera/file_formats.hpp"
 
 #include <algorithm>
@@ -19,7 +20,8 @@ const char* left_out(Needs needs) {
 
 }  // namespace tessera::io
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 std::vector<FileFormat> file_formats() {
   std::vector<FileFormat> formats;
@@ -37,4 +39,5 @@ std::vector<FileFormat> file_formats() {
   return formats;
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

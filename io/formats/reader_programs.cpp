@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/formats/reader_programs.hpp"
 
 #include <dlfcn.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/formats/whole_file.hpp"
 
 #include <fmt/format.h>

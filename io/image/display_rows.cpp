@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/image/display_rows.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tessera/film_file.hpp"
 
 #include <fcntl.h>
@@ -28,7 +29,8 @@
 #include "system/spawn_plan.hpp"
 #include "system/unfinished.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 namespace {
 
 /// What ffmpeg is told of a kind of file: its format, and how pictures become it.
@@ -291,4 +293,5 @@ void FilmFile::commit() {
   state_->target.commit();
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // PNG (ISO/IEC 15948): a zlib stream of filtered rows between chunks. Written here and not by libpng, whose one stream
 // is compressed on one thread: strips of rows are compressed apart, each a run of whole deflate blocks that ends on a
 // byte, as pigz does it (Adler, zlib.net/pigz). Strips do not depend on the number of threads, so neither do the bytes.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/image/picture_strips.hpp"
 
 #include <tbb/parallel_for.h>

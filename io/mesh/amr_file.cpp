@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes with levels of refinement: what is read of them, and what it becomes.
 #include <fmt/format.h>
 

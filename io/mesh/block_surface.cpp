@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/mesh/block_surface.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/mesh/listed_pieces.hpp"
 
 #include <fmt/format.h>

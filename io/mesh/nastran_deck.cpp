@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/mesh/nastran_deck.hpp"
 
 #include <fmt/format.h>

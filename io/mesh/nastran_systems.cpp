@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/mesh/nastran_systems.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/mesh/plot3d_layout.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/scene/chrome_trace.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/scene/paraview_color_map.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/scene/time_series.hpp"
 
 #include <fmt/format.h>
@@ -176,7 +177,8 @@ void require_input(const std::filesystem::path& input) {
 
 }  // namespace tessera::io
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 bool is_time_series(const std::filesystem::path& input) {
   if (io::is_pvd(input) || io::is_file_series(input)) return true;
@@ -214,4 +216,5 @@ std::optional<std::string> numbered_name(const std::string& pattern, int number)
   return fmt::format("{}{:0{}}{}", parts->before, number, parts->width, parts->after);
 }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/text/base64_text.hpp"
 
 #include <algorithm>

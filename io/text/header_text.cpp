@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/text/header_text.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/volume/file_source.hpp"
 
 #include <algorithm>

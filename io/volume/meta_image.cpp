@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // MetaImage (.mhd, .mha). Source: the MetaIO documentation of Kitware's MetaImage format. VTK's reader drops the
 // orientation, so the header is read here.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // NIfTI-1 and NIfTI-2. Source: Cox et al., "A (sort of) new image data format standard: NIfTI-1", 2004, and the headers
 // nifti1.h and nifti2.h of the NIfTI Data Format Working Group. VTK's reader leaves slope, intercept and the
 // orientation to its caller and keeps all samples in memory, so the header is read here.

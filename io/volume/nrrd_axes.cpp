@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/volume/nrrd_axes.hpp"
 
 #include <fmt/format.h>

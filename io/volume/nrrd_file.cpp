@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // NRRD. Source: Kindlmann, "Definition of NRRD File Format", teem.sourceforge.net/nrrd/format.html. VTK's reader gives
 // up on files with space directions, so the header is read here.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/volume/stored_payload.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/volume/stored_samples.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/volume/streamed_bricks.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/volume/volume_tags.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/volume/volume_writer.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/vtk/vtk_array.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/vtk/vtk_codec.hpp"
 
 #include <lz4.h>

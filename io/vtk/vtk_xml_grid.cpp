@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/vtk/vtk_xml_grid.hpp"
 
 #include <fmt/format.h>

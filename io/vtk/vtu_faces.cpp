@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/vtk/vtu_faces.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which pixels a batch's cells cover: the outline's edges alone, a cell a lane or a pixel a lane; included once per
 // instruction set (Highway's include guard idiom).
 

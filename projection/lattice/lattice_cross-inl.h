@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where rays pass a cell: the segments of a queue of hits, a hit a lane, whichever cell it is of; included once per
 // instruction set (Highway's include guard idiom).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which of a batch's segments may cross a surface; included once per instruction set (Highway's include guard idiom).
 
 #if defined(TESSERA_PROJECTION_LATTICE_CROSSED_INL_H_) == defined(HWY_TARGET_TOGGLE)

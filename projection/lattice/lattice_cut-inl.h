@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Cuts segments where they cross surfaces, a segment a lane; included once per instruction set (Highway's include guard
 // idiom).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which cells of a batch have surfaces, and how these lie, a cell a lane; included once per instruction set (Highway's
 // include guard idiom).
 

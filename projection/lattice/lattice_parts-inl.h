@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A batch's cells with their edges and faces in the order of the parts that they play, so that lanes with unlike cells
 // do the same; included once per instruction set (Highway's include guard idiom).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Set-up of the lattice rasterizer: sixteen cells at once, a cell a lane, in double precision. Included once per
 // instruction set (Highway's include guard idiom).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the lattice rasterizer's steps share: types, the parts that a cell's edges and faces play, the exact sign of an
 // edge function. Included once per instruction set (Highway's include guard idiom).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Lanes of a mask moved to the front; included once per instruction set (Highway's include guard idiom).
 
 #if defined(TESSERA_PROJECTION_PACK_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)

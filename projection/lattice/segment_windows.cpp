@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "projection/lattice/segment_windows.hpp"
 
 #include <algorithm>

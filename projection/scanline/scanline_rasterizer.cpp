@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "projection/scanline/scanline_rasterizer.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "projection/scanline/segment_tuple.hpp"
 
 #include <tbb/blocked_range.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Seccomp filters: Linux kernel documentation, "Seccomp BPF (SECure COMPuting with filters)".
 #include "readers/common/sandbox.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "readers/dicom/dicom_frames.hpp"
 
 #include <fmt/format.h>

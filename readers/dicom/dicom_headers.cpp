@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "readers/dicom/dicom_headers.hpp"
 
 #include <sys/wait.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // tessera-read-dicom: reads DICOM files by GDCM, as tessera-read-vtk does other formats. A program of its own, since
 // that library and what it needs take a while to load.
 #include <fmt/format.h>

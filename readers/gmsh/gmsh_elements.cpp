@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "readers/gmsh/gmsh_elements.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // tessera-read-gmsh: reads what Gmsh's library reads, as tessera-read-vtk does other formats. A program of its own,
 // since that library takes a while to load and is under the GPL.
 #include "readers/common/serve.hpp"

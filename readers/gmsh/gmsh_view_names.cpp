@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "readers/gmsh/gmsh_view_names.hpp"
 
 #include <fmt/format.h>

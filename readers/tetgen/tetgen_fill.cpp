@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The one file that sees TetGen, which is under the AGPL-3.0.
 #include <fmt/format.h>
 

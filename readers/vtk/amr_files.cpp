@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Blocks of several levels of refinement that simulations write, by VTK's readers.
 #include <fmt/format.h>
 #include <hdf5.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 // VTK's copy of the CGNS library, whose names are macros; two of them are ours too. Include it first.

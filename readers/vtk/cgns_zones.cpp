@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "readers/vtk/cgns_solutions.hpp"
 // The library's macros come first.
 #include <fmt/format.h>

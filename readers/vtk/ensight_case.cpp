@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // EnSight 6 and Gold case files, by the EnSight User Manual ("EnSight Gold Case File Format").
 #include "readers/vtk/ensight_case.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // EnSight files of several time steps, text, C binary or Fortran binary, by the EnSight User Manual ("Transient single
 // file format"): each step is between the lines, or records of 80 bytes, BEGIN TIME STEP and END TIME STEP.
 #include "readers/vtk/ensight_step.hpp"

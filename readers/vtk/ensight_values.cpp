@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // EnSight 6 and Gold variable files, in text and C binary, by the EnSight User Manual ("EnSight Gold Variable File
 // Format"). Only headers are interpreted; the numbers of points and cells are those that VTK's reader goes by.
 #include "readers/vtk/ensight_values.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "readers/vtk/grid_pieces.hpp"
 
 #include <fmt/format.h>

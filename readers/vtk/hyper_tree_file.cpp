@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // HyperTreeGrids: VTK's XML reader finds the arrays, and what they say of the trees is worked out here. VTK 9.1's own
 // way from there gets vectors wrong in version 2 of the format, masks in version 0, and masks of files in pieces.
 #include <fmt/format.h>

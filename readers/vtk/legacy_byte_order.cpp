@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "readers/vtk/legacy_byte_order.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // By "VTK File Formats" (legacy formats, versions 1 to 5.1).
 #include "readers/vtk/legacy_words.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Built in place of minc2_file.cpp with TESSERA_MINC=OFF.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // MINC 2, which is HDF5, by MINC's own library.
 extern "C" {
 #include <minc2.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // MINC 1, which is NetCDF, by VTK's reader.
 #include <fmt/format.h>
 #include <vtkImageData.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // OpenFOAM cases, by VTK's reader: whole, or a share of the processors' folders of a decomposed one.
 #include <fmt/format.h>
 #include <vtkCollection.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What solvers write, by VTK's readers: all cell and point arrays, one time step. OpenFOAM is in openfoam_file.cpp.
 #include <fmt/format.h>
 #include <vtkAVSucdReader.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "readers/vtk/time_steps.hpp"
 
 #include <vtkAlgorithm.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // tessera-read-vtk: reads files with VTK and the libraries that come with it, in a process of its own (serve.hpp), for
 // the Tessera library that started it (io/foreign/client/helper_process.hpp).
 #include "readers/common/readers.hpp"

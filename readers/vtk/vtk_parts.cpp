@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "readers/vtk/vtk_parts.hpp"
 
 #include <fmt/format.h>

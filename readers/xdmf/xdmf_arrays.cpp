@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "readers/xdmf/xdmf_arrays.hpp"
 
 #include <fmt/format.h>

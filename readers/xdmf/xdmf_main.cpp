@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // tessera-read-xdmf: reads XDMF by its own library, as tessera-read-vtk does other formats. A program of its own, since
 // that library comes with another build of HDF5, for MPI, than VTK's.
 #include <fmt/format.h>

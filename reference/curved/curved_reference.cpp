@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "reference/curved/curved_reference.hpp"
 
 #include <fmt/format.h>

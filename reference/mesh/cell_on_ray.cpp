@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "reference/mesh/cell_on_ray.hpp"
 
 #include <cmath>

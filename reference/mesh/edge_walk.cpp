@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "reference/mesh/edge_walk.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * The state in an address's fragment, which no browser sends to a server: "#1." and JSON in URL-safe base64, where 1 is
  * this form's version. Letters that neither mail nor chat programs cut off or escape.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * The world's axes in the page's corner, turning with the view at once. Each end is a button that looks from there.
  *

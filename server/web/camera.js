@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * Camera mathematics: what gestures do to a view. Every function gives a new camera and leaves its argument alone.
  *

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * A box and planes that cut the data. The state has them as `clip` options: "box:..." and "point, normal".
  *

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /** Colours of options as the browser's own controls have them. */
 
 /** sRGB of linear light, both 0 to 1. @param {number} linear */

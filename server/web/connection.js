@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * The socket: opened, kept, and opened again when it is lost.
  *

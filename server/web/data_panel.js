@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * What of the data is drawn: field, which stands at the panel's top, time, blocks, cuts, surfaces.
  *

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /** Elements, briefly. Texts are always set as text, never as HTML. */
 
 /** @typedef {Node | string | false | null | undefined} Child */

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /** Two handles on one axis, each a slider of the browser's own: for mouse, touch and keyboard. */
 import { element, show_value, typed } from "./dom.js";
 import { parsed_number, short_number } from "./numbers.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * Fields by the words of options: a name, perhaps with "cell:" or "point:" before it and a component behind it. Names
  * may hold colons themselves.

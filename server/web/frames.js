@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * The stream of frames: their form, and which states are sent when.
  *

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * Keeps in the picture what is in it when its shape changes, as by the panel on a phone: a camera says how much is seen
  * from top to bottom, so that a narrower picture would be cut at its sides.

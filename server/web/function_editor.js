@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * The transfer function as a drawing: the curve of opacity over the histogram, points and colours to take hold of, and
  * two handles for the range. It draws what show() was given and says what is wanted; it changes nothing itself.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * Colour and opacity: presets, the editor, range, and ParaView's files.
  *

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * Mouse, touch and keyboard on the picture, as changes of the camera.
  *

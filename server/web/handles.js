@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * Which handle of a drawing a press takes. Their reaches overlap, and the one that was drawn last lies on top of those
  * before: so it is the nearest.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /** What mouse, fingers and keys do. */
 import { button, by_id, element } from "./dom.js";
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * What the file holds, what of it is drawn, and whether the mesh is sound.
  *

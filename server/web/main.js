@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * The page of `tessera serve`: its parts made and wired to each other.
  *

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * What the check of a mesh found, in words: api/check, as `tessera info --check` has it.
  *

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /** Sentences for who uses the page: read aloud by screen readers, and gone by themselves unless they are errors. */
 import { button, by_id, element, icon_button } from "./dom.js";
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /** Numbers as people read and type them, and axes for them. */
 
 /**

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * Options as they are in force: a state's, else those that the server was started with.
  *

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * What the parts of the page share: the data, the state with its history, and what of it the server is told.
  *

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * Pictures and films to keep, links and commands that make them again.
  *

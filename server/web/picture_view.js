@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * The canvas: frames painted, smaller ones scaled up smoothly, and what lies over them.
  *

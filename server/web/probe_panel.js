@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * What is under the cursor: the first visible point of a ray, and the field and the opacity along it.
  *

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * Questions to the server. Each throws an Error whose message is a sentence.
  *

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * The state of the page and its history. Undo and redo go from one state at rest to the next: what passes by while a
  * control is dragged, or while one control is used again and again, makes one step.

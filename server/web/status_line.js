@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * The line below the picture: what is shown, how long it took and where, and how right it is.
  *

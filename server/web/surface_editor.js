@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * Iso-surfaces, the boundary, blocks and named surfaces of the mesh, lit, within the volume: options "WHAT[:COLOUR[:OPACITY]]".
  *

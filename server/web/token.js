@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * The token of the server's run, which every request carries. It comes with the address that the server prints and is
  * kept for this tab and the page's folder. A cookie would go to every port of the same machine.

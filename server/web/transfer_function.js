@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * The transfer function as it is edited: points at fractions of a range, 0 at its low end and 1 at its high one, so that
  * another range or a logarithmic scale leaves them alone. Nothing here changes its arguments.

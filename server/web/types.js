@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * Values that the page's modules share. The state and the messages are the server's (docs/SERVER.md).
  *

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * Vectors of three numbers. Nothing here changes its arguments.
  *

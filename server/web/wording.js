@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /** The server speaks of options of `tessera render`; who uses the page has its controls, and reads their names. */
 
 /** @type {Record<string, string>} */

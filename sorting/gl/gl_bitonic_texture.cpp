@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sorting/gl/gl_bitonic_texture.hpp"
 
 #include <fmt/format.h>

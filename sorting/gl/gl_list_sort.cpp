@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "sorting/gl/gl_list_sort.hpp"
 
 #include <algorithm>

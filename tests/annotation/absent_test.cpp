@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Without Cairo nothing is drawn, and that is said.
 
 #include <gtest/gtest.h>

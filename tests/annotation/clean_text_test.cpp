@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Any bytes become UTF-8 on one line, and fit where they should.
 
 #include <gtest/gtest.h>

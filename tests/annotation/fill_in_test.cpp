@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Words in braces.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is drawn is where and what it should be: by pixels of finished pictures.
 
 #include <gtest/gtest.h>

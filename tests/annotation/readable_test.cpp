@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Text is read on any background and over any data, by the contrast of WCAG 2: (lighter + 0.05) / (darker + 0.05).
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where points of the world are on the picture, against the ray of that pixel.
 
 #include "annotation/screen.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Round numbers: what holds of them for any range, and what some ranges get.
 
 #include "annotation/ticks.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tessera/coarse_stand_in.hpp"
 
 #include <gtest/gtest.h>

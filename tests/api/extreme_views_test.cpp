@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Views, functions and data at the ends of what doubles hold: refused in words, or drawn in numbers.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tessera/field_queries.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Values that stand for nothing do not rule what files show.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Labels at points look as the same labels in cells: no color between two, none that the file does not have.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the program has of the library beside what is installed: plans of films, and files that appear whole.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Values of the public API that are made, or written as text, without a picture.
 #include <gtest/gtest.h>
 

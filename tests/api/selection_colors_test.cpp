@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A clip or a threshold leaves colours, opacities and their distance as they are: those of all the data.
 #include <gtest/gtest.h>
 

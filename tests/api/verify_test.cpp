@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "api/queries/verify.hpp"
 
 #include <gtest/gtest.h>

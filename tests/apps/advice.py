@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Messages that give advice: the advice, followed, works.
 
 Each row (advice_row.py) is a command that fails or warns, the advice that its message has to give, and the command with

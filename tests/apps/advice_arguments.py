@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Rows of advice about arguments, the view, parts of the data and methods."""
 
 from advice_files import PLY as SURFACE

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Rows of advice about cameras, transfer functions, ranges, lists of files and traces."""
 
 from advice_files import COLOR_MAP, JSON_CAMERA, KNOTS, PVCC, PVD, SERIES, TETRAHEDRON, TEXT_CAMERA, TRACE, unstructured

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Rows of advice about Tecplot's text, Nastran's decks and Medit meshes, which this library parses itself."""
 
 import gzip

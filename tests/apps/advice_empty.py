@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Rows of advice about pictures that show nothing, and about axes that do not go together."""
 
 import struct

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Messages with advice that no row provokes, each with the reason; and statements that look like advice and are none.
 
 Patterns are looked for in `FILE:LINE: PARTS .. OF THE MESSAGE` (advice_messages.py). One that is not found, or whose

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Whole files for the test of advice, which rows damage: each the smallest that is read."""
 
 import struct

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Rows of advice about files that libraries other than VTK's XML and legacy readers read."""
 
 import gzip

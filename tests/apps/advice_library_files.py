@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Whole files of other libraries' formats for the test of advice, each the smallest that is read."""
 
 import struct

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Rows of advice about meshes and surfaces that the library reads itself."""
 
 import struct

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Messages of the sources that give advice, each as the pattern of the lines that it can write.
 
 A message is what one statement says with its literals, `{}` and names between them standing for anything; of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A row of the test of advice: a command that a message answers, and what to do then."""
 
 import sys

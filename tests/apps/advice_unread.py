@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Rows of advice about files that are not read, or of which something is missing."""
 
 import gzip

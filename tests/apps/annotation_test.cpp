@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `tessera render` with --color-bar, --axes, --outline, --scale-bar, --annotate and --annotation-layer.
 
 #include <gtest/gtest.h>

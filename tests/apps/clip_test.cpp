@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `--clip` and `--threshold`, as users give them.
 
 #include <gtest/gtest.h>

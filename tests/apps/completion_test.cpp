@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a shell is told when somebody presses Tab, and manual pages.
 
 #include "apps/help/completion.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pictures that show nothing: the reason is said, and the remedies that are named help.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a caller has done to the process before it begins: closed streams, limits.
 #include <gtest/gtest.h>
 

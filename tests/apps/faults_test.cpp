@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a user does wrong, and what the machine does: one line on stderr, the status of the design, nothing
 // half-written.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the program chooses when it is told nothing, and the options that choose otherwise.
 #include <gtest/gtest.h>
 

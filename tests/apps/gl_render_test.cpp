@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // --compositor and --backend, as users give them.
 #include <gtest/gtest.h>
 

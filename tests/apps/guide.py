@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Every command of docs/GUIDE.md and docs/REFERENCE.md does what it says: it ends with status 0, on data made here.
 
 Commands are the indented lines of these pages that begin with a program's name (and Python between fences), run as they

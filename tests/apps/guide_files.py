@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Small files of other programs' formats, for the commands of the guide: what `tessera generate` does not write.
 
 All meshes are [0, n]^3 in cubes, with a field that is the distance from a corner.

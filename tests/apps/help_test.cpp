@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `--help`, `tessera help`, and what is said of names that are nearly right.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A reading program ends with the program that started it, however that ends.
 #include <gtest/gtest.h>
 #include <sys/types.h>

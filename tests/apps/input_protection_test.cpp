@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // No output replaces what the run reads: what is named on the command line, and what those files name.
 #include <gtest/gtest.h>
 

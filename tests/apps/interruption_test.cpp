@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ctrl-C and its like end every command at once and leave nothing; and what a terminal shows until then.
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `--like`: another run's view, field and transfer function.
 #include <gtest/gtest.h>
 

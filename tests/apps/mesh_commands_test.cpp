@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `tessera info`, `convert` and `generate`.
 
 #include <gtest/gtest.h>

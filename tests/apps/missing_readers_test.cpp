@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The program on a machine without reader programs: commands that open a file refuse it in one line that names
 // the reader. Which formats there are, readers/missing_readers_test.cpp goes through.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The program on several ranks, as users start it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

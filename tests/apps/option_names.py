@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """No library's message names an option: it names the setting, `tile_size`, and apps/ makes --tile-size of it.
 
 Looks at every string literal of the library folders' C++ sources, comments left aside. Says file:line of each that

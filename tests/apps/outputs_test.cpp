@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where pictures and reports go: films through a stand-in for ffmpeg, standard streams.
 #include <gtest/gtest.h>
 

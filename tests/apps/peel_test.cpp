@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Layers of pictures, as users ask for them.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a run says of how far it is.
 #include "apps/render/progress.hpp"
 

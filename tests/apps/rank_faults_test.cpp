@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What happens to a run while it goes on: an output folder or an input that is removed, ranks that are ended. One line
 // in all, and the status of the design.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Threads and memory that there are not: the picture, or one line that says what to do.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ranks that are stopped: named and waited for, or the run's end.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `tessera render` run as its users run it: pictures, frames, reports.
 
 #include <gtest/gtest.h>

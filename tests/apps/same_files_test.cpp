@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ranks that read different files under one name, as from copies of which one is older.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `--scale`, asked for and chosen.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Options in a file: what --save-config writes, --config reads.
 
 #include <gtest/gtest.h>

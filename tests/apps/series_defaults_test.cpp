@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the pictures of a time series go by where no option says it, and what `info` says of one.
 
 #include <fmt/format.h>

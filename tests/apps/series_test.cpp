@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `tessera render` and `tessera info` of a mesh that changes with time.
 
 #include <fmt/format.h>

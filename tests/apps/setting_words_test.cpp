@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Settings of libraries' messages are options in what the program says, and nothing else that stands in backquotes is.
 
 #include "apps/options/setting_words.hpp"

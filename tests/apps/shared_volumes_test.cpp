@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Volumes in formats that are read as a whole, on several ranks: kept once, in a file without a name. And what memory
 // ranks, and programs within a budget, really take.
 #include <gtest/gtest.h>

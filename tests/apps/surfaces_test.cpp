@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Surfaces in the volume, as users ask for them.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `--time-step` of files that have several: one of them, or a film.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `tessera timing` as a user runs it.
 
 #include <gtest/gtest.h>

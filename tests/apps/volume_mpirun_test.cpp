@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Volumes on several ranks, as users start them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """bench/simulate.py on cases that can be computed by hand.
 
     simulate_test.py SOURCE_TREE

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A caller with MPI of its own: ranks 0 and 1 of three render a mesh from arrays on a communicator of theirs, while
 // rank 2 does something else and speaks to rank 0. Exit status 0 if all was as it should be.
 //   mpirun -n 3 own_communicator            the above

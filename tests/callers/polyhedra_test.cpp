@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Polyhedra in a caller's arrays.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What callers get from the public headers and the whole library, and nothing else: traces, samples of their
 // own, a mesh's arrays, the reference, ranks without MPI.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Blocks of a file by their names.
 #include "cells/block_choice.hpp"
 

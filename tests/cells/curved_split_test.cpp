@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Higher-order cells: their functions, that neighbours divide what they share alike, and that errors keep their bounds.
 #include "cells/curved/curved_split.hpp"
 

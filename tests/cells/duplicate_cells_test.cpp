@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Cells that are in a mesh twice: counted, and drawn once if that is asked for.
 #include "cells/duplicate_cells.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "colormaps/color_spaces.hpp"
 
 #include <gtest/gtest.h>

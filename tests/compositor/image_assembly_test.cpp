@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Tiles on their way from compositors to the picture.
 #include "compositor/image_assembly.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What sinks of segments and of runs send of given rays, told from their records alone, in both encodings.
 #include <gtest/gtest.h>
 

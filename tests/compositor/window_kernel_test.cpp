@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // composite_windows() under every instruction set, against segments integrated and composited in double precision.
 #include "compositor/window_kernel.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "exchange/direct/direct_send.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A compositor's bookkeeping of a frame, against a plain account of what was sent.
 #include "exchange/frame_collector.hpp"
 

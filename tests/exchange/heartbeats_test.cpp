@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ranks that stop and go on, in a simulated job: who notices, how often, and who keeps silent.
 #include "exchange/heartbeats.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "exchange/host_team.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Messages: what is written comes back, and nothing else is taken for a message.
 #include "exchange/message.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A projector's outbox, with the test as its compositors: what arrives, in which order, and who waits for whom.
 #include "exchange/outbox.hpp"
 

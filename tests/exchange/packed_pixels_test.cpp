@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pixels that travel in fewer bytes are the same bits.
 #include "exchange/packed_pixels.hpp"
 

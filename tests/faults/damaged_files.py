@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Damages real files and has the whole program read them: no signal, no hang, one line, status 0 or 2, memory in proportion.
 
     tests/faults/damaged_files.py --tessera PROGRAM [--runs 1000] [--seed 1] [--jobs 2] [--keep FOLDER] FILE_OR_FOLDER...

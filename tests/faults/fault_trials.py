@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Breaks runs under mpirun on purpose and checks how they end.
 
     fault_trials.py --tessera PROGRAM [--trials N] [--seed S] [--ranks R] [--volume [--sort-last|--mixed]] [--only KIND,...]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Small files of many formats, damaged, and redirected to what no data are: the program reads or refuses each.
 
     tests/faults/hostile_files.py --tessera PROGRAM [--runs 1000] [--seed 1] [--jobs 2]

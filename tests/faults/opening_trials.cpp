@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// Damages files and opens them with the library, many in one process: what reads them by other people's libraries does
 /// so in a helper program, which may die, but this process may not.
 ///

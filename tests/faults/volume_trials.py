@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Volume files as other programs write them, and broken ones: does `tessera` read what they say, and refuse the rest?
 
     volume_trials.py --tessera PROGRAM [--only WORDS] [--keep FOLDER] [--mpi RANKS]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Iso-surfaces in meshes whose cells are cut, against the reference's in the whole mesh along the parts of rays that
 // are kept.
 #include <gtest/gtest.h>

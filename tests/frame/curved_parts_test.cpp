@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A caller's higher-order cells in parts, one a rank: what they share is divided alike, as in one process.
 #include <gtest/gtest.h>
 

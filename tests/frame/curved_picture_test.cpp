@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pictures of higher-order cells, against the reference that knows their true faces and fields.
 #include <gtest/gtest.h>
 

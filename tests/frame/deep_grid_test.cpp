@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The promise of deep pictures, for volumes: flattened they are the picture, and with an opaque plane put in at any
 // depth they are within the accuracy of a rendering that ends there. The truth is reference/'s.
 #include "frame/grid/deep_grid.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rasterizer::device: compositors' devices rasterize the cells of their tiles.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Surfaces of triangles, a mesh's boundary among them, against places and colours known in closed form and against the
 // reference.
 #include <gtest/gtest.h>

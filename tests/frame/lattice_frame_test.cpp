@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which instruction set serves a frame, and that none without lanes serves the lattice.
 #include "frame/mesh/lattice_frame.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "frame/ranks/mesh_exchange.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Threads of these tests are real ones, on a machine of few cores too: scene::threads_for() gives no more than oneTBB
 // does.
 #include <tbb/global_control.h>

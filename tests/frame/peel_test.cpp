@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "frame/mesh/peel.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "frame/grid/scan_together.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tessera/shading.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Volumes that are read as a whole, by several ranks.
 #include "frame/grid/shared_volume.hpp"
 

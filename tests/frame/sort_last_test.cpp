@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "frame/grid/sort_last.hpp"
 
 #include <gtest/gtest.h>

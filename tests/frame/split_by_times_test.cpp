@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Splits by what pictures before took: rank 0, which gathers them, gets less of the tiles.
 #include "frame/grid/split_by_times.hpp"
 

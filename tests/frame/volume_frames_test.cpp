@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Lists of pictures of a volume, of which the next one is cast while the one before is gathered.
 #include "frame/grid/volume_frames.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "frame/ranks/worker_threads.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "gl/context.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "integrals/masked_lanes.hpp"
 
 #include <limits>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Any text is the Header, a list of boxes or the line before values of an AMReX plot file, or is refused in one line.
 #include <cstddef>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Any text is a camera or is refused in one line; what is accepted is valid and survives being written.
 #include <cstddef>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Any text is a PLOT3D grid whose counts hold, or none; the input's rest after a NUL is its solution.
 #include <cstddef>
 #include <cstdint>

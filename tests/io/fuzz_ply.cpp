@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Any bytes are a surface whose indices hold, or are refused in one line.
 #include <cstddef>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Any text is zones of cells whose indices hold, or is refused in one line.
 #include <cstddef>
 #include <cstdint>

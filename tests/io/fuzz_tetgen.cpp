@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // TetGen's text files: the input, cut at its first NUL, is a .node and a .ele, a .poly or a .smesh, or is refused.
 #include <cstddef>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Any text is a transfer function or is refused in one line.
 #include <cmath>
 #include <cstddef>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Any bytes in a file of any volume format of our own reading (NRRD, NIfTI, MetaImage, bricks, plain .vti and .vtr, by
 // what they begin with) are a volume whose samples can be read and lie in its range, or are refused in one line; held
 // in memory or not makes no difference.

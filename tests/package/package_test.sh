@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # Installs the build into a folder of its own, builds examples/ and a file by pkg-config against it, moves it, and uses it
 # again. CMakeLists.txt sets the environment.
 set -euo pipefail

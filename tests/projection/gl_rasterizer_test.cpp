@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "projection/gl/gl_rasterizer.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "projection/prepared_mesh.hpp"
 
 #include <gtest/gtest.h>

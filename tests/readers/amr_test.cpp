@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes with levels of refinement: blocks of regular grids that a list names.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // CGNS files written by the CGNS library: zones whose faces are numbered anywhere among their cells. Each is a row of
 // cubes, whose cell data are their numbers in the zone's order.
 #include <fmt/format.h>

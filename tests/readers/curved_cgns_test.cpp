@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Cells of second and third order in CGNS files, which its own library writes here, in the order of SIDS.
 #include <gtest/gtest.h>
 #include <vtk_cgns.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Cells of second order in Exodus files, which its own library writes here, in the order of the Exodus manual.
 #include <gtest/gtest.h>
 #include <vtk_exodusII.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Lagrange hexahedra of .vtu files in several pieces, old and new, as Tessera itself and as VTK's reader read them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

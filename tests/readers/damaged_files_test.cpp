@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Real files cut short and with bytes changed: read, or refused in one line, never a crash. What sanitizers are for.
 #include <gtest/gtest.h>
 

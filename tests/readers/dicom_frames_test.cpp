@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Frames of one DICOM file: order, places, scale and time of each.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // DICOM segmentations: samples of one bit, segments in frames of their own, frames that are left out (PS3.3, A.51).
 #include <fmt/format.h>
 #include <gtest/gtest.h>

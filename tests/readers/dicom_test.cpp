@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // DICOM series, written here byte by byte (PS3.5, explicit little-endian elements).
 #include <fmt/format.h>
 #include <gtest/gtest.h>

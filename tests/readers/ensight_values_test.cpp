@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // EnSight's variable files that end too early are named, and their fields left out; whole ones of any layout are read,
 // also those of several time steps.
 #include <fmt/format.h>

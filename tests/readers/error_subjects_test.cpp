@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The subject of an error is the file, whatever its name holds.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Element blocks and sets of an Exodus file, which its own library writes here.
 #include <gtest/gtest.h>
 #include <vtk_exodusII.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Exodus files whose nodes move with time, which its own library writes here: times, displacements, `warp`.
 #include <gtest/gtest.h>
 #include <vtk_exodusII.h>

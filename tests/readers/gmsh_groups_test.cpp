@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Physical groups, partitions and names of views in Gmsh's files, written here as its reference manual has them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Gmsh's files and those that its library reads, written here by hand as its reference manual has them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

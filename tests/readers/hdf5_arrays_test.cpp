@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // HDF5 that follows no convention, and images of VTKHDF, written here.
 #include <gtest/gtest.h>
 #include <hdf5.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What HDF5 files lead to: other files, by links, external storage and virtual datasets.
 #include <gtest/gtest.h>
 #include <hdf5.h>

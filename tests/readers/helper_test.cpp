@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The helper program, from its caller's side: what it inherits, what its deaths become, what damaged files ask of it.
 #include <gtest/gtest.h>
 #include <sys/resource.h>

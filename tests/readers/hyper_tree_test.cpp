@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // HyperTreeGrids: trees of cells on a rectilinear grid.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // MED meshes and fields, which MED's library writes here.
 #include <gtest/gtest.h>
 #include <hdf5.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // CGNS of several zones and meshes in several Exodus files, written by their own libraries, read in shares.
 #include "io/mesh/mesh_shares.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What files of other programs lack or have otherwise is said as it is, and what is there is read.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // MINC 2 volumes, which MINC's library writes here.
 extern "C" {
 #include <minc2.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A machine without reader programs: this test is built where none is found (CMakeLists.txt).
 #include <fmt/format.h>
 #include <gtest/gtest.h>

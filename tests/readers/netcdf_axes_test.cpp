@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Axes of NetCDF grids by the CF conventions: every order of dimensions, every direction, and what else a dimension is.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // NetCDF grids and MINC 1 volumes, which NetCDF's library writes here.
 #include <gtest/gtest.h>
 #include <zlib.h>

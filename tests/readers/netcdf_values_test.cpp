@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Values of NetCDF variables: every type, packing, and what the conventions leave blank.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Polyhedra as VTK's own writers and the CGNS library write them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Files with polyhedra, written here as each format has them, against the same cells in memory.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What reader programs can no longer do.
 #include "readers/common/sandbox.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The public meshes in ../shared/data, against what its README says of them.
 #include <gtest/gtest.h>
 

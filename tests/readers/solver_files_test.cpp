@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Files of solvers and lists of blocks: a cube of hexahedra written as each has it, with a field that is linear in
 // space.
 #include <fmt/format.h>

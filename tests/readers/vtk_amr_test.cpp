@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // FLASH and Enzo as their programs write them, written here, and VTK's own HyperTreeGrids.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // VTKHDF as VTK's file format documentation has it, written here.
 #include <gtest/gtest.h>
 #include <hdf5.h>

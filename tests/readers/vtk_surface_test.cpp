@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Closed surfaces in VTK's own formats, filled.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

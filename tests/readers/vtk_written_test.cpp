@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What VTK's own writers write, in all their encodings.
 
 #include <fmt/format.h>

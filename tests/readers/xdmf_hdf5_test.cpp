@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // XDMF with its numbers in HDF5, which VTK's library writes here.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

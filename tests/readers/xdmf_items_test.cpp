@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // XDMF's items: selections (HyperSlab) of arrays, the types of numbers in binary files, points by an array for each
 // axis, sizes by NumberOfElements, points counted from 1. The numbers are in the text, in HDF5 and in binary files.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // XDMF whose grids share one mesh: by xi:include, by Reference, or by the same numbers in a file beside.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

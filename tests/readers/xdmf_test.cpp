@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // XDMF, with its numbers inline and in binary files beside it; HDF5 is in xdmf_hdf5_test.cpp.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

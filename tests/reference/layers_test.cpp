@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "reference/layers.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "reference/view.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tessera/default_view.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "scene/sample_source.hpp"
 
 #include <gtest/gtest.h>

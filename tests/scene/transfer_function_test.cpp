@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "scene/transfer_function.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the fuzzed sources call of the public API, without the rest of it.
 #include <nlohmann/json.hpp>
 
@@ -6,7 +7,8 @@
 #include "tessera/input_file.hpp"
 #include "tessera/view.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 void check_json(std::string_view text, const std::string& source, std::size_t most_values) {
   io::parse_json(text, source, most_values);
@@ -14,4 +16,5 @@ void check_json(std::string_view text, const std::string& source, std::size_t mo
 bool is_json_text(std::string_view file_or_json) { return io::is_json_text(file_or_json); }
 std::vector<std::string> preset_names() { return {"cool-warm", "viridis"}; }
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // No host, origin, subprotocol or query of any form makes a server answer who has not its token.
 #include <cstddef>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Any text is a client's message or is refused in one line; a state that is taken is options of render, which a shell
 // gives back as they are.
 #include <cstddef>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Hostile messages to `tessera serve`, of a seeded generator: after each one the server answers an honest request, and
 at the end it ends in order, without a word on stderr.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Whatever clients send, parsers say in one sentence what is wrong with it, or take it.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A client of `tessera serve` by the standard library alone: starts a server, speaks HTTP and WebSocket with it."""
 
 import base64

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Tests of `tessera serve` through the program: pictures are those of `tessera render`, whoever may not is refused,
 hostile clients harm nobody, and it ends in order.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Tests of `tessera serve` while it is busy: views have their turn beside pictures and films, it ends soon whatever it
 does, and leaves nothing; who has no token keeps nobody out.
 

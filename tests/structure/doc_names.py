@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Sources and pages that README.md, docs/ and the folders' READMEs name are there.
 
 Three kinds of names: a source by its folder (`api/session.cpp`, in drawings too; tessera/NAME.hpp is in include/), a

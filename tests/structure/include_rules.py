@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Checks the layout: which directory includes which, and how many modules one holds.
 
 MAY_INCLUDE is the table. A row applies to its directory and all below it; a row of a subdirectory adds to its parent's.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Sizes of the library's sources: files of more than 500 lines, functions of more than 80, that do not say why.
 
 A file that is meant to be long says so before its first namespace, a function in its body or in the comment above it:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // oneTBB as packaged is not compiled for ThreadSanitizer, which so does not see that a task begins after it was
 // spawned, and that who waits goes on after all tasks ended: every parallel_for would be a race. To suppress whatever
 // runs on oneTBB's threads would hide races of ours. Instead the linker sends the calls into its library through here

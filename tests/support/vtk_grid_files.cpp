@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "support/vtk_grid_files.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Samples that wait in files: where they lie, or in a file that others read too.
 #include "system/scratch_file.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "volume/bricks/cell_ranges.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One frame in chunks: each user of the seam that chunk_cast.hpp names, small.
 #include "volume/chunk_cast.hpp"
 

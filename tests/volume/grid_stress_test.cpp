@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Shapes, spacings, steps and transfer functions at which casters of regular grids break, against the double-precision
 // reference of reference/, which shares no code with them.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Iso-surfaces of grids, against places and colours in closed form and against the double-precision reference.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every kernel of volume/ under every instruction set, against the double-precision reference.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "volume/split/object_split.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Blank samples, constant volumes, and plateaus of the field at the value of a step of the transfer function: what
 // lanes of floats round must not move a sample, or a voxel, to the wrong side. Every pixel against the reference in
 // double precision.

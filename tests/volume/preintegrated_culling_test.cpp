@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What pre-integration may leave out: a step shows what lies between its ends, which neither end need show.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Grids whose planes lie at any distances, against the double-precision reference.
 #include <gtest/gtest.h>
 

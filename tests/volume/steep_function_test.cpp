@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Transfer functions so steep, and matter so dense, that what float lanes round shows: every pixel against the
 // double-precision reference of reference/, which shares no code with casters.
 #include <gtest/gtest.h>

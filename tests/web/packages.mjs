@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Installs what package.json lists into FOLDER, once. Ends with 77, which CTest counts as skipped, where there is no
 // npm or no registry to ask.
 //

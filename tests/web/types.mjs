@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Checks the types of the page's modules with the packages in FOLDER.
 //
 //   node types.mjs FOLDER

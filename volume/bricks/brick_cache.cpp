@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "volume/bricks/brick_cache.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Samples from bricks into a SlabBlock, as lane scalars; included once per instruction set.
 //
 // Cells of 8^3 voxels that the transfer function hides are not read: their samples become the cell's smallest value,

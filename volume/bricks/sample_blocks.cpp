@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "volume/bricks/sample_blocks.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Packets of rays through one chunk of 32 slabs; included once per instruction set.
 //
 // Slabs go in groups of eight. First the field of all slabs in the group that every live ray crosses from plane to

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The interval of the transfer function in which a packet was last; included once per instruction set.
 
 #if defined(TESSERA_VOLUME_CURRENT_INTERVAL_INL_H_) == defined(HWY_TARGET_TOGGLE)

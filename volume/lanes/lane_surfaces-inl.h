@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Between which values of surfaces the field of each lane is; included once per instruction set.
 
 #if defined(TESSERA_VOLUME_LANE_SURFACES_INL_H_) == defined(HWY_TARGET_TOGGLE)

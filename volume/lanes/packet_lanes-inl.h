@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A packet's rays in one chunk of 32 slabs: where they may be, where each is, and its way through a slab voxel by
 // voxel; included once per instruction set.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a packet's lanes share in a chunk: the voxels they may meet slab by slab, and the work they are counted for;
 // included once per instruction set.
 

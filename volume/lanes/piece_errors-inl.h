@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What rays note on their way beside their light: where it begins, and what float lanes may err in it by steps and
 // ramps of the transfer function (lane_error_bound.hpp); included once per instruction set.
 

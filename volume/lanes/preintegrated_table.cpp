@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "volume/lanes/preintegrated_table.hpp"
 
 #include <tbb/parallel_for.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The field along a stretch of a ray in one voxel, a cubic a lane: where it turns and where it crosses a value;
 // included once per instruction set.
 

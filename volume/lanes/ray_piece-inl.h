@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The light of one stretch of a ray inside one voxel, a lane each; included once per instruction set.
 //
 // Field     Along a ray the trilinear field is a cubic: with v in [0, 1] over the stretch it is a straight line between

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rays of a tile in index space; included once per instruction set (Highway's include guard idiom).
 
 #if defined(TESSERA_VOLUME_RAY_SETUP_INL_H_) == defined(HWY_TARGET_TOGGLE)

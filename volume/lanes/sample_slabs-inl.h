@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Packets of rays through one chunk of slabs, a step at a time: `sampled` and `preintegrated`; included once per
 // instruction set.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Blinn-Phong shading of stretches inside voxels; included once per instruction set.
 
 #if defined(TESSERA_VOLUME_SHADING_INL_H_) == defined(HWY_TARGET_TOGGLE)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The field along a packet's rays in slabs that they cross from plane to plane; included once per instruction set.
 //
 // Way       Axes i and j are mirrored, lane by lane, where a ray moves down, so that all slopes are positive. p is the

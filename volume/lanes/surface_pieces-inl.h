@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rays through a slab voxel by voxel where they may meet iso-surfaces; included once per instruction set.
 //
 // Places    Between two turns of its cubic a ray meets surfaces in the order of their values: from the gap between two

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rays through a slab voxel by voxel, and slabs that cross knots; included once per instruction set.
 
 #if defined(TESSERA_VOLUME_VOXEL_PIECES_INL_H_) == defined(HWY_TARGET_TOGGLE)

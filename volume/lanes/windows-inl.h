@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Corner samples of the voxels that the lanes of a packet are in; included once per instruction set.
 //
 // A packet's rays are close together: in one slab they meet a window of few columns and rows. Two slices of that window

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "volume/precise/voxel_walk.hpp"
 
 #include <algorithm>

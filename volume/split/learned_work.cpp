@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "volume/split/learned_work.hpp"
 
 #include <utility>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "volume/split/voxel_box.hpp"
 
 #include <algorithm>

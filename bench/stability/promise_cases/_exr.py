@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Reads the float channels of OpenEXR pictures as Tessera writes them: scan lines, flat or deep, zip or zips."""
 import struct
 import zlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Rays through tetrahedra and voxels in double precision, for classes whose pictures are not judged by the program's reference
 alone: written for being read, from docs/ACCURACY.md. Places are parameters along a ray o + t d with d of length one."""
 import bisect

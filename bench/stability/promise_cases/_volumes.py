@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What the random grids of several classes have in common: shapes of fields, geometries, views and options."""
 import math
 

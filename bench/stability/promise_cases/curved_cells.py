@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Single cells of second order, bent at random: how far the picture of their tets is off, against what `render` states.
 
 The truth is the same cell cut evenly into tets by this file: positions and field by the polynomials of each type, from its

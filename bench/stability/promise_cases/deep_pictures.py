@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Deep pictures of meshes and grids, surfaces, clips and ranks in some: samples in order that do not overlap, flattened the
 picture; cut anywhere in depth, as OpenEXR interprets deep pixels, they are the picture that ends there, which _oracle.py
 makes of the scene with one more clip.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Thin sheets and stacks of them, thickness 1e-7 to 1 of their width, extinction 1 to 1e6, seen orthographically and with
 view angles of 5 to 175 degrees from 0.01 to 10 away, face on, tilted, and along the sheet."""
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Writers of small inputs for random cases: meshes as .vtu, grids as .vti and .vtr, all to the bit.
 
 Shapes: a grid's values are a flat list, x fastest, then y, then z. `kind` names an array's type as VTK does ("Float32",

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Grids with everything that is drawn in them, at random: iso-surfaces, clips, light on the matter, any view, some on
 two or three ranks. Some pixels are held against _oracle.py, which knows nothing of the program's reference.
 """

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Grids with --shade or --iso, of which neighbouring values differ by little beside the range: light goes by the direction of
 the gradient, however small that is.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Functions of up to some hundred knots that are spaced by logarithm, on meshes and grids whose values go over up to thirty
 decades, of any size from 1e-30 to 1e30: most knots lie in a very small part of the range.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Meshes with everything that is drawn in them, at random: iso-surfaces, the boundary, clips, a threshold, light on the matter,
 point and cell data, any view, some on two or three ranks. Some pixels are held against _oracle.py, which knows nothing
 of the program's reference.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Grids with blank (NaN) samples: outside a ball, in a slab, at random single places, on whole lattice planes, in
 whole cells of 8^3 voxels, nearly everywhere; under functions of few knots that show nothing at one end, both or in
 the middle, and of many knots; float fields, point and cell data, regular and rectilinear.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Cells that overlap, on several ranks: the picture is one process's, whatever the partition.
 
 What overlapping cells show is a convention, that of the nearer entry first; where entries are at one depth to a rounding the

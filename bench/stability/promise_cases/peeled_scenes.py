@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Meshes and grids with everything that is drawn in them, in layers of --peel. Every layer is held against the reference by
 --verify; composited they are the picture; and some pixels' layers are held against _oracle.py, which cuts rays itself.
 """

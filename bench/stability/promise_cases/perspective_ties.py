@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Perspective rays that go along a mesh's faces, edges and vertices: the tie rule, held against what it says.
 
 A ray in a face belongs to the cells that a ray shifted by (e, e^2) pixel meets, e infinitely small (docs/ACCURACY.md). So

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Grids with plateaus at, or some ulps beside, the value of a step of the transfer function: saturated fields (tanh,
 clamped distances, volume fractions of 0 and 1, terraces), their plateaus sharp or frayed by 1 to 1e4 ulps; steps at the
 least or largest value, between, and at several plateaus; boxes, single steps and stairs; all sample types.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Grids under steep transfer functions: narrow peaks, steps, staircases and noise of a few or many knots, extinctions of 1
 to 1e6 times the volume's size, some in thin fog; smooth, noisy, checkered and thin fields of all sample types; point
 and cell data; regular, anisotropic and rectilinear grids; seen from outside and inside, orthographic and perspective,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Surfaces on several ranks, of which each composites its own runs: they lie in one process's order, whoever has them.
 
 Some tets of a lattice, each with its boundary's triangles once more as a surface from a file, in either direction, and of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Boundaries that touch themselves in edges and corners, and rays along these: which of the faces at one depth is met first.
 
 The order is that of a ray shifted by (e, e^2) pixel, e infinitely small (docs/ACCURACY.md): so the picture must be the limit

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One column of the sorted lists of a scanline, blended over the columns behind it (Juliachs et al. 2007, 4.3). The
 // segment's integral is one with the CPU's: the print's loop takes dx = 1 / Ns without the length, and dims each sample's
 // colour by its own whole step.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One list of fragments a thread, front to back. Sums are double: a hundred thousand terms of 1e-9 are not lost, and the
 // transmittance is the exponential of one sum, not a product of many roundings.
 layout(local_size_x = 64) in;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where light begins, of lists whose first fragment to show was rasterized here: the host knows no depths of it.
 layout(local_size_x = 64) in;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The integral of one ray segment, in float: compositor/integrate_lanes-inl.h (exact) and integrate_sampled.cpp, whose
 // comments say how. Light is {red, green, blue, optical depth}, premultiplied and not dimmed by what lies before.
 

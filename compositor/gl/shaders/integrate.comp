@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every ray segment becomes its light, in place: {length, scalar front, scalar back, -1} to {red, green, blue, optical
 // depth}. Runs are light already: their fourth number is not negative.
 layout(local_size_x = 256) in;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Fragments that were given, to their places in lists that leave room for those that the device rasterizes.
 layout(local_size_x = 256) in;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstddef>
@@ -11,7 +12,8 @@
 #include "tessera/default_view.hpp"
 #include "tessera/time_series.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// Time steps from the first to the last, both included, counted from 0.
 struct StepRange {
@@ -87,4 +89,5 @@ ReadOptions read_of_later_steps(ReadOptions options, const Dataset& first);
 void check_film_outputs(std::span<const FilmFrame> frames, std::span<const std::filesystem::path> more,
                         std::span<const std::filesystem::path> inputs);
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

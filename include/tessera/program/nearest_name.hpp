@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <optional>
@@ -5,7 +6,8 @@
 #include <string>
 #include <string_view>
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// The name that was probably meant by `word`: the one that the fewest changes make of it, a change being a letter that
 /// is missing, too much or another, or two neighbours swapped; capitals do not count, and of a path its
@@ -14,4 +16,5 @@ namespace tessera::inline v0_1 {
 /// Source: F. J. Damerau, "A technique for computer detection and correction of spelling errors", CACM, 1964.
 std::optional<std::string> nearest_name(std::string_view word, std::span<const std::string> names);
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstddef>
@@ -8,7 +9,8 @@
 
 #include "tessera/error.hpp"
 
-namespace tessera::inline v0_1 {
+namespace tessera {
+inline namespace v0_1 {
 
 /// An output cannot be written. Whose fault it is depends on when: Error(bad_input) where the user can mend it (no such
 /// folder, no permission, the target is a folder or device), as long as nothing has been begun; who has found before
@@ -85,4 +87,5 @@ void check_output(const std::filesystem::path& target, const std::filesystem::pa
 /// That alone of it: throws if they are one file.
 void check_not_input(const std::filesystem::path& target, const std::filesystem::path& input);
 
-}  // namespace tessera::inline v0_1
+}  // namespace v0_1
+}  // namespace tessera

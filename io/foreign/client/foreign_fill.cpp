@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/foreign/client/foreign_fill.hpp"
 
 #include <nlohmann/json.hpp>

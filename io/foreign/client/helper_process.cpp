@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/foreign/client/helper_process.hpp"
 
 #include <fcntl.h>

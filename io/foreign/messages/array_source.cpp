@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/foreign/messages/array_source.hpp"
 
 #include "system/large_vector.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/foreign/messages/foreign_data.hpp"
 
 #include <nlohmann/json.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/foreign/messages/helper_messages.hpp"
 
 #include <sys/socket.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/foreign/messages/surface_message.hpp"
 
 #include <cstring>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // On which side of the edge a -> b does a ray pass, exactly: projection/edge_sign.hpp. Corners lie where the tie rule
 // sees them, at whole multiples of 2^-32 pixel, below 2^18 pixels from the ray: their differences are exact in doubles.
 

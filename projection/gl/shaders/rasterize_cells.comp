@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Cells to ray segments: projection/gl/gl_rasterizer.hpp. Eight threads a cell, each every eighth pixel of its box.
 layout(local_size_x = 64) in;
 const uint threads_a_cell = 8u;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "readers/vtk/hdf5/hdf5_file.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // HDF5 says nothing at its beginning of what is in it.
 #include <fmt/format.h>
 #include <vtk_netcdf.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The filter lzf of HDF5 files. Its stream: Marc Lehmann, LibLZF, lzf_d.c; its parameters: h5py, lzf_filter.c.
 #include "readers/vtk/hdf5/hdf5_lzf.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "readers/vtk/hdf5/hdf5_references.hpp"
 
 #include <fmt/format.h>

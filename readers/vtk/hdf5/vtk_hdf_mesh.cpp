@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "readers/vtk/hdf5/vtk_hdf_mesh.hpp"
 
 #include <fmt/format.h>

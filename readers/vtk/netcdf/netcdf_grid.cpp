@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // NetCDF grids by the CF conventions ("NetCDF Climate and Forecast Metadata Conventions"), by NetCDF's library itself:
 // VTK 9.1's reader takes the order of axes, unsigned and 64-bit numbers and what is missing for granted.
 #include <fmt/format.h>

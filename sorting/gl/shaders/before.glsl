@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The depth order of keys {front, back, tie, element}, the last of which makes it total.
 bool before(uvec4 a, uvec4 b) {
   if (a.x != b.x) return a.x < b.x;

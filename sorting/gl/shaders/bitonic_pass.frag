@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One pass of bitonic sort over lists in a texture (Kipfer, Segal, Westermann, "UberFlow: A GPU-Based Particle Engine",
 // 2004; Juliachs et al. 2007, 4.3): every fragment reads its element and its partner, and keeps the one that belongs
 // there. A list of 2^log2_size elements takes one row, or several where it is longer than a row of the texture: phases

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One pass over long lists: neighbouring sorted parts become one. Every element finds its place by itself: its own number
 // in its part and the number of elements before it in the other (a binary search).
 layout(local_size_x = 256) in;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Bitonic sort of short lists, or of pieces of long ones, in shared memory. A workgroup's 1024 slots hold 1024 / 2^n
 // lists of up to 2^n elements: one dispatch is for lists that need the same n, so that no list is padded beyond the next
 // power of two, and none takes more steps than its length asks for.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One triangle that covers the viewport; instances number the columns that are composited.
 layout(location = 0) flat out int column;
 

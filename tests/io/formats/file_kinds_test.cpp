@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a file is, is told from what it begins with, then from its name.
 #include "io/formats/file_kinds.hpp"
 

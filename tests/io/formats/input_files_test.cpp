@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is opened and how: regular files alone, whatever names them; files that are shortened as they are read; and a
 // process without descriptors.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // AMReX plot files.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Cells of second order in text formats, each with its nodes in the order of the format's manual.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

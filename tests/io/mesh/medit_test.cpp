@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Medit meshes, binary and text, written here as libMeshb's documentation has them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Nastran decks, written here as MSC's Quick Reference Guide has them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

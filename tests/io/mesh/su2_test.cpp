@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // SU2 meshes, written here as SU2's documentation has them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Tecplot text files, written here as Tecplot's Data Format Guide has them: a cube of bricks with a field that is
 // linear in space at its nodes and another at its cells.
 #include <fmt/format.h>

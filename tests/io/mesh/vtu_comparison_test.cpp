@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // .vtu files as this process reads them and as VTK's reader does: the same cells and values to the bit. Besides files
 // of our own those in a folder that the environment variable TESSERA_VTU_FILES names.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Damaged .vtu files are refused in one line, or left to VTK's reader, and take no memory that they cannot fill.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // .vtu files that this process reads, with known cells and values.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

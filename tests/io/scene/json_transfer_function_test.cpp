@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/scene/json_transfer_function.hpp"
 
 #include <gtest/gtest.h>

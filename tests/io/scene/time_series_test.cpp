@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "io/scene/time_series.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Volumes of any format in gzip files.
 #include <gtest/gtest.h>
 #include <zlib.h>

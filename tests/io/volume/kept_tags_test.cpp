@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What `convert` keeps besides samples and places: a patient's axes, modality, units and what values are.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The 48 orientations of every medical format that this test can write: left is left.
 #include "support/marker.hpp"
 

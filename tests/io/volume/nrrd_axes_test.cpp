@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // NRRD headers: spaces, places of samples, and axes that are none of space.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Volumes that are unpacked a part at a time into a file without a name, instead of into memory.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Large .vti and .vtr of one array, which are read without VTK, as VTK reads them.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Volumes of colours are never drawn as their length without a word.
 #include <gtest/gtest.h>
 

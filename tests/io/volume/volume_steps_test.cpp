@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Volumes of several steps, in several files, and with a header of their own.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

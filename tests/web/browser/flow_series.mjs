@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A small mesh in three time steps: points with a scalar and a vector, cells with a number.
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";

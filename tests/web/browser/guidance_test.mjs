@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the page says and offers to who does not know it: one server without ffmpeg, of a mesh with a surface beside it.
 import assert from "node:assert/strict";
 import { mkdtempSync, rmSync } from "node:fs";

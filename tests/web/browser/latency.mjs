@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How long from event to painted picture, as the page measures it: turns the view by the mouse for some seconds.
 //
 //   TESSERA_PROGRAM=... TESSERA_WEB_PACKAGES=... [TESSERA_RANKS=2] node latency.mjs FILE [SECONDS [WIDTHxHEIGHT [OPTIONS OF SERVE...]]]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The page in Chromium, with the server behind it: one browser, one server, one thing after another.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";

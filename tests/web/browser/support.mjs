@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The server that is tested, a proxy that loses connections when told, and a browser that looks at them.
 import { spawn } from "node:child_process";
 import { existsSync } from "node:fs";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Camera mathematics: truths about views, on random cameras of a fixed seed.
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Fields by the words of options.
 import assert from "node:assert/strict";
 import { test } from "node:test";

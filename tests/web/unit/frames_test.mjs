@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Frames and the states that ask for them.
 import assert from "node:assert/strict";
 import { test } from "node:test";

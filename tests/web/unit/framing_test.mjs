@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is in the picture stays in it when its shape changes.
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which handle a press takes.
 import assert from "node:assert/strict";
 import { test } from "node:test";

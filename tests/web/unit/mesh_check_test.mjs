@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the check of a mesh found, in words.
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Numbers as they are read, typed and laid along axes.
 import assert from "node:assert/strict";
 import { test } from "node:test";

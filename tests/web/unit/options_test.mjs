@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Options in force, and colours as controls have them.
 import assert from "node:assert/strict";
 import { test } from "node:test";

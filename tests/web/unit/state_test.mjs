@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // States, their history, and their way into an address.
 import assert from "node:assert/strict";
 import { test } from "node:test";

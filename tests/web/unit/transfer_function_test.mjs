@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The edited transfer function: what edits do, and what of the state they make.
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The server's sentences in the page's words.
 import assert from "node:assert/strict";
 import { readdirSync, readFileSync } from "node:fs";
