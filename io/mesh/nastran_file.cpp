@@ -40,7 +40,7 @@ SolidElement solid_of(std::string_view name, cells::CurvedFamily shape, std::siz
                        cells::find_node_order(cells::NodeConvention::nastran, shape, corners.size())->type,
                        curved.type,
                        {}};
-  const cells::CurvedLattice lattice = *curved_lattice(vtk_number(curved.type), nodes);
+  const cells::CurvedLattice lattice = *cells::curved_lattice(vtk_number(curved.type), nodes);
   const auto place = [&](std::size_t corner) {
     return glm::dvec3(corners[corner][0], corners[corner][1], corners[corner][2]);
   };
