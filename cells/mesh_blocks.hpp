@@ -36,7 +36,7 @@ struct MeshFile {
   std::vector<FieldSummary> fields;
   std::vector<std::string> notes;     ///< one line each: what was chosen, or odd about the file
   std::vector<std::string> blocks;    ///< names of all that the file has, read or not
-  std::vector<std::string> surfaces;  ///< names of those beside the volume, which block_surface.hpp reads
+  std::vector<std::string> surfaces;  ///< names of those beside the volume, which io/mesh/block_surface.hpp reads
   scene::TimeStepRead time_step{};
   glm::dvec3 axis_scale{1};  ///< that the points are multiplied by
   std::string format;        ///< "VTK XML unstructured grid", "PLOT3D", "TetGen .node/.ele", ...

@@ -17,7 +17,7 @@ namespace tessera::cells {
 ///
 /// Faces     are cut by face_triangles.hpp, from the positions of their corners alone, and never get points of their
 ///           own: neighbours agree on them whatever index, order or orientation they have, and whatever kind of cell
-///           (cell_split.hpp, amr_cells.hpp) the other side is.
+///           (cell_split.hpp, cells/amr/amr_cells.hpp) the other side is.
 /// Corners   at one place are one.
 /// Cells     are cones from their smallest corner, which for tets, pyramids, wedges and hexahedra gives what
 ///           split_cell() gives; where that does not see all of the cell, from another corner, or a point inside; where

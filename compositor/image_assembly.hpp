@@ -76,8 +76,8 @@ class ImageAssembly {
   ImageAssembly& operator=(const ImageAssembly&) = delete;
 
   /// Takes a message of channel `tiles`; the frame that it completes, if any: waits for its last tiles. Throws
-  /// Error(system_failure) if it is not what message.hpp says; of tiles the work throws it, and accept() once more when
-  /// their frame would be complete.
+  /// Error(system_failure) if it is not what exchange/message.hpp says; of tiles the work throws it, and accept() once
+  /// more when their frame would be complete.
   std::optional<AssembledFrame> accept(exchange::Message message);
 
  private:

@@ -36,7 +36,7 @@ class RunSink final : public FragmentSink<Encoding> {
   using FragmentSink<Encoding>::segments_;
 
   void cut(Depth final_depth);
-  /// Writes the runs that have ended, in the encoding's records (wire.hpp), and forgets them.
+  /// Writes the runs that have ended, in the encoding's records (exchange/wire.hpp), and forgets them.
   void write_ended();
 
   TileScene scene_;

@@ -35,7 +35,7 @@ class RawSink : public FragmentSink<Encoding> {
   typename Encoding::Open open_{};
 };
 
-/// Exchange::segments: every ray segment, in the encoding's records (wire.hpp).
+/// Exchange::segments: every ray segment, in the encoding's records (exchange/wire.hpp).
 template <class Encoding>
 class SegmentSink;
 

@@ -14,7 +14,7 @@ namespace tessera::system {
 /// meanwhile can be read to the end.
 class PositionalFile {
  public:
-  /// `name` for messages; empty: the file's. Throws as open_regular (input_file.hpp).
+  /// `name` for messages; empty: the file's. Throws as open_regular (system/regular_file.hpp).
   explicit PositionalFile(const std::filesystem::path& file, std::string name = {});
 
   /// `count` bytes from byte `at` on. Throws Error(system_failure) if the file ends before, or the disk fails.

@@ -6,9 +6,8 @@
 
 namespace tessera::apps {
 
-/// `tessera timing`: where the time of traced runs went (timing_breakdown.hpp), as text on stdout, and as CSV and
-/// figure
-/// (.svg, .png) where paths are given. Throws Error.
+/// `tessera timing`: where the time of traced runs went (analysis/timing_breakdown.hpp), as text on stdout, and as CSV
+/// and figure (.svg, .png) where paths are given. Throws Error.
 void timing(const std::vector<std::filesystem::path>& traces, const std::filesystem::path& csv,
             const std::filesystem::path& figure);
 

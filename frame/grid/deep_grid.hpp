@@ -35,7 +35,8 @@ struct DeepSettings {
 /// How       A pass of its own in double precision, beside the caster, which has no time for depth. Every ray goes from
 ///           voxel to voxel. Its cubic is cut where it turns and at the knots of the transfer function, and into
 ///           stretches so short that a line through its mean gives their light to 2e-9 (volume/lanes/ray_piece-inl.h
-///           has the bound); from there on it is as with meshes: compositor/deep/deep_pieces.hpp, deep_fragments.hpp.
+///           has the bound); from there on it is as with meshes: compositor/deep/deep_pieces.hpp,
+///           compositor/deep/deep_fragments.hpp.
 /// Surfaces  are samples without length.
 /// Flat      the samples flattened are the volume's picture to 1e-5, and within --accuracy of the caster's.
 /// Cost      about twenty times the caster's. Samples are read in blocks of 16^3 voxels, 256 of them kept a thread: 10

@@ -11,7 +11,7 @@
 /// in them, which their libraries alone can tell.
 namespace tessera::io {
 
-/// A program under helper/, the name of a reader in it, and what to do where it crashes.
+/// A program under readers/, the name of a reader in it, and what to do where it crashes.
 struct ForeignReader {
   const char* reader;
   HelperTask task{};

@@ -11,8 +11,8 @@ namespace tessera::io {
 
 enum class Needs : std::uint8_t;  // file_kinds.hpp
 
-/// The programs that read files with other people's libraries (helper/README.md). Each links one of these libraries and
-/// may be installed or not: that is a fact about the machine at run time, not about the build of this library.
+/// The programs that read files with other people's libraries (readers/README.md). Each links one of these libraries
+/// and may be installed or not: that is a fact about the machine at run time, not about the build of this library.
 enum class Reader : std::uint8_t { vtk, tetgen, gmsh, dicom, xdmf, med };
 
 struct ReaderProgram {

@@ -10,7 +10,7 @@
 
 namespace tessera::io {
 
-/// An image (kind image of foreign_data.hpp) of cells, or trees of them.
+/// An image (kind image of io/foreign/messages/foreign_data.hpp) of cells, or trees of them.
 struct OpenedAmrBlock {
   const ForeignFile* file;  ///< null if no reader program holds it; then it has no ghosts
   const ForeignPart* part;
@@ -36,7 +36,7 @@ OpenedAmr open_amr_list(const std::filesystem::path& file);
 /// VTK's trees, whole or in pieces, each of which is read by itself.
 OpenedAmr open_hyper_trees(const std::filesystem::path& file);
 
-/// What a reader of helper/vtk_main.cpp makes blocks of.
+/// What a reader of readers/vtk/vtk_main.cpp makes blocks of.
 OpenedAmr open_amr_by(const char* reader, const std::filesystem::path& file);
 
 }  // namespace tessera::io

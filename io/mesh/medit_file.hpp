@@ -17,7 +17,7 @@ namespace tessera::io {
 std::vector<cells::CellBlock> parse_medit_text(std::string_view text, const std::string& source);
 
 /// Parses a binary Medit mesh: tetrahedra, pyramids, prisms and hexahedra, of the second order tetrahedra alone; a
-/// block a reference, which the cell field Reference has where there are several (block_groups.hpp). Throws
+/// block a reference, which the cell field Reference has where there are several (cells/block_groups.hpp). Throws
 /// Error(bad_input) with the place and a remedy for what is damaged, has two dimensions or cells that are not read.
 /// Nothing is allocated before the file is long enough to hold it.
 ///

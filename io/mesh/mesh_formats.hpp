@@ -19,7 +19,7 @@ namespace tessera::io {
 
 struct ForeignFile;
 
-// What programs under helper/ read throws missing_reader() where they are not installed.
+// What programs under readers/ read throws missing_reader() where they are not installed.
 
 /// VTK's XML files: .vtu .pvtu .vts .pvts .vtr .pvtr, and lists of them (.vtm .vtpc). The pieces of a .pvtu are a block
 /// each, their points not merged.
@@ -35,13 +35,13 @@ cells::MeshBlocks read_vtk_legacy(const std::filesystem::path& file, const cells
 /// they began (cells/warp.hpp). Variables NAME_x NAME_y NAME_z become one vector NAME.
 cells::MeshBlocks read_exodus(const std::filesystem::path& file, const cells::MeshOptions& options);
 
-/// A file of a solver, by the name of a reader in helper/vtk_main.cpp: all blocks, all arrays, one time step, by
+/// A file of a solver, by the name of a reader in readers/vtk/vtk_main.cpp: all blocks, all arrays, one time step, by
 /// default the last. Grids become hexahedra.
 cells::MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader,
                                    const cells::MeshOptions& options);
 
-/// What Gmsh's library reads, by the name of a reader in helper/gmsh_main.cpp: a block a physical group, one time step,
-/// by default the last.
+/// What Gmsh's library reads, by the name of a reader in readers/gmsh/gmsh_main.cpp: a block a physical group, one time
+/// step, by default the last.
 cells::MeshBlocks read_by_gmsh(const std::filesystem::path& file, const char* reader,
                                const cells::MeshOptions& options);
 
@@ -51,9 +51,9 @@ cells::MeshBlocks read_xdmf_mesh(const std::filesystem::path& file, const cells:
 /// MED by its library: a block a mesh, fields of nodes and cells, one time step, by default the last.
 cells::MeshBlocks read_med(const std::filesystem::path& file, const cells::MeshOptions& options);
 
-/// Meshes with levels of refinement, by the name of a reader in helper/vtk_main.cpp, or "amr_list", VTK's lists of
+/// Meshes with levels of refinement, by the name of a reader in readers/vtk/vtk_main.cpp, or "amr_list", VTK's lists of
 /// blocks. Cells that finer ones cover are left out; the chosen field alone is read. Cell data are voxels; point data
-/// and `smooth` are cells that meet across levels (amr_cells.hpp).
+/// and `smooth` are cells that meet across levels (cells/amr/amr_cells.hpp).
 cells::MeshBlocks read_amr(const std::filesystem::path& file, const char* reader, const cells::MeshOptions& options);
 
 /// The same of a file that the helper found to be one (ForeignContents::has_levels).

@@ -55,7 +55,7 @@ double box_volume(const cells::Surface& surface) {
 /// Before TetGen begins to make more tets than there is room for, which may take it an hour to find out.
 void require_room(double volume, double max_volume, const std::string& source) {
   const double tets = volume / max_volume;
-  constexpr double bytes_a_tet = 1024;  // measured (helper/limits.cpp)
+  constexpr double bytes_a_tet = 1024;  // measured (readers/common/limits.cpp)
   const double room = std::min(static_cast<double>(system::available_memory()) / bytes_a_tet, 0x1p31);
   if (tets > room)
     throw scene::bad_input(fmt::format(
@@ -113,7 +113,7 @@ cells::MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind,
     throw scene::bad_input(fmt::format("{}: the surface is flat, it encloses nothing; give a closed one", source));
   const double largest = max_volume.value_or(volume / default_tets);
   if (max_volume) require_room(volume, largest, source);
-  // Measured on spheres (helper/limits.cpp). With fields it is filled twice, first without points inside.
+  // Measured on spheres (readers/common/limits.cpp). With fields it is filled twice, first without points inside.
   const auto facets = static_cast<double>(surface.facets.size());
   const double expected = (surface.attributes.empty() ? 2e-4 : 4e-4) * facets + 2e-5 * volume / largest;
   if (progress) progress({ReadProgress::Stage::filling, 0, expected});

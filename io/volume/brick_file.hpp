@@ -37,7 +37,7 @@ VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& o
 void write_bricks(const scene::SampleSource& source, const std::filesystem::path& file, int side = 64,
                   BodyAxes axes = BodyAxes::none, const VolumeTags& tags = {});
 
-/// The same as a file of this process's that others can open (scratch_file.hpp), for open_bricks(). Throws
+/// The same as a file of this process's that others can open (system/scratch_file.hpp), for open_bricks(). Throws
 /// Error(bad_input) of `subject` if there is no room for it.
 std::unique_ptr<system::ScratchFile> scratch_bricks(const scene::SampleSource& source, const std::string& subject);
 

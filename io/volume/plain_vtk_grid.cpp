@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Regular and rectilinear grids whose one array is read in place. open_vtk_xml() and VTK's reader, by which all others
-// are read (foreign_vtk_grids.cpp), hold all samples in memory.
+// are read (io/foreign/foreign_vtk_grids.cpp), hold all samples in memory.
 #include "io/volume/plain_vtk_grid.hpp"
 
 #include <algorithm>

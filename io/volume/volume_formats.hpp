@@ -54,7 +54,7 @@ StoredVolume describe_raw(const std::filesystem::path& file, const VolumeOptions
 /// .vti .pvti .vtr .pvtr .vtk by VTK.
 VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions& options);
 
-/// Whether a file of VTK's other formats, by the name of a reader in helper/vtk_main.cpp, holds one regular or
+/// Whether a file of VTK's other formats, by the name of a reader in readers/vtk/vtk_main.cpp, holds one regular or
 /// rectilinear grid, so that it is a volume; and that grid.
 bool holds_grid_by_vtk(const std::filesystem::path& file, const char* reader);
 VolumeFile read_by_vtk(const std::filesystem::path& file, const char* reader, const VolumeOptions& options);

@@ -33,8 +33,8 @@ struct VolumeOptions {
   ReadProgressFunction progress{};         ///< null: nobody hears
 
   /// Samples that have to be unpacked and take more bytes than this go into a file of bricks without a name
-  /// (scratch_file.hpp) as they come, where the format lets them come in parts: gzip, an array of .vti or .vtr, what a
-  /// helper holds. Without room for that they stay in memory, unless it is needed for others.
+  /// (system/scratch_file.hpp) as they come, where the format lets them come in parts: gzip, an array of .vti or .vtr,
+  /// what a helper holds. Without room for that they stay in memory, unless it is needed for others.
   std::uint64_t most_in_memory = std::numeric_limits<std::uint64_t>::max();
   bool scratch_is_needed = false;
 

@@ -28,7 +28,7 @@ struct VtkXmlElement {
 
 /// The elements of a file up to AppendedData, with which the XML ends, or its own end. The numbers of arrays are passed
 /// over, not parsed as XML. Throws Error(bad_input, "SOURCE: ...") if the rest is not well formed, or elements are
-/// nested deeper than most_nested (xml_elements.hpp).
+/// nested deeper than most_nested (io/text/xml_elements.hpp).
 std::vector<VtkXmlElement> vtk_xml_elements(const system::PositionalFile& file, const std::string& source);
 
 /// For files that VTK's reader parses, which goes as deep as they do: throws as vtk_xml_elements().

@@ -233,7 +233,7 @@ io::ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::pat
   reader->SetCaseType(is_decomposed ? vtkPOpenFOAMReader::DECOMPOSED_CASE : vtkPOpenFOAMReader::RECONSTRUCTED_CASE);
   reader->SetUse64BitLabels(has_wide_labels(folder));
   reader->CreateCellToPointOff();
-  reader->DecomposePolyhedraOff();  // ours are conforming, one value a cell (polyhedron_split.hpp)
+  reader->DecomposePolyhedraOff();  // ours are conforming, one value a cell (cells/polyhedron_split.hpp)
   io::ForeignContents contents;
   contents.format = "OpenFOAM case";
   if (!is_decomposed && request.value("part", 0) > 0) return contents;

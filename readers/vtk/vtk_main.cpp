@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// tessera-read-vtk: reads files with VTK and the libraries that come with it, in a process of its own (serve.hpp), for
-// the Tessera library that started it (io/foreign/client/helper_process.hpp).
+// tessera-read-vtk: reads files with VTK and the libraries that come with it, in a process of its own
+// (readers/common/serve.hpp), for the Tessera library that started it (io/foreign/client/helper_process.hpp).
 #include "readers/common/readers.hpp"
 #include "readers/common/serve.hpp"
 

@@ -18,7 +18,7 @@ namespace tessera::readers {
 std::string with_quiet_vtk(const std::string& source, const std::string& remedy, const std::function<void()>& work,
                            std::initializer_list<const char*> passed_over = {});
 
-/// Has a reader's progress reported (serve.hpp).
+/// Has a reader's progress reported (readers/common/serve.hpp).
 void watch_progress(vtkAlgorithm& reader);
 
 /// Reads a legacy file, of meshes or grids, with all of its arrays instead of the active ones alone. Within

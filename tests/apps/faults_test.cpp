@@ -16,7 +16,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-/// Runs quietly and expects one error line of the house's form with all of `words` in it.
+/// Runs quietly and expects one error line of the program's form with all of `words` in it.
 void expect_fault(int status, Names arguments, const Names& words) {
   const auto run = tessera(arguments);
   std::string called;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The integral of one ray segment, in float: compositor/integrate_lanes-inl.h (exact) and integrate_sampled.cpp, whose
-// comments say how. Light is {red, green, blue, optical depth}, premultiplied and not dimmed by what lies before.
+// The integral of one ray segment, in float; integrals/integrate_lanes-inl.h (exact) and integrals/integrate_sampled.cpp
+// explain it. Light is {red, green, blue, optical depth}, premultiplied and not dimmed by what lies before.
 
 // LaneTable: columns of `stride` numbers.
 layout(std430, binding = 3) readonly buffer Table { float table[]; };

@@ -22,9 +22,9 @@ struct ForeignFile {
   bool with_surfaces = false;  ///< surfaces are blocks like others: of polygons (VTK's type 7)
 };
 
-/// Has the helper read a file. `request` names the reader and what it is told (helper/readers.hpp); the file is added.
-/// Of the parts those that its "blocks", names, do not mean are left out; contents.block_names are of all. Throws
-/// Error(bad_input) in one line. With "surfaces" those count as blocks (ForeignFile::with_surfaces).
+/// Has the helper read a file. `request` names the reader and what it is told (readers/common/readers.hpp); the file is
+/// added. Of the parts those that its "blocks", names, do not mean are left out; contents.block_names are of all.
+/// Throws Error(bad_input) in one line. With "surfaces" those count as blocks (ForeignFile::with_surfaces).
 ForeignFile open_foreign(std::shared_ptr<HelperProcess> helper, const std::filesystem::path& file,
                          nlohmann::json request);
 

@@ -173,7 +173,7 @@ HelperProcess::HelperProcess(HelperTask task) : task_(std::move(task)) {
   socket_ = system::Descriptor(ends[0]);
   const system::Descriptor theirs(ends[1]);
 
-  constexpr int helper_end = 3;  // helper/serve.cpp
+  constexpr int helper_end = 3;  // readers/common/serve.cpp
   // What a terminal sends to caller and helper alike is the caller's to answer, with whose end the helper ends.
   system::SpawnPlan plan({SIGINT, SIGTERM, SIGHUP, SIGQUIT});
   // First of all: it may be one of those that follow, where the caller has closed them.

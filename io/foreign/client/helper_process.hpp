@@ -63,15 +63,15 @@ struct HelperDeath {
   std::string words;
 };
 
-/// A running helper program (helper/README.md): a process of its own in which other people's readers, and TetGen, may
+/// A running helper program (readers/README.md): a process of its own in which other people's readers, and TetGen, may
 /// crash, print and ask for memory. It ends with this object.
 ///
 /// Found    by find_reader(). The first call() throws missing_reader() of its subject if it is not installed.
 /// Started  by posix_spawn: nothing of the caller's process is copied. It inherits no file and, of the environment,
 ///          nothing that MPI launchers set; what it prints goes nowhere.
 /// Limits   of memory and processor time, by the sizes of the files it opens or the surface it fills, which it sets
-///          itself, as it gives up the right to change anything (helper/sandbox.hpp). One that waits for longer than
-///          HelperTask::patience is ended.
+///          itself, as it gives up the right to change anything (readers/common/sandbox.hpp). One that waits for longer
+///          than HelperTask::patience is ended.
 /// Threads  calls wait for each other.
 class HelperProcess final : public ArraySource {
  public:

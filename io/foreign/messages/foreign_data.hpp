@@ -16,8 +16,8 @@
 
 namespace tessera::io {
 
-/// What the helper program (helper/README.md) says of a file that it has read with somebody else's library. The numbers
-/// stay there until they are asked for, an array at a time.
+/// What the helper program (readers/README.md) says of a file that it has read with somebody else's library. The
+/// numbers stay there until they are asked for, an array at a time.
 
 using tessera::NumberType;
 
@@ -58,7 +58,7 @@ auto with_number_type(NumberType type, const Use& use) {
 }
 
 /// Tuples [first, first + out.size()) of an array as doubles: one component, or their lengths (`magnitude`,
-/// cell_block.hpp). The bytes hold them all, aligned as the type wants.
+/// cells/cell_block.hpp). The bytes hold them all, aligned as the type wants.
 void read_tuples(std::span<const std::byte> bytes, NumberType type, int components, int component, std::size_t first,
                  std::span<double> out);
 

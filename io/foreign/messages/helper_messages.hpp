@@ -15,7 +15,7 @@ namespace tessera::io {
 /// What goes over the socket between a process and its helper program: a count of bytes (uint64, this machine's order),
 /// the bytes, and at most one file descriptor beside them.
 ///
-/// Bytes   CBOR. Requests and replies are in helper_process.cpp and helper/serve.cpp.
+/// Bytes   CBOR. Requests and replies are in io/foreign/client/helper_process.cpp and readers/common/serve.cpp.
 /// Arrays  are files without a name (memfd_create), sealed by who receives them, so that they cannot shrink while they
 ///         are mapped; or go in parts through a window, which is such a file too, and stays.
 
