@@ -67,7 +67,7 @@ struct FormatRow {
   Needs needs;
   const char* remark;                    ///< what applies, limits; why it is not read
   bool (*begins)(const FileBeginning&);  ///< null: nothing tells it but its name
-  const char* reader = "";      ///< of FileKind::solver, amr and gmsh: one that the program's main file in readers/ names
+  const char* reader = "";      ///< of FileKind::solver, amr and gmsh: a name in the main file of a program in readers/
   bool has_time_steps = false;  ///< ReadOptions::time_step applies
   enum class Listed : bool { no, yes } listed = Listed::yes;
 };
