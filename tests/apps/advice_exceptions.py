@@ -33,23 +33,23 @@ EXCEPTIONS = {
     r"please report": (6, DEFECT),
     r"^io/vtk/vtk_array\.cpp:\d+: \{\}: its samples end or break": (1, BIG),
     r"2\^32|points are too many for|it lists more than \{\} blocks": (10, HUGE),
-    r"(;|:\d+:) check the disk$|^io/image_(jpeg|tiff)\.cpp:\d+: \{\}: cannot be written": (8, DISK),
+    r"(;|:\d+:) check the disk$|^io/image/image_(jpeg|tiff)\.cpp:\d+: \{\}: cannot be written": (8, DISK),
     r"raise the limit of open files": (1, "needs a process without descriptors; io/formats/input_files_test.cpp has one"),
     r"^io/mesh/pvtu_writer\.cpp:\d+: \{\}: cannot be written": (1, "a folder that takes files and refuses to rename them"),
     r"cannot be opened; check (its permissions|that you may read it)": (3, ROOT),
-    r"^io/(brick_file\.cpp:\d+: `block`|surface_files\.cpp:\d+: \{\}: the largest tet)": (2, LIBRARY),
+    r"^io/(volume/brick_file\.cpp:\d+: `block`|mesh/surface_files\.cpp:\d+: \{\}: the largest tet)": (2, LIBRARY),
     r"^io/image/film_file\.cpp:\d+: (: is no film|\{\}: a picture of)": (2, LIBRARY),
-    r"^io/(time_series\.cpp:\d+: \{\}: is no time|volume_reader\.cpp:\d+: \{\}: it does not begin as a \{\}vol)": (
+    r"^io/(scene/time_series\.cpp:\d+: \{\}: is no time|volume/volume_reader\.cpp:\d+: \{\}: it does not begin as a \{\}vol)": (
         2,
         LIBRARY,
     ),
-    r"^io/image_(exr\.cpp:\d+: \{\}: (is|has)|file\.cpp:\d+: background|pfm|png|tiff)": (9, LIBRARY),
-    r"^io/amr_(file|trees)\.cpp:\d+: \{\}: its (points|trees)|^cells/amr/amr_leaves\.cpp:\d+: \{\}: a block of an AMR": (
+    r"^io/image/image_(exr\.cpp:\d+: \{\}: (is|has)|file\.cpp:\d+: background|pfm|png|tiff)": (9, LIBRARY),
+    r"^(io/mesh/amr_file|cells/amr/amr_trees)\.cpp:\d+: \{\}: its (points|trees)|^cells/amr/amr_leaves\.cpp:\d+: \{\}: a block of an AMR": (
         3,
         ANSWER,
     ),
-    r"^io/(foreign_blocks|foreign_grids|cell_block|foreign_numbers)": (16, ANSWER),
-    r"^io/(vtk_xml_(file|grid|numbers)|vtu_(cells|faces))\.cpp": (8, VTK_XML),
+    r"^io/foreign/(client/)?foreign_(blocks|grids|numbers)|^cells/cell_block": (16, ANSWER),
+    r"^io/vtk/(vtk_xml_(file|grid|numbers)|vtu_(cells|faces))\.cpp": (8, VTK_XML),
     r"^io/foreign/client/foreign_open\.cpp|^readers/common/readers\.hpp": (2, ANSWER),
     r"^readers/[a-z0-9/]+/\w+\.cpp:\d+: \{\}: (nothing can be|it holds \{\}, no|it is a grid of a kind|it cannot be read)": (
         7,
@@ -68,8 +68,8 @@ EXCEPTIONS = {
     r"^readers/[a-z0-9/]+/linear_only": (2, RARE),
     r"^io/mesh/tecplot_numbers\.cpp:\d+: the zone has \{\} values": (1, RARE),
     r"^readers/gmsh/gmsh_elements\.cpp:\d+: \{\}: its cells of": (1, RARE),
-    r"^io/(helper_process\.[ch]pp|helper/serve|helper/limits|foreign_fill\.cpp:\d+: filling)": (9, HELPER),
-    r"^io/(foreign_fill\.cpp:\d+: mend|block_tets\.cpp:\d+: .*order_tolerance|amr_leaves\.cpp:\d+: .*many pieces)": (
+    r"^io/foreign/client/(helper_process\.[ch]pp|foreign_fill\.cpp:\d+: filling)|^readers/common/(serve|limits)": (9, HELPER),
+    r"^(io/foreign/client/foreign_fill\.cpp:\d+: mend|cells/block_tets\.cpp:\d+: .*order_tolerance|cells/amr/amr_leaves\.cpp:\d+: .*many pieces)": (
         5,
         TIME,
     ),

@@ -13,8 +13,8 @@ import re
 import sys
 from pathlib import Path
 
-FOLDERS = """include scene colormaps io integrals exchange projection gl sorting compositor volume reference frame datasets
-             annotation analysis""".split()
+FOLDERS = """include scene system colormaps cells io readers integrals exchange projection gl sorting compositor volume reference
+             frame api datasets annotation analysis""".split()
 SUFFIXES = {".cpp", ".hpp", ".h", ".inl"}
 
 TOKEN = re.compile(

@@ -16,8 +16,8 @@ import re
 import sys
 from pathlib import Path
 
-FOLDERS = """include scene colormaps io integrals exchange projection gl sorting compositor volume reference frame datasets
-             analysis server""".split()
+FOLDERS = """include scene system colormaps cells io readers integrals exchange projection gl sorting compositor volume reference
+             frame api datasets analysis server""".split()
 SUFFIXES = {".cpp", ".hpp", ".h"}
 FILE_LINES, FUNCTION_LINES = 500, 80
 
