@@ -130,7 +130,7 @@ TEST(VtkWritten, CellTypesHaveTheNumbersOfVtk) {
   for (int number = 0; number < 256; ++number) {
     // VTK's curves and surfaces that no file has are accepted and have no name.
     const bool is_unused = (number >= 51 && number <= 54) || (number >= 60 && number <= 63);
-    const bool is_accepted = cell_shape(static_cast<std::uint8_t>(number)).kind != CellKind::unsupported;
+    const bool is_accepted = cells::cell_shape(static_cast<std::uint8_t>(number)).kind != cells::CellKind::unsupported;
     const bool is_listed = std::ranges::count(cell_types, number, &std::pair<CellType, int>::second) == 1;
     EXPECT_EQ(is_listed, is_accepted && !is_unused) << number;
   }
