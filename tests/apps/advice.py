@@ -197,7 +197,7 @@ def uncovered(source, said, is_partial):
     if not is_partial:
         wrong += [f"no row and no exception: {message}" for message in rest]
     counts = f"{len(followed)} are followed, {excused} excepted"
-    return wrong, f"{len(messages)} messages of apps/ and io/ give advice, {counts}"
+    return wrong, f"{len(messages)} messages give advice, {counts}"
 
 
 def main():
