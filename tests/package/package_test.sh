@@ -28,9 +28,9 @@ if [ "$SHARED" = 1 ]; then
   shown=$(nm -DC --defined-only "$first/$LIBDIR/libtessera.so" | sed 's/^[0-9a-f]* . //')
   others=$(grep -vE '^(typeinfo (name )?for |vtable for |VTT for )?tessera::' <<<"$shown" || true)
   [ -z "$others" ] || failed "libtessera.so shows $others"
-  inside=$(grep -E '(^| )tessera::(scene|colormaps|io|exchange|frame|volume|apps)::' <<<"$shown" || true)
+  inside=$(grep -E '(^| )tessera::(scene|system|colormaps|cells|io|exchange|frame|api|volume|apps)::' <<<"$shown" || true)
   [ -z "$inside" ] || failed "libtessera.so shows of its inside $inside"
-  [[ $shown == *'tessera::version()'* ]] || failed "version() is not shown"
+  [[ $shown =~ tessera::v[0-9]+_[0-9]+::version\(\) ]] || failed "version() is not shown, with its namespace"
   foreign=$(readelf -d "$first/$LIBDIR/libtessera.so" | grep -E 'NEEDED.*(libvtk|libtet)' || true)
   [ -z "$foreign" ] || failed "libtessera.so links $foreign"
 fi
