@@ -18,7 +18,7 @@ struct MeshBlocks {
   std::vector<std::string> notes;
   std::string format;
   std::vector<std::string> block_names{};    ///< of all, those too that were not chosen; empty: of `blocks`
-  std::vector<std::string> surface_names{};  ///< of surfaces beside the volume, which are left out
+  std::vector<std::string> surface_names{};  ///< of surfaces next to the volume, which are left out
   std::vector<FieldSummary> fields{};  ///< of the file, where the blocks have the chosen one alone, as options ask
   scene::TimeStepRead time_step{};
   bool beside_degrees = false;  ///< x and y are degrees, z is a length
@@ -36,7 +36,7 @@ struct MeshFile {
   std::vector<FieldSummary> fields;
   std::vector<std::string> notes;     ///< one line each: what was chosen, or odd about the file
   std::vector<std::string> blocks;    ///< names of all that the file has, read or not
-  std::vector<std::string> surfaces;  ///< names of those beside the volume, which io/mesh/block_surface.hpp reads
+  std::vector<std::string> surfaces;  ///< names of the surfaces, which io/mesh/block_surface.hpp reads
   scene::TimeStepRead time_step{};
   glm::dvec3 axis_scale{1};  ///< that the points are multiplied by
   std::string format;        ///< "VTK XML unstructured grid", "PLOT3D", "TetGen .node/.ele", ...

@@ -22,7 +22,7 @@ struct MeshOptions {
   /// an optional "point:" or "cell:" before it. A vector with no component named gives its magnitude.
   std::string field;
   bool smooth = false;                     ///< average cell data to the points, weighted by tet volume
-  std::filesystem::path plot3d_q;          ///< PLOT3D solution file; empty: found beside the grid file by its name
+  std::filesystem::path plot3d_q;          ///< PLOT3D solution file; empty: found next to the grid file by name
   std::optional<double> max_volume;        ///< surfaces only: largest tet TetGen makes, world units cubed
   std::optional<std::size_t> time_step{};  ///< files of several: counted from 0; default the last
   int threads = 1;                         ///< that make tets of cells; 0: all cores
@@ -33,7 +33,7 @@ struct MeshOptions {
   /// corners.
   double higher_order_tolerance = default_higher_order_tolerance;
   std::uint64_t higher_order_tets = default_higher_order_tets;
-  ReadProgressFunction progress{};         ///< null: nobody hears
+  ReadProgressFunction progress{};         ///< called with the progress; may be null
   bool shape = false;                      ///< ReadOptions::shape
   Selection selection{};                   ///< what of the mesh is kept
   bool surfaces = false;                   ///< blocks of faces, patches and side sets are read and named too

@@ -40,7 +40,7 @@ OpenedInput open_input(const std::filesystem::path& file) {
         file.string()));
   OpenedInput opened{system::open_regular(file, file.string())};
   opened.size = system::file_size(opened.file, file.string());
-  // OpenFOAM's is a mark on the folder that it lies in.
+  // An empty .foam file only marks its folder as an OpenFOAM case.
   if (opened.size == 0 && system::lower_extension(file) != ".foam" && system::lower_extension(file) != ".openfoam")
     throw scene::bad_input(fmt::format("{}: it is empty; write it anew", file.string()));
   if (is_git_lfs_pointer(opened.file, opened.size))

@@ -30,7 +30,7 @@ struct VolumeOptions {
   bool big_endian = false;
   std::uint64_t skip = 0;                  ///< bytes before the first sample
   std::optional<std::size_t> time_step{};  ///< as MeshOptions::time_step
-  ReadProgressFunction progress{};         ///< null: nobody hears
+  ReadProgressFunction progress{};         ///< called with the progress; may be null
 
   /// Samples that have to be unpacked and take more bytes than this go into a file of bricks without a name
   /// (system/scratch_file.hpp) as they come, where the format lets them come in parts: gzip, an array of .vti or .vtr,

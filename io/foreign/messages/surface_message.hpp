@@ -27,7 +27,7 @@ struct FillSize {
       false;  ///< by the user, who may know that it takes long: then 40 times as long, and 8 times the memory
 };
 
-/// A surface as the helper is handed it, and back. surface_of() throws std::exception for what is none.
+/// A surface as JSON for the reader program, and back. surface_of() throws std::exception for other JSON.
 nlohmann::json json_of(const cells::Surface& surface);
 cells::Surface surface_of(const nlohmann::json& json);
 
