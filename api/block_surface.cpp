@@ -20,7 +20,7 @@ TriangleMesh read_block_surface(std::span<const std::filesystem::path> files, co
   ReadOptions read = options;
   read.blocks = {block};
   read.selection = {};
-  io::BlockFaces faces = io::read_block_faces(files, frame::mesh_options(read));
+  io::BlockFaces faces = io::read_block_faces(files, api::mesh_options(read));
   if (!faces.has_volume) {
     if (faces.mesh.triangles.empty())
       throw scene::bad_input(fmt::format("{}: the block {} has neither faces nor cells; name another",

@@ -34,12 +34,12 @@ int Communicator::rank() const { return state_->rank; }
 int Communicator::size() const { return state_->size; }
 
 void run_ranks(int ranks, const std::function<void(const Communicator&)>& work) {
-  exchange::run_ranks(ranks, [&](exchange::Transport& transport) { work(frame::communicator_over(transport)); });
+  exchange::run_ranks(ranks, [&](exchange::Transport& transport) { work(api::communicator_over(transport)); });
 }
 
 }  // namespace v0_1
 
-namespace frame {
+namespace api {
 
 Communicator communicator_over(exchange::Transport& transport) {
   return StateAccess::make(std::make_shared<const Communicator::State>(Communicator::State{
@@ -47,5 +47,5 @@ Communicator communicator_over(exchange::Transport& transport) {
       [&transport] { return std::shared_ptr<exchange::Transport>(std::shared_ptr<void>(), &transport); }}));
 }
 
-}  // namespace frame
+}  // namespace api
 }  // namespace tessera

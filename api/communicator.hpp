@@ -20,11 +20,11 @@ struct TESSERA_HIDDEN Communicator::State {
 
 }  // namespace v0_1
 
-namespace frame {
+namespace api {
 
 /// Ranks of a transport that somebody else has: everything made with it shares it, one after the other. It must outlive
 /// them.
 Communicator communicator_over(exchange::Transport& transport);
 
-}  // namespace frame
+}  // namespace api
 }  // namespace tessera

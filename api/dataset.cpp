@@ -13,6 +13,7 @@
 #include "api/grid_values.hpp"
 #include "api/queries/mesh_check.hpp"
 #include "api/same_files.hpp"
+#include "api/selected_dataset.hpp"
 #include "api/transfer_function_choice.hpp"
 #include "cells/axis_scale.hpp"
 #include "cells/mesh_assembly.hpp"
@@ -25,7 +26,6 @@
 #include "frame/mesh/array_mesh.hpp"
 #include "frame/mesh/mesh_input.hpp"
 #include "frame/mesh/render.hpp"
-#include "frame/mesh/uncut_mesh.hpp"
 #include "frame/ranks/curved_parts.hpp"
 #include "frame/ranks/distributed_mesh.hpp"
 #include "frame/ranks/roles.hpp"
@@ -110,19 +110,19 @@ std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, c
     const scene::TraceScope timing(trace, "read");
     return frame::open_shared_volume(transport, file, volume_options(options), options.threads);
   }();
-  frame::require_same_files(transport);  // which it names
+  api::require_same_files(transport);  // which it names
   state->axis_scale = cells::chosen_scale(options.axis_scale, volume.beside_degrees,
                                           scene::bounds(volume.source->geometry()), volume.notes);
   if (state->axis_scale != glm::dvec3(1))
     volume.source = std::make_unique<scene::ScaledSource>(std::move(volume.source), state->axis_scale, file.string());
   {
     const scene::TraceScope timing(trace, "prepare");
-    state->labels = frame::take_labels(file, options, transport, volume);
+    state->labels = api::take_labels(file, options, transport, volume);
     state->ranges =
         std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source, options.threads));
   }
-  frame::note_byte_order(volume, options, state->ranges->range);
-  frame::leave_fill_values_out(volume, file, options, transport, state->ranges);
+  api::note_byte_order(volume, options, state->ranges->range);
+  api::leave_fill_values_out(volume, file, options, transport, state->ranges);
   scene::ValueRange range = state->ranges->range;
   if (const auto& threshold = options.selection.threshold) {
     state->of_all = std::make_shared<const frame::FieldOfAll>(
@@ -212,7 +212,7 @@ auto together(exchange::Transport& transport, const Work& work) {
 
 }  // namespace v0_1
 
-namespace frame {
+namespace api {
 
 cells::MeshOptions mesh_options(const ReadOptions& o) {
   return {o.field,
@@ -233,7 +233,7 @@ cells::MeshOptions mesh_options(const ReadOptions& o) {
           o.axis_scale};
 }
 
-}  // namespace frame
+}  // namespace api
 
 inline namespace v0_1 {
 
@@ -289,20 +289,20 @@ Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOp
     if (files.empty()) throw scene::bad_input("input: no file is named; name one");
     check_axis_scale(options.axis_scale);
     for (const auto& file : files) system::note_read(file);
-    frame::require_same_files(*transport);  // first of all: what ranks do together goes by them
+    api::require_same_files(*transport);  // first of all: what ranks do together goes by them
     if (files.size() == 1 && opens_as_grid(files.front(), options)) {
       state = opened_grid(files.front(), options, *transport, options.trace);
       complete_grid(*state);
-      if (!options.selection.clip.empty()) frame::clip_box(*state, options.selection, files.front().string());
+      if (!options.selection.clip.empty()) api::clip_box(*state, options.selection, files.front().string());
     } else {
       check_mesh_options(files.front(), options);
       state = std::make_shared<State>();
       TracedMessages traced(*transport, options.trace);
       Trace* const trace = traced.face(options.trace);
       const Roles roles = assign_roles(transport->size(), ranks.projectors, ranks.compositors);
-      frame::DistributedMesh mesh = frame::read_distributed(*transport, files, frame::mesh_options(options),
+      frame::DistributedMesh mesh = frame::read_distributed(*transport, files, api::mesh_options(options),
                                                             ranks.partition, roles.projectors, options.threads, trace);
-      frame::require_same_files(*transport);  // which they name
+      api::require_same_files(*transport);  // which they name
       take_description(std::move(mesh.description), *state);
       set_own_time(files.front(), state->time_step);
       state->facts = mesh.facts;
@@ -456,14 +456,14 @@ BodyAxes Dataset::body_axes() const { return state_->body_axes; }
 
 LoadedTransferFunction Dataset::transfer_function(const std::string& file_or_preset,
                                                   const TransferFunctionOptions& options) const {
-  return frame::transfer_function_of(*state_, file_or_preset, options);
+  return api::transfer_function_of(*state_, file_or_preset, options);
 }
 
 MeshCheck Dataset::check(const CheckProgressFunction& progress) const {
   if (is_grid()) throw scene::bad_input(state_->source + ": is a grid, which nothing can be wrong with; check meshes");
   if (state_->ranks > 1)
     throw scene::bad_input(state_->source + ": this rank has a part of the mesh; open it on one rank to check it");
-  return frame::check_mesh(state_->mesh, progress);
+  return api::check_mesh(state_->mesh, progress);
 }
 
 std::size_t time_steps_of(const std::filesystem::path& file, const ReadOptions& options) {
@@ -473,7 +473,7 @@ std::size_t time_steps_of(const std::filesystem::path& file, const ReadOptions& 
 std::vector<double> times_of(const std::filesystem::path& file, const ReadOptions& options) {
   const scene::TimeStepRead read = opens_as_grid(file, options)
                                        ? io::open_unscanned_volume(file, volume_options(options)).time_step
-                                       : io::time_steps_of_mesh(file, frame::mesh_options(options));
+                                       : io::time_steps_of_mesh(file, api::mesh_options(options));
   if (!read.times.empty()) return read.times;
   std::vector<double> numbers(std::max<std::size_t>(read.count, 1));
   std::iota(numbers.begin(), numbers.end(), 0.0);

@@ -75,9 +75,9 @@ struct TESSERA_HIDDEN Dataset::State {
 
 }  // namespace v0_1
 
-namespace frame {
+namespace api {
 
 cells::MeshOptions mesh_options(const ReadOptions& options);
 
-}  // namespace frame
+}  // namespace api
 }  // namespace tessera

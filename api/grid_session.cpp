@@ -24,8 +24,8 @@ namespace tessera {
 inline namespace v0_1 {
 namespace {
 
-using frame::stopped_frame;
-using frame::tiles_to;
+using api::stopped_frame;
+using api::tiles_to;
 
 FrameStatistics statistics_of(const frame::FinishedVolumeFrame& frame, const char* integrator) {
   FrameStatistics statistics;
@@ -119,7 +119,7 @@ class GridByRays final : public Session::State {
           *transport_, frame::SortLastSettings{settings().ranks.direct_send, keeps_uncertainty_, trace_});
       return;
     }
-    frame::SortFirstSettings sort_first = frame::sort_first_settings(settings());
+    frame::SortFirstSettings sort_first = api::sort_first_settings(settings());
     sort_first.keep_error_bounds = keeps_uncertainty_;
     sort_first.keep_cost = keeps_cost_;
     sort_first.trace = trace_;
@@ -140,7 +140,7 @@ class GridByRays final : public Session::State {
   void check_deep(const FrameSettings& frame) const {
     if (!(frame.deep_accuracy >= 1e-6 && frame.deep_accuracy <= 1))
       throw scene::bad_input(fmt::format("`deep_accuracy` {}: it must be 1e-6 to 1", frame.deep_accuracy));
-    if (!frame::promised_error(frame::grid_settings(settings())))
+    if (!api::promised_error(api::grid_settings(settings())))
       throw scene::bad_input(
           fmt::format("{}: steps along rays give light other than that of their parts; set `integrator` automatic or "
                       "exact",
@@ -151,7 +151,7 @@ class GridByRays final : public Session::State {
 
   /// Bricks get what the budget leaves beside a picture of this size: the renderer is made once it is known.
   void make_renderer(std::optional<ImageSize> size) {
-    volume::RenderSettings grid = frame::grid_settings(settings());
+    volume::RenderSettings grid = api::grid_settings(settings());
     grid.clip = data().clip;
     if (sorts_last()) grid.parts = transport_->size();
     if (!size) {
@@ -226,7 +226,7 @@ class GridByRays final : public Session::State {
     std::optional<frame::FinishedVolumeFrame> finished;
     try {
       finished = frames_->render(*renderer_, function, {view.camera, view.size}, traced(number), &watch);
-    } catch (const frame::SinkFailure& failure) {
+    } catch (const api::SinkFailure& failure) {
       of_sink = failure.cause;
     }
     if (agreed(of_sink || (finished && finished->stopped))) return false;
@@ -298,12 +298,12 @@ class GridByRays final : public Session::State {
 
 }  // namespace v0_1
 
-namespace frame {
+namespace api {
 
 std::unique_ptr<Session::State> grid_by_rays(Dataset dataset, const Settings& settings,
                                              std::shared_ptr<exchange::Transport> transport) {
   return std::make_unique<GridByRays>(std::move(dataset), settings, std::move(transport));
 }
 
-}  // namespace frame
+}  // namespace api
 }  // namespace tessera

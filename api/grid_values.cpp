@@ -16,7 +16,7 @@
 #include "scene/label_source.hpp"
 #include "scene/threshold_source.hpp"
 
-namespace tessera::frame {
+namespace tessera::api {
 namespace {
 
 /// A scanner's picture, however few values a phantom or a test image has: by its modality, or Hounsfield's units of a
@@ -42,7 +42,7 @@ void leave_fill_values_out(io::VolumeFile& volume, const std::filesystem::path& 
   }
   volume.source = std::make_unique<scene::ThresholdSource>(
       std::move(volume.source), std::array{fill->others.low, fill->others.high}, file.string());
-  ranges = std::make_shared<const volume::CellRanges>(scan_together(transport, *volume.source, options.threads));
+  ranges = std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source, options.threads));
   fill = scene::find_fill_value(*volume.source, ranges->range);
   if (fill && !fill->is_huge() && !fill->is_outside(threshold))
     volume.notes.push_back(scene::words_on(*fill, "samples"));
@@ -61,7 +61,7 @@ std::vector<double> take_labels(const std::filesystem::path& file, const ReadOpt
                                 exchange::Transport& transport, io::VolumeFile& volume) {
   if (options.labels == false) return {};
   const bool stated = options.labels.value_or(false) || volume.tags.labels;
-  scene::LabelValues found = shared_labels(transport, *volume.source, stated);
+  scene::LabelValues found = frame::shared_labels(transport, *volume.source, stated);
   if (!found.are_labels || (!stated && is_scan(volume, found.values))) return {};
   if (volume.source->geometry().association == Association::point) {
     volume.source = std::make_unique<scene::LabelSource>(std::move(volume.source), file.string());
@@ -72,4 +72,4 @@ std::vector<double> take_labels(const std::filesystem::path& file, const ReadOpt
   return std::move(found.values);
 }
 
-}  // namespace tessera::frame
+}  // namespace tessera::api

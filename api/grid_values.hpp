@@ -12,7 +12,7 @@
 
 /// What a grid's values stand for besides quantities: nothing, labels, another order of bytes. All are collective where
 /// they take a transport, and add notes to the volume.
-namespace tessera::frame {
+namespace tessera::api {
 
 /// Values that stand for nothing would rule range, colors and what the volume is taken for: huge ones become blank, of
 /// others a note tells how to leave them out.
@@ -26,4 +26,4 @@ void note_byte_order(io::VolumeFile& volume, const ReadOptions& options, const s
 std::vector<double> take_labels(const std::filesystem::path& file, const ReadOptions& options,
                                 exchange::Transport& transport, io::VolumeFile& volume);
 
-}  // namespace tessera::frame
+}  // namespace tessera::api

@@ -58,7 +58,7 @@ Job::~Job() = default;
 
 int Job::rank() const { return state_->transport().rank(); }
 int Job::size() const { return state_->transport().size(); }
-Communicator Job::communicator() { return frame::communicator_over(state_->transport()); }
+Communicator Job::communicator() { return api::communicator_over(state_->transport()); }
 
 void Job::answer_termination() {
   state_->meet();
@@ -76,7 +76,7 @@ void Job::agree_instruction_sets() {
   if (size() > 1) exchange::agree_instruction_sets(state_->transport());
 }
 
-void Job::require_same_files() { frame::require_same_files(state_->transport()); }
+void Job::require_same_files() { api::require_same_files(state_->transport()); }
 
 std::vector<std::byte> Job::broadcast(int root, std::vector<std::byte> bytes) {
   constexpr auto kind = exchange::MessageKind::of_job;
@@ -92,7 +92,7 @@ std::vector<std::byte> Job::broadcast(int root, std::vector<std::byte> bytes) {
 void Job::attempt(const std::function<void(const Communicator&)>& work) {
   if (size() == 1) return work(communicator());
   exchange::attempt(state_->transport(),
-                    [&](exchange::Transport& transport) { work(frame::communicator_over(transport)); });
+                    [&](exchange::Transport& transport) { work(api::communicator_over(transport)); });
 }
 
 void Job::fail(const Error& error) { state_->transport().fail(error); }

@@ -27,8 +27,8 @@ void check_method(const Settings& settings) {
 }
 
 using Clock = std::chrono::steady_clock;
-using frame::stopped_frame;
-using frame::tiles_to;
+using api::stopped_frame;
+using api::tiles_to;
 
 FrameStatistics statistics_of(const frame::FrameStatistics& s, double milliseconds) {
   FrameStatistics statistics;
@@ -50,7 +50,7 @@ class MeshAlone final : public Session::State {
     check_method(settings);
     frame::check_surfaces(traced(settings), data().mesh.association);
     frame::check_shading(traced(settings));
-    frame::check_device_rasterizer(traced(settings), frame::compositing_settings(settings.mesh.device));
+    frame::check_device_rasterizer(traced(settings), api::compositing_settings(settings.mesh.device));
     frame::assign_roles(1, settings.ranks.projectors, settings.ranks.compositors);  // of one rank there are not more
   }
 
@@ -71,7 +71,7 @@ class MeshAlone final : public Session::State {
       } catch (const scene::FrameStopped&) {
         sink.frame(stopped_frame(i));
         return i;
-      } catch (const frame::SinkFailure& failure) {
+      } catch (const api::SinkFailure& failure) {
         std::rethrow_exception(failure.cause);
       }
       frame.statistics =
@@ -84,7 +84,7 @@ class MeshAlone final : public Session::State {
 
  private:
   static frame::RenderSettings traced(const Settings& settings) {
-    frame::RenderSettings mesh = frame::mesh_settings(settings);
+    frame::RenderSettings mesh = api::mesh_settings(settings);
     mesh.trace = settings.trace;
     return mesh;
   }
@@ -97,7 +97,7 @@ class MeshOnRanks final : public Session::State {
  public:
   MeshOnRanks(Dataset dataset, const Settings& settings, std::shared_ptr<exchange::Transport> transport)
       : State(std::move(dataset), settings),
-        distributed_(frame::distributed_settings(settings, transport->size())),
+        distributed_(api::distributed_settings(settings, transport->size())),
         transport_(std::move(transport)) {
     check_method(settings);
     if (settings.trace != nullptr) {
@@ -167,7 +167,7 @@ class MeshOnRanks final : public Session::State {
       finished.frame += first;
       if (finished.stopped) {
         ended = true;
-        frame::call_sink([&] { sink.frame(stopped_frame(finished.frame)); });
+        api::call_sink([&] { sink.frame(stopped_frame(finished.frame)); });
         return;
       }
       ++part.complete;
@@ -177,21 +177,21 @@ class MeshOnRanks final : public Session::State {
       frame.statistics = statistics_of(finished.statistics, finished.frame_ms);
       frame.statistics.overlapping = overlapping_;
       if (settings.deep || settings.peel) frame::put_deep(std::move(finished.deep), settings, frame);
-      frame::call_sink([&] { sink.frame(std::move(frame)); });
+      api::call_sink([&] { sink.frame(std::move(frame)); });
     };
     if (sink.wants_tiles())
       callbacks.tile = [&](std::size_t number, const PixelRect& rect, const Image& image) {
-        frame::call_sink([&] { sink.tile({first + number, rect, image}); });
+        api::call_sink([&] { sink.tile({first + number, rect, image}); });
       };
     callbacks.memory = [&](ImageSize size) {
       Image memory;
-      frame::call_sink([&] { memory = sink.spare_image(size); });
+      api::call_sink([&] { memory = sink.spare_image(size); });
       return memory;
     };
     std::exception_ptr thrown;
     try {
       renderer_->render(jobs, function, callbacks, stop);
-    } catch (const frame::SinkFailure& failure) {
+    } catch (const api::SinkFailure& failure) {
       thrown = failure.cause;  // the others have ended in order too
     } catch (const Overlap&) {
       part.overlapping = 1;
@@ -268,7 +268,7 @@ class MeshOnRanks final : public Session::State {
 
 }  // namespace v0_1
 
-namespace frame {
+namespace api {
 
 std::unique_ptr<Session::State> mesh_alone(Dataset dataset, const Settings& settings) {
   return std::make_unique<MeshAlone>(std::move(dataset), settings);
@@ -279,5 +279,5 @@ std::unique_ptr<Session::State> mesh_on_ranks(Dataset dataset, const Settings& s
   return std::make_unique<MeshOnRanks>(std::move(dataset), settings, std::move(transport));
 }
 
-}  // namespace frame
+}  // namespace api
 }  // namespace tessera

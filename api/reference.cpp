@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "api/dataset.hpp"
-#include "frame/mesh/uncut_mesh.hpp"
+#include "api/selected_dataset.hpp"
 #include "reference/grid/grid_reference.hpp"
 #include "reference/reference.hpp"
 #include "scene/error.hpp"
@@ -40,7 +40,7 @@ Reference::Reference(Dataset dataset, const View& view, const TransferFunction& 
   if (data.ranks > 1)
     throw scene::bad_input(data.source + ": this rank has a part of the mesh; open it on one rank to judge pictures");
   frame::UncutMesh mesh;
-  if (dataset.is_mesh()) mesh = frame::uncut_mesh(data);
+  if (dataset.is_mesh()) mesh = api::uncut_mesh(data);
   auto rays = rays_of(dataset, mesh, view, transfer_function, settings);
   state_ = std::make_unique<const State>(State{std::move(dataset), std::move(mesh), std::move(rays)});
 }

@@ -16,7 +16,7 @@
 #include "scene/error.hpp"
 #include "system/files_read.hpp"
 
-namespace tessera::frame {
+namespace tessera::api {
 namespace {
 
 struct Fingerprint {
@@ -79,4 +79,4 @@ void require_same_files(exchange::Transport& transport) {
   }
 }
 
-}  // namespace tessera::frame
+}  // namespace tessera::api

@@ -3,7 +3,7 @@
 
 #include "exchange/transport.hpp"
 
-namespace tessera::frame {
+namespace tessera::api {
 
 /// Checks that all ranks have read the same files, which they may not have where nodes of a cluster have copies of
 /// their own. Compares all files read since the last call; a file that only some ranks have read is compared with the
@@ -12,4 +12,4 @@ namespace tessera::frame {
 /// Error(bad_input), naming the file, on a rank that finds a difference. Collective.
 void require_same_files(exchange::Transport& transport);
 
-}  // namespace tessera::frame
+}  // namespace tessera::api

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A part of a data set, and the whole that it was cut from.
+#include "api/selected_dataset.hpp"
+
 #include <fmt/format.h>
 
 #include <array>
@@ -10,7 +12,6 @@
 #include "cells/mesh_selection.hpp"
 #include "exchange/transport.hpp"
 #include "frame/mesh/mesh_input.hpp"
-#include "frame/mesh/uncut_mesh.hpp"
 #include "frame/ranks/mesh_exchange.hpp"
 #include "frame/ranks/reduce.hpp"
 #include "scene/error.hpp"
@@ -76,16 +77,16 @@ Dataset Dataset::selected(const Selection& selection) const {
 
 }  // namespace v0_1
 
-namespace frame {
+namespace api {
 
-UncutMesh uncut_mesh(const Dataset::State& data) {
+frame::UncutMesh uncut_mesh(const Dataset::State& data) {
   if (data.ranks == 1 && data.clip.empty()) return {data.mesh, {}, data.mesh, nullptr};
   if (data.uncut) return {data.uncut->mesh, data.clip, data.mesh, data.uncut};
   if (data.files.empty())
     throw scene::bad_input("verify: this rank has a part of the mesh, and no file has the whole; verify on one rank");
   cells::MeshOptions options = mesh_options(data.options);
   options.selection.clip.clear();
-  auto whole = std::make_shared<const scene::TetMesh>(read_input(data.files, options).mesh);
+  auto whole = std::make_shared<const scene::TetMesh>(frame::read_input(data.files, options).mesh);
   return {*whole, data.clip, data.ranks == 1 ? data.mesh : scene::TetMeshView(*whole), whole};
 }
 
@@ -110,5 +111,5 @@ void clip_box(Dataset::State& grid, const Selection& selection, const std::strin
   grid.facts.box = scene::bounds(mesh);
 }
 
-}  // namespace frame
+}  // namespace api
 }  // namespace tessera

@@ -14,9 +14,9 @@
 
 #include "api/communicator.hpp"
 #include "api/queries/verify.hpp"
+#include "api/selected_dataset.hpp"
 #include "api/session_state.hpp"
 #include "frame/mesh/peel.hpp"
-#include "frame/mesh/uncut_mesh.hpp"
 #include "scene/directions.hpp"
 #include "scene/error.hpp"
 #include "scene/pixel_view.hpp"
@@ -85,7 +85,7 @@ class OneFrame final : public Sink {
   RenderedFrame frame_;
 };
 
-Verification public_form(const frame::Verified& verified) {
+Verification public_form(const api::Verified& verified) {
   const reference::Verification& v = verified.picture;
   const auto reason = [](const std::optional<reference::Suspicion>& why) -> std::string {
     return why ? reference::name_of(*why) : "random";
@@ -115,10 +115,10 @@ Verification public_form(const frame::Verified& verified) {
 
 std::unique_ptr<Session::State> make_state(Dataset dataset, const Settings& settings,
                                            std::shared_ptr<exchange::Transport> transport) {
-  if (dataset.is_grid()) return frame::grid_by_rays(std::move(dataset), settings, std::move(transport));
+  if (dataset.is_grid()) return api::grid_by_rays(std::move(dataset), settings, std::move(transport));
   if (transport->size() == 1 && settings.mesh.device.backends.empty())
-    return frame::mesh_alone(std::move(dataset), settings);
-  return frame::mesh_on_ranks(std::move(dataset), settings, std::move(transport));
+    return api::mesh_alone(std::move(dataset), settings);
+  return api::mesh_on_ranks(std::move(dataset), settings, std::move(transport));
 }
 
 }  // namespace
@@ -157,8 +157,8 @@ std::size_t Session::render(std::span<const View> views, const TransferFunction&
 bool Session::assembles() const { return state_->assembles(); }
 
 std::optional<double> Session::promised_error() const {
-  return dataset().is_grid() ? frame::promised_error(frame::grid_settings(settings()))
-                             : frame::promised_error(frame::mesh_settings(settings()));
+  return dataset().is_grid() ? api::promised_error(api::grid_settings(settings()))
+                             : api::promised_error(api::mesh_settings(settings()));
 }
 
 Verification Session::verify(const RenderedFrame& frame, const View& view, const TransferFunction& transfer_function,
@@ -166,17 +166,17 @@ Verification Session::verify(const RenderedFrame& frame, const View& view, const
   check_view(view);
   if (frame.image.size != view.size)
     throw scene::bad_input("verify: the frame is not of this view's size; give the view it was rendered with");
-  const frame::Layers layers{frame.layers, frame.peel};
+  const api::Layers layers{frame.layers, frame.peel};
   const Dataset::State& data = StateAccess::of(dataset());
   if (dataset().is_grid()) {
-    volume::RenderSettings grid = frame::grid_settings(settings());
+    volume::RenderSettings grid = api::grid_settings(settings());
     grid.clip = data.clip;
-    return public_form(frame::verify_all(frame.image, layers, *data.samples, view.camera, transfer_function, grid,
-                                         frame.uncertainty, count));
+    return public_form(api::verify_all(frame.image, layers, *data.samples, view.camera, transfer_function, grid,
+                                       frame.uncertainty, count));
   }
-  const frame::RenderSettings settings = frame::mesh_settings(this->settings());
+  const frame::RenderSettings settings = api::mesh_settings(this->settings());
   return public_form(
-      frame::verify_all(frame.image, layers, frame::uncut_mesh(data), view.camera, transfer_function, settings, count));
+      api::verify_all(frame.image, layers, api::uncut_mesh(data), view.camera, transfer_function, settings, count));
 }
 
 BalancePictures Session::State::balance_pictures(const RenderedFrame&, const View&, const TransferFunction&) const {

@@ -6,7 +6,7 @@
 #include "scene/error.hpp"
 #include "scene/error_budget.hpp"
 
-namespace tessera::frame {
+namespace tessera::api {
 namespace {
 
 volume::Method method_of(IntegratorKind kind) {
@@ -26,7 +26,7 @@ volume::Method method_of(IntegratorKind kind) {
 }
 
 }  // namespace
-}  // namespace tessera::frame
+}  // namespace tessera::api
 
 namespace tessera {
 inline namespace v0_1 {
@@ -43,10 +43,10 @@ Exchange exchange_of(const Settings& settings, bool deep) {
 }  // namespace v0_1
 }  // namespace tessera
 
-namespace tessera::frame {
+namespace tessera::api {
 
-RenderSettings mesh_settings(const Settings& s) {
-  RenderSettings settings;
+frame::RenderSettings mesh_settings(const Settings& s) {
+  frame::RenderSettings settings;
   settings.rasterizer = s.mesh.rasterizer;
   settings.integrator = s.integrator;
   settings.emission = s.emission;
@@ -64,7 +64,7 @@ RenderSettings mesh_settings(const Settings& s) {
 volume::RenderSettings grid_settings(const Settings& s) {
   if (s.surfaces.has_faces())
     throw scene::bad_input(
-        fmt::format("{}: is for meshes, and the data set is a grid; leave it out", surface_word(s.surfaces)));
+        fmt::format("{}: is for meshes, and the data set is a grid; leave it out", frame::surface_word(s.surfaces)));
   volume::RenderSettings settings;
   settings.method = method_of(s.integrator.kind);
   settings.accuracy = s.integrator.accuracy;
@@ -82,8 +82,8 @@ volume::RenderSettings grid_settings(const Settings& s) {
   return settings;
 }
 
-SortFirstSettings sort_first_settings(const Settings& s) {
-  SortFirstSettings settings;
+frame::SortFirstSettings sort_first_settings(const Settings& s) {
+  frame::SortFirstSettings settings;
   settings.balance = s.ranks.balance;
   settings.resolution = s.ranks.balance_resolution;
   settings.weights = s.ranks.balance_weights;
@@ -92,8 +92,8 @@ SortFirstSettings sort_first_settings(const Settings& s) {
   return settings;
 }
 
-CompositingSettings compositing_settings(const DeviceSettings& s) {
-  CompositingSettings settings;
+frame::CompositingSettings compositing_settings(const DeviceSettings& s) {
+  frame::CompositingSettings settings;
   settings.backends = s.backends;
   settings.gl.method = s.method;
   settings.gl.half = s.half;
@@ -102,8 +102,8 @@ CompositingSettings compositing_settings(const DeviceSettings& s) {
   return settings;
 }
 
-DistributedSettings distributed_settings(const Settings& s, int ranks) {
-  DistributedSettings settings;
+frame::DistributedSettings distributed_settings(const Settings& s, int ranks) {
+  frame::DistributedSettings settings;
   settings.render = mesh_settings(s);
   settings.roles = assign_roles(ranks, s.ranks.projectors, s.ranks.compositors);
   settings.exchange = exchange_of(s, false);
@@ -114,4 +114,4 @@ DistributedSettings distributed_settings(const Settings& s, int ranks) {
   return settings;
 }
 
-}  // namespace tessera::frame
+}  // namespace tessera::api

@@ -8,19 +8,19 @@
 #include "volume/render.hpp"
 
 /// A session's settings as the renderers have them.
-namespace tessera::frame {
+namespace tessera::api {
 
-RenderSettings mesh_settings(const Settings& settings);
+frame::RenderSettings mesh_settings(const Settings& settings);
 
 /// Throws Error(bad_input) for methods that grids do not have.
 volume::RenderSettings grid_settings(const Settings& settings);
 
-SortFirstSettings sort_first_settings(const Settings& settings);
+frame::SortFirstSettings sort_first_settings(const Settings& settings);
 
 /// Of a mesh: on several ranks, or on devices.
-CompositingSettings compositing_settings(const DeviceSettings& settings);
+frame::CompositingSettings compositing_settings(const DeviceSettings& settings);
 
 /// `ranks`: of the job.
-DistributedSettings distributed_settings(const Settings& settings, int ranks);
+frame::DistributedSettings distributed_settings(const Settings& settings, int ranks);
 
-}  // namespace tessera::frame
+}  // namespace tessera::api

@@ -45,7 +45,7 @@ class TESSERA_HIDDEN Session::State {
 
 }  // namespace v0_1
 
-namespace frame {
+namespace api {
 
 /// Of a mesh: by this process alone, or by all ranks.
 std::unique_ptr<Session::State> mesh_alone(Dataset dataset, const Settings& settings);
@@ -84,5 +84,5 @@ inline RenderedFrame stopped_frame(std::size_t number) {
   return frame;
 }
 
-}  // namespace frame
+}  // namespace api
 }  // namespace tessera

@@ -14,7 +14,7 @@
 #include "io/scene/transfer_function_file.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::frame {
+namespace tessera::api {
 namespace {
 
 /// Of functions over the logarithm to base 10: straight between values this far apart, which errs by less than 2e-4 of
@@ -31,7 +31,7 @@ colormaps::TransferFunctionOptions loading_options(const Dataset::State& data, c
   colormaps::TransferFunctionOptions loading;
   loading.field_range = data.facts_of_all().scalar_range;
   loading.unit_distance = options.unit_distance;
-  loading.default_unit_distance = default_unit_distance(data.facts_of_all());
+  loading.default_unit_distance = frame::default_unit_distance(data.facts_of_all());
   loading.display_colors = options.display_colors;
   loading.rescale = options.rescale;
   loading.opacity_scale = options.opacity_scale;
@@ -171,4 +171,4 @@ LoadedTransferFunction transfer_function_of(const Dataset::State& data, const st
   return loaded;
 }
 
-}  // namespace tessera::frame
+}  // namespace tessera::api

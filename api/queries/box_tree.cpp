@@ -6,7 +6,7 @@
 #include <glm/common.hpp>
 #include <numeric>
 
-namespace tessera::frame {
+namespace tessera::api {
 namespace {
 
 bool meet(const scene::Box& a, const scene::Box& b) {
@@ -61,4 +61,4 @@ void BoxTree::visit(const scene::Box& box, const std::function<void(std::uint32_
   if (!boxes_.empty()) descend(0, 0, boxes_.size(), box, found);
 }
 
-}  // namespace tessera::frame
+}  // namespace tessera::api

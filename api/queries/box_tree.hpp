@@ -8,7 +8,7 @@
 
 #include "scene/camera.hpp"
 
-namespace tessera::frame {
+namespace tessera::api {
 
 /// Boxes halved at the median of their centres, so that those that meet another box are found in about log n steps
 /// each. Built in n log n.
@@ -30,4 +30,4 @@ class BoxTree {
   std::vector<scene::Box> nodes_;  ///< a heap: node i has children 2 i + 1 and 2 i + 2
 };
 
-}  // namespace tessera::frame
+}  // namespace tessera::api

@@ -47,14 +47,14 @@ Dataset dataset_of(std::shared_ptr<const scene::SampleSource> samples, const Dat
 }
 
 /// A grid of samples as StandInSamples has them.
-std::shared_ptr<const scene::SampleSource> source_of(const frame::StandInSamples& samples,
+std::shared_ptr<const scene::SampleSource> source_of(const api::StandInSamples& samples,
                                                      const std::array<double, 2>& range, GridGeometry geometry,
                                                      const std::string& field) {
   std::vector<float> values;
   values.reserve(samples.size());
   for (const std::uint64_t sample : samples)
-    values.push_back(sample == frame::no_sample ? std::numeric_limits<float>::quiet_NaN()
-                                                : std::bit_cast<float>(static_cast<std::uint32_t>(sample)));
+    values.push_back(sample == api::no_sample ? std::numeric_limits<float>::quiet_NaN()
+                                              : std::bit_cast<float>(static_cast<std::uint32_t>(sample)));
   scene::Grid grid;
   grid.geometry = std::move(geometry);
   grid.scale = range[0] < range[1] ? range[1] - range[0] : 1;
@@ -78,14 +78,14 @@ std::optional<Dataset> coarse_stand_in(const Dataset& dataset, const StandInSett
   if (dataset.is_grid()) {
     if (static_cast<std::uint64_t>(data.samples->geometry().all_samples().count()) <= settings.samples) return dataset;
     std::shared_ptr<const scene::SampleSource> samples;
-    arena.execute([&] { samples = frame::coarser(*data.samples, settings.samples, stop); });
+    arena.execute([&] { samples = api::coarser(*data.samples, settings.samples, stop); });
     if (samples == nullptr) return std::nullopt;
     return dataset_of(std::move(samples), data, settings.threads);
   }
-  const GridGeometry geometry = frame::stand_in_geometry(data.facts.box, settings.samples);
-  frame::StandInSamples samples;
+  const GridGeometry geometry = api::stand_in_geometry(data.facts.box, settings.samples);
+  api::StandInSamples samples;
   arena.execute(
-      [&] { samples = frame::stand_in_samples(data.mesh, data.global_tet, data.facts.scalar_range, geometry, stop); });
+      [&] { samples = api::stand_in_samples(data.mesh, data.global_tet, data.facts.scalar_range, geometry, stop); });
   bool stopped = stop.stop_requested();
   if (data.ranks > 1) {
     const std::shared_ptr<exchange::Transport> transport = StateAccess::of(communicator).connect();

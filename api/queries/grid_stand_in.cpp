@@ -8,7 +8,7 @@
 
 #include "api/queries/stand_in.hpp"
 
-namespace tessera::frame {
+namespace tessera::api {
 namespace {
 
 /// How many samples along each axis: about in proportion, so many in all at most.
@@ -115,4 +115,4 @@ std::shared_ptr<const scene::SampleSource> coarser(const scene::SampleSource& so
   return scene::MemorySource::of(std::move(coarse), std::move(means), "coarse stand-in");
 }
 
-}  // namespace tessera::frame
+}  // namespace tessera::api

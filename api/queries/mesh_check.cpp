@@ -15,7 +15,7 @@
 #include "api/queries/box_tree.hpp"
 #include "scene/position_order.hpp"
 
-namespace tessera::frame {
+namespace tessera::api {
 namespace {
 
 constexpr double tolerance = 1e-6, flat_determinant = 1e-14;
@@ -377,4 +377,4 @@ MeshCheck check_mesh(const scene::TetMeshView& mesh, const CheckProgressFunction
   return Check(mesh, progress).take();
 }
 
-}  // namespace tessera::frame
+}  // namespace tessera::api

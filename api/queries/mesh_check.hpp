@@ -9,11 +9,11 @@
 #include "scene/tet_mesh.hpp"
 #include "tessera/mesh_check.hpp"
 
-namespace tessera::frame {
+namespace tessera::api {
 
 using tessera::CheckProgressFunction;
 using tessera::MeshCheck;
 
 MeshCheck check_mesh(const scene::TetMeshView& mesh, const CheckProgressFunction& progress = nullptr);
 
-}  // namespace tessera::frame
+}  // namespace tessera::api

@@ -10,7 +10,7 @@
 
 #include "api/queries/stand_in.hpp"
 
-namespace tessera::frame {
+namespace tessera::api {
 namespace {
 
 constexpr double reach = 0.5;  ///< beside a tet, samples' distances
@@ -151,4 +151,4 @@ StandInSamples stand_in_samples(const scene::TetMeshView& part, std::span<const 
   return samples;
 }
 
-}  // namespace tessera::frame
+}  // namespace tessera::api

@@ -84,7 +84,7 @@ class RayInMesh final : public ProbedRay {
         surfaces_(settings.surfaces),
         shading_(settings.mesh.shading) {
     for (TriangleSurface& surface : surfaces_.triangles)
-      surface.mesh = std::make_shared<const TriangleMesh>(frame::triangles_near_ray(*surface.mesh, view, pixel));
+      surface.mesh = std::make_shared<const TriangleMesh>(api::triangles_near_ray(*surface.mesh, view, pixel));
     segments_ = reference::Reference(mesh_, view.camera, view.size, function, emission_).segments(x(), y());
   }
 
@@ -194,7 +194,7 @@ static_assert(sizeof(RayTet) == 136);
 
 /// The tets of a mesh that the ray goes through, with the whole mesh's order.
 std::vector<RayTet> tets_on_ray(const Dataset::State& data, const View& view, PixelIndex pixel) {
-  const std::vector<std::uint32_t> near = frame::tets_near_ray(data.mesh, view, pixel);
+  const std::vector<std::uint32_t> near = api::tets_near_ray(data.mesh, view, pixel);
   const scene::TetMesh subset = scene::subset(data.mesh, near);
   Camera camera = view.camera;
   camera.clipping_range.reset();  // cells beyond it say which faces are the mesh's boundary

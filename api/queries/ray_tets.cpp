@@ -12,7 +12,7 @@
 
 #include "scene/camera.hpp"
 
-namespace tessera::frame {
+namespace tessera::api {
 namespace {
 
 /// Half-spaces through the ray, and the one before the eye, that a point is wholly outside of: a tet with all corners
@@ -87,4 +87,4 @@ TriangleMesh triangles_near_ray(const TriangleMesh& mesh, const View& view, Pixe
   return near;
 }
 
-}  // namespace tessera::frame
+}  // namespace tessera::api

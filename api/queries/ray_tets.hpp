@@ -8,7 +8,7 @@
 #include "tessera/surfaces.hpp"
 #include "tessera/view.hpp"
 
-namespace tessera::frame {
+namespace tessera::api {
 
 /// The tets of a mesh that the ray of a pixel may meet, in ascending order: all that it meets, and few others. One pass
 /// over points and tets on all cores, nothing kept: a mesh of 12 million tets takes about a tenth of a second.
@@ -17,4 +17,4 @@ std::vector<std::uint32_t> tets_near_ray(const scene::TetMeshView& mesh, const V
 /// The same of triangles; points and values stay.
 TriangleMesh triangles_near_ray(const TriangleMesh& mesh, const View& view, PixelIndex pixel);
 
-}  // namespace tessera::frame
+}  // namespace tessera::api

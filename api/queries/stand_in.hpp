@@ -10,7 +10,7 @@
 #include "scene/sample_source.hpp"
 #include "scene/tet_mesh.hpp"
 
-namespace tessera::frame {
+namespace tessera::api {
 
 /// Samples of a mesh on a regular grid, so encoded that the lesser of two is the one that holds, in whatever order they
 /// come, from whatever thread or rank: 1 bit whether it lies beside its tet, 31 bits the tet, 32 bits its value as a
@@ -33,4 +33,4 @@ StandInSamples stand_in_samples(const scene::TetMeshView& part, std::span<const 
 std::shared_ptr<const scene::SampleSource> coarser(const scene::SampleSource& source, std::uint64_t samples,
                                                    const std::stop_token& stop);
 
-}  // namespace tessera::frame
+}  // namespace tessera::api

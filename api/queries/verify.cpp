@@ -20,7 +20,7 @@
 #include "volume/image_sink.hpp"
 #include "volume/precise/voxel_cast.hpp"
 
-namespace tessera::frame {
+namespace tessera::api {
 namespace {
 
 using reference::Suspicion;
@@ -103,7 +103,7 @@ bool checks_all(scene::ImageSize size, std::size_t count) {
 
 }  // namespace
 
-std::optional<double> promised_error(const RenderSettings& settings) {
+std::optional<double> promised_error(const frame::RenderSettings& settings) {
   if (settings.rasterizer == Rasterizer::scanline || !settings.bounded) return std::nullopt;
   const scene::Integrator& integrator = settings.integrator;
   switch (integrator.kind) {
@@ -126,7 +126,7 @@ std::optional<double> promised_error(const volume::RenderSettings& settings) {
 }
 
 reference::Suspects suspects(const scene::Image& image, const scene::TetMeshView& mesh, const scene::Camera& camera,
-                             const scene::TransferFunction& transfer_function, const RenderSettings& settings,
+                             const scene::TransferFunction& transfer_function, const frame::RenderSettings& settings,
                              std::size_t count) {
   if (checks_all(image.size, count)) return {};
   Collector collector(image.size, count);
@@ -183,9 +183,9 @@ Verified judged(const scene::Image& image, const Layers& layers, const Reference
 
 }  // namespace
 
-Verified verify_all(const scene::Image& image, const Layers& layers, const UncutMesh& mesh, const scene::Camera& camera,
-                    const scene::TransferFunction& transfer_function, const RenderSettings& settings,
-                    std::size_t count) {
+Verified verify_all(const scene::Image& image, const Layers& layers, const frame::UncutMesh& mesh,
+                    const scene::Camera& camera, const scene::TransferFunction& transfer_function,
+                    const frame::RenderSettings& settings, std::size_t count) {
   const reference::Suspects where = suspects(image, mesh.rendered, camera, transfer_function, settings, count);
   const reference::Reference reference(mesh.mesh, camera, image.size, transfer_function, settings.emission,
                                        settings.surfaces, mesh.kept, settings.shading);
@@ -201,8 +201,8 @@ Verified verify_all(const scene::Image& image, const Layers& layers, const scene
   return judged(image, layers, reference, promised_error(settings), count, where, settings.threads);
 }
 
-reference::Verification verify(const scene::Image& image, const UncutMesh& mesh, const scene::Camera& camera,
-                               const scene::TransferFunction& transfer_function, const RenderSettings& settings,
+reference::Verification verify(const scene::Image& image, const frame::UncutMesh& mesh, const scene::Camera& camera,
+                               const scene::TransferFunction& transfer_function, const frame::RenderSettings& settings,
                                std::size_t count) {
   return verify_all(image, {}, mesh, camera, transfer_function, settings, count).picture;
 }
@@ -214,4 +214,4 @@ reference::Verification verify(const scene::Image& image, const scene::SampleSou
   return verify_all(image, {}, source, camera, transfer_function, settings, error_bounds, count).picture;
 }
 
-}  // namespace tessera::frame
+}  // namespace tessera::api

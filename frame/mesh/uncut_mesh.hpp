@@ -6,7 +6,6 @@
 
 #include "scene/selection.hpp"
 #include "scene/tet_mesh.hpp"
-#include "tessera/dataset.hpp"
 
 namespace tessera::frame {
 
@@ -18,12 +17,5 @@ struct UncutMesh {
   scene::TetMeshView rendered;             ///< the mesh as it is rendered; `mesh` where this rank has not all of it
   std::shared_ptr<const void> owner;       ///< of `mesh`; null: the data set's state
 };
-
-/// Of a data set that is whole on this rank, or was made of files, which may be read once more. Throws as
-/// Dataset::open, and Error(bad_input) if this rank has only a part. The state must outlive it.
-UncutMesh uncut_mesh(const Dataset::State& data);
-
-/// Makes a grid's box that of what half-spaces leave of it. Throws Error(bad_input) if that is nothing.
-void clip_box(Dataset::State& grid, const Selection& selection, const std::string& source);
 
 }  // namespace tessera::frame

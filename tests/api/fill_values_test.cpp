@@ -107,7 +107,7 @@ TEST(FillValues, OfMeshesInPartsAreNotedOnceForTheWhole) {
     EXPECT_EQ(whole.find(of_points ? "1 points have" : "1 tets have"), 0u) << whole;
     exchange::run_ranks(3, [&](exchange::Transport& transport) {
       const Dataset data =
-          Dataset::open(std::span(&file, 1), options, frame::communicator_over(transport), RankSettings{});
+          Dataset::open(std::span(&file, 1), options, api::communicator_over(transport), RankSettings{});
       EXPECT_EQ(std::ranges::count_if(
                     data.notes(), [](const std::string& note) { return note.find("fill value") != std::string::npos; }),
                 1);

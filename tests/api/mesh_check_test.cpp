@@ -27,7 +27,7 @@ TEST(MeshCheck, MeshesWhoseCellsMatchAreClean) {
   meshes.push_back(datasets::transformed(datasets::cube(3), 1e20, glm::dvec3(0)));
   meshes.push_back({});
   for (std::size_t i = 0; i < meshes.size(); ++i) {
-    const MeshCheck check = check_mesh(meshes[i]);
+    const MeshCheck check = api::check_mesh(meshes[i]);
     EXPECT_EQ(check.overlaps.count, 0u) << i;
     EXPECT_EQ(check.inverted.count, 0u) << i;
     EXPECT_EQ(check.non_conforming_faces.count, 0u) << i;
@@ -37,7 +37,7 @@ TEST(MeshCheck, MeshesWhoseCellsMatchAreClean) {
 
 TEST(MeshCheck, SaysHowFarItIs) {
   std::vector<double> heard;
-  check_mesh(datasets::cube(24), [&heard](double done) { heard.push_back(done); });
+  api::check_mesh(datasets::cube(24), [&heard](double done) { heard.push_back(done); });
   ASSERT_GE(heard.size(), 6u);  // six parts begin, and each 2^15 of 69,120 tets
   EXPECT_TRUE(std::is_sorted(heard.begin(), heard.end()));
   EXPECT_GT(heard.front(), 0);
@@ -46,14 +46,14 @@ TEST(MeshCheck, SaysHowFarItIs) {
 
 TEST(MeshCheck, CountsTwinsAlongASeam) {
   const scene::TetMesh whole = datasets::regular_split(4, 4, 4), cut = datasets::with_seam(whole, 0, 0.4);
-  const MeshCheck check = check_mesh(cut);
+  const MeshCheck check = api::check_mesh(cut);
   EXPECT_EQ(check.duplicate_points.count, cut.positions.size() - whole.positions.size());
   EXPECT_GT(check.duplicate_points.count, 0u);
   EXPECT_TRUE(check.clean());
 }
 
 TEST(MeshCheck, MeasuresSlivers) {
-  const MeshCheck check = check_mesh(datasets::slivers(3, 1e5));
+  const MeshCheck check = api::check_mesh(datasets::slivers(3, 1e5));
   EXPECT_EQ(check.slivers.count, 2u * 9);
   EXPECT_EQ(check.slivers_1e4, 2u * 9);
   EXPECT_EQ(check.slivers_1e6, 0u);
@@ -67,7 +67,7 @@ TEST(MeshCheck, FindsAllPairsOfTwoMeshesThatPassThroughEachOther) {
   const scene::TetMesh one = datasets::cube(3, 0.2),
                        other = datasets::transformed(datasets::cube(2, 0.2, 9), 0.4, {0.9, 0.8, 0});
   const scene::TetMesh both = datasets::merged({one, other});
-  const MeshCheck check = check_mesh(both);
+  const MeshCheck check = api::check_mesh(both);
   EXPECT_EQ(check.inverted.count, 0u);
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   const auto inside = [&](std::size_t t, const glm::dvec3& p) {
@@ -102,7 +102,7 @@ TEST(MeshCheck, FindsAllPairsOfTwoMeshesThatPassThroughEachOther) {
 TEST(MeshCheck, FindsABodyWithinAnother) {
   const scene::TetMesh both = datasets::merged({datasets::regular_split(1, 1, 1, glm::dvec3(2), glm::dvec3(-1)),
                                                 datasets::transformed(datasets::cube(4), 0.1, {0.05, 0.03, 0.02})});
-  const MeshCheck check = check_mesh(both);
+  const MeshCheck check = api::check_mesh(both);
   // Every small cell lies in at least one of the six large ones.
   EXPECT_GE(check.overlaps.count, 6u * 64);
   EXPECT_GE(check.overlapping_cells, 6u * 64 + 2);
@@ -110,18 +110,18 @@ TEST(MeshCheck, FindsABodyWithinAnother) {
 
 TEST(MeshCheck, AVertexPushedThroughAFaceIsAFoldAndCellsOverlap) {
   scene::TetMesh mesh = datasets::regular_split(2, 2, 2);
-  EXPECT_TRUE(check_mesh(mesh).clean());
+  EXPECT_TRUE(api::check_mesh(mesh).clean());
   // The vertex in the middle, beyond the next one along x.
   for (glm::dvec3& p : mesh.positions)
     if (p == glm::dvec3(0.25)) p.x += 0.3;
-  const MeshCheck check = check_mesh(mesh);
+  const MeshCheck check = api::check_mesh(mesh);
   EXPECT_GT(check.inverted.count, 0u);
   EXPECT_GT(check.overlaps.count, 0u);
   EXPECT_FALSE(check.clean());
 }
 
 TEST(MeshCheck, TheSameCellTwiceOverlapsItself) {
-  const MeshCheck check = check_mesh(datasets::merged({datasets::cube(2), datasets::cube(2)}));
+  const MeshCheck check = api::check_mesh(datasets::merged({datasets::cube(2), datasets::cube(2)}));
   EXPECT_EQ(check.duplicate_points.count, 27u);
   EXPECT_EQ(check.overlaps.count, 48u);
   EXPECT_EQ(check.overlapping_cells, 96u);
@@ -134,7 +134,7 @@ TEST(MeshCheck, CellsOfSeveralTetsAreCountedAndListedOncePerPair) {
                                           datasets::regular_split(1, 1, 1, glm::dvec3(1), {5, 0, 0})});
   ASSERT_EQ(mesh.tets.size(), 18u);
   for (std::size_t t = 0; t < 18; ++t) mesh.original_cell.push_back(40 - t / 6);
-  const MeshCheck check = check_mesh(mesh);
+  const MeshCheck check = api::check_mesh(mesh);
   EXPECT_EQ(check.overlaps.count, 1u);
   EXPECT_EQ(check.overlapping_cells, 2u);
   ASSERT_EQ(check.overlaps.places.size(), 1u);
@@ -148,7 +148,7 @@ TEST(MeshCheck, ACellWhoseOwnTetsOverlapIsAPairWithItself) {
   // A corner pushed through the cell and out again.
   for (glm::dvec3& p : mesh.positions)
     if (p == glm::dvec3(1, 0, 0)) p = {-0.5, 1.25, 1.5};
-  const MeshCheck check = check_mesh(mesh);
+  const MeshCheck check = api::check_mesh(mesh);
   EXPECT_EQ(check.overlaps.count, 1u);
   EXPECT_EQ(check.overlapping_cells, 1u);
   ASSERT_EQ(check.overlaps.places.size(), 1u);
@@ -160,12 +160,12 @@ TEST(MeshCheck, FindsHangingNodesAndDiagonalsThatDoNotMatch) {
   // One large voxel beside 2 x 2 x 2 small ones: two faces against eight.
   const scene::TetMesh hanging = datasets::merged(
       {datasets::regular_split(1, 1, 1, glm::dvec3(0.5), {-0.5, 0, 0}), datasets::regular_split(2, 2, 2)});
-  EXPECT_EQ(check_mesh(hanging).non_conforming_faces.count, 2u + 8);
-  EXPECT_EQ(check_mesh(hanging).overlaps.count, 0u);
+  EXPECT_EQ(api::check_mesh(hanging).non_conforming_faces.count, 2u + 8);
+  EXPECT_EQ(api::check_mesh(hanging).overlaps.count, 0u);
   scene::TetMesh mirrored = datasets::regular_split(1, 1, 1, glm::dvec3(0.5), {-0.5, 0, 0});
   for (glm::dvec3& p : mirrored.positions) p.y = 0.5 - p.y;
   const scene::TetMesh diagonals = datasets::merged({mirrored, datasets::regular_split(1, 1, 1, glm::dvec3(0.5))});
-  EXPECT_EQ(check_mesh(diagonals).non_conforming_faces.count, 4u);
+  EXPECT_EQ(api::check_mesh(diagonals).non_conforming_faces.count, 4u);
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ TEST(SelectionColors, AreThoseOfAllOfAFileOnAnyRanks) {
       options.selection = selection;
       std::vector<std::uint64_t> tets(static_cast<std::size_t>(ranks));
       exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
-        const Dataset part = Dataset::open(std::span(&file, 1), options, frame::communicator_over(transport), {});
+        const Dataset part = Dataset::open(std::span(&file, 1), options, api::communicator_over(transport), {});
         expect_same(colors_of(part), colors);
         tets[static_cast<std::size_t>(transport.rank())] = part.tet_count();
       });

@@ -275,7 +275,7 @@ TEST_P(AnyKind, RanksMakeTheSamePicturesAndStopTogether) {
       Settings settings;
       settings.threads = 1;
       settings.ranks.exchange = Exchange::segments;
-      Session session(data, settings, frame::communicator_over(transport));
+      Session session(data, settings, api::communicator_over(transport));
       Pixels pixels;
       const RenderedFrame frame = session.render(view_of(data), function, {}, &pixels);
       EXPECT_FALSE(frame.stopped);
@@ -319,7 +319,7 @@ TEST_P(AnyKind, RanksStoppedAtRandomTimesGoOn) {
     Settings settings;
     settings.threads = 1;
     settings.ranks.exchange = Exchange::segments;
-    Session session(data, settings, frame::communicator_over(transport));
+    Session session(data, settings, api::communicator_over(transport));
     std::mt19937 random(11);
     const std::vector<View> views(3, view_of(data));
     for (int i = 0; i < 30; ++i) {
@@ -350,7 +350,7 @@ TEST_P(AnyKind, OnRanksToTheSinksExceptionStopsAllAndComesOut) {
   exchange::run_ranks(2, [&](exchange::Transport& transport) {
     Settings settings;
     settings.threads = 1;
-    Session session(data, settings, frame::communicator_over(transport));
+    Session session(data, settings, api::communicator_over(transport));
     Throwing sink;
     if (session.assembles())
       EXPECT_THROW(session.render(view_of(data), function, {}, &sink), std::runtime_error);
@@ -382,7 +382,7 @@ TEST_P(AnyKind, ASinksOwnErrorOfATileIsNotTheRuns) {
     exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
       Settings settings;
       settings.threads = 1;
-      Session session(data, settings, frame::communicator_over(transport));
+      Session session(data, settings, api::communicator_over(transport));
       FullPipe sink;
       if (session.assembles())
         EXPECT_THROW(session.render(view_of(data), function, {}, &sink), Error);
@@ -400,7 +400,7 @@ TEST_P(AnyKind, ASinksOwnErrorIsNotTheRuns) {
     exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
       Settings settings;
       settings.threads = 1;
-      Session session(data, settings, frame::communicator_over(transport));
+      Session session(data, settings, api::communicator_over(transport));
       for (int again = 0; again < 2; ++again) {
         FullDisk sink;
         if (session.assembles())
@@ -522,7 +522,7 @@ TEST(SessionOnRanks, SendsSegmentsByItselfWhereRunsCannotDo) {
   exchange::run_ranks(2, [&](exchange::Transport& transport) {
     Settings settings;
     settings.threads = 1;
-    Session session(data, settings, frame::communicator_over(transport));
+    Session session(data, settings, api::communicator_over(transport));
     const RenderedFrame frame = session.render(view_of(data), function, deep);
     if (session.assembles()) {
       ASSERT_EQ(frame.deep.begin, alone.deep.begin);
@@ -531,7 +531,7 @@ TEST(SessionOnRanks, SendsSegmentsByItselfWhereRunsCannotDo) {
                 0);
     }
     settings.ranks.exchange = Exchange::runs;
-    Session runs(data, settings, frame::communicator_over(transport));
+    Session runs(data, settings, api::communicator_over(transport));
     EXPECT_THROW(static_cast<void>(runs.render(view_of(data), function, deep)), Error);
   });
 }
@@ -553,7 +553,7 @@ TEST(DatasetParts, AreOneMeshOverRanks) {
     const std::span corners(mine.tets.front().data(), 4 * mine.tets.size());
     arrays.tets = corners;
     arrays.scalars = mine.scalars;
-    const Communicator ranks = frame::communicator_over(transport);
+    const Communicator ranks = api::communicator_over(transport);
     const Dataset data = Dataset::of_parts(arrays, ranks);
     EXPECT_EQ(data.tet_count(), mesh.tets.size());
     EXPECT_EQ(data.bounds(), whole.bounds());

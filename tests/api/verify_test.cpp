@@ -33,7 +33,7 @@ struct Scene {
   std::function<reference::Suspects(const scene::Image&)> suspects;
 
   [[nodiscard]] std::vector<ChosenPixel> chosen(const scene::Image& of) const {
-    return reference::choose_pixels(of.size, looked_at, suspects(of));
+    return reference::choose_pixels(of.size, looked_at, api::suspects(of));
   }
 };
 
@@ -57,7 +57,7 @@ Scene of_mesh(scene::TetMesh mesh, const scene::Camera& camera, const scene::Tra
   Scene scene;
   scene.image = Renderer(*kept, settings).render(camera, size, function);
   scene.suspects = [=](const scene::Image& image) {
-    return suspects(image, *kept, camera, function, settings, looked_at);
+    return api::suspects(image, *kept, camera, function, settings, looked_at);
   };
   return scene;
 }
@@ -93,7 +93,7 @@ Scene of_grid(std::unique_ptr<scene::MemorySource> source, const scene::Camera& 
   std::vector<float> error_bounds;
   scene.image = volume::Renderer(*kept, settings).render(camera, size, function, nullptr, std::nullopt, &error_bounds);
   scene.suspects = [=](const scene::Image& image) {
-    return suspects(image, *kept, camera, function, settings, error_bounds, looked_at);
+    return api::suspects(image, *kept, camera, function, settings, error_bounds, looked_at);
   };
   return scene;
 }
@@ -210,7 +210,7 @@ TEST(VerifyLooksAt, TiedPixels) {
   RenderSettings settings;
   const scene::Image image = Renderer(mesh, settings).render(camera, odd, function);
   const auto chosen =
-      reference::choose_pixels(odd, looked_at, suspects(image, mesh, camera, function, settings, looked_at));
+      reference::choose_pixels(odd, looked_at, api::suspects(image, mesh, camera, function, settings, looked_at));
   int tied = 0, column = 0;
   for (const ChosenPixel& c : chosen) tied += c.at.x == 128 && c.why ? 1 : 0;
   for (int y = 0; y < odd.height; ++y) column += alpha(image, 127, y) > 0 || alpha(image, 129, y) > 0 ? 1 : 0;
@@ -255,12 +255,12 @@ TEST(Verify, ACorruptedPictureFailsAndTheReasonIsNamed) {
   const scene::ImageSize small{96, 96};
   RenderSettings settings;
   scene::Image image = Renderer(mesh, settings).render(camera, small, haze());
-  const auto good = verify(image, mesh, camera, haze(), settings, 300);
+  const auto good = api::verify(image, mesh, camera, haze(), settings, 300);
   EXPECT_TRUE(good.met());
   EXPECT_EQ(good.judgement.pixels_checked, 300u);
   EXPECT_GE(good.random.pixels, 100u);
   add(image, {50, 40}, wrong);
-  const auto bad = verify(image, mesh, camera, haze(), settings, 300);
+  const auto bad = api::verify(image, mesh, camera, haze(), settings, 300);
   EXPECT_FALSE(bad.met());
   EXPECT_EQ(bad.judgement.worst_x, 50);
   EXPECT_EQ(bad.judgement.worst_y, 40);
@@ -288,7 +288,7 @@ TEST(Verify, LooksAtTheSamePixelsOnAnyNumberOfRanksAndThreads) {
         render_sort_first(transport, balance, jobs, function, renderer, [&](FinishedVolumeFrame frame) {
           choices.push_back(reference::choose_pixels(
               {101, 67}, 500,
-              suspects(frame.image, *source, jobs[0].camera, function, settings, frame.error_bounds, 500)));
+              api::suspects(frame.image, *source, jobs[0].camera, function, settings, frame.error_bounds, 500)));
           error_bounds.push_back(frame.error_bounds);
         });
       });

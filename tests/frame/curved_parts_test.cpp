@@ -94,7 +94,7 @@ TEST(CurvedParts, AreDividedAsTheWholeIs) {
           const auto first = [&](std::size_t part) { return std::min(cells, cells * part / parts); };
           const Cells own(block, first(self), first(self + 1));
           const MeshArrays part = own.arrays(self == 1 ? 1e-2 : 1e-3, most_tets);
-          const Dataset data = Dataset::of_parts(part, communicator_over(transport));
+          const Dataset data = Dataset::of_parts(part, api::communicator_over(transport));
           EXPECT_EQ(data.higher_order_cells(), whole.higher_order_cells());
           EXPECT_EQ(data.mesh_counts().cells_read, cells);
           const std::vector<Corners> mine = tets_of(data);
@@ -128,7 +128,7 @@ TEST(CurvedParts, CellsGivenTwiceAreCounted) {
       exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
         const auto self = static_cast<std::size_t>(transport.rank()), parts = static_cast<std::size_t>(ranks);
         const Dataset data = Dataset::of_parts(arrays(5 * self / parts, 5 * (self + 1) / parts, is_borrowed),
-                                               communicator_over(transport));
+                                               api::communicator_over(transport));
         EXPECT_EQ(data.mesh_counts().cells_read, 5u);
         EXPECT_EQ(data.mesh_counts().cells_duplicate, 2u);
         ASSERT_FALSE(data.warnings().empty());

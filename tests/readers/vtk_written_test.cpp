@@ -62,7 +62,7 @@ vtkNew<vtkUnstructuredGrid> hexahedra(int n) {
 void expect_pairs(const std::filesystem::path& file, int n) {
   const cells::MeshFile read = read_mesh(file);
   ASSERT_EQ(read.mesh.tets.size(), 6u * static_cast<std::size_t>(n + 1)) << file;
-  const frame::MeshCheck check = frame::check_mesh(read.mesh);
+  const MeshCheck check = api::check_mesh(read.mesh);
   EXPECT_EQ(check.overlaps.count, 2u) << file;
   EXPECT_EQ(check.overlapping_cells, 4u) << file;
   std::vector<std::pair<std::uint64_t, std::uint64_t>> pairs;
