@@ -33,7 +33,7 @@ struct Scene {
   std::function<reference::Suspects(const scene::Image&)> suspects;
 
   [[nodiscard]] std::vector<ChosenPixel> chosen(const scene::Image& of) const {
-    return reference::choose_pixels(of.size, looked_at, api::suspects(of));
+    return reference::choose_pixels(of.size, looked_at, suspects(of));
   }
 };
 
