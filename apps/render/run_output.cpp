@@ -31,47 +31,53 @@ void write_json(const Json& json, const std::filesystem::path& path) {
   write_text(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-RunOutput::RunOutput(const RenderOptions& options, const std::vector<FilmFrame>& frames, int ranks)
-    : frames_(frames),
-      line_(options.progress, frames.size()),
+RunOutput::RunOutput(const RenderOptions& options, const std::vector<FilmFrame>& frames, int ranks, bool prints)
+    : options_(options),
+      frames_(frames),
+      prints_(prints),
+      line_(options.progress && prints, frames.size()),
       report_(analysis::program_json()),
       frame_reports_(!options.report.empty()) {
   report_["method"] = method_json(options, ranks);
 }
 
-void RunOutput::describe(const RenderOptions& options, analysis::Description data,
-                         LoadedTransferFunction transfer_function) {
+void RunOutput::describe(analysis::Description data, LoadedTransferFunction transfer_function) {
   std::vector<std::string> warnings = data.warnings;
   warnings.insert(warnings.end(), transfer_function.warnings.begin(), transfer_function.warnings.end());
-  for (const std::string& warning : warnings) warn(options, warning);
+  for (const std::string& warning : warnings) warn(warning);
   data_ = std::move(data);
   transfer_function_ = std::move(transfer_function);
 }
 
-void RunOutput::warn(const RenderOptions& options, const std::string& warning) {
+void RunOutput::warn(const std::string& warning) {
+  if (!prints_) return;
   const auto away = StatusLine::away();
-  say_lines(fmt::format("tessera: warning: {}: {}", options.input().string(), warning));
+  say_lines(fmt::format("tessera: warning: {}: {}", options_.input().string(), warning));
 }
 
-void RunOutput::skip(const RenderOptions& options, const FilmFrame& frame) {
-  if (frame_reports_.kept()) frame_reports_.add(frame_json(options, frame, nullptr));
-  line_.finish_frames(++done_, rendered_);
+void RunOutput::skip_to(std::size_t frame) {
+  while (done_ < frame) {
+    if (frame_reports_.kept()) frame_reports_.add(frame_json(options_, frames_[done_], nullptr));
+    line_.finish_frames(++done_, rendered_);
+  }
 }
 
-void RunOutput::add(const RenderOptions& options, const FilmFrame& frame, const FrameRecord& record) {
-  if (frame_reports_.kept()) frame_reports_.add(frame_json(options, frame, &record));
+void RunOutput::add(const FilmFrame& frame, const FrameRecord& record) {
+  if (!prints_) return;
+  skip_to(static_cast<std::size_t>(&frame - frames_.data()));
+  if (frame_reports_.kept()) frame_reports_.add(frame_json(options_, frame, &record));
   {
     const auto away = StatusLine::away();
-    if (rendered_ == 0 && !options.quiet) {
-      say_lines(run_line(options, *data_, *transfer_function_, frames_, frame, record));
+    if (rendered_ == 0 && !options_.quiet) {
+      say_lines(run_line(options_, *data_, *transfer_function_, frames_, frame, record));
       for (const std::string& note : data_->notes) say_lines("note: " + note);
     }
-    if (frames_.size() > 1 && !options.quiet) {
-      say_lines(frame_line(options, frames_, frame, record));
+    if (frames_.size() > 1 && !options_.quiet) {
+      say_lines(frame_line(options_, frames_, frame, record));
     }
     // Standard output that a picture or the report goes to holds nothing else.
-    std::FILE* const lines = options.to_standard_output || options.report_to_standard_output ? stderr : stdout;
-    if (options.repeat > 0) fmt::print(lines, "{}\n", frame_ms_line(record.frame_ms));
+    std::FILE* const lines = options_.to_standard_output || options_.report_to_standard_output ? stderr : stdout;
+    if (options_.repeat > 0) fmt::print(lines, "{}\n", frame_ms_line(record.frame_ms));
     if (record.verification) {
       fmt::print(lines, "{}\n", verification_line(*record.verification, frame.number));
       met_ = met_ && record.verification->met;
@@ -80,21 +86,23 @@ void RunOutput::add(const RenderOptions& options, const FilmFrame& frame, const 
   line_.finish_frames(++done_, ++rendered_);
 }
 
-ExitCode RunOutput::finish(const RenderOptions& options) {
+ExitCode RunOutput::finish() {
+  if (!prints_) return ExitCode::complete;
+  skip_to(frames_.size());
   line_.begin("");
   const auto away = StatusLine::away();
   if (data_) {
-    report_[data_->is_mesh ? "mesh" : "volume"] = analysis::data_json(options.input(), *data_);
+    report_[data_->is_mesh ? "mesh" : "volume"] = analysis::data_json(options_.input(), *data_);
     report_["transfer_function"] = analysis::transfer_function_json(*transfer_function_);
-  } else if (!options.quiet) {
-    say_lines(
-        fmt::format("{}: all {} frames are there already, nothing rendered", options.input().string(), frames_.size()));
+  } else if (!options_.quiet) {
+    say_lines(fmt::format("{}: all {} frames are there already, nothing rendered", options_.input().string(),
+                          frames_.size()));
   }
-  if (options.report_to_standard_output)
+  if (options_.report_to_standard_output)
     write_standard_output(with_stream_names(frame_reports_.text(report_)));
-  else if (!options.report.empty())
-    write_text(options.report, with_stream_names(frame_reports_.text(report_)));
-  if (!options.saved_scene.empty()) write_text(options.saved_scene, options.scene);
+  else if (!options_.report.empty())
+    write_text(options_.report, with_stream_names(frame_reports_.text(report_)));
+  if (!options_.saved_scene.empty()) write_text(options_.saved_scene, options_.scene);
   return met_ ? ExitCode::complete : ExitCode::accuracy_not_met;
 }
 

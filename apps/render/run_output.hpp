@@ -14,42 +14,45 @@
 
 namespace tessera::apps {
 
-/// What a run says while it goes on and at its end: its line, times, verifications, progress, and the report. Used by
-/// the one process or rank that speaks.
+/// What a run prints while it goes on and at its end: its line, times, verifications, progress, and the report. Only
+/// the rank that prints does any of this; on others all functions but line() do nothing.
 class RunOutput {
  public:
-  /// `options` for what is shown; `ranks` of the job.
-  RunOutput(const RenderOptions& options, const std::vector<FilmFrame>& frames, int ranks);
+  /// Of the planned `frames`; `ranks` of the job. References outlive it; `options` may be completed meanwhile.
+  RunOutput(const RenderOptions& options, const std::vector<FilmFrame>& frames, int ranks, bool prints);
 
-  /// What the run line and the report say of the data; before the first add().
-  void describe(const RenderOptions& options, analysis::Description data, LoadedTransferFunction transfer_function);
-  /// A line of its own on stderr, unless that is to be quiet.
-  void warn(const RenderOptions& options, const std::string& warning);
+  /// What the run line and the report state of the data; before the first add().
+  void describe(analysis::Description data, LoadedTransferFunction transfer_function);
+  /// A line of its own on stderr.
+  void warn(const std::string& warning);
   /// More for the report's head, like the job's shape.
   void note(const char* name, nlohmann::ordered_json value) { report_[name] = std::move(value); }
 
-  /// A frame that --resume left alone.
-  void skip(const RenderOptions& options, const FilmFrame& frame);
-  /// A frame that was rendered and written.
-  void add(const RenderOptions& options, const FilmFrame& frame, const FrameRecord& record);
+  /// A frame that was rendered and written; those before it that were not rendered are ones that --resume leaves alone.
+  void add(const FilmFrame& frame, const FrameRecord& record);
 
   /// Writes the report, if asked. Complete, or accuracy_not_met.
-  ExitCode finish(const RenderOptions& options);
+  ExitCode finish();
 
-  /// What the run is at.
+  /// What the run is at. Shown by the rank that prints.
   [[nodiscard]] StatusLine& line() { return line_; }
 
   [[nodiscard]] std::size_t rendered() const { return rendered_; }
 
  private:
+  void skip_to(std::size_t frame);
+
+  const RenderOptions& options_;
   const std::vector<FilmFrame>& frames_;
+  const bool prints_;
   StatusLine line_;
   std::optional<analysis::Description> data_;
   std::optional<LoadedTransferFunction> transfer_function_;
   nlohmann::ordered_json report_;
   FrameReports frame_reports_;
   bool met_ = true;
-  std::size_t done_ = 0, rendered_ = 0;
+  std::size_t done_ = 0;  ///< frames in their order, rendered or skipped
+  std::size_t rendered_ = 0;
 };
 
 /// `frame_ms median X min Y`, milliseconds. The median of an even number is the mean of the middle two.
@@ -58,7 +61,7 @@ std::string frame_ms_line(std::vector<double> times);
 /// Appears by rename. Text that is not UTF-8 is replaced.
 void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);
 
-/// What a trace says of the run it is of.
+/// Metadata that a trace stores about its run.
 TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const FilmFrame& frame, std::size_t rendered);
 
 }  // namespace tessera::apps

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "apps/render/film_traces.hpp"
+#include "apps/render/frame_annotation.hpp"
+#include "apps/render/picture_queue.hpp"
+#include "apps/render/picture_writer.hpp"
+#include "apps/render/spare_images.hpp"
+#include "tessera/session.hpp"
+#include "tessera/sink.hpp"
+
+namespace tessera::apps {
+
+/// A rendered frame on its way to its files.
+struct FinishedFrame {
+  std::shared_ptr<const RenderedFrame> rendered;
+  AnnotatedFrame annotated;                  ///< a copy of what its annotation shows: the run may be at another step
+  std::int32_t number = 0;                   ///< of the frame, for the trace
+  std::optional<BalancePictures> balance{};  ///< with --show balance
+  std::optional<double> began_us{};          ///< the frame's span in the trace begins then and ends with the writing
+};
+
+/// Writes frames to their files, annotated, on threads of its own while the next ones are rendered. Used by the one
+/// rank that writes; on others it has no threads and is given nothing.
+class FrameWriter {
+ public:
+  /// Of the planned `frames`. `options` and `traces` outlive it.
+  FrameWriter(const RenderOptions& options, const std::vector<FilmFrame>& frames, const FilmTraces& traces,
+              bool writes);
+
+  /// Throws what writing an earlier frame threw.
+  void add(FinishedFrame frame);
+  /// Takes over a frame whose image memory is used again by a later one, once it is written.
+  std::shared_ptr<const RenderedFrame> reusing(RenderedFrame&& rendered);
+  /// An image whose memory is used again.
+  SpareImages& spare_images() { return spare_images_; }
+  /// After the last frame: waits until all are written, then films appear. Throws as add().
+  void finish();
+
+ private:
+  void write(const FinishedFrame& frame);
+  void write_balance(const BalancePictures& shown, const DeepImage& deep, const FilmFrame& frame);
+  void write_layers(const RenderedFrame& rendered, const FilmFrame& frame);
+
+  const RenderOptions& options_;
+  const FilmTraces& traces_;
+  const bool writes_;
+  PictureWriter files_;
+  SpareImages spare_images_;
+  PictureQueue queue_;  ///< last: what it writes refers to all above
+};
+
+}  // namespace tessera::apps

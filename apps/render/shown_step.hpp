@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "apps/options/render_options.hpp"
+#include "apps/options/series_choice.hpp"
+#include "apps/render/empty_picture.hpp"
+#include "apps/render/run_output.hpp"
+#include "tessera/job.hpp"
+#include "tessera/program/film.hpp"
+#include "tessera/session.hpp"
+#include "tessera/trace.hpp"
+
+namespace tessera::apps {
+
+/// The time step that a run has open, one at a time, and what the first one determines for all: view, field,
+/// transfer function, tolerance of higher-order cells. On every rank; show() is collective.
+class ShownStep {
+ public:
+  /// `frames` get the times that their files state. `options` are completed by what is known once data are read:
+  /// surfaces of blocks, default shading. `writing_rank` writes the files. All references outlive it.
+  ShownStep(RenderOptions& options, std::vector<FilmFrame>& frames, RunOutput& output, Job& job, int writing_rank,
+            Trace* trace);
+
+  /// Opens and prepares the frame's step, unless it is that already. Throws Error, also for outputs that are among the
+  /// files read.
+  void show(const FilmFrame& frame);
+  /// Whether show() was called; what follows is valid only then.
+  [[nodiscard]] bool is_open() const { return first_.has_value(); }
+
+  [[nodiscard]] Camera camera(const FilmFrame& frame) const {
+    return frame.view(first_->box, options_.projection, options_.view, first_->axes);
+  }
+  [[nodiscard]] const Dataset& data() const { return *data_; }
+  [[nodiscard]] const TransferFunction& function() const { return loaded_.function; }
+  [[nodiscard]] Session& session() { return *session_; }
+  /// Of the first step; 0 for grids.
+  [[nodiscard]] std::uint64_t tets() const { return first_ ? first_->tets : 0; }
+  /// The session's spans in the trace end with it.
+  void close_session() { session_.reset(); }
+
+  /// At the end of a run, `empty` as its frames were: warnings of values out of the transfer function's range, and of
+  /// images that show nothing. Collective.
+  void warn_at_end(const EmptyPictures& empty) const;
+
+ private:
+  /// What later steps keep of the first.
+  struct First {
+    Box box;
+    BodyAxes axes;
+    bool shows_shape;
+    std::uint64_t tets;
+    ReadOptions later_read;
+  };
+  using Range = std::array<double, 2>;
+
+  void open(const FilmFrame& frame, const ReadOptions& read);
+  void open_first();
+  void read_block_surfaces(const std::vector<std::filesystem::path>& files, ReadOptions read);
+  void choose_for_all_steps();
+  void read_within_accuracy();
+  void find_function();
+  void shade_by_default();
+  void note_method();
+  void check_outputs_are_not_read() const;
+  [[nodiscard]] analysis::Description description() const;
+  [[nodiscard]] std::size_t steps() const { return frames_.back().step + 1; }
+
+  RenderOptions& options_;
+  std::vector<FilmFrame>& frames_;
+  RunOutput& output_;
+  Job& job_;
+  const int writing_rank_;
+  Settings settings_;
+  ReadOptions read_;
+
+  std::optional<Dataset> data_;
+  std::size_t step_ = 0;  ///< of data_
+  std::optional<Session> session_;
+  LoadedTransferFunction loaded_;
+  std::optional<SeriesChoice> series_;  ///< of several steps
+  std::optional<First> first_;          ///< none until something is shown
+  std::optional<Range> colored_range_;  ///< of the values that the transfer function is chosen for
+  Range whole_range_{};                 ///< of all steps read
+  double higher_order_pixels_ = 0;      ///< HigherOrderRead::pixel_error of the first step
+};
+
+}  // namespace tessera::apps
