@@ -5,11 +5,11 @@
 #include <cairo.h>
 #include <fmt/format.h>
 
-#include <cctype>
 #include <cmath>
 
 #include "tessera/error.hpp"
 #include "tessera/program/output_file.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::analysis {
 namespace {
@@ -26,11 +26,7 @@ void check(cairo_status_t status, const std::filesystem::path& file) {
                             cairo_status_to_string(status)));
 }
 
-std::string lower_extension(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
+std::string lower_extension(const std::filesystem::path& file) { return lower_case(file.extension().string()); }
 
 }  // namespace
 

@@ -13,6 +13,7 @@
 
 #include "analysis/timing_text.hpp"
 #include "tessera/error.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::analysis {
 namespace {
@@ -151,10 +152,8 @@ class Figure {
   }
 
   [[nodiscard]] std::string file_words(Canvas& canvas, const RunTime& run) const {
-    std::string stem = std::filesystem::path(run.name).stem().string();
     // Cairo refuses text that is not UTF-8.
-    for (char& c : stem)
-      if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7e) c = '?';
+    std::string stem = printable_ascii(std::filesystem::path(run.name).stem().string());
     while (stem.size() > 1 && canvas.text_width(stem, 8.5) > pitch() - 3) stem.pop_back();
     return stem;
   }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -16,6 +15,7 @@
 
 #include "scene/error.hpp"
 #include "tessera/program/nearest_name.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::cells {
 namespace {
@@ -116,12 +116,6 @@ std::optional<FieldChoice> resolve(const std::string& wish, std::optional<Associ
   return choice_of(*field, component);
 }
 
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 /// Of labels those that number cells and points, parts and materials: shown last of all.
 bool is_id_name(const std::string& name) {
   const std::string lower = lower_case(name);
@@ -138,13 +132,13 @@ bool is_id_name(const std::string& name) {
   };
   std::string word, before;
   for (std::size_t k = 0; k <= name.size(); ++k) {
-    const auto c = static_cast<unsigned char>(k < name.size() ? name[k] : ' ');
-    const bool begins = std::isupper(c) && k > 0 && std::islower(static_cast<unsigned char>(name[k - 1]));
-    if (begins || !std::isalpha(c)) {
+    const char c = k < name.size() ? name[k] : ' ';
+    const bool begins = is_upper(c) && k > 0 && is_lower(name[k - 1]);
+    if (begins || !is_letter(c)) {
       if (is_in(ids, word) || (is_in(counted, before) && is_in(numbers, word))) return true;
       if (!word.empty()) before = std::exchange(word, {});
     }
-    if (std::isalpha(c)) word += static_cast<char>(std::tolower(c));
+    if (is_letter(c)) word += lower_case(c);
   }
   return false;
 }

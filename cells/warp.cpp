@@ -6,13 +6,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "scene/error.hpp"
 #include "tessera/program/nearest_name.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::cells {
 namespace {
@@ -53,8 +53,7 @@ scene::Error no_such_vector(const std::string& name, std::span<const std::string
 
 bool is_displacement_name(const std::string& name) {
   static constexpr std::array words = {"dis", "disp", "disps", "displ", "displs", "displacement", "displacements"};
-  std::string lower;
-  for (const char c : name) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  std::string lower = lower_case(name);
   while (lower.ends_with('_') || lower.ends_with(' ')) lower.pop_back();
   return std::ranges::find(words, lower) != words.end();
 }

@@ -2,18 +2,13 @@
 #include "tessera/program/nearest_name.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <vector>
+
+#include "tessera/program/text.hpp"
 
 namespace tessera {
 inline namespace v0_1 {
 namespace {
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::ranges::transform(result, result.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
 
 /// Changes between two words, three rows of the table at a time.
 std::size_t changes(std::string_view a, std::string_view b) {
@@ -37,13 +32,13 @@ std::optional<std::string> nearest_name(std::string_view word, std::span<const s
   constexpr std::size_t longest = 256;  // of file and field names; the time goes with the square
   constexpr std::size_t most = 10'000;
   if (word.empty() || word.size() > longest) return std::nullopt;
-  const std::string wish = lower(word);
+  const std::string wish = lower_case(word);
   const std::string* nearest = nullptr;
   const std::string* begun = nullptr;
   std::size_t fewest = std::max<std::size_t>(1, wish.size() / 3) + 1, begins = 0;
   for (const std::string& name : names.first(std::min(names.size(), most))) {
     if (name.empty() || name.size() > longest) continue;
-    const std::string known = lower(name);
+    const std::string known = lower_case(name);
     if (known.starts_with(wish)) {
       begun = &name;
       ++begins;

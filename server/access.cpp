@@ -5,18 +5,12 @@
 #include <sys/random.h>
 
 #include <algorithm>
-#include <cctype>
 
 #include "tessera/error.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::server {
 namespace {
-
-std::string lowered(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
 
 /// In a time that does not tell how much of it is right.
 bool same(std::string_view given, std::string_view token) {
@@ -29,21 +23,14 @@ bool same(std::string_view given, std::string_view token) {
 /// 127.0.0.0/8 in four numbers, not a name that begins so.
 bool is_loopback_v4(std::string_view name) {
   if (!name.starts_with("127.") || std::ranges::count(name, '.') != 3) return false;
-  return std::ranges::all_of(name, [](char c) { return c == '.' || (c >= '0' && c <= '9'); });
+  return std::ranges::all_of(name, [](char c) { return c == '.' || is_digit(c); });
 }
 
 bool is_loopback(std::string_view name) { return name == "localhost" || name == "::1" || is_loopback_v4(name); }
 
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
 /// `host:port` without the port that its scheme has anyway.
 std::string plain_authority(std::string_view authority, std::string_view port) {
-  std::string result = lowered(authority);
+  std::string result = lower_case(authority);
   if (result.ends_with(port)) result.resize(result.size() - port.size());
   return result;
 }
@@ -62,9 +49,8 @@ std::string host_name(std::string_view host) {
     host.remove_prefix(name.size());
   }
   const bool port_is_right =
-      host.empty() || (host.size() <= 6 && host.front() == ':' &&
-                       std::ranges::all_of(host.substr(1), [](unsigned char c) { return std::isdigit(c) != 0; }));
-  return port_is_right ? lowered(name) : std::string();
+      host.empty() || (host.size() <= 6 && host.front() == ':' && std::ranges::all_of(host.substr(1), is_digit));
+  return port_is_right ? lower_case(name) : std::string();
 }
 
 std::string random_hex(std::size_t count) {
@@ -119,8 +105,8 @@ Access::Access(const std::string& bound, const std::vector<std::string>& allowed
     : Access(random_hex(16), bound, allowed_hosts) {}
 
 Access::Access(std::string token, const std::string& bound, const std::vector<std::string>& allowed_hosts)
-    : token_(std::move(token)), bound_(lowered(bound)) {
-  for (const std::string& host : allowed_hosts) allowed_.push_back(lowered(host));
+    : token_(std::move(token)), bound_(lower_case(bound)) {
+  for (const std::string& host : allowed_hosts) allowed_.push_back(lower_case(host));
 }
 
 bool Access::allowed(std::string_view name) const {
@@ -130,7 +116,7 @@ bool Access::allowed(std::string_view name) const {
 bool Access::has_token(const Credentials& credentials) const {
   if (const auto given = query_value(credentials.query, "token"); given && same(*given, token_)) return true;
   constexpr std::string_view bearer = "bearer ";  // RFC 9110, 11.1: in any case
-  if (lowered(std::string(credentials.authorization.substr(0, bearer.size()))) == bearer &&
+  if (lower_case(std::string(credentials.authorization.substr(0, bearer.size()))) == bearer &&
       same(credentials.authorization.substr(bearer.size()), token_))
     return true;
   if (same(credentials.token, token_)) return true;

@@ -17,7 +17,4 @@ const WebFile* web_file(std::string_view name);
 /// A page that says one sentence.
 std::string sentence_page(std::string_view sentence);
 
-/// `text` as it stands in HTML.
-std::string html_escaped(std::string_view text);
-
 }  // namespace tessera::server

@@ -4,18 +4,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <system_error>
 #include <vector>
 
 #include "tessera/program/nearest_name.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::system {
 
 namespace {
 
 std::string without_digits(std::string name) {
-  std::erase_if(name, [](unsigned char c) { return std::isdigit(c) != 0; });
+  std::erase_if(name, is_digit);
   return name;
 }
 

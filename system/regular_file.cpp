@@ -6,13 +6,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <system_error>
 
 #include "scene/error.hpp"
 #include "system/missing_file.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::system {
 namespace {
@@ -71,11 +70,6 @@ std::string beginning_of(const Descriptor& file, std::uint64_t count) {
   return text;
 }
 
-std::string lower_extension(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
+std::string lower_extension(const std::filesystem::path& file) { return lower_case(file.extension().string()); }
 
 }  // namespace tessera::system

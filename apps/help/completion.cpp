@@ -14,6 +14,7 @@
 #include "tessera/dataset.hpp"
 #include "tessera/presets.hpp"
 #include "tessera/program/printable.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -27,7 +28,7 @@ const CLI::Option* option_named(const CLI::App& command, const std::string& word
 
 /// "a|b|c" as its words, if all of them are meant literally: capitals and colons stand for something.
 std::vector<std::string> literal_words(const std::string& type) {
-  const auto stands_for_something = [](unsigned char c) { return std::isupper(c) != 0 || c == ':' || c == '['; };
+  const auto stands_for_something = [](char c) { return is_upper(c) || c == ':' || c == '['; };
   if (type.find('|') == std::string::npos || std::ranges::any_of(type, stands_for_something)) return {};
   return CLI::detail::split(type, '|');
 }

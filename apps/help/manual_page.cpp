@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cctype>
 
 #include "apps/help/help_pages.hpp"
+#include "tessera/program/text.hpp"
 #include "tessera/version.hpp"
 
 namespace tessera::apps {
@@ -35,18 +35,13 @@ std::string entry(const std::string& form, const std::string& text) {
 
 std::string verbatim(const std::string& text) { return fmt::format(".nf\n{}\n.fi\n", escaped(text)); }
 
-std::string upper(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return text;
-}
-
 }  // namespace
 
 std::string manual_page(const CommandLine& line, const CLI::App& command) {
   const bool is_program = command.get_parent() == nullptr;
   const std::string name = is_program ? "tessera" : "tessera-" + command.get_name();
   const std::string call = is_program ? "tessera" : "tessera " + command.get_name();
-  std::string page = fmt::format(".TH {} 1 \"\" \"Tessera {}\" \"Tessera\"\n.SH NAME\n{} \\- {}\n", upper(name),
+  std::string page = fmt::format(".TH {} 1 \"\" \"Tessera {}\" \"Tessera\"\n.SH NAME\n{} \\- {}\n", upper_case(name),
                                  TESSERA_VERSION, escaped(name), escaped(command.get_description()));
   page += ".SH SYNOPSIS\n" + escaped(usage_of(command, call)) + "\n";
   const auto positionals = command.get_options([](const CLI::Option* o) { return o->get_positional(); });

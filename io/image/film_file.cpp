@@ -26,6 +26,7 @@
 #include "scene/image.hpp"
 #include "system/atomic_file.hpp"
 #include "system/descriptor.hpp"
+#include "system/regular_file.hpp"
 #include "system/spawn_plan.hpp"
 #include "system/unfinished.hpp"
 
@@ -48,10 +49,7 @@ constexpr std::array kinds = {
 };
 
 const FilmKind* kind_of(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : static_cast<char>(c);
-  });
+  const std::string extension = system::lower_extension(file);
   const auto* const kind = std::ranges::find_if(kinds, [&](const FilmKind& k) { return k.extension == extension; });
   return kind == kinds.end() ? nullptr : kind;
 }

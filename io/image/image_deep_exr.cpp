@@ -20,6 +20,7 @@
 #include "io/image/exr_stream.hpp"
 #include "scene/error.hpp"
 #include "system/atomic_file.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
@@ -78,11 +79,7 @@ void write_lines(Imf::DeepScanLineOutputFile& output, const scene::DeepImage& im
 }  // namespace
 
 bool is_deep_name(const std::filesystem::path& file) {
-  std::string name = file.filename().string();
-  std::ranges::transform(name, name.begin(), [](unsigned char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : static_cast<char>(c);
-  });
-  return name.ends_with(".deep.exr");
+  return lower_case(file.filename().string()).ends_with(".deep.exr");
 }
 
 void write_deep_exr(const scene::DeepImage& image, const std::filesystem::path& file) {

@@ -12,6 +12,7 @@
 #include "scene/error.hpp"
 #include "system/atomic_file.hpp"
 #include "system/missing_file.hpp"
+#include "system/regular_file.hpp"
 
 namespace tessera::io {
 namespace {
@@ -19,10 +20,7 @@ namespace {
 enum class Format { exr, png, jpeg, tiff, pfm, unknown };
 
 Format image_format_of(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : static_cast<char>(c);
-  });
+  const std::string extension = system::lower_extension(file);
   if (extension == ".exr") return Format::exr;
   if (extension == ".png") return Format::png;
   if (extension == ".jpg" || extension == ".jpeg") return Format::jpeg;

@@ -13,24 +13,12 @@
 #include "io/formats/whole_file.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
 
 constexpr std::size_t small_field = 8, large_field = 16, fields_a_line = 8;
-
-std::string_view without_blanks_around(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
-std::string nastran_upper(std::string_view text) {
-  std::string upper(text);
-  for (char& c : upper)
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  return upper;
-}
 
 /// A line's fields, the first of them the name or the mark of a continuation.
 std::vector<std::string> deck_fields(std::string_view line) {
@@ -38,7 +26,7 @@ std::vector<std::string> deck_fields(std::string_view line) {
   if (line.find(',') != std::string_view::npos) {
     while (true) {
       const std::size_t comma = line.find(',');
-      fields.emplace_back(without_blanks_around(line.substr(0, comma)));
+      fields.emplace_back(trimmed(line.substr(0, comma)));
       if (comma == std::string_view::npos) break;
       line.remove_prefix(comma + 1);
     }
@@ -50,10 +38,10 @@ std::vector<std::string> deck_fields(std::string_view line) {
       else
         columns += c;
     const std::string_view all = columns;
-    fields.emplace_back(without_blanks_around(all.substr(0, small_field)));
+    fields.emplace_back(trimmed(all.substr(0, small_field)));
     const std::size_t width = fields[0].find('*') != std::string::npos ? large_field : small_field;
     for (std::size_t at = small_field; at < all.size(); at += width)
-      fields.emplace_back(without_blanks_around(all.substr(at, width)));
+      fields.emplace_back(trimmed(all.substr(at, width)));
   }
   const std::size_t most = fields[0].find('*') != std::string::npos ? fields_a_line / 2 : fields_a_line;
   // The last field of a line is a mark. Some writers go on behind it.
@@ -163,7 +151,7 @@ class NastranDeck {
       std::string line = next_line(text, number);
       const std::size_t first = number;
       if (is_include(line)) {
-        while (!has_both_quotes(line) && !text.empty()) line += without_blanks_around(next_line(text, number));
+        while (!has_both_quotes(line) && !text.empty()) line += trimmed(next_line(text, number));
         include(line, file, first);
       } else {
         add(line, file, number);
@@ -201,18 +189,18 @@ class NastranDeck {
   }
 
   static bool has_words(std::string_view line, std::string_view first, std::string_view second) {
-    line = without_blanks_around(line);
-    if (nastran_upper(line.substr(0, first.size())) != first) return false;
+    line = trimmed(line);
+    if (!equals_ignoring_case(line.substr(0, first.size()), first)) return false;
     line = line.substr(first.size());
     if (second.empty()) return line.empty() || line[0] == ' ' || line[0] == '\'' || line[0] == '"' || line[0] == '\t';
-    return nastran_upper(without_blanks_around(line).substr(0, second.size())) == second;
+    return equals_ignoring_case(trimmed(line).substr(0, second.size()), second);
   }
   /// BEGIN SUPER=1, BEGIN BULK SUPER=1
   static bool begins_part(std::string_view line, std::string_view part) {
     if (!has_words(line, "BEGIN", "")) return false;
-    line = without_blanks_around(without_blanks_around(line).substr(5));
-    if (has_words(line, "BULK", "")) line = without_blanks_around(line.substr(4));
-    return nastran_upper(line.substr(0, part.size())) == part;
+    line = trimmed(trimmed(line).substr(5));
+    if (has_words(line, "BULK", "")) line = trimmed(line.substr(4));
+    return equals_ignoring_case(line.substr(0, part.size()), part);
   }
   static bool is_include(std::string_view line) { return has_words(line, "INCLUDE", ""); }
 
@@ -229,7 +217,7 @@ class NastranDeck {
   }
 
   void include(std::string_view line, const std::filesystem::path& from, std::size_t number) {
-    std::string_view name = without_blanks_around(without_blanks_around(line).substr(7));
+    std::string_view name = trimmed(trimmed(line).substr(7));
     if (const std::size_t quote = name.find_first_of("'\""); quote != std::string_view::npos) {
       const char mark = name[quote];
       name = name.substr(quote + 1);
@@ -248,7 +236,7 @@ class NastranDeck {
   }
 
   void add(const std::string& line, const std::filesystem::path& file, std::size_t number) {
-    if (without_blanks_around(line).empty()) return;
+    if (trimmed(line).empty()) return;
     for (const char* part : {"SUPER", "AUXMODEL", "MODULE"})
       if (begins_part(line, part))
         throw scene::bad_input(
@@ -266,8 +254,7 @@ class NastranDeck {
     std::vector<std::string> fields;
     if (!continues) {
       end_entry();
-      std::string name =
-          nastran_upper(without_blanks_around(std::string_view(line).substr(0, line.find_first_of(", \t*\r"))));
+      std::string name = upper_case(trimmed(std::string_view(line).substr(0, line.find_first_of(", \t*\r"))));
       is_image_ = name.starts_with('=');
       if (is_image_ && before_.name_.empty()) return;  // of an entry that is not used
       const std::string images = is_image_ ? std::exchange(name, before_.name_).substr(1) : "";

@@ -9,32 +9,10 @@
 #include "io/mesh/mesh_reader.hpp"
 #include "scene/error.hpp"
 #include "system/atomic_file.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
-
-std::string xml_text(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
 
 std::filesystem::path waiting_name(const std::filesystem::path& file, int piece) {
   return file.parent_path() / fmt::format(".tessera-{}-piece{}.part", ::getpid(), piece);
@@ -47,7 +25,7 @@ std::filesystem::path pvtu_piece_name(const std::filesystem::path& file, int pie
 }
 
 PvtuWriter::PvtuWriter(std::filesystem::path file, const scene::TetMeshView& like) : file_(std::move(file)) {
-  const std::string name = like.field_name.empty() ? "scalar" : xml_text(std::string(like.field_name));
+  const std::string name = like.field_name.empty() ? "scalar" : xml_escaped(std::string(like.field_name));
   const std::string scalar = fmt::format("      <PDataArray type=\"Float64\" Name=\"{}\"/>\n", name);
   const bool point = like.association == scene::Association::point;
   std::string cell = point ? "" : scalar;
@@ -92,7 +70,7 @@ std::string PvtuWriter::list() const {
       arrays_ +
       "    <PPoints>\n      <PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>\n    </PPoints>\n";
   for (int p = 0; p < pieces_; ++p)
-    text += fmt::format("    <Piece Source=\"{}\"/>\n", xml_text(pvtu_piece_name(file_, p).filename().string()));
+    text += fmt::format("    <Piece Source=\"{}\"/>\n", xml_escaped(pvtu_piece_name(file_, p).filename().string()));
   return text + "  </PUnstructuredGrid>\n</VTKFile>\n";
 }
 

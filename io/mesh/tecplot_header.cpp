@@ -12,20 +12,14 @@
 #include "io/text/text_file.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
 
-std::string tecplot_upper(std::string_view word) {
-  std::string upper(word);
-  for (char& c : upper)
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  return upper;
-}
-
 bool is_tecplot_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == ','; }
 
-bool begins_number(char c) { return (c >= '0' && c <= '9') || c == '+' || c == '-' || c == '.'; }
+bool begins_number(char c) { return is_digit(c) || c == '+' || c == '-' || c == '.'; }
 
 /// A key's value: quoted words without their quotes, lists without the outer parentheses.
 struct TecplotValue {
@@ -173,7 +167,7 @@ class HeaderParser {
     if (text_.starts_with("\xEF\xBB\xBF")) words_.go_to(3);
     for (words_.skip_blanks(); !words_.at_end(); words_.skip_blanks()) {
       const std::size_t at = words_.at();
-      const std::string key = tecplot_upper(words_.word());
+      const std::string key = upper_case(words_.word());
       if (key == "ZONE") {
         add_zone(at);
       } else if (key == "VARIABLES" && words_.skip_equals()) {
@@ -184,7 +178,7 @@ class HeaderParser {
           words_.fail(at,
                       "VARIABLES names others than before the zones; write what has other variables to another file");
       } else if (key == "FILETYPE" && words_.skip_equals()) {
-        if (tecplot_upper(words_.value(key).text) == "SOLUTION")
+        if (upper_case(words_.value(key).text) == "SOLUTION")
           words_.fail(at, "it holds a solution without its grid; write FILETYPE=FULL");
       } else {
         skip_record(at);
@@ -200,7 +194,7 @@ class HeaderParser {
   [[nodiscard]] bool begins_record(std::size_t at) const {
     if (begins_number(text_[at])) return false;  // as most lines do
     return std::ranges::any_of(records, [&](std::string_view record) {
-      if (tecplot_upper(text_.substr(at, record.size())) != record) return false;
+      if (upper_case(text_.substr(at, record.size())) != record) return false;
       const std::size_t end = at + record.size();
       return end >= text_.size() || is_tecplot_blank(text_[end]) || text_[end] == '=' || text_[end] == '#';
     });
@@ -244,11 +238,11 @@ class HeaderParser {
       words_.skip_blanks();
       if (words_.at_end() || begins_number(words_.here()) || begins_record(words_.at())) break;
       const std::size_t key_at = words_.at();
-      std::string key = tecplot_upper(words_.word());
+      std::string key = upper_case(words_.word());
       const bool is_note = key == "AUXDATA";
       if (is_note) {
         words_.skip_blanks();
-        key = tecplot_upper(words_.word());
+        key = upper_case(words_.word());
       }
       if (key.empty() || !words_.skip_equals()) {
         words_.go_to(key_at);
@@ -293,8 +287,8 @@ class HeaderParser {
     if (key == "E" || key == "ELEMENTS") zone.elements = count(key, value);
     if (key == "FACES") zone.faces = count(key, value);
     if (key == "TOTALNUMFACENODES") zone.face_nodes = count(key, value);
-    if (key == "ZONETYPE" || key == "ET") set_type(zone, tecplot_upper(value.text), value);
-    if (key == "DATAPACKING" || key == "F") set_packing(zone, tecplot_upper(value.text), value);
+    if (key == "ZONETYPE" || key == "ET") set_type(zone, upper_case(value.text), value);
+    if (key == "DATAPACKING" || key == "F") set_packing(zone, upper_case(value.text), value);
     if (key == "STRANDID") zone.strand = static_cast<std::int64_t>(count(key, value));
     if (key == "SOLUTIONTIME") zone.time = parse_number(value.text);
     if (key == "VARLOCATION") set_locations(zone, value);
@@ -341,7 +335,7 @@ class HeaderParser {
     });
   }
 
-  static bool is_of_cells(const std::string& location) { return tecplot_upper(location).starts_with("CELL"); }
+  static bool is_of_cells(const std::string& location) { return upper_case(location).starts_with("CELL"); }
 
   /// "[4-5]=CELLCENTERED" or a word for each variable.
   void set_locations(TecplotZone& zone, const TecplotValue& value) {
@@ -367,7 +361,7 @@ class HeaderParser {
   void set_duplicates(TecplotZone& zone, const TecplotValue& value) {
     const std::size_t other = zone_number("D", {.text = {}, .is_list = false, .at = value.at});
     for (const auto& [set, from] : entries_of(value.text)) {
-      if (tecplot_upper(set) == "FECONNECT")
+      if (upper_case(set) == "FECONNECT")
         zone.connectivity_from = other;
       else
         for (const std::size_t v : variables_in(set, value)) zone.shared_from[v] = other;
@@ -406,11 +400,9 @@ class HeaderParser {
 
 }  // namespace
 
-void refuse_tecplot(std::string_view text, std::size_t at, const std::string& source, std::string what) {
-  for (char& c : what)  // it may quote anything
-    if (c < ' ' || c > '~') c = '?';
+void refuse_tecplot(std::string_view text, std::size_t at, const std::string& source, const std::string& what) {
   const auto line = std::ranges::count(text.substr(0, at), '\n') + 1;
-  throw scene::bad_input(fmt::format("{}: line {}: {}", source, line, what));
+  throw scene::bad_input(fmt::format("{}: line {}: {}", source, line, printable_ascii(what)));
 }
 
 TecplotHeader parse_tecplot_header(std::string_view text, const std::string& source) {

@@ -43,6 +43,7 @@ struct TecplotHeader {
 TecplotHeader parse_tecplot_header(std::string_view text, const std::string& source);
 
 /// Throws Error(bad_input) that names the line of a place in the text.
-[[noreturn]] void refuse_tecplot(std::string_view text, std::size_t at, const std::string& source, std::string what);
+[[noreturn]] void refuse_tecplot(std::string_view text, std::size_t at, const std::string& source,
+                                 const std::string& what);
 
 }  // namespace tessera::io

@@ -14,6 +14,7 @@
 #include "io/text/xml_elements.hpp"
 #include "system/atomic_file.hpp"
 #include "tessera/cell_type.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {

@@ -11,23 +11,13 @@
 #include "io/text/clean_errors.hpp"
 #include "io/text/text_file.hpp"
 #include "scene/error.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
 
-constexpr std::string_view header_blanks = " \t\r\n,()";
-
-/// Words between header_blanks, commas and brackets.
-std::vector<std::string_view> header_words_of(std::string_view text) {
-  std::vector<std::string_view> words;
-  while (true) {
-    const std::size_t start = text.find_first_not_of(header_blanks);
-    if (start == std::string_view::npos) return words;
-    const std::size_t stop = std::min(text.find_first_of(header_blanks, start), text.size());
-    words.push_back(text.substr(start, stop - start));
-    text.remove_prefix(stop);
-  }
-}
+/// Words between blanks, commas and brackets.
+std::vector<std::string_view> header_words_of(std::string_view text) { return split_words(text, " \t\r\n,()"); }
 
 template <class T>
 bool header_parsed(std::string_view word, T& value) {
@@ -37,13 +27,6 @@ bool header_parsed(std::string_view word, T& value) {
 }
 
 }  // namespace
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view white = " \t\r\n";
-  const std::size_t start = text.find_first_not_of(white);
-  if (start == std::string_view::npos) return {};
-  return text.substr(start, text.find_last_not_of(white) - start + 1);
-}
 
 std::vector<double> header_numbers(std::string_view text, std::size_t count, const std::filesystem::path& file,
                                    const char* what) {

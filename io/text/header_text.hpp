@@ -12,9 +12,6 @@
 /// Numbers in the text headers of volumes (MetaImage, NRRD). All throw Error(bad_input, "FILE: WHAT is ...").
 namespace tessera::io {
 
-/// Without white space at either end.
-std::string_view trimmed(std::string_view text);
-
 /// Exactly `count` numbers between blanks, commas or brackets; "nan" is one.
 std::vector<double> header_numbers(std::string_view text, std::size_t count, const std::filesystem::path& file,
                                    const char* what);

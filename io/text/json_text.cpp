@@ -10,6 +10,7 @@
 
 #include "io/text/text_file.hpp"
 #include "scene/error.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
@@ -22,10 +23,7 @@ std::string reason(std::string message) {
   if (const auto last = message.find("; last read"); last != std::string::npos) message.resize(last);
   if (const auto dash = message.rfind(" - "); dash != std::string::npos) message.erase(0, dash + 3);
   if (const auto bracket = message.find("] "); bracket != std::string::npos) message.erase(0, bracket + 2);
-  if (message.size() > 120) message.resize(120);
-  for (char& c : message)
-    if (c < 0x20 || c > 0x7e) c = '?';
-  return message;
+  return printable_ascii(std::string_view(message).substr(0, 120));
 }
 
 std::string place(std::string_view text, std::size_t byte) {

@@ -11,12 +11,12 @@
 #include "scene/error.hpp"
 #include "system/files_read.hpp"
 #include "system/missing_file.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
 
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-constexpr std::string_view line_blanks = " \t\r\v\f";
 constexpr std::uintmax_t largest_file = 64u << 20;
 
 std::string_view without_mark(std::string_view text) {
@@ -63,15 +63,7 @@ bool TextLines::next(TextLine& line) {
     ++number_;
     text = text.substr(0, text.find('#'));
     line.number = number_;
-    line.words.clear();
-    for (;;) {
-      const std::size_t begin = text.find_first_not_of(line_blanks);
-      if (begin == std::string_view::npos) break;
-      text.remove_prefix(begin);
-      const std::size_t length = std::min(text.find_first_of(line_blanks), text.size());
-      line.words.push_back(text.substr(0, length));
-      text.remove_prefix(length);
-    }
+    line.words = split_words(text);
     if (!line.words.empty()) return true;
   }
   return false;
@@ -79,7 +71,7 @@ bool TextLines::next(TextLine& line) {
 
 char first_character(std::string_view text) {
   text = without_mark(text);
-  const std::size_t begin = text.find_first_not_of(" \t\r\n\v\f");
+  const std::size_t begin = text.find_first_not_of(ascii_blanks);
   return begin == std::string_view::npos ? '\0' : text[begin];
 }
 

@@ -35,7 +35,4 @@ void each_xml_element(std::string_view text, const std::string& source,
                       const std::function<void(const XmlElement&)>& visit,
                       const std::function<void(std::string_view)>& visit_text = nullptr);
 
-/// Text as the value of an attribute in double quotes.
-std::string xml_escaped(std::string_view text);
-
 }  // namespace tessera::io

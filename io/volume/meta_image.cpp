@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <map>
 
 #include "io/formats/input_file.hpp"
 #include "io/text/header_text.hpp"
 #include "io/text/text_file.hpp"
 #include "io/volume/volume_formats.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
@@ -60,7 +60,7 @@ MetaHeader parse_meta_header(std::string_view text, const std::filesystem::path&
 }
 
 bool meta_is_true(const std::string* value) {
-  return value && !value->empty() && (std::tolower(static_cast<unsigned char>(value->front())) == 't' || *value == "1");
+  return value && !value->empty() && (lower_case(value->front()) == 't' || *value == "1");
 }
 
 /// Numbers and their coding.

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
@@ -15,6 +14,7 @@
 #include "io/text/header_text.hpp"
 #include "io/text/text_file.hpp"
 #include "scene/time_step_read.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
@@ -22,11 +22,7 @@ namespace {
 /// Words between blanks; quotes stay.
 std::vector<std::string> nrrd_words(std::string_view text) {
   std::vector<std::string> words;
-  for (std::string_view rest = trimmed(text); !rest.empty();) {
-    const std::size_t stop = std::min(rest.find_first_of(" \t"), rest.size());
-    words.push_back(nrrd_lower(rest.substr(0, stop)));
-    rest = trimmed(rest.substr(stop));
-  }
+  for (const std::string_view word : split_words(text)) words.push_back(lower_case(word));
   return words;
 }
 
@@ -140,8 +136,8 @@ struct NrrdSpace {
 
 /// Of the field `space`.
 NrrdSpace space_of(const std::string& field) {
-  std::string word = nrrd_lower(field);
-  std::erase_if(word, [](unsigned char c) { return !std::isalnum(c); });
+  std::string word = lower_case(field);
+  std::erase_if(word, [](char c) { return !is_letter(c) && !is_digit(c); });
   if (word.ends_with("time")) word.resize(word.size() - 4);
   if (word.size() == 4 && word.back() == 't') word.pop_back();  // RAST
   if (word == "scannerxyz" || word == "3drighthanded") return {};
@@ -212,12 +208,6 @@ std::optional<AxisPlaces> places_in_time(const NrrdFields& fields, std::size_t a
 
 }  // namespace
 
-std::string nrrd_lower(std::string_view text) {
-  std::string result(text);
-  std::ranges::transform(result, result.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
-
 NrrdFields nrrd_fields_of(std::string_view text, const std::filesystem::path& file) {
   NrrdFields fields;
   bool first = true;
@@ -235,7 +225,7 @@ NrrdFields nrrd_fields_of(std::string_view text, const std::filesystem::path& fi
       fields.keys[std::string(line.substr(0, colon))] = std::string(trimmed(line.substr(colon + 2)));
       continue;
     }
-    std::string name = nrrd_lower(line.substr(0, colon));
+    std::string name = lower_case(line.substr(0, colon));
     std::erase(name, ' ');
     fields.values[name] = std::string(trimmed(line.substr(colon + 1)));
     if (name == "datafile" && fields.values[name].starts_with("LIST")) return fields;  // names follow

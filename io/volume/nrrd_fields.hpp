@@ -23,7 +23,4 @@ struct NrrdFields {
 /// Of a header's text, its first line included. Throws Error(bad_input).
 NrrdFields nrrd_fields_of(std::string_view text, const std::filesystem::path& file);
 
-/// In lower case, as types, encodings and kinds are compared.
-std::string nrrd_lower(std::string_view text);
-
 }  // namespace tessera::io

@@ -14,6 +14,7 @@
 #include "io/volume/nrrd_axes.hpp"
 #include "io/volume/volume_formats.hpp"
 #include "system/positional_file.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
@@ -151,7 +152,7 @@ StoredVolume read_nrrd_header(const std::filesystem::path& file) {
   volume.has_colors = has_color_axis(fields, axes);
   for (std::size_t a = 0; a < 3; ++a) volume.grid.geometry.points[a] = sizes[axes.space[a]];
 
-  const std::string type = nrrd_lower(required_field(fields, "type", file));
+  const std::string type = lower_case(required_field(fields, "type", file));
   const auto* known = std::find_if(nrrd_type_names.begin(), nrrd_type_names.end(),
                                    [&](const NrrdTypeName& t) { return type == t.name; });
   if (std::ranges::count(nrrd_int64_names, type) > 0)
@@ -162,7 +163,7 @@ StoredVolume read_nrrd_header(const std::filesystem::path& file) {
     throw scene::bad_input(fmt::format("{}: its type {} is none that is read; write integers, float or double",
                                        file.string(), quote(type)));
   volume.number = volume.wide == StoredVolume::Wide::no ? known->type : SampleType::float64;
-  const std::string encoding = nrrd_lower(required_field(fields, "encoding", file));
+  const std::string encoding = lower_case(required_field(fields, "encoding", file));
   volume.compressed = encoding == "gzip" || encoding == "gz";
   if (encoding == "ascii" || encoding == "text" || encoding == "txt")
     volume.coding = StoredVolume::Coding::text;
@@ -176,7 +177,7 @@ StoredVolume read_nrrd_header(const std::filesystem::path& file) {
     throw scene::bad_input(fmt::format(
         "{}: its header does not state the order of its samples' bytes; add a line 'endian: little', or big",
         file.string()));
-  volume.swapped = endian && (nrrd_lower(*endian) == "big") != (std::endian::native == std::endian::big);
+  volume.swapped = endian && (lower_case(*endian) == "big") != (std::endian::native == std::endian::big);
   set_nrrd_geometry(fields, axes, sizes, file, volume);
   set_nrrd_tags(fields, volume);
 

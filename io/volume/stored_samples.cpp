@@ -12,6 +12,7 @@
 #include "io/text/text_file.hpp"
 #include "scene/error.hpp"
 #include "scene/sample_source.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
@@ -53,13 +54,6 @@ void parse_samples(std::string_view text, std::uint64_t count, std::span<std::by
   }
 }
 
-int digit_of(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
 template <class T>
 double double_of(const std::byte* at, bool swapped) {
   std::uint64_t bits = 0;
@@ -86,7 +80,7 @@ std::vector<std::byte> bytes_of_hex(std::string_view text, std::uint64_t count, 
   for (std::uint64_t n = 0; n < 2 * count; ++n) {
     at = text.find_first_not_of(" \t\r\n", at);
     if (at == std::string_view::npos) throw too_few(source, n / 2, count, "bytes");
-    const int digit = digit_of(text[at++]);
+    const int digit = hex_digit(text[at++]);
     if (digit < 0)
       throw scene::bad_input(fmt::format("{}: its samples hold {}, no hexadecimal digit; write it anew", source,
                                          quote(text.substr(at - 1, 10))));

@@ -13,6 +13,7 @@
 #include "io/volume/brick_file.hpp"
 #include "scene/error.hpp"
 #include "system/atomic_file.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {

@@ -14,6 +14,7 @@
 #include "io/formats/input_file.hpp"
 #include "io/text/header_text.hpp"
 #include "io/text/text_file.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {

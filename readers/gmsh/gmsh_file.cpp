@@ -21,6 +21,7 @@
 #include "readers/gmsh/unv_check.hpp"
 #include "scene/error.hpp"
 #include "system/descriptor.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -32,10 +33,7 @@ std::string first_error(std::vector<std::string> log, const std::string& given, 
     if (!line.starts_with(mark)) continue;
     line.erase(0, mark.size());
     if (const std::size_t at = line.find(given); at != std::string::npos) line.replace(at, given.size(), source);
-    line.resize(std::min<std::size_t>(line.size(), 160));
-    for (char& c : line)  // it may quote anything
-      if (c < ' ' || c > '~') c = '?';
-    return line;
+    return printable_ascii(std::string_view(line).substr(0, 160));
   }
   return "";
 }
@@ -81,8 +79,7 @@ void require_last_section(const std::filesystem::path& file) {
   std::string end(static_cast<std::size_t>(std::min<std::streamoff>(size, 256)), '\0');
   in.seekg(size - static_cast<std::streamoff>(end.size()));
   in.read(end.data(), static_cast<std::streamsize>(end.size()));
-  const std::size_t last = end.find_last_not_of(" \t\r\n");
-  end.resize(last == std::string::npos ? 0 : last + 1);
+  end.resize(end.find_last_not_of(ascii_blanks) + 1);
   const std::size_t line = end.find_last_of("\r\n");
   const std::string_view words = std::string_view(end).substr(line == std::string::npos ? 0 : line + 1);
   if (!words.starts_with("$End") && words != "$ENDELM" && words != "$ENDNOD")

@@ -15,6 +15,7 @@
 #include "cells/curved/node_orders.hpp"
 #include "scene/error.hpp"
 #include "tessera/cell_type.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -295,10 +296,7 @@ class Cells {
 
 void require_cgns(int status, const CgnsZone& zone) {
   if (status == CG_OK) return;
-  std::string line = cg_get_error();
-  line.resize(std::min<std::size_t>(line.size(), 160));
-  for (char& c : line)  // it may quote anything
-    if (c < ' ' || c > '~') c = '?';
+  const std::string line = printable_ascii(std::string_view(cg_get_error()).substr(0, 160));
   throw scene::bad_input(fmt::format(
       "{}: the CGNS library reports '{}'; the file is truncated or damaged, export it again", zone.where, line));
 }

@@ -22,7 +22,6 @@
 #include <vtkPoints.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
@@ -34,6 +33,7 @@
 #include <vector>
 
 #include "io/formats/whole_file.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -60,8 +60,6 @@ struct BinaryNodes : vtkEnSight6BinaryReader {
 constexpr std::string_view part_word = "part";
 
 enum class Found : std::uint8_t { all, too_few, other };
-
-bool is_blank(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
 
 class ValuesText {
  public:
@@ -102,9 +100,7 @@ class ValuesText {
       next_line();
       line = text_.substr(first, at_ - first);
     }
-    while (!line.empty() && is_blank(line.back())) line.remove_suffix(1);
-    while (!line.empty() && is_blank(line.front())) line.remove_prefix(1);
-    return std::string(line);
+    return std::string(trimmed(line));
   }
 
   void skip_description() { is_binary_ ? static_cast<void>(at_ = std::min(text_.size(), at_ + 80)) : next_line(); }
@@ -146,7 +142,7 @@ class ValuesText {
       while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
       if (at_ == text_.size()) return Found::too_few;
       const char first = text_[at_];
-      const bool is_word = std::isalpha(static_cast<unsigned char>(first)) != 0;
+      const bool is_word = is_letter(first);
       const std::string_view word = text_.substr(at_, 3);
       if (first == '#' || (is_word && word != "nan" && word != "NaN" && word != "NAN" && word != "inf" &&
                            word != "Inf" && word != "INF"))

@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <initializer_list>
 #include <span>
 #include <string_view>
 #include <vector>
+
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -54,10 +55,7 @@ void settle(cells::CellBlock& block, const cells::NodeOrder& other, std::initial
 }  // namespace
 
 std::string exodus_topology(const ex_block& info) {
-  std::string topology(info.topology, ::strnlen(info.topology, sizeof info.topology));
-  std::ranges::transform(topology, topology.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return topology;
+  return upper_case(std::string_view(info.topology, ::strnlen(info.topology, sizeof info.topology)));
 }
 
 ExodusElement exodus_element(const std::string& topology, std::int64_t nodes) {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -25,6 +24,7 @@
 #include "readers/vtk/netcdf/netcdf_size.hpp"
 #include "scene/error.hpp"
 #include "tessera/cell_type.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -104,11 +104,9 @@ class ExodusFile {
     for (int k = 1; k <= count; ++k) {
       std::array<char, max_name + 1> name{};
       require(ex_get_variable_name(id_, type, k, name.data()), "a variable's name");
-      std::string text(name.data(), ::strnlen(name.data(), max_name));
-      while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
-      for (char& c : text)
-        if (!std::isprint(static_cast<unsigned char>(c))) c = '?';
-      names.push_back(text.empty() ? fmt::format("variable{}", k) : text);
+      const std::string_view text(name.data(), ::strnlen(name.data(), max_name));
+      const std::size_t length = text.find_last_not_of(ascii_blanks) + 1;
+      names.push_back(length == 0 ? fmt::format("variable{}", k) : printable_ascii(text.substr(0, length)));
     }
     return names;
   }
@@ -138,9 +136,7 @@ std::vector<Variable> group_vectors(const std::vector<std::string>& names) {
     name.back() = letter;
     return name;
   };
-  const auto last_of = [](const std::string& name) {
-    return name.size() < 2 ? ' ' : static_cast<char>(std::tolower(static_cast<unsigned char>(name.back())));
-  };
+  const auto last_of = [](const std::string& name) { return name.size() < 2 ? ' ' : lower_case(name.back()); };
   std::map<std::string, std::size_t> places;  // of names whose last letter is a small one
   for (std::size_t k = 0; k < names.size(); ++k) places.emplace(with_last(names[k], last_of(names[k])), k);
   std::vector<Variable> variables;

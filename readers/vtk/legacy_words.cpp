@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdlib>
 #include <string_view>
 #include <utility>
@@ -14,6 +13,7 @@
 
 #include "io/formats/whole_file.hpp"
 #include "scene/quote.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -42,15 +42,9 @@ constexpr std::array number_types = {"bit",       "char",   "signed_char",  "uns
 constexpr std::array data_sets = {"structured_points", "structured_grid", "rectilinear_grid",
                                   "unstructured_grid", "polydata",        "field"};
 
-std::string in_small_letters(std::string_view word) {
-  std::string lower(word);
-  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
-}
-
 template <class List>
 bool is_in(const List& list, std::string_view word) {
-  return std::ranges::find(list, in_small_letters(word)) != list.end();
+  return std::ranges::find(list, lower_case(word)) != list.end();
 }
 
 bool is_any_number(std::string_view word) {
@@ -58,16 +52,6 @@ bool is_any_number(std::string_view word) {
   char* end = nullptr;
   std::strtod(text.c_str(), &end);
   return end == text.c_str() + text.size();
-}
-
-std::vector<std::string_view> words_in(std::string_view line) {
-  std::vector<std::string_view> words;
-  for (std::size_t at = 0; (at = line.find_first_not_of(" \t\r", at)) != std::string_view::npos;) {
-    const std::size_t end = std::min(line.find_first_of(" \t\r", at), line.size());
-    words.push_back(line.substr(at, end - at));
-    at = end;
-  }
-  return words;
 }
 
 std::string odd_word(std::string_view word, const char* expected) {
@@ -82,7 +66,7 @@ std::string odd_word_in(const std::vector<std::string_view>& words) {
     const auto found = std::ranges::find_if_not(words, is_any_number);
     return found == words.end() ? "" : odd_word(*found, "a number");
   }
-  const auto known = std::ranges::find(keywords, in_small_letters(words[0]), [](const auto& k) { return k.first; });
+  const auto known = std::ranges::find(keywords, lower_case(words[0]), [](const auto& k) { return k.first; });
   if (known == keywords.end()) return odd_word(words[0], "a number or a keyword of the format");
   for (std::size_t k = 0; known->second[k] != '\0' && k + 1 < words.size(); ++k) {
     const char kind = known->second[k];
@@ -102,19 +86,19 @@ std::string odd_legacy_word(const std::filesystem::path& file) {
   std::size_t number = 0;
   for (std::size_t at = 0; at < text.size(); ++number) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::vector<std::string_view> words = words_in(text.substr(at, end - at));
+    const std::vector<std::string_view> words = split_words(text.substr(at, end - at));
     at = end + 1;
     if (words.empty()) is_metadata = false;  // which goes on to an empty line
     if (number < 2 || words.empty() || is_metadata) continue;
-    is_metadata = in_small_letters(words[0]) == "metadata";
+    is_metadata = lower_case(words[0]) == "metadata";
     std::string found;
     if (number > 2)
       found = odd_word_in(words);
-    else if (in_small_letters(words[0]) != "ascii")
-      found = in_small_letters(words[0]) == "binary" ? "" : odd_word(words[0], "ASCII or BINARY");
+    else if (lower_case(words[0]) != "ascii")
+      found = lower_case(words[0]) == "binary" ? "" : odd_word(words[0], "ASCII or BINARY");
     if (end == text.size() && words.size() < 2) return "";  // a word may be cut off
     if (!found.empty()) return fmt::format("line {}: {}", number + 1, found);
-    if (number == 2 && in_small_letters(words[0]) == "binary") return "";
+    if (number == 2 && lower_case(words[0]) == "binary") return "";
     if (words.size() == 4 && is_in(std::array{"string", "variant"}, words[3])) return "";  // any words follow
   }
   return "";

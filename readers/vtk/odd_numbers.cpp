@@ -15,12 +15,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <limits>
 #include <new>
 #include <string_view>
 
 #include "io/formats/whole_file.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -34,15 +34,13 @@ constexpr std::array<StandIn, 3> stand_ins{{{0x1.5a5a5ap-63, std::numeric_limits
                                             {-0x1.6b6b6cp-63, -std::numeric_limits<double>::infinity()}}};
 
 bool is_number(std::string_view word) {
-  return std::isdigit(static_cast<unsigned char>(word.front())) != 0 || word.front() == '.' ||
+  return is_digit(word.front()) || word.front() == '.' ||
          ((word.front() == '-' || word.front() == '+') && word.size() > 1);
 }
 
 /// Which of the stand-ins a word needs; null: none.
 const StandIn* stand_in_of(std::string_view word) {
-  std::string lower(word.substr(0, 12));
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::string lower = lower_case(word.substr(0, 12));
   const bool is_negative = lower.front() == '-';
   if (is_negative || lower.front() == '+') lower.erase(0, 1);
   if (lower == "nan" || lower.starts_with("nan(") || lower.starts_with("1.#qnan") || lower.starts_with("1.#snan") ||
@@ -56,20 +54,12 @@ const StandIn* stand_in_of(std::string_view word) {
 std::string replaced(std::string_view line) {
   std::string result;
   bool any = false;
-  for (std::size_t at = 0; at < line.size();) {
-    if (std::isspace(static_cast<unsigned char>(line[at])) != 0) {
-      ++at;
-      continue;
-    }
-    std::size_t end = at;
-    while (end < line.size() && std::isspace(static_cast<unsigned char>(line[end])) == 0) ++end;
-    const std::string_view word = line.substr(at, end - at);
+  for (const std::string_view word : split_words(line)) {
     const StandIn* const odd = stand_in_of(word);
     if (odd == nullptr && !is_number(word)) return "";
     any = any || odd != nullptr;
     result += odd == nullptr ? std::string(word) : fmt::format("{:.17g}", odd->number);
     result += ' ';
-    at = end;
   }
   return any ? result : "";
 }

@@ -20,7 +20,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -52,6 +51,7 @@
 #include "readers/vtk/vtk_words.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -123,7 +123,7 @@ std::string spaced_fluent_values(std::string_view text) {
       if (text[at] == ')' && depth == 2) values_end = at;
       if (text[at] == ')' && --depth == 0) break;
     }
-    if (index == "300" && at < text.size() && std::isspace(static_cast<unsigned char>(text[values_end - 1])) == 0) {
+    if (index == "300" && at < text.size() && !is_blank(text[values_end - 1])) {
       spaced.append(text.substr(copied, values_end - copied)).append(" ");
       copied = values_end;
     }

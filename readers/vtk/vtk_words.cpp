@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <system_error>
+
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -81,8 +82,8 @@ std::string words_for_users(std::string_view said) {
     text.erase(at, end + 1 - at);
   }
   std::string words;
-  for (const unsigned char c : text) {
-    const char plain = std::isprint(c) != 0 ? static_cast<char>(c) : ' ';
+  for (const char c : text) {
+    const char plain = c >= ' ' && c <= '~' ? c : ' ';
     if (plain != ' ' || (!words.empty() && words.back() != ' ')) words += plain;
   }
   while (!words.empty() && std::string_view(" .!:").find(words.back()) != std::string_view::npos) words.pop_back();
@@ -111,8 +112,8 @@ scene::Error error_of_vtk(const std::string& source, const std::string& words, c
           "binary (foamFormatConvert)",
           source, own));
   constexpr std::string_view attribute = "attribute type: ";
-  if (const std::size_t at = own.find(attribute); at != std::string::npos && at + attribute.size() < own.size() &&
-                                                  std::isdigit(static_cast<unsigned char>(own[at + attribute.size()])))
+  if (const std::size_t at = own.find(attribute);
+      at != std::string::npos && at + attribute.size() < own.size() && is_digit(own[at + attribute.size()]))
     return scene::bad_input(fmt::format(
         "{}: a number, {}, is where the next array is expected, so one has more numbers than it states; {}", source,
         own.substr(at + attribute.size(), own.find(' ', at + attribute.size()) - at - attribute.size()), remedy));

@@ -13,6 +13,7 @@
 #include "io/text/xml_elements.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -70,12 +71,6 @@ class InlineNumbers {
   bool in_word_ = false;
 };
 
-std::string upper(std::string text) {
-  for (char& c : text)
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  return text;
-}
-
 /// The value of the first of these attributes that there is.
 std::string word(const io::XmlElement& element, std::initializer_list<const char*> names) {
   for (const char* name : names)
@@ -86,13 +81,13 @@ std::string word(const io::XmlElement& element, std::initializer_list<const char
 /// What Xdmf's library would read as something else.
 void check_item(const io::XmlElement& element, const std::string& source) {
   if (element.name != "DataItem") return;
-  if (upper(word(element, {"ItemType"})).starts_with("COORDINATE"))
+  if (upper_case(word(element, {"ItemType"})).starts_with("COORDINATE"))
     throw scene::bad_input(
         fmt::format("{}: a <DataItem> of the type {} picks single numbers, which is not read; have the program that "
                     "made it write these, or choose them as a HyperSlab",
                     source, scene::quote(word(element, {"ItemType"}))));
-  if (upper(word(element, {"Format"})) != "BINARY") return;
-  const std::string type = upper(word(element, {"NumberType", "DataType"})), bytes = word(element, {"Precision"});
+  if (upper_case(word(element, {"Format"})) != "BINARY") return;
+  const std::string type = upper_case(word(element, {"NumberType", "DataType"})), bytes = word(element, {"Precision"});
   const bool is_known = bytes.empty() || bytes == "4" || bytes == "8" ||
                         ((bytes == "1" || bytes == "2") && type != "FLOAT" && !type.empty());
   if (!is_known)
@@ -125,16 +120,16 @@ bool is_to_be_rewritten(const io::XmlElement& element) {
 }  // namespace
 
 bool is_structured(const std::string& topology_type) {
-  const std::string type = upper(topology_type);
+  const std::string type = upper_case(topology_type);
   return type == "3DCORECTMESH" || type == "3DRECTMESH" || type == "3DSMESH";
 }
 
-bool is_of_three_arrays(const std::string& geometry_type) { return upper(geometry_type) == "X_Y_Z"; }
+bool is_of_three_arrays(const std::string& geometry_type) { return upper_case(geometry_type) == "X_Y_Z"; }
 
-bool is_selection(const std::string& item_type) { return upper(item_type) == "HYPERSLAB"; }
+bool is_selection(const std::string& item_type) { return upper_case(item_type) == "HYPERSLAB"; }
 
 std::optional<std::string> library_type(const std::string& number_type, const std::string& precision) {
-  const std::string type = upper(number_type), sign = type == "UINT" ? "U" : "";
+  const std::string type = upper_case(number_type), sign = type == "UINT" ? "U" : "";
   if (type.empty() && precision == "8") return "Float";  // which would be taken for 4 bytes
   if (type != "INT" && type != "UINT") return std::nullopt;
   if (precision == "1") return sign + "Char";

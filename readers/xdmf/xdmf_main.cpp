@@ -33,6 +33,7 @@
 #include "readers/xdmf/xdmf_rewritten.hpp"
 #include "readers/xdmf/xdmf_shared.hpp"
 #include "scene/error.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -251,12 +252,8 @@ io::ForeignContents read_xdmf(Holdings& holdings, const std::filesystem::path& f
   try {
     return read(holdings, file, request);
   } catch (const XdmfError& error) {
-    std::string words = error.what();
-    words.resize(std::min<std::size_t>(words.size(), 160));
-    for (char& c : words)
-      if (c < ' ' || c > '~') c = '?';
     throw scene::bad_input(fmt::format("{}: Xdmf's library says {}; the file or its data are damaged, write it anew",
-                                       file.string(), words));
+                                       file.string(), printable_ascii(std::string_view(error.what()).substr(0, 160))));
   }
 }
 

@@ -16,6 +16,7 @@
 #include "readers/xdmf/xdmf_references.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -28,12 +29,6 @@ std::string taken(xmlChar* text) {
   std::string copy(reinterpret_cast<const char*>(text));
   xmlFree(text);
   return copy;
-}
-
-std::string trimmed(const std::string& text) {
-  constexpr const char* blanks = " \t\r\n";
-  const std::size_t first = text.find_first_not_of(blanks), last = text.find_last_not_of(blanks);
-  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
 class Rewriting {
@@ -153,7 +148,7 @@ class Rewriting {
     xmlNode* target = node;
     for (int k = 0; k < most; ++k) {
       std::string path = property(target, "Reference").value_or("");
-      if (path == "XML") path = trimmed(taken(xmlNodeGetContent(target)));
+      if (path == "XML") path = std::string(trimmed(taken(xmlNodeGetContent(target))));
       const std::vector<xmlNode*> found = path.empty() ? std::vector<xmlNode*>() : all(path, target);
       const std::string name(reinterpret_cast<const char*>(node->name));
       if (found.empty() || name != reinterpret_cast<const char*>(found.front()->name))

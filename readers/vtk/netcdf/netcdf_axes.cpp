@@ -3,19 +3,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <initializer_list>
 #include <sstream>
 #include <string_view>
 
+#include "tessera/program/text.hpp"
+
 namespace tessera::readers {
 namespace {
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.pop_back();
-  return text;
-}
+std::string lower(std::string_view text) { return lower_case(text.substr(0, text.find_last_not_of(ascii_blanks) + 1)); }
 
 bool is_one_of(std::string_view text, std::initializer_list<std::string_view> words) {
   return std::find(words.begin(), words.end(), text) != words.end();
