@@ -5,6 +5,7 @@
 
 #include "tessera/annotation.hpp"
 #include "tessera/error.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera {
 inline namespace v0_1 {
@@ -14,8 +15,7 @@ std::string fill_in(const std::string& text, std::span<const AnnotationWord> wor
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = text[at] == '{' ? text.find('}', at) : std::string::npos;
     const std::string name = end == std::string::npos ? "" : text.substr(at + 1, end - at - 1);
-    const bool is_word =
-        !name.empty() && std::ranges::all_of(name, [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; });
+    const bool is_word = !name.empty() && std::ranges::all_of(name, [](char c) { return is_lower(c) || c == '_'; });
     if (!is_word) {
       filled += text[at++];
       continue;

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -93,9 +92,8 @@ const FieldSummary* find(std::span<const FieldSummary> fields, const std::string
 int parse_component(const std::string& text) {
   if (text == "mag" || text == "magnitude") return magnitude;
   if (text == "x" || text == "y" || text == "z") return text[0] - 'x';
-  int n = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), n);
-  return error == std::errc() && end == text.data() + text.size() && n >= 0 ? n : -2;
+  const int n = number_of<int>(text).value_or(-2);
+  return n >= 0 ? n : -2;
 }
 
 /// "NAME" or "NAME:component" among arrays of one association, or of both.

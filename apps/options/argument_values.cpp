@@ -16,18 +16,10 @@
 #include "apps/options/color_names.hpp"
 #include "tessera/error.hpp"
 #include "tessera/program/nearest_name.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::apps {
 namespace {
-
-/// The whole of `text` as a number, or nothing. from_chars knows no locale: "1,5" is never one and a half.
-template <class T>
-std::optional<T> number(std::string_view text) {
-  T value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
 
 Error wrong(const std::string& option, const std::string& text, const std::string& allowed) {
   return bad_input(fmt::format("{}: '{}' is not {}", option, text, allowed));
@@ -64,8 +56,8 @@ ImageSize parse_size(const std::string& option, const std::string& text) {
   const auto cross = text.find('x');
   const auto allowed = fmt::format("a size; write WxH, each side 1 to {} pixels, like 1024x768", max_image_side);
   if (cross == std::string::npos) throw wrong(option, text, allowed);
-  const auto width = number<int>(std::string_view(text).substr(0, cross));
-  const auto height = number<int>(std::string_view(text).substr(cross + 1));
+  const auto width = number_of<int>(std::string_view(text).substr(0, cross));
+  const auto height = number_of<int>(std::string_view(text).substr(cross + 1));
   for (const auto& side : {width, height})
     if (!side || *side < 1 || *side > max_image_side) throw wrong(option, text, allowed);
   return {*width, *height};
@@ -86,7 +78,7 @@ std::uint64_t parse_bytes(const std::string& option, const std::string& text) {
       factor = std::exp2(10.0 * static_cast<double>(power + 1));
       rest.remove_suffix(1);
     }
-  const auto count = number<double>(rest);
+  const auto count = number_of<double>(rest);
   if (!count) throw wrong(option, text, allowed);
   const double bytes = *count * factor;
   if (!(bytes >= std::exp2(20)) || !(bytes < std::exp2(62))) throw wrong(option, text, allowed);
@@ -102,7 +94,7 @@ Integrator parse_integrator(const std::string& option, const std::string& text, 
   } else if (text == "auto") {
     integrator.kind = IntegratorKind::automatic;
   } else if (std::string_view(text).starts_with(prefix)) {
-    const auto samples = number<int>(std::string_view(text).substr(prefix.size()));
+    const auto samples = number_of<int>(std::string_view(text).substr(prefix.size()));
     if (!samples || *samples < 1 || *samples > 4096)
       throw wrong(option, text, "sampled:N with N from 1 to 4096, like sampled:8");
     integrator.kind = IntegratorKind::sampled;
@@ -112,7 +104,7 @@ Integrator parse_integrator(const std::string& option, const std::string& text, 
   } else if (text == "preintegrated" || std::string_view(text).starts_with(table_prefix)) {
     integrator.kind = IntegratorKind::preintegrated;
     if (text != "preintegrated") {
-      const auto size = number<int>(std::string_view(text).substr(table_prefix.size()));
+      const auto size = number_of<int>(std::string_view(text).substr(table_prefix.size()));
       if (!size || *size < 8 || *size > 512)
         throw wrong(option, text, "preintegrated:N with N from 8 to 512, like preintegrated:128");
       integrator.table_size = *size;
@@ -162,7 +154,7 @@ std::array<float, 3> parse_color(const std::string& option, const std::string& t
   if (channels.size() != 3) throw wrong(option, text, allowed);
   std::array<float, 3> color{};
   for (std::size_t channel = 0; channel < 3; ++channel) {
-    const auto value = number<float>(channels[channel]);
+    const auto value = number_of<float>(channels[channel]);
     if (!value || !std::isfinite(*value) || *value < 0) throw wrong(option, text, allowed);
     color[channel] = *value;
   }
@@ -170,13 +162,13 @@ std::array<float, 3> parse_color(const std::string& option, const std::string& t
 }
 
 double parse_number(const std::string& option, const std::string& text) {
-  const auto value = number<double>(text);
+  const auto value = number_of<double>(text);
   if (!value || !std::isfinite(*value)) throw wrong(option, text, "a number");
   return *value;
 }
 
 double parse_positive(const std::string& option, const std::string& text) {
-  const auto value = number<double>(text);
+  const auto value = number_of<double>(text);
   if (!value || !std::isfinite(*value) || !(*value > 0)) throw wrong(option, text, "a number above 0");
   return *value;
 }
@@ -197,7 +189,7 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
   if (words.size() != count) throw wrong(option, text, form);
   std::vector<double> values;
   for (const std::string& word : words) {
-    const auto value = number<double>(word);
+    const auto value = number_of<double>(word);
     if (!value || !std::isfinite(*value)) throw wrong(option, text, form);
     values.push_back(*value);
   }
@@ -212,7 +204,7 @@ glm::dvec3 parse_vector(const std::string& option, const std::string& text, bool
 }
 
 int parse_count(const std::string& option, const std::string& text, int low, int high) {
-  const auto value = number<int>(text);
+  const auto value = number_of<int>(text);
   if (!value || *value < low || *value > high)
     throw wrong(option, text,
                 high == std::numeric_limits<int>::max() ? fmt::format("a whole number from {} up", low)

@@ -5,12 +5,12 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 
 #include "apps/options/method_words.hpp"
 #include "tessera/error.hpp"
 #include "tessera/image_file.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -21,23 +21,15 @@ constexpr int most_layers = 64;
   throw bad_input(fmt::format("--peel: '{}' {}; write THRESHOLD[:LAYERS], like 0.95:4", word, problem));
 }
 
-/// The number that all of the text is.
-std::optional<double> number_of(const std::string& text) {
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  if (text.empty() || end != text.c_str() + text.size() || !std::isfinite(number)) return std::nullopt;
-  return number;
-}
-
 Peel parse_peel(const std::string& word) {
   const std::size_t colon = word.find(':');
   Peel peel;
-  const std::optional<double> threshold = number_of(word.substr(0, colon));
+  const std::optional<double> threshold = number_of<double>(word.substr(0, colon));
   if (!threshold || !(*threshold > 0 && *threshold < 1))
     refuse(word, "has no threshold, an opacity above 0 and below 1");
   peel.threshold = *threshold;
   if (colon == std::string::npos) return peel;
-  const std::optional<double> layers = number_of(word.substr(colon + 1));
+  const std::optional<double> layers = number_of<double>(word.substr(colon + 1));
   if (!layers || *layers != std::floor(*layers) || !(*layers >= 1 && *layers <= most_layers))
     refuse(word, fmt::format("has no number of layers, 1 to {}", most_layers));
   peel.layers = static_cast<int>(*layers);

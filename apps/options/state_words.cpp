@@ -13,6 +13,7 @@
 #include "tessera/dataset.hpp"
 #include "tessera/error.hpp"
 #include "tessera/program/nearest_name.hpp"
+#include "tessera/program/text.hpp"
 #include "tessera/view.hpp"
 
 namespace tessera::apps {
@@ -242,8 +243,7 @@ std::vector<std::string> arguments_of(const OptionWords& words) {
 
 std::string shell_words(const std::vector<std::string>& arguments) {
   const auto is_plain = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           std::string_view("-_=+:,./%@").find(c) != std::string_view::npos;
+    return is_letter(c) || is_digit(c) || std::string_view("-_=+:,./%@").find(c) != std::string_view::npos;
   };
   std::string line;
   for (const std::string& argument : arguments) {

@@ -11,15 +11,14 @@
 
 #include "apps/text_excerpt.hpp"
 #include "tessera/error.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::apps {
 namespace {
 
 constexpr std::string_view blanks = " \t\r";
 
-bool is_key_character(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
-}
+bool is_key_character(char c) { return is_letter(c) || is_digit(c) || c == '-' || c == '_'; }
 
 void append_utf8(std::string& text, std::uint32_t code) {
   const auto tail = [&](int shift) { text += static_cast<char>(0x80 | ((code >> shift) & 0x3f)); };
@@ -42,7 +41,7 @@ class Parser {
   Parser(std::string_view text, const std::string& source) : rest_(text), source_(source) {
     if (rest_.starts_with("\xFF\xFE") || rest_.starts_with("\xFE\xFF"))
       throw bad_input(source_ + ": is UTF-16; save it as UTF-8");
-    if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
+    if (rest_.starts_with(byte_order_mark)) rest_.remove_prefix(byte_order_mark.size());
   }
 
   std::vector<TomlLine> parse() {

@@ -3,50 +3,38 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
 #include <optional>
 
+#include "io/text/scanner.hpp"
 #include "io/text/text_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
 namespace {
 
-constexpr std::string_view header_blanks = " \t\r\n";
 constexpr std::int64_t most_fields = 1 << 16, most_boxes = 1 << 20, most_levels = 64, most_cells = 1 << 29;
 
 /// Walks through words, and where their places are fixed through lines. Brackets and commas are between words.
 class Words {
  public:
-  Words(std::string_view text, const std::string& source) : text_(text), source_(source) {}
+  Words(std::string_view text, const std::string& source) : scanner_(text, source, " \t\r\n(),") {}
 
   /// What is left of the line, and on to the next.
-  std::string_view line() {
-    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
-    std::string_view line = text_.substr(at_, end - at_);
-    at_ = std::min(end + 1, text_.size());
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    return line;
-  }
+  std::string_view line() { return scanner_.rest_of_line(); }
 
-  std::string_view word(const char* what, std::string_view between = header_blanks) {
-    const std::size_t begin = text_.find_first_not_of(between, at_);
-    if (begin == std::string_view::npos)
-      fail(fmt::format("the file ends before {}; it is truncated, write it anew", what));
-    const std::size_t end = std::min(text_.find_first_of(between, begin), text_.size());
-    at_ = end;
-    return text_.substr(begin, end - begin);
+  std::string_view word(const char* what) {
+    const std::string_view word = scanner_.word();
+    if (word.empty()) fail(fmt::format("the file ends before {}; it is truncated, write it anew", what));
+    return word;
   }
 
   std::int64_t count(const char* what, std::int64_t low, std::int64_t high) {
-    const std::string_view text = word(what, " \t\r\n(),");
-    std::int64_t number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size() || number < low || number > high)
+    const std::string_view text = word(what);
+    const auto number = number_of<std::int64_t>(text);
+    if (!number || *number < low || *number > high)
       fail(
           fmt::format("{} is {}, a whole number from {} to {} is wanted; write it anew", what, quote(text), low, high));
-    return number;
+    return *number;
   }
 
   double number(const char* what) {
@@ -64,28 +52,15 @@ class Words {
     for (int axis = 0; axis < 3; ++axis)
       if (count(what, 0, 1) != 0)
         fail(fmt::format("{} has values at nodes, which are not read; write values of cells", what));
-    skip(")");
     for (std::size_t a = 0; a < 3; ++a)
       if (box.cells(a) < 1) fail(fmt::format("{} ends before it begins; write it anew", what));
     return box;
   }
 
-  /// Passes over such characters and blanks.
-  void skip(std::string_view characters) {
-    while (at_ < text_.size() && (characters.find(text_[at_]) != std::string_view::npos ||
-                                  header_blanks.find(text_[at_]) != std::string_view::npos))
-      ++at_;
-  }
-
-  [[noreturn]] void fail(const std::string& problem) const {
-    const auto number = std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n') + 1;
-    throw scene::bad_input(fmt::format("{}: line {}: {}", source_, number, problem));
-  }
+  [[noreturn]] void fail(const std::string& problem) const { scanner_.fail(problem); }
 
  private:
-  std::string_view text_;
-  const std::string& source_;
-  std::size_t at_ = 0;
+  TextScanner scanner_;
 };
 
 }  // namespace
@@ -97,10 +72,8 @@ AmrexHeader parse_amrex_header(std::string_view text, const std::string& source)
   const auto fields = words.count("the number of fields", 1, most_fields);
   words.line();
   for (std::int64_t f = 0; f < fields; ++f) {
-    const std::string_view name = words.line();
-    const std::size_t first = name.find_first_not_of(header_blanks);
-    if (first == std::string_view::npos) words.fail(fmt::format("field {} has no name; write it anew", f));
-    header.fields.emplace_back(name.substr(first, name.find_last_not_of(header_blanks) + 1 - first));
+    header.fields.emplace_back(trimmed(words.line()));
+    if (header.fields.back().empty()) words.fail(fmt::format("field {} has no name; write it anew", f));
   }
   if (const auto dimensions = words.count("the number of dimensions", 1, 3); dimensions != 3)
     throw scene::bad_input(fmt::format("{}: it has {} dimensions; give a data set of three", source, dimensions));
@@ -143,7 +116,6 @@ std::vector<AmrexFab> parse_amrex_level(std::string_view text, std::size_t field
   words.word("the number after that of boxes");
   std::vector<AmrexFab> fabs;  // which grows as boxes are found
   for (std::int64_t n = 0; n < boxes; ++n) fabs.emplace_back().box = words.box("a box");
-  words.skip(")");
   words.count("the number of boxes' values", boxes, boxes);
   for (AmrexFab& fab : fabs) {
     if (const std::string_view key = words.word("FabOnDisk:"); key != "FabOnDisk:")

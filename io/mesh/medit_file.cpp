@@ -5,14 +5,14 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <limits>
 #include <utility>
 
 #include "cells/block_groups.hpp"
-#include "io/text/clean_errors.hpp"
+#include "io/formats/file_beginnings.hpp"
+#include "io/text/scanner.hpp"
 #include "scene/error.hpp"
 #include "tessera/cell_type.hpp"
 
@@ -174,24 +174,24 @@ class MeditBinary {
 /// Words apart by any blanks, so that lines mean nothing but the end of a comment.
 class MeditText {
  public:
-  MeditText(std::string_view text, const std::string& source) : rest_(text), source_(source) {
+  MeditText(std::string_view text, const std::string& source)
+      : scanner_(text, source, ascii_blanks, '#'), source_(source) {
     block_.offsets.push_back(0);
   }
 
   std::vector<cells::CellBlock> blocks() {
     std::string_view list;  // that has just been read
-    for (std::string_view word = next(); !word.empty() && word != "End"; word = next()) {
+    for (std::string_view word = scanner_.word(); !word.empty() && word != "End"; word = scanner_.word()) {
       if (!list.empty() && std::string_view("+-.0123456789").find(word[0]) != std::string_view::npos)
         fail(fmt::format("the number '{}' follows the last of the {}: each has more numbers than this keyword allows",
-                         printable(std::string(word.substr(0, 40))), list));
+                         word.substr(0, 40), list));
       list = {};
       if (word == "Dimension") require_space(whole("a dimension"), source_);
       if (word == "Vertices") read_points(), list = word;
       for (const MeditCells& cells : medit_cells)
         if (word == cells.word) read_cells(cells), list = word;
       if (is_unread(word) && whole("a count") > 0)
-        throw scene::bad_input(fmt::format("{}: line {}: its {} are not read; export first-order cells", source_, line_,
-                                           printable(std::string(word))));
+        scanner_.fail(fmt::format("its {} are not read; export first-order cells", word));
       // The numbers of other keywords are passed over one by one.
     }
     return checked_blocks(block_, references_, source_);
@@ -237,7 +237,7 @@ class MeditText {
 
   std::size_t read_count(std::size_t bytes_each, const char* what) {
     const std::int64_t count = whole("a count");
-    if (count < 0 || static_cast<std::uint64_t>(count) > rest_.size() / bytes_each + 1)
+    if (count < 0 || static_cast<std::uint64_t>(count) > scanner_.rest().size() / bytes_each + 1)
       fail(fmt::format("there are {} {}, more than the file can hold", count, what));
     return static_cast<std::size_t>(count);
   }
@@ -246,40 +246,20 @@ class MeditText {
 
   template <class T>
   T number(const char* what) {
-    const std::string_view word = next();
-    if (word.empty()) fail(fmt::format("the file ends before {}", what));
     T value{};
-    const auto [end, error] = std::from_chars(word.data() + (word[0] == '+' ? 1 : 0), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size())
-      fail(fmt::format("'{}' is not {}", printable(std::string(word.substr(0, 40))), what));
+    const Scanned found = scanner_.number(value);
+    if (found == Scanned::nothing) fail(fmt::format("the file ends before {}", what));
+    if (found == Scanned::other_word) fail(fmt::format("'{}' is not {}", scanner_.word().substr(0, 40), what));
+    if (found == Scanned::out_of_range) fail(fmt::format("{} is out of range", what));
     return value;
   }
 
-  /// Empty at the end of the file.
-  std::string_view next() {
-    while (!rest_.empty() && (is_blank(rest_[0]) || rest_[0] == '#')) {
-      if (rest_[0] == '#') rest_.remove_prefix(std::min(rest_.find('\n'), rest_.size()));
-      if (rest_.empty()) break;
-      if (rest_[0] == '\n') ++line_;
-      rest_.remove_prefix(1);
-    }
-    std::size_t end = 0;
-    while (end < rest_.size() && !is_blank(rest_[end]) && rest_[end] != '#') ++end;
-    const std::string_view word = rest_.substr(0, end);
-    rest_.remove_prefix(end);
-    return word;
-  }
-
-  static bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
-
   [[noreturn]] void fail(const std::string& what) const {
-    throw scene::bad_input(
-        fmt::format("{}: line {}: {}; the file is truncated or damaged, export it again", source_, line_, what));
+    scanner_.fail(what + "; the file is truncated or damaged, export it again");
   }
 
-  std::string_view rest_;
+  TextScanner scanner_;
   const std::string& source_;
-  std::size_t line_ = 1;
   cells::CellBlock block_;
   std::vector<std::int64_t> references_;  ///< of the cells
 };

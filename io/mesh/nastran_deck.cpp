@@ -54,15 +54,6 @@ std::vector<std::string> deck_fields(std::string_view line) {
   return fields;
 }
 
-/// The number of all of a text but a sign + before it.
-template <class Number>
-std::optional<Number> number_of(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
-}
-
 /// "3" or "(3)".
 std::string_view without_brackets(std::string_view text) {
   return text.starts_with('(') && text.ends_with(')') ? text.substr(1, text.size() - 2) : text;

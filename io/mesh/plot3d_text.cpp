@@ -3,80 +3,51 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
-#include <system_error>
 #include <vector>
 
+#include "io/text/scanner.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
 
 namespace tessera::io {
 namespace {
 
-/// Walks through the words of a text.
-class Words {
- public:
-  Words(std::string_view text, const std::string& source) : rest_(text), source_(source) {}
+TextScanner words_of(std::string_view text, const std::string& source) { return {text, source, " \t\r\n"}; }
 
-  /// The next word; empty at the end.
-  std::string_view next() {
-    const std::size_t first = std::min(rest_.find_first_not_of(" \t\r\n"), rest_.size());
-    line_ +=
-        static_cast<std::size_t>(std::count(rest_.begin(), rest_.begin() + static_cast<std::ptrdiff_t>(first), '\n'));
-    rest_.remove_prefix(first);
-    const std::string_view word = rest_.substr(0, rest_.find_first_of(" \t\r\n"));
-    rest_.remove_prefix(word.size());
-    return word;
-  }
-
-  void require_number(std::string_view word) const {
-    if (word.front() == '+') word.remove_prefix(1);
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc::invalid_argument && end == word.data() + word.size()) return;
-    if (word.find('*') != std::string_view::npos)
-      fail(word, "is a repeated number, which VTK's reader does not know; write each");
-    if (end != word.data() + word.size() && (*end == 'd' || *end == 'D'))
-      fail(word, "has an exponent that VTK's reader does not know; write it with E");
-    fail(word, "is no number; PLOT3D in text is numbers alone");
-  }
-
-  [[nodiscard]] static std::optional<std::int32_t> whole(std::string_view word) {
-    std::int32_t value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    return error == std::errc() && end == word.data() + word.size() ? std::optional(value) : std::nullopt;
-  }
-
-  [[noreturn]] void fail(std::string_view word, const char* what) const {
-    throw scene::bad_input(fmt::format("{}: line {}: {} {}", source_, line_, scene::quote(word), what));
-  }
-
- private:
-  std::string_view rest_;
-  const std::string& source_;
-  std::size_t line_ = 1;
-};
+[[noreturn]] void refuse(const TextScanner& words, std::string_view word, const char* what) {
+  words.fail(fmt::format("{} {}", scene::quote(word), what));
+}
 
 /// How many numbers there are.
 std::uint64_t count_numbers(std::string_view text, const std::string& source) {
-  Words words(text, source);
+  TextScanner words = words_of(text, source);
   std::uint64_t count = 0;
-  for (std::string_view word = words.next(); !word.empty(); word = words.next(), ++count) words.require_number(word);
+  double value = 0;
+  for (Scanned found = words.number(value); found != Scanned::nothing; found = words.number(value), ++count) {
+    if (found != Scanned::other_word) continue;
+    const std::string_view word = words.word();
+    const std::size_t exponent = word.find_first_of("dD");
+    if (word.find('*') != std::string_view::npos)
+      refuse(words, word, "is a repeated number, which VTK's reader does not know; write each");
+    if (exponent != std::string_view::npos && number_of<double>(word.substr(0, exponent)))
+      refuse(words, word, "has an exponent that VTK's reader does not know; write it with E");
+    refuse(words, word, "is no number; PLOT3D in text is numbers alone");
+  }
   return count;
 }
 
 /// The grids that a file begins with, of at most `most` points in all; none if it does not.
-std::optional<std::vector<std::array<std::int32_t, 3>>> grids_of(Words& words, bool multi_grid, std::uint64_t most) {
+std::optional<std::vector<std::array<std::int32_t, 3>>> grids_of(TextScanner& words, bool multi_grid,
+                                                                 std::uint64_t most) {
   std::int32_t count = 1;
-  if (multi_grid) count = Words::whole(words.next()).value_or(0);
+  if (multi_grid) count = number_of<std::int32_t>(words.word()).value_or(0);
   if (count < 1 || static_cast<std::uint64_t>(count) > most) return std::nullopt;
   std::vector<std::array<std::int32_t, 3>> grids(static_cast<std::size_t>(count));
   std::uint64_t points_in_all = 0;
   for (auto& grid : grids) {
     std::uint64_t points = 1;
     for (std::int32_t& n : grid) {
-      n = Words::whole(words.next()).value_or(0);
+      n = number_of<std::int32_t>(words.word()).value_or(0);
       if (n < 1) return std::nullopt;
       points *= static_cast<std::uint64_t>(n);
       if (points > most) return std::nullopt;
@@ -97,13 +68,13 @@ std::uint64_t header_numbers(const Plot3dLayout& layout) {
 
 /// IBLANK has to be whole numbers: the reader would stop within others.
 void require_whole_iblank(std::string_view text, const Plot3dLayout& layout, const std::string& source) {
-  Words words(text, source);
-  for (std::uint64_t k = header_numbers(layout); k > 0; --k) words.next();
+  TextScanner words = words_of(text, source);
+  for (std::uint64_t k = header_numbers(layout); k > 0; --k) words.word();
   for (const auto& grid : layout.grids) {
     const std::uint64_t points = points_of(grid);
     for (std::uint64_t k = 0; k < 4 * points; ++k)
-      if (const std::string_view word = words.next(); k >= 3 * points && !Words::whole(word))
-        words.fail(word, "stands for IBLANK and is no whole number; mend it");
+      if (const std::string_view word = words.word(); k >= 3 * points && !number_of<std::int32_t>(word))
+        refuse(words, word, "stands for IBLANK and is no whole number; mend it");
   }
 }
 
@@ -112,7 +83,7 @@ void require_whole_iblank(std::string_view text, const Plot3dLayout& layout, con
 std::optional<Plot3dLayout> plot3d_text_layout(std::string_view text, const std::string& source) {
   const std::uint64_t numbers = count_numbers(text, source);
   for (const bool multi_grid : {false, true}) {
-    Words words(text, source);
+    TextScanner words = words_of(text, source);
     const auto grids = grids_of(words, multi_grid, numbers);
     if (!grids) continue;
     Plot3dLayout layout;
@@ -134,7 +105,7 @@ std::optional<Plot3dLayout> plot3d_text_layout(std::string_view text, const std:
 
 std::uint64_t check_plot3d_text_solution(std::string_view text, const Plot3dLayout& layout, const std::string& source) {
   const std::uint64_t numbers = count_numbers(text, source);
-  Words words(text, source);
+  TextScanner words = words_of(text, source);
   if (grids_of(words, layout.multi_grid, numbers) != layout.grids)
     throw scene::bad_input(
         fmt::format("{}: its dimensions are not those of the grid file; give the solution of this grid", source));

@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 #include <optional>
 
+#include "io/text/scanner.hpp"
 #include "scene/error.hpp"
+#include "scene/quote.hpp"
 
 namespace tessera::io {
 namespace {
@@ -21,7 +21,7 @@ namespace {
 enum class Number { i8, u8, i16, u16, i32, u32, f32, f64 };
 constexpr std::array<std::size_t, 8> number_size = {1, 1, 2, 2, 4, 4, 4, 8};
 
-std::optional<Number> number_of(std::string_view name) {
+std::optional<Number> type_named(std::string_view name) {
   static constexpr std::array<std::pair<const char*, Number>, 16> names = {{{"char", Number::i8},
                                                                             {"int8", Number::i8},
                                                                             {"uchar", Number::u8},
@@ -65,7 +65,7 @@ bool is_decoration(const std::string& name) {
 
 class PlyParser {
  public:
-  PlyParser(std::string_view text, const std::string& source) : text_(text), source_(source) {}
+  PlyParser(std::string_view text, const std::string& source) : scanner_(text, source), source_(source) {}
 
   PlySurface parse() {
     read_header();
@@ -84,27 +84,9 @@ class PlyParser {
     throw scene::bad_input(fmt::format("{}: {}; the file is truncated or damaged, write it anew", source_, what));
   }
 
-  static std::string printable(std::string_view text) {
-    std::string clean(text.substr(0, 30));
-    for (char& c : clean)
-      if (c < ' ' || c > '~') c = '?';
-    return clean;
-  }
-
   std::vector<std::string_view> header_words() {
-    const std::size_t end = text_.find('\n', at_);
-    if (end > 1 << 20) fail("its header does not end");  // npos too
-    std::string_view line = text_.substr(at_, end - at_);
-    at_ = end + 1;
-    std::vector<std::string_view> words;
-    while (true) {
-      const std::size_t start = line.find_first_not_of(" \t\r");
-      if (start == std::string_view::npos) return words;
-      line.remove_prefix(start);
-      const std::size_t length = std::min(line.find_first_of(" \t\r"), line.size());
-      words.push_back(line.substr(0, length));
-      line.remove_prefix(length);
-    }
+    if (scanner_.rest().substr(0, longest_line).find('\n') == std::string_view::npos) fail("its header does not end");
+    return split_words(scanner_.rest_of_line());
   }
 
   void read_header() {
@@ -118,26 +100,25 @@ class PlyParser {
         ascii_ = words[1] == "ascii";
         big_endian_ = words[1] == "binary_big_endian";
         if (!ascii_ && !big_endian_ && words[1] != "binary_little_endian")
-          fail(fmt::format("its format is '{}'", printable(words[1])));
+          fail("its format is " + scene::quote(words[1]));
         has_format = true;
       } else if (words[0] == "element" && words.size() == 3) {
-        Element element{std::string(words[1]), 0, {}};
-        const auto [end, error] = std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
-        if (error != std::errc() || end != words[2].data() + words[2].size() || element.count > text_.size())
-          fail(fmt::format("it promises '{}' of element {}", printable(words[2]), printable(words[1])));
-        elements_.push_back(std::move(element));
+        const auto count = number_of<std::uint64_t>(words[2]);
+        if (!count || *count > scanner_.rest().size())
+          fail(fmt::format("it promises {} of element {}", scene::quote(words[2]), printable_ascii(words[1])));
+        elements_.push_back({std::string(words[1]), *count, {}});
       } else if (words[0] == "property" && !elements_.empty() && (words.size() == 3 || words.size() == 5)) {
         Property property;
         const bool is_list = words.size() == 5;
-        if (is_list) property.count = number_of(words[2]);
-        const std::optional<Number> type = number_of(words[is_list ? 3 : 1]);
+        if (is_list) property.count = type_named(words[2]);
+        const std::optional<Number> type = type_named(words[is_list ? 3 : 1]);
         if (!type || (is_list && (words[1] != "list" || !property.count || *property.count >= Number::f32)))
-          fail(fmt::format("a property of {} has an unknown type", printable(elements_.back().name)));
+          fail(fmt::format("a property of {} has an unknown type", printable_ascii(elements_.back().name)));
         property.type = *type;
         property.name = words.back();
         elements_.back().properties.push_back(std::move(property));
       } else {
-        fail(fmt::format("its header holds '{}'", printable(words[0])));
+        fail("its header holds " + scene::quote(words[0]));
       }
     }
     if (!has_format) fail("its header names no format");
@@ -158,7 +139,7 @@ class PlyParser {
         xyz[static_cast<std::size_t>(property.name[0] - 'x')] = static_cast<std::ptrdiff_t>(k);
       } else if (!is_decoration(property.name)) {
         attribute[k] = static_cast<std::ptrdiff_t>(result_.attribute_names.size());
-        result_.attribute_names.push_back(printable(property.name));
+        result_.attribute_names.push_back(printable_ascii(property.name));
         result_.surface.attributes.emplace_back();
       }
     }
@@ -186,7 +167,7 @@ class PlyParser {
 
   void read_list(const Property& property, bool wanted, std::uint64_t face) {
     const double length = number(*property.count);
-    if (!(length >= 0) || length > static_cast<double>(text_.size() - at_))
+    if (!(length >= 0) || length > static_cast<double>(scanner_.rest().size()))
       fail(fmt::format("a list of element {} has the length {}", face, length));
     cells::Polygon polygon;
     for (std::size_t k = 0; static_cast<double>(k) < length; ++k) {
@@ -201,25 +182,19 @@ class PlyParser {
   double number(Number type) { return ascii_ ? ascii_number() : binary_number(type); }
 
   double ascii_number() {
-    while (at_ < text_.size() && (text_[at_] == ' ' || (text_[at_] >= '\t' && text_[at_] <= '\r'))) ++at_;
-    if (at_ < text_.size() && text_[at_] == '+') ++at_;
     double value = 0;
-    const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
-    if (error == std::errc::invalid_argument) {
-      if (at_ >= text_.size()) fail("it ends before its last element");
-      fail(fmt::format("'{}' is no number", printable(text_.substr(at_, 12))));
-    }
-    if (error == std::errc::result_out_of_range) value = std::numeric_limits<double>::quiet_NaN();
-    at_ = static_cast<std::size_t>(end - text_.data());
+    const Scanned found = scanner_.number(value);
+    if (found == Scanned::nothing) fail("it ends before its last element");
+    if (found == Scanned::other_word) fail(scene::quote(scanner_.word().substr(0, 12)) + " is no number");
     return value;
   }
 
   double binary_number(Number type) {
     const std::size_t size = number_size[static_cast<std::size_t>(type)];
-    if (text_.size() - at_ < size) fail("it ends before its last element");
+    if (scanner_.rest().size() < size) fail("it ends before its last element");
     std::array<char, 8> raw{};
-    std::memcpy(raw.data(), text_.data() + at_, size);
-    at_ += size;
+    std::memcpy(raw.data(), scanner_.rest().data(), size);
+    scanner_.go_to(scanner_.at() + size);
     if (big_endian_ == (std::endian::native == std::endian::little)) std::reverse(raw.begin(), raw.begin() + size);
     const auto as = [&](auto value) {
       std::memcpy(&value, raw.data(), sizeof value);
@@ -246,9 +221,10 @@ class PlyParser {
     return 0;
   }
 
-  std::string_view text_;
+  static constexpr std::size_t longest_line = 1 << 20;
+
+  TextScanner scanner_;
   const std::string& source_;
-  std::size_t at_ = 0;
   bool ascii_ = true, big_endian_ = false;
   std::vector<Element> elements_;
   PlySurface result_;

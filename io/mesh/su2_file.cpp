@@ -3,19 +3,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
 #include <limits>
-#include <optional>
-#include <system_error>
 
+#include "io/text/scanner.hpp"
 #include "scene/error.hpp"
 #include "tessera/cell_type.hpp"
 
 namespace tessera::io {
 namespace {
-
-constexpr std::string_view separators = " \t\r,";
 
 /// Points of a cell of VTK's types that SU2 has; 0 of others.
 std::size_t nodes_of(std::uint64_t type) {
@@ -38,78 +33,43 @@ std::size_t nodes_of(std::uint64_t type) {
   }
 }
 
-/// Walks through lines; what follows a % is a comment, lines of nothing count for nothing.
+/// The lines of a text that hold something. Commas are blanks, and what follows a % is a comment.
 class Lines {
  public:
-  Lines(std::string_view text, const std::string& source) : rest_(text), source_(source) {}
+  Lines(std::string_view text, const std::string& source) : scanner_(text, source, " \t\r,", '%') {}
 
-  bool next() {
-    while (!rest_.empty()) {
-      const std::size_t end = rest_.find('\n');
-      line_ = rest_.substr(0, end);
-      rest_ = end == std::string_view::npos ? std::string_view() : rest_.substr(end + 1);
-      ++number_;
-      line_ = line_.substr(0, line_.find('%'));
-      if (skip_blanks()) return true;
-    }
-    return false;
-  }
+  bool next() { return scanner_.next_line(); }
 
   void need_next(const char* what, std::size_t k, std::size_t count) {
     if (!next()) fail(fmt::format("the file ends at {} {} of {}; it is truncated, write it anew", what, k, count));
   }
 
   /// The word before '=' of a line of that kind; empty of others. What follows is read by number().
-  std::string_view key() {
-    const std::size_t equals = line_.find('=');
-    if (equals == std::string_view::npos) return {};
-    std::string_view word = line_.substr(0, equals);
-    word = word.substr(0, word.find_last_not_of(separators) + 1);
-    line_.remove_prefix(equals + 1);
-    return word;
-  }
+  std::string_view key() { return scanner_.word_before('='); }
 
   template <class T>
   T number(const char* what) {
-    if (!skip_blanks()) fail(fmt::format("{} is missing; write it anew", what));
-    if (line_.front() == '+') line_.remove_prefix(1);
     T value{};
-    const auto [end, error] = std::from_chars(line_.data(), line_.data() + line_.size(), value);
-    const bool is_cut = end != line_.data() + line_.size() && separators.find(*end) == std::string_view::npos;
-    if (error == std::errc::invalid_argument || is_cut)
-      fail(fmt::format("'{}' is no {}; mend it",
-                       line_.substr(0, std::min<std::size_t>(20, line_.find_first_of(separators))), what));
-    if (error == std::errc::result_out_of_range) {
-      if constexpr (std::is_integral_v<T>) fail(fmt::format("{} is too large; mend it", what));
-      value = std::numeric_limits<T>::quiet_NaN();  // 1e999: such a cell is blanked
-    }
-    line_.remove_prefix(static_cast<std::size_t>(end - line_.data()));
+    const Scanned found = scanner_.number(value);
+    if (found == Scanned::nothing) fail(fmt::format("{} is missing; write it anew", what));
+    if (found == Scanned::other_word) fail(fmt::format("'{}' is no {}; mend it", scanner_.word().substr(0, 20), what));
+    // 1e999 is NaN: such a cell is blanked.
+    if (found == Scanned::out_of_range && std::is_integral_v<T>) fail(fmt::format("{} is too large; mend it", what));
     return value;
   }
 
   /// A count of lines, each of which has at least `least` bytes.
   std::size_t count(const char* what, std::size_t least) {
     const auto n = number<std::uint64_t>(what);
-    if (n > rest_.size() / least + 1)
+    if (n > scanner_.rest().size() / least + 1)
       fail(fmt::format("{} is {}, more than the file can hold; it is truncated, write it anew", what, n));
     return static_cast<std::size_t>(n);
   }
 
-  [[noreturn]] void fail(std::string what) const {
-    for (char& c : what)  // it may quote anything
-      if (c < ' ' || c > '~') c = '?';
-    throw scene::bad_input(fmt::format("{}: line {}: {}", source_, number_, what));
-  }
+  [[noreturn]] void fail(const std::string& what) const { scanner_.fail(what); }
 
  private:
-  bool skip_blanks() {
-    line_.remove_prefix(std::min(line_.find_first_not_of(separators), line_.size()));
-    return !line_.empty();
-  }
-
-  std::string_view rest_, line_;
-  const std::string& source_;
-  std::size_t number_ = 0;
+  TextScanner scanner_;
 };
 
 /// A zone as it is read: points may come after the cells that use them.

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "io/mesh/tecplot_numbers.hpp"
+#include "io/text/scanner.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
 #include "tessera/cell_type.hpp"
@@ -121,7 +122,7 @@ class TecplotZones {
   }
 
   [[noreturn]] void refuse(const TecplotZone& zone, const std::string& what) const {
-    refuse_tecplot(text_, zone.record_at, source_, what);
+    fail_at(text_, zone.record_at, source_, what);
   }
 
  private:

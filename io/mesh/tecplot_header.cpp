@@ -9,6 +9,7 @@
 #include <functional>
 #include <utility>
 
+#include "io/text/scanner.hpp"
 #include "io/text/text_file.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
@@ -101,7 +102,7 @@ class TecplotWords {
     return value;
   }
 
-  [[noreturn]] void fail(std::size_t at, const std::string& what) const { refuse_tecplot(text_, at, source_, what); }
+  [[noreturn]] void fail(std::size_t at, const std::string& what) const { fail_at(text_, at, source_, what); }
 
  private:
   std::string_view text_;
@@ -164,7 +165,7 @@ class HeaderParser {
   HeaderParser(std::string_view text, const std::string& source) : text_(text), words_(text, source) {}
 
   TecplotHeader parse() {
-    if (text_.starts_with("\xEF\xBB\xBF")) words_.go_to(3);
+    if (text_.starts_with(byte_order_mark)) words_.go_to(3);
     for (words_.skip_blanks(); !words_.at_end(); words_.skip_blanks()) {
       const std::size_t at = words_.at();
       const std::string key = upper_case(words_.word());
@@ -399,11 +400,6 @@ class HeaderParser {
 };
 
 }  // namespace
-
-void refuse_tecplot(std::string_view text, std::size_t at, const std::string& source, const std::string& what) {
-  const auto line = std::ranges::count(text.substr(0, at), '\n') + 1;
-  throw scene::bad_input(fmt::format("{}: line {}: {}", source, line, printable_ascii(what)));
-}
 
 TecplotHeader parse_tecplot_header(std::string_view text, const std::string& source) {
   return HeaderParser(text, source).parse();

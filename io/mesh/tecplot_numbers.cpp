@@ -7,8 +7,8 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <optional>
 
+#include "io/text/scanner.hpp"
 #include "scene/quote.hpp"
 
 namespace tessera::io {
@@ -23,95 +23,72 @@ constexpr double most_values_a_byte = 16;
 class NumberStream {
  public:
   NumberStream(std::string_view text, const TecplotZone& zone, const std::string& source)
-      : text_(text), zone_(zone), source_(source), at_(zone.numbers_at) {}
+      : words_(text.substr(0, zone.end), source, tecplot_blanks), zone_(zone) {
+    words_.go_to(zone.numbers_at);
+  }
 
   double next(const char* what) {
     if (left_ > 0) {
       --left_;
       return repeated_;
     }
-    const std::string_view word = next_word();
+    double value = 0;
+    if (const Scanned found = words_.number(value); found == Scanned::number || found == Scanned::out_of_range)
+      return value;
+    std::string_view word = words_.word();
+    for (; word.starts_with('#'); word = words_.word()) words_.rest_of_line();
     if (word.empty())
-      refuse_tecplot(text_, zone_.end, source_,
-                     fmt::format("the zone ends before its {} do; it is truncated, export it again", what));
+      words_.fail(fmt::format("the zone ends before its {} do; it is truncated, export it again", what));
     const std::size_t star = word.find('*');
     if (star == std::string_view::npos) return number(word, what);
-    std::size_t count = 0;
-    const auto read = std::from_chars(word.data(), word.data() + star, count);
-    if (read.ec != std::errc() || read.ptr != word.data() + star || count == 0) refuse(word, what);
+    const auto count = number_of<std::size_t>(word.substr(0, star));
+    if (!count || *count == 0) refuse(word, what);
     repeated_ = number(word.substr(star + 1), what);
-    left_ = count - 1;
+    left_ = *count - 1;
     return repeated_;
   }
 
   std::size_t next_index(const char* what) {
     const double value = next(what);
     if (!(value >= 0 && value <= std::numeric_limits<std::uint32_t>::max()) || value != std::floor(value))
-      refuse_tecplot(text_, at_, source_, fmt::format("{} is among the {}; export the file again", value, what));
+      words_.fail(fmt::format("{} is among the {}; export the file again", value, what));
     return static_cast<std::size_t>(value);
   }
 
   /// Of a count that the text is too short for.
   [[noreturn]] void refuse_count(std::size_t count, const char* what) const {
-    refuse_tecplot(
-        text_, zone_.record_at, source_,
-        fmt::format("the zone has {} {}, more than the file can hold; it is truncated, export it again", count, what));
+    words_.fail_at(zone_.record_at, fmt::format("the zone has {} {}, more than the file can hold; it is truncated, "
+                                                "export it again",
+                                                count, what));
   }
 
   /// How many numbers the first line with some has.
   [[nodiscard]] std::size_t on_first_line() const {
-    const std::string_view rest = text_.substr(at_, zone_.end - at_);
-    std::string_view line = rest.substr(0, rest.find('\n'));
-    std::size_t count = 0;
-    while (true) {
-      const std::size_t first = line.find_first_not_of(tecplot_blanks);
-      if (first == std::string_view::npos) return count;
-      line.remove_prefix(first);
-      line.remove_prefix(std::min(line.find_first_of(tecplot_blanks), line.size()));
-      ++count;
-    }
+    const std::string_view rest = words_.rest();
+    return split_words(rest.substr(0, rest.find('\n')), tecplot_blanks).size();
   }
 
  private:
-  std::string_view next_word() {
-    for (;;) {
-      at_ = std::min(text_.find_first_not_of(tecplot_blanks, at_), zone_.end);
-      if (at_ >= zone_.end || text_[at_] != '#') break;
-      at_ = std::min(text_.find('\n', at_), zone_.end);
-    }
-    const std::size_t first = at_;
-    while (at_ < zone_.end && tecplot_blanks.find(text_[at_]) == std::string_view::npos) ++at_;
-    return text_.substr(first, at_ - first);
-  }
-
   /// In Fortran's notation too ("1.5D+00", "+1"). What is no number, as "1.#QNAN", is one, and so are those too large.
   double number(std::string_view word, const char* what) const {
-    const std::string_view given = word;
-    if (word.starts_with('+')) word.remove_prefix(1);
-    double value = 0;
-    const char* const end = word.data() + word.size();
-    auto read = std::from_chars(word.data(), end, value);
-    if (read.ec == std::errc() && read.ptr == end) return value;
-    std::string plain(word);
+    std::string plain(word.substr(word.starts_with('+') ? 1 : 0));
     std::ranges::replace_if(
         plain, [](char c) { return c == 'd' || c == 'D'; }, 'e');
-    const char* const plain_end = plain.data() + plain.size();
-    read = std::from_chars(plain.data(), plain_end, value);
-    if (read.ec == std::errc() && read.ptr == plain_end) return value;
+    double value = 0;
+    const char* const end = plain.data() + plain.size();
+    const auto read = std::from_chars(plain.data(), end, value);
+    if (read.ec == std::errc() && read.ptr == end) return value;
     if (read.ec == std::errc::result_out_of_range || word.find('#') != std::string_view::npos)
       return std::numeric_limits<double>::quiet_NaN();
-    refuse(given, what);
+    refuse(word, what);
   }
 
   [[noreturn]] void refuse(std::string_view word, const char* what) const {
-    refuse_tecplot(text_, at_, source_,
-                   fmt::format("{} is among the {}, and no number; export the file again", scene::quote(word), what));
+    words_.fail(fmt::format("{} is among the {}, and no number; export the file again", scene::quote(word), what));
   }
 
-  std::string_view text_;
+  TextScanner words_;
   const TecplotZone& zone_;
-  const std::string& source_;
-  std::size_t at_;
   double repeated_ = 0;
   std::size_t left_ = 0;  ///< of what is repeated
 };
@@ -137,13 +114,13 @@ void read_values(std::string_view text, const TecplotZone& zone, const std::stri
     total += static_cast<double>(zone.of_cells[v] ? zone.elements : zone.nodes);
   }
   if (total > most_values_a_byte * static_cast<double>(text.size()))
-    refuse_tecplot(
+    fail_at(
         text, zone.record_at, source,
         fmt::format("the zone has {} values, more than the file can hold; it is truncated, export it again", total));
   const bool by_point = is_by_point(zone, numbers, own.size());
   for (const std::size_t v : own) {
     if (by_point && zone.of_cells[v])
-      refuse_tecplot(text, zone.record_at, source, "values of cells are by points; write DATAPACKING=BLOCK");
+      fail_at(text, zone.record_at, source, "values of cells are by points; write DATAPACKING=BLOCK");
     read.values[v].resize(zone.of_cells[v] ? zone.elements : zone.nodes);
   }
   if (by_point) {

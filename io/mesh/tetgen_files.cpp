@@ -3,14 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
-#include <system_error>
 
 #include "cells/curved/node_orders.hpp"
+#include "io/text/scanner.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -19,21 +17,10 @@ namespace {
 /// Walks through TetGen's text: lines of numbers, `#` to the line's end is a comment, blank lines count for nothing.
 class Numbers {
  public:
-  Numbers(std::string_view text, const std::string& source) : rest_(text), source_(source) {}
+  Numbers(std::string_view text, const std::string& source) : scanner_(text, source, " \t\r,\v\f", '#') {}
 
   /// Goes to the next line that holds something; false at the end.
-  bool next_line() {
-    while (!rest_.empty()) {
-      const std::size_t end = rest_.find('\n');
-      line_ = rest_.substr(0, end);
-      rest_ = end == std::string_view::npos ? std::string_view() : rest_.substr(end + 1);
-      ++line_number_;
-      line_ = line_.substr(0, line_.find('#'));
-      if (skip_blanks()) return true;
-    }
-    line_ = {};
-    return false;
-  }
+  bool next_line() { return scanner_.next_line(); }
 
   void need_line(const char* what) {
     if (!next_line()) fail(fmt::format("the file ends where {} should be", what));
@@ -42,18 +29,14 @@ class Numbers {
   /// The next number of this line, or none.
   template <class T>
   std::optional<T> maybe() {
-    if (!skip_blanks()) return std::nullopt;
-    if (line_.front() == '+') line_.remove_prefix(1);
     T value{};
-    const auto [end, error] = std::from_chars(line_.data(), line_.data() + line_.size(), value);
-    if (error == std::errc::invalid_argument || (end != line_.data() + line_.size() && !is_blank(*end)))
-      fail(fmt::format("'{}' is not {}", line_.substr(0, std::min<std::size_t>(20, line_.find_first_of(" \t\r,"))),
+    const Scanned found = scanner_.number(value);
+    if (found == Scanned::nothing) return std::nullopt;
+    if (found == Scanned::other_word)
+      fail(fmt::format("'{}' is not {}", scanner_.word().substr(0, 20),
                        std::is_integral_v<T> ? "a whole number" : "a number"));
-    if (error == std::errc::result_out_of_range) {
-      if constexpr (std::is_integral_v<T>) fail("a number is too large");
-      value = std::numeric_limits<T>::quiet_NaN();  // 1e999: such a cell is blanked
-    }
-    line_.remove_prefix(static_cast<std::size_t>(end - line_.data()));
+    // 1e999 is NaN: such a cell is blanked.
+    if (found == Scanned::out_of_range && std::is_integral_v<T>) fail("a number is too large");
     return value;
   }
 
@@ -66,34 +49,22 @@ class Numbers {
   /// As need, but goes on to the following lines.
   template <class T>
   T need_across_lines(const char* what) {
-    if (!skip_blanks()) need_line(what);
+    if (scanner_.at_end()) need_line(what);
     return need<T>(what);
   }
 
   /// A count of things that take at least `least` bytes of text each.
   std::size_t count(const char* what, std::size_t least) {
     const auto n = need<std::int64_t>(what);
-    if (n < 0 || static_cast<std::uint64_t>(n) > (rest_.size() + line_.size()) / least + 1)
+    if (n < 0 || static_cast<std::uint64_t>(n) > scanner_.rest().size() / least + 1)
       fail(fmt::format("{} is {}, more than the file can hold", what, n));
     return static_cast<std::size_t>(n);
   }
 
-  [[noreturn]] void fail(std::string what) const {
-    for (char& c : what)  // it may quote anything
-      if (c < ' ' || c > '~') c = '?';
-    throw scene::bad_input(fmt::format("{}: line {}: {}; write the file anew", source_, line_number_, what));
-  }
+  [[noreturn]] void fail(const std::string& what) const { scanner_.fail(what + "; write the file anew"); }
 
  private:
-  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == ',' || c == '\v' || c == '\f'; }
-  bool skip_blanks() {
-    while (!line_.empty() && is_blank(line_.front())) line_.remove_prefix(1);
-    return !line_.empty();
-  }
-
-  std::string_view rest_, line_;
-  const std::string& source_;
-  std::size_t line_number_ = 0;
+  TextScanner scanner_;
 };
 
 struct Nodes {

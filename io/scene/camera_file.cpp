@@ -8,6 +8,7 @@
 
 #include "io/scene/camera_words.hpp"
 #include "io/text/json_text.hpp"
+#include "io/text/scanner.hpp"
 #include "io/text/text_file.hpp"
 #include "scene/error.hpp"
 #include "system/atomic_file.hpp"
@@ -59,19 +60,20 @@ std::vector<CameraFile> parse_json_cameras(std::string_view text, const std::str
 
 CameraFile parse_text_camera(std::string_view text, const std::string& source) {
   CameraWords words(source);
-  TextLines lines(text);
+  TextScanner lines(text, source, ascii_blanks, '#');
   std::vector<double> numbers;
-  for (TextLine line; lines.next(line);) {
-    const std::string at = fmt::format("{}: line {}", source, line.number);
+  while (lines.next_line()) {
+    const std::vector<std::string_view> found = split_words(lines.line());
+    const std::string at = fmt::format("{}: line {}", source, lines.line_number());
     numbers.clear();
-    for (std::size_t i = 1; i < line.words.size(); ++i) {
-      const auto number = parse_number(line.words[i]);
+    for (std::size_t i = 1; i < found.size(); ++i) {
+      const auto number = parse_number(found[i]);
       if (!number)
-        throw scene::bad_input(fmt::format("{}: {} is not a finite number; each line is a word and its numbers", at,
-                                           quote(line.words[i])));
+        throw scene::bad_input(
+            fmt::format("{}: {} is not a finite number; each line is a word and its numbers", at, quote(found[i])));
       numbers.push_back(*number);
     }
-    words.set(line.words[0], numbers, at);
+    words.set(found[0], numbers, at);
   }
   return words.finish();
 }

@@ -8,6 +8,7 @@
 #include "colormaps/function_options.hpp"
 #include "io/scene/knot_list.hpp"
 #include "io/scene/transfer_function_file.hpp"
+#include "io/text/scanner.hpp"
 #include "io/text/text_file.hpp"
 #include "scene/error.hpp"
 
@@ -47,30 +48,28 @@ colormaps::LoadedTransferFunction parse_text_transfer_function(std::string_view 
   colormaps::check(options);
   constexpr std::array<const char*, 5> column{"value", "red", "green", "blue", "extinction"};
   std::vector<scene::Knot> knots;
-  TextLines lines(text);
-  for (TextLine line; lines.next(line);) {
-    const auto fault = [&](const std::string& what) {
-      return scene::bad_input(fmt::format("{}: line {}: {}", source, line.number, what));
-    };
+  TextScanner lines(text, source, ascii_blanks, '#');
+  while (lines.next_line()) {
+    const std::vector<std::string_view> words = split_words(lines.line());
     std::array<double, 5> numbers{};
-    for (std::size_t i = 0; i < line.words.size(); ++i) {
-      const std::string_view word = line.words[i];
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      const std::string_view word = words[i];
       if (word.find(',') != std::string_view::npos)
-        throw fault(
+        lines.fail(
             fmt::format("{} has a comma; separate numbers by blanks and write decimals with a point", quote(word)));
       const auto number = parse_number(word);
       if (!number)
-        throw fault(fmt::format("{} is not a finite number; each line is `value r g b extinction`", quote(word)));
+        lines.fail(fmt::format("{} is not a finite number; each line is `value r g b extinction`", quote(word)));
       if (i < numbers.size()) numbers[i] = *number;
     }
-    if (line.words.size() != numbers.size())
-      throw fault(fmt::format("{} number{} instead of 5; each line is `value r g b extinction`", line.words.size(),
-                              line.words.size() == 1 ? "" : "s"));
+    if (words.size() != numbers.size())
+      lines.fail(fmt::format("{} number{} instead of 5; each line is `value r g b extinction`", words.size(),
+                             words.size() == 1 ? "" : "s"));
     for (std::size_t i = 1; i < numbers.size(); ++i)
-      if (numbers[i] < 0) throw fault(fmt::format("{} is {}; it must not be negative", column[i], line.words[i]));
+      if (numbers[i] < 0) lines.fail(fmt::format("{} is {}; it must not be negative", column[i], words[i]));
     if (!knots.empty() && numbers[0] < knots.back().value)
-      throw fault(fmt::format("value {} is below the one before it, {}; sort the lines by value", numbers[0],
-                              knots.back().value));
+      lines.fail(fmt::format("value {} is below the one before it, {}; sort the lines by value", numbers[0],
+                             knots.back().value));
     knots.push_back({numbers[0], {numbers[1], numbers[2], numbers[3]}, numbers[4]});
   }
   if (knots.empty())

@@ -15,6 +15,7 @@
 #include "io/vtk/vtk_field_words.hpp"
 #include "scene/error.hpp"
 #include "system/files_read.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
@@ -29,10 +30,8 @@ struct Pattern {
     if (name.size() <= before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after))
       return std::nullopt;
     const std::string digits = name.substr(before.size(), name.size() - before.size() - after.size());
-    std::uint64_t number = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-    if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
-    if (fmt::format("{:0{}}", number, width) != digits) return std::nullopt;  // 7 is not 007
+    const auto number = number_of<std::uint64_t>(digits);
+    if (number && fmt::format("{:0{}}", *number, width) != digits) return std::nullopt;  // 7 is not 007
     return number;
   }
 };

@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <system_error>
 
 #include "io/formats/inflated_file.hpp"
 #include "io/text/clean_errors.hpp"
@@ -19,22 +17,15 @@ namespace {
 /// Words between blanks, commas and brackets.
 std::vector<std::string_view> header_words_of(std::string_view text) { return split_words(text, " \t\r\n,()"); }
 
-template <class T>
-bool header_parsed(std::string_view word, T& value) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  return error == std::errc() && end == word.data() + word.size();
-}
-
 }  // namespace
 
 std::vector<double> header_numbers(std::string_view text, std::size_t count, const std::filesystem::path& file,
                                    const char* what) {
   std::vector<double> numbers;
   for (const std::string_view word : header_words_of(text)) {
-    double value = 0;
-    if (!header_parsed(word, value)) break;
-    numbers.push_back(value);
+    const auto value = number_of<double>(word);
+    if (!value) break;
+    numbers.push_back(*value);
   }
   if (numbers.size() != count || header_words_of(text).size() != count)
     throw damaged(file, fmt::format("{} is {}, not {} number{}", what, quote(text), count, count > 1 ? "s" : ""));
@@ -43,10 +34,10 @@ std::vector<double> header_numbers(std::string_view text, std::size_t count, con
 
 std::int64_t header_count(std::string_view text, std::int64_t low, std::int64_t high, const std::filesystem::path& file,
                           const char* what) {
-  std::int64_t value = 0;
-  if (!header_parsed(trimmed(text), value) || value < low || value > high)
+  const auto value = number_of<std::int64_t>(trimmed(text));
+  if (!value || *value < low || *value > high)
     throw damaged(file, fmt::format("{} is {}, not a whole number from {} to {}", what, quote(text), low, high));
-  return value;
+  return *value;
 }
 
 std::vector<std::int64_t> header_count_list(std::string_view text, const std::filesystem::path& file,

@@ -3,11 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 
+#include "io/text/scanner.hpp"
 #include "scene/error.hpp"
 #include "system/files_read.hpp"
 #include "system/missing_file.hpp"
@@ -16,13 +15,7 @@
 namespace tessera::io {
 namespace {
 
-constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 constexpr std::uintmax_t largest_file = 64u << 20;
-
-std::string_view without_mark(std::string_view text) {
-  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
-  return text;
-}
 
 }  // namespace
 
@@ -53,34 +46,15 @@ std::string read_text_file(const std::filesystem::path& file) {
   return text;
 }
 
-TextLines::TextLines(std::string_view text) : rest_(without_mark(text)) {}
-
-bool TextLines::next(TextLine& line) {
-  while (!rest_.empty()) {
-    const std::size_t end = rest_.find('\n');
-    std::string_view text = rest_.substr(0, end);
-    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
-    ++number_;
-    text = text.substr(0, text.find('#'));
-    line.number = number_;
-    line.words = split_words(text);
-    if (!line.words.empty()) return true;
-  }
-  return false;
-}
-
 char first_character(std::string_view text) {
-  text = without_mark(text);
-  const std::size_t begin = text.find_first_not_of(ascii_blanks);
-  return begin == std::string_view::npos ? '\0' : text[begin];
+  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+  text = trimmed(text);
+  return text.empty() ? '\0' : text.front();
 }
 
 std::optional<double> parse_number(std::string_view word) {
-  if (word.starts_with('+') && word.size() > 1 && word[1] != '-' && word[1] != '+') word.remove_prefix(1);
-  double number = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(number)) return std::nullopt;
-  return number;
+  const auto number = number_of<double>(word);
+  return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
 }  // namespace tessera::io

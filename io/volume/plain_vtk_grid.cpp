@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <locale>
 #include <map>
@@ -17,6 +16,7 @@
 
 #include "io/foreign/client/foreign_geometry.hpp"
 #include "io/formats/input_file.hpp"
+#include "io/text/scanner.hpp"
 #include "io/text/xml_elements.hpp"
 #include "io/volume/volume_formats.hpp"
 #include "io/vtk/vtk_array.hpp"
@@ -158,22 +158,14 @@ std::optional<VtkArrayPlace> place_of(const ElementFound& array, const GridEleme
 
 /// As many numbers as the text has to have, each as its type rounds it; false: other words.
 bool read_text(std::string_view text, NumberType type, std::span<double> numbers) {
-  return with_number_type(type, [&](auto zero) {
-    const char *at = text.data(), *const end = at + text.size();
-    const auto skip = [&] {
-      const char* const from = at;
-      while (at < end && (*at == ' ' || *at == '\n' || *at == '\r' || *at == '\t')) ++at;
-      return at > from || at == end;
-    };
-    skip();
+  return with_number_type(type, [&](auto value) {
+    const std::string unnamed;
+    TextScanner words(text, unnamed);
     for (double& number : numbers) {
-      decltype(zero) value{};
-      const auto [behind, error] = std::from_chars(at, end, value);
-      at = behind;
-      if (error != std::errc() || !skip()) return false;
+      if (words.number(value) != Scanned::number) return false;
       number = static_cast<double>(value);
     }
-    return at == end;
+    return words.at_end();
   });
 }
 

@@ -13,6 +13,7 @@
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
 #include "system/positional_file.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
@@ -204,12 +205,9 @@ std::optional<NumberType> vtk_xml_number_type(const std::string& name) {
 }
 
 bool read_whole_number(const std::string& text, std::int64_t& number) {
-  std::size_t first = text.find_first_not_of(" \n\r\t");
-  if (first == std::string::npos) return false;
-  if (text[first] == '+' && first + 1 < text.size() && text[first + 1] != '-') ++first;
-  const char* const end = text.data() + text.find_last_not_of(" \n\r\t") + 1;
-  const auto [behind, error] = std::from_chars(text.data() + first, end, number);
-  return error == std::errc() && behind == end;
+  const auto found = number_of<std::int64_t>(trimmed(text));
+  number = found.value_or(number);
+  return found.has_value();
 }
 
 std::optional<VtkXmlGrid> read_vtk_xml_grid(const system::PositionalFile& file, const std::string& source) {

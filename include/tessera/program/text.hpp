@@ -2,8 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <charconv>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 /// Text in ASCII, whatever the locale: bytes of other alphabets are neither letters nor blanks, and stay as they are.
@@ -11,6 +14,7 @@ namespace tessera {
 inline namespace v0_1 {
 
 inline constexpr std::string_view ascii_blanks = " \t\r\n\v\f";
+inline constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  ///< of UTF-8
 
 constexpr bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -58,6 +62,15 @@ inline std::vector<std::string_view> split_words(std::string_view text, std::str
     text.remove_prefix(words.back().size());
   }
   return words;
+}
+
+/// The number that is all of a word, in the C locale whatever the user's is; a + before it is allowed.
+template <class T>
+std::optional<T> number_of(std::string_view word) {
+  if (word.starts_with('+') && !word.substr(1).starts_with('-')) word.remove_prefix(1);
+  T number{};
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  return error == std::errc() && end == word.data() + word.size() ? std::optional(number) : std::nullopt;
 }
 
 /// With `?` for each byte that is not a printable character of ASCII.
