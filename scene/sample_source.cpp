@@ -4,29 +4,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
+#include "scene/byte_order.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::scene {
 namespace {
 
-template <class T>
-T loaded(const std::byte* at, bool swapped) {
-  std::array<std::byte, sizeof(T)> bytes;
-  std::memcpy(bytes.data(), at, sizeof(T));
-  if (swapped) std::reverse(bytes.begin(), bytes.end());
-  return std::bit_cast<T>(bytes);
-}
-
 template <class From, class To>
 void convert(const std::byte* source, std::int64_t stride, bool swapped, std::int64_t count, std::byte* destination) {
   const std::int64_t step = stride * static_cast<std::int64_t>(sizeof(From));
   for (std::int64_t i = 0; i < count; ++i) {
-    const auto value = static_cast<To>(loaded<From>(source + i * step, swapped));
+    const auto value = static_cast<To>(load<From>(source + i * step, swapped));
     std::memcpy(destination + i * static_cast<std::int64_t>(sizeof(To)), &value, sizeof(To));
   }
 }
@@ -36,7 +28,7 @@ template <class T>
 double tuple_length(const std::byte* tuple, int components, bool swapped) {
   double sum = 0;
   for (int c = 0; c < components; ++c) {
-    const auto value = static_cast<double>(loaded<T>(tuple + static_cast<std::size_t>(c) * sizeof(T), swapped));
+    const auto value = static_cast<double>(load<T>(tuple + static_cast<std::size_t>(c) * sizeof(T), swapped));
     if constexpr (std::is_same_v<T, double>)
       sum = std::hypot(sum, value);
     else

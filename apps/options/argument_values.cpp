@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
@@ -43,8 +42,7 @@ std::optional<std::array<float, 3>> color_of_hex(std::string_view text) {
     return std::nullopt;
   std::uint32_t rgb = 0;
   for (const char digit : digits) {
-    std::uint32_t value = 0;
-    std::from_chars(&digit, &digit + 1, value, 16);
+    const auto value = static_cast<std::uint32_t>(hex_digit(digit));
     rgb = is_short ? rgb << 8 | 0x11 * value : rgb << 4 | value;
   }
   return linear_color(rgb);

@@ -10,6 +10,7 @@
 
 #include "io/image/image_formats.hpp"
 #include "io/text/text_file.hpp"
+#include "scene/byte_order.hpp"
 #include "scene/error.hpp"
 #include "system/atomic_file.hpp"
 
@@ -55,14 +56,13 @@ scene::Image read_pfm(const std::filesystem::path& file) {
     throw fault(fmt::format("holds {} bytes, its header promises {}; write it again", bytes, begin + expected));
 
   scene::Image image({static_cast<int>(*width), static_cast<int>(*height)});
-  std::vector<std::uint32_t> row(3 * static_cast<std::size_t>(*width));
+  std::vector<float> row(3 * static_cast<std::size_t>(*width));
   for (int y = image.size.height - 1; y >= 0; --y) {
     if (!stream.read(reinterpret_cast<char*>(row.data()), static_cast<std::streamsize>(row.size() * sizeof(row[0]))))
       throw scene::Error(scene::ErrorCode::system_failure, file.string() + ": reading failed; check the disk");
     for (std::size_t x = 0; x < row.size() / 3; ++x) {
       float* out = &image.rgba[4 * (image.index(0, y) + x)];
-      for (std::size_t k = 0; k < 3; ++k)
-        out[k] = std::bit_cast<float>(*scale > 0 ? __builtin_bswap32(row[3 * x + k]) : row[3 * x + k]);
+      for (std::size_t k = 0; k < 3; ++k) out[k] = scene::load<float>(&row[3 * x + k], *scale > 0);
       out[3] = 1;
     }
   }

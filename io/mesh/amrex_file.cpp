@@ -13,6 +13,7 @@
 #include "io/formats/whole_file.hpp"
 #include "io/mesh/amrex_header.hpp"
 #include "io/text/text_file.hpp"
+#include "scene/byte_order.hpp"
 #include "scene/error.hpp"
 #include "system/positional_file.hpp"
 
@@ -31,14 +32,6 @@ constexpr std::array formats = {
     NumberFormat{"((8, (32 8 23 0 1 9 0 127)),(4, (4 3 2 1)))", 4, false},
     NumberFormat{"((8, (32 8 23 0 1 9 0 127)),(4, (1 2 3 4)))", 4, true},
 };
-
-template <class Word>
-Word swapped(Word word, bool swap) {
-  if (!swap) return word;
-  auto bytes = std::bit_cast<std::array<std::byte, sizeof(Word)>>(word);
-  std::reverse(bytes.begin(), bytes.end());
-  return std::bit_cast<Word>(bytes);
-}
 
 /// The numbers of one field of one box, in a file that is opened for each reading: there may be more files than a
 /// process may have open.
@@ -80,14 +73,7 @@ struct FabNumbers {
   static constexpr std::size_t most_at_once = 1 << 17;
 
   [[nodiscard]] double number_at(const std::byte* start) const {
-    if (bytes == 4) {
-      std::uint32_t word = 0;
-      std::memcpy(&word, start, sizeof word);
-      return std::bit_cast<float>(swapped(word, swap));
-    }
-    std::uint64_t word = 0;
-    std::memcpy(&word, start, sizeof word);
-    return std::bit_cast<double>(swapped(word, swap));
+    return bytes == 4 ? static_cast<double>(scene::load<float>(start, swap)) : scene::load<double>(start, swap);
   }
 };
 
@@ -192,8 +178,7 @@ class PlotFile {
     bytes_used_ += bytes;
     if (bytes_used_ > bytes_there_)  // so that what is kept of each box is in proportion to the files
       throw refuse("boxes share their values; it is damaged, write it anew");
-    return {file,    begin,     format->bytes, format->big_endian != (std::endian::native == std::endian::big),
-            fab.box, fab.stored};
+    return {file, begin, format->bytes, scene::is_swapped(format->big_endian), fab.box, fab.stored};
   }
 
   std::filesystem::path folder_;

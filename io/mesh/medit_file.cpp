@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <utility>
 
 #include "cells/block_groups.hpp"
 #include "io/formats/file_beginnings.hpp"
 #include "io/text/scanner.hpp"
+#include "scene/byte_order.hpp"
 #include "scene/error.hpp"
 #include "tessera/cell_type.hpp"
 
@@ -72,10 +72,7 @@ void require_space(std::int64_t dimension, const std::string& source) {
 class MeditBinary {
  public:
   MeditBinary(std::span<const std::byte> bytes, const std::string& source) : bytes_(bytes), source_(source) {
-    std::int32_t one = 0;
-    std::memcpy(&one, bytes.data(), sizeof one);
-    is_swapped_ = one != 1;
-    at_ = sizeof one;
+    is_swapped_ = read<std::int32_t>("one") != 1;
     version_ = read<std::int32_t>("version");
     block_.offsets.push_back(0);
   }
@@ -148,12 +145,8 @@ class MeditBinary {
   template <class T>
   T read(const char* what) {
     if (bytes_.size() - at_ < sizeof(T)) fail(at_, fmt::format("the file ends before a {}", what));
-    std::array<std::byte, sizeof(T)> own;
-    std::memcpy(own.data(), bytes_.data() + at_, sizeof(T));
-    if (is_swapped_) std::ranges::reverse(own);
+    const T value = scene::load<T>(bytes_.data() + at_, is_swapped_);
     at_ += sizeof(T);
-    T value;
-    std::memcpy(&value, own.data(), sizeof(T));
     return value;
   }
 

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <bit>
 #include <cstring>
 #include <fstream>
 #include <optional>
@@ -12,6 +11,7 @@
 #include "io/formats/input_file.hpp"
 #include "io/formats/whole_file.hpp"
 #include "io/mesh/plot3d_text.hpp"
+#include "scene/byte_order.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -26,14 +26,13 @@ class Walk {
 
   /// The next int32, inside a record.
   std::int32_t number() {
-    std::uint32_t value = 0;
+    std::int32_t value = 0;
     if (!fits(4)) return 0;
     in_.clear();
     in_.seekg(static_cast<std::streamoff>(at_));
     in_.read(reinterpret_cast<char*>(&value), 4);
     at_ += 4;
-    if (layout_.big_endian == (std::endian::native == std::endian::little)) value = __builtin_bswap32(value);
-    return static_cast<std::int32_t>(value);
+    return scene::is_swapped(layout_.big_endian) ? scene::byteswapped(value) : value;
   }
 
   void skip(std::uint64_t bytes) {

@@ -5,13 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 
 #include "io/text/scanner.hpp"
+#include "scene/byte_order.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
 
@@ -98,8 +97,9 @@ class PlyParser {
       if (words[0] == "end_header") break;
       if (words[0] == "format" && words.size() >= 2) {
         ascii_ = words[1] == "ascii";
-        big_endian_ = words[1] == "binary_big_endian";
-        if (!ascii_ && !big_endian_ && words[1] != "binary_little_endian")
+        const bool big_endian = words[1] == "binary_big_endian";
+        is_swapped_ = scene::is_swapped(big_endian);
+        if (!ascii_ && !big_endian && words[1] != "binary_little_endian")
           fail("its format is " + scene::quote(words[1]));
         has_format = true;
       } else if (words[0] == "element" && words.size() == 3) {
@@ -192,14 +192,9 @@ class PlyParser {
   double binary_number(Number type) {
     const std::size_t size = number_size[static_cast<std::size_t>(type)];
     if (scanner_.rest().size() < size) fail("it ends before its last element");
-    std::array<char, 8> raw{};
-    std::memcpy(raw.data(), scanner_.rest().data(), size);
+    const char* const bytes = scanner_.rest().data();
     scanner_.go_to(scanner_.at() + size);
-    if (big_endian_ == (std::endian::native == std::endian::little)) std::reverse(raw.begin(), raw.begin() + size);
-    const auto as = [&](auto value) {
-      std::memcpy(&value, raw.data(), sizeof value);
-      return static_cast<double>(value);
-    };
+    const auto as = [&](auto number) { return static_cast<double>(scene::load<decltype(number)>(bytes, is_swapped_)); };
     switch (type) {
       case Number::i8:
         return as(std::int8_t{});
@@ -225,7 +220,7 @@ class PlyParser {
 
   TextScanner scanner_;
   const std::string& source_;
-  bool ascii_ = true, big_endian_ = false;
+  bool ascii_ = true, is_swapped_ = false;
   std::vector<Element> elements_;
   PlySurface result_;
 };

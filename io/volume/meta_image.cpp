@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <map>
 
 #include "io/formats/input_file.hpp"
 #include "io/text/header_text.hpp"
 #include "io/text/text_file.hpp"
 #include "io/volume/volume_formats.hpp"
+#include "scene/byte_order.hpp"
 #include "tessera/program/text.hpp"
 
 namespace tessera::io {
@@ -81,7 +81,7 @@ void read_samples_of(const MetaHeader& header, const std::filesystem::path& file
   if (const auto* channels = header.find({"ElementNumberOfChannels"}))
     volume.components = static_cast<int>(header_count(*channels, 1, 64, file, "ElementNumberOfChannels"));
   const bool big = meta_is_true(header.find({"BinaryDataByteOrderMSB", "ElementByteOrderMSB"}));
-  volume.swapped = big != (std::endian::native == std::endian::big);
+  volume.swapped = scene::is_swapped(big);
   if (const auto* binary = header.find({"BinaryData"}); binary && !meta_is_true(binary))
     volume.coding = StoredVolume::Coding::text;
   volume.compressed = meta_is_true(header.find({"CompressedData"}));

@@ -12,6 +12,7 @@
 
 #include "io/formats/input_file.hpp"
 #include "io/volume/volume_formats.hpp"
+#include "scene/byte_order.hpp"
 #include "scene/time_step_read.hpp"
 #include "system/gzip.hpp"
 
@@ -97,10 +98,7 @@ class NiftiHeader {
   }
   template <class T>
   [[nodiscard]] T get(std::size_t at) const {
-    std::array<std::byte, sizeof(T)> raw;
-    std::memcpy(raw.data(), bytes_.data() + at, sizeof(T));
-    if (swapped_) std::reverse(raw.begin(), raw.end());
-    return std::bit_cast<T>(raw);
+    return scene::load<T>(bytes_.data() + at, swapped_);
   }
   [[nodiscard]] double real(std::size_t at_1, std::size_t at_2) const {
     return version_ == 1 ? static_cast<double>(get<float>(at_1)) : get<double>(at_2);

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <utility>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include "io/text/text_file.hpp"
 #include "io/volume/nrrd_axes.hpp"
 #include "io/volume/volume_formats.hpp"
+#include "scene/byte_order.hpp"
 #include "system/positional_file.hpp"
 #include "tessera/program/text.hpp"
 
@@ -177,7 +177,7 @@ StoredVolume read_nrrd_header(const std::filesystem::path& file) {
     throw scene::bad_input(fmt::format(
         "{}: its header does not state the order of its samples' bytes; add a line 'endian: little', or big",
         file.string()));
-  volume.swapped = endian && (lower_case(*endian) == "big") != (std::endian::native == std::endian::big);
+  volume.swapped = endian && scene::is_swapped(equals_ignoring_case(*endian, "big"));
   set_nrrd_geometry(fields, axes, sizes, file, volume);
   set_nrrd_tags(fields, volume);
 

@@ -21,6 +21,7 @@
 #include "io/volume/volume_formats.hpp"
 #include "io/vtk/vtk_array.hpp"
 #include "io/vtk/vtk_xml_grid.hpp"
+#include "scene/byte_order.hpp"
 #include "system/positional_file.hpp"
 
 namespace tessera::io {
@@ -181,11 +182,9 @@ std::optional<AxisCoordinates> axis_of(const system::PositionalFile& file, const
     return axis;
   }
   const auto place = place_of(array, found, words);
-  const std::size_t each = size_of(*type);
-  auto bytes = place ? small_vtk_array(file, *place, axis.values.size() * each) : std::nullopt;
+  auto bytes = place ? small_vtk_array(file, *place, axis.values.size() * size_of(*type)) : std::nullopt;
   if (!bytes) return std::nullopt;
-  if (place->swapped)
-    for (std::size_t at = 0; at < bytes->size(); at += each) std::ranges::reverse(std::span(*bytes).subspan(at, each));
+  if (place->swapped) with_number_type(*type, [&](auto zero) { scene::swap_numbers<decltype(zero)>(*bytes); });
   read_tuples(*bytes, *type, 1, 0, 0, axis.values);
   return axis;
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
-#include <bit>
 #include <charconv>
 
 #include "io/volume/volume_formats.hpp"
+#include "scene/byte_order.hpp"
 
 namespace tessera::io {
 namespace {
@@ -60,7 +60,7 @@ StoredVolume describe_raw(const std::filesystem::path& file, const VolumeOptions
   g.spacing = options.spacing.value_or(glm::dvec3(1));
   g.origin = options.origin.value_or(glm::dvec3(0));
   volume.number = *type;
-  volume.swapped = options.big_endian != (std::endian::native == std::endian::big);
+  volume.swapped = scene::is_swapped(options.big_endian);
   volume.payload = file;
   volume.offset = options.skip;
   volume.exact_size = true;  // else wrong dimensions would give a skewed picture without a word

@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "io/text/text_file.hpp"
+#include "scene/byte_order.hpp"
 #include "scene/error.hpp"
 #include "scene/sample_source.hpp"
 #include "tessera/program/text.hpp"
@@ -54,14 +55,6 @@ void parse_samples(std::string_view text, std::uint64_t count, std::span<std::by
   }
 }
 
-template <class T>
-double double_of(const std::byte* at, bool swapped) {
-  std::uint64_t bits = 0;
-  std::memcpy(&bits, at, sizeof bits);
-  if (swapped) bits = __builtin_bswap64(bits);
-  return static_cast<double>(static_cast<T>(bits));
-}
-
 }  // namespace
 
 std::vector<std::byte> samples_of_text(std::string_view text, std::uint64_t count, scene::SampleType type,
@@ -93,8 +86,8 @@ std::vector<std::byte> bytes_of_hex(std::string_view text, std::uint64_t count, 
 std::vector<double> doubles_of_int64(std::span<const std::byte> bytes, bool is_signed, bool swapped) {
   std::vector<double> values(bytes.size() / 8);
   for (std::size_t n = 0; n < values.size(); ++n)
-    values[n] = is_signed ? double_of<std::int64_t>(bytes.data() + 8 * n, swapped)
-                          : double_of<std::uint64_t>(bytes.data() + 8 * n, swapped);
+    values[n] = is_signed ? static_cast<double>(scene::load<std::int64_t>(bytes.data() + 8 * n, swapped))
+                          : static_cast<double>(scene::load<std::uint64_t>(bytes.data() + 8 * n, swapped));
   return values;
 }
 

@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <bit>
 #include <cstring>
 #include <memory>
 #include <optional>
 
 #include "scene/error.hpp"
 #include "system/positional_file.hpp"
+#include "scene/byte_order.hpp"
 
 namespace tessera::io {
 namespace {
@@ -36,11 +36,9 @@ std::optional<VtkArrayBytes> VtkArrayBytes::open(const system::PositionalFile& f
 
 bool VtkArrayBytes::read_number(std::uint64_t& number) {
   std::array<std::byte, 8> raw{};
-  const std::span<std::byte> own = std::span(raw).first(place_.number_bytes);
-  if (!packed_.read(own.data(), own.size())) return false;
-  if (place_.swapped) std::ranges::reverse(own);
-  static_assert(std::endian::native == std::endian::little);
-  number = std::bit_cast<std::uint64_t>(raw);
+  if (!packed_.read(raw.data(), place_.number_bytes)) return false;
+  number = place_.number_bytes == 4 ? scene::load<std::uint32_t>(raw.data(), place_.swapped)
+                                    : scene::load<std::uint64_t>(raw.data(), place_.swapped);
   return true;
 }
 

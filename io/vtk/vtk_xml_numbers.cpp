@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "scene/byte_order.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
 #include "system/large_vector.hpp"
@@ -17,27 +18,6 @@ namespace {
 /// Read at once: many of VTK's blocks (32 KiB), in the cache; of larger ones several, for as many threads, up to a
 /// limit.
 constexpr std::size_t bytes_at_once = 1 << 20, most_at_once = 16 << 20, blocks_at_once = 4;
-
-template <class T>
-void swap_all(std::span<std::byte> bytes) {
-  for (std::size_t at = 0; at + sizeof(T) <= bytes.size(); at += sizeof(T)) {
-    T number;
-    std::memcpy(&number, bytes.data() + at, sizeof number);
-    if constexpr (sizeof(T) == 2)
-      number = __builtin_bswap16(number);
-    else if constexpr (sizeof(T) == 4)
-      number = __builtin_bswap32(number);
-    else
-      number = __builtin_bswap64(number);
-    std::memcpy(bytes.data() + at, &number, sizeof number);
-  }
-}
-
-void swap_numbers(std::span<std::byte> bytes, std::size_t each) {
-  if (each == 2) swap_all<std::uint16_t>(bytes);
-  if (each == 4) swap_all<std::uint32_t>(bytes);
-  if (each == 8) swap_all<std::uint64_t>(bytes);
-}
 
 /// The numbers of an array in their order, of either coding.
 class Numbers {
@@ -77,7 +57,7 @@ class Numbers {
     if (are_bits_) return read_bits(to, count);
     const std::size_t each = size_of(type_);
     if (!std::get<VtkArrayBytes>(from_).read(to, count * each)) return false;
-    if (swapped_) swap_numbers({to, count * each}, each);
+    if (swapped_) with_number_type(type_, [&](auto zero) { scene::swap_numbers<decltype(zero)>({to, count * each}); });
     return true;
   }
 

@@ -10,6 +10,7 @@
 
 #include "io/formats/whole_file.hpp"
 #include "readers/gmsh/gmsh_types.hpp"
+#include "scene/byte_order.hpp"
 
 namespace tessera::readers {
 namespace {
@@ -91,9 +92,7 @@ bool each_binary_element(const ElementList& list, const Use& use) {
   std::map<int, std::size_t> node_counts;
   std::size_t at = 0;
   const auto number_at = [&](std::size_t place) {
-    std::uint32_t value = 0;
-    std::memcpy(&value, bytes.data() + 4 * place, sizeof value);
-    return static_cast<std::int32_t>(list.is_swapped ? __builtin_bswap32(value) : value);
+    return scene::load<std::int32_t>(bytes.data() + 4 * place, list.is_swapped);
   };
   const std::size_t numbers = bytes.size() / 4;
   for (std::int64_t done = 0; done < *count;) {

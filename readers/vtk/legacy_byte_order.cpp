@@ -16,25 +16,18 @@
 #include <vector>
 
 #include "io/formats/whole_file.hpp"
+#include "scene/byte_order.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::readers {
 namespace {
-
-template <class T>
-T number_at(std::string_view bytes, std::size_t at, bool is_swapped) {
-  std::array<char, sizeof(T)> own;
-  std::memcpy(own.data(), bytes.data() + at, sizeof(T));
-  if (is_swapped) std::ranges::reverse(own);
-  return std::bit_cast<T>(own);
-}
 
 /// The first numbers, which are few.
 template <class T, class IsLikely>
 bool are_likely(std::string_view bytes, bool is_swapped, const IsLikely& is_likely) {
   constexpr std::size_t most = 3000;
   for (std::size_t k = 0; k < std::min(most, bytes.size() / sizeof(T)); ++k)
-    if (!is_likely(number_at<T>(bytes, k * sizeof(T), is_swapped))) return false;
+    if (!is_likely(scene::load<T>(bytes.data() + k * sizeof(T), is_swapped))) return false;
   return true;
 }
 
