@@ -34,6 +34,7 @@
 #include "io/vtk/vtk_field_words.hpp"
 #include "scene/error.hpp"
 #include "scene/fill_value.hpp"
+#include "scene/number_type.hpp"
 #include "scene/scaled_source.hpp"
 #include "scene/threads.hpp"
 #include "scene/threshold_source.hpp"
@@ -188,12 +189,6 @@ FieldInfo only_field(const std::string& name, Association association, const cha
   return {name, association, 1, type, facts.scalar_range[0], facts.scalar_range[1], 0, true};
 }
 
-const char* word(NumberType type) {
-  constexpr const char* words[] = {"int8",   "uint8", "int16",  "uint16",  "int32",
-                                   "uint32", "int64", "uint64", "float32", "float64"};
-  return words[static_cast<std::size_t>(type)];
-}
-
 /// This rank's error ends the run for all, and the run's one error is thrown on each.
 template <class Work>
 auto together(exchange::Transport& transport, const Work& work) {
@@ -340,14 +335,15 @@ Dataset Dataset::of(const MeshArrays& arrays) {
   state->source = "mesh";
   state->format = "arrays";
   state->field_name = arrays.field_name;
-  state->fields = {only_field(arrays.field_name, arrays.association, word(arrays.scalars.type()), state->facts)};
+  state->fields = {
+      only_field(arrays.field_name, arrays.association, scene::name_of(arrays.scalars.type()), state->facts)};
   return Dataset(std::move(state));
 }
 
 Dataset Dataset::of(const GridArrays& arrays) {
   scene::Grid grid;
   grid.geometry = arrays.geometry;
-  const std::optional<SampleType> type = io::sample_type_of(arrays.samples.type());
+  const std::optional<SampleType> type = scene::sample_type_of(arrays.samples.type());
   if (!type) throw scene::bad_input("grid: samples are 64-bit integers; give float64");
   grid.type = *type;
   grid.scale = arrays.scale, grid.shift = arrays.shift;
@@ -391,7 +387,7 @@ Dataset Dataset::of_parts(const MeshArrays& part, const Communicator& communicat
     state->source = "mesh";
     state->format = "arrays";
     state->field_name = part.field_name;
-    state->fields = {only_field(part.field_name, part.association, word(part.scalars.type()), state->facts)};
+    state->fields = {only_field(part.field_name, part.association, scene::name_of(part.scalars.type()), state->facts)};
     return Dataset(std::move(state));
   });
 }

@@ -10,15 +10,13 @@
 #include <glm/matrix.hpp>
 
 #include "scene/error.hpp"
+#include "scene/number_type.hpp"
 
 namespace tessera {
 inline namespace v0_1 {
 namespace {
 
 using scene::bad_input;
-
-constexpr std::array type_names = {"int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64"};
-constexpr std::array<std::size_t, 8> type_sizes = {1, 1, 2, 2, 4, 4, 4, 8};
 
 double local_of_index(const GridGeometry& g, int axis, double index) {
   const std::vector<double>& c = g.coordinates[static_cast<std::size_t>(axis)];
@@ -38,8 +36,8 @@ double index_of_local(const GridGeometry& g, int axis, double local) {
 
 }  // namespace
 
-std::size_t size_of(SampleType type) { return type_sizes[static_cast<std::size_t>(type)]; }
-const char* name_of(SampleType type) { return type_names[static_cast<std::size_t>(type)]; }
+std::size_t size_of(SampleType type) { return scene::size_of(scene::number_type_of(type)); }
+const char* name_of(SampleType type) { return scene::name_of(scene::number_type_of(type)); }
 bool is_float(SampleType type) { return type == SampleType::float32 || type == SampleType::float64; }
 
 bool fits_float(SampleType type) {

@@ -12,6 +12,7 @@
 #include "cells/duplicate_cells.hpp"
 #include "cells/mesh_assembly.hpp"
 #include "scene/error.hpp"
+#include "scene/number_type.hpp"
 
 namespace tessera::frame {
 namespace {
@@ -19,29 +20,7 @@ namespace {
 /// Calls `use` with the numbers as they are stored.
 template <class Use>
 auto with_numbers(const ArrayView& view, const Use& use) {
-  switch (view.type()) {
-    case NumberType::int8:
-      return use(view.as<std::int8_t>());
-    case NumberType::uint8:
-      return use(view.as<std::uint8_t>());
-    case NumberType::int16:
-      return use(view.as<std::int16_t>());
-    case NumberType::uint16:
-      return use(view.as<std::uint16_t>());
-    case NumberType::int32:
-      return use(view.as<std::int32_t>());
-    case NumberType::uint32:
-      return use(view.as<std::uint32_t>());
-    case NumberType::int64:
-      return use(view.as<std::int64_t>());
-    case NumberType::uint64:
-      return use(view.as<std::uint64_t>());
-    case NumberType::float32:
-      return use(view.as<float>());
-    case NumberType::float64:
-      break;
-  }
-  return use(view.as<double>());
+  return scene::with_number_type(view.type(), [&](auto zero) { return use(view.as<decltype(zero)>()); });
 }
 
 bool is_whole(NumberType type) { return type != NumberType::float32 && type != NumberType::float64; }

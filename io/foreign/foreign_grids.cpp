@@ -79,7 +79,7 @@ void set_source(const ForeignFile& file, const ForeignPart& part, const cells::F
   const auto array =
       std::find_if(arrays.begin(), arrays.end(), [&](const ForeignArray& a) { return a.name == choice.name; });
   const auto hidden = hidden_samples(file, part, choice.association, grid.geometry, result.notes);
-  const std::optional<SampleType> plain = array == arrays.end() ? std::nullopt : sample_type_of(array->type);
+  const std::optional<SampleType> plain = array == arrays.end() ? std::nullopt : scene::sample_type_of(array->type);
   const SampleType type = plain.value_or(SampleType::float64);
   // Floats hold numbers of up to 16 bits, and magnitudes of floats.
   const bool narrow = scene::size_of(type) < 4 || type == SampleType::float32;

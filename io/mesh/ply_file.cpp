@@ -12,40 +12,23 @@
 #include "io/text/scanner.hpp"
 #include "scene/byte_order.hpp"
 #include "scene/error.hpp"
+#include "scene/number_type.hpp"
 #include "scene/quote.hpp"
 
 namespace tessera::io {
 namespace {
 
-enum class Number { i8, u8, i16, u16, i32, u32, f32, f64 };
-constexpr std::array<std::size_t, 8> number_size = {1, 1, 2, 2, 4, 4, 4, 8};
+using scene::NumberType;
 
-std::optional<Number> type_named(std::string_view name) {
-  static constexpr std::array<std::pair<const char*, Number>, 16> names = {{{"char", Number::i8},
-                                                                            {"int8", Number::i8},
-                                                                            {"uchar", Number::u8},
-                                                                            {"uint8", Number::u8},
-                                                                            {"short", Number::i16},
-                                                                            {"int16", Number::i16},
-                                                                            {"ushort", Number::u16},
-                                                                            {"uint16", Number::u16},
-                                                                            {"int", Number::i32},
-                                                                            {"int32", Number::i32},
-                                                                            {"uint", Number::u32},
-                                                                            {"uint32", Number::u32},
-                                                                            {"float", Number::f32},
-                                                                            {"float32", Number::f32},
-                                                                            {"double", Number::f64},
-                                                                            {"float64", Number::f64}}};
-  for (const auto& [known, number] : names)
-    if (name == known) return number;
-  return std::nullopt;
-}
+constexpr scene::NumberTypeNames ply_types[] = {
+    {NumberType::int8, "char,int8"},        {NumberType::uint8, "uchar,uint8"},     {NumberType::int16, "short,int16"},
+    {NumberType::uint16, "ushort,uint16"},  {NumberType::int32, "int,int32"},       {NumberType::uint32, "uint,uint32"},
+    {NumberType::float32, "float,float32"}, {NumberType::float64, "double,float64"}};
 
 struct Property {
   std::string name;
-  Number type = Number::f32;
-  std::optional<Number> count;  ///< a list: the type of its length
+  NumberType type = NumberType::float32;
+  std::optional<NumberType> count;  ///< a list: the type of its length
 };
 
 struct Element {
@@ -110,9 +93,9 @@ class PlyParser {
       } else if (words[0] == "property" && !elements_.empty() && (words.size() == 3 || words.size() == 5)) {
         Property property;
         const bool is_list = words.size() == 5;
-        if (is_list) property.count = type_named(words[2]);
-        const std::optional<Number> type = type_named(words[is_list ? 3 : 1]);
-        if (!type || (is_list && (words[1] != "list" || !property.count || *property.count >= Number::f32)))
+        if (is_list) property.count = scene::number_type_named(words[2], ply_types);
+        const auto type = scene::number_type_named(words[is_list ? 3 : 1], ply_types);
+        if (!type || (is_list && (words[1] != "list" || !property.count || *property.count >= NumberType::float32)))
           fail(fmt::format("a property of {} has an unknown type", printable_ascii(elements_.back().name)));
         property.type = *type;
         property.name = words.back();
@@ -179,7 +162,7 @@ class PlyParser {
     if (wanted) result_.surface.facets.push_back({{std::move(polygon)}, {}});
   }
 
-  double number(Number type) { return ascii_ ? ascii_number() : binary_number(type); }
+  double number(NumberType type) { return ascii_ ? ascii_number() : binary_number(type); }
 
   double ascii_number() {
     double value = 0;
@@ -189,31 +172,13 @@ class PlyParser {
     return value;
   }
 
-  double binary_number(Number type) {
-    const std::size_t size = number_size[static_cast<std::size_t>(type)];
-    if (scanner_.rest().size() < size) fail("it ends before its last element");
-    const char* const bytes = scanner_.rest().data();
-    scanner_.go_to(scanner_.at() + size);
-    const auto as = [&](auto number) { return static_cast<double>(scene::load<decltype(number)>(bytes, is_swapped_)); };
-    switch (type) {
-      case Number::i8:
-        return as(std::int8_t{});
-      case Number::u8:
-        return as(std::uint8_t{});
-      case Number::i16:
-        return as(std::int16_t{});
-      case Number::u16:
-        return as(std::uint16_t{});
-      case Number::i32:
-        return as(std::int32_t{});
-      case Number::u32:
-        return as(std::uint32_t{});
-      case Number::f32:
-        return as(float{});
-      case Number::f64:
-        return as(double{});
-    }
-    return 0;
+  double binary_number(NumberType type) {
+    const std::string_view bytes = scanner_.rest();
+    return scene::with_number_type(type, [&](auto zero) {
+      if (bytes.size() < sizeof zero) fail("it ends before its last element");
+      scanner_.go_to(scanner_.at() + sizeof zero);
+      return static_cast<double>(scene::load<decltype(zero)>(bytes.data(), is_swapped_));
+    });
   }
 
   static constexpr std::size_t longest_line = 1 << 20;

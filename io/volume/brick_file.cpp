@@ -18,6 +18,7 @@
 #include "io/volume/brick_layout.hpp"
 #include "io/volume/volume_formats.hpp"
 #include "scene/error.hpp"
+#include "scene/number_type.hpp"
 #include "system/atomic_file.hpp"
 #include "system/positional_file.hpp"
 
@@ -194,7 +195,7 @@ VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& o
   result.format = fmt::format("brick file, blocks of {}^3", header.side);
   cells::FieldSummary field{.name = header.grid.field_name,
                             .association = header.grid.geometry.association,
-                            .type = listed_type(header.grid.type)};
+                            .type = scene::listed_name(scene::number_type_of(header.grid.type))};
   field.low = header.range.empty() ? 0 : header.range.low;
   field.high = header.range.empty() ? 0 : header.range.high;
   field.nan_count = header.range.blanks;

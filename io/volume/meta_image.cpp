@@ -11,24 +11,19 @@
 #include "io/text/text_file.hpp"
 #include "io/volume/volume_formats.hpp"
 #include "scene/byte_order.hpp"
+#include "scene/number_type.hpp"
 #include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
 
-struct ElementType {
-  const char* name;
-  scene::SampleType type;
-  StoredVolume::Wide wide = StoredVolume::Wide::no;
-};
-constexpr std::array element_types = {
-    ElementType{"MET_CHAR", scene::SampleType::int8}, ElementType{"MET_UCHAR", scene::SampleType::uint8},
-    ElementType{"MET_SHORT", scene::SampleType::int16}, ElementType{"MET_USHORT", scene::SampleType::uint16},
-    ElementType{"MET_INT", scene::SampleType::int32}, ElementType{"MET_UINT", scene::SampleType::uint32},
-    ElementType{"MET_FLOAT", scene::SampleType::float32}, ElementType{"MET_DOUBLE", scene::SampleType::float64},
-    // MET_LONG is of four bytes or of eight, as its writer's machine had it.
-    ElementType{"MET_LONG_LONG", scene::SampleType::float64, StoredVolume::Wide::int64},
-    ElementType{"MET_ULONG_LONG", scene::SampleType::float64, StoredVolume::Wide::uint64}};
+// MET_LONG is of four bytes or of eight, as its writer's machine had it.
+constexpr scene::NumberTypeNames element_types[] = {
+    {scene::NumberType::int8, "MET_CHAR"},       {scene::NumberType::uint8, "MET_UCHAR"},
+    {scene::NumberType::int16, "MET_SHORT"},     {scene::NumberType::uint16, "MET_USHORT"},
+    {scene::NumberType::int32, "MET_INT"},       {scene::NumberType::uint32, "MET_UINT"},
+    {scene::NumberType::float32, "MET_FLOAT"},   {scene::NumberType::float64, "MET_DOUBLE"},
+    {scene::NumberType::int64, "MET_LONG_LONG"}, {scene::NumberType::uint64, "MET_ULONG_LONG"}};
 
 /// Keys in the file's order end with ElementDataFile; after its line a local payload begins.
 struct MetaHeader {
@@ -69,15 +64,13 @@ void read_samples_of(const MetaHeader& header, const std::filesystem::path& file
   if (!type) throw damaged(file, "its header has no ElementType");
   std::string_view word = *type;
   if (word.ends_with("_ARRAY")) word.remove_suffix(6);  // several channels
-  const auto* known =
-      std::find_if(element_types.begin(), element_types.end(), [&](const ElementType& t) { return word == t.name; });
-  if (known == element_types.end())
+  const auto known = scene::number_type_named(word, element_types);
+  if (!known)
     throw scene::bad_input(
         fmt::format("{}: its ElementType {} is none that is read; write MET_UCHAR, MET_SHORT, "
                     "MET_USHORT, MET_INT, MET_FLOAT or MET_DOUBLE",
                     file.string(), quote(*type)));
-  volume.number = known->type;
-  volume.wide = known->wide;
+  volume.set_type(*known);
   if (const auto* channels = header.find({"ElementNumberOfChannels"}))
     volume.components = static_cast<int>(header_count(*channels, 1, 64, file, "ElementNumberOfChannels"));
   const bool big = meta_is_true(header.find({"BinaryDataByteOrderMSB", "ElementByteOrderMSB"}));

@@ -111,22 +111,16 @@ class NiftiHeader {
 
 struct NiftiType {
   int code;
-  scene::SampleType type;
+  scene::NumberType type;
   int components;
-  StoredVolume::Wide wide = StoredVolume::Wide::no;
 };
-constexpr std::array nifti_types = {NiftiType{2, scene::SampleType::uint8, 1},
-                                    NiftiType{4, scene::SampleType::int16, 1},
-                                    NiftiType{8, scene::SampleType::int32, 1},
-                                    NiftiType{16, scene::SampleType::float32, 1},
-                                    NiftiType{64, scene::SampleType::float64, 1},
-                                    NiftiType{128, scene::SampleType::uint8, 3},
-                                    NiftiType{256, scene::SampleType::int8, 1},
-                                    NiftiType{512, scene::SampleType::uint16, 1},
-                                    NiftiType{768, scene::SampleType::uint32, 1},
-                                    NiftiType{2304, scene::SampleType::uint8, 4},
-                                    NiftiType{1024, scene::SampleType::float64, 1, StoredVolume::Wide::int64},
-                                    NiftiType{1280, scene::SampleType::float64, 1, StoredVolume::Wide::uint64}};
+constexpr std::array nifti_types = {
+    NiftiType{2, scene::NumberType::uint8, 1},    NiftiType{4, scene::NumberType::int16, 1},
+    NiftiType{8, scene::NumberType::int32, 1},    NiftiType{16, scene::NumberType::float32, 1},
+    NiftiType{64, scene::NumberType::float64, 1}, NiftiType{128, scene::NumberType::uint8, 3},
+    NiftiType{256, scene::NumberType::int8, 1},   NiftiType{512, scene::NumberType::uint16, 1},
+    NiftiType{768, scene::NumberType::uint32, 1}, NiftiType{2304, scene::NumberType::uint8, 4},
+    NiftiType{1024, scene::NumberType::int64, 1}, NiftiType{1280, scene::NumberType::uint64, 1}};
 
 /// nifti1.h, "METHOD 2": the rotation of a unit quaternion with a >= 0, the third axis mirrored where qfac is -1.
 std::array<glm::dvec3, 3> quaternion_steps(const NiftiHeader& header, const glm::dvec3& spacing) {
@@ -217,9 +211,8 @@ void set_nifti_type(const NiftiHeader& header, const std::filesystem::path& file
     throw scene::bad_input(
         fmt::format("{}: its data type {} is none that is read; write integers or 32 or 64-bit floats", file.string(),
                     header.datatype()));
-  volume.number = type->type;
+  volume.set_type(type->type);
   volume.components = type->components;
-  volume.wide = type->wide;
   volume.swapped = header.swapped();
 }
 

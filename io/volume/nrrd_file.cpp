@@ -13,51 +13,26 @@
 #include "io/volume/nrrd_axes.hpp"
 #include "io/volume/volume_formats.hpp"
 #include "scene/byte_order.hpp"
+#include "scene/number_type.hpp"
 #include "system/positional_file.hpp"
 #include "tessera/program/text.hpp"
 
 namespace tessera::io {
 namespace {
 
-using scene::SampleType;
+using scene::NumberType;
 
-struct NrrdTypeName {
-  const char* name;
-  SampleType type;
-};
-constexpr std::array nrrd_type_names = {NrrdTypeName{"signed char", SampleType::int8},
-                                        NrrdTypeName{"int8", SampleType::int8},
-                                        NrrdTypeName{"int8_t", SampleType::int8},
-                                        NrrdTypeName{"uchar", SampleType::uint8},
-                                        NrrdTypeName{"unsigned char", SampleType::uint8},
-                                        NrrdTypeName{"uint8", SampleType::uint8},
-                                        NrrdTypeName{"uint8_t", SampleType::uint8},
-                                        NrrdTypeName{"short", SampleType::int16},
-                                        NrrdTypeName{"short int", SampleType::int16},
-                                        NrrdTypeName{"signed short", SampleType::int16},
-                                        NrrdTypeName{"signed short int", SampleType::int16},
-                                        NrrdTypeName{"int16", SampleType::int16},
-                                        NrrdTypeName{"int16_t", SampleType::int16},
-                                        NrrdTypeName{"ushort", SampleType::uint16},
-                                        NrrdTypeName{"unsigned short", SampleType::uint16},
-                                        NrrdTypeName{"unsigned short int", SampleType::uint16},
-                                        NrrdTypeName{"uint16", SampleType::uint16},
-                                        NrrdTypeName{"uint16_t", SampleType::uint16},
-                                        NrrdTypeName{"int", SampleType::int32},
-                                        NrrdTypeName{"signed int", SampleType::int32},
-                                        NrrdTypeName{"int32", SampleType::int32},
-                                        NrrdTypeName{"int32_t", SampleType::int32},
-                                        NrrdTypeName{"uint", SampleType::uint32},
-                                        NrrdTypeName{"unsigned int", SampleType::uint32},
-                                        NrrdTypeName{"uint32", SampleType::uint32},
-                                        NrrdTypeName{"uint32_t", SampleType::uint32},
-                                        NrrdTypeName{"float", SampleType::float32},
-                                        NrrdTypeName{"double", SampleType::float64}};
-
-constexpr std::array nrrd_int64_names = {
-    "longlong", "long long", "long long int", "signed long long", "signed long long int", "int64", "int64_t"};
-constexpr std::array nrrd_uint64_names = {"ulonglong", "unsigned long long", "unsigned long long int", "uint64",
-                                          "uint64_t"};
+constexpr scene::NumberTypeNames nrrd_types[] = {
+    {NumberType::int8, "signed char,int8,int8_t"},
+    {NumberType::uint8, "uchar,unsigned char,uint8,uint8_t"},
+    {NumberType::int16, "short,short int,signed short,signed short int,int16,int16_t"},
+    {NumberType::uint16, "ushort,unsigned short,unsigned short int,uint16,uint16_t"},
+    {NumberType::int32, "int,signed int,int32,int32_t"},
+    {NumberType::uint32, "uint,unsigned int,uint32,uint32_t"},
+    {NumberType::int64, "longlong,long long,long long int,signed long long,signed long long int,int64,int64_t"},
+    {NumberType::uint64, "ulonglong,unsigned long long,unsigned long long int,uint64,uint64_t"},
+    {NumberType::float32, "float"},
+    {NumberType::float64, "double"}};
 
 const std::string& required_field(const NrrdFields& fields, const char* name, const std::filesystem::path& file) {
   const auto* value = fields.find(name);
@@ -153,16 +128,11 @@ StoredVolume read_nrrd_header(const std::filesystem::path& file) {
   for (std::size_t a = 0; a < 3; ++a) volume.grid.geometry.points[a] = sizes[axes.space[a]];
 
   const std::string type = lower_case(required_field(fields, "type", file));
-  const auto* known = std::find_if(nrrd_type_names.begin(), nrrd_type_names.end(),
-                                   [&](const NrrdTypeName& t) { return type == t.name; });
-  if (std::ranges::count(nrrd_int64_names, type) > 0)
-    volume.wide = StoredVolume::Wide::int64;
-  else if (std::ranges::count(nrrd_uint64_names, type) > 0)
-    volume.wide = StoredVolume::Wide::uint64;
-  else if (known == nrrd_type_names.end())
+  const auto known = scene::number_type_named(type, nrrd_types);
+  if (!known)
     throw scene::bad_input(fmt::format("{}: its type {} is none that is read; write integers, float or double",
                                        file.string(), quote(type)));
-  volume.number = volume.wide == StoredVolume::Wide::no ? known->type : SampleType::float64;
+  volume.set_type(*known);
   const std::string encoding = lower_case(required_field(fields, "encoding", file));
   volume.compressed = encoding == "gzip" || encoding == "gz";
   if (encoding == "ascii" || encoding == "text" || encoding == "txt")

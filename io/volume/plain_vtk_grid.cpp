@@ -232,7 +232,7 @@ std::optional<StoredVolume> read_plain_vtk_grid(const std::filesystem::path& pat
   GridElements found = elements_of(words.text, path.string());
   const std::string kind = word(found.file, "type");
   const auto type = vtk_xml_number_type(word(found.samples.attributes, "type"));
-  const auto sample_type = type ? sample_type_of(*type) : std::nullopt;
+  const auto sample_type = type ? scene::sample_type_of(*type) : std::nullopt;
   std::array<int, 1> components{};
   if (!sample_type || !is_plain(found, kind) ||
       !read_numbers(word(found.samples.attributes, "NumberOfComponents", "1"), components) || components[0] < 1 ||

@@ -10,6 +10,7 @@
 #include "io/volume/plain_vtk_grid.hpp"
 #include "io/volume/volume_reader.hpp"
 #include "io/vtk/vtk_array.hpp"
+#include "scene/number_type.hpp"
 
 namespace tessera::io {
 
@@ -34,6 +35,13 @@ struct StoredVolume {
   std::uint64_t skip_inflated = 0;           ///< compressed: bytes before the samples in what comes out
   enum class Coding { binary, text, hex } coding = Coding::binary;
   enum class Wide { no, int64, uint64 } wide = Wide::no;  ///< 64-bit integers; `number` is float64, which they become
+
+  /// Of each component, `number` and `wide`.
+  void set_type(scene::NumberType type) {
+    number = scene::sample_type_of(type).value_or(scene::SampleType::float64);
+    wide = type == scene::NumberType::int64 ? Wide::int64 : type == scene::NumberType::uint64 ? Wide::uint64 : Wide::no;
+  }
+
   std::string field = "samples";
   bool active = false;               ///< the file marks it as its scalars
   std::optional<bool> has_colors{};  ///< what the file says of its components; else look_like_colors() decides
@@ -65,8 +73,5 @@ VolumeFile read_xdmf_grid(const std::filesystem::path& file, const VolumeOptions
 
 /// DICOM: a folder of slices, or one of its files, or frames in one file.
 VolumeFile read_dicom(const std::filesystem::path& file, const VolumeOptions& options);
-
-/// "float" for float32, "double" for float64, else the type's name: as meshes' fields are listed.
-std::string listed_type(scene::SampleType type);
 
 }  // namespace tessera::io

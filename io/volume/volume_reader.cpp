@@ -19,6 +19,7 @@
 #include "io/volume/stored_samples.hpp"
 #include "io/volume/volume_formats.hpp"
 #include "io/vtk/vtk_field_words.hpp"
+#include "scene/number_type.hpp"
 #include "system/gzip.hpp"
 
 namespace tessera::io {
@@ -152,7 +153,7 @@ VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const 
   cells::FieldSummary field{.name = volume.field,
                             .association = volume.grid.geometry.association,
                             .components = volume.components,
-                            .type = listed_type(volume.number)};
+                            .type = scene::listed_name(scene::number_type_of(volume.number))};
   field.active = volume.active;
   field.high = 1;  // until it is known; nobody chooses by it
   const cells::FieldChoice choice = cells::choose_field(options.field, std::span(&field, 1), source);
@@ -254,12 +255,6 @@ VolumeFile open_described(const std::filesystem::path& file, VolumeKind kind, co
 }
 
 }  // namespace
-
-std::string listed_type(scene::SampleType type) {
-  if (type == scene::SampleType::float32) return "float";
-  if (type == scene::SampleType::float64) return "double";
-  return scene::name_of(type);
-}
 
 bool is_volume(const std::filesystem::path& file) {
   std::error_code unknown;

@@ -11,7 +11,9 @@
 #include "io/formats/input_file.hpp"
 #include "io/text/xml_elements.hpp"
 #include "io/volume/brick_file.hpp"
+#include "io/vtk/vtk_xml_grid.hpp"
 #include "scene/error.hpp"
+#include "scene/number_type.hpp"
 #include "system/atomic_file.hpp"
 #include "tessera/program/text.hpp"
 
@@ -19,17 +21,6 @@ namespace tessera::io {
 namespace {
 
 using scene::SampleType;
-
-const char* written_vtk_type(SampleType type) {
-  constexpr std::array names = {"Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Float32", "Float64"};
-  return names[static_cast<std::size_t>(type)];
-}
-
-const char* written_nrrd_type(SampleType type) {
-  if (type == SampleType::float32) return "float";
-  if (type == SampleType::float64) return "double";
-  return scene::name_of(type);
-}
 
 void write_values(const scene::SampleSource& source, system::AtomicFile& out) {
   const scene::Grid& grid = source.grid();
@@ -94,7 +85,7 @@ void write_vtk_volume(const scene::SampleSource& source, system::AtomicFile& out
   head += fmt::format(
       "\n    <Piece Extent=\"{}\">\n      <{} Scalars=\"{}\">\n        <DataArray type=\"{}\" Name=\"{}\" "
       "format=\"appended\" offset=\"0\"/>\n      </{}>\n",
-      extent, section, field, written_vtk_type(type), field, section);
+      extent, section, field, vtk_xml_type_name(scene::number_type_of(type)), field, section);
   if (rectilinear) {
     head += "      <Coordinates>\n";
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -121,9 +112,9 @@ void write_nrrd(const scene::SampleSource& source, system::AtomicFile& out, cons
     return found == words.end() ? std::string() : found->second;
   };
   const std::string space = word_of("space");
-  std::string head = fmt::format("NRRD0004\ntype: {}\ndimension: 3\n{}\nsizes: {} {} {}\n", written_nrrd_type(type),
-                                 space.empty() ? "space dimension: 3" : fmt::format("space: {}", space), g.points[0],
-                                 g.points[1], g.points[2]);
+  std::string head = fmt::format(
+      "NRRD0004\ntype: {}\ndimension: 3\n{}\nsizes: {} {} {}\n", scene::listed_name(scene::number_type_of(type)),
+      space.empty() ? "space dimension: 3" : fmt::format("space: {}", space), g.points[0], g.points[1], g.points[2]);
   head += "space directions:";
   for (int axis = 0; axis < 3; ++axis) {
     const glm::dvec3 step = g.direction[axis] * g.spacing[axis];

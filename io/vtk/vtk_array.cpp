@@ -11,9 +11,9 @@
 #include <memory>
 #include <optional>
 
+#include "scene/byte_order.hpp"
 #include "scene/error.hpp"
 #include "system/positional_file.hpp"
-#include "scene/byte_order.hpp"
 
 namespace tessera::io {
 namespace {

@@ -188,19 +188,15 @@ const VtkXmlArray* VtkXmlPiece::find(const std::string& name) const {
   return found == topology.end() ? nullptr : &*found;
 }
 
+const char* vtk_xml_type_name(NumberType type) {
+  static constexpr std::array names = {"Int8",   "UInt8", "Int16",  "UInt16",  "Int32",
+                                       "UInt32", "Int64", "UInt64", "Float32", "Float64"};
+  return names[static_cast<std::size_t>(type)];
+}
+
 std::optional<NumberType> vtk_xml_number_type(const std::string& name) {
-  constexpr std::array<std::pair<std::string_view, NumberType>, 10> types = {{{"Int8", NumberType::int8},
-                                                                              {"UInt8", NumberType::uint8},
-                                                                              {"Int16", NumberType::int16},
-                                                                              {"UInt16", NumberType::uint16},
-                                                                              {"Int32", NumberType::int32},
-                                                                              {"UInt32", NumberType::uint32},
-                                                                              {"Int64", NumberType::int64},
-                                                                              {"UInt64", NumberType::uint64},
-                                                                              {"Float32", NumberType::float32},
-                                                                              {"Float64", NumberType::float64}}};
-  for (const auto& [known, type] : types)
-    if (known == name) return type;
+  for (int type = 0; type <= static_cast<int>(NumberType::float64); ++type)
+    if (name == vtk_xml_type_name(static_cast<NumberType>(type))) return static_cast<NumberType>(type);
   return std::nullopt;
 }
 

@@ -57,7 +57,8 @@ struct VtkXmlGrid {
 /// comments, a version or type to come. Throws Error(bad_input) of `source` if it is another kind of file, or damaged.
 std::optional<VtkXmlGrid> read_vtk_xml_grid(const system::PositionalFile& file, const std::string& source);
 
-/// The type of numbers that a VTK XML file names so.
+/// A type of numbers as VTK XML files name it, and the type that is named so.
+const char* vtk_xml_type_name(NumberType type);
 std::optional<NumberType> vtk_xml_number_type(const std::string& name);
 
 /// The one whole number that a text is, among blanks; false: it is something else.

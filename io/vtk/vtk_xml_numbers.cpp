@@ -114,7 +114,7 @@ void stream_numbers(const system::PositionalFile& file, const VtkXmlSegment& seg
       if (const std::string word = numbers.wrong_word(); !word.empty())
         throw scene::bad_input(fmt::format("{}: its array {} has {} where a number of type {} should be; correct it",
                                            source, scene::quote(segment.array.name), scene::quote(word),
-                                           name_of(*segment.array.type)));
+                                           scene::listed_name(*segment.array.type)));
       throw scene::bad_input(
           fmt::format("{}: its array {} breaks between its numbers {} and {} of {}; the file is truncated or "
                       "damaged, export it again",

@@ -299,7 +299,7 @@ cells::BlockField foreign_field(const ForeignFile& file, const ForeignArray& arr
   field.name = array.name;
   field.association = association;
   field.components = array.components;
-  field.type = name_of(array.type);
+  field.type = scene::listed_name(array.type);
   field.tuples = array.tuples;
   field.active = array.active;
   field.ids = array.ids;

@@ -113,42 +113,6 @@ void copy_tuples(const T* values, int components, int component, std::size_t fir
 
 }  // namespace
 
-std::size_t size_of(NumberType type) {
-  return with_number_type(type, [](auto zero) { return sizeof zero; });
-}
-
-std::optional<scene::SampleType> sample_type_of(NumberType type) {
-  using scene::SampleType;
-  switch (type) {
-    case NumberType::int8:
-      return SampleType::int8;
-    case NumberType::uint8:
-      return SampleType::uint8;
-    case NumberType::int16:
-      return SampleType::int16;
-    case NumberType::uint16:
-      return SampleType::uint16;
-    case NumberType::int32:
-      return SampleType::int32;
-    case NumberType::uint32:
-      return SampleType::uint32;
-    case NumberType::float32:
-      return SampleType::float32;
-    case NumberType::float64:
-      return SampleType::float64;
-    case NumberType::int64:
-    case NumberType::uint64:
-      break;
-  }
-  return std::nullopt;
-}
-
-const char* name_of(NumberType type) {
-  constexpr std::array names = {"int8",   "uint8", "int16",  "uint16", "int32",
-                                "uint32", "int64", "uint64", "float",  "double"};
-  return names[static_cast<std::size_t>(type)];
-}
-
 void read_tuples(std::span<const std::byte> bytes, NumberType type, int components, int component, std::size_t first,
                  std::span<double> out) {
   with_number_type(type, [&](auto zero) {

@@ -11,6 +11,7 @@
 
 #include "cells/number_tally.hpp"
 #include "scene/grid.hpp"
+#include "scene/number_type.hpp"
 #include "scene/time_step_read.hpp"
 #include "tessera/array.hpp"
 
@@ -19,43 +20,9 @@ namespace tessera::io {
 /// What the helper program (readers/README.md) says of a file that it has read with somebody else's library. The
 /// numbers stay there until they are asked for, an array at a time.
 
+using scene::size_of;
+using scene::with_number_type;
 using tessera::NumberType;
-
-std::size_t size_of(NumberType type);
-
-/// The same type of samples; none for 64-bit integers.
-std::optional<scene::SampleType> sample_type_of(NumberType type);
-
-/// As fields are listed: int8, uint8, ..., float, double.
-const char* name_of(NumberType type);
-
-/// Calls `use` with a zero of the C++ type.
-template <class Use>
-auto with_number_type(NumberType type, const Use& use) {
-  switch (type) {
-    case NumberType::int8:
-      return use(std::int8_t{});
-    case NumberType::uint8:
-      return use(std::uint8_t{});
-    case NumberType::int16:
-      return use(std::int16_t{});
-    case NumberType::uint16:
-      return use(std::uint16_t{});
-    case NumberType::int32:
-      return use(std::int32_t{});
-    case NumberType::uint32:
-      return use(std::uint32_t{});
-    case NumberType::int64:
-      return use(std::int64_t{});
-    case NumberType::uint64:
-      return use(std::uint64_t{});
-    case NumberType::float32:
-      return use(float{});
-    case NumberType::float64:
-      break;
-  }
-  return use(double{});
-}
 
 /// Tuples [first, first + out.size()) of an array as doubles: one component, or their lengths (`magnitude`,
 /// cells/cell_block.hpp). The bytes hold them all, aligned as the type wants.
