@@ -3,21 +3,18 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <atomic>
-#include <condition_variable>
 #include <cstdlib>
-#include <deque>
+#include <future>
 #include <mutex>
 #include <thread>
 #include <utility>
-#include <vector>
 
-#include "exchange/bells.hpp"
-#include "exchange/heartbeats.hpp"
 #include "exchange/mailboxes.hpp"
 #include "exchange/message.hpp"
+#include "exchange/mpi/liveness.hpp"
 #include "exchange/mpi/mpi_port.hpp"
+#include "exchange/mpi/naps.hpp"
+#include "exchange/mpi/send_queue.hpp"
 #include "exchange/run_faults.hpp"
 #include "scene/start_thread.hpp"
 
@@ -25,25 +22,13 @@ namespace tessera::exchange {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using std::chrono::microseconds;
 
 // Tags below channel_count are channels; this one is of the transport's own messages.
 constexpr int own_tag = 100;  // of the kinds fault to silent (message.hpp)
 
-// Naps of the engine between two looks at MPI: a look costs 20 to 30 us of a core that projects or composites. They
-// double while nothing comes; messages on their way need looks to get on.
-struct Naps {
-  microseconds shortest, longest_moving, longest;
-};
-constexpr Naps idle_naps{microseconds(100), microseconds(500), microseconds(2000)};
-// While the rank's cores project, a look in time for the next part of the frame is soon enough.
-constexpr Naps working_naps{microseconds(2000), microseconds(2000), microseconds(5000)};
-
-// Where others ring when they send.
-constexpr microseconds longest_nap_with_bells(20'000);
-
 /// For the others to hear of the error that a stalled rank is; at most the transport's patience.
 constexpr auto stall_grace = std::chrono::seconds(1);
+
 }  // namespace
 
 /// The thread that speaks MPI, and what it shares with the others.
@@ -56,12 +41,9 @@ class MpiTransport::Engine {
         borrowed_(borrowed.has_value()),
         port_(borrowed),
         thread_(scene::start_thread([this] { run(); })) {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return started_; });
-    if (start_error_) {
-      lock.unlock();
+    if (const std::optional<scene::Error> error = start_error_.get_future().get()) {
       thread_.join();
-      throw scene::Error(*start_error_);
+      throw scene::Error(*error);
     }
   }
   ~Engine() {
@@ -88,7 +70,7 @@ class MpiTransport::Engine {
       const std::lock_guard lock(mutex_);
       if (!own_fault_) own_fault_ = error;
     }
-    wake();
+    naps.wake(rank);
   }
 
   std::optional<scene::Error> finish() {
@@ -96,169 +78,77 @@ class MpiTransport::Engine {
       const std::lock_guard lock(mutex_);
       finishing_ = true;
     }
-    wake();
+    naps.wake(rank);
     if (thread_.joinable()) thread_.join();
     return mailboxes.error();
-  }
-
-  void set_working(bool working) {
-    working_ = working;
-    if (!working) wake();
-  }
-
-  void use_bells(const std::shared_ptr<Bells>& bells) {
-    {
-      const std::lock_guard lock(mutex_);
-      bells_ = bells;
-    }
-    changed_.notify_all();
-  }
-
-  void watch_stalls(const StallSettings& settings) {
-    const std::lock_guard lock(mutex_);
-    stalls_ = settings;
-  }
-
-  /// What was sent before is on the old faces when this returns.
-  void trace_to(scene::Trace* projecting, scene::Trace* compositing) {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return (queue_.empty() && !posting_) || ended_; });
-    projecting_ = projecting;
-    compositing_ = compositing;
   }
 
   int rank = 0, size = 1;
   Mailboxes mailboxes;
   TrafficCounters sent;
+  SendQueue queue;
+  Naps naps;
+  Liveness liveness;
 
  private:
-  struct Outgoing {
-    int to, tag;
-    Bytes bytes;
-    std::int32_t frame = -1;
-  };
-
-  void enqueue(Outgoing message) {
-    {
-      const std::lock_guard lock(mutex_);
-      queue_.push_back(std::move(message));
-    }
-    wake();
+  void enqueue(SendQueue::Outgoing message) {
+    queue.push(std::move(message));
+    naps.wake(rank);
   }
 
-  /// The engine's thread, from its nap.
-  void wake() {
-    changed_.notify_all();
-    std::shared_ptr<Bells> bells;
-    {
-      const std::lock_guard lock(mutex_);
-      bells = bells_;
-    }
-    if (bells != nullptr) bells->ring(rank);
-  }
-
-  /// Until there is something to do, for `most` at the longest. Returns whether a bell rang.
-  bool nap(Bells* bells, std::uint32_t heard, microseconds most) {
-    std::unique_lock lock(mutex_);
-    if (!queue_.empty()) return false;
-    if (bells == nullptr) {
-      changed_.wait_for(lock, most);
-      return false;
-    }
-    lock.unlock();
-    bells->wait(heard, most);
-    return bells->heard() != heard;
-  }
-
-  void run() {
+  bool start() {
+    std::optional<scene::Error> failed;
     try {
       port_.start();
       rank = port_.rank();
       size = port_.size();
     } catch (const scene::Error& error) {
-      start_error_ = error;
+      failed = error;
     }
-    {
-      const std::lock_guard lock(mutex_);
-      started_ = true;
-    }
-    changed_.notify_all();
-    if (start_error_) return;
+    const bool has_started = !failed;
+    start_error_.set_value(std::move(failed));
+    return has_started;
+  }
 
-    microseconds length = idle_naps.shortest;
-    bool woken = false;
+  void run() {
+    if (!start()) return;
     while (!all_clear_) {
-      bool came = false;
-      const std::shared_ptr<Bells> bells = [&] {
-        const std::lock_guard lock(mutex_);
-        return bells_;
-      }();
-      const std::uint32_t heard = bells != nullptr ? bells->heard() : 0;
-      try {
-        post(bells.get());
-        port_.complete();
-        // MPI may have held a message back until now.
-        if (bells != nullptr) port_.for_each_receiver([&](int to) { bells->ring(to); });
-        came = port_.take();
-        came = deliver() || came;
-      } catch (const scene::Error& error) {
-        fail(error);
-        give_up(error);  // MPI itself is broken: no words will reach anyone
-      }
+      const std::shared_ptr<Bells> bells = naps.begin_look();
+      const bool came = look(bells.get());
       if (given_up_) break;
       look_for_stalls();
       settle_faults();
       settle_end();
-      if (all_clear_) break;
-      const bool moving = port_.is_sending() || port_.is_receiving();
-      // Rung for while its cores project, a rank would look too often.
-      Bells* const listens_to = working_ ? nullptr : bells.get();
-      Naps naps = working_ ? working_naps : idle_naps;
-      if (listens_to != nullptr && bells->of_all() && !moving) naps.longest = longest_nap_with_bells;
-      // The bell may ring a little before MPI shows the message.
-      const bool soon = came || woken;
-      length =
-          soon ? naps.shortest : std::clamp(2 * length, naps.shortest, moving ? naps.longest_moving : naps.longest);
-      woken = nap(listens_to, heard, length);
+      if (!all_clear_) naps.take(came, port_.is_sending() || port_.is_receiving());
     }
     given_up_ ? port_.abandon() : port_.finish();
-    {
-      const std::lock_guard lock(mutex_);
-      ended_ = true;  // what is queued stays there
+    queue.end();
+  }
+
+  /// Sends what is queued and takes what is there. Returns whether something came.
+  bool look(Bells* bells) {
+    try {
+      post(bells);
+      port_.complete();
+      // MPI may have held a message back until now.
+      if (bells != nullptr) port_.for_each_receiver([&](int to) { bells->ring(to); });
+      const bool came = port_.take();
+      return deliver() || came;
+    } catch (const scene::Error& error) {
+      fail(error);
+      give_up(error);  // MPI itself is broken: no words will reach anyone
+      return false;
     }
-    changed_.notify_all();
   }
 
   /// Hands queued messages to MPI.
   void post(Bells* bells) {
-    std::deque<Outgoing> queue;
-    {
-      const std::lock_guard lock(mutex_);
-      queue.swap(queue_);
-      posting_ = !queue.empty();
-    }
-    for (Outgoing& message : queue) {
-      const bool is_ours = message.tag == own_tag;
-      if (mailboxes.failed() && !is_ours) continue;
-      const scene::TraceScope timing = traced(message);
+    queue.hand_over([&](SendQueue::Outgoing& message) {
+      if (mailboxes.failed() && message.tag != own_tag) return;
+      const scene::TraceScope timing = queue.traced(message);
       port_.send(message.to, message.tag, std::move(message.bytes));
       if (bells != nullptr) bells->ring(message.to);
-    }
-    if (queue.empty()) return;
-    {
-      const std::lock_guard lock(mutex_);
-      posting_ = false;
-    }
-    changed_.notify_all();
-  }
-
-  /// A span of what a user asks about: fragments, meshes and tiles.
-  scene::TraceScope traced(const Outgoing& message) {
-    scene::Trace* trace = nullptr;
-    if (message.tag == static_cast<int>(Channel::fragments) || message.tag == static_cast<int>(Channel::mesh))
-      trace = projecting_;
-    if (message.tag == static_cast<int>(Channel::tiles)) trace = compositing_;
-    return {trace, "send", message.frame, message.bytes.size(), 1, message.to};
+    });
   }
 
   /// Hands on what has arrived.
@@ -270,7 +160,7 @@ class MpiTransport::Engine {
         obey(std::move(message));
         continue;
       }
-      if (heartbeats_) heartbeats_->heard(message.from);
+      liveness.heard(message.from);
       if (!mailboxes.failed()) mailboxes.deliver(static_cast<Channel>(arrived->tag), std::move(message));
     }
     return moved;
@@ -281,14 +171,8 @@ class MpiTransport::Engine {
     try {
       MessageReader reader(message.bytes, message.from);
       const MessageKind kind = reader.kind();
-      if (kind == MessageKind::alive || kind == MessageKind::silent) {
-        if (heartbeats_)
-          heartbeats_->take(message.from, message.bytes);
-        else
-          early_beats_.push_back(std::move(message));  // of ranks that watch already
-        return;
-      }
-      if (heartbeats_) heartbeats_->heard(message.from);
+      if (kind == MessageKind::alive || kind == MessageKind::silent) return liveness.take(std::move(message));
+      liveness.heard(message.from);
       if (kind == MessageKind::fault)
         decide(take_error(reader));
       else if (kind == MessageKind::verdict)
@@ -324,21 +208,18 @@ class MpiTransport::Engine {
   }
 
   void look_for_stalls() {
-    {
-      const std::lock_guard lock(mutex_);
-      if (stalls_ && size > 1) heartbeats_.emplace(rank, size, *stalls_, process_name(), Clock::now());
-      stalls_.reset();
+    try {
+      for (auto& message : liveness.turn(rank, size)) enqueue({message.to, own_tag, std::move(message.bytes)});
+    } catch (const scene::Error& error) {
+      fail(error);
     }
-    if (heartbeats_)
-      for (Message& beat : std::exchange(early_beats_, {})) obey(std::move(beat));
-    if (!heartbeats_) return;
-    for (auto& message : heartbeats_->turn(Clock::now())) enqueue({message.to, own_tag, std::move(message.bytes)});
-    if (!heartbeats_->lost() || mailboxes.failed()) return;
+    const scene::Error* const lost = liveness.lost();
+    if (lost == nullptr || mailboxes.failed()) return;
     lost_at_ = Clock::now();
-    if (rank == 0) return decide(heartbeats_->lost()->error);
+    if (rank == 0) return decide(*lost);
     // Rank 0 itself: this rank decides in its place.
-    tell_all(error_message(MessageKind::verdict, heartbeats_->lost()->error));
-    conclude(heartbeats_->lost()->error);
+    tell_all(error_message(MessageKind::verdict, *lost));
+    conclude(*lost);
   }
 
   void settle_faults() {
@@ -383,7 +264,7 @@ class MpiTransport::Engine {
       if (lost_at_ && ((rank == 0 && ranks_done_ >= size - 2) || Clock::now() > *lost_at_ + stall_grace))
         give_up(*mailboxes.error());
       if (given_up_) return;
-      if (!queue_.empty() || port_.is_sending() || (own_fault_ && !mailboxes.failed())) return;
+      if (!queue.is_empty() || port_.is_sending() || (own_fault_ && !mailboxes.failed())) return;
     }
     if (!done_told_) {
       done_told_ = true;
@@ -403,22 +284,14 @@ class MpiTransport::Engine {
   Hooks hooks_;
   std::chrono::milliseconds patience_;
   const bool borrowed_;
+  std::promise<std::optional<scene::Error>> start_error_;
 
   std::mutex mutex_;  // guards what follows
-  std::condition_variable changed_;
-  bool posting_ = false;                                         // messages are between the queue and MPI
-  scene::Trace *projecting_ = nullptr, *compositing_ = nullptr;  // changed while nothing is being posted
-  std::deque<Outgoing> queue_;
-  std::optional<scene::Error> own_fault_, start_error_;
-  std::optional<StallSettings> stalls_;  ///< until the engine has begun to watch
-  bool started_ = false, ended_ = false, finishing_ = false, fault_told_ = false;
-  std::atomic<bool> working_ = false;
-  std::shared_ptr<Bells> bells_;
+  std::optional<scene::Error> own_fault_;
+  bool finishing_ = false, fault_told_ = false;
 
   // The engine's thread alone.
   MpiPort port_;
-  std::optional<Heartbeats> heartbeats_;
-  std::vector<Message> early_beats_;
   std::optional<Clock::time_point> lost_at_;  ///< when this rank ended the run for another's silence
   std::optional<scene::Error> asked_to_end_;
   std::optional<Clock::time_point> deadline_;
@@ -446,12 +319,12 @@ std::optional<Message> MpiTransport::receive(Channel channel, std::chrono::milli
   return engine_->mailboxes.receive(channel, timeout);
 }
 void MpiTransport::fail(const scene::Error& error) { engine_->fail(error); }
-void MpiTransport::set_working(bool working) { engine_->set_working(working); }
-void MpiTransport::use_bells(const std::shared_ptr<Bells>& bells) { engine_->use_bells(bells); }
-void MpiTransport::watch_stalls(const StallSettings& settings) { engine_->watch_stalls(settings); }
+void MpiTransport::set_working(bool working) { engine_->naps.set_working(working, engine_->rank); }
+void MpiTransport::use_bells(const std::shared_ptr<Bells>& bells) { engine_->naps.use_bells(bells, engine_->rank); }
+void MpiTransport::watch_stalls(const StallSettings& settings) { engine_->liveness.watch(settings); }
 void MpiTransport::check() const { engine_->mailboxes.check(); }
 void MpiTransport::trace_to(scene::Trace* projecting, scene::Trace* compositing) {
-  engine_->trace_to(projecting, compositing);
+  engine_->queue.trace_to(projecting, compositing);
 }
 Transport::Traffic MpiTransport::sent(Channel channel) const { return engine_->sent.of(channel); }
 
