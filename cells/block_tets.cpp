@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "cells/ghost_bits.hpp"
 #include "scene/directions.hpp"
 #include "scene/error.hpp"
 #include "tessera/cell_type.hpp"
@@ -17,9 +18,6 @@ namespace tessera::cells {
 namespace {
 
 using scene::Tet;
-
-// vtkDataSetAttributes.h: CellGhostTypes and PointGhostTypes.
-constexpr std::uint8_t duplicate_cell = 1, refined_cell = 8, hidden_cell = 32, hidden_point = 2;
 
 /// Tets that each higher-order cell may become beside CurvedSettings::all of them together.
 constexpr std::uint64_t each_curved_cell = 64;

@@ -12,44 +12,23 @@
 namespace tessera::cells {
 namespace {
 
-struct Face {
-  int size;
-  std::array<std::uint8_t, 6> corner;  ///< turning outward
-};
-
 // VTK's corner numbering (vtkHexahedron.h, vtkWedge.h, ...). The wedge's base looks outward there; the others' inward.
-constexpr Face hexahedron_faces[] = {{4, {0, 3, 2, 1}}, {4, {4, 5, 6, 7}}, {4, {0, 1, 5, 4}},
-                                     {4, {1, 2, 6, 5}}, {4, {2, 3, 7, 6}}, {4, {0, 4, 7, 3}}};
-constexpr Face wedge_faces[] = {
+constexpr CellFace tet_faces[] = {{3, {0, 2, 1}}, {3, {0, 1, 3}}, {3, {1, 2, 3}}, {3, {0, 3, 2}}};
+constexpr CellFace hexahedron_faces[] = {{4, {0, 3, 2, 1}}, {4, {4, 5, 6, 7}}, {4, {0, 1, 5, 4}},
+                                         {4, {1, 2, 6, 5}}, {4, {2, 3, 7, 6}}, {4, {0, 4, 7, 3}}};
+constexpr CellFace wedge_faces[] = {
     {3, {0, 1, 2}}, {3, {3, 5, 4}}, {4, {0, 3, 4, 1}}, {4, {1, 4, 5, 2}}, {4, {2, 5, 3, 0}}};
-constexpr Face pyramid_faces[] = {{4, {0, 3, 2, 1}}, {3, {0, 1, 4}}, {3, {1, 2, 4}}, {3, {2, 3, 4}}, {3, {3, 0, 4}}};
-constexpr Face pentagonal_prism_faces[] = {{5, {0, 4, 3, 2, 1}}, {5, {5, 6, 7, 8, 9}}, {4, {0, 1, 6, 5}},
-                                           {4, {1, 2, 7, 6}},    {4, {2, 3, 8, 7}},    {4, {3, 4, 9, 8}},
-                                           {4, {4, 0, 5, 9}}};
-constexpr Face hexagonal_prism_faces[] = {{6, {0, 5, 4, 3, 2, 1}}, {6, {6, 7, 8, 9, 10, 11}}, {4, {0, 1, 7, 6}},
-                                          {4, {1, 2, 8, 7}},       {4, {2, 3, 9, 8}},         {4, {3, 4, 10, 9}},
-                                          {4, {4, 5, 11, 10}},     {4, {5, 0, 6, 11}}};
+constexpr CellFace pyramid_faces[] = {
+    {4, {0, 3, 2, 1}}, {3, {0, 1, 4}}, {3, {1, 2, 4}}, {3, {2, 3, 4}}, {3, {3, 0, 4}}};
+constexpr CellFace pentagonal_prism_faces[] = {{5, {0, 4, 3, 2, 1}}, {5, {5, 6, 7, 8, 9}}, {4, {0, 1, 6, 5}},
+                                               {4, {1, 2, 7, 6}},    {4, {2, 3, 8, 7}},    {4, {3, 4, 9, 8}},
+                                               {4, {4, 0, 5, 9}}};
+constexpr CellFace hexagonal_prism_faces[] = {{6, {0, 5, 4, 3, 2, 1}}, {6, {6, 7, 8, 9, 10, 11}}, {4, {0, 1, 7, 6}},
+                                              {4, {1, 2, 8, 7}},       {4, {2, 3, 9, 8}},         {4, {3, 4, 10, 9}},
+                                              {4, {4, 5, 11, 10}},     {4, {5, 0, 6, 11}}};
 
 // A voxel counts its corners x first, then y, then z.
 constexpr std::array<std::uint8_t, 8> voxel_order = {0, 1, 3, 2, 4, 5, 7, 6};
-
-std::span<const Face> faces_of(CellKind kind) {
-  switch (kind) {
-    case CellKind::voxel:
-    case CellKind::hexahedron:
-      return hexahedron_faces;
-    case CellKind::wedge:
-      return wedge_faces;
-    case CellKind::pyramid:
-      return pyramid_faces;
-    case CellKind::pentagonal_prism:
-      return pentagonal_prism_faces;
-    case CellKind::hexagonal_prism:
-      return hexagonal_prism_faces;
-    default:
-      return {};
-  }
-}
 
 /// Corners of one cell in a total order: by position, coincident ones by their place in the cell.
 struct CornerOrder {
@@ -68,10 +47,10 @@ struct LocalTets {
 };
 
 /// The triangles, turning outward, of all faces that do not touch `apex`.
-int far_triangles(std::span<const Face> faces, std::uint8_t apex, const CornerOrder& less,
+int far_triangles(std::span<const CellFace> faces, std::uint8_t apex, const CornerOrder& less,
                   std::array<Triangle, 12>& triangles) {
   int count = 0;
-  for (const Face& face : faces) {
+  for (const CellFace& face : faces) {
     const auto begin = face.corner.begin(), end = begin + face.size;
     if (std::find(begin, end, apex) != end) continue;
     const auto start = static_cast<int>(std::min_element(begin, end, less) - begin);
@@ -185,8 +164,29 @@ std::string cell_type_name(std::uint8_t vtk_type) {
   return fmt::format("{}{}", shape.higher_order ? "higher-order " : "", names[static_cast<int>(shape.kind)]);
 }
 
+std::span<const CellFace> faces_of(CellKind kind) {
+  switch (kind) {
+    case CellKind::tet:
+      return tet_faces;
+    case CellKind::voxel:
+    case CellKind::hexahedron:
+      return hexahedron_faces;
+    case CellKind::wedge:
+      return wedge_faces;
+    case CellKind::pyramid:
+      return pyramid_faces;
+    case CellKind::pentagonal_prism:
+      return pentagonal_prism_faces;
+    case CellKind::hexagonal_prism:
+      return hexagonal_prism_faces;
+    default:
+      return {};
+  }
+}
+
 void append_faces(CellKind kind, std::span<const std::uint32_t> corner, std::vector<std::uint32_t>& faces) {
-  for (const Face& face : faces_of(kind)) {
+  if (kind == CellKind::tet) return;
+  for (const CellFace& face : faces_of(kind)) {
     faces.push_back(static_cast<std::uint32_t>(face.size));
     for (int k = 0; k < face.size; ++k)
       faces.push_back(corner[kind == CellKind::voxel ? voxel_order[face.corner[k]] : face.corner[k]]);

@@ -52,6 +52,15 @@ std::string cell_type_name(std::uint8_t vtk_type);
 void split_cell(CellKind kind, std::span<const std::uint32_t> corner, std::span<const glm::dvec3> positions,
                 std::vector<scene::Tet>& tets);
 
+/// A face of a cell: its corners, one after the other round it, turning outward.
+struct CellFace {
+  int size;
+  std::array<std::uint8_t, 6> corner;
+};
+/// Those of a tet, hexahedron, wedge, pyramid or prism, in VTK's numbers of corners, of a voxel in a hexahedron's; none
+/// of other kinds.
+std::span<const CellFace> faces_of(CellKind kind);
+
 /// Appends a cell's faces: of each the number of its corners, then these, from those given. None of a tet, a polyhedron
 /// and what is no volume.
 void append_faces(CellKind kind, std::span<const std::uint32_t> corner, std::vector<std::uint32_t>& faces);

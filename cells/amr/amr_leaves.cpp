@@ -8,6 +8,7 @@
 #include <limits>
 #include <numeric>
 
+#include "cells/ghost_bits.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::cells {
@@ -268,7 +269,6 @@ class Coverage {
 }  // namespace
 
 bool AmrLeaves::leaves_out(std::uint8_t ghost) {
-  constexpr std::uint8_t duplicate_cell = 1, refined_cell = 8, hidden_cell = 32;  // vtkGhostType of cells
   if ((ghost & (duplicate_cell | refined_cell | hidden_cell)) == 0) return false;
   ++((ghost & refined_cell) != 0 ? covered : hidden);
   return true;

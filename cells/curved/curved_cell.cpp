@@ -194,7 +194,7 @@ bool CurvedCell::before(std::size_t corner, std::size_t other) const {
   return scene::is_before(a, b) || (a == b && corner < other);
 }
 
-std::array<std::size_t, 3> CurvedCell::first_corners(const CurvedFace& face) const {
+std::array<std::size_t, 3> CurvedCell::first_corners(const CellFace& face) const {
   const auto size = static_cast<std::size_t>(face.size);
   std::size_t first = 0;
   for (std::size_t k = 1; k < size; ++k)
@@ -251,7 +251,7 @@ void CurvedCell::add_to(Part& part, const LatticePlace& place) const {
 
 void CurvedCell::make_face(unsigned faces, Part& part) const {
   const auto number = static_cast<std::size_t>(std::countr_zero(faces));
-  const CurvedFace& face = faces_of(lattice_->family)[number];
+  const CellFace& face = faces_of(lattice_->family)[number];
   const auto [first, next, last] = first_corners(face);
   part.triangle = face.size == 3;
   part.origin = place_of_corner(first);

@@ -84,7 +84,7 @@ class CurvedCell {
   void add_to(Part& part, const LatticePlace& place) const;
   static void face_to_values(Part& part);
   void add_missing_nodes();
-  void add_missing_on(const CurvedFace& face, const std::vector<bool>& given);
+  void add_missing_on(const CellFace& face, const std::vector<bool>& given);
   void add_missing_inside(const std::vector<bool>& given);
   void make_inside();
   void make_bubbles();
@@ -95,7 +95,7 @@ class CurvedCell {
   [[nodiscard]] LatticePlace lattice_corner(std::size_t corner) const;
   [[nodiscard]] bool before(std::size_t corner, std::size_t other) const;
   /// A face's first corner by position, and the two next to it, the first of them first.
-  [[nodiscard]] std::array<std::size_t, 3> first_corners(const CurvedFace& face) const;
+  [[nodiscard]] std::array<std::size_t, 3> first_corners(const CellFace& face) const;
   /// Coordinates of the part; of the cell itself its own. In units.
   [[nodiscard]] static std::array<std::int32_t, 3> coordinates(const Part& part, const CellPlace& place);
   [[nodiscard]] glm::dvec4 evaluate(const Part& part, const std::array<double, 3>& x) const;

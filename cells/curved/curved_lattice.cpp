@@ -17,14 +17,6 @@ constexpr LatticePlace hexahedron_corners[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, 
 constexpr LatticePlace wedge_corners[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
 constexpr LatticePlace pyramid_corners[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}};
 
-constexpr CurvedFace tet_faces[] = {{3, {0, 2, 1}}, {3, {0, 1, 3}}, {3, {1, 2, 3}}, {3, {0, 3, 2}}};
-constexpr CurvedFace hexahedron_faces[] = {{4, {0, 3, 2, 1}}, {4, {4, 5, 6, 7}}, {4, {0, 1, 5, 4}},
-                                           {4, {1, 2, 6, 5}}, {4, {2, 3, 7, 6}}, {4, {0, 4, 7, 3}}};
-constexpr CurvedFace wedge_faces[] = {
-    {3, {0, 1, 2}}, {3, {3, 5, 4}}, {4, {0, 3, 4, 1}}, {4, {1, 4, 5, 2}}, {4, {2, 5, 3, 0}}};
-constexpr CurvedFace pyramid_faces[] = {
-    {4, {0, 3, 2, 1}}, {3, {0, 1, 4}}, {3, {1, 2, 4}}, {3, {2, 3, 4}}, {3, {3, 0, 4}}};
-
 using Edge = std::array<int, 2>;
 constexpr Edge tet_edges[] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
 constexpr Edge hexahedron_edges[] = {{0, 1}, {1, 2}, {3, 2}, {0, 3}, {4, 5}, {5, 6},
@@ -466,18 +458,9 @@ std::span<const LatticePlace> corners_of(CurvedFamily family) {
   return {};
 }
 
-std::span<const CurvedFace> faces_of(CurvedFamily family) {
-  switch (family) {
-    case CurvedFamily::tet:
-      return tet_faces;
-    case CurvedFamily::hexahedron:
-      return hexahedron_faces;
-    case CurvedFamily::wedge:
-      return wedge_faces;
-    case CurvedFamily::pyramid:
-      return pyramid_faces;
-  }
-  return {};
+std::span<const CellFace> faces_of(CurvedFamily family) {
+  constexpr std::array kinds = {CellKind::tet, CellKind::hexahedron, CellKind::wedge, CellKind::pyramid};
+  return faces_of(kinds[static_cast<std::size_t>(family)]);
 }
 
 }  // namespace tessera::cells

@@ -11,6 +11,8 @@
 #include <span>
 #include <vector>
 
+#include "cells/cell_split.hpp"
+
 namespace tessera::cells {
 
 /// What a higher-order cell looks like in its own coordinates (r, s, t), each 0 to 1. Corners are numbered as VTK's.
@@ -89,11 +91,6 @@ std::optional<CurvedLattice> curved_lattice(std::uint8_t vtk_type, std::size_t n
 /// A cell's corners in (r, s, t).
 std::span<const LatticePlace> corners_of(CurvedFamily family);
 
-/// A face: three or four corners, one after the other round it.
-struct CurvedFace {
-  int size;
-  std::array<std::uint8_t, 4> corner;
-};
-std::span<const CurvedFace> faces_of(CurvedFamily family);
+std::span<const CellFace> faces_of(CurvedFamily family);
 
 }  // namespace tessera::cells

@@ -44,7 +44,7 @@ glm::dvec4 middle_of_cubic_triangle(const NodeAt& node_at) {
 void CurvedCell::add_missing_nodes() {
   std::vector<bool> given(values_.size(), false);
   for (std::size_t k = 0; k < lattice_->given; ++k) given[static_cast<std::size_t>(lattice_->slot_of_node[k])] = true;
-  for (const CurvedFace& face : faces_of(lattice_->family)) {
+  for (const CellFace& face : faces_of(lattice_->family)) {
     const auto size = static_cast<std::size_t>(face.size);
     for (std::size_t k = 0; k < size; ++k) {
       const LatticePlace a = lattice_corner(face.corner[k]), b = lattice_corner(face.corner[(k + 1) % size]);
@@ -57,7 +57,7 @@ void CurvedCell::add_missing_nodes() {
   add_missing_inside(given);
 }
 
-void CurvedCell::add_missing_on(const CurvedFace& face, const std::vector<bool>& given) {
+void CurvedCell::add_missing_on(const CellFace& face, const std::vector<bool>& given) {
   const auto [first, next, last] = first_corners(face);
   const LatticePlace a = lattice_corner(first), b = lattice_corner(next), c = lattice_corner(last);
   const std::array<int, 2> order = {steps_between(a, b), steps_between(a, c)};

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cells/field_choice.hpp"
+#include "cells/ghost_bits.hpp"
 #include "io/foreign/client/foreign_geometry.hpp"
 #include "io/formats/input_file.hpp"
 #include "io/volume/brick_file.hpp"
@@ -50,7 +51,7 @@ scene::GridGeometry geometry_of(const ForeignFile& file, const ForeignPart& part
   return g;
 }
 
-/// Indices of samples that the file hides, by vtkGhostType: hidden points (2), or hidden cells (32) of cell data.
+/// Indices of samples that the file hides by vtkGhostType: points, or cells of cell data.
 std::vector<std::size_t> hidden_samples(const ForeignFile& file, const ForeignPart& part, Association association,
                                         const scene::GridGeometry& g, std::vector<std::string>& notes) {
   std::vector<std::size_t> hidden;
@@ -63,10 +64,9 @@ std::vector<std::size_t> hidden_samples(const ForeignFile& file, const ForeignPa
   const auto samples = static_cast<std::size_t>(g.all_samples().count());
   const std::vector<std::uint8_t> bits = bits_of(point ? part.point_fields : part.cell_fields);
   for (std::size_t k = 0; k < std::min(bits.size(), samples); ++k)
-    if ((bits[k] & (point ? 2 : 32)) != 0) hidden.push_back(k);
+    if ((bits[k] & (point ? cells::hidden_point : cells::hidden_cell)) != 0) hidden.push_back(k);
   if (point) {
-    const std::vector<std::uint8_t> cells = bits_of(part.cell_fields);
-    if (std::any_of(cells.begin(), cells.end(), [](std::uint8_t b) { return (b & 32) != 0; }))
+    if (std::ranges::any_of(bits_of(part.cell_fields), [](std::uint8_t b) { return (b & cells::hidden_cell) != 0; }))
       notes.emplace_back("hidden cells are shown: they apply to cell data only");
   }
   return hidden;

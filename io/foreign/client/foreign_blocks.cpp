@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "cells/block_choice.hpp"
+#include "cells/ghost_bits.hpp"
 #include "io/foreign/client/foreign_file.hpp"
 #include "scene/error.hpp"
 #include "system/large_vector.hpp"
@@ -335,7 +336,7 @@ std::vector<std::uint8_t> ghost_bits(const ForeignFile& file, const std::vector<
   std::vector<std::uint8_t> bits = read("vtkGhostType");
   if (bits.empty()) {
     bits = read("vtkGhostLevels");
-    for (std::uint8_t& level : bits) level = level > 0 ? 1 : 0;
+    for (std::uint8_t& level : bits) level = level > 0 ? cells::duplicate_cell : 0;
   }
   return bits;
 }
