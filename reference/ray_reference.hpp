@@ -23,7 +23,7 @@ class RayReference {
   [[nodiscard]] virtual Pixel pixel(double x, double y) const = 0;
 
   /// The rays through the centres of `wanted`, in that order. `threads` 0: all cores.
-  [[nodiscard]] virtual std::vector<Pixel> pixels(std::span<const PixelIndex> wanted, int threads = 0) const = 0;
+  [[nodiscard]] virtual std::vector<Pixel> pixels(std::span<const PixelIndex> wanted, int threads = 0) const;
 
   [[nodiscard]] virtual scene::ImageSize size() const = 0;
 

@@ -239,6 +239,16 @@ void Reference::each_ray(std::span<const PixelIndex> wanted, int threads,
 
 std::vector<Pixel> Reference::image(int threads) const { return pixels(all_pixels(size_), threads); }
 
+std::vector<Pixel> RayReference::pixels(std::span<const PixelIndex> wanted, int threads) const {
+  std::vector<Pixel> result(wanted.size());
+  tbb::task_arena arena(scene::threads_for(threads));
+  arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, wanted.size(),
+                      [&](std::size_t i) { result[i] = pixel(wanted[i].x + 0.5, wanted[i].y + 0.5); });
+  });
+  return result;
+}
+
 std::vector<PixelIndex> all_pixels(scene::ImageSize size) {
   std::vector<PixelIndex> pixels;
   pixels.reserve(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reference/gauss_legendre.hpp"
+#include "reference/knot_cuts.hpp"
 
 namespace tessera::reference {
 namespace {
@@ -22,16 +23,6 @@ double integral(double u0, double u1, const Function& function) {
   for (const auto& [x, weight] : gauss_nodes)
     sum += weight * (function(middle - half * x) + function(middle + half * x));
   return half * sum;
-}
-
-/// Where the scalar, monotone in [u0, u1], takes a value between those at the ends.
-double crossing(const SmoothScalar& scalar, double u0, double u1, double value) {
-  const bool rising = scalar.at(u1) > scalar.at(u0);
-  while (true) {
-    const double middle = u0 + (u1 - u0) / 2;
-    if (!(middle > u0 && middle < u1)) return middle;
-    ((scalar.at(middle) < value) == rising ? u0 : u1) = middle;
-  }
 }
 
 }  // namespace
@@ -59,16 +50,7 @@ void CurvedIntegral::add(const SmoothScalar& scalar, double length_per_depth, do
   std::vector<double> ends = scalar.turning_points();
   ends.insert(ends.begin(), -1);
   ends.push_back(1);
-  std::vector<double> cuts = ends;
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-    const double one = scalar.at(ends[i]), other = scalar.at(ends[i + 1]);
-    const double low = std::min(one, other), high = std::max(one, other);
-    for (const scene::Knot& knot : knots_) {
-      const double value = knot.value - origin;
-      if (value > low && value < high) cuts.push_back(crossing(scalar, ends[i], ends[i + 1], value));
-    }
-  }
-  std::sort(cuts.begin(), cuts.end());
+  const std::vector<double> cuts = knot_cuts(scalar, ends, knots_, origin);
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i)
     if (cuts[i + 1] > cuts[i]) add_cut(scalar, cuts[i], cuts[i + 1], half_length, origin);
 }

@@ -2,8 +2,6 @@
 #include "reference/curved/curved_reference.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +13,6 @@
 #include "reference/curved/curved_integral.hpp"
 #include "reference/smooth_scalar.hpp"
 #include "scene/error.hpp"
-#include "scene/threads.hpp"
 
 namespace tessera::reference {
 namespace {
@@ -217,16 +214,6 @@ Pixel CurvedReference::pixel(double x, double y) const {
   pixel.a = integral.opacity();
   pixel.z = integral.first_visible_depth();
   return pixel;
-}
-
-std::vector<Pixel> CurvedReference::pixels(std::span<const PixelIndex> wanted, int threads) const {
-  std::vector<Pixel> result(wanted.size());
-  tbb::task_arena arena(scene::threads_for(threads));
-  arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, wanted.size(),
-                      [&](std::size_t i) { result[i] = pixel(wanted[i].x + 0.5, wanted[i].y + 0.5); });
-  });
-  return result;
 }
 
 }  // namespace tessera::reference

@@ -70,7 +70,6 @@ class CurvedReference final : public RayReference {
 
   /// `length` is that of all segments together, `segments` their number.
   [[nodiscard]] Pixel pixel(double x, double y) const override;
-  [[nodiscard]] std::vector<Pixel> pixels(std::span<const PixelIndex> wanted, int threads = 0) const override;
   [[nodiscard]] scene::ImageSize size() const override { return size_; }
 
  private:

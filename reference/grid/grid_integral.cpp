@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reference/gauss_legendre.hpp"
+#include "reference/knot_cuts.hpp"
 
 namespace tessera::reference {
 namespace {
@@ -40,16 +41,6 @@ std::vector<double> turning_points(const Cubic& p) {
   return points;
 }
 
-/// Where the cubic, monotone in [u0, u1], takes a value between those at the ends.
-double crossing(const Cubic& p, double u0, double u1, double value) {
-  const bool rising = p.at(u1) > p.at(u0);
-  while (true) {
-    const double middle = u0 + (u1 - u0) / 2;
-    if (!(middle > u0 && middle < u1)) return middle;
-    ((p.at(middle) < value) == rising ? u0 : u1) = middle;
-  }
-}
-
 }  // namespace
 
 double GridIntegral::opacity() const { return -std::expm1(-sum_.optical_depth); }
@@ -62,16 +53,7 @@ void GridIntegral::add(double length, const Cubic& scalar, double depth_front, d
   std::vector<double> ends = {0};
   for (const double u : turning_points(scalar)) ends.push_back(u);
   ends.push_back(1);
-  std::vector<double> cuts = ends;
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-    const double one = scalar.at(ends[i]), other = scalar.at(ends[i + 1]);
-    const double low = std::min(one, other), high = std::max(one, other);
-    for (const scene::Knot& knot : knots_) {
-      const double value = knot.value - origin;
-      if (value > low && value < high) cuts.push_back(crossing(scalar, ends[i], ends[i + 1], value));
-    }
-  }
-  std::sort(cuts.begin(), cuts.end());
+  const std::vector<double> cuts = knot_cuts(scalar, ends, knots_, origin);
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i)
     if (cuts[i + 1] > cuts[i]) add_piece(length, scalar, cuts[i], cuts[i + 1], depth_front, depth_back, light, origin);
 }

@@ -247,16 +247,6 @@ Pixel GridReference::pixel(double x, double y) const {
   return pixel;
 }
 
-std::vector<Pixel> GridReference::pixels(std::span<const PixelIndex> wanted, int threads) const {
-  std::vector<Pixel> result(wanted.size());
-  tbb::task_arena arena(scene::threads_for(threads));
-  arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, wanted.size(),
-                      [&](std::size_t i) { result[i] = pixel(wanted[i].x + 0.5, wanted[i].y + 0.5); });
-  });
-  return result;
-}
-
 std::vector<Pixel> GridReference::layers(double x, double y, const Peel& peel) const {
   GridIntegral integral(knots_, emission_, peel);
   Pixel pixel;

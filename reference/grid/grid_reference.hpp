@@ -47,7 +47,6 @@ class GridReference final : public RayReference, public LayerReference {
 
   /// `length` and `segments` count what is not blank.
   [[nodiscard]] Pixel pixel(double x, double y) const override;
-  [[nodiscard]] std::vector<Pixel> pixels(std::span<const PixelIndex> wanted, int threads = 0) const override;
   [[nodiscard]] std::vector<Pixel> layers(double x, double y, const Peel& peel) const override;
   [[nodiscard]] std::vector<std::vector<Pixel>> layers(std::span<const PixelIndex> wanted, const Peel& peel,
                                                        int threads = 0) const override;
