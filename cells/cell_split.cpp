@@ -200,7 +200,7 @@ void split_cell(CellKind kind, std::span<const std::uint32_t> corner, std::span<
     return;
   }
   std::array<std::uint32_t, 12> id{};
-  CornerOrder less;
+  CornerOrder less{};
   const int corners = static_cast<int>(corner.size());
   for (int k = 0; k < corners; ++k) {
     id[k] = corner[kind == CellKind::voxel ? voxel_order[k] : k];
