@@ -20,7 +20,6 @@
 #include <utility>
 #include <vector>
 
-#include "apps/command_line.hpp"
 #include "apps/commands/chart_command.hpp"
 #include "apps/commands/convert_command.hpp"
 #include "apps/commands/formats_command.hpp"
@@ -30,14 +29,7 @@
 #include "apps/commands/serve_command.hpp"
 #include "apps/commands/timing_command.hpp"
 #include "apps/interruption.hpp"
-#include "apps/options/argument_values.hpp"
-#include "apps/options/like_report.hpp"
-#include "apps/options/method_preset.hpp"
-#include "apps/options/render_options.hpp"
-#include "apps/options/setting_words.hpp"
 #include "apps/options/stall_options.hpp"
-#include "apps/options/time_options.hpp"
-#include "apps/options/volume_options.hpp"
 #include "apps/parse_arguments.hpp"
 #include "apps/render/film.hpp"
 #include "apps/standard_streams.hpp"
@@ -45,7 +37,7 @@
 #include "tessera/job.hpp"
 #include "tessera/program/output_file.hpp"
 #include "tessera/program/printable.hpp"
-#include "tessera/time_series.hpp"
+#include "tessera/program/render_options.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -69,6 +61,18 @@ bool to_mesh(const std::filesystem::path& input, const std::filesystem::path& ou
   return (extension == ".vtu" || extension == ".tets" || extension == ".pvtu") && opens_as_mesh(input);
 }
 
+ExitCode render_words(OptionWords& words, Job& job) {
+  const std::string given = config_text(words);
+  apply_like(words);
+  apply_method_preset(job.size(), words);
+  RenderOptions options = render_options(words);
+  options.scene = given;
+  options.progress = !options.quiet && (options.progress || isatty(STDERR_FILENO) == 1);
+  if (options.to_standard_output) require_no_terminal("-o");
+  if (const auto stalls = stall_settings(words, options.quiet)) job.watch_stalls(*stalls);
+  return render(options, job);
+}
+
 ExitCode run(int argc, char** argv, Job& job) {
   // A server ends by a signal as it is meant to.
   const bool serves = argc > 1 && std::string_view(argv[1]) == "serve";
@@ -77,54 +81,51 @@ ExitCode run(int argc, char** argv, Job& job) {
   job.agree_instruction_sets();
   protect_inputs();
 
-  CommandLine line;
-  RenderWords& words = line.words;
-  if (!parse(line, argc, argv, job.rank() == 0)) return ExitCode::complete;
+  std::optional<Arguments> arguments = parse_arguments(argc, argv, job.rank() == 0);
+  if (!arguments) return ExitCode::complete;
+  OptionWords& words = arguments->words;
+  const Trait command = arguments->command->trait;
 
-  if (!*line.render) refuse_time_steps(words.time_step);
-  if (words.input == standard_stream) {
+  if (command != Trait::render) refuse_time_steps(words);
+  if (words.word("input") == standard_stream) {
     if (job.size() > 1) throw bad_input("standard input: only one process has it; give a file that all can open");
-    words.input = spool_standard_input().string();
+    words.set("input", spool_standard_input().string());
   }
-  if (*line.render) {
-    apply_like(*line.render, words);
-    apply_method_preset(*line.render, job.size(), words);
-    const RenderOptions options = render_options(words);
-    if (const auto stalls = stall_settings(line.stalls, words.quiet)) job.watch_stalls(*stalls);
-    if (options.is_grid()) refuse_mesh_options(words, options);
-    return render(options, job);
-  }
-  if (*line.serve) {
-    if (const auto stalls = stall_settings(line.stalls, false)) job.watch_stalls(*stalls);
-    serve(words, line.serve_words, *line.serve, job);
+  if (command == Trait::render) return render_words(words, job);
+  if (command == Trait::serve) {
+    if (const auto stalls = stall_settings(words, false)) job.watch_stalls(*stalls);
+    serve(words, job);
     return ExitCode::complete;
   }
   if (job.rank() != 0) return ExitCode::complete;  // the other commands are for one process
-  if (*line.info) {
-    const bool is_grid = is_time_series(words.input) ? draws_grids(words) : is_grid_input(words);
-    if (line.check && is_grid) {
-      require_input(words.input);
+  const std::string &input = words.word("input"), &output = words.word("out");
+  if (command == Trait::info) {
+    const bool is_grid = draws_grids(words);
+    if (words.given("check") && is_grid) {
+      require_input(input);
       throw bad_input("--check: is for meshes, and the input is a volume; leave it out");
     }
-    ReadOptions options = is_grid ? volume_options(words) : mesh_options(words);
+    ReadOptions options = read_options(words, is_grid);
     options.shape = !is_grid;  // as render without options
-    info(words.input, options, line.as_json, line.check);
+    info(input, options, words.given("json"), words.given("check"));
   }
-  if (*line.convert) require_input(words.input);
-  if (*line.convert && is_grid_input(words) && !to_mesh(words.input, line.mesh_output)) {
-    ReadOptions options = volume_options(words);
-    const std::string side = options.blocks.empty() ? "64" : options.blocks.back();
-    options.blocks.clear();
-    convert_grid(words.input, line.mesh_output, options, parse_count("--block", side, 8, 1024), words.quiet);
-  } else if (*line.convert) {
-    convert_mesh(words.input, line.mesh_output, mesh_options(words), parse_count("--subdivide", line.subdivide, 0, 8),
-                 convert_pieces(line.pieces, line.pieces_partition), words.quiet);
+  if (command == Trait::convert) {
+    require_input(input);
+    if (draws_grids(words) && !to_mesh(input, output)) {
+      ReadOptions options = read_options(words, true);
+      options.blocks.clear();  // of volumes it is a side
+      convert_grid(input, output, options, words.count("block", 8, 1024).value_or(64), words.given("quiet"));
+    } else {
+      convert_mesh(input, output, read_options(words, false), words.count("subdivide", 0, 8).value_or(0),
+                   convert_pieces(words), words.given("quiet"));
+    }
   }
-  if (*line.chart) chart(words, line.chart_words);
-  if (*line.formats) formats(line.as_json);
-  if (*line.presets) presets(line.picture);
-  if (*line.timing) timing({line.traces.begin(), line.traces.end()}, line.csv, line.figure);
-  if (*line.generate) generate(line.kind, line.mesh_output, line.parameters, words.quiet);
+  if (command == Trait::chart) chart(words);
+  if (command == Trait::formats) formats(words.given("json"));
+  if (command == Trait::presets) presets(words.word("output"));
+  if (command == Trait::timing)
+    timing({words.words("trace").begin(), words.words("trace").end()}, words.word("csv"), words.word("figure"));
+  if (command == Trait::generate) generate(words.word("kind"), output, words.words("parameters"), words.given("quiet"));
   return ExitCode::complete;
 }
 

@@ -8,22 +8,24 @@
 #include <cstdio>
 
 #include "apps/help/completion.hpp"
+#include "apps/help/help_pages.hpp"
 #include "apps/help/manual_page.hpp"
-#include "apps/options/scene_file.hpp"
 #include "tessera/error.hpp"
 #include "tessera/program/nearest_name.hpp"
+#include "tessera/program/render_options.hpp"
+#include "tessera/version.hpp"
 
 namespace tessera::apps {
 namespace {
 
-Error no_command(const CommandLine& line, const std::string& word) {
+Error no_command(const std::string& word) {
   std::vector<std::string> names;
-  for (const CLI::App* command : line.commands()) names.push_back(command->get_name());
+  for (const CommandRow& command : command_rows()) names.emplace_back(command.name);
   if (const auto near = nearest_name(word, names))
     return bad_input(fmt::format("arguments: '{}' is no command; did you mean {}?", word, *near));
-  std::string list = names.front();
-  for (std::size_t i = 1; i < names.size(); ++i) list += (i + 1 < names.size() ? ", " : " or ") + names[i];
-  return bad_input(fmt::format("arguments: '{}' is no command; use {}", word, list));
+  const std::string last = std::move(names.back());
+  names.pop_back();
+  return bad_input(fmt::format("arguments: '{}' is no command; use {} or {}", word, fmt::join(names, ", "), last));
 }
 
 /// The first argument that looks like an option and is none.
@@ -36,54 +38,101 @@ std::optional<std::string> unknown_option(const CLI::App& command) {
 Error no_option(const CLI::App& command, const std::string& word, const std::string& help) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options())
-    for (const std::string& name : option->get_lnames()) names.push_back(name);
+    names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
   const auto near = nearest_name(word.substr(word.find_first_not_of('-')), names);
   return bad_input(near ? fmt::format("{}: is no option of {}; did you mean --{}?", word, command.get_name(), *near)
                         : fmt::format("{}: is no option of {}; see {}", word, command.get_name(), help));
 }
 
+CLI::Option* declare(const OptionRow& row, CLI::App& command) {
+  const std::string names = fmt::format("{}", fmt::join(written_names(row), ","));
+  if (row.is(Trait::flag | Trait::place)) return command.add_flag(names);
+  CLI::Option* const option = command.add_option(names, CLI::callback_t());
+  option->type_name(std::string(row.value));
+  // One value an occurrence: `-o out.png mesh.vtu` would else take the mesh for a second picture.
+  if (row.is(Trait::list))
+    option->expected(1, CLI::detail::expected_max_vector_size)->take_all()->allow_extra_args(row.is(Trait::positional));
+  return option;
+}
+
 /// `tessera help [COMMAND]`.
-std::string help_page(const CommandLine& line) {
-  if (line.help_of.empty() && line.manual) return manual_page(line, line.app);
-  if (line.help_of.empty())
-    return line.app.get_formatter()->make_help(&line.app, "tessera", CLI::AppFormatMode::Normal);
-  const CLI::App* command = line.command(line.help_of);
-  if (command == nullptr) throw no_command(line, line.help_of);
-  if (line.manual) return manual_page(line, *command);
-  const auto mode = line.help_all ? CLI::AppFormatMode::All : CLI::AppFormatMode::Normal;
-  return command->get_formatter()->make_help(command, "tessera " + line.help_of, mode);
+std::string help_of(const OptionWords& words) {
+  const std::string& name = words.word("command");
+  const CommandRow* const command = command_named(name);
+  if (!name.empty() && command == nullptr) throw no_command(name);
+  return words.given("man") ? manual_page(command) : help_page(command, words.given("all"));
+}
+
+/// Every subcommand with its options, and the words that were given.
+struct CommandLine {
+  CommandLine() : app("", "tessera") {
+    app.set_version_flag("--version",
+                         fmt::format("tessera {}\ncommit {}\nbuilt by {}", version(), commit(), build_facts()));
+    app.set_help_flag("-h,--help");
+    app.require_subcommand(1);
+    for (const CommandRow& command : command_rows()) {
+      CLI::App* const declared = app.add_subcommand(std::string(command.name));
+      if (command.trait == Trait::render) declared->set_help_all_flag("--help-all");
+      for (const OptionRow* row : option_rows(command.trait)) options.emplace_back(row, declare(*row, *declared));
+    }
+  }
+
+  CLI::App app;
+  std::vector<std::pair<const OptionRow*, CLI::Option*>> options;
+};
+
+/// A flag as `--smooth`, or `--smooth=yes`.
+bool is_on(const OptionRow& row, const std::string& word) {
+  try {
+    if (const auto value = CLI::detail::to_flag_value(word); value == 1 || value == -1) return value == 1;
+  } catch (const std::logic_error&) {  // no word of a flag
+  }
+  throw bad_input(fmt::format("{}: takes no value; leave that out", shown_name(row)));
+}
+
+OptionWords words_of(const CommandLine& line, Trait command) {
+  OptionWords words(command);
+  for (const auto& [row, option] : line.options)
+    if (option->count() > 0) {
+      const std::vector<std::string> given = option->reduced_results();
+      if (!row->is(Trait::flag))
+        words.set(row->key(), given);
+      else if (is_on(*row, given.back()))
+        words.set(row->key(), "true");
+    }
+  return words;
 }
 
 }  // namespace
 
-bool parse(CommandLine& line, int argc, const char* const* argv, bool says) {
+std::optional<Arguments> parse_arguments(int argc, const char* const* argv, bool says) {
   const std::string first = argc > 1 ? argv[1] : "";
-  const CLI::App* command = line.command(first);
-  if (first == "complete") {  // what the scripts ask: of no interest to users, and no words to be checked
-    std::string names;
-    for (const std::string& name : completions(line, {argv + 2, argv + argc})) names += name + '\n';
-    if (says) std::fputs(names.c_str(), stdout);
-    return false;
-  }
-  // CLI11 would only say that a subcommand is missing.
-  if (!first.empty() && first.front() != '-' && command == nullptr) throw no_command(line, first);
+  const CommandRow* const command = command_named(first);
   const auto say = [&](const std::string& text) {
     if (says) std::fputs(text.c_str(), stdout);
-    return false;
+    return std::nullopt;
   };
+  if (first == "complete") {  // what the scripts ask: of no interest to users, and no words to be checked
+    std::string names;
+    for (const std::string& name : completions({argv + 2, argv + argc})) names += name + '\n';
+    return say(names);
+  }
+  // CLI11 would only say that a subcommand is missing.
+  if (!first.empty() && first.front() != '-' && command == nullptr) throw no_command(first);
+  const std::string help = command == nullptr ? "tessera --help" : fmt::format("tessera {} --help", first);
+  CommandLine line;
+  std::optional<OptionWords> words;
   try {
-    auto words = with_scene_file({argv + 1, argv + argc});
-    std::ranges::reverse(words);  // as CLI11 takes them
-    line.app.parse(std::move(words));
+    line.app.parse(argc, argv);
+    words = words_of(line, command->trait);
   } catch (const CLI::CallForVersion& version) {
     return say(std::string(version.what()) + "\n");
   } catch (const CLI::CallForAllHelp&) {
-    return say(line.app.help("", CLI::AppFormatMode::All));
+    return say(help_page(command, true));
   } catch (const CLI::CallForHelp&) {
-    return say(line.app.help());
+    return say(help_page(command, false));
   } catch (const CLI::ParseError& error) {
-    const std::string help = command == nullptr ? "tessera --help" : fmt::format("tessera {} --help", first);
-    const CLI::App& of = command == nullptr ? line.app : *command;
+    const CLI::App& of = command == nullptr ? line.app : *line.app.get_subcommand(first);
     if (const auto word = unknown_option(of)) throw no_option(of, *word, help);
     if (first == "serve" && !of.remaining().empty())
       throw bad_input(
@@ -92,9 +141,13 @@ bool parse(CommandLine& line, int argc, const char* const* argv, bool says) {
                       of.remaining().front()));
     throw bad_input(fmt::format("arguments: {}; see {}", error.what(), help));
   }
-  if (*line.render && !line.words.save_config.empty()) line.words.scene = scene_text(*line.render);
-  if (*line.completion) return say(completion_script(line.shell));
-  return *line.help ? say(help_page(line)) : true;
+  if (command->trait == Trait::completion && words->given("shell")) return say(completion_script(words->word("shell")));
+  if (command->trait == Trait::help) return say(help_of(*words));
+  if (words->given("config")) apply_config(words->word("config"), *words);
+  for (const OptionRow* row : option_rows(command->trait))
+    if (row->is(Trait::required) && !words->given(row->key()))
+      throw bad_input(fmt::format("arguments: {} is required; see {}", shown_name(*row), help));
+  return Arguments{command, std::move(*words)};
 }
 
 }  // namespace tessera::apps

@@ -8,9 +8,6 @@
 
 namespace tessera::apps {
 
-/// `-` as a file's name: standard input where it is read, standard output where it is written.
-inline constexpr std::string_view standard_stream = "-";
-
 /// Reads standard input to its end into a nameless file in the folder of temporary files, and gives a name by which
 /// readers and helper programs open it while this process lives. Throws Error(bad_input) if it is a terminal or empty,
 /// Error(system_failure) if the disk is full.

@@ -11,6 +11,7 @@
 #include "server/messages.hpp"
 #include "tessera/error.hpp"
 #include "tessera/presets.hpp"
+#include "tessera/program/options.hpp"
 #include "tessera/statistics.hpp"
 #include "tessera/version.hpp"
 
@@ -90,8 +91,8 @@ Json resolved(const ApiContext& context, const OpenScene& open) {
   Json state = context.reader.base();
   state.update(open.state);
   state["camera"] = server::json_of(view.camera);
-  for (const char* view_word : {"view", "up", "azimuth", "elevation", "zoom", "fit", "projection", "orbit"})
-    state.erase(view_word);
+  for (const OptionRow* row : option_rows(Trait::view))
+    if (row->key() != "camera") state.erase(std::string(row->key()));
   state["size"] = fmt::format("{}x{}", view.size.width, view.size.height);
   if (!data.shows_shape()) state["field"] = open.scene->field_word(data);
   const std::uint64_t steps = std::max<std::uint64_t>(data.time_steps(), context.reader.times().size());
@@ -102,12 +103,14 @@ Json resolved(const ApiContext& context, const OpenScene& open) {
   }
   if (!state.contains("transfer-function")) {
     // The very function of the first picture, which goes by how the field's values share the volume.
-    state["transfer-function"] = Json::parse(transfer_function_json(loaded.function));
-    for (const char* in_it : {"range", "log", "opacity", "opacity-scale", "opacity-points", "unit-distance", "rescale"})
+    for (const OptionRow* row : option_rows(Trait::knots)) {
+      const std::string in_it(row->key());
       if (context.reader.fixes(in_it))
         state[in_it] = nullptr;
       else
         state.erase(in_it);
+    }
+    state["transfer-function"] = Json::parse(transfer_function_json(loaded.function));
     if (loaded.shaded && !state.contains("no-shade")) state["shade"] = true;
   } else if (loaded.range && !state.contains("range") && state["transfer-function"].is_string()) {
     state["range"] = fmt::format("{},{}", (*loaded.range)[0], (*loaded.range)[1]);

@@ -27,7 +27,7 @@ using reference::Suspicion;
 using reference::SuspicionMap;
 
 /// Differences of half the bound are no reason for suspicion; without a bound, of half the default accuracy.
-double least_suspicious(const std::optional<double>& bound) { return bound.value_or(1e-4) / 2; }
+double least_suspicious(const std::optional<double>& bound) { return bound.value_or(Integrator().accuracy) / 2; }
 
 /// Of a picture of which `count` pixels are to be judged.
 class Collector {
@@ -74,7 +74,7 @@ SuspicionMap second_opinion(const scene::Image& image, const scene::SampleSource
   });
   scene::Image again(image.size);
   // What is looked for is as large as the bound.
-  const double bound = promised_error(settings).value_or(1e-4);
+  const double bound = promised_error(settings).value_or(Integrator().accuracy);
   const volume::GridSurfaces surfaces(settings.surfaces, function);
   const volume::VoxelCastSettings cast{{settings.emission, bound / 1000, bound / 64},
                                        settings.shading,

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -15,12 +14,11 @@
 #include "analysis/chart_measure.hpp"
 #include "analysis/chart_peers.hpp"
 #include "analysis/chart_sweep.hpp"
-#include "apps/options/argument_values.hpp"
-#include "apps/options/setting_words.hpp"
 #include "apps/render/progress.hpp"
 #include "apps/render/report.hpp"
 #include "apps/render/run_output.hpp"
 #include "tessera/program/film.hpp"
+#include "tessera/program/options.hpp"
 #include "tessera/program/output_file.hpp"
 #include "tessera/program/printable.hpp"
 #include "tessera/statistics.hpp"
@@ -125,42 +123,18 @@ std::string csv_of(const std::vector<analysis::ChartPoint>& points) {
 
 }  // namespace
 
-void add_chart_options(CLI::App& command, RenderWords& words, ChartWords& chart) {
-  add_mesh_options(command, words);
-  command.add_option("--transfer-function", words.transfer_function, "file or preset")->type_name("FILE|PRESET|JSON");
-  command.add_flag("--rescale", words.rescale, "stretch a transfer function file's values over the field's range");
-  command.add_option("--unit-distance", words.unit_distance, "as of render")->type_name("LENGTH");
-  command.add_option("--opacity-scale", words.opacity_scale, "multiplies the extinction")->type_name("FACTOR");
-  command.add_option("--camera", words.camera, "view; of a list the first one")->type_name("FILE|JSON");
-  command.add_option("--size", words.size, "pixels (default: the camera file's, else 1024x1024)")->type_name("WxH");
-  command.add_option("--projection", words.projection, "of the default view")->type_name("orthographic|perspective");
-  command.add_option("--emission", words.emission, "source term")->type_name("absorption|independent");
-  command.add_option("--threads", words.threads, "threads (default: all cores)")->type_name("T");
-  command.add_option("--memory", words.memory, "budget of frame buffers or bricks")->type_name("SIZE");
-  command.add_option("--budget-seconds", chart.budget, "time for all of it but reading (default 60)")->type_name("S");
-  command.add_option("--repeat", chart.repeat, "frames a method, if the budget allows (default 5)")->type_name("K");
-  command.add_option("--pixels", chart.pixels, "random pixels that errors are taken over (default: what fits)")
-      ->type_name("N");
-  command.add_option("--peer", chart.peers, "measured pictures of other programs (JSON)")->type_name("FILE");
-  command.add_option("--json", chart.json, "everything measured")->type_name("FILE");
-  command.add_option("--csv", chart.csv, "the same as a table")->type_name("FILE");
-  command.add_option("--figure", chart.figures, "the chart, .svg or .png; may be repeated")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
-  command.add_flag("--quiet", words.quiet, "nothing on stderr but errors");
-}
-
-void chart(const RenderWords& words, const ChartWords& chart) {
+void chart(const OptionWords& words) {
   const auto begin = Clock::now();
   const RenderOptions options = render_options(words);
-  const double budget = parse_positive("--budget-seconds", chart.budget);
-  const int repeat = parse_count("--repeat", chart.repeat, 1, 1000);
+  const double budget = words.positive("budget-seconds").value_or(60);
+  const int repeat = words.count("repeat", 1, 1000).value_or(5);
   std::optional<std::size_t> pixels;
-  if (!chart.pixels.empty())
-    pixels = static_cast<std::size_t>(parse_count("--pixels", chart.pixels, 1, std::numeric_limits<int>::max()));
-  for (const auto& figure : chart.figures) analysis::check_figure_path(figure);
-  for (const auto& file : chart.figures) check_output(file, options.input());
-  for (const auto& file : {chart.json, chart.csv})
+  assign(pixels, words.count("pixels", 1));
+  const std::vector<std::string>& figures = words.words("figure");
+  const std::string &json = words.word("json"), &csv = words.word("csv");
+  for (const auto& figure : figures) analysis::check_figure_path(figure);
+  for (const auto& file : figures) check_output(file, options.input());
+  for (const auto& file : {json, csv})
     if (!file.empty()) check_output(file, options.input());
 
   const FilmFrame frame = plan_film(options.plan).front();
@@ -203,7 +177,7 @@ void chart(const RenderWords& words, const ChartWords& chart) {
     // What needs mpirun, or leaves out what saves work, is on the chart, but no setting to recommend.
     if (methods[i].recommended()) alone.push_back(points[i]);
   }
-  for (const auto& file : chart.peers)
+  for (const auto& file : words.words("peer"))
     for (analysis::ChartPoint& peer : analysis::read_peers(file, view.size, truth.pixels, truth.values)) {
       alone.push_back(peer);
       points.push_back(std::move(peer));
@@ -246,9 +220,9 @@ void chart(const RenderWords& words, const ChartWords& chart) {
   report["methods"] = OrderedJson::array();
   for (const analysis::ChartPoint& p : points) report["methods"].push_back(point_json(p));
   report["fastest"] = fastest;
-  if (!chart.json.empty()) write_json(report, chart.json);
-  if (!chart.csv.empty()) write_text(chart.csv, csv_of(points));
-  for (const auto& figure : chart.figures) analysis::write_chart(points, what, where, figure);
+  if (!json.empty()) write_json(report, json);
+  if (!csv.empty()) write_text(csv, csv_of(points));
+  for (const auto& figure : figures) analysis::write_chart(points, what, where, figure);
 }
 
 }  // namespace tessera::apps

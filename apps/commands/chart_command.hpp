@@ -1,24 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <filesystem>
-#include <string>
-#include <vector>
-
-#include "apps/options/cli_fwd.hpp"
-#include "apps/options/render_options.hpp"
+#include "tessera/program/options.hpp"
 
 namespace tessera::apps {
-
-/// The words of `tessera chart` beside those it shares with `render`.
-struct ChartWords {
-  std::vector<std::string> figures;
-  std::string json, csv, budget = "60", repeat = "5", pixels;
-  std::vector<std::string> peers;
-};
-
-/// Declares the options of `tessera chart` on its subcommand.
-void add_chart_options(CLI::App& command, RenderWords& words, ChartWords& chart);
 
 /// `tessera chart INPUT`: every method at several settings on the user's data and view, timed and judged against the
 /// reference; a table on stdout, the fastest setting for 1e-2 to 1e-5, and on request JSON, CSV and figures.
@@ -30,6 +15,6 @@ void add_chart_options(CLI::App& command, RenderWords& words, ChartWords& chart)
 /// Peers    `--peer FILE.json`: a list of {"family", "name", "frame_ms": [...], "picture": FILE.pfm} of other programs,
 ///          judged on the same pixels by colour alone, as their pictures carry no opacity.
 /// Throws Error.
-void chart(const RenderWords& words, const ChartWords& chart);
+void chart(const OptionWords& words);
 
 }  // namespace tessera::apps

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "apps/options/argument_values.hpp"
 #include "apps/render/progress.hpp"
 #include "apps/render/report.hpp"
 #include "apps/stderr_lines.hpp"
@@ -30,20 +29,12 @@ const char* order_words(PartitionKind kind) {
 
 }  // namespace
 
-std::optional<ConvertPieces> convert_pieces(const std::string& pieces, const std::string& partition) {
-  ConvertPieces result;
-  if (partition == "file")
-    result.partition.kind = PartitionKind::file;
-  else if (partition == "random")
-    result.partition.kind = PartitionKind::random;
-  else if (partition != "curve")
-    throw bad_input(fmt::format("--partition: '{}' is none; use curve, file or random", partition));
-  if (pieces.empty()) {
-    if (partition != "curve") throw bad_input("--partition: is of --pieces; give their number too");
-    return std::nullopt;
-  }
-  result.count = parse_count("--pieces", pieces, 1, 100000);
-  return result;
+std::optional<ConvertPieces> convert_pieces(const OptionWords& words) {
+  const auto kind = words.choice("partition", {PartitionKind::curve, PartitionKind::file, PartitionKind::random});
+  const auto count = words.count("pieces", 1, 100000);
+  if (count) return ConvertPieces{*count, {.kind = kind.value_or(PartitionKind::curve)}};
+  if (kind && *kind != PartitionKind::curve) throw bad_input("--partition: is of --pieces; give their number too");
+  return std::nullopt;
 }
 
 void convert_mesh(const std::filesystem::path& input, const std::filesystem::path& output, ReadOptions options,

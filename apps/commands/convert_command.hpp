@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "apps/options/render_options.hpp"
+#include "tessera/program/render_options.hpp"
 
 namespace tessera::apps {
 
@@ -13,8 +13,8 @@ struct ConvertPieces {
   Partition partition;
 };
 
-/// The words of --pieces and --partition; none without pieces. Throws Error(bad_input).
-std::optional<ConvertPieces> convert_pieces(const std::string& pieces, const std::string& partition);
+/// --pieces and --partition; none without pieces. Throws Error(bad_input).
+std::optional<ConvertPieces> convert_pieces(const OptionWords& words);
 
 /// `tessera convert` of a mesh: as it would be rendered (tets, one scalar), written as .tets or .vtu by the output's
 /// extension, or with `pieces` as .pvtu, every tet cut into eight `subdivide` times. One line on stderr unless `quiet`.

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "apps/options/setting_words.hpp"
 #include "tessera/file_formats.hpp"
+#include "tessera/program/options.hpp"
 
 namespace tessera::apps {
 namespace {

@@ -5,13 +5,13 @@
 
 #include <map>
 
-#include "apps/options/argument_values.hpp"
 #include "apps/render/progress.hpp"
 #include "apps/stderr_lines.hpp"
 #include "datasets/arrays.hpp"
 #include "datasets/generate.hpp"
 #include "datasets/volumes.hpp"
 #include "tessera/error.hpp"
+#include "tessera/program/options.hpp"
 #include "tessera/program/output_file.hpp"
 #include "tessera/write.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "apps/options/render_options.hpp"
+#include "tessera/program/render_options.hpp"
 
 namespace tessera::apps {
 

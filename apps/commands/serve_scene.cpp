@@ -3,96 +3,38 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <list>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string_view>
 #include <utility>
 
-#include "apps/options/argument_values.hpp"
 #include "apps/options/series_choice.hpp"
-#include "apps/options/setting_words.hpp"
-#include "apps/options/volume_options.hpp"
 #include "apps/render/frame_annotation.hpp"
 #include "apps/render/progress.hpp"
 #include "tessera/error.hpp"
 #include "tessera/higher_order.hpp"
 #include "tessera/program/film.hpp"
+#include "tessera/program/render_options.hpp"
+#include "tessera/program/state_words.hpp"
 #include "tessera/view.hpp"
 
 namespace tessera::apps {
 namespace {
 
-using server::Json;
-
-/// Of `render`, those that `serve` has: what shows data, not what becomes of pictures.
-constexpr std::string_view served_options =
-    " field scale smooth warp q max-volume time-step block drop-duplicates clip threshold cut-planes "
-    "higher-order-tolerance "
-    "higher-order-tets "
-    "dims "
-    "type spacing origin endian skip labels transfer-function rescale unit-distance opacity-scale range log "
-    "opacity-points "
-    "iso "
-    "surface blend camera view up azimuth elevation zoom fit size projection integrator accuracy emission step shade "
-    "no-shade light background color-bar color-bar-title color-bar-range color-bar-scale field-unit axes outline "
-    "scale-bar length-unit annotate annotation-color annotation-size threads memory half png-bits help ";
-
-constexpr std::array<std::string_view, 22> data_options = {"q",
-                                                           "warp",
-                                                           "scale",
-                                                           "max-volume",
-                                                           "time-step",
-                                                           "block",
-                                                           "drop-duplicates",
-                                                           "smooth",
-                                                           "clip",
-                                                           "threshold",
-                                                           "cut-planes",
-                                                           "higher-order-tolerance",
-                                                           "higher-order-tets",
-                                                           "dims",
-                                                           "type",
-                                                           "spacing",
-                                                           "origin",
-                                                           "endian",
-                                                           "skip",
-                                                           "labels",
-                                                           "threads",
-                                                           "memory"};
-constexpr std::array<std::string_view, 13> look_options = {
-    "transfer-function", "rescale", "range", "log",     "opacity",  "opacity-scale", "opacity-points",
-    "unit-distance",     "blend",   "iso",   "surface", "no-shade", "emission"};
-constexpr std::array<std::string_view, 9> settings_options = {"integrator", "accuracy", "iso",      "surface", "shade",
-                                                              "no-shade",   "light",    "emission", "step"};
-/// What JSON of a transfer function says by itself.
-constexpr std::array<std::string_view, 8> function_options = {
-    "transfer-function", "rescale", "range", "log", "opacity", "opacity-scale", "opacity-points", "unit-distance"};
-constexpr std::array<std::string_view, 3> range_options = {"rescale", "range", "log"};
-/// Options that change no picture, of which a command line need not tell.
-constexpr std::array<std::string_view, 2> unsaid_options = {"threads", "memory"};
-
-template <std::size_t count>
-bool among(const std::array<std::string_view, count>& names, std::string_view name) {
-  return std::ranges::find(names, name) != names.end();
+/// Options with this trait as one text. Values are quoted, so that different words never look alike.
+std::string key_of(const OptionWords& words, Trait trait) {
+  server::Json key = server::Json::object();
+  for (const OptionRow* row : option_rows(trait))
+    if (words.given(row->key())) key[std::string(row->key())] = words.words(row->key());
+  return key.dump(-1, ' ', false, server::Json::error_handler_t::replace);
 }
 
-/// Options of these names as one text. Values are quoted, so that different words never look alike.
-template <std::size_t count>
-std::string key_of(const OptionWords& words, const std::array<std::string_view, count>& names) {
-  Json key = Json::object();
-  for (const auto& [name, values] : words)
-    if (among(names, name)) key[name] = values;
-  return key.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-std::string first_of(const OptionWords& words, const std::string& option) {
-  const auto* const values = find_words(words, option);
-  return values == nullptr || values->empty() ? "" : values->front();
+/// Without the options that have this trait.
+OptionWords without(OptionWords words, Trait trait) {
+  for (const OptionRow* row : option_rows(trait)) words.set(row->key(), std::vector<std::string>());
+  return words;
 }
 
 /// The field as `--field` takes it.
@@ -124,8 +66,9 @@ struct ParsedWords {
 
 /// Of what is read: the field may be named or not, and of cells that are not curved the accuracy does not count.
 std::string data_key(const ParsedWords& parsed, const std::string& field, bool shape, bool linear) {
-  return fmt::format("{} {} {} {}", parsed.data, Json(field).dump(-1, ' ', false, Json::error_handler_t::replace),
-                     shape, linear ? "linear" : parsed.accuracy);
+  return fmt::format("{} {} {} {}", parsed.data,
+                     server::Json(field).dump(-1, ' ', false, server::Json::error_handler_t::replace), shape,
+                     linear ? "linear" : parsed.accuracy);
 }
 
 class RenderScene final : public server::Scene {
@@ -236,19 +179,13 @@ struct SeriesStart {
 
 class RenderSceneReader final : public server::SceneReader {
  public:
-  RenderSceneReader(const RenderWords& words, const CLI::App& serve)
-      : input_(words.input), is_grid_(draws_grids(words)) {
-    for (const CLI::Option* option : serve.get_options()) {
-      if (option->count() == 0 || option->get_lnames().empty()) continue;
-      std::string name = option->get_lnames().front();
-      if (name == "opacity-scale") name = "opacity";
-      if (served_options.find(" " + option->get_lnames().front() + " ") != std::string_view::npos)
-        base_.emplace_back(std::move(name), option->results());
-    }
+  explicit RenderSceneReader(const OptionWords& words) : input_(words.word("input")), is_grid_(draws_grids(words)) {
+    for (const OptionRow* row : option_rows(Trait::serve))
+      if (row->is(Trait::render) && !row->is(Trait::positional)) base_.set(row->key(), words.words(row->key()));
     if (!is_time_series(input_)) return;
     for (const TimeStep& step : read_time_series(input_)) times_.push_back(step.time);
-    shows_all_ = find_words(base_, "time-step") == nullptr;
-    if (shows_all_) base_.emplace_back("time-step", std::vector<std::string>{"0"});
+    shows_all_ = !base_.given("time-step");
+    base_.set_default("time-step", "0");
   }
 
   /// Field and colors of a series as `render` chooses them for all its steps. A first step that cannot be read is left
@@ -286,32 +223,30 @@ class RenderSceneReader final : public server::SceneReader {
     }
   }
 
-  std::shared_ptr<const server::Scene> scene(const Json& state) override {
-    OptionWords words = state_words(base_, state);
-    const std::string camera = first_of(words, "camera"), size = first_of(words, "size");
-    const auto parsed = parsed_words(words, !camera.empty());
+  std::shared_ptr<const server::Scene> scene(const server::Json& state) override {
+    const OptionWords words = state_words(base_, state);
+    const auto parsed = parsed_words(words);
     std::optional<Camera> view;
     ImageSize picture;
-    if (!camera.empty()) {
-      const CameraFile file = cameras_of(camera).front();
+    if (words.given("camera")) {
+      const CameraFile file = cameras_of(words.word("camera")).front();
       view = file.camera;
       if (file.size) picture = *file.size;
     }
-    if (!size.empty()) picture = parse_size("--size", size);
+    assign(picture, words.size("size"));
     return std::make_shared<RenderScene>(parsed, view, picture);
   }
 
-  std::string command(const Json& state) override {
+  std::string command(const server::Json& state) override {
     static_cast<void>(scene(state));  // what is no picture has no command
     OptionWords words = state_words(base_, state);
     if (const auto function = series_function(words)) {
-      std::erase_if(words, [](const auto& option) { return among(function_options, option.first); });
-      words.emplace_back("transfer-function", std::vector{transfer_function_json(function->function)});
-      const bool says_shading = find_words(words, "shade") != nullptr || find_words(words, "no-shade") != nullptr;
-      if (function->shaded && !says_shading) words.emplace_back("shade", std::vector<std::string>{"true"});
+      const bool states_shading = words.given_one_of({"shade", "no-shade"});
+      words = without(std::move(words), Trait::knots);
+      words.set("transfer-function", transfer_function_json(function->function));
+      if (function->shaded && !states_shading) words.set("shade", "true");
     }
-    words = with_series_start(std::move(words));
-    std::erase_if(words, [](const auto& option) { return among(unsaid_options, option.first); });
+    words = without(with_series_start(std::move(words)), Trait::machine);
     std::vector<std::string> all = {"tessera", "render", input_};
     const std::vector<std::string> arguments = arguments_of(words);
     all.insert(all.end(), arguments.begin(), arguments.end());
@@ -319,16 +254,16 @@ class RenderSceneReader final : public server::SceneReader {
     return shell_words(all);
   }
 
-  [[nodiscard]] Json base() const override { return state_of_words(base_); }
-  [[nodiscard]] bool fixes(const std::string& option) const override { return find_words(base_, option) != nullptr; }
+  [[nodiscard]] server::Json base() const override { return state_of_words(base_); }
+  [[nodiscard]] bool fixes(const std::string& option) const override { return base_.given(option); }
   [[nodiscard]] std::string input_name() const override { return std::filesystem::path(input_).filename().string(); }
   [[nodiscard]] std::vector<double> times() const override { return times_; }
   [[nodiscard]] std::string worded(const std::string& message) const override { return with_options(message); }
 
-  [[nodiscard]] Json exact(const Json& state) const override {
+  [[nodiscard]] server::Json exact(const server::Json& state) const override {
     const auto integrator = state.find("integrator");
     if (integrator != state.end() && *integrator == "exact") return state;
-    Json exact = state;
+    server::Json exact = state;
     exact["integrator"] = "exact";
     for (const char* of_others : {"accuracy", "step"}) exact[of_others] = nullptr;
     return exact;
@@ -338,38 +273,34 @@ class RenderSceneReader final : public server::SceneReader {
   static constexpr std::size_t most_parsed = 32;
 
   [[nodiscard]] bool shows_series_field(const OptionWords& words) const {
-    const std::string field = first_of(words, "field");
+    const std::string& field = words.word("field");
     return start_ && (field.empty() || std::ranges::find(start_->names, field) != start_->names.end());
   }
 
   /// Null where words ask for another one.
   [[nodiscard]] std::shared_ptr<const LoadedTransferFunction> series_function(const OptionWords& words) const {
-    const bool is_its_own = shows_series_field(words) && key_of(words, look_options) == start_->look;
+    const bool is_its_own = shows_series_field(words) && key_of(words, Trait::look) == start_->look;
     return is_its_own ? start_->function : nullptr;
   }
 
   /// Presets go over the range of all steps, too.
   [[nodiscard]] OptionWords with_series_start(OptionWords words) const {
     if (!start_) return words;
-    const std::string function = first_of(words, "transfer-function");
-    const bool has_range = std::ranges::any_of(
-        range_options, [&](std::string_view name) { return find_words(words, std::string(name)) != nullptr; });
     const auto [low, high] = start_->range;
-    if (shows_series_field(words) && !series_function(words) && preset_is_named(function) && !has_range && low < high)
-      words.emplace_back("range", std::vector{fmt::format("{},{}", low, high)});
+    if (shows_series_field(words) && !series_function(words) && preset_is_named(words.word("transfer-function")) &&
+        !words.given_one_of({"rescale", "range", "log"}) && low < high)
+      words.set("range", fmt::format("{},{}", low, high));
     // Smoothed, a field of cells is one of points.
-    if (find_words(words, "field") == nullptr)
-      words.emplace_back("field",
-                         std::vector{find_words(words, "smooth") == nullptr ? start_->field : start_->names.back()});
+    words.set_default("field", words.given("smooth") ? start_->names.back() : start_->field);
     return words;
   }
 
   /// Parsed once for all cameras and sizes, which change most.
-  std::shared_ptr<const ParsedWords> parsed_words(const OptionWords& words, bool has_camera) {
-    Json rest = {has_camera};
-    for (const auto& [name, values] : words)
-      if (name != "camera" && name != "size") rest.push_back({name, values});
-    std::string key = rest.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::shared_ptr<const ParsedWords> parsed_words(const OptionWords& words) {
+    OptionWords rest = words;
+    if (rest.given("camera")) rest.set("camera", "{}");
+    rest.set("size", "");
+    std::string key = server::Json(rest.all()).dump(-1, ' ', false, server::Json::error_handler_t::replace);
     for (auto kept = kept_.begin(); kept != kept_.end(); ++kept)
       if (kept->first == key) {
         kept_.splice(kept_.begin(), kept_, kept);
@@ -381,35 +312,25 @@ class RenderSceneReader final : public server::SceneReader {
   }
 
   [[nodiscard]] std::shared_ptr<const ParsedWords> parse(const OptionWords& state) const {
-    const OptionWords words = with_series_start(state);
-    CLI::App app("", "render");
-    RenderWords given;
-    add_render_options(app, given);
-    std::vector<std::string> arguments = {"--output=picture.png", "--quiet"};
-    for (std::string& argument : arguments_of(words)) arguments.push_back(std::move(argument));
-    std::ranges::reverse(arguments);  // as CLI11 takes them
-    app.get_option("INPUT")->required(false);
-    try {
-      app.parse(std::move(arguments));
-    } catch (const CLI::ParseError& error) {
-      throw bad_input(fmt::format("state: {}; see `tessera render --help-all`", error.what()));
-    }
-    given.input = input_;
-    if (!given.time_step.empty() && given.time_step.find_first_not_of("0123456789") != std::string::npos)
-      throw bad_input(fmt::format("--time-step: '{}' is no step; give one, counted from 0", given.time_step));
+    OptionWords words = with_series_start(state);
+    words.set("input", input_);
+    words.set("output", "picture.png");
+    words.set("quiet", "true");
+    const std::string& step = words.word("time-step");
+    if (step.find_first_not_of("0123456789") != std::string::npos)
+      throw bad_input(fmt::format("--time-step: '{}' is no step; give one, counted from 0", step));
     auto parsed = std::make_shared<ParsedWords>();
-    parsed->options = render_options(given, is_grid_);
-    RenderOptions& options = parsed->options;
-    if (options.is_grid()) refuse_mesh_options(given, options);
+    parsed->options = render_options(words, is_grid_);
+    const RenderOptions& options = parsed->options;
     check_annotation(options.annotation);
     parsed->frame = plan_film(options.plan).front();
-    parsed->data = key_of(words, data_options);
-    if (!given.clip.clip.empty() && !given.surfaces.iso.empty()) parsed->data += Json(given.surfaces.iso).dump();
-    parsed->field = given.field;
-    parsed->shape = given.field.empty() && given.transfer_function.empty() && !is_grid_;
+    parsed->data = key_of(words, Trait::data);
+    if (words.given("clip") && words.given("iso")) parsed->data += server::Json(words.words("iso")).dump();
+    parsed->field = words.word("field");
+    parsed->shape = options.read.shape && parsed->field.empty();
     parsed->accuracy = fmt::format("{:a}", options.higher_order_accuracy.value_or(options.read.higher_order_tolerance));
-    parsed->look = key_of(words, look_options);
-    parsed->settings = key_of(words, settings_options);
+    parsed->look = key_of(words, Trait::look);
+    parsed->settings = key_of(words, Trait::settings);
     parsed->series_function = series_function(state);
     return parsed;
   }
@@ -425,23 +346,10 @@ class RenderSceneReader final : public server::SceneReader {
 
 }  // namespace
 
-std::unique_ptr<server::SceneReader> scene_reader(const RenderWords& words, const CLI::App& serve, Job& job) {
-  auto reader = std::make_unique<RenderSceneReader>(words, serve);
+std::unique_ptr<server::SceneReader> scene_reader(const OptionWords& words, Job& job) {
+  auto reader = std::make_unique<RenderSceneReader>(words);
   reader->choose_for_all_steps(job);
   return reader;
-}
-
-void add_scene_reader_options(CLI::App& serve, RenderWords& words) {
-  const std::vector<CLI::Option*> own = serve.get_options();
-  add_render_options(serve, words);
-  std::vector<CLI::Option*> others;
-  for (CLI::Option* option : serve.get_options()) {
-    if (std::ranges::find(own, option) != own.end()) continue;
-    const std::string name = option->get_lnames().empty() ? "" : option->get_lnames().front();
-    const bool is_input = option->get_positional() && option->get_name(true) == "INPUT";
-    if (!is_input && served_options.find(" " + name + " ") == std::string_view::npos) others.push_back(option);
-  }
-  for (CLI::Option* option : others) serve.remove_option(option);
 }
 
 }  // namespace tessera::apps

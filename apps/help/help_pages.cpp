@@ -3,67 +3,16 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
-#include <iterator>
-#include <string_view>
+#include <utility>
+
+#include "apps/commands/generate_command.hpp"
+#include "tessera/program/text.hpp"
 
 namespace tessera::apps {
 namespace {
 
-constexpr std::size_t columns = 100, left_column = 30;
-
-/// Options of `render` by topic: first those of --help, then those of --help-all alone. What no topic names is under
-/// "More".
-struct Topic {
-  const char *title, *first, *more;
-};
-constexpr std::array topics = {
-    Topic{"Server", "", "bind port latency tls-certificate tls-key allow-host"},
-    Topic{"Data", "field block clip threshold time-step",
-          "labels scale smooth warp drop-duplicates q max-volume higher-order-tolerance higher-order-tets cut-planes"},
-    Topic{"Raw volumes", "", "dims type spacing origin endian skip"},
-    Topic{"Colour and opacity", "transfer-function range log opacity opacity-points background",
-          "rescale unit-distance blend emission"},
-    Topic{"View", "view zoom azimuth elevation camera size", "up fit projection orbit"},
-    Topic{"Surfaces and light", "iso surface shade", "no-shade light"},
-    Topic{"In the picture", "color-bar axes outline scale-bar annotate",
-          "color-bar-title color-bar-range color-bar-scale field-unit length-unit annotation-color annotation-size "
-          "annotation-layer"},
-    Topic{"Output", "output orbit frame-rate report", "peel half png-bits resume timing progress quiet"},
-    Topic{"Accuracy and speed", "accuracy threads memory verify",
-          "preset integrator deep-accuracy rasterizer tile-size repeat without step brick-size edge-bricks "
-          "cache preload"},
-    Topic{"Devices", "", "compositor backend framebuffer egl-device"},
-    Topic{"Under mpirun", "",
-          "projectors compositors exchange partition frames-in-flight seed distribution direct-send balance "
-          "balance-resolution balance-weights show stall-timeout on-stall"},
-    Topic{"Settings in files", "like config save-config", ""},
-};
-
-bool holds(std::string_view list, std::string_view word) {
-  for (std::size_t at = 0; at < list.size();) {
-    const std::size_t stop = std::min(list.find(' ', at), list.size());
-    if (list.substr(at, stop - at) == word) return true;
-    at = stop + 1;
-  }
-  return false;
-}
-
-bool named_in(const char* list, const CLI::Option& option) {
-  return std::ranges::any_of(option.get_lnames(), [&](const std::string& name) { return holds(list, name); });
-}
-
-bool asks_for_help(const CLI::App& command, const CLI::Option* option) {
-  return option == command.get_help_ptr() || option == command.get_help_all_ptr();
-}
-
-std::vector<const CLI::Option*> told_options(const CLI::App& command) {
-  return command.get_options([&](const CLI::Option* option) {
-    return option->nonpositional() && !option->get_group().empty() && !asks_for_help(command, option);
-  });
-}
+constexpr std::size_t page_columns = 100, left_column = 30;
 
 /// Words into lines; a word that is too long stands alone.
 std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
@@ -79,14 +28,14 @@ std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
 }
 
 /// The beginning that says what it is, where the whole does not fit.
-std::string first_words(const std::string& description, std::size_t width) {
+std::string_view first_words(std::string_view description, std::size_t width) {
   if (description.size() <= width) return description;
   const std::size_t cut = std::min(description.find("; "), description.find(" ("));
   return description.substr(0, cut);
 }
 
-void add_entry(std::string& page, const std::string& form, const std::string& description) {
-  const auto lines = wrapped(description, columns - left_column);
+void add_entry(std::string& page, const std::string& form, std::string_view description) {
+  const auto lines = wrapped(description, page_columns - left_column);
   page += "  " + form;
   const bool apart = form.size() + 4 > left_column;
   if (!apart) page.append(left_column - form.size() - 2, ' ');
@@ -99,55 +48,45 @@ void add_entry(std::string& page, const std::string& form, const std::string& de
 
 }  // namespace
 
-std::string usage_of(const CLI::App& command, const std::string& name) {
-  std::string line = name + (command.get_parent() == nullptr ? " COMMAND" : " [OPTIONS]");
-  for (const CLI::Option* word : command.get_options([](const CLI::Option* o) { return o->get_positional(); })) {
-    const std::string form = word->get_name(true) + (word->get_expected_max() > 1 ? "..." : "");
-    line += word->get_required() ? " " + form : " [" + form + "]";
-  }
-  return line;
-}
-
-namespace {
-
-void add_commands(std::string& page, const CLI::App& app) {
-  page += "\nCommands:\n";
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App* c) { return !c->get_group().empty(); }))
-    add_entry(page, command->get_name(), command->get_description());
-}
-
-}  // namespace
-
-std::vector<HelpTopic> help_topics(const CLI::App& command, bool all) {
-  auto options = told_options(command);
+std::vector<HelpTopic> help_topics(const CommandRow& command, bool all) {
   std::vector<HelpTopic> result;
-  if (command.get_name() != "render" && command.get_name() != "serve") {
-    if (!options.empty()) result.push_back({"Options", std::move(options)});
-    return result;
-  }
-  for (const Topic& topic : topics) {
+  for (const OptionTopic& topic : option_topics()) {
     HelpTopic shown{topic.title, {}};
-    for (const CLI::Option*& option : options) {
-      if (option == nullptr || !(named_in(topic.first, *option) || (all && named_in(topic.more, *option)))) continue;
-      shown.options.push_back(option);
-      option = nullptr;
-    }
-    if (!shown.options.empty()) result.push_back(std::move(shown));
+    for (const OptionRow& row : topic.rows)
+      if (row.is(command.trait) && !row.is(Trait::positional) && (all || row.is(Trait::basic)))
+        shown.rows.push_back(&row);
+    if (shown.rows.empty()) continue;
+    // Of a command with few options there is one topic.
+    if (has_topics(command) || result.empty())
+      result.push_back(std::move(shown));
+    else
+      result.front().rows.insert(result.front().rows.end(), shown.rows.begin(), shown.rows.end());
+    if (!has_topics(command)) result.front().title = "Options";
   }
-  std::erase(options, nullptr);
-  if (all && !options.empty()) result.push_back({"More", std::move(options)});
   return result;
 }
 
-std::string option_form(const CLI::Option& option, bool all) {
-  std::string form;
-  for (const auto& name : option.get_snames()) form += (form.empty() ? "-" : ", -") + name;
-  for (const auto& name : option.get_lnames()) {
-    form += (form.empty() ? "--" : ", --") + name;
-    if (!all) break;
+std::vector<std::string> written_names(const OptionRow& row) {
+  if (row.is(Trait::positional)) return {upper_case(row.names)};
+  std::vector<std::string> names;
+  for (std::string_view rest = row.names; !rest.empty();) {
+    const std::string_view name = rest.substr(0, rest.find(','));
+    rest.remove_prefix(std::min(name.size() + 1, rest.size()));
+    names.push_back(fmt::format("{}{}", name != row.key() && name.size() == 1 ? "-" : "--", name));
   }
-  if (option.get_type_size() == 0) return form;
-  std::string type = option.get_type_name();
+  return names;
+}
+
+std::string shown_name(const OptionRow& row) {
+  return row.is(Trait::positional) ? upper_case(row.names) : fmt::format("--{}", row.key());
+}
+
+std::string option_form(const OptionRow& row, bool all) {
+  std::vector<std::string> names = written_names(row);
+  if (!all) names.resize(names.front().starts_with("--") ? 1 : 2);
+  const std::string form = fmt::format("{}", fmt::join(names, ", "));
+  if (row.value.empty() || row.is(Trait::flag | Trait::place)) return form;
+  std::string type(row.value);
   const std::size_t room = left_column > form.size() + 5 ? left_column - form.size() - 5 : 0;
   if (!all && type.size() > room && type.find('|') != std::string::npos) {
     const std::size_t bar = type.rfind('|', room >= 4 ? room - 4 : 0);
@@ -156,41 +95,48 @@ std::string option_form(const CLI::Option& option, bool all) {
   return form + " " + type;
 }
 
-std::vector<std::string> help_examples(const CLI::App& command) {
-  const std::string& name = command.get_name();
-  if (name == "render")
-    return {"tessera render mesh.vtu -o picture.png", "tessera render head.nii.gz --view left --color-bar -o head.png",
-            "tessera render mesh.vtu --field p --transfer-function viridis --orbit 120 -o turn.mp4"};
-  if (name == "serve") return {"tessera serve mesh.vtu", "mpirun -n 4 tessera serve mesh.pvtu --port 8080"};
-  if (name == "info") return {"tessera info mesh.vtu"};
-  if (name == "convert") return {"tessera convert mesh.vtu mesh.tets"};
-  if (name == "generate") return {"tessera generate cube cube.vtu n=16"};
-  return {};
+std::string usage_of(const CommandRow* command) {
+  if (command == nullptr) return "tessera COMMAND";
+  std::string line = fmt::format("tessera {} [OPTIONS]", command->name);
+  for (const OptionRow* row : option_rows(command->trait)) {
+    if (!row->is(Trait::positional)) continue;
+    const std::string form = shown_name(*row) + (row->is(Trait::list) ? "..." : "");
+    line += row->is(Trait::required) ? " " + form : " [" + form + "]";
+  }
+  return line;
 }
 
-std::string HelpPages::make_help(const CLI::App* command, std::string name, CLI::AppFormatMode mode) const {
-  const bool is_render = command->get_name() == "render";
-  const bool all = !is_render || mode != CLI::AppFormatMode::Normal;
-  std::string page = command->get_description() + "\nUsage: " + usage_of(*command, name) + '\n';
-  for (const std::string& example : help_examples(*command)) page += "  " + example + '\n';
-  const auto positionals = command->get_options([](const CLI::Option* o) { return o->get_positional(); });
-  if (!positionals.empty()) page += '\n';
-  for (const CLI::Option* word : positionals)
-    add_entry(page, word->get_name(true),
-              all ? word->get_description() : first_words(word->get_description(), 2 * (columns - left_column)));
-  if (command->get_parent() == nullptr) add_commands(page, *command);
+std::string help_page(const CommandRow* command, bool all) {
+  if (command == nullptr) {
+    std::string page = fmt::format("{}\nUsage: {}\n\nCommands:\n", program_description, usage_of(nullptr));
+    for (const CommandRow& each : command_rows()) add_entry(page, std::string(each.name), each.description);
+    page += "\nOptions:\n";
+    add_entry(page, "--version", "print the version, the commit and how it was built, and end");
+    return page + "\n`tessera help COMMAND` says more.\n";
+  }
+  const bool is_render = command->trait == Trait::render;
+  all = all || !is_render;
+  std::string page = fmt::format("{}\nUsage: {}\n", command->description, usage_of(command));
+  for (std::string_view rest = command->examples; !rest.empty();) {
+    const std::string_view example = rest.substr(0, rest.find('\n'));
+    page += fmt::format("  {}\n", example);
+    rest.remove_prefix(std::min(example.size() + 1, rest.size()));
+  }
+  bool has_positionals = false;
+  for (const OptionRow* row : option_rows(command->trait)) {
+    if (!row->is(Trait::positional)) continue;
+    if (!std::exchange(has_positionals, true)) page += '\n';
+    add_entry(page, shown_name(*row), all ? row->help : first_words(row->help, 2 * (page_columns - left_column)));
+  }
   for (const HelpTopic& topic : help_topics(*command, all)) {
     page += fmt::format("{}{}:\n", all ? "\n" : "", topic.title);
-    for (const CLI::Option* option : topic.options)
-      add_entry(page, option_form(*option, all),
-                all ? option->get_description() : first_words(option->get_description(), columns - left_column));
+    for (const OptionRow* row : topic.rows)
+      add_entry(page, option_form(*row, all), all ? row->help : first_words(row->help, page_columns - left_column));
   }
   if (is_render)
     page += all ? "\nThe guide, docs/GUIDE.md, goes by what you want to do.\n"
                 : "--help-all has all options, `tessera formats` the files that are read.\n";
-  else if (command->get_parent() == nullptr)
-    page += "\n`tessera help COMMAND` says more.\n";
-  if (const std::string footer = command->get_footer(); !footer.empty()) page += '\n' + footer + '\n';
+  if (command->trait == Trait::generate) page += '\n' + generator_help() + '\n';
   return page;
 }
 

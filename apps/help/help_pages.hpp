@@ -1,35 +1,37 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
+#include "apps/command_line.hpp"
+
 namespace tessera::apps {
 
-/// The options of one topic, in the order of their declaration.
+/// A command's options by topic, without words that have no name. Of `render` only the basic ones, unless `all`.
 struct HelpTopic {
-  std::string title;
-  std::vector<const CLI::Option*> options;
+  std::string_view title;
+  std::vector<const OptionRow*> rows;
 };
+std::vector<HelpTopic> help_topics(const CommandRow& command, bool all);
 
-/// A command's options by topic. Of a command with many only those that most users want, unless `all`; the others of
-/// `render` that no topic names come last. Without --help.
-std::vector<HelpTopic> help_topics(const CLI::App& command, bool all);
+/// "-o" and "--output", or "INPUT".
+std::vector<std::string> written_names(const OptionRow& row);
+
+/// "--output", or "INPUT".
+std::string shown_name(const OptionRow& row);
 
 /// How an option is written before its description: "-o, --output FILE", a long choice of words cut short unless `all`.
-std::string option_form(const CLI::Option& option, bool all);
+std::string option_form(const OptionRow& row, bool all);
 
-/// "tessera render [OPTIONS] INPUT [MORE...]", `name` being what is called.
-std::string usage_of(const CLI::App& command, const std::string& name);
+/// "tessera render [OPTIONS] INPUT [MORE...]"; null: of the program.
+std::string usage_of(const CommandRow* command);
 
-/// Three or so commands to begin with; empty for a command that needs none.
-std::vector<std::string> help_examples(const CLI::App& command);
+/// What the program is.
+inline constexpr std::string_view program_description =
+    "Tessera renders scientific volumes: unstructured meshes and regular grids, exactly, on the CPU.";
 
-/// What `--help` and `--help-all` print, at most 100 columns wide.
-class HelpPages final : public CLI::Formatter {
- public:
-  std::string make_help(const CLI::App* command, std::string name, CLI::AppFormatMode mode) const override;
-};
+/// What `--help` and `--help-all` print, at most 100 columns wide; null: of the program.
+std::string help_page(const CommandRow* command, bool all);
 
 }  // namespace tessera::apps

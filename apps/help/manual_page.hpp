@@ -7,7 +7,7 @@
 
 namespace tessera::apps {
 
-/// The manual page (section 1, roff) of a command, or of the program for `line.app`.
-std::string manual_page(const CommandLine& line, const CLI::App& command);
+/// The manual page (section 1, roff) of a command; null: of the program.
+std::string manual_page(const CommandRow* command);
 
 }  // namespace tessera::apps

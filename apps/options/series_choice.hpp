@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/options/render_options.hpp"
+#include "tessera/program/render_options.hpp"
 
 namespace tessera::apps {
 

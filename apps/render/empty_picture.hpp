@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/options/render_options.hpp"
 #include "tessera/job.hpp"
 #include "tessera/program/film.hpp"
+#include "tessera/program/render_options.hpp"
 #include "tessera/sink.hpp"
 
 /// Pictures that are right and show nothing: why, and what shows something.

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "apps/exit_code.hpp"
-#include "apps/options/render_options.hpp"
 #include "tessera/job.hpp"
+#include "tessera/program/render_options.hpp"
 
 namespace tessera::apps {
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "apps/options/annotation_options.hpp"
-#include "apps/options/render_options.hpp"
 #include "apps/render/picture_writer.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/deep_image.hpp"
 #include "tessera/image.hpp"
 #include "tessera/program/film.hpp"
+#include "tessera/program/render_options.hpp"
 #include "tessera/transfer_function.hpp"
 
 namespace tessera::apps {

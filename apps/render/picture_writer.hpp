@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "apps/options/render_options.hpp"
 #include "tessera/deep_image.hpp"
 #include "tessera/film_file.hpp"
 #include "tessera/image.hpp"
 #include "tessera/program/film.hpp"
+#include "tessera/program/render_options.hpp"
 
 namespace tessera::apps {
 

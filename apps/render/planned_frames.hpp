@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "apps/options/render_options.hpp"
 #include "tessera/program/film.hpp"
+#include "tessera/program/render_options.hpp"
 
 namespace tessera::apps {
 

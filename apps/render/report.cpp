@@ -13,8 +13,8 @@
 #include <string_view>
 #include <utility>
 
-#include "apps/options/setting_words.hpp"
 #include "apps/stderr_lines.hpp"
+#include "tessera/program/options.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -103,7 +103,7 @@ Json mesh_method_json(const RenderOptions& options) {
   const bool fragment = on.method == GlMethod::fragment;
   json["compositor"] = on.backends.empty() ? "cpu" : fragment ? "gl-fragment" : "gl-compute";
   if (!on.backends.empty() && fragment) json["framebuffer"] = on.half ? "half" : "float";
-  if (!options.without.empty()) json["without"] = options.without;
+  if (options.words.given("without")) json["without"] = options.words.word("without");
   json["blend"] = options.function.display_colors ? "display" : "linear";
   json["threads"] = settings.threads;  // 0: all cores
   json["tile_size"] = settings.mesh.tile_size;
@@ -120,7 +120,7 @@ Json grid_method_json(const RenderOptions& options, int ranks) {
   json["emission"] = settings.emission == Emission::absorption ? "absorption" : "independent";
   add_shading(s.shading, json);
   json["backend"] = "cpu";
-  if (!options.without.empty()) json["without"] = options.without;
+  if (options.words.given("without")) json["without"] = options.words.word("without");
   json["blend"] = options.function.display_colors ? "display" : "linear";
   json["threads"] = settings.threads;
   json["brick_size"] = s.brick_size;
@@ -148,7 +148,11 @@ Json grid_method_json(const RenderOptions& options, int ranks) {
 Json method_json(const RenderOptions& options, int ranks) {
   Json json = options.is_grid() ? grid_method_json(options, ranks) : mesh_method_json(options);
   if (const auto& peel = options.frame.peel) json["peel"] = {{"threshold", peel->threshold}, {"layers", peel->layers}};
-  if (!options.annotation.given.empty()) json["annotation"] = options.annotation.given;
+  for (const OptionRow* row : option_rows(Trait::annotation)) {
+    const auto& given = options.words.words(row->key());
+    if (!given.empty())
+      json["annotation"][std::string(row->key())] = row->is(Trait::list) ? Json(given) : Json(given.back());
+  }
   return json;
 }
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "analysis/reports.hpp"
-#include "apps/options/method_words.hpp"
-#include "apps/options/render_options.hpp"
+#include "tessera/program/method_words.hpp"
+#include "tessera/program/render_options.hpp"
 #include "tessera/statistics.hpp"
 #include "tessera/transfer_function.hpp"
 #include "tessera/verification.hpp"

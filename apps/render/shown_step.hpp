@@ -7,12 +7,12 @@
 #include <optional>
 #include <vector>
 
-#include "apps/options/render_options.hpp"
 #include "apps/options/series_choice.hpp"
 #include "apps/render/empty_picture.hpp"
 #include "apps/render/run_output.hpp"
 #include "tessera/job.hpp"
 #include "tessera/program/film.hpp"
+#include "tessera/program/render_options.hpp"
 #include "tessera/session.hpp"
 #include "tessera/trace.hpp"
 

@@ -39,7 +39,7 @@ ROWS = [
     row("render m.vtu -o a.png --size 0x5", "write WxH, each side 1 to 65536", "render m.vtu -o a.png --size 9x5"),
     row("render m.vtu -o a.png --size 60000x60000", "make it smaller", "render m.vtu -o a.png --size 600x600"),
     # parts of the data
-    row(R + "--threshold 1,0", "give the smaller number first", R + "--threshold 0,1"),
+    row(R + "--threshold 1,0", "write the smaller number first", R + "--threshold 0,1"),
     row(R + "--threshold 7,8", "nothing is left to render", R + "--threshold 0,1"),
     row(R + "--clip 0,0,0,0,0,0", "say which side is to be kept", R + "--clip 0,0,0,0,0,1"),
     row(R + "--clip box:0,0,0,0,1,1", "give two opposite corners", R + "--clip box:0,0,0,1,1,1"),
@@ -114,7 +114,7 @@ ROWS = [
     row(R + "--higher-order-tets=-1", "a whole number from 0", R + "--higher-order-tets 1"),
     # annotation
     row(R + "--color-bar=middle", "is no place; use top-left", R + "--color-bar=top-left"),
-    row(R + "--color-bar --color-bar-range 1,0", "give the lower one first", R + "--color-bar --color-bar-range 0,1"),
+    row(R + "--color-bar --color-bar-range 1,0", "write the smaller number first", R + "--color-bar --color-bar-range 0,1"),
     row(R + "--color-bar-range 0,1", "give that too, or leave it out", R + "--color-bar --color-bar-range 0,1"),
     row(R + "--outline=2", "takes no value; leave that out", R + "--outline"),
     row(

@@ -53,7 +53,7 @@ ROWS = [
     row(V + "--shade --no-shade", "leave one of the two out", V + "--shade"),
     row(V + "--cache fifo", "use lru or proximity", V + "--cache proximity"),
     row(V + "--labels maybe", "use on or off", V + "--labels off"),
-    row(V + "--edge-bricks open", "use fixed or variable", V + "--edge-bricks fixed"),
+    row(V + "--edge-bricks open", "use variable or fixed", V + "--edge-bricks fixed"),
     row(V + "--preload 3", "add it, or leave --preload out", V + "--preload 3 --cache proximity"),
     row(V + "--step 0.5", "use sampled or preintegrated", V + "--step 0.5 --integrator sampled"),
     row(V + "--iso 7", "choose a value between", V + "--iso 0.5"),

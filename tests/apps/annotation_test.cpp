@@ -144,10 +144,10 @@ TEST(Annotations, WhatIsWrongIsSaidInOneLineBeforeAnythingIsWritten) {
   for (const Case& c : {
            Case{{"--annotate", "{tiem}"}, "--annotate: {tiem} is unknown; use {field} {time} {file}"},
            Case{{"--color-bar=middle"}, "--color-bar: 'middle' is no place; use top-left or top"},
-           Case{{"--axes=all"}, "--axes: 'all' is unknown; use triad or box or both"},
+           Case{{"--axes=all"}, "--axes: 'all' is unknown; use triad, box or both"},
            Case{{"--outline=red"}, "--outline: takes no value"},
            Case{{"--color-bar-title", "T"}, "--color-bar-title: has no effect without --color-bar"},
-           Case{{"--color-bar", "--color-bar-range", "5"}, "--color-bar-range: '5' is not LOW,HIGH"},
+           Case{{"--color-bar", "--color-bar-range", "5"}, "--color-bar-range: '5' is not two numbers; write LOW,HIGH"},
            Case{{"--color-bar", "--color-bar-range", "5,1"}, "--color-bar-range: '5,1' does not ascend"},
            Case{{"--color-bar", "--color-bar-scale", "cubic"}, "--color-bar-scale: 'cubic' is unknown"},
            Case{{"--color-bar", "--color-bar-scale", "log", "--color-bar-range=-1,5"}, "give --color-bar-range"},

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "apps/options/argument_values.hpp"
+#include "api/options/argument_values.hpp"
 
 #include <gtest/gtest.h>
 
 #include "tessera/error.hpp"
 #include "tessera/time_series.hpp"
 
-namespace tessera::apps {
+namespace tessera::api {
 namespace {
 
 TEST(ArgumentValues, SizesInMemoryTakePowersOf1024) {
@@ -21,10 +21,10 @@ TEST(ArgumentValues, SizesInMemoryTakePowersOf1024) {
 }
 
 TEST(ArgumentValues, ColorsAreNamesOrThreeNumbers) {
-  EXPECT_EQ(parse_color("--background", "white"), (std::array<float, 3>{1, 1, 1}));
-  EXPECT_EQ(parse_color("--background", "0.25,0,2"), (std::array<float, 3>{0.25f, 0, 2}));
+  EXPECT_EQ(parse_color("--background", "white"), glm::dvec3(1));
+  EXPECT_EQ(parse_color("--background", "0.25,0,2"), glm::dvec3(0.25, 0, 2));
   // CSS's green is half of lime in sRGB.
-  EXPECT_EQ(parse_color("--background", "lime"), (std::array<float, 3>{0, 1, 0}));
+  EXPECT_EQ(parse_color("--background", "lime"), glm::dvec3(0, 1, 0));
   EXPECT_EQ(parse_color("--background", "green"), parse_color("--background", "#008000"));
   EXPECT_EQ(parse_color("--background", "steelblue"), parse_color("--background", "#4682B4"));
   EXPECT_EQ(parse_color("--background", "#48b"), parse_color("--background", "#4488bb"));
@@ -55,4 +55,4 @@ TEST(FrameNames, OneNumberPatternIsReplacedAndOtherPercentSignsStay) {
 }
 
 }  // namespace
-}  // namespace tessera::apps
+}  // namespace tessera::api

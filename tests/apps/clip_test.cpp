@@ -80,8 +80,8 @@ TEST_F(ClipCommand, SaysWhatIsWrongInOneLine) {
       {{"--clip", "0,0,0,0,0,0"}, "has the normal 0,0,0"},
       {{"--clip", "box:0,0,0,0,1,1"}, "is flat; give two opposite corners"},
       {{"--clip", "9,0,0,1,0,0"}, "nothing is on the side that --clip keeps"},
-      {{"--threshold", "3,2"}, "give the smaller number first"},
-      {{"--threshold", "1"}, "is not MIN,MAX"},
+      {{"--threshold", "3,2"}, "write the smaller number first"},
+      {{"--threshold", "1"}, "is not two numbers; write MIN,MAX"},
       {{"--threshold", "900,901"}, "no cell has all its values in --threshold"}};
   for (const auto& [arguments, words] : faults) {
     const Outcome outcome = render(arguments);

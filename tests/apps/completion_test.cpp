@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "apps/command_line.hpp"
+#include "apps/help/help_pages.hpp"
 #include "apps/program.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/image_file.hpp"
@@ -26,24 +27,22 @@ bool holds(const Words& words, const std::string& word) { return std::ranges::fi
 TEST(Completion, KnowsCommandsOptionsWordsAndNames) {
   const Folder folder;
   const std::string mesh = folder.cube();
-  const CommandLine line;
-  EXPECT_EQ(completions(line, {"re"}), Words{"render"});
-  EXPECT_EQ(completions(line, {"render", mesh, "--orb"}), Words{"--orbit"});
-  EXPECT_TRUE(holds(completions(line, {"render", "--view", ""}), "front"));
-  EXPECT_EQ(completions(line, {"render", "--view=fr"}), Words{"--view=front"});
-  EXPECT_EQ(completions(line, {"render", mesh, "--field", ""}), Words{"f"});
-  const Words functions = completions(line, {"render", "--transfer-function", "vir"});
+  EXPECT_EQ(completions({"re"}), Words{"render"});
+  EXPECT_EQ(completions({"render", mesh, "--orb"}), Words{"--orbit"});
+  EXPECT_TRUE(holds(completions({"render", "--view", ""}), "front"));
+  EXPECT_EQ(completions({"render", "--view=fr"}), Words{"--view=front"});
+  EXPECT_EQ(completions({"render", mesh, "--field", ""}), Words{"f"});
+  const Words functions = completions({"render", "--transfer-function", "vir"});
   EXPECT_TRUE(holds(functions, "viridis")) << functions.size();
   EXPECT_TRUE(holds(functions, std::string(file_completion)));  // or a file
-  EXPECT_EQ(completions(line, {"info", ""}), Words{std::string(file_completion)});
-  EXPECT_EQ(completions(line, {"help", "gen"}), Words{"generate"});
-  EXPECT_EQ(completions(line, {"completion", "z"}), Words{"zsh"});
-  EXPECT_EQ(completions(line, {"generate", "rip"}), Words{"ripples"});
-  EXPECT_TRUE(holds(completions(line, {"render", "--transfer-function", "viridis:p"}), "viridis:peaks"));
-  EXPECT_TRUE(
-      holds(completions(line, {"render", "--transfer-function=viridis:p"}), "--transfer-function=viridis:peaks"));
-  EXPECT_TRUE(completions(line, {"nonsense", ""}).empty());
-  EXPECT_TRUE(completions(line, {"render", "--size", ""}).empty());
+  EXPECT_EQ(completions({"info", ""}), Words{std::string(file_completion)});
+  EXPECT_EQ(completions({"help", "gen"}), Words{"generate"});
+  EXPECT_EQ(completions({"completion", "z"}), Words{"zsh"});
+  EXPECT_EQ(completions({"generate", "rip"}), Words{"ripples"});
+  EXPECT_TRUE(holds(completions({"render", "--transfer-function", "viridis:p"}), "viridis:peaks"));
+  EXPECT_TRUE(holds(completions({"render", "--transfer-function=viridis:p"}), "--transfer-function=viridis:peaks"));
+  EXPECT_TRUE(completions({"nonsense", ""}).empty());
+  EXPECT_TRUE(completions({"render", "--size", ""}).empty());
 }
 
 /// What bash has to offer for a line; the words as it splits them.
@@ -165,22 +164,19 @@ TEST(Completion, ShellsTakeTheirScripts) {
 
 TEST(ManualPage, HoldsEveryOptionAndIsGoodRoff) {
   const Folder folder;
-  const CommandLine line;
-  for (const CLI::App* command : line.commands()) {
-    const Outcome page = tessera({"help", "--man", command->get_name()});
+  for (const CommandRow& command : command_rows()) {
+    const std::string name(command.name);
+    const Outcome page = tessera({"help", "--man", name});
     ASSERT_EQ(page.status, 0);
-    for (const CLI::Option* option : command->get_options()) {
-      if (!option->nonpositional() || option->get_group().empty() || option == command->get_help_ptr() ||
-          option == command->get_help_all_ptr())
-        continue;
-      std::string name = "--" + option->get_lnames().front();
-      for (std::size_t at = 0; (at = name.find('-', at)) != std::string::npos; at += 2) name.insert(at, 1, '\\');
-      EXPECT_NE(page.out.find(name), std::string::npos) << name;
+    for (const OptionRow* row : option_rows(command.trait)) {
+      std::string option = shown_name(*row);
+      for (std::size_t at = 0; (at = option.find('-', at)) != std::string::npos; at += 2) option.insert(at, 1, '\\');
+      EXPECT_NE(page.out.find(option), std::string::npos) << option;
     }
     if (!std::filesystem::exists("/usr/bin/groff")) continue;
     const Outcome read = Running({"groff", "-man", "-Tascii", "-ww", "-z", folder.file("page.1", page.out)}).wait();
     EXPECT_EQ(read.status, 0);
-    EXPECT_EQ(read.err, "") << command->get_name();
+    EXPECT_EQ(read.err, "") << name;
   }
 }
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <regex>
+#include <set>
 #include <sstream>
 
 #include "apps/command_line.hpp"
@@ -31,28 +33,42 @@ TEST(Help, OfRenderIsAScreenfulWithThreeExamples) {
 }
 
 TEST(Help, IsAtMostHundredColumnsWide) {
-  const CommandLine line_of;
-  for (const CLI::App* command : line_of.commands())
-    for (const std::vector<std::string>& words :
-         {std::vector<std::string>{command->get_name(), "--help"}, {"help", "--all", command->get_name()}}) {
+  for (const CommandRow& command : command_rows())
+    for (const std::vector<std::string>& words : {std::vector<std::string>{std::string(command.name), "--help"},
+                                                  {"help", "--all", std::string(command.name)}}) {
       const Outcome help = tessera(words);
       EXPECT_EQ(help.status, 0);
-      for (const std::string& line : lines_of(help.out)) EXPECT_LE(line.size(), 100U) << command->get_name() << line;
+      for (const std::string& line : lines_of(help.out)) EXPECT_LE(line.size(), 100U) << command.name << line;
     }
 }
 
 TEST(Help, AllHasEveryOption) {
-  const CommandLine line;
   const std::string page = tessera({"render", "--help-all"}).out;
   EXPECT_EQ(page, tessera({"help", "render", "--all"}).out);
-  for (const CLI::Option* option : line.render->get_options())
-    if (option->nonpositional() && !option->get_group().empty() && option != line.render->get_help_ptr() &&
-        option != line.render->get_help_all_ptr()) {
-      const std::string name = "--" + option->get_lnames().front();
-      EXPECT_TRUE(page.find(' ' + name + ' ') != std::string::npos ||
-                  page.find(' ' + name + '\n') != std::string::npos || page.find(' ' + name + ',') != std::string::npos)
-          << name;
+  for (const OptionRow* row : option_rows(Trait::render))
+    EXPECT_NE(page.find("  " + option_form(*row, true) + (row->is(Trait::positional) ? " " : "")), std::string::npos)
+        << row->names;
+}
+
+TEST(Help, ManualNamesTheOptionsThatThereAre) {
+  std::string manual;
+  for (const char* page : {"GUIDE.md", "REFERENCE.md", "FORMATS.md", "SERVER.md"})
+    manual += contents(std::string(TESSERA_SOURCE_DIR "/docs/") + page);
+  // Of this program's help, and of mpirun and timeout.
+  std::set<std::string> there = {"--help", "--help-all", "--version", "--oversubscribe", "--timeout"};
+  for (const OptionTopic& topic : option_topics())
+    for (const OptionRow& row : topic.rows) {
+      const std::vector<std::string> names = written_names(row);
+      there.insert(names.begin(), names.end());
+      if (!row.is(Trait::positional | Trait::help)) {
+        EXPECT_TRUE(
+            std::ranges::any_of(names, [&](const std::string& n) { return manual.find(n) != std::string::npos; }))
+            << row.names << " is in no page";
+      }
     }
+  const std::regex option("--[a-z]+(-[a-z]+)*");
+  for (std::sregex_iterator at(manual.begin(), manual.end(), option), end; at != end; ++at)
+    EXPECT_TRUE(there.contains(at->str())) << at->str() << " is no option";
 }
 
 TEST(Help, OfACommandIsWhatTheCommandSays) {

@@ -3,8 +3,8 @@
 """No library's message names an option: it names the setting, `tile_size`, and apps/ makes --tile-size of it.
 
 Looks at every string literal of the library folders' C++ sources, comments left aside. Says file:line of each that
-holds an option, or a name in backquotes that is no option's (apps/options/setting_words.cpp lists those that are), which the
-program would print as it stands. Exit status 1 if there is one.
+holds an option, or a name in backquotes that is no option's (api/options/option_table.cpp has those that are, and their
+help), which the program would print as it stands. Exit status 1 if there is one.
 
     option_names.py SOURCE_TREE
 """
@@ -15,6 +15,7 @@ from pathlib import Path
 
 FOLDERS = """include scene system colormaps cells io readers integrals exchange projection gl sorting compositor volume reference
              frame api datasets annotation analysis""".split()
+TABLE = "api/options/option_table.cpp"
 SUFFIXES = {".cpp", ".hpp", ".h", ".inl"}
 
 TOKEN = re.compile(
@@ -25,7 +26,7 @@ TOKEN = re.compile(
       | (?<![0-9A-Za-z_])'(?:[^'\\\n]|\\.)+'""",
     re.DOTALL | re.VERBOSE,
 )
-OPTION = re.compile(r"(?<![\w-])--([a-z][a-z-]*)")
+OPTION = re.compile(r"(?<![\w-])(?<!tessera render )--([a-z][a-z-]*)")  # a whole command may be named
 SETTING = re.compile(r"`([a-z][a-z0-9_]*)`")
 COLUMNS = {"wait", "other", "cpu", "send"}  # of the timing table, which is no message
 
@@ -40,8 +41,9 @@ def in_literals(pattern, source):
 
 
 def settings_known(tree):
-    table = (tree / "apps/options/setting_words.cpp").read_text(encoding="utf-8").split("setting_names =")[1].split(";")[0]
-    return set("".join(re.findall(r'"([a-z_ ]+)"', table)).split())
+    table = (tree / TABLE).read_text(encoding="utf-8")
+    names = re.findall(r'^    \{"([a-z,-]+)", ', table, re.MULTILINE)
+    return {name.replace("-", "_") for row in names for name in row.split(",")}
 
 
 def main():
@@ -50,7 +52,7 @@ def main():
     looked_at, faults = 0, []
     for folder in FOLDERS:
         for file in sorted((tree / folder).rglob("*")):
-            if file.suffix not in SUFFIXES:
+            if file.suffix not in SUFFIXES or file == tree / TABLE:
                 continue
             looked_at += 1
             source, name = file.read_text(encoding="utf-8"), file.relative_to(tree)
@@ -58,7 +60,7 @@ def main():
                 faults.append(f"{name}:{line}: names --{option}; write `{option.replace('-', '_')}`")
             for line, setting in in_literals(SETTING, source):
                 if setting not in known | COLUMNS:
-                    faults.append(f"{name}:{line}: names `{setting}`, which is no option; see apps/options/setting_words.cpp")
+                    faults.append(f"{name}:{line}: names `{setting}`, which is no option; see {TABLE}")
     if looked_at < 100:
         sys.exit(f"{tree}: only {looked_at} sources of libraries found; give the source tree")
     print(*faults, f"{looked_at} sources, {len(known)} settings, {len(faults)} faults", sep="\n")

@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Settings of libraries' messages are options in what the program says, and nothing else that stands in backquotes is.
 
-#include "apps/options/setting_words.hpp"
-
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <set>
-
-#include "apps/command_line.hpp"
 #include "apps/program.hpp"
+#include "tessera/program/options.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -32,24 +27,6 @@ TEST(SettingWords, AllElseStaysAsItIs) {
         "`memory`.vtu: is empty", "data/`memory`/a.vtu: is empty", "a`memory`: is empty", "no field '`memory`'"})
     EXPECT_EQ(with_options(text), text);
   EXPECT_EQ(with_options("it`s `memory` `` `size`"), "it`s --memory `` --size");
-}
-
-TEST(SettingWords, TableHoldsWhatIsDeclared) {
-  std::set<std::string> listed;
-  const CommandLine line;
-  const std::vector<CLI::App*> declared = line.commands();
-  std::vector<const CLI::App*> commands(declared.begin(), declared.end());
-  commands.push_back(&line.app);
-  for (const CLI::App* command : commands)
-    for (const CLI::Option* option : command->get_options()) {
-      if (option->get_group().empty()) continue;  // told to nobody
-      for (std::string name : option->get_lnames()) {
-        std::ranges::replace(name, '-', '_');
-        listed.insert(name);
-      }
-    }
-  const auto table = option_settings();
-  EXPECT_EQ(listed, std::set<std::string>(table.begin(), table.end()));
 }
 
 /// What `tessera` says on stderr, less the line's end.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "apps/options/toml_text.hpp"
+#include "api/options/toml_text.hpp"
 
 #include <gtest/gtest.h>
 
 #include "tessera/error.hpp"
 
-namespace tessera::apps {
+namespace tessera::api {
 namespace {
 
 using Values = std::vector<std::string>;
@@ -80,4 +80,4 @@ TEST(TomlText, IsRefusedWithItsLine) {
 }
 
 }  // namespace
-}  // namespace tessera::apps
+}  // namespace tessera::api

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <string_view>
 
-#include "apps/options/state_words.hpp"
 #include "server/messages.hpp"
 #include "support/fuzz_check.hpp"
+#include "tessera/program/state_words.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tessera;
@@ -16,13 +16,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const server::Message message = server::parse_message(text);
     const auto* const state = std::get_if<server::StateMessage>(&message);
     if (state == nullptr) return;
-    const apps::OptionWords words = apps::state_words({{"field", {"p"}}, {"view", {"front"}}}, state->state);
-    for (const auto& [option, values] : words) test::require(!option.empty() && !values.empty());
-    for (const std::string& argument : apps::arguments_of(words)) {
+    OptionWords started;
+    started.set("field", "p");
+    started.set("view", "front");
+    const OptionWords words = state_words(started, state->state);
+    for (const auto& [option, values] : words.all()) test::require(!option.empty() && !values.empty());
+    for (const std::string& argument : arguments_of(words)) {
       test::require(argument.starts_with("--"));
       test::require(argument.find('\n') == std::string::npos);
     }
-    test::require(!apps::shell_words(apps::arguments_of(words)).starts_with(' '));
+    test::require(!shell_words(arguments_of(words)).starts_with(' '));
   });
   test::parse_or_refuse([&] {
     const server::Json body = server::parse_body(text);

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/options/state_words.hpp"
 #include "server/access.hpp"
 #include "server/messages.hpp"
 #include "tessera/error.hpp"
+#include "tessera/program/state_words.hpp"
 
 namespace tessera::server {
 namespace {
@@ -75,8 +75,7 @@ TEST(ServerParsers, TakeMutatedMessagesOrSayWhatIsWrong) {
           const Message message = parse_message(text);
           const auto* const state = std::get_if<StateMessage>(&message);
           if (state != nullptr)
-            states +=
-                is_taken([&] { apps::shell_words(apps::arguments_of(apps::state_words({}, state->state))); }, text);
+            states += is_taken([&] { shell_words(arguments_of(state_words({}, state->state))); }, text);
         },
         text);
   }

@@ -72,7 +72,7 @@ MAY_INCLUDE = {
     "apps/options": set(),
     "apps/render": {"apps/options"},
     "apps/commands": {"apps/options", "apps/render"},
-    "apps/help": {"apps/options", "apps/render", "apps/commands"},
+    "apps/help": {"apps/render", "apps/commands"},
     "examples": set(),
     "bench": None,
     "tests": None,

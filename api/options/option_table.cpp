@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Long: one table, of which help, command line, states and messages are made.
+#include <array>
+
+#include "tessera/program/options.hpp"
+
+namespace tessera {
+inline namespace v0_1 {
+namespace {
+
+using enum Trait;
+
+constexpr Trait pictures = render | serve;
+constexpr Trait reading = pictures | info | convert | chart;
+
+constexpr OptionRow input_rows[] = {
+    {"input", "", reading | positional | required,
+     "mesh: .vtu .pvtu .vtk .vtm .foam .case .cgns .ex2 .ele .tets .stl ...; volume: .vti .pvti .vtr .pvtr .vtk .mhd "
+     ".nrrd .nii .nii.gz .raw"},
+    {"more", "", render | positional | list,
+     "more meshes: a time series, as is INPUT alone if it is a .pvd, a .series or mesh_%04d.vtu"},
+    {"kind", "", generate | positional | required, "what to make, see below"},
+    {"out", "", convert | positional | required,
+     "of a mesh .vtu, .tets, or .pvtu with --pieces; of a volume .vti .vtr .nrrd .raw .bricks"},
+    {"out", "", generate | positional | required, "of a mesh .vtu or .tets; of a volume .vti .nrrd .raw .bricks"},
+    {"parameters", "", generate | positional | list, "NAME=VALUE ..."},
+    {"trace", "", timing | positional | list | required, "what render --timing wrote; several are compared"},
+    {"command", "", help | positional, "one of the commands; without it what there is"},
+    {"shell", "", completion | positional | required, "bash, zsh or fish"},
+};
+
+constexpr OptionRow server_rows[] = {
+    {"bind", "ADDRESS", serve, "address to listen at (default: 127.0.0.1, this machine alone)"},
+    {"port", "PORT", serve, "to listen at (default: a free one)"},
+    {"latency", "MS", serve,
+     "while something moves: milliseconds from event to picture that sizes are chosen for (default 100)"},
+    {"tls-certificate", "FILE", serve, "PEM file: speak https"},
+    {"tls-key", "FILE", serve, "PEM file of its key"},
+    {"allow-host", "NAME", serve | list,
+     "a name in the browser's address, beside loopback and --bind; may be repeated"},
+};
+
+constexpr OptionRow data_rows[] = {
+    {"field", "NAME", reading | basic | state,
+     "scalar: NAME, NAME:mag, NAME:x; with point: or cell: before it if needed"},
+    {"smooth", "", reading | flag | meshes | state | data, "average cell data to the points"},
+    {"warp", "NAME[:FACTOR]|off", reading | meshes | state | data,
+     "meshes: move points by FACTOR (default: 1) times this vector; off: not even Exodus' displacements"},
+    {"q", "FILE", reading | meshes | data, "PLOT3D solution file, if it is not beside the grid"},
+    {"max-volume", "VOLUME", reading | meshes | data, "surfaces: largest tetrahedron TetGen fills them with"},
+    {"time-step", "STEP|all|FIRST:LAST[:STRIDE]", reading | basic | state | data,
+     "Exodus, OpenFOAM, 4-D NIfTI, NRRD, .pvd ...: step counted from 0 (default: a file's last); of render also a film "
+     "of several"},
+    {"block", "NAME", pictures | info | chart | basic | list | meshes | state | data,
+     "files in blocks: draw this one alone, of those that info lists; may be repeated"},
+    {"block", "NAME", convert | list,
+     "of a mesh in blocks: write this one alone; may be repeated; of .bricks: samples a side of a block (default 64)"},
+    {"drop-duplicates", "", reading | flag | meshes | state | data,
+     "draw cells that have the corners of others once, where parts of the mesh are given twice"},
+    {"scale", "X,Y,Z", reading | data,
+     "multiplies the axes (default: 1,1,1; degrees beside metres: z by what makes the box no thinner than 1:20)"},
+    {"clip", "PX,PY,PZ,NX,NY,NZ|box:X0,Y0,Z0,X1,Y1,Z1", reading | basic | list | state | data,
+     "cut away what lies behind a plane: a point of it and its normal, which points to what stays; or all outside of a "
+     "box; may be repeated"},
+    {"threshold", "MIN,MAX", reading | basic | state | data, "keep whole cells whose values are all in this range"},
+    {"higher-order-tolerance", "REL", reading | meshes | data,
+     "higher-order cells become tets this near to them, of diagonal and range (default: by --accuracy)"},
+    {"higher-order-tets", "N", reading | meshes | data,
+     "and about so many at most (default: by the mesh, from 262144; 0: by their corners)"},
+    {"labels", "on|off", pictures | volumes | data,
+     "volumes: whether values are labels, each of which fills its sample's voxel (default: by the header or the "
+     "values)"},
+};
+
+constexpr OptionRow raw_rows[] = {
+    {"dims", "WxHxD", reading | data, ".raw: samples along x, y, z (or NAME_WxHxD_uint8.raw)"},
+    {"type", "TYPE", reading | data, ".raw: uint8, int16, uint16, float32, ..."},
+    {"spacing", "X,Y,Z", reading | data, ".raw: world units between samples (default 1,1,1)"},
+    {"origin", "X,Y,Z", reading | data, ".raw: world position of the first sample (default 0,0,0)"},
+    {"endian", "little|big", reading | data, ".raw: byte order (default little)"},
+    {"skip", "BYTES", reading | data, ".raw: bytes before the first sample"},
+};
+
+constexpr OptionRow color_rows[] = {
+    {"transfer-function", "FILE|PRESET|JSON", pictures | chart | basic | state | function | look | knots,
+     "file or preset (see the guide), or JSON itself"},
+    {"rescale", "", pictures | chart | flag | state | look | knots | range,
+     "stretch a transfer function file's values over the field's range"},
+    {"unit-distance", "LENGTH", pictures | chart | state | look | knots,
+     "world length over which a file's opacity holds (default: the file's, else mean thickness / 10)"},
+    {"opacity,opacity-scale", "FACTOR", pictures | chart | basic | state | look | knots, "multiplies the extinction"},
+    {"range", "MIN,MAX", pictures | basic | state | look | knots | range,
+     "values that colours and opacities span (default: the field's of a preset, of what is not asked for 0.5 to 99.5 % "
+     "of the volume; a file is stretched)"},
+    {"log", "", pictures | basic | flag | state | look | knots | range,
+     "colours and opacities by the logarithm of the value"},
+    {"opacity-points", "T:A,...", pictures | basic | state | look | knots,
+     "opacity per unit distance at fractions of the range, like 0:0,0.3:0.02,1:0.8"},
+    {"blend", "linear|display", pictures | state | look, "linear light (default), or sRGB values as VTK does"},
+    {"emission", "absorption|independent", pictures | chart | state | look | settings,
+     "source term (default: absorption)"},
+    {"background", "R,G,B|#RRGGBB|NAME", pictures | basic | state,
+     "linear R,G,B, sRGB #rrggbb or CSS's name; without it the picture has alpha"},
+};
+
+constexpr OptionRow view_rows[] = {
+    {"camera", "FILE|JSON", pictures | chart | basic | state | camera | view,
+     "view or list of views: .json .pvcc text, or JSON itself (default: frames the mesh)"},
+    {"view", "front|back|left|right|top|bottom|iso|+x|-x|+y|-y|+z|-z", pictures | basic | state | view,
+     "direction: front looks along +y, of a patient at the face; +x looks along +x (default: what stands, stands; a "
+     "little from the right and above)"},
+    {"up", "X,Y,Z", pictures | state | view, "world direction that points up (default: z; y in views along z)"},
+    {"azimuth", "DEGREES", pictures | basic | state | view, "turns the eye round the up axis, to the right"},
+    {"elevation", "DEGREES", pictures | basic | state | view, "turns the eye upwards, after --azimuth"},
+    {"zoom", "FACTOR", pictures | basic | state | view, "enlarges the middle of the picture so many times"},
+    {"fit", "", pictures | flag | state | view, "with --camera: the file's direction, framed on the data again"},
+    {"orbit", "N", render | basic | view, "N frames once round the view's up axis"},
+    {"size", "WxH", pictures | chart | basic | state, "pixels (default: the camera file's, else 1024x1024)"},
+    {"projection", "orthographic|perspective", pictures | chart | state | view,
+     "of the default view (default: orthographic)"},
+};
+
+constexpr OptionRow surface_rows[] = {
+    {"iso", "VALUE[:COLOUR[:OPACITY]]", pictures | basic | list | state | look | settings,
+     "the surface where the field has this value, lit, within the volume (colour: the transfer function's there; "
+     "opacity 1); may be repeated"},
+    {"surface", "boundary|BLOCK|FILE[:COLOUR[:OPACITY]]", pictures | basic | list | state | surfaces | look | settings,
+     "meshes: their boundary, a block, patch or side set of theirs (colour: the field's; opacity 1), or the triangles "
+     "of a file (light grey), lit, within the volume; may be repeated"},
+    {"shade", "", pictures | basic | flag | state | settings,
+     "Blinn-Phong by the field's gradient, with a light at the camera, or --light"},
+    {"no-shade", "", pictures | flag | volumes | state | look | settings,
+     "volumes: not even a scan of a patient, which else is shaded"},
+    {"light", "[world:]X,Y,Z", pictures | state | settings,
+     "--shade: towards the light; to the right, up and towards the eye, or along the world's axes (default 0,0,1)"},
+};
+
+constexpr OptionRow annotation_rows[] = {
+    {"color-bar", "", pictures | basic | place | state | annotation,
+     "draw the transfer function's colours and opacity; =left, =top or =bottom: there"},
+    {"color-bar-title", "TEXT", pictures | state | annotation, "over the colour bar (default: {field})"},
+    {"color-bar-range", "LOW,HIGH", pictures | state | annotation,
+     "values at its ends (default: the transfer function's)"},
+    {"color-bar-scale", "linear|log", pictures | state | annotation,
+     "how values lie along it (default: log with --log)"},
+    {"field-unit", "TEXT", pictures | state | annotation, "of the field's values, in the colour bar's title"},
+    {"axes", "triad|box|both", pictures | basic | place | state | annotation,
+     "draw the axes' directions; =box: round values along the data's box; =both"},
+    {"outline", "", pictures | basic | flag | state | annotation, "draw the box of the data"},
+    {"scale-bar", "", pictures | basic | place | state | annotation,
+     "draw a bar of a round length; =bottom, =bottom-left ...: there"},
+    {"length-unit", "TEXT", pictures | state | annotation, "of the world, at axes and scale bar"},
+    {"annotate", "[PLACE:]TEXT", pictures | basic | list | state | annotation,
+     "write this at top-left (default), top, ... bottom-right; {field} {time} {file} {frame} {min} {max} are filled "
+     "in; "
+     "may be repeated"},
+    {"annotation-color", "R,G,B|NAME", pictures | state | annotation,
+     "of text and lines (default: what the background leaves readable)"},
+    {"annotation-size", "PIXELS", pictures | state | annotation, "height of text (default: 2 % of the picture's)"},
+    {"annotation-layer", "FILE", render | annotation,
+     ".png or .exr: the annotation alone, with alpha; pictures stay bare"},
+};
+
+constexpr OptionRow output_rows[] = {
+    {"o,output", "FILE", render | basic | list | required,
+     "picture: .exr .png .jpg .tif .pfm .deep.exr, frame_%04d.png for several; film: .mp4 .mov .mkv .webm .gif; - for "
+     "a "
+     "PNG on standard output; may be repeated"},
+    {"o,output", "FILE", presets, "draw them into this picture: .png .exr .jpg .tif"},
+    {"frame-rate", "FPS", render | basic, "films: frames a second (default 25)"},
+    {"peel", "THRESHOLD[:LAYERS]", render,
+     "the picture in layers too, a cut wherever a ray's opacity since the last cut reaches THRESHOLD: a.exr has "
+     "a.layer1.exr ..., a .deep.exr has a sample a layer (default: 4 layers)"},
+    {"half", "", pictures | flag | state, ".exr with 16-bit floats"},
+    {"png-bits", "8|16", pictures | state, "of .png and .tif (default: 8)"},
+    {"resume", "", render | flag, "skip frames whose pictures exist"},
+    {"report", "FILE", render | basic, "JSON file: everything chosen, all counters; - for standard output"},
+    {"timing", "FILE", render, "Chrome trace-event JSON file of stages and threads"},
+    {"progress", "", render | flag, "a progress line (default: if stderr is a terminal)"},
+    {"quiet", "", render | convert | generate | chart | flag, "nothing on stderr but errors and warnings"},
+    {"json", "", info | formats | flag, "for machines"},
+    {"check", "", info | flag, "meshes: overlapping cells, folds, unmatched faces, slivers, duplicates"},
+    {"pieces", "N", convert, "write OUT.pvtu and so many pieces, for mpirun"},
+    {"partition", "curve|file|random", convert,
+     "which piece a cell goes to: curve (compact, the default), file (order kept), random"},
+    {"subdivide", "TIMES", convert, "of a mesh: times every tetrahedron is cut into eight"},
+    {"csv", "FILE", timing, "the same figures as a table"},
+    {"figure", "FILE", timing, "stacked bars, .svg or .png"},
+    {"all", "", help | flag, "every option"},
+    {"man", "", help | flag, "as a manual page (roff)"},
+};
+
+constexpr OptionRow accuracy_rows[] = {
+    {"integrator", "auto|exact|sampled:N|preintegrated[:N]|partial", pictures | state | settings,
+     "how a segment becomes colour (default: auto); of volumes auto, exact, sampled or preintegrated"},
+    {"accuracy", "EPS", pictures | basic | state | settings, "auto: largest error in linear RGBA (default 1e-4)"},
+    {"deep-accuracy", "EPS", render, ".deep.exr: largest error in linear RGBA of a sample cut anywhere (default 1e-3)"},
+    {"rasterizer", "planes|scanline|device", render | meshes,
+     "how cells become ray segments (default: planes; the paper's: scanline; device: as planes, by gl-compute)"},
+    {"step", "VOXELS", pictures | volumes | state | settings,
+     "volumes: length of a step of sampled and preintegrated (default 0.5)"},
+    {"brick-size", "VOXELS", render | volumes, "volumes: voxels a side of a brick (default 32)"},
+    {"edge-bricks", "variable|fixed", render | volumes,
+     "volumes: memory of a brick at the end of an axis, as it needs (default) or as much as of the others"},
+    {"cache", "lru|proximity", render | volumes, "volumes: which brick goes first when memory is full (default lru)"},
+    {"preload", "BRICKS", render | volumes,
+     "volumes, --cache proximity: bricks that the next view will need, loaded ahead, a frame (default 0)"},
+    {"threads", "T", pictures | chart | basic | data | machine, "threads (default: all cores)"},
+    {"tile-size", "PIXELS", render | meshes, "pixels a side of a thread's tile (default 32)"},
+    {"memory", "SIZE", pictures | chart | basic | data | machine,
+     "budget of the frame buffers, or of a volume's bricks, like 512M (default 4G)"},
+    {"without", "WORD,...", render,
+     "leave out what saves work, to see what it is worth: culling, skipping, termination, lattice, sharing, merging"},
+    {"repeat", "K", render, "render each frame K times and print frame_ms median and min"},
+    {"verify", "K", render | basic, "check K random pixels a frame against the exact reference"},
+    {"preset", "juliachs-2007", render,
+     "a published method as a whole: scanline, raw segments, sampled:4, gl-fragment, 16x16 tiles, processes in two "
+     "roles; options beside it win"},
+    {"budget-seconds", "S", chart, "time for all of it but reading (default 60)"},
+    {"repeat", "K", chart, "frames a method, if the budget allows (default 5)"},
+    {"pixels", "N", chart, "random pixels that errors are taken over (default: what fits)"},
+    {"peer", "FILE", chart | list, "measured pictures of other programs (JSON)"},
+    {"json", "FILE", chart, "everything measured"},
+    {"csv", "FILE", chart, "the same as a table"},
+    {"figure", "FILE", chart | list, "the chart, .svg or .png; may be repeated"},
+};
+
+constexpr OptionRow device_rows[] = {
+    {"compositor", "cpu|gl-compute|gl-fragment", render,
+     "who sorts and composites ray segments: the CPU (default), compute shaders, or fragment shaders as in the paper"},
+    {"backend", "auto|cpu|osmesa|egl", render,
+     "where OpenGL comes from: auto is a GPU if one answers, else the CPU; under mpirun one word, or one for each "
+     "compositor: cpu,osmesa"},
+    {"framebuffer", "half|float", render, "gl-fragment: 16-bit floats (default, as in the paper) or 32"},
+    {"egl-device", "N|local-rank", render, "egl: device by number, or by rank within its machine"},
+};
+
+constexpr OptionRow rank_rows[] = {
+    {"distribution", "sort-first|sort-last", render | volumes,
+     "volumes, under mpirun: each process a part of the picture, or of the volume (default sort-first)"},
+    {"direct-send", "asynchronous|synchronous", render | volumes,
+     "--distribution sort-last: how processes exchange pixels (default asynchronous)"},
+    {"balance", "learned|accurate|backface|splatting|previous|even", render | volumes,
+     "volumes, under mpirun: how the picture is split between processes (default learned)"},
+    {"balance-resolution", "FACTOR", render | volumes,
+     "volumes: of the cost map, its pixels an image pixel along each axis (default 0.5; learned splits by 0.25 at "
+     "most)"},
+    {"balance-weights", "W,W,...|measured", render | volumes,
+     "volumes, under mpirun: how much of the work each process gets (default: all the same)"},
+    {"show", "balance", render | volumes,
+     "volumes: bricks drawn in the colours of the processes, and the cost map as a second picture"},
+    {"projectors", "N", render | meshes, "under mpirun: ranks that project (default: all)"},
+    {"compositors", "P", render | meshes, "under mpirun: ranks that composite (default: all)"},
+    {"exchange", "runs|segments", render | meshes,
+     "under mpirun: what projectors send (default: runs; segments for deep pictures, scanline and devices)"},
+    {"partition", "curve|file|random", render | meshes, "under mpirun: which rank gets which cells (default: curve)"},
+    {"frames-in-flight", "F", render, "under mpirun: frames on their way (default: 2)"},
+    {"seed", "NUMBER", render | meshes, "under mpirun: of the tile map and of --partition random (default: 1)"},
+    {"stall-timeout", "SECONDS", pictures | machine,
+     "under mpirun: a rank that has been silent for so long is said to be stopped; 0: never (default: 120)"},
+    {"on-stall", "wait|abort", pictures | machine, "under mpirun: wait for such a rank (default), or end the run"},
+};
+
+constexpr OptionRow file_rows[] = {
+    {"like", "REPORT", render | basic,
+     "report of another run: its views, size, field and transfer function; options beside it win"},
+    {"config", "FILE", render | basic, "TOML file of options; those of the command line win"},
+    {"save-config", "FILE", render | basic, "write what was given as such a file"},
+};
+
+constexpr OptionTopic topics[] = {{"", input_rows},
+                                  {"Server", server_rows},
+                                  {"Data", data_rows},
+                                  {"Raw volumes", raw_rows},
+                                  {"Colour and opacity", color_rows},
+                                  {"View", view_rows},
+                                  {"Surfaces and light", surface_rows},
+                                  {"In the picture", annotation_rows},
+                                  {"Output", output_rows},
+                                  {"Accuracy and speed", accuracy_rows},
+                                  {"Devices", device_rows},
+                                  {"Under mpirun", rank_rows},
+                                  {"Settings in files", file_rows}};
+
+}  // namespace
+
+std::span<const OptionTopic> option_topics() { return topics; }
+
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tessera/program/render_options.hpp"
+
+#include <fmt/format.h>
+
+#include "api/options/setting_name.hpp"
+#include "api/options/values.hpp"
+#include "tessera/error.hpp"
+#include "tessera/input_file.hpp"
+
+namespace tessera {
+inline namespace v0_1 {
+namespace {
+
+/// Options that are for the other kind of data. The first word that an option of meshes takes is its default.
+void refuse_others(const OptionWords& words, bool is_grid) {
+  for (const OptionRow* row : option_rows(is_grid ? Trait::meshes : Trait::volumes)) {
+    if (!row->is(Trait::render) || !words.given(row->key())) continue;
+    const auto choices = row->choices();
+    if (is_grid && !choices.empty() && words.word(row->key()) == choices.front()) continue;
+    require_input(words.word("input"));  // one that is not there is neither
+    throw bad_input(fmt::format("{}: is for {}; leave it out", api::setting_name(row->key()),
+                                is_grid ? "meshes, and the input is a volume" : "volumes, and the input is a mesh"));
+  }
+}
+
+}  // namespace
+
+RenderOptions render_options(const OptionWords& words) { return render_options(words, draws_grids(words)); }
+
+RenderOptions render_options(const OptionWords& words, bool is_grid) {
+  refuse_others(words, is_grid);
+  RenderOptions options;
+  options.words = words;
+  FilmPlan& plan = options.plan;
+  plan.grids = is_grid;
+  plan.inputs = {words.word("input")};
+  const auto& more = words.words("more");
+  plan.inputs.insert(plan.inputs.end(), more.begin(), more.end());
+  plan.steps = api::time_steps(words);
+  api::set_outputs(words, options);
+  options.read = read_options(words, is_grid);
+  if (options.read.time_step && is_series(plan)) {  // a step of the series, not of its files
+    plan.steps = StepRange{*options.read.time_step, options.read.time_step};
+    options.read.time_step.reset();
+  }
+  api::set_function(words, options);
+  api::set_view(words, options);
+  api::set_method(words, options);
+  options.settings.surfaces = api::surfaces_of(words, options.block_surfaces);
+  if (is_grid && !options.block_surfaces.empty())
+    throw bad_input("`surface`: is for meshes, and the input is a volume; `iso` VALUE shows a surface in one");
+  api::set_ranks(words, options);
+  api::set_pictures(words, options);
+  return options;
+}
+
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include "api/options/setting_name.hpp"
+#include "api/options/values.hpp"
+#include "tessera/error.hpp"
+
+namespace tessera::api {
+namespace {
+
+ViewRequest view_request(const OptionWords& words) {
+  ViewRequest request;
+  if (words.given("view")) {
+    const auto view = standard_view(words.word("view"));
+    if (!view)
+      throw bad_input(fmt::format(
+          "`view`: '{}' is unknown; use front, back, left, right, top, bottom, iso or +x, -x, +y, -y, +z, -z",
+          words.word("view")));
+    request.view = *view;
+  }
+  request.up = words.vector("up");
+  if (request.up == glm::dvec3(0)) throw bad_input("`up`: 0,0,0 is no direction; say which way is up");
+  assign(request.azimuth, words.number("azimuth"));
+  assign(request.elevation, words.number("elevation"));
+  assign(request.zoom, words.positive("zoom"));
+  request.fit = words.given("fit");
+  return request;
+}
+
+}  // namespace
+
+void set_view(const OptionWords& words, RenderOptions& options) {
+  const bool has_camera = words.given("camera");
+  for (const char* option : {"view", "up", "projection"})
+    if (has_camera && words.given(option))
+      throw bad_input(fmt::format("{}: has no effect with `camera`, whose file says it; leave one of the two out",
+                                  setting_name(option)));
+  if (words.given("fit") && !has_camera)
+    throw bad_input("`fit`: is for a `camera` file, other views fit anyway; name one, or leave it out");
+  options.plan.cameras = words.word("camera");
+  options.plan.size = words.size("size");
+  assign(options.plan.orbit, words.count("orbit", 1, 1'000'000));
+  options.view = view_request(words);
+  assign(options.projection, words.choice("projection", {ProjectionKind::orthographic, ProjectionKind::perspective}));
+}
+
+}  // namespace tessera::api
