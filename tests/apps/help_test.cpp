@@ -71,6 +71,23 @@ TEST(Help, ManualNamesTheOptionsThatThereAre) {
     EXPECT_TRUE(there.contains(at->str())) << at->str() << " is no option";
 }
 
+TEST(Help, ManualHasTheKeysOfStates) {
+  const std::string page = contents(TESSERA_SOURCE_DIR "/docs/SERVER.md");
+  for (const OptionRow* row : option_rows(Trait::state))
+    EXPECT_NE(page.find('`' + std::string(row->key()) + '`'), std::string::npos) << row->key();
+}
+
+TEST(Help, PageOfTheServerNamesTheOptionsThatThereAre) {
+  const std::string script = contents(TESSERA_SOURCE_DIR "/server/web/wording.js");
+  const std::size_t begin = script.find("controls = {");
+  const std::string controls = script.substr(begin, script.find("};", begin) - begin);
+  const std::regex key("\"?([a-z]+(-[a-z]+)*)\"?: \"");
+  int count = 0;
+  for (std::sregex_iterator at(controls.begin(), controls.end(), key), end; at != end; ++at, ++count)
+    EXPECT_NE(find_option(Trait::serve, (*at)[1].str()), nullptr) << (*at)[1];
+  EXPECT_GT(count, 30);
+}
+
 TEST(Help, OfACommandIsWhatTheCommandSays) {
   EXPECT_EQ(tessera({"help", "render"}).out, tessera({"render", "--help"}).out);
   EXPECT_EQ(tessera({"help"}).out, tessera({"--help"}).out);
