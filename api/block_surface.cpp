@@ -6,6 +6,7 @@
 
 #include "api/dataset.hpp"
 #include "frame/mesh/boundary_faces.hpp"
+#include "frame/mesh/mesh_input.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
 #include "scene/threads.hpp"
@@ -20,7 +21,9 @@ TriangleMesh read_block_surface(std::span<const std::filesystem::path> files, co
   ReadOptions read = options;
   read.blocks = {block};
   read.selection = {};
-  io::BlockFaces faces = io::read_block_faces(files, api::mesh_options(read));
+  std::vector<io::InputFile> identified;
+  for (const std::filesystem::path& file : files) identified.push_back(frame::identify_input(file));
+  io::BlockFaces faces = io::read_block_faces(identified, api::mesh_options(read));
   if (!faces.has_volume) {
     if (faces.mesh.triangles.empty())
       throw scene::bad_input(fmt::format("{}: the block {} has neither faces nor cells; name another",

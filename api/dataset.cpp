@@ -6,11 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "api/communicator.hpp"
 #include "api/grid_values.hpp"
+#include "api/input_file.hpp"
 #include "api/queries/mesh_check.hpp"
 #include "api/same_files.hpp"
 #include "api/selected_dataset.hpp"
@@ -45,13 +45,6 @@ namespace tessera {
 inline namespace v0_1 {
 namespace {
 
-io::VolumeOptions volume_options(const ReadOptions& o) {
-  io::VolumeOptions volume{o.field, o.dims, o.type, o.spacing, o.origin, o.big_endian, o.skip, o.time_step, o.progress};
-  // Bricks are copies, for which as much is to be left.
-  if (o.memory_bytes > 0) volume.most_in_memory = o.memory_bytes / 2;
-  return volume;
-}
-
 void check_grid_options(const std::filesystem::path& file, const ReadOptions& options) {
   const auto refuse = [&](const char* setting) {
     throw scene::bad_input(
@@ -82,9 +75,9 @@ void note_fill_value(exchange::Transport& transport, Dataset::State& state) {
 }
 
 /// Of a file of one step, what its field data state.
-void set_own_time(const std::filesystem::path& file, scene::TimeStepRead& read) {
+void set_own_time(const io::InputFile& file, scene::TimeStepRead& read) {
   if (read.count > 1 || !read.times.empty()) return;
-  if (const auto time = io::vtk_time_value(file)) read = {1, 0, {*time}};
+  if (const auto time = io::vtk_time_value(file.path, file.beginning)) read = {1, 0, {*time}};
 }
 
 void check_axis_scale(const std::optional<glm::dvec3>& scale) {
@@ -103,13 +96,14 @@ scene::MeshFacts facts_of(const scene::Grid& grid, const scene::ValueRange& rang
           grid.geometry.association};
 }
 
-std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, const ReadOptions& options,
+std::shared_ptr<Dataset::State> opened_grid(const io::InputFile& input, const ReadOptions& options,
                                             exchange::Transport& transport, scene::Trace* trace) {
+  const std::filesystem::path& file = input.path;
   check_grid_options(file, options);
   auto state = std::make_shared<Dataset::State>();
   io::VolumeFile volume = [&] {
     const scene::TraceScope timing(trace, "read");
-    return frame::open_shared_volume(transport, file, volume_options(options), options.threads);
+    return frame::open_shared_volume(transport, input, api::volume_options(options), options.threads);
   }();
   api::require_same_files(transport);  // which it names
   state->axis_scale = cells::chosen_scale(options.axis_scale, volume.beside_degrees,
@@ -148,7 +142,7 @@ std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, c
   state->body_axes = volume.body_axes;
   state->tags = std::move(volume.tags);
   state->time_step = std::move(volume.time_step);
-  set_own_time(file, state->time_step);
+  set_own_time(input, state->time_step);
   state->samples = std::move(volume.source);
   return state;
 }
@@ -208,6 +202,13 @@ auto together(exchange::Transport& transport, const Work& work) {
 }  // namespace v0_1
 
 namespace api {
+
+io::VolumeOptions volume_options(const ReadOptions& o) {
+  io::VolumeOptions volume{o.field, o.dims, o.type, o.spacing, o.origin, o.big_endian, o.skip, o.time_step, o.progress};
+  // Bricks are copies, for which as much is to be left.
+  if (o.memory_bytes > 0) volume.most_in_memory = o.memory_bytes / 2;
+  return volume;
+}
 
 cells::MeshOptions mesh_options(const ReadOptions& o) {
   return {o.field,
@@ -276,8 +277,12 @@ class TracedMessages {
 
 }  // namespace
 
-Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOptions& options,
-                      const Communicator& communicator, const RankSettings& ranks) {
+namespace {
+
+/// `identified`: the one file, if it has been.
+Dataset open_together(std::span<const std::filesystem::path> files, std::optional<InputFile> identified,
+                      const ReadOptions& options, const Communicator& communicator, const RankSettings& ranks) {
+  using State = Dataset::State;
   const std::shared_ptr<exchange::Transport> transport = StateAccess::of(communicator).connect();
   return together(*transport, [&] {
     std::shared_ptr<State> state;
@@ -285,8 +290,10 @@ Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOp
     check_axis_scale(options.axis_scale);
     for (const auto& file : files) system::note_read(file);
     api::require_same_files(*transport);  // first of all: what ranks do together goes by them
-    if (files.size() == 1 && opens_as_grid(files.front(), options)) {
-      state = opened_grid(files.front(), options, *transport, options.trace);
+    if (!identified) identified.emplace(files.front());
+    const io::InputFile& first = StateAccess::of(*identified).file;
+    if (files.size() == 1 && identified->opens_as_grid(options)) {
+      state = opened_grid(first, options, *transport, options.trace);
       complete_grid(*state);
       if (!options.selection.clip.empty()) api::clip_box(*state, options.selection, files.front().string());
     } else {
@@ -295,11 +302,11 @@ Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOp
       TracedMessages traced(*transport, options.trace);
       Trace* const trace = traced.face(options.trace);
       const Roles roles = assign_roles(transport->size(), ranks.projectors, ranks.compositors);
-      frame::DistributedMesh mesh = frame::read_distributed(*transport, files, api::mesh_options(options),
+      frame::DistributedMesh mesh = frame::read_distributed(*transport, files, first, api::mesh_options(options),
                                                             ranks.partition, roles.projectors, options.threads, trace);
       api::require_same_files(*transport);  // which they name
       take_description(std::move(mesh.description), *state);
-      set_own_time(files.front(), state->time_step);
+      set_own_time(first, state->time_step);
       state->facts = mesh.facts;
       state->of_all = std::move(mesh.of_all);
       state->ranks = transport->size();
@@ -315,12 +322,22 @@ Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOp
     state->clip = options.selection.clip;
     state->options.trace = nullptr;  // which need not live as long
     state->options.progress = nullptr;
-    return Dataset(std::move(state));
+    return StateAccess::make(std::move(state));
   });
 }
 
-bool opens_as_grid(const std::filesystem::path& file, const ReadOptions& options) {
-  return !options.grid_as_mesh && io::is_volume(file);
+}  // namespace
+
+Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOptions& options,
+                      const Communicator& communicator, const RankSettings& ranks) {
+  return open_together(files, std::nullopt, options, communicator, ranks);
+}
+
+Dataset Dataset::open(const InputFile& file, const ReadOptions& options) { return open(file, options, Communicator()); }
+
+Dataset Dataset::open(const InputFile& file, const ReadOptions& options, const Communicator& communicator,
+                      const RankSettings& ranks) {
+  return open_together(std::span(&file.path(), 1), file, options, communicator, ranks);
 }
 
 Dataset Dataset::of(const MeshArrays& arrays) {
@@ -460,20 +477,6 @@ MeshCheck Dataset::check(const CheckProgressFunction& progress) const {
   if (state_->ranks > 1)
     throw scene::bad_input(state_->source + ": this rank has a part of the mesh; open it on one rank to check it");
   return api::check_mesh(state_->mesh, progress);
-}
-
-std::size_t time_steps_of(const std::filesystem::path& file, const ReadOptions& options) {
-  return times_of(file, options).size();
-}
-
-std::vector<double> times_of(const std::filesystem::path& file, const ReadOptions& options) {
-  const scene::TimeStepRead read = opens_as_grid(file, options)
-                                       ? io::open_unscanned_volume(file, volume_options(options)).time_step
-                                       : io::time_steps_of_mesh(file, api::mesh_options(options));
-  if (!read.times.empty()) return read.times;
-  std::vector<double> numbers(std::max<std::size_t>(read.count, 1));
-  std::iota(numbers.begin(), numbers.end(), 0.0);
-  return numbers;
 }
 
 std::vector<std::string> preset_names() { return colormaps::preset_names(); }

@@ -10,7 +10,7 @@
 #include "frame/ranks/field_of_all.hpp"
 #include "frame/ranks/mesh_exchange.hpp"
 #include "io/mesh/mesh_reader.hpp"
-#include "io/volume/volume_tags.hpp"
+#include "io/volume/volume_reader.hpp"
 #include "projection/prepared_mesh.hpp"
 #include "scene/mesh_facts.hpp"
 #include "scene/sample_source.hpp"
@@ -78,6 +78,7 @@ struct TESSERA_HIDDEN Dataset::State {
 namespace api {
 
 cells::MeshOptions mesh_options(const ReadOptions& options);
+io::VolumeOptions volume_options(const ReadOptions& options);
 
 }  // namespace api
 }  // namespace tessera

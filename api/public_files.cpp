@@ -6,7 +6,7 @@
 
 #include "api/dataset.hpp"
 #include "frame/mesh/array_mesh.hpp"
-#include "io/formats/input_file.hpp"
+#include "io/formats/identify.hpp"
 #include "io/image/image_deep_exr.hpp"
 #include "io/image/image_file.hpp"
 #include "io/mesh/mesh_parts.hpp"
@@ -64,7 +64,7 @@ std::vector<std::byte> jpeg_bytes(const Image& image, const ImageFileOptions& op
   return io::checked_jpeg_bytes(image, options);
 }
 Image read_image(const std::filesystem::path& file) { return io::read_image(file); }
-TriangleMesh read_triangles(const std::filesystem::path& file) { return io::read_triangles(file); }
+TriangleMesh read_triangles(const std::filesystem::path& file) { return io::read_triangles(io::identify(file)); }
 
 void write_deep_image(const DeepImage& image, const std::filesystem::path& file) {
   if (file.extension() != ".exr") throw scene::bad_input(file.string() + ": deep pictures are OpenEXR; name it .exr");
@@ -74,15 +74,15 @@ void write_deep_image(const DeepImage& image, const std::filesystem::path& file)
 bool is_deep_name(const std::filesystem::path& file) { return io::is_deep_name(file); }
 void check_image_path(const std::filesystem::path& file) { io::check_image_path(file); }
 
-bool opens_as_mesh(const std::filesystem::path& file) { return io::is_mesh_file(file); }
 void require_input(const std::filesystem::path& input) { io::require_input(input); }
-void require_grid(const std::filesystem::path& file) { io::require_volume(file); }
-void require_mesh(const std::filesystem::path& file) { io::require_mesh_file(file); }
+void require_grid(const std::filesystem::path& file) { io::require_volume(io::identify(file)); }
+void require_mesh(const std::filesystem::path& file) { io::require_mesh(io::identify(file)); }
 std::string read_text(const std::filesystem::path& file) {
   std::error_code unknown;
   if (std::filesystem::is_directory(file, unknown))
     throw scene::bad_input(file.string() + ": is a folder; name a file in it");
-  return io::read_beginning(file, io::require_file(file));
+  const system::PositionalFile opened = io::open_input(file);
+  return opened.beginning(opened.size());
 }
 void check_json(std::string_view text, const std::string& source, std::size_t most_values) {
   io::parse_json(text, source, most_values);
@@ -129,7 +129,8 @@ void write_mesh_pieces(const MeshArrays& arrays, const std::filesystem::path& fi
 
 void check_mesh_output(const std::filesystem::path& file, const std::filesystem::path& input,
                        std::optional<int> pieces) {
-  if (!input.empty()) io::require_mesh_file(input);  // first: another output would not help
+  io::InputFile identified;
+  if (!input.empty()) io::require_mesh(identified = io::identify(input));  // first: another output would not help
   const auto extension = file.extension();
   if (!pieces) {
     if (extension == ".pvtu")
@@ -142,8 +143,8 @@ void check_mesh_output(const std::filesystem::path& file, const std::filesystem:
   }
   if (extension != ".pvtu") throw scene::bad_input(fmt::format("{}: `pieces` writes a .pvtu; name one", file.string()));
   std::vector<std::filesystem::path> inputs = {input};
-  if (io::readable_in_parts(input, {}) && input.extension() != ".tets") {
-    const auto read = io::files_of_parts(input);
+  if (io::readable_in_parts(identified, {}) && input.extension() != ".tets") {
+    const auto read = io::files_of_parts(identified);
     inputs.insert(inputs.end(), read.begin(), read.end());
   }
   for (const auto& one : inputs) {

@@ -86,7 +86,8 @@ frame::UncutMesh uncut_mesh(const Dataset::State& data) {
     throw scene::bad_input("verify: this rank has a part of the mesh, and no file has the whole; verify on one rank");
   cells::MeshOptions options = mesh_options(data.options);
   options.selection.clip.clear();
-  auto whole = std::make_shared<const scene::TetMesh>(frame::read_input(data.files, options).mesh);
+  const io::InputFile first = frame::identify_input(data.files.front());
+  auto whole = std::make_shared<const scene::TetMesh>(frame::read_input(data.files, first, options).mesh);
   return {*whole, data.clip, data.ranks == 1 ? data.mesh : scene::TetMeshView(*whole), whole};
 }
 

@@ -6,6 +6,7 @@
 
 #include "tessera/communicator.hpp"
 #include "tessera/dataset.hpp"
+#include "tessera/input_file.hpp"
 
 namespace tessera {
 inline namespace v0_1 {
@@ -14,6 +15,7 @@ inline namespace v0_1 {
 struct StateAccess {
   static const Communicator::State& of(const Communicator& communicator) { return *communicator.state_; }
   static const Dataset::State& of(const Dataset& dataset) { return *dataset.state_; }
+  static const InputFile::Found& of(const InputFile& file) { return *file.found_; }
   static Communicator make(std::shared_ptr<const Communicator::State> state) { return Communicator(std::move(state)); }
   static Dataset make(std::shared_ptr<const Dataset::State> state) { return Dataset(std::move(state)); }
 };

@@ -56,9 +56,9 @@ int fail(const Error& error) {
 }
 
 /// Whether a rectilinear grid, which is a volume, is asked for as the mesh that it is too.
-bool to_mesh(const std::filesystem::path& input, const std::filesystem::path& output) {
+bool to_mesh(const InputFile& input, const std::filesystem::path& output) {
   const auto extension = output.extension();
-  return (extension == ".vtu" || extension == ".tets" || extension == ".pvtu") && opens_as_mesh(input);
+  return (extension == ".vtu" || extension == ".tets" || extension == ".pvtu") && input.opens_as_mesh();
 }
 
 ExitCode render_words(OptionWords& words, Job& job) {
@@ -100,23 +100,23 @@ ExitCode run(int argc, char** argv, Job& job) {
   if (job.rank() != 0) return ExitCode::complete;  // the other commands are for one process
   const std::string &input = words.word("input"), &output = words.word("out");
   if (command == Trait::info) {
-    const bool is_grid = draws_grids(words);
-    if (words.given("check") && is_grid) {
-      require_input(input);
+    const InputFile first = first_input(words);
+    const bool is_grid = draws_grids(words, first);
+    if (words.given("check") && is_grid)
       throw bad_input("--check: is for meshes, and the input is a volume; leave it out");
-    }
     ReadOptions options = read_options(words, is_grid);
     options.shape = !is_grid;  // as render without options
-    info(input, options, words.given("json"), words.given("check"));
+    info(input, first, options, words.given("json"), words.given("check"));
   }
   if (command == Trait::convert) {
-    require_input(input);
-    if (draws_grids(words) && !to_mesh(input, output)) {
+    if (is_time_series(input)) require_input(input);  // else a list without files is refused as a list
+    const InputFile file(input);
+    if (is_grid_input(words, file) && !to_mesh(file, output)) {
       ReadOptions options = read_options(words, true);
       options.blocks.clear();  // of volumes it is a side
-      convert_grid(input, output, options, words.count("block", 8, 1024).value_or(64), words.given("quiet"));
+      convert_grid(file, output, options, words.count("block", 8, 1024).value_or(64), words.given("quiet"));
     } else {
-      convert_mesh(input, output, read_options(words, false), words.count("subdivide", 0, 8).value_or(0),
+      convert_mesh(file, output, read_options(words, false), words.count("subdivide", 0, 8).value_or(0),
                    convert_pieces(words), words.given("quiet"));
     }
   }

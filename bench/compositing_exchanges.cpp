@@ -46,6 +46,7 @@
 #include "exchange/packed_pixels.hpp"
 #include "frame/mesh/render.hpp"
 #include "frame/ranks/distributed.hpp"
+#include "io/formats/identify.hpp"
 #include "io/mesh/mesh_reader.hpp"
 #include "projection/partition.hpp"
 #include "scene/error.hpp"
@@ -433,7 +434,7 @@ std::vector<Cost> runs(const MeshParts& parts, const scene::MeshFacts& facts, co
 void of_mesh(const Run& run) {
   const std::string& file = run.words.at("mesh");
   const scene::TetMesh mesh =
-      file == "cube" ? datasets::cube(run.whole("n"), run.number("jitter")) : io::read_mesh(file).mesh;
+      file == "cube" ? datasets::cube(run.whole("n"), run.number("jitter")) : io::read_mesh(io::identify(file)).mesh;
   const scene::MeshFacts facts = scene::facts_of(mesh);
   const auto [low, high] = facts.scalar_range;
   const double k = run.number("extinction") / glm::length(facts.box.high - facts.box.low);

@@ -21,6 +21,7 @@
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
 #include "datasets/transfer_functions.hpp"
+#include "io/formats/identify.hpp"
 #include "io/mesh/mesh_reader.hpp"
 #include "projection/scanline/scanline_rasterizer.hpp"
 #include "projection/tile_lists.hpp"
@@ -202,7 +203,7 @@ int main(int argc, char** argv) {
   measure("slivers 16, 1e4", datasets::slivers(16, 1e4), oblique, size, function);
   measure("slivers 16, 1e7", datasets::slivers(16, 1e7), oblique, size, function);
   for (int i = 2; i < argc; ++i) {
-    const scene::TetMesh mesh = io::read_mesh(argv[i], {}).mesh;
+    const scene::TetMesh mesh = io::read_mesh(io::identify(argv[i])).mesh;
     const auto range = scene::scalar_range(mesh);
     std::vector<scene::Knot> knots(function.knots().begin(), function.knots().end());
     const double thickness = scene::mean_thickness(mesh);

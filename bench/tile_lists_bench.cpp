@@ -28,6 +28,7 @@
 #include "cpu_time.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/transfer_functions.hpp"
+#include "io/formats/identify.hpp"
 #include "io/mesh/mesh_reader.hpp"
 #include "projection/depth_order.hpp"
 #include "projection/tile_lists.hpp"
@@ -208,7 +209,7 @@ void add(const std::string& name, const std::shared_ptr<Stage>& stage) {
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (argc > 1) {
-    add(argv[1], std::make_shared<Stage>(io::read_mesh(argv[1]).mesh));
+    add(argv[1], std::make_shared<Stage>(io::read_mesh(io::identify(argv[1])).mesh));
   } else {
     const char* side = std::getenv("TESSERA_BENCH_CUBE");
     const int n = side != nullptr ? std::atoi(side) : 64;

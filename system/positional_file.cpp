@@ -31,6 +31,10 @@ void PositionalFile::read(std::uint64_t at, std::byte* to, std::uint64_t count) 
   }
 }
 
+std::string PositionalFile::beginning(std::uint64_t count) const {
+  return beginning_of(descriptor_, std::min(count, size()));
+}
+
 std::uint64_t PositionalFile::size() const {
   struct stat facts {};
   if (::fstat(descriptor_.get(), &facts) != 0) fail("cannot be asked for its size", errno);

@@ -20,6 +20,9 @@ class PositionalFile {
   /// `count` bytes from byte `at` on. Throws Error(system_failure) if the file ends before, or the disk fails.
   void read(std::uint64_t at, std::byte* to, std::uint64_t count) const;
 
+  /// Up to `count` bytes from the beginning; fewer if it ends before.
+  [[nodiscard]] std::string beginning(std::uint64_t count) const;
+
   [[nodiscard]] std::uint64_t size() const;
   [[nodiscard]] int descriptor() const { return descriptor_.get(); }
 

@@ -138,10 +138,18 @@ ReadOptions read_options(const OptionWords& words, bool is_grid) {
   return read;
 }
 
-bool draws_grids(const OptionWords& words) {
+InputFile first_input(const OptionWords& words) {
   const std::string& input = words.word("input");
-  if (is_time_series(input)) return opens_as_grid(read_time_series(input).front().files.front());
-  return read_options(words, true).describes_raw() || opens_as_grid(input);
+  return InputFile(is_time_series(input) ? read_time_series(input).front().files.front()
+                                         : std::filesystem::path(input));
+}
+
+bool draws_grids(const OptionWords& words, const InputFile& first) {
+  return is_time_series(words.word("input")) ? first.opens_as_grid() : is_grid_input(words, first);
+}
+
+bool is_grid_input(const OptionWords& words, const InputFile& input) {
+  return read_options(words, true).describes_raw() || input.opens_as_grid();
 }
 
 }  // namespace v0_1

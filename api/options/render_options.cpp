@@ -3,10 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "api/options/setting_name.hpp"
 #include "api/options/values.hpp"
 #include "tessera/error.hpp"
-#include "tessera/input_file.hpp"
 
 namespace tessera {
 inline namespace v0_1 {
@@ -18,7 +19,6 @@ void refuse_others(const OptionWords& words, bool is_grid) {
     if (!row->is(Trait::render) || !words.given(row->key())) continue;
     const auto choices = row->choices();
     if (is_grid && !choices.empty() && words.word(row->key()) == choices.front()) continue;
-    require_input(words.word("input"));  // one that is not there is neither
     throw bad_input(fmt::format("{}: is for {}; leave it out", api::setting_name(row->key()),
                                 is_grid ? "meshes, and the input is a volume" : "volumes, and the input is a mesh"));
   }
@@ -26,7 +26,19 @@ void refuse_others(const OptionWords& words, bool is_grid) {
 
 }  // namespace
 
-RenderOptions render_options(const OptionWords& words) { return render_options(words, draws_grids(words)); }
+RenderOptions render_options(const OptionWords& words) {
+  InputFile first = first_input(words);
+  RenderOptions options = render_options(words, draws_grids(words, first));
+  options.first = std::move(first);
+  return options;
+}
+
+Dataset RenderOptions::open(std::span<const std::filesystem::path> files, const ReadOptions& how,
+                            const Communicator& communicator) const {
+  if (files.size() == 1 && first && files.front() == first->path())
+    return Dataset::open(*first, how, communicator, settings.ranks);
+  return Dataset::open(files, how, communicator, settings.ranks);
+}
 
 RenderOptions render_options(const OptionWords& words, bool is_grid) {
   refuse_others(words, is_grid);

@@ -142,7 +142,7 @@ void chart(const OptionWords& words) {
   ReadOptions read_options = options.read;
   read_options.progress = line.listener();
   line.begin("reading " + options.input().filename().string());
-  const Dataset data = Dataset::open(frame.data.files, read_options);
+  const Dataset data = options.open(frame.data.files, read_options);
   OrderedJson report = analysis::program_json();
   report[data.is_grid() ? "volume" : "mesh"] = analysis::data_json(options.input(), described(data));
   const auto loaded = transfer_function_of(data, options);

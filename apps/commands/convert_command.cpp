@@ -37,9 +37,9 @@ std::optional<ConvertPieces> convert_pieces(const OptionWords& words) {
   return std::nullopt;
 }
 
-void convert_mesh(const std::filesystem::path& input, const std::filesystem::path& output, ReadOptions options,
-                  int subdivide, const std::optional<ConvertPieces>& pieces, bool quiet) {
-  check_mesh_output(output, input, pieces ? std::optional(pieces->count) : std::nullopt);
+void convert_mesh(const InputFile& input, const std::filesystem::path& output, ReadOptions options, int subdivide,
+                  const std::optional<ConvertPieces>& pieces, bool quiet) {
+  check_mesh_output(output, input.path(), pieces ? std::optional(pieces->count) : std::nullopt);
   options.keep_corners = true;
   StatusLine line(shows_progress(quiet));
   const Dataset data = open_watched(input, options, line);
@@ -56,16 +56,16 @@ void convert_mesh(const std::filesystem::path& input, const std::filesystem::pat
     parts = fmt::format(
         " and {} pieces ({}{})", pieces->count, order_words(pieces->partition.kind),
         pieces->partition.kind == PartitionKind::random ? fmt::format(", seed {}", pieces->partition.seed) : "");
-  say_lines(fmt::format("{}: {}; field {} written to {}{}", input.string(), cells_line(data.mesh_counts()),
+  say_lines(fmt::format("{}: {}; field {} written to {}{}", input.path().string(), cells_line(data.mesh_counts()),
                         data.field_name(), output.string(), parts));
 }
 
-void convert_grid(const std::filesystem::path& input, const std::filesystem::path& output, const ReadOptions& options,
-                  int block, bool quiet) {
+void convert_grid(const InputFile& input, const std::filesystem::path& output, const ReadOptions& options, int block,
+                  bool quiet) {
   if (!is_grid_output(output))
     throw bad_input(fmt::format("{}: '{}' is no volume format to write; choose .vti, .vtr, .nrrd, .raw or .bricks",
                                 output.string(), output.extension().string()));
-  check_output(output, input);
+  check_output(output, input.path());
   if (!options.selection.clip.empty())
     throw bad_input("--clip: volumes are written whole; leave it out, and clip when they are rendered");
   StatusLine line(shows_progress(quiet));
@@ -82,7 +82,7 @@ void convert_grid(const std::filesystem::path& input, const std::filesystem::pat
     how_to_read = fmt::format("; read it with --dims {}x{}x{} --type {} --spacing {},{},{} --origin {},{},{}",
                               g.points[0], g.points[1], g.points[2], name_of(written_type(data)), g.spacing.x,
                               g.spacing.y, g.spacing.z, g.origin.x, g.origin.y, g.origin.z);
-  say_lines(fmt::format("{}: {}; field {} written to {}{}", input.string(), samples_line(described(data)),
+  say_lines(fmt::format("{}: {}; field {} written to {}{}", input.path().string(), samples_line(described(data)),
                         data.field_name(), output.string(), how_to_read));
 }
 

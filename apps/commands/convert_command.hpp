@@ -19,11 +19,11 @@ std::optional<ConvertPieces> convert_pieces(const OptionWords& words);
 /// `tessera convert` of a mesh: as it would be rendered (tets, one scalar), written as .tets or .vtu by the output's
 /// extension, or with `pieces` as .pvtu, every tet cut into eight `subdivide` times. One line on stderr unless `quiet`.
 /// Throws Error.
-void convert_mesh(const std::filesystem::path& input, const std::filesystem::path& output, ReadOptions options,
-                  int subdivide, const std::optional<ConvertPieces>& pieces, bool quiet);
+void convert_mesh(const InputFile& input, const std::filesystem::path& output, ReadOptions options, int subdivide,
+                  const std::optional<ConvertPieces>& pieces, bool quiet);
 
 /// Of a grid, by the output's extension: .vti .vtr .nrrd .raw .bricks. `block` is a side of a brick file's blocks.
-void convert_grid(const std::filesystem::path& input, const std::filesystem::path& output, const ReadOptions& options,
-                  int block, bool quiet);
+void convert_grid(const InputFile& input, const std::filesystem::path& output, const ReadOptions& options, int block,
+                  bool quiet);
 
 }  // namespace tessera::apps

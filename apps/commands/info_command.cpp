@@ -140,7 +140,7 @@ struct Opened {
   std::string note;
 };
 
-Opened open_file(const std::filesystem::path& input, const ReadOptions& options, StatusLine& line) {
+Opened open_file(const InputFile& input, const ReadOptions& options, StatusLine& line) {
   Opened opened;
   opened.data.emplace(open_watched(input, options, line));
   const Dataset& data = *opened.data;
@@ -202,9 +202,10 @@ Json steps_json(const Steps& steps) {
 
 }  // namespace
 
-void info(const std::filesystem::path& input, const ReadOptions& options, bool as_json, bool check) {
+void info(const std::filesystem::path& input, const InputFile& first, const ReadOptions& options, bool as_json,
+          bool check) {
   StatusLine line(shows_progress(false));
-  const Opened opened = is_time_series(input) ? open_series(input, options, line) : open_file(input, options, line);
+  const Opened opened = is_time_series(input) ? open_series(input, options, line) : open_file(first, options, line);
   const Dataset& data = *opened.data;
   std::optional<MeshCheck> checked;
   if (check) {

@@ -5,9 +5,11 @@
 
 namespace tessera::apps {
 
-/// `tessera info`: what a file holds and how `render` would show it by default, on stdout, as text or as JSON. `check`,
+/// `tessera info`: what a file holds and how `render` would show it by default, on stdout, as text or as JSON. `first`:
+/// first_input(). `check`,
 /// of meshes: also what is wrong with the cells (tessera/mesh_check.hpp). A slow read is shown on stderr, if that is a
 /// terminal. Throws Error.
-void info(const std::filesystem::path& input, const ReadOptions& options, bool as_json, bool check);
+void info(const std::filesystem::path& input, const InputFile& first, const ReadOptions& options, bool as_json,
+          bool check);
 
 }  // namespace tessera::apps

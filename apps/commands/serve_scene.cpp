@@ -179,7 +179,8 @@ struct SeriesStart {
 
 class RenderSceneReader final : public server::SceneReader {
  public:
-  explicit RenderSceneReader(const OptionWords& words) : input_(words.word("input")), is_grid_(draws_grids(words)) {
+  explicit RenderSceneReader(const OptionWords& words)
+      : input_(words.word("input")), is_grid_(draws_grids(words, first_input(words))) {
     for (const OptionRow* row : option_rows(Trait::serve))
       if (row->is(Trait::render) && !row->is(Trait::positional)) base_.set(row->key(), words.words(row->key()));
     if (!is_time_series(input_)) return;

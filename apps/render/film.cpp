@@ -28,7 +28,7 @@ namespace {
 /// When the input's steps are, as one rank has found it.
 std::vector<double> times_in(const RenderOptions& options, Job& job) {
   std::vector<double> times;
-  if (job.rank() == 0) times = times_of(options.input(), options.read);
+  if (job.rank() == 0) times = times_of(*options.first, options.read);
   const auto raw = std::as_bytes(std::span(times));
   const std::vector<std::byte> bytes = job.broadcast(0, {raw.begin(), raw.end()});
   times.resize(bytes.size() / sizeof(double));

@@ -143,8 +143,8 @@ void FrameProgress::tile(const Tile& tile) {
   line_.advance(finished_ / pixels_);
 }
 
-Dataset open_watched(const std::filesystem::path& file, ReadOptions options, StatusLine& line) {
-  line.begin("reading " + file.filename().string());
+Dataset open_watched(const InputFile& file, ReadOptions options, StatusLine& line) {
+  line.begin("reading " + file.path().filename().string());
   options.progress = line.listener();
   return Dataset::open(file, options);
 }

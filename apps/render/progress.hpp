@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "tessera/dataset.hpp"
+#include "tessera/input_file.hpp"
 #include "tessera/read_progress.hpp"
 #include "tessera/sink.hpp"
 
@@ -70,7 +71,7 @@ class FrameProgress final : public Sink {
 };
 
 /// Opens a file with such a line.
-Dataset open_watched(const std::filesystem::path& file, ReadOptions options, StatusLine& line);
+Dataset open_watched(const InputFile& file, ReadOptions options, StatusLine& line);
 
 /// Whether a command shows the line, which says nothing else: stderr is a terminal, and not to be `quiet`.
 bool shows_progress(bool quiet);

@@ -65,7 +65,7 @@ void ShownStep::open(const FilmFrame& frame, const ReadOptions& read) {
   ReadOptions watched = read;
   if (frame.data.in_file) watched.time_step = frame.data.in_file;
   watched.progress = output_.line().listener();
-  data_.emplace(Dataset::open(frame.data.files, watched, job_.communicator(), settings_.ranks));
+  data_.emplace(options_.open(frame.data.files, watched, job_.communicator()));
   step_ = frame.step;
   if (first_ && first_->shows_shape && !data_->shows_shape())
     throw bad_input(

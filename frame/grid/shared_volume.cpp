@@ -99,11 +99,11 @@ io::VolumeFile description_in(MessageReader& reader) {
 /// What a leader has read, and where the others of its machine find it.
 class Leader {
  public:
-  Leader(const std::filesystem::path& file, const io::VolumeOptions& options, bool shares, int threads) {
+  Leader(const io::InputFile& file, const io::VolumeOptions& options, bool shares, int threads) {
     tbb::task_arena(scene::threads_for(threads)).execute([&] {
       volume_ = io::open_unscanned_volume(file, options);
       // Some come as a whole only.
-      if (shares && volume_.in_memory) volume_.scratch = io::scratch_bricks(*volume_.source, file.string());
+      if (shares && volume_.in_memory) volume_.scratch = io::scratch_bricks(*volume_.source, file.name);
     });
     if (shares && volume_.in_memory) volume_.source.reset();
   }
@@ -121,30 +121,30 @@ class Leader {
   io::VolumeFile volume_;
 };
 
-std::unique_ptr<scene::SampleSource> samples_at(const Place& place, const std::filesystem::path& file,
+std::unique_ptr<scene::SampleSource> samples_at(const Place& place, const io::InputFile& file,
                                                 const io::VolumeOptions& options) {
   if (place.path.empty()) return io::open_unscanned_volume(file, options).source;
   try {
-    return io::open_bricks(place.path, {}, file.string()).source;
+    return io::open_bricks(place.path, {}, file.name).source;
   } catch (const scene::Error&) {
     throw scene::bad_input(fmt::format(
         "{}: a rank cannot open what another has unpacked for it in {}; convert it to .bricks once and render that",
-        file.string(), place.folder));
+        file.name, place.folder));
   }
 }
 
-std::string note_on(const std::filesystem::path& file, const Place& place, std::size_t ranks, std::size_t machines) {
+std::string note_on(const io::InputFile& file, const Place& place, std::size_t ranks, std::size_t machines) {
   return fmt::format(
       "{} is read as a whole: its samples are kept {}, in a file of {} without a name in {}{}, which "
       "goes with the run",
-      file.filename().string(),
+      file.path.filename().string(),
       ranks > 1 ? fmt::format("once for {} ranks", ranks) : "on disk, as memory may not hold them",
       system::size_in_words(place.bytes), place.folder,
       machines > 1 ? fmt::format(" on each of {} machines", machines) : "");
 }
 
 /// By one process, which keeps in memory what may be there.
-io::VolumeFile open_alone(const std::filesystem::path& file, const io::VolumeOptions& options, int threads) {
+io::VolumeFile open_alone(const io::InputFile& file, const io::VolumeOptions& options, int threads) {
   io::VolumeFile volume;
   tbb::task_arena(scene::threads_for(threads)).execute([&] { volume = io::open_unscanned_volume(file, options); });
   if (!volume.scratch) return volume;
@@ -155,8 +155,8 @@ io::VolumeFile open_alone(const std::filesystem::path& file, const io::VolumeOpt
 
 }  // namespace
 
-io::VolumeFile open_shared_volume(exchange::Transport& transport, const std::filesystem::path& file,
-                                  io::VolumeOptions options, int threads) {
+io::VolumeFile open_shared_volume(exchange::Transport& transport, const io::InputFile& file, io::VolumeOptions options,
+                                  int threads) {
   if (transport.size() == 1) return open_alone(file, options, threads);
   const std::vector<std::size_t> leader_of = leaders(transport);
   const auto self = static_cast<std::size_t>(transport.rank());

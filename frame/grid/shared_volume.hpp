@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <filesystem>
-
 #include "exchange/transport.hpp"
 #include "io/volume/volume_reader.hpp"
 
@@ -20,7 +18,7 @@ namespace tessera::frame {
 /// Every rank has the leader's description of the file; a note says what was written where. Samples are the same bits
 /// as of one process. Collective. Throws this rank's error, which the caller gives to transport.fail(), or the run's;
 /// nothing is left in the folder. `threads` write bricks; 0 is all cores.
-io::VolumeFile open_shared_volume(exchange::Transport& transport, const std::filesystem::path& file,
-                                  io::VolumeOptions options, int threads);
+io::VolumeFile open_shared_volume(exchange::Transport& transport, const io::InputFile& file, io::VolumeOptions options,
+                                  int threads);
 
 }  // namespace tessera::frame

@@ -3,20 +3,28 @@
 
 #include <fmt/format.h>
 
+#include <vector>
+
+#include "io/formats/identify.hpp"
 #include "io/scene/time_series.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::frame {
 
-cells::MeshFile read_input(const std::filesystem::path& input, const cells::MeshOptions& options) {
+io::InputFile identify_input(const std::filesystem::path& input) {
   if (io::is_time_series(input))
     throw scene::bad_input(
         fmt::format("{}: it is a time series, which render and serve take; give one of its meshes", input.string()));
-  return io::read_mesh(input, options);
+  return io::identify(input);
 }
 
-cells::MeshFile read_input(std::span<const std::filesystem::path> files, const cells::MeshOptions& options) {
-  return files.size() == 1 ? read_input(files.front(), options) : io::read_mesh(files, options);
+cells::MeshFile read_input(std::span<const std::filesystem::path> files, const io::InputFile& first,
+                           const cells::MeshOptions& options) {
+  if (files.size() == 1) return io::read_mesh(first, options);
+  std::vector<io::InputFile> all = {first};
+  all.reserve(files.size());
+  for (const std::filesystem::path& file : files.subspan(1)) all.push_back(identify_input(file));
+  return io::read_mesh(all, options);
 }
 
 double default_unit_distance(const scene::MeshFacts& facts) {

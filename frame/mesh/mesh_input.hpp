@@ -12,10 +12,12 @@
 /// Meshes as files have them, and what stands in for settings that were not given.
 namespace tessera::frame {
 
-/// io::read_mesh, but a regular grid or time series is refused as one. Throws scene::Error.
-cells::MeshFile read_input(const std::filesystem::path& input, const cells::MeshOptions& options);
-/// Several files are the pieces of one mesh.
-cells::MeshFile read_input(std::span<const std::filesystem::path> files, const cells::MeshOptions& options);
+/// io::identify, but a time series is refused as one. Throws scene::Error.
+io::InputFile identify_input(const std::filesystem::path& input);
+
+/// io::read_mesh of a mesh's files, whose first has been identified.
+cells::MeshFile read_input(std::span<const std::filesystem::path> files, const io::InputFile& first,
+                           const cells::MeshOptions& options);
 
 using tessera::diagonal;
 

@@ -144,11 +144,12 @@ cells::MeshOptions with_everything(cells::MeshOptions options) {
 
 /// The whole by the first projector.
 DistributedMesh read_whole(Transport& transport, std::span<const std::filesystem::path> files,
-                           const cells::MeshOptions& options, std::span<const int> projectors, int threads) {
+                           const io::InputFile& first, const cells::MeshOptions& options,
+                           std::span<const int> projectors, int threads) {
   DistributedMesh result;
   cells::MeshFile file;
   const bool reads = transport.rank() == projectors.front();
-  if (reads) file = read_input(files, with_everything(options));
+  if (reads) file = read_input(files, first, with_everything(options));
   const std::string source = files.front().string();
   result.of_all = select_part(transport, options, source, threads, file.mesh, file.counts);
   if (reads) cells::require_selected(file.counts, source);
@@ -158,7 +159,7 @@ DistributedMesh read_whole(Transport& transport, std::span<const std::filesystem
 }
 
 /// A part by each projector.
-DistributedMesh read_parts(Transport& transport, const std::filesystem::path& input, const cells::MeshOptions& options,
+DistributedMesh read_parts(Transport& transport, const io::InputFile& input, const cells::MeshOptions& options,
                            std::span<const int> projectors, int threads) {
   const auto place = std::find(projectors.begin(), projectors.end(), transport.rank());
   const bool reads = place != projectors.end();
@@ -190,7 +191,7 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
         count_shared_repetitions(transport, std::exchange(own.cell_keys, {}), projectors, threads);
 
   DistributedMesh result;
-  result.of_all = select_part(transport, options, input.string(), threads, own.mesh, own.summary.counts);
+  result.of_all = select_part(transport, options, input.name, threads, own.mesh, own.summary.counts);
   const io::PartSummary& s = own.summary;
   std::vector<io::PartSummary> summaries;
   std::uint64_t words = 0, first_tet = 0;
@@ -217,7 +218,7 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
   summaries.front().used_points = reduce_all(transport, std::move(own.summary.used_points), Reduction::bit_or);
 
   cells::MeshFile description;
-  if (transport.rank() == projectors.front()) description = io::joined(own, summaries, input);
+  if (transport.rank() == projectors.front()) description = io::joined(own, summaries, input.path);
   description.axis_scale = options.axis_scale.value_or(glm::dvec3(1));
   result.description = share_description(transport, projectors, description);
   result.part.mesh = std::move(own.mesh);
@@ -230,13 +231,14 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
 }  // namespace
 
 DistributedMesh read_distributed(Transport& transport, std::span<const std::filesystem::path> files,
-                                 const cells::MeshOptions& options, const projection::Partition& partition,
-                                 std::span<const int> projectors, int threads, scene::Trace* trace) {
+                                 const io::InputFile& first, const cells::MeshOptions& options,
+                                 const projection::Partition& partition, std::span<const int> projectors, int threads,
+                                 scene::Trace* trace) {
   DistributedMesh result;
   if (transport.size() == 1) {
     {
       const scene::TraceScope scope(trace, "read");
-      result.description = read_input(files, with_everything(options));
+      result.description = read_input(files, first, with_everything(options));
     }
     const std::string source = files.front().string();
     result.of_all =
@@ -255,10 +257,10 @@ DistributedMesh read_distributed(Transport& transport, std::span<const std::file
       // One rank looks, so that all do the same.
       std::uint8_t in_parts = 0;
       if (transport.rank() == projectors.front())
-        in_parts = files.size() == 1 && io::readable_in_parts(files.front(), options) ? 1 : 0;
+        in_parts = files.size() == 1 && io::readable_in_parts(first, options) ? 1 : 0;
       in_parts = exchange::broadcast_value(transport, projectors.front(), MessageKind::read_in_parts, in_parts);
-      result = in_parts != 0 ? read_parts(transport, files.front(), options, projectors, threads)
-                             : read_whole(transport, files, options, projectors, threads);
+      result = in_parts != 0 ? read_parts(transport, first, options, projectors, threads)
+                             : read_whole(transport, files, first, options, projectors, threads);
     }
     result.facts = agree_facts(transport, result.part.mesh, threads);
     result.part = redistribute(transport, std::move(result.part), result.facts, partition, projectors, trace);

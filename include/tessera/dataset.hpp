@@ -30,6 +30,8 @@
 namespace tessera {
 inline namespace v0_1 {
 
+class InputFile;  // tessera/input_file.hpp
+
 /// What may be said about a file; the defaults read any file that describes itself.
 struct ReadOptions {
   /// Scalar to render: "" (the reader's choice, said in the notes), "NAME", "NAME:mag", "NAME:x", "NAME:0", each with
@@ -180,6 +182,11 @@ class TESSERA_EXPORT Dataset {
   static Dataset open(std::span<const std::filesystem::path> files, const ReadOptions& options,
                       const Communicator& communicator, const RankSettings& ranks = {});
 
+  /// The same of a file that has been identified already.
+  static Dataset open(const InputFile& file, const ReadOptions& options = {});
+  static Dataset open(const InputFile& file, const ReadOptions& options, const Communicator& communicator,
+                      const RankSettings& ranks = {});
+
   /// Of the caller's arrays. Throws Error(bad_input) naming the array and place at fault; no cell that is left, or no
   /// finite sample, is one too.
   static Dataset of(const MeshArrays& arrays);
@@ -288,6 +295,7 @@ TESSERA_EXPORT std::size_t time_steps_of(const std::filesystem::path& file, cons
 
 /// When they are, where the file says it; else their numbers from 0.
 TESSERA_EXPORT std::vector<double> times_of(const std::filesystem::path& file, const ReadOptions& options = {});
+TESSERA_EXPORT std::vector<double> times_of(const InputFile& file, const ReadOptions& options = {});
 
 /// The names of all presets' colours, the default first.
 TESSERA_EXPORT std::vector<std::string> preset_names();

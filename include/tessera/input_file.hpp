@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -13,13 +14,30 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// Whether Dataset::open would make a grid of it: by what it begins with, so that a .vtk may be a mesh or a grid and a
-/// name may be wrong; by its name where it is not there or is .raw. NetCDF, HDF5 and XDMF files are looked into.
-TESSERA_EXPORT bool opens_as_grid(const std::filesystem::path& file, const ReadOptions& options = {});
+/// A file or folder, opened once and identified: by what it begins with, so that a .vtk may be a mesh or a grid and a
+/// name may be wrong; by its name where that says nothing. Keeps no file open; copies share what was found. A file that
+/// changes has to be identified again.
+class TESSERA_EXPORT InputFile {
+ public:
+  /// Throws Error(bad_input) unless it is a readable file that is not empty, or a folder that stands for one; and for
+  /// the name of a time series.
+  explicit InputFile(const std::filesystem::path& file);
 
-/// Whether it can be opened as a mesh: by what it begins with, by its name where that says nothing or it is not there.
-/// Rectilinear grids can be opened as either.
-TESSERA_EXPORT bool opens_as_mesh(const std::filesystem::path& file);
+  [[nodiscard]] const std::filesystem::path& path() const;
+
+  /// Whether Dataset::open would make a grid of it. NetCDF, HDF5 and XDMF files are looked into when this is first
+  /// asked.
+  [[nodiscard]] bool opens_as_grid(const ReadOptions& options = {}) const;
+
+  /// Whether it can be opened as a mesh. Rectilinear grids can be opened as either.
+  [[nodiscard]] bool opens_as_mesh() const;
+
+  struct Found;  ///< incomplete for callers
+
+ private:
+  friend struct StateAccess;
+  std::shared_ptr<const Found> found_;
+};
 
 /// Throws Error(bad_input) unless the input is there: a file, or of a time series at least one step. For what must not
 /// be said of a file that is not there, such as that it is a mesh.

@@ -11,8 +11,8 @@
 
 #include "cells/field_choice.hpp"
 #include "cells/ghost_bits.hpp"
+#include "io/files/input_file.hpp"
 #include "io/foreign/client/foreign_geometry.hpp"
-#include "io/formats/input_file.hpp"
 #include "io/volume/brick_file.hpp"
 #include "io/volume/volume_formats.hpp"
 

@@ -6,11 +6,9 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "io/foreign/foreign_mixed.hpp"
-#include "io/formats/file_beginnings.hpp"
-#include "io/formats/file_kinds.hpp"
-#include "io/formats/inflated_file.hpp"
-#include "io/formats/input_file.hpp"
+#include "io/files/file_beginnings.hpp"
+#include "io/files/inflated_file.hpp"
+#include "io/foreign/foreign_formats.hpp"
 #include "io/mesh/listed_pieces.hpp"
 #include "io/mesh/mesh_formats.hpp"
 #include "io/mesh/mesh_shares.hpp"
@@ -19,21 +17,9 @@
 #include "io/text/text_file.hpp"
 #include "io/vtk/vtk_xml_file.hpp"
 #include "scene/error.hpp"
-#include "system/gzip.hpp"
 
 namespace tessera::io {
 namespace {
-
-/// VTK's readers do not check what other files of these names hold, and crash or never end with some.
-void require_solver_beginning(const std::filesystem::path& file, std::string_view reader) {
-  const bool is_gambit = reader == "gambit";
-  if (!is_gambit && reader != "avs_ucd") return;
-  const std::string first = read_beginning(file, 2);
-  const bool is_binary_ucd = !is_gambit && first.starts_with('\a');
-  if (format_begun(file) == nullptr && !is_binary_ucd && !system::looks_like_gzip(first))
-    throw scene::bad_input(fmt::format("{}: it does not begin as a file of {} does; check what it is", file.string(),
-                                       is_gambit ? "GAMBIT" : "AVS UCD"));
-}
 
 struct XmlKind {
   const char *extension, *type, *words;
@@ -45,9 +31,6 @@ constexpr std::array xml_kinds = {
     XmlKind{".vtr", "RectilinearGrid", "VTK XML rectilinear grid"},
     XmlKind{".pvtr", "PRectilinearGrid", "VTK XML parallel rectilinear grid"},
 };
-
-/// The value of `type` in <VTKFile type="...">; empty if the file does not begin like VTK XML.
-std::string xml_type(const std::filesystem::path& file) { return vtk_xml_type(read_beginning(file, 4096)); }
 
 const XmlKind* kind_of(const std::string& type) {
   const auto* kind = std::find_if(xml_kinds.begin(), xml_kinds.end(), [&](const XmlKind& k) { return type == k.type; });
@@ -62,50 +45,46 @@ cells::MeshBlocks named_format(const XmlKind& kind, const std::string& extension
   return result;
 }
 
-/// All of a file that the helper reads in one go.
-cells::MeshBlocks read_foreign(const std::filesystem::path& file, nlohmann::json request,
-                               const cells::MeshOptions& options) {
-  HelperTask task;
-  task.progress = options.progress;
-  const ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(std::move(task)), file, std::move(request));
-  cells::MeshBlocks result;
-  result.format = opened.contents.format;
-  result.notes = opened.contents.notes;
-  result.time_step = opened.contents.time_step;
-  result.block_names = opened.contents.block_names;
-  result.surface_names = opened.contents.surface_names;
-  result.blocks = blocks_of(opened, result.notes);
-  return result;
-}
-
 /// One data set in this process, or by VTK's reader if it has what this one does not know.
-cells::MeshBlocks read_data_set(const std::filesystem::path& file, const std::string& type,
-                                const cells::MeshOptions& options) {
-  const std::optional<ForeignFile> opened = type.starts_with('P') ? std::nullopt : open_vtk_xml(file, options.progress);
-  if (!opened) return read_foreign(file, {{"reader", "vtk_xml"}, {"type", type}}, options);
-  cells::MeshBlocks result;
-  result.blocks = blocks_of(*opened, result.notes);
-  return result;
+cells::MeshBlocks read_data_set(const InputFile& file, const std::string& type, const cells::MeshOptions& options) {
+  std::optional<ForeignFile> opened = type.starts_with('P') ? std::nullopt : open_vtk_xml(file.path, options.progress);
+  if (!opened) opened = open_foreign(file, {{"reader", "vtk_xml"}, {"type", type}}, options.progress);
+  return mesh_of(*opened);
 }
 
-cells::MeshBlocks blocks_of_solver(const ForeignFile& opened) {
-  cells::MeshBlocks result;
-  result.format = opened.contents.format;
-  result.notes = opened.contents.notes;
-  result.time_step = opened.contents.time_step;
-  result.block_names = opened.contents.block_names;
-  result.surface_names = opened.contents.surface_names;
-  result.blocks = blocks_of(opened, result.notes, GridsAre::hexahedra);
-  return result;
+ForeignFile open_exodus(const InputFile& file, const char* reader, const cells::MeshOptions& options) {
+  nlohmann::json request{{"reader", reader}, {"blocks", options.blocks}};
+  if (options.surfaces) request["surfaces"] = true;
+  if (options.time_step) request["time_step"] = *options.time_step;
+  if (!options.field.empty()) request["field"] = options.field;  // of what HDF5 may hold instead
+  return open_foreign(file, std::move(request), options.progress);
+}
+
+std::vector<Plot3dStep> steps_of_list(const InputFile& file) {
+  require_beside_others(file.path);
+  return parse_plot3d_list(read_text_file(file.path), file.path);
+}
+
+scene::TimeStepRead chosen_of(std::span<const Plot3dStep> steps, const InputFile& file,
+                              const cells::MeshOptions& options) {
+  scene::TimeStepRead chosen = scene::chosen_step(options.time_step, steps.size(), file.name);
+  for (const Plot3dStep& each : steps) chosen.times.push_back(each.time);
+  return chosen;
+}
+
+[[noreturn]] void refuse_beginning(const InputFile& file, const char* format) {
+  throw scene::bad_input(
+      fmt::format("{}: it does not begin as a file of {} does; check what it is", file.name, format));
 }
 
 }  // namespace
 
-cells::MeshBlocks read_vtk_xml(const std::filesystem::path& file, const cells::MeshOptions& options) {
-  const std::string source = file.string(), extension = system::lower_extension(file), type = xml_type(file);
+cells::MeshBlocks read_vtk_xml(const InputFile& file, const cells::MeshOptions& options) {
+  const std::string &source = file.name, extension = system::lower_extension(file.path),
+                    type = vtk_xml_type(file.beginning);
   const XmlKind* const kind = kind_of(type);
   if (type.empty()) {
-    require_no_utf16(file);
+    require_no_utf16(file.beginning, source);
     throw scene::bad_input(fmt::format("{}: it does not begin as a VTK XML file does; check that it is one", source));
   }
   if (type == "ImageData" || type == "PImageData")
@@ -118,7 +97,7 @@ cells::MeshBlocks read_vtk_xml(const std::filesystem::path& file, const cells::M
   }
   if (!kind) throw scene::bad_input(fmt::format("{}: its type is '{}'; give a mesh", source, type));
 
-  if (type.starts_with('P')) require_beside_others(file);
+  if (type.starts_with('P')) require_beside_others(file.path);
   cells::MeshBlocks result = named_format(*kind, extension);
   cells::MeshBlocks read = read_data_set(file, type, options);
   cells::add_notes(read.notes, result.notes);
@@ -127,50 +106,62 @@ cells::MeshBlocks read_vtk_xml(const std::filesystem::path& file, const cells::M
   return result;
 }
 
-cells::MeshBlocks read_vtk_legacy(const std::filesystem::path& file, const cells::MeshOptions& options) {
-  if (!read_beginning(file, 64).starts_with("# vtk DataFile Version"))
+cells::MeshBlocks read_vtk_legacy(const InputFile& file, const cells::MeshOptions& options) {
+  if (!file.beginning.starts_with("# vtk DataFile Version"))
     throw scene::bad_input(fmt::format(
-        "{}: it does not begin with '# vtk DataFile Version'; check that it is a legacy VTK file", file.string()));
-  return read_foreign(file, {{"reader", "vtk_legacy"}}, options);
+        "{}: it does not begin with '# vtk DataFile Version'; check that it is a legacy VTK file", file.name));
+  return mesh_of(open_foreign(file, {{"reader", "vtk_legacy"}}, options.progress));
 }
 
-cells::MeshBlocks read_exodus(const std::filesystem::path& file, const cells::MeshOptions& options) {
+cells::MeshBlocks read_exodus(const InputFile& file, const cells::MeshOptions& options) {
   if (!exodus_files(file).empty()) return read_share(file, options, 0, 1);
-  const std::string magic = read_beginning(file, 8);
-  if (!magic.starts_with("CDF") && !magic.starts_with("\x89HDF\r\n\x1a\n"))
+  if (!file.beginning.starts_with("CDF") && !file.beginning.starts_with(hdf5_signature))
     throw scene::bad_input(
-        fmt::format("{}: it is neither NetCDF nor HDF5; check that it is an Exodus file", file.string()));
-  nlohmann::json request{{"reader", "exodus"}, {"blocks", options.blocks}};
-  if (options.surfaces) request["surfaces"] = true;
-  if (options.time_step) request["time_step"] = *options.time_step;
-  return read_foreign(file, std::move(request), options);
+        fmt::format("{}: it is neither NetCDF nor HDF5; check that it is an Exodus file", file.name));
+  return mesh_of(open_exodus(file, "exodus", options));
 }
 
-cells::MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader,
-                                   const cells::MeshOptions& options) {
-  const std::string_view name = reader;
-  require_solver_beginning(file, name);
-  if (name == "openfoam" || name == "ensight") require_beside_others(file);
-  HelperTask task;
-  if (name == "fluent")  // good ones make it crash
-    task.remedy = "VTK's reader does not know all kinds of it: export CGNS or EnSight";
-  return read_foreign_mesh(file, {reader, std::move(task)}, options, GridsAre::hexahedra);
+scene::TimeStepRead exodus_time_steps(const InputFile& file, const cells::MeshOptions& options) {
+  if (const auto files = exodus_files(file); !files.empty())
+    return read_share(file, options, 0, static_cast<int>(files.size())).time_step;  // of the first
+  return open_exodus(file, "exodus", options).contents.time_step;
 }
 
-cells::MeshBlocks read_hdf5(const std::filesystem::path& file, const cells::MeshOptions& options) {
+cells::MeshBlocks read_hdf5(const InputFile& file, const cells::MeshOptions& options) {
   if (!exodus_files(file).empty()) return read_share(file, options, 0, 1);
-  nlohmann::json request{{"reader", "hdf5"}, {"blocks", options.blocks}};
-  if (options.surfaces) request["surfaces"] = true;
-  if (options.time_step) request["time_step"] = *options.time_step;
-  if (!options.field.empty()) request["field"] = options.field;
-  HelperTask task;
-  task.progress = options.progress;
-  ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(std::move(task)), file, std::move(request));
-  return opened.contents.has_levels ? read_amr(std::move(opened), options) : blocks_of_solver(opened);
+  ForeignFile opened = open_exodus(file, "hdf5", options);
+  return opened.contents.has_levels ? read_amr(std::move(opened), options) : mesh_of(opened, GridsAre::hexahedra);
 }
 
-cells::MeshBlocks read_plot3d(const std::filesystem::path& file, const cells::MeshOptions& options) {
-  const std::filesystem::path& q_file = options.plot3d_q;
+cells::MeshBlocks read_openfoam(const InputFile& file, const cells::MeshOptions& options) {
+  require_beside_others(file.path);
+  return read_foreign_mesh(file, {Reader::vtk, "openfoam"}, options);
+}
+
+cells::MeshBlocks read_ensight(const InputFile& file, const cells::MeshOptions& options) {
+  require_beside_others(file.path);
+  return read_foreign_mesh(file, {Reader::vtk, "ensight"}, options);
+}
+
+cells::MeshBlocks read_fluent(const InputFile& file, const cells::MeshOptions& options) {
+  // Good ones make it crash.
+  constexpr const char* remedy = "VTK's reader does not know all kinds of it: export CGNS or EnSight";
+  return read_foreign_mesh(file, {Reader::vtk, "fluent", remedy}, options);
+}
+
+cells::MeshBlocks read_gambit(const InputFile& file, const cells::MeshOptions& options) {
+  if (!file.is_recognized) refuse_beginning(file, "GAMBIT");
+  return read_foreign_mesh(file, {Reader::vtk, "gambit"}, options);
+}
+
+cells::MeshBlocks read_avs_ucd(const InputFile& file, const cells::MeshOptions& options) {
+  const bool is_binary = file.beginning.starts_with('\a');
+  if (!file.is_recognized && !is_binary) refuse_beginning(file, "AVS UCD");
+  return read_foreign_mesh(file, {Reader::vtk, "avs_ucd"}, options);
+}
+
+cells::MeshBlocks read_plot3d(const InputFile& input, const cells::MeshOptions& options) {
+  const std::filesystem::path &file = input.path, &q_file = options.plot3d_q;
   const Plot3dLayout layout = detect_plot3d(file);
   const std::filesystem::path q = q_file.empty() ? find_plot3d_solution(file) : q_file;
   std::vector<std::string> notes;
@@ -189,36 +180,39 @@ cells::MeshBlocks read_plot3d(const std::filesystem::path& file, const cells::Me
   notes.push_back(fmt::format("PLOT3D: {} grid{}, {}, {}{}", layout.grids.size(), layout.grids.size() == 1 ? "" : "s",
                               stored, layout.iblank ? "IBLANK" : "no IBLANK",
                               q.empty() ? "" : fmt::format(", solution {}", q.filename().string())));
-  cells::MeshBlocks result = read_foreign(file,
-                                          {{"reader", "plot3d"},
-                                           {"q", q.string()},
-                                           {"text", layout.is_text},
-                                           {"big_endian", layout.big_endian},
-                                           {"record_marks", layout.record_marks},
-                                           {"multi_grid", layout.multi_grid},
-                                           {"double_precision", layout.double_precision},
-                                           {"iblank", layout.iblank}},
-                                          options);
+  cells::MeshBlocks result = mesh_of(open_foreign(input,
+                                                  {{"reader", "plot3d"},
+                                                   {"q", q.string()},
+                                                   {"text", layout.is_text},
+                                                   {"big_endian", layout.big_endian},
+                                                   {"record_marks", layout.record_marks},
+                                                   {"multi_grid", layout.multi_grid},
+                                                   {"double_precision", layout.double_precision},
+                                                   {"iblank", layout.iblank}},
+                                                  options.progress));
   result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
   return result;
 }
 
-cells::MeshBlocks read_plot3d_list(const std::filesystem::path& file, const cells::MeshOptions& options) {
-  require_beside_others(file);
-  const std::vector<Plot3dStep> steps = parse_plot3d_list(read_text_file(file), file);
-  scene::TimeStepRead chosen = scene::chosen_step(options.time_step, steps.size(), file.string());
-  for (const Plot3dStep& each : steps) chosen.times.push_back(each.time);
+cells::MeshBlocks read_plot3d_list(const InputFile& file, const cells::MeshOptions& options) {
+  const std::vector<Plot3dStep> steps = steps_of_list(file);
+  scene::TimeStepRead chosen = chosen_of(steps, file, options);
   const Plot3dStep& step = steps[chosen.step];
   cells::MeshOptions of_step = options;
   of_step.time_step.reset();
   if (of_step.plot3d_q.empty()) of_step.plot3d_q = step.solution;
-  cells::MeshBlocks result = read_plot3d(step.grid, of_step);
+  cells::MeshBlocks result =
+      read_plot3d({.path = step.grid, .name = step.grid.string(), .format = file.format}, of_step);
   for (cells::CellBlock& block : result.blocks)
     if (block.source.empty()) block.source = step.grid.string();
   result.time_step = std::move(chosen);
   if (step.has_functions)
     result.notes.emplace_back("the list names a file of functions beside the solution, which is not read");
   return result;
+}
+
+scene::TimeStepRead plot3d_list_time_steps(const InputFile& file, const cells::MeshOptions& options) {
+  return chosen_of(steps_of_list(file), file, options);
 }
 
 }  // namespace tessera::io

@@ -3,31 +3,23 @@
 
 #include <algorithm>
 
-#include "io/formats/file_kinds.hpp"
-#include "io/formats/reader_programs.hpp"
-
-namespace tessera::io {
-namespace {
-
-/// The first of a format's readers that is not installed; empty if all are.
-const char* left_out(Needs needs) {
-  for (const ReaderProgram& program : reader_programs())
-    if (needs_reader(needs, program.reader) && !has_reader(program.reader)) return program.program;
-  return "";
-}
-
-}  // namespace
-
-}  // namespace tessera::io
+#include "io/files/reader_programs.hpp"
+#include "io/formats/identify.hpp"
 
 namespace tessera {
 inline namespace v0_1 {
 
 std::vector<FileFormat> file_formats() {
   std::vector<FileFormat> formats;
-  for (const io::FormatRow& row : io::format_rows()) {
-    if (row.listed == io::FormatRow::Listed::no) continue;
-    FileFormat format{row.name, {}, row.holds, row.remark, row.begins != nullptr, io::left_out(row.needs)};
+  for (const io::Format& row : io::formats()) {
+    if (!row.is_listed) continue;
+    const auto missing = std::ranges::find_if(row.needs, [](io::Reader reader) { return !io::has_reader(reader); });
+    FileFormat format{row.name,
+                      {},
+                      row.holds,
+                      row.remark,
+                      row.recognizes != nullptr,
+                      missing == row.needs.end() ? "" : io::reader_program(*missing).program};
     std::string_view rest = row.extensions;
     while (!rest.empty()) {
       const std::size_t end = std::min(rest.find(' '), rest.size());

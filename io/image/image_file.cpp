@@ -17,16 +17,16 @@
 namespace tessera::io {
 namespace {
 
-enum class Format { exr, png, jpeg, tiff, pfm, unknown };
+enum class ImageFormat { exr, png, jpeg, tiff, pfm, unknown };
 
-Format image_format_of(const std::filesystem::path& file) {
+ImageFormat image_format_of(const std::filesystem::path& file) {
   const std::string extension = system::lower_extension(file);
-  if (extension == ".exr") return Format::exr;
-  if (extension == ".png") return Format::png;
-  if (extension == ".jpg" || extension == ".jpeg") return Format::jpeg;
-  if (extension == ".tif" || extension == ".tiff") return Format::tiff;
-  if (extension == ".pfm") return Format::pfm;
-  return Format::unknown;
+  if (extension == ".exr") return ImageFormat::exr;
+  if (extension == ".png") return ImageFormat::png;
+  if (extension == ".jpg" || extension == ".jpeg") return ImageFormat::jpeg;
+  if (extension == ".tif" || extension == ".tiff") return ImageFormat::tiff;
+  if (extension == ".pfm") return ImageFormat::pfm;
+  return ImageFormat::unknown;
 }
 
 scene::Error unknown_extension(const std::filesystem::path& file) {
@@ -98,17 +98,17 @@ std::vector<std::byte> checked_jpeg_bytes(const scene::Image& image, const Image
 void write_image(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
   check(image, file, options);
   switch (image_format_of(file)) {
-    case Format::exr:
+    case ImageFormat::exr:
       return write_exr(image, file, options);
-    case Format::png:
+    case ImageFormat::png:
       return write_png(image, file, options);
-    case Format::jpeg:
+    case ImageFormat::jpeg:
       return write_jpeg(image, file, options);
-    case Format::tiff:
+    case ImageFormat::tiff:
       return write_tiff(image, file, options);
-    case Format::pfm:
+    case ImageFormat::pfm:
       return write_pfm(image, file, options);
-    case Format::unknown:
+    case ImageFormat::unknown:
       throw unknown_extension(file);
   }
 }
@@ -120,9 +120,9 @@ scene::Image read_image(const std::filesystem::path& file) {
   if (std::filesystem::is_directory(status)) throw scene::bad_input(file.string() + ": is a folder; name a file in it");
   try {
     switch (image_format_of(file)) {
-      case Format::exr:
+      case ImageFormat::exr:
         return read_exr(file);
-      case Format::pfm:
+      case ImageFormat::pfm:
         return read_pfm(file);
       default:
         throw scene::bad_input(file.string() + ": cannot be read back by its name; .exr and .pfm can");
@@ -133,10 +133,10 @@ scene::Image read_image(const std::filesystem::path& file) {
 }
 
 void check_image_path(const std::filesystem::path& file) {
-  if (image_format_of(file) == Format::unknown) throw unknown_extension(file);
-  if (image_format_of(file) == Format::jpeg && !has_jpeg())
+  if (image_format_of(file) == ImageFormat::unknown) throw unknown_extension(file);
+  if (image_format_of(file) == ImageFormat::jpeg && !has_jpeg())
     throw scene::bad_input(file.string() + ": this build leaves .jpg out; build with TESSERA_JPEG=ON, or write .png");
-  if (image_format_of(file) == Format::tiff && !has_tiff())
+  if (image_format_of(file) == ImageFormat::tiff && !has_tiff())
     throw scene::bad_input(file.string() + ": this build leaves .tif out; build with TESSERA_TIFF=ON, or write .png");
   // The only test that holds for every file system and user: begin such a file, and leave it.
   system::check_writable(file);

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
-#include <string_view>
 
 #include "cells/amr/amr_leaves.hpp"
 #include "cells/amr/amr_values.hpp"
 #include "cells/field_choice.hpp"
-#include "io/formats/reader_programs.hpp"
+#include "io/files/reader_programs.hpp"
 #include "io/mesh/amr_opened.hpp"
 #include "io/mesh/amrex_file.hpp"
 #include "io/mesh/mesh_formats.hpp"
@@ -214,13 +214,24 @@ void OpenedAmr::add(ForeignFile opened) {
   if (format.empty()) format = file.contents.format;
 }
 
-cells::MeshBlocks read_amr(const std::filesystem::path& file, const char* reader, const cells::MeshOptions& options) {
-  const std::string_view name = reader;
-  if (name == "amrex") return mesh_of(open_amrex(file), options, file.string());
-  require_reader(Reader::vtk, file);  // which would name a block of a list
-  if (name == "amr_list") return mesh_of(open_amr_list(file), options, file.string());
-  if (name == "hyper_trees") return mesh_of(open_hyper_trees(file), options, file.string());
-  return mesh_of(open_amr_by(reader, file), options, file.string());
+cells::MeshBlocks read_amrex(const InputFile& file, const cells::MeshOptions& options) {
+  return mesh_of(open_amrex(file.path), options, file.name);
+}
+
+cells::MeshBlocks read_amr_list(const InputFile& file, const cells::MeshOptions& options) {
+  if (!has_reader(Reader::vtk)) throw missing_reader(Reader::vtk, file.name, file.format);  // else it names a block
+  return mesh_of(open_amr_list(file), options, file.name);
+}
+
+cells::MeshBlocks read_hyper_trees(const InputFile& file, const cells::MeshOptions& options) {
+  if (!has_reader(Reader::vtk)) throw missing_reader(Reader::vtk, file.name, file.format);
+  return mesh_of(open_hyper_trees(file), options, file.name);
+}
+
+cells::MeshBlocks read_enzo(const InputFile& file, const cells::MeshOptions& options) {
+  OpenedAmr opened;
+  opened.add(open_foreign(file, {{"reader", "enzo"}}));
+  return mesh_of(opened, options, file.name);
 }
 
 cells::MeshBlocks read_amr(ForeignFile blocks, const cells::MeshOptions& options) {

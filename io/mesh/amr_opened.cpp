@@ -5,9 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "io/formats/file_beginnings.hpp"
-#include "io/formats/inflated_file.hpp"
-#include "io/formats/input_file.hpp"
+#include "io/files/file_beginnings.hpp"
+#include "io/files/inflated_file.hpp"
 #include "io/text/text_file.hpp"
 #include "io/text/xml_elements.hpp"
 #include "scene/error.hpp"
@@ -17,6 +16,12 @@ namespace {
 
 constexpr std::size_t most_blocks = 1u << 20;
 
+std::shared_ptr<HelperProcess> helper_for(const InputFile& file) {
+  HelperTask task;
+  task.format = file.format;
+  return std::make_shared<HelperProcess>(std::move(task));
+}
+
 void require_room(const OpenedAmr& amr, const std::filesystem::path& file) {
   if (amr.files.size() >= most_blocks)
     throw scene::bad_input(fmt::format("{}: it lists more than {} blocks; write fewer", file.string(), most_blocks));
@@ -24,9 +29,10 @@ void require_room(const OpenedAmr& amr, const std::filesystem::path& file) {
 
 }  // namespace
 
-OpenedAmr open_amr_list(const std::filesystem::path& file) {
+OpenedAmr open_amr_list(const InputFile& input) {
+  const std::filesystem::path& file = input.path;
   OpenedAmr amr;
-  const auto helper = std::make_shared<HelperProcess>();
+  const auto helper = helper_for(input);
   amr.format = "VTK XML AMR";
   bool is_list = false;
   each_xml_element(read_text_file(file), file.string(), [&](const XmlElement& element) {
@@ -49,10 +55,11 @@ OpenedAmr open_amr_list(const std::filesystem::path& file) {
   return amr;
 }
 
-OpenedAmr open_hyper_trees(const std::filesystem::path& file) {
+OpenedAmr open_hyper_trees(const InputFile& input) {
+  const std::filesystem::path& file = input.path;
   OpenedAmr amr;
-  const auto helper = std::make_shared<HelperProcess>();
-  if (vtk_xml_type(read_beginning(file, 4096)) != "PHyperTreeGrid") {
+  const auto helper = helper_for(input);
+  if (vtk_xml_type(input.beginning) != "PHyperTreeGrid") {
     amr.add(open_foreign(helper, file, {{"reader", "hyper_trees"}}));
     return amr;
   }
@@ -68,12 +75,6 @@ OpenedAmr open_hyper_trees(const std::filesystem::path& file) {
     amr.add(std::move(opened));
   });
   amr.format = "VTK XML HyperTreeGrid in pieces";
-  return amr;
-}
-
-OpenedAmr open_amr_by(const char* reader, const std::filesystem::path& file) {
-  OpenedAmr amr;
-  amr.add(open_foreign(std::make_shared<HelperProcess>(), file, {{"reader", reader}}));
   return amr;
 }
 

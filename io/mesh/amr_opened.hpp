@@ -2,7 +2,6 @@
 #pragma once
 
 #include <deque>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -31,12 +30,9 @@ struct OpenedAmr {
 
 /// VTK's list of blocks, each read by itself, so that faults name the file. What level a block has is seen from its
 /// spacing.
-OpenedAmr open_amr_list(const std::filesystem::path& file);
+OpenedAmr open_amr_list(const InputFile& file);
 
 /// VTK's trees, whole or in pieces, each of which is read by itself.
-OpenedAmr open_hyper_trees(const std::filesystem::path& file);
-
-/// What a reader of readers/vtk/vtk_main.cpp makes blocks of.
-OpenedAmr open_amr_by(const char* reader, const std::filesystem::path& file);
+OpenedAmr open_hyper_trees(const InputFile& file);
 
 }  // namespace tessera::io

@@ -10,7 +10,7 @@
 #include <map>
 #include <vector>
 
-#include "io/formats/whole_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "io/mesh/amrex_header.hpp"
 #include "io/text/text_file.hpp"
 #include "scene/byte_order.hpp"

@@ -12,7 +12,6 @@
 #include "cells/cell_split.hpp"
 #include "cells/field_choice.hpp"
 #include "cells/polygon_triangles.hpp"
-#include "io/mesh/mesh_formats.hpp"
 #include "io/text/clean_errors.hpp"
 #include "scene/error.hpp"
 #include "tessera/cell_type.hpp"
@@ -133,12 +132,12 @@ std::optional<cells::FieldChoice> field_of(std::span<const cells::CellBlock> blo
 
 }  // namespace
 
-BlockFaces read_block_faces(std::span<const std::filesystem::path> files, cells::MeshOptions options) {
+BlockFaces read_block_faces(std::span<const InputFile> files, cells::MeshOptions options) {
   options.surfaces = true;
-  const std::string source = files.front().string();
+  const std::string& source = files.front().name;
   return with_clean_errors(source, [&] {
     std::vector<cells::CellBlock> blocks;
-    for (const std::filesystem::path& file : files) {
+    for (const InputFile& file : files) {
       cells::MeshBlocks read = read_mesh_blocks(file, options);
       std::move(read.blocks.begin(), read.blocks.end(), std::back_inserter(blocks));
     }

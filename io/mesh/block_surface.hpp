@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <filesystem>
 #include <span>
 
 #include "io/mesh/mesh_reader.hpp"
@@ -18,6 +17,6 @@ struct BlockFaces {
 /// The two-dimensional cells of the blocks that `options` choose, cut into triangles; of higher order by their corners.
 /// Values are of `options.field`, which may be empty or unknown: then there are none. Throws Error(bad_input) as
 /// read_mesh_blocks, and for a point that is not finite.
-BlockFaces read_block_faces(std::span<const std::filesystem::path> files, cells::MeshOptions options);
+BlockFaces read_block_faces(std::span<const InputFile> files, cells::MeshOptions options);
 
 }  // namespace tessera::io

@@ -13,10 +13,10 @@
 #include <system_error>
 
 #include "cells/block_choice.hpp"
+#include "io/files/file_beginnings.hpp"
+#include "io/files/inflated_file.hpp"
+#include "io/files/input_file.hpp"
 #include "io/foreign/client/foreign_file.hpp"
-#include "io/formats/file_beginnings.hpp"
-#include "io/formats/inflated_file.hpp"
-#include "io/formats/input_file.hpp"
 #include "io/text/text_file.hpp"
 #include "io/text/xml_elements.hpp"
 #include "io/vtk/vtk_xml_file.hpp"
@@ -24,9 +24,6 @@
 
 namespace tessera::io {
 namespace {
-
-/// Empty if the file does not begin as VTK XML does.
-std::string type_of(const std::filesystem::path& file) { return vtk_xml_type(read_beginning(file, 4096)); }
 
 bool is_any_of(std::string_view type, std::span<const std::string_view> types) {
   return std::find(types.begin(), types.end(), type) != types.end();
@@ -66,7 +63,7 @@ void add_block(ListedPiece listed, const cells::BlockChoice& choice, PieceList& 
     return;
   }
   require_listed(listed);
-  listed.type = type_of(listed.file);
+  listed.type = vtk_xml_type(read_beginning(listed.file, 4096));
   const bool is_wanted = list.with_surfaces && listed.type == surfaces.front();
   if (is_any_of(listed.type, surfaces) && !is_wanted) {
     list.surface_names.push_back(std::move(listed.block));
@@ -100,10 +97,11 @@ void add_blocks(const std::filesystem::path& file, const cells::BlockChoice& cho
   if (!list.surface_names.empty()) list.notes.push_back(cells::note_on_surfaces("block", list.surface_names));
 }
 
-void require_piece(const ListedPiece& piece, const std::string& type) {
-  const std::string source = piece.file.string();
+void require_piece(const ListedPiece& piece) {
+  const std::string source = piece.file.string(), beginning = read_beginning(piece.file, 4096);
+  const std::string type = vtk_xml_type(beginning);
   if (type.empty()) {
-    require_no_utf16(piece.file);
+    require_no_utf16(beginning, source);
     throw scene::bad_input(fmt::format(
         "{}: it is a piece of {} and does not begin as a VTK XML file does; write it anew", source, piece.list));
   }
@@ -115,16 +113,18 @@ void require_piece(const ListedPiece& piece, const std::string& type) {
 
 }  // namespace
 
-bool lists_pieces(const std::filesystem::path& file) {
-  const std::string type = type_of(file);
+bool lists_pieces(const InputFile& file) {
+  const std::string type = vtk_xml_type(file.beginning);
   return type == in_pieces || is_any_of(type, lists);
 }
 
-PieceList piece_list(const std::filesystem::path& file, const cells::BlockChoice& choice, bool with_surfaces) {
+PieceList piece_list(const InputFile& input, const cells::BlockChoice& choice, bool with_surfaces) {
+  const std::filesystem::path& file = input.path;
   require_beside_others(file);
   PieceList list;
   list.with_surfaces = with_surfaces;
-  if (type_of(file) != in_pieces) {
+  list.of = input.format;
+  if (vtk_xml_type(input.beginning) != in_pieces) {
     list.format = "VTK XML multi-block";
     add_blocks(file, choice, list);
     if (choice.empty() && list.block_names.empty() && !list.surface_names.empty())
@@ -144,12 +144,16 @@ PieceList piece_list(const std::filesystem::path& file, const cells::BlockChoice
 namespace {
 
 /// In this process, or by VTK's readers if the file has what it does not know.
-ForeignFile open_piece(const ListedPiece& piece, const std::string& type, bool with_surfaces,
+ForeignFile open_piece(const ListedPiece& piece, const std::string& type, const PieceList& list,
                        std::shared_ptr<HelperProcess>& helper) {
   if (!type.starts_with('P'))
     if (std::optional<ForeignFile> opened = open_vtk_xml(piece.file)) return *std::move(opened);
-  if (!helper) helper = std::make_shared<HelperProcess>();
-  return open_foreign(helper, piece.file, {{"reader", "vtk_xml"}, {"type", type}, {"surfaces", with_surfaces}});
+  if (!helper) {
+    HelperTask task;
+    task.format = list.of;
+    helper = std::make_shared<HelperProcess>(std::move(task));
+  }
+  return open_foreign(helper, piece.file, {{"reader", "vtk_xml"}, {"type", type}, {"surfaces", list.with_surfaces}});
 }
 
 }  // namespace
@@ -162,9 +166,8 @@ cells::MeshBlocks read_pieces(const PieceList& list, std::size_t first, std::siz
     const ListedPiece& piece = list.pieces[k];
     const bool of_whole = piece.type.empty();
     if (of_whole) require_listed(piece);
-    const std::string type = of_whole ? type_of(piece.file) : piece.type;
-    if (of_whole) require_piece(piece, type);
-    ForeignFile opened = open_piece(piece, type, list.with_surfaces, helper);
+    if (of_whole) require_piece(piece);
+    ForeignFile opened = open_piece(piece, of_whole ? "UnstructuredGrid" : piece.type, list, helper);
     cells::add_notes(opened.contents.notes, result.notes);
     if (!of_whole)
       for (ForeignPart& part : opened.contents.parts) part.name = piece.block;

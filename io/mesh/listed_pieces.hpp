@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cells/block_choice.hpp"
 #include "io/mesh/mesh_formats.hpp"
 
 namespace tessera::io {
@@ -21,17 +22,18 @@ struct ListedPiece {
 struct PieceList {
   std::vector<ListedPiece> pieces;                             ///< in their order; the chosen blocks' volumes
   std::vector<std::string> block_names, surface_names, notes;  ///< surfaces: those that are left out
-  std::string format;
-  bool with_surfaces = false;  ///< of the chosen blocks
+  std::string format;                                          ///< in words
+  bool with_surfaces = false;                                  ///< of the chosen blocks
+  const Format* of = nullptr;                                  ///< the list's
 };
 
 /// Whether a file that begins as VTK XML does is an unstructured grid in pieces, or a list of blocks, whatever its
 /// name.
-bool lists_pieces(const std::filesystem::path& file);
+bool lists_pieces(const InputFile& file);
 
 /// The pieces of such a file, their paths as it gives them, relative ones against its folder. Those of a .pvtu need not
 /// exist; blocks are looked at, since surfaces are left out unless `with_surfaces`. Throws Error(bad_input).
-PieceList piece_list(const std::filesystem::path& file, const cells::BlockChoice& choice, bool with_surfaces = false);
+PieceList piece_list(const InputFile& file, const cells::BlockChoice& choice, bool with_surfaces = false);
 
 /// Pieces [first, last) of a list, those of a whole a block each, whose `source` is the piece's file; regular grids as
 /// hexahedra. Throws Error(bad_input) that names the piece at fault.

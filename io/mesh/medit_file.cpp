@@ -10,7 +10,9 @@
 #include <utility>
 
 #include "cells/block_groups.hpp"
-#include "io/formats/file_beginnings.hpp"
+#include "io/files/whole_file.hpp"
+#include "io/mesh/mesh_formats.hpp"
+#include "io/text/clean_errors.hpp"
 #include "io/text/scanner.hpp"
 #include "scene/byte_order.hpp"
 #include "scene/error.hpp"
@@ -270,6 +272,14 @@ std::vector<cells::CellBlock> parse_medit_text(std::string_view text, const std:
   if (!begins_as_medit_text(text.substr(0, 128)))
     throw scene::bad_input(fmt::format("{}: it does not begin as a Medit mesh does; check what it is", source));
   return MeditText(text, source).blocks();
+}
+
+cells::MeshBlocks read_medit_text(const InputFile& file, const cells::MeshOptions& /*options*/) {
+  return {parse_medit_text(WholeFile(file.path).text(), file.name), {}, "Medit"};
+}
+
+cells::MeshBlocks read_medit_binary(const InputFile& file, const cells::MeshOptions& /*options*/) {
+  return {parse_medit_binary(WholeFile(file.path).bytes(), file.name), {}, "Medit, binary"};
 }
 
 }  // namespace tessera::io

@@ -5,11 +5,11 @@
 #include <bit>
 
 #include "cells/axis_scale.hpp"
+#include "cells/block_choice.hpp"
 #include "cells/mesh_assembly.hpp"
 #include "cells/mesh_selection.hpp"
 #include "cells/part_range.hpp"
 #include "cells/warp.hpp"
-#include "io/formats/input_file.hpp"
 #include "io/mesh/listed_pieces.hpp"
 #include "io/mesh/mesh_formats.hpp"
 #include "io/mesh/mesh_shares.hpp"
@@ -20,18 +20,17 @@
 namespace tessera::io {
 namespace {
 
-bool is_tets(const std::filesystem::path& file) { return system::lower_extension(file) == ".tets"; }
+bool is_tets(const InputFile& file) { return system::lower_extension(file.path) == ".tets"; }
 
 }  // namespace
 
-bool readable_in_parts(const std::filesystem::path& file, const cells::MeshOptions& options) {
-  require_file(file);
+bool readable_in_parts(const InputFile& file, const cells::MeshOptions& options) {
   if (options.smooth || options.drop_duplicates) return false;
   if (is_tets(file)) return options.blocks.empty();
-  return (!std::filesystem::is_directory(file) && lists_pieces(file)) || has_shares(file);
+  return lists_pieces(file) || has_shares(file);
 }
 
-std::vector<std::filesystem::path> files_of_parts(const std::filesystem::path& file) {
+std::vector<std::filesystem::path> files_of_parts(const InputFile& file) {
   if (is_tets(file)) return {};
   if (has_shares(file)) return exodus_files(file);
   std::vector<std::filesystem::path> files;
@@ -40,7 +39,7 @@ std::vector<std::filesystem::path> files_of_parts(const std::filesystem::path& f
 }
 
 struct MeshPartReading::State {
-  std::filesystem::path file;
+  InputFile file;
   cells::MeshOptions options;
   cells::MeshBlocks blocks;
   std::vector<cells::FieldTally> tallies;
@@ -54,8 +53,8 @@ struct MeshPartReading::State {
   bool counts_points = true;  ///< the first part, which counts the points of all
 
   void read_tets(int part, int parts) {
-    const std::string source = file.string();
-    const system::PositionalFile opened(file);
+    const std::string& source = file.name;
+    const system::PositionalFile opened(file.path);
     const TetsBytes bytes(opened);
     const TetsHeader header = tets_header(bytes, source);
     TetsRange range = parse_tets_range(bytes, cells::first_of_part(header.tets, part, parts),
@@ -95,23 +94,22 @@ struct MeshPartReading::State {
 
   void read(int part, int parts) {
     const bool is_shared = !is_tets(file) && has_shares(file);
-    const FormatRow* const row = is_shared ? format_of(file) : nullptr;
-    if (row == nullptr || !row->has_time_steps) require_no_time_step(options.time_step, file.string());
+    if (!is_shared || file.format->time_steps == nullptr) require_no_time_step(options.time_step, file.name);
     if (is_tets(file))
       read_tets(part, parts);
     else if (is_shared)
       read_shared(part, parts);
     else
       read_listed(part, parts);
-    cells::warp(blocks, options, file.string());
+    cells::warp(blocks, options, file.name);
   }
 };
 
-MeshPartReading::MeshPartReading(std::filesystem::path file, const cells::MeshOptions& options, int part, int parts)
+MeshPartReading::MeshPartReading(InputFile file, const cells::MeshOptions& options, int part, int parts)
     : state_(std::make_unique<State>()) {
   state_->file = std::move(file);
   state_->options = options;
-  const std::string source = state_->file.string();
+  const std::string source = state_->file.name;
   with_clean_errors(source, [&] {
     state_->read(part, parts);
     cells::scale_blocks(state_->blocks.blocks, state_->options.axis_scale.value_or(glm::dvec3(1)));
@@ -129,7 +127,7 @@ const std::vector<std::string>& MeshPartReading::block_names() const { return st
 
 void MeshPartReading::choose(std::span<const std::vector<cells::FieldTally>> tallies_of_all,
                              const scene::Box& box_of_all, std::vector<std::string> names_of_all) {
-  const std::string source = state_->file.string();
+  const std::string source = state_->file.name;
   with_clean_errors(source, [&] {
     cells::require_blocks(state_->options.blocks, names_of_all, source);
     state_->blocks.block_names = std::move(names_of_all);
@@ -140,12 +138,12 @@ void MeshPartReading::choose(std::span<const std::vector<cells::FieldTally>> tal
 }
 
 cells::ExcessTally MeshPartReading::excess() const {
-  return with_clean_errors(state_->file.string(),
+  return with_clean_errors(state_->file.name,
                            [&] { return cells::tally_excess(state_->blocks.blocks, state_->choice, state_->asked); });
 }
 
 MeshFilePart MeshPartReading::finish(const cells::ExcessTally& excess_of_all) {
-  const std::string source = state_->file.string();
+  const std::string source = state_->file.name;
   return with_clean_errors(source, [&] {
     MeshFilePart part;
     part.format = std::move(state_->blocks.format);

@@ -32,13 +32,12 @@ namespace tessera::io {
 
 /// Whether the file can be read in parts: .pvtu, whose pieces are divided over the parts, VTK's lists of blocks (.vtm
 /// .vtpc), whose files are, .tets, whose tets are, and meshes in shares (io/mesh/mesh_shares.hpp). Not if it is to be
-/// smoothed, which needs all cells round a point, or each cell drawn once, which needs all of them. Throws
-/// Error(bad_input) if there is no such file.
-bool readable_in_parts(const std::filesystem::path& file, const cells::MeshOptions& options);
+/// smoothed, which needs all cells round a point, or each cell drawn once, which needs all of them.
+bool readable_in_parts(const InputFile& file, const cells::MeshOptions& options);
 
 /// The files that such a file lists, or that it is one of; none of .tets and of what is in folders. Throws
 /// Error(bad_input).
-std::vector<std::filesystem::path> files_of_parts(const std::filesystem::path& file);
+std::vector<std::filesystem::path> files_of_parts(const InputFile& file);
 
 /// What a part knows beside its mesh. Small, but for `used_points`.
 struct PartSummary {
@@ -65,7 +64,7 @@ class MeshPartReading {
  public:
   /// Reads part `part` of `parts`, which may be more than the file has pieces. The file has to be readable in parts.
   /// Throws as read_mesh; faults name the piece.
-  MeshPartReading(std::filesystem::path file, const cells::MeshOptions& options, int part, int parts);
+  MeshPartReading(InputFile file, const cells::MeshOptions& options, int part, int parts);
   ~MeshPartReading();
 
   [[nodiscard]] const std::vector<cells::FieldTally>& tallies() const;

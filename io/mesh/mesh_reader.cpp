@@ -4,94 +4,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <memory>
+#include <type_traits>
 
 #include "cells/axis_scale.hpp"
+#include "cells/block_choice.hpp"
 #include "cells/mesh_assembly.hpp"
 #include "cells/warp.hpp"
-#include "io/formats/file_kinds.hpp"
-#include "io/formats/inflated_file.hpp"
-#include "io/formats/input_file.hpp"
-#include "io/formats/whole_file.hpp"
-#include "io/mesh/medit_file.hpp"
-#include "io/mesh/mesh_formats.hpp"
-#include "io/mesh/nastran_file.hpp"
-#include "io/mesh/su2_file.hpp"
-#include "io/mesh/tecplot_file.hpp"
-#include "io/mesh/tets_file.hpp"
+#include "io/files/inflated_file.hpp"
 #include "io/text/clean_errors.hpp"
 #include "scene/error.hpp"
-#include "system/gzip.hpp"
 
 namespace tessera::io {
 namespace {
-
-bool has_time_steps(const std::filesystem::path& file) {
-  const FormatRow* const row = format_of(file);
-  return row != nullptr && row->has_time_steps;
-}
-
-cells::MeshBlocks read_tecplot(const std::filesystem::path& file, std::optional<std::size_t> time_step) {
-  TecplotMesh read = parse_tecplot(WholeFile(file).text(), file.string(), time_step);
-  cells::MeshBlocks mesh{std::move(read.blocks), std::move(read.notes), "Tecplot (text)"};
-  mesh.time_step = read.time_step;
-  return mesh;
-}
-
-cells::MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row,
-                               const cells::MeshOptions& options) {
-  switch (row.kind) {
-    case FileKind::vtk_xml:
-      return read_vtk_xml(file, options);
-    case FileKind::vtk_legacy:
-      return read_vtk_legacy(file, options);
-    case FileKind::vtk_grid:
-      if (row.holds == FileHolds::grid) refuse_as_mesh(file);
-      return read_beginning(file, 8).starts_with("# vtk") ? read_vtk_legacy(file, options)
-                                                          : read_vtk_xml(file, options);
-    case FileKind::exodus:
-      return read_exodus(file, options);
-    case FileKind::hdf5:
-      return read_hdf5(file, options);
-    case FileKind::netcdf:
-    case FileKind::solver:
-      return read_solver_file(file, row.reader, options);
-    case FileKind::gmsh:
-      return read_by_gmsh(file, row.reader, options);
-    case FileKind::xdmf:
-      return read_xdmf_mesh(file, options);
-    case FileKind::med:
-      return read_med(file, options);
-    case FileKind::medit_text:
-      return {parse_medit_text(WholeFile(file).text(), file.string()), {}, "Medit"};
-    case FileKind::medit:
-      return {parse_medit_binary(WholeFile(file).bytes(), file.string()), {}, "Medit, binary"};
-    case FileKind::nastran:
-      return {read_nastran(file), {}, "Nastran"};
-    case FileKind::tecplot:
-      return read_tecplot(file, options.time_step);
-    case FileKind::su2:
-      return {parse_su2(WholeFile(file).text(), file.string()), {}, "SU2"};
-    case FileKind::plot3d:
-      return read_plot3d(file, options);
-    case FileKind::plot3d_list:
-      return read_plot3d_list(file, options);
-    case FileKind::tetgen_mesh:
-      return read_node_ele(file);
-    case FileKind::stl:
-    case FileKind::vtk_surface:
-    case FileKind::ply:
-    case FileKind::tetgen_surface:
-      return read_surface(file, row.kind, options.max_volume, options.progress);
-    case FileKind::tets:
-      return blocks_of_tets(parse_tets(TetsBytes(system::PositionalFile(file)), file.string()));
-    case FileKind::amr:
-      return read_amr(file, row.reader, options);
-    default:
-      refuse_as_mesh(file);
-  }
-}
 
 /// Leaves the chosen blocks, if they were not all that was read, and the names of all.
 cells::MeshBlocks chosen_blocks(cells::MeshBlocks read, const cells::BlockChoice& choice) {
@@ -113,24 +37,31 @@ cells::MeshBlocks warped(cells::MeshBlocks read, const cells::MeshOptions& optio
   return read;
 }
 
-/// What is in a gzip file is read under another name, which nobody is to hear of.
-cells::MeshBlocks read_unscaled_blocks(const std::filesystem::path& file, const cells::MeshOptions& options) {
-  const FormatRow* const row = format_of(file);
-  if (row == nullptr || row->kind == FileKind::unread) refuse_as_mesh(file);  // inflated, it has no name that tells
-  if (std::filesystem::is_directory(file) || !system::looks_like_gzip(read_beginning(file, 2)))
-    return warped(chosen_blocks(read_content(file, *row, options), options.blocks), options, file.string());
+/// Calls a function of the file's format, with what it holds if it is a gzip file.
+template <class Read>
+auto read_content(const InputFile& file, const Read& read) {
+  if (!file.is_gzip) return read(file);
   const InflatedFile inflated(
-      file, row->holds == FileHolds::grid_or_mesh ? InflatedFile::Holds::grid : InflatedFile::Holds::mesh);
-  cells::MeshBlocks read = inflated.read([&](const std::filesystem::path& content) {
-    return warped(chosen_blocks(read_content(content, *row, options), options.blocks), options, file.string());
+      file, file.format->open_volume != nullptr ? InflatedFile::Holds::grid : InflatedFile::Holds::mesh);
+  return inflated.read([&](const InputFile& content) {
+    auto result = read(content);
+    if constexpr (std::is_same_v<decltype(result), cells::MeshBlocks>) {
+      for (std::string& note : result.notes) note = inflated.renamed(std::move(note));
+      for (cells::CellBlock& block : result.blocks) block.source = inflated.renamed(std::move(block.source));
+      result.format += ", gzip";
+    }
+    return result;
   });
-  for (std::string& note : read.notes) note = inflated.renamed(std::move(note));
-  for (cells::CellBlock& block : read.blocks) block.source = inflated.renamed(std::move(block.source));
-  read.format += ", gzip";
-  return read;
 }
 
-cells::MeshBlocks read_blocks(const std::filesystem::path& file, const cells::MeshOptions& options) {
+cells::MeshBlocks read_unscaled_blocks(const InputFile& file, const cells::MeshOptions& options) {
+  require_mesh(file);
+  return read_content(file, [&](const InputFile& content) {
+    return warped(chosen_blocks(file.format->read_mesh(content, options), options.blocks), options, file.name);
+  });
+}
+
+cells::MeshBlocks read_blocks(const InputFile& file, const cells::MeshOptions& options) {
   cells::MeshBlocks read = read_unscaled_blocks(file, options);
   const Box box = read.beside_degrees ? cells::box_of_points(read.blocks) : Box();
   read.axis_scale = cells::chosen_scale(options.axis_scale, read.beside_degrees, box, read.notes);
@@ -150,46 +81,38 @@ cells::MeshOptions options_after(const cells::MeshBlocks& read, cells::MeshOptio
 
 }  // namespace
 
-cells::MeshBlocks blocks_of_tets(scene::TetMesh mesh) {
-  cells::CellBlock block;
-  block.positions = std::move(mesh.positions);
-  block.tets = std::move(mesh.tets);
-  block.fields.push_back(
-      cells::field_of_values("scalar", "float", scene::Association::point, 1, std::move(mesh.scalars)));
-  cells::MeshBlocks result;
-  result.format = "raw tetrahedra (.tets)";
-  result.blocks.push_back(std::move(block));
-  return result;
+bool is_mesh(const InputFile& file) { return file.format != nullptr && file.format->read_mesh != nullptr; }
+
+void require_mesh(const InputFile& file) {
+  if (is_mesh(file)) return;
+  const Format* const format = file.format;
+  if (format == nullptr)
+    throw scene::bad_input(fmt::format(
+        "{}: it neither begins as a file of a known format nor has a name of one; `tessera formats` lists them",
+        file.name));
+  if (format->holds == FileHolds::not_read)
+    throw scene::bad_input(fmt::format("{}: its format ({}) is not read; {}", file.name, format->name, format->remark));
+  if (format->holds == FileHolds::series)
+    throw scene::bad_input(
+        fmt::format("{}: it is a time series, which render and serve take; give one of its meshes", file.name));
+  throw scene::bad_input(fmt::format("{}: it is a regular grid, no mesh; give it alone or among volumes", file.name));
 }
 
-void require_mesh_file(const std::filesystem::path& file) {
-  require_file(file);
-  if (!is_mesh_file(file)) refuse_as_mesh(file);
-}
-
-bool is_mesh_file(const std::filesystem::path& file) {
-  const FormatRow* const row = format_of(file);
-  return row != nullptr &&
-         (row->holds == FileHolds::mesh || row->holds == FileHolds::surface || row->holds == FileHolds::grid_or_mesh);
-}
-
-cells::MeshBlocks read_mesh_blocks(const std::filesystem::path& file, const cells::MeshOptions& options) {
-  const std::string source = file.string();
-  require_file(file);
+cells::MeshBlocks read_mesh_blocks(const InputFile& file, const cells::MeshOptions& options) {
+  const std::string& source = file.name;
   return with_clean_errors(source, [&] {
     cells::MeshBlocks read = read_blocks(file, options);
-    if (!has_time_steps(file)) require_no_time_step(options.time_step, source);
+    if (file.format->time_steps == nullptr) require_no_time_step(options.time_step, source);
     cells::require_blocks(options.blocks, read.block_names, source, options.surfaces);
     return read;
   });
 }
 
-cells::MeshFile read_mesh(const std::filesystem::path& file, const cells::MeshOptions& options) {
-  const std::string source = file.string();
-  require_file(file);
+cells::MeshFile read_mesh(const InputFile& file, const cells::MeshOptions& options) {
+  const std::string& source = file.name;
   return with_clean_errors(source, [&] {
     cells::MeshBlocks read = read_blocks(file, options);
-    if (!has_time_steps(file)) require_no_time_step(options.time_step, source);
+    if (file.format->time_steps == nullptr) require_no_time_step(options.time_step, source);
     cells::require_blocks(options.blocks, read.block_names, source);
     const cells::MeshOptions rest = options_after(read, options);
     cells::MeshFile result = cells::assemble_mesh(std::move(read.blocks), rest, source);
@@ -205,21 +128,22 @@ cells::MeshFile read_mesh(const std::filesystem::path& file, const cells::MeshOp
   });
 }
 
-scene::TimeStepRead time_steps_of_mesh(const std::filesystem::path& file, const cells::MeshOptions& options) {
-  require_mesh_file(file);
-  if (!has_time_steps(file)) return {};
-  return with_clean_errors(file.string(), [&] { return read_blocks(file, options).time_step; });
+scene::TimeStepRead time_steps_of_mesh(const InputFile& file, const cells::MeshOptions& options) {
+  require_mesh(file);
+  if (file.format->time_steps == nullptr) return {};
+  return with_clean_errors(file.name, [&] {
+    return read_content(file, [&](const InputFile& content) { return file.format->time_steps(content, options); });
+  });
 }
 
-cells::MeshFile read_mesh(std::span<const std::filesystem::path> files, const cells::MeshOptions& options) {
+cells::MeshFile read_mesh(std::span<const InputFile> files, const cells::MeshOptions& options) {
   if (files.size() == 1) return read_mesh(files.front(), options);
   cells::MeshBlocks all;
-  for (const std::filesystem::path& file : files) {
-    const std::string source = file.string();
-    require_file(file);
+  for (const InputFile& file : files) {
+    const std::string& source = file.name;
     with_clean_errors(source, [&] {
       cells::MeshBlocks read = read_blocks(file, options);
-      if (!has_time_steps(file)) require_no_time_step(options.time_step, source);
+      if (file.format->time_steps == nullptr) require_no_time_step(options.time_step, source);
       if (!read.fields.empty())
         throw scene::bad_input(fmt::format("{}: a mesh with levels is read by itself only; give it alone", source));
       if (all.format.empty()) all.format = read.format;
@@ -235,7 +159,7 @@ cells::MeshFile read_mesh(std::span<const std::filesystem::path> files, const ce
       cells::add_notes(read.surface_names, all.surface_names);
     });
   }
-  const std::string source = files.empty() ? "mesh" : files.front().string();
+  const std::string source = files.empty() ? "mesh" : files.front().name;
   return with_clean_errors(source, [&] {
     all.block_names = cells::distinct_names(std::move(all.block_names));
     cells::require_blocks(options.blocks, all.block_names, source);

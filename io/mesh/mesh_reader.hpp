@@ -6,35 +6,35 @@
 
 #include "cells/mesh_blocks.hpp"
 #include "cells/mesh_options.hpp"
+#include "io/files/input_file.hpp"
 #include "scene/tet_mesh.hpp"
 
 namespace tessera::io {
 
-/// Reads a mesh of any format of io/formats/file_kinds.cpp, told by what it begins with, then by its name; or a gzip
-/// file of one, inflated into memory. Surfaces are filled by TetGen. Cells other than tets are split so that neighbours
-/// agree on every shared face by position, whatever piece they come from. Throws Error(bad_input) in one line for a
-/// missing, truncated, malformed or empty file, an unknown format or field, or if no cell is left;
-/// Error(system_failure) if memory runs out. Never leaves VTK's own messages on stderr.
-cells::MeshFile read_mesh(const std::filesystem::path& file, const cells::MeshOptions& options = {});
+/// Reads a mesh of any format of the table (io/formats/format_table.cpp), or a gzip file of one, inflated into memory.
+/// Surfaces are filled by TetGen. Cells other than tets are split so that neighbours agree on every shared face by
+/// position, whatever piece they come from. Throws Error(bad_input) in one line for a missing, truncated, malformed or
+/// empty file, an unknown format or field, or if no cell is left; Error(system_failure) if memory runs out. Never
+/// leaves VTK's own messages on stderr.
+cells::MeshFile read_mesh(const InputFile& file, const cells::MeshOptions& options = {});
 
 /// Reads several files as the pieces of one mesh, their points not merged. Each has to have the chosen field. Throws as
 /// read_mesh.
-cells::MeshFile read_mesh(std::span<const std::filesystem::path> files, const cells::MeshOptions& options = {});
+cells::MeshFile read_mesh(std::span<const InputFile> files, const cells::MeshOptions& options = {});
 
 /// The cells of a file's chosen blocks as they are before they are split, and the names of all its blocks. Throws as
 /// read_mesh, but not if there are none.
-cells::MeshBlocks read_mesh_blocks(const std::filesystem::path& file, const cells::MeshOptions& options);
+cells::MeshBlocks read_mesh_blocks(const InputFile& file, const cells::MeshOptions& options);
 
-/// The time steps that a mesh file has, and when they are. Of formats that may have several the helper opens it. Throws
+/// The time steps that a mesh file has, and when they are, without its numbers where its format has them apart. Throws
 /// as read_mesh.
-scene::TimeStepRead time_steps_of_mesh(const std::filesystem::path& file, const cells::MeshOptions& options = {});
+scene::TimeStepRead time_steps_of_mesh(const InputFile& file, const cells::MeshOptions& options = {});
 
-/// Throws Error(bad_input) if the file is not there or read_mesh does not know its format. Does not read it.
-void require_mesh_file(const std::filesystem::path& file);
+/// Whether read_mesh knows the format. Rectilinear grids are volumes too.
+bool is_mesh(const InputFile& file);
 
-/// Whether read_mesh knows the format: by what the file begins with, or by its name where that says nothing or it is
-/// not there. Rectilinear grids are volumes too.
-bool is_mesh_file(const std::filesystem::path& file);
+/// Throws Error(bad_input) of a file that is none: its format is not known, or known and not read, or is a grid's.
+void require_mesh(const InputFile& file);
 
 /// Writes a .tets file: float32 coordinates and point scalars, so doubles are rounded. Appears by rename. Throws
 /// Error(bad_input) for cell data, more than 2^31 - 1 points or values beyond float's range, Error(system_failure) if

@@ -11,9 +11,9 @@
 #include <string_view>
 
 #include "cells/part_range.hpp"
+#include "io/files/file_beginnings.hpp"
+#include "io/files/inflated_file.hpp"
 #include "io/foreign/client/foreign_file.hpp"
-#include "io/formats/inflated_file.hpp"
-#include "io/formats/input_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -37,9 +37,9 @@ int number_in(const std::string& digits) {
   return number;
 }
 
-bool is_exodus(const std::filesystem::path& file) {
-  const FormatRow* const row = format_of(file);
-  return row != nullptr && (row->kind == FileKind::exodus || row->kind == FileKind::hdf5);
+/// The helper's reader of a file that may be Exodus, by what it begins with; null: it is not.
+const char* exodus_reader(const FileBeginning& start) {
+  return begins_as_exodus(start) ? "exodus" : begins_as_hdf5(start) ? "hdf5" : nullptr;
 }
 
 nlohmann::json request_for(const char* reader, const cells::MeshOptions& options) {
@@ -59,16 +59,21 @@ void add_blocks(const ForeignFile& opened, cells::MeshBlocks& blocks, const std:
   }
 }
 
-cells::MeshBlocks read_exodus_files(std::span<const std::filesystem::path> files, const cells::MeshOptions& options,
-                                    int part, int parts) {
+cells::MeshBlocks read_exodus_files(std::span<const std::filesystem::path> files, const Format* format,
+                                    const cells::MeshOptions& options, int part, int parts) {
   cells::MeshBlocks result;
   result.format = fmt::format("Exodus II in {} files", files.size());
   HelperTask task;
   task.progress = options.progress;
+  task.format = format;
   const auto helper = std::make_shared<HelperProcess>(std::move(task));
   const std::uint64_t last = cells::first_of_part(files.size(), part + 1, parts);
   for (std::uint64_t k = cells::first_of_part(files.size(), part, parts); k < last; ++k) {
-    const char* const reader = format_of(files[k])->kind == FileKind::hdf5 ? "hdf5" : "exodus";
+    const char* const reader = exodus_reader({read_beginning(files[k], 4096)});
+    if (reader == nullptr)
+      throw scene::bad_input(
+          fmt::format("{}: it is a part of a mesh in {} Exodus files, and none itself; write it anew",
+                      files[k].string(), files.size()));
     add_blocks(open_foreign(helper, files[k], request_for(reader, options)), result, files[k].string());
   }
   return result;
@@ -76,13 +81,14 @@ cells::MeshBlocks read_exodus_files(std::span<const std::filesystem::path> files
 
 }  // namespace
 
-std::vector<std::filesystem::path> exodus_files(const std::filesystem::path& file) {
+std::vector<std::filesystem::path> exodus_files(const InputFile& input) {
+  const std::filesystem::path& file = input.path;
   std::string name = file.filename().string();
   const std::optional<std::string> number = last_number(name);
   const std::optional<std::string> count = number ? last_number(name) : std::nullopt;
   if (!count || name.empty() || number->size() < count->size()) return {};
   const int files = number_in(*count);
-  if (files < 2 || number_in(*number) >= files || std::filesystem::is_directory(file) || !is_exodus(file)) return {};
+  if (files < 2 || number_in(*number) >= files || exodus_reader(input.start()) == nullptr) return {};
   std::vector<std::filesystem::path> all;
   for (int k = 0; k < files; ++k) {
     all.push_back(file.parent_path() / fmt::format("{}.{}.{:0{}}", name, *count, k, number->size()));
@@ -92,38 +98,29 @@ std::vector<std::filesystem::path> exodus_files(const std::filesystem::path& fil
           fmt::format("{}: it is one of {} files of a mesh, of which {} is missing; lay it beside, or "
                       "give this one another name to see it alone",
                       file.string(), files, all.back().filename().string()));
-    if (!is_exodus(all.back()))
-      throw scene::bad_input(fmt::format(
-          "{}: it is a part of a mesh in {} Exodus files, and none itself; write it anew", all.back().string(), files));
   }
   return all;
 }
 
-bool has_shares(const std::filesystem::path& file) {
-  const FormatRow* const row = format_of(file);
-  if (row == nullptr) return false;
-  if (row->kind == FileKind::solver && std::string_view(row->reader) == "openfoam") return true;
-  const FormatRow* const named = format_named(file);
-  if (std::string_view(row->reader) == "cgns" ||
-      (row->kind == FileKind::hdf5 && named != nullptr && std::string_view(named->reader) == "cgns"))
-    return !std::filesystem::is_directory(file);
-  return !exodus_files(file).empty();
+bool has_shares(const InputFile& file) {
+  if (file.format == nullptr) return false;
+  if (file.format->share_reader == nullptr) return !exodus_files(file).empty();
+  // Of HDF5 the name tells CGNS.
+  return file.format->container != Container::hdf5 || system::lower_extension(file.path) == ".cgns" ||
+         !exodus_files(file).empty();
 }
 
-cells::MeshBlocks read_share(const std::filesystem::path& file, const cells::MeshOptions& options, int part,
-                             int parts) {
-  if (const auto files = exodus_files(file); !files.empty()) return read_exodus_files(files, options, part, parts);
-  const FormatRow& row = *format_of(file);
-  require_beside_others(file);
-  nlohmann::json request = request_for(row.kind == FileKind::hdf5 ? "hdf5" : row.reader, options);
+cells::MeshBlocks read_share(const InputFile& file, const cells::MeshOptions& options, int part, int parts) {
+  if (const auto files = exodus_files(file); !files.empty())
+    return read_exodus_files(files, file.format, options, part, parts);
+  require_beside_others(file.path);
+  nlohmann::json request = request_for(file.format->share_reader, options);
   request["part"] = part;
   request["parts"] = parts;
-  HelperTask task;
-  task.progress = options.progress;
-  const ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(std::move(task)), file, std::move(request));
+  const ForeignFile opened = open_foreign(file, std::move(request), options.progress);
   if (opened.contents.has_levels)
     throw scene::bad_input(
-        fmt::format("{}: it is named as CGNS and holds a mesh of several levels; give it another name", file.string()));
+        fmt::format("{}: it is named as CGNS and holds a mesh of several levels; give it another name", file.name));
   cells::MeshBlocks result;
   result.format = opened.contents.format;
   add_blocks(opened, result, "");

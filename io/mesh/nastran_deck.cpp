@@ -9,8 +9,8 @@
 #include <set>
 #include <utility>
 
-#include "io/formats/inflated_file.hpp"
-#include "io/formats/whole_file.hpp"
+#include "io/files/inflated_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
 #include "tessera/program/text.hpp"

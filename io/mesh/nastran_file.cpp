@@ -12,6 +12,7 @@
 
 #include "cells/block_groups.hpp"
 #include "cells/curved/node_orders.hpp"
+#include "io/mesh/mesh_formats.hpp"
 #include "io/mesh/nastran_deck.hpp"
 #include "io/mesh/nastran_systems.hpp"
 #include "scene/error.hpp"
@@ -161,6 +162,10 @@ std::vector<cells::CellBlock> read_nastran(const std::filesystem::path& file) {
     nodes = nodes.subspan(count);
   }
   return cells::blocks_by_number(cells.block(), elements.properties, "property", "PropertyId");
+}
+
+cells::MeshBlocks read_nastran_mesh(const InputFile& file, const cells::MeshOptions& /*options*/) {
+  return {read_nastran(file.path), {}, "Nastran"};
 }
 
 }  // namespace tessera::io

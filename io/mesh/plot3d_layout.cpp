@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
-#include "io/formats/input_file.hpp"
-#include "io/formats/whole_file.hpp"
+#include "io/files/input_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "io/mesh/plot3d_text.hpp"
 #include "scene/byte_order.hpp"
 #include "scene/error.hpp"

@@ -5,6 +5,8 @@
 
 #include <limits>
 
+#include "io/files/whole_file.hpp"
+#include "io/mesh/mesh_formats.hpp"
 #include "io/text/scanner.hpp"
 #include "scene/error.hpp"
 #include "tessera/cell_type.hpp"
@@ -161,6 +163,10 @@ std::vector<cells::CellBlock> parse_su2(std::string_view text, const std::string
     blocks.push_back(std::move(zone.block));
   }
   return blocks;
+}
+
+cells::MeshBlocks read_su2(const InputFile& file, const cells::MeshOptions& /*options*/) {
+  return {parse_su2(WholeFile(file.path).text(), file.name), {}, "SU2"};
 }
 
 }  // namespace tessera::io

@@ -6,15 +6,13 @@
 #include <utility>
 
 #include "cells/surface.hpp"
+#include "io/files/inflated_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "io/foreign/client/foreign_fill.hpp"
 #include "io/foreign/client/foreign_surfaces.hpp"
-#include "io/formats/inflated_file.hpp"
-#include "io/formats/input_file.hpp"
-#include "io/formats/whole_file.hpp"
 #include "io/mesh/mesh_formats.hpp"
 #include "io/mesh/ply_file.hpp"
 #include "io/mesh/tetgen_files.hpp"
-#include "io/mesh/triangle_file.hpp"
 #include "scene/error.hpp"
 #include "system/free_memory.hpp"
 
@@ -65,41 +63,39 @@ void require_room(double volume, double max_volume, const std::string& source) {
 
 }  // namespace
 
-SurfaceFile read_surface_file(const std::filesystem::path& file, FileKind kind) {
-  const std::string source = file.string();
-  SurfaceFile result;
-  cells::Surface& surface = result.surface;
-  if (kind == FileKind::stl) {
-    result.words = "stl";
-    surface = read_stl(source);
-  } else if (kind == FileKind::vtk_surface) {
-    result.words = "vtk";
-    VtkSurface read = read_vtk_surface(source);
-    surface = std::move(read.surface);
-    result.attribute_names = std::move(read.attribute_names);
-    result.notes = std::move(read.notes);
-  } else if (kind == FileKind::ply) {
-    result.words = "ply";
-    PlySurface ply = parse_ply(WholeFile(file).text(), source);
-    surface = std::move(ply.surface);
-    result.attribute_names = std::move(ply.attribute_names);
-  } else {
-    result.words = system::lower_extension(file) == ".smesh" ? "smesh" : "poly";
-    surface = read_poly(file, source);
-    for (std::size_t a = 0; a < surface.attributes.size(); ++a)
-      result.attribute_names.push_back(fmt::format("attribute{}", a));
-  }
-  if (kind != FileKind::tetgen_surface) cells::merge_coincident_points(surface);
+SurfaceFile read_stl_surface(const InputFile& file) {
+  SurfaceFile result{.surface = read_stl(file), .words = "stl"};
+  cells::merge_coincident_points(result.surface);
   return result;
 }
 
-cells::MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::optional<double> max_volume,
-                               const ReadProgressFunction& progress) {
-  const std::string source = file.string();
+SurfaceFile read_vtk_surface_file(const InputFile& file) {
+  VtkSurface read = read_vtk_surface(file);
+  cells::merge_coincident_points(read.surface);
+  return {std::move(read.surface), std::move(read.attribute_names), std::move(read.notes), "vtk"};
+}
+
+SurfaceFile read_ply_surface(const InputFile& file) {
+  PlySurface ply = parse_ply(WholeFile(file.path).text(), file.path.string());
+  cells::merge_coincident_points(ply.surface);
+  return {std::move(ply.surface), std::move(ply.attribute_names), {}, "ply"};
+}
+
+SurfaceFile read_tetgen_surface(const InputFile& file) {
+  SurfaceFile result{.surface = read_poly(file.path, file.path.string()),
+                     .words = system::lower_extension(file.path) == ".smesh" ? "smesh" : "poly"};
+  for (std::size_t a = 0; a < result.surface.attributes.size(); ++a)
+    result.attribute_names.push_back(fmt::format("attribute{}", a));
+  return result;
+}
+
+cells::MeshBlocks fill_surface_file(const InputFile& file, const cells::MeshOptions& options) {
+  const std::optional<double>& max_volume = options.max_volume;
+  const std::string source = file.path.string();
   if (max_volume && !(*max_volume > 0))
     throw scene::bad_input(fmt::format("{}: the largest tet volume is {}; give a positive one", source, *max_volume));
   cells::MeshBlocks result;
-  SurfaceFile read = read_surface_file(file, kind);
+  SurfaceFile read = file.format->read_surface(file);
   cells::Surface& surface = read.surface;
   result.notes = std::move(read.notes);
   require_sound(surface, source);
@@ -116,8 +112,8 @@ cells::MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind,
   // Measured on spheres (readers/common/limits.cpp). With fields it is filled twice, first without points inside.
   const auto facets = static_cast<double>(surface.facets.size());
   const double expected = (surface.attributes.empty() ? 2e-4 : 4e-4) * facets + 2e-5 * volume / largest;
-  if (progress) progress({ReadProgress::Stage::filling, 0, expected});
-  FilledMesh filled = fill_surface(surface, {largest, volume / largest, max_volume.has_value()}, source);
+  if (options.progress) options.progress({ReadProgress::Stage::filling, 0, expected});
+  FilledMesh filled = fill_surface(surface, {largest, volume / largest, max_volume.has_value()}, file);
   result.notes.push_back(fmt::format("surface of {} points and {} facets filled with {} tets of at most {:.4g}{}",
                                      surface.points.size(), surface.facets.size(), filled.tets.size() / 4, largest,
                                      max_volume ? "" : " (`max_volume` sets it)"));
@@ -135,7 +131,8 @@ cells::MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind,
   return result;
 }
 
-cells::MeshBlocks read_node_ele(const std::filesystem::path& file) {
+cells::MeshBlocks read_node_ele(const InputFile& input, const cells::MeshOptions& /*options*/) {
+  const std::filesystem::path& file = input.path;
   require_beside_others(file);
   std::filesystem::path node_file = file, ele_file = file;
   // The partner's extension in the same case: A.NODE goes with A.ELE.

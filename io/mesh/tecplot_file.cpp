@@ -10,6 +10,8 @@
 #include <set>
 #include <utility>
 
+#include "io/files/whole_file.hpp"
+#include "io/mesh/mesh_formats.hpp"
 #include "io/mesh/tecplot_numbers.hpp"
 #include "io/text/scanner.hpp"
 #include "scene/error.hpp"
@@ -61,6 +63,13 @@ std::vector<double> times_of(const TecplotHeader& header) {
   for (const TecplotZone& zone : header.zones)
     if (has_tecplot_cells(zone) && time_of(zone)) times.insert(*time_of(zone));
   return {times.begin(), times.end()};
+}
+
+scene::TimeStepRead steps_in(const TecplotHeader& header, std::optional<std::size_t> wish, const std::string& source) {
+  std::vector<double> times = times_of(header);
+  scene::TimeStepRead read = scene::chosen_step(wish, times.size(), source);
+  scene::set_times(read, std::move(times));
+  return read;
 }
 
 /// The zones of a step. A strand without a zone at its time has its last one before.
@@ -258,17 +267,27 @@ TecplotMesh parse_tecplot(std::string_view text, const std::string& source, std:
                     source, header.zones.size()));
   const std::array<std::size_t, 3> axes = tecplot_coordinates(header, source);
   TecplotMesh mesh;
-  const std::vector<double> times = times_of(header);
-  mesh.time_step = scene::chosen_step(time_step, times.size(), source);
-  scene::set_times(mesh.time_step, times);
+  mesh.time_step = steps_in(header, time_step, source);
   if (with_cells < header.zones.size())
     mesh.notes.push_back(fmt::format("{} of {} zones are lines or faces, which are left out",
                                      header.zones.size() - with_cells, header.zones.size()));
   TecplotZones zones(text, header, source);
+  const std::vector<double> times = times_of(header);
   const double time = times.empty() ? 0 : times[mesh.time_step.step];
   for (const std::size_t z : zones_at(header, !times.empty(), time))
     mesh.blocks.push_back(block_of_zone(header, z, axes, zones));
   return mesh;
+}
+
+cells::MeshBlocks read_tecplot(const InputFile& file, const cells::MeshOptions& options) {
+  TecplotMesh read = parse_tecplot(WholeFile(file.path).text(), file.name, options.time_step);
+  cells::MeshBlocks mesh{std::move(read.blocks), std::move(read.notes), "Tecplot (text)"};
+  mesh.time_step = std::move(read.time_step);
+  return mesh;
+}
+
+scene::TimeStepRead tecplot_time_steps(const InputFile& file, const cells::MeshOptions& options) {
+  return steps_in(parse_tecplot_header(WholeFile(file.path).text(), file.name), options.time_step, file.name);
 }
 
 }  // namespace tessera::io

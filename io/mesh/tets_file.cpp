@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "io/mesh/mesh_formats.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -160,6 +161,22 @@ TetsRange parse_tets_range(const TetsBytes& file, std::uint64_t first, std::uint
     }
   }
   return range;
+}
+
+cells::MeshBlocks blocks_of_tets(scene::TetMesh mesh) {
+  cells::CellBlock block;
+  block.positions = std::move(mesh.positions);
+  block.tets = std::move(mesh.tets);
+  block.fields.push_back(
+      cells::field_of_values("scalar", "float", scene::Association::point, 1, std::move(mesh.scalars)));
+  cells::MeshBlocks result;
+  result.format = "raw tetrahedra (.tets)";
+  result.blocks.push_back(std::move(block));
+  return result;
+}
+
+cells::MeshBlocks read_tets(const InputFile& file, const cells::MeshOptions& /*options*/) {
+  return blocks_of_tets(parse_tets(TetsBytes(system::PositionalFile(file.path)), file.name));
 }
 
 }  // namespace tessera::io

@@ -6,27 +6,16 @@
 #include <cmath>
 
 #include "cells/polygon_triangles.hpp"
-#include "io/formats/input_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
-namespace {
 
-bool has_triangles(FileKind kind) {
-  return kind == FileKind::stl || kind == FileKind::ply || kind == FileKind::vtk_surface ||
-         kind == FileKind::tetgen_surface;
-}
-
-}  // namespace
-
-tessera::TriangleMesh read_triangles(const std::filesystem::path& file) {
-  require_file(file);
-  const std::string source = file.string();
-  const FormatRow* row = format_of(file);
-  if (row == nullptr || !has_triangles(row->kind))
+tessera::TriangleMesh read_triangles(const InputFile& file) {
+  const std::string& source = file.name;
+  if (file.format == nullptr || file.format->read_surface == nullptr)
     throw scene::bad_input(
         fmt::format("{}: is no surface of triangles; give a .ply, .stl, .vtp, .vtk, .poly or .smesh", source));
-  SurfaceFile read = read_surface_file(file, row->kind);
+  SurfaceFile read = file.format->read_surface(file);
   tessera::TriangleMesh mesh;
   mesh.points = std::move(read.surface.points);
   for (std::size_t v = 0; v < mesh.points.size(); ++v)

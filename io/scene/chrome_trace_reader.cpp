@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <unordered_map>
 
-#include "io/formats/whole_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "io/text/json_text.hpp"
 #include "io/text/text_file.hpp"
 #include "scene/error.hpp"

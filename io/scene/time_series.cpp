@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "io/formats/input_file.hpp"
+#include "io/files/input_file.hpp"
 #include "io/text/json_text.hpp"
 #include "io/text/text_file.hpp"
 #include "io/text/xml_elements.hpp"

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "io/formats/inflated_file.hpp"
+#include "io/files/inflated_file.hpp"
 #include "io/text/clean_errors.hpp"
 #include "io/text/text_file.hpp"
 #include "scene/error.hpp"

@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cells/field_choice.hpp"
-#include "io/formats/inflated_file.hpp"
-#include "io/formats/input_file.hpp"
+#include "io/files/inflated_file.hpp"
+#include "io/files/input_file.hpp"
 #include "io/text/json_text.hpp"
 #include "io/text/text_file.hpp"
 #include "io/volume/brick_layout.hpp"
@@ -166,18 +166,15 @@ BrickHeader parse_brick_header(const std::string& text, const std::filesystem::p
 }  // namespace
 
 VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& options, const std::string& name) {
-  const std::uint64_t size = require_file(file);
+  const system::PositionalFile opened = open_input(file);
+  const std::uint64_t size = opened.size();
   std::uint64_t length = 0;
   const std::uint64_t before = brick_magic.size() + sizeof length;
-  std::string text;
-  {
-    const system::PositionalFile opened(file);
-    if (size < before) throw damaged(file, "its header is cut off");
-    opened.read(brick_magic.size(), reinterpret_cast<std::byte*>(&length), sizeof length);
-    if (length > longest_brick_header || length > size - before) throw damaged(file, "its header is cut off");
-    text.resize(length);
-    opened.read(before, reinterpret_cast<std::byte*>(text.data()), length);
-  }
+  if (size < before) throw damaged(file, "its header is cut off");
+  opened.read(brick_magic.size(), reinterpret_cast<std::byte*>(&length), sizeof length);
+  if (length > longest_brick_header || length > size - before) throw damaged(file, "its header is cut off");
+  std::string text(length, '\0');
+  opened.read(before, reinterpret_cast<std::byte*>(text.data()), length);
   BrickHeader header = parse_brick_header(text, file);
   scene::validate(header.grid, file.string());
   const Blocks blocks(header.grid.geometry.samples(), header.side);
@@ -188,7 +185,6 @@ VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& o
       left - count * sizeof(BlockRange) != samples * scene::size_of(header.grid.type))
     throw damaged(file, fmt::format("{} samples in {} blocks do not fit its {} bytes", samples, count, size));
   std::vector<BlockRange> ranges(count);
-  const system::PositionalFile opened(file);
   opened.read(before + length, reinterpret_cast<std::byte*>(ranges.data()), count * sizeof(BlockRange));
 
   VolumeFile result;
@@ -207,6 +203,12 @@ VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& o
   result.source = std::make_unique<BrickSource>(std::move(header.grid), file, name, header.side, header.range,
                                                 std::move(ranges), before + length + count * sizeof(BlockRange));
   return result;
+}
+
+VolumeFile open_brick_file(const InputFile& file, const VolumeOptions& options) {
+  require_recognized(file);
+  require_no_time_step(options.time_step, file.name);
+  return with_tag_note(open_bricks(file.path, options, file.name));
 }
 
 namespace {

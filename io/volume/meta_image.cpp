@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <map>
 
-#include "io/formats/input_file.hpp"
 #include "io/text/header_text.hpp"
 #include "io/text/text_file.hpp"
 #include "io/volume/volume_formats.hpp"
@@ -123,8 +122,8 @@ void read_grid(const MetaHeader& header, std::size_t axes, const std::filesystem
 }
 
 /// Where the samples are; `lines` follow the header.
-void read_payload(const MetaHeader& header, std::string_view lines, const std::filesystem::path& file,
-                  StoredVolume& volume) {
+void read_payload(const MetaHeader& header, std::string_view lines, const InputFile& input, StoredVolume& volume) {
+  const std::filesystem::path& file = input.path;
   const std::string& payload = *header.find({"ElementDataFile"});
   const scene::GridIndex& n = volume.grid.geometry.points;
   const auto most = static_cast<std::uint64_t>(n[2]) * static_cast<std::uint64_t>(n[1]) * volume.steps;
@@ -133,6 +132,7 @@ void read_payload(const MetaHeader& header, std::string_view lines, const std::f
   volume.payload = local                   ? file
                    : volume.slices.empty() ? header_path(payload, file, "ElementDataFile")
                                            : volume.slices.front();
+  volume.payload_size = local ? input.size : 0;
   volume.offset = local ? header.end : 0;
   if (const auto* value = header.find({"HeaderSize"}); value && !local) {
     if (*value == "-1" && volume.coding == StoredVolume::Coding::text)
@@ -144,12 +144,9 @@ void read_payload(const MetaHeader& header, std::string_view lines, const std::f
   }
 }
 
-}  // namespace
-
-StoredVolume read_meta_image_header(const std::filesystem::path& file) {
-  constexpr std::size_t longest_header = 1 << 16;
-  const std::string text = read_beginning(file, longest_header);
-  const MetaHeader header = parse_meta_header(text, file);
+StoredVolume read_meta_image_header(const InputFile& input) {
+  const std::filesystem::path& file = input.path;
+  const MetaHeader header = parse_meta_header(input.beginning, file);
   StoredVolume volume;
   volume.format = "MetaImage";
   if (const auto* object = header.find({"ObjectType"}); object && *object != "Image")
@@ -174,8 +171,19 @@ StoredVolume read_meta_image_header(const std::filesystem::path& file) {
   if (const auto* modality = header.find({"Modality"}); modality != nullptr && modality->starts_with("MET_MOD_"))
     if (const std::string word = modality->substr(8); word == "CT" || word == "MR" || word == "NM" || word == "US")
       volume.tags.modality = word;
-  read_payload(header, std::string_view(text).substr(header.end), file, volume);
+  read_payload(header, std::string_view(input.beginning).substr(header.end), input, volume);
   return volume;
+}
+
+}  // namespace
+
+VolumeFile open_meta_image(const InputFile& file, const VolumeOptions& options) {
+  require_recognized(file);
+  return open_stored(read_meta_image_header(file), options, file.name);
+}
+
+std::optional<std::uint64_t> end_of_meta_image(const InputFile& file) {
+  return end_in_gzip(read_meta_image_header(file), file);
 }
 
 }  // namespace tessera::io

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <glm/geometric.hpp>
 
-#include "io/formats/input_file.hpp"
+#include "io/files/input_file.hpp"
 #include "io/volume/volume_formats.hpp"
 #include "scene/byte_order.hpp"
 #include "scene/time_step_read.hpp"
@@ -21,14 +21,18 @@ namespace {
 
 constexpr std::size_t header_size_1 = 348, header_size_2 = 540;
 
+std::vector<std::byte> first_bytes(std::string_view beginning) {
+  const auto bytes = std::as_bytes(std::span(beginning.substr(0, header_size_2)));
+  return {bytes.begin(), bytes.end()};
+}
+
 /// Up to 540 bytes, out of a gzip stream if it is one.
 std::vector<std::byte> header_bytes(const std::filesystem::path& file) {
   constexpr std::size_t enough = 1 << 16;  // of a stream too: it names its file, and deflate expands nothing by much
   const std::string beginning = read_beginning(file, enough);
-  const auto bytes = std::as_bytes(std::span(beginning));
-  if (system::looks_like_gzip(beginning)) return system::inflate_beginning(bytes, header_size_2);
-  const auto first = bytes.first(std::min(bytes.size(), header_size_2));
-  return {first.begin(), first.end()};
+  return system::looks_like_gzip(beginning)
+             ? system::inflate_beginning(std::as_bytes(std::span(beginning)), header_size_2)
+             : first_bytes(beginning);
 }
 
 class NiftiHeader {
@@ -248,7 +252,9 @@ std::filesystem::path header_beside(const std::filesystem::path& file) {
                                      stem.filename().string()));
 }
 
-void set_nifti_payload(const NiftiHeader& header, const std::filesystem::path& file, StoredVolume& volume) {
+/// `file` is the header's, `input` that or the samples'.
+void set_nifti_payload(const NiftiHeader& header, const std::filesystem::path& file, const InputFile& input,
+                       StoredVolume& volume) {
   const double offset = header.vox_offset();
   if (!(offset >= 0 && offset < 1e9)) throw damaged(file, fmt::format("its samples begin at byte {}", offset));
   // A single file never has them inside its header; old writers left 0.
@@ -256,14 +262,13 @@ void set_nifti_payload(const NiftiHeader& header, const std::filesystem::path& f
       header.separate() ? 0 : static_cast<double>(header.version() == 1 ? header_size_1 : header_size_2) + 4;
   volume.offset = static_cast<std::uint64_t>(std::max(offset, least));
   volume.payload = header.separate() ? image_beside(file) : file;
-  require_file(volume.payload);
-  volume.compressed = volume.compressed_whole = system::looks_like_gzip(read_beginning(volume.payload, 2));
+  const bool is_input = volume.payload == input.path;
+  if (is_input) volume.payload_size = input.size;
+  volume.compressed = volume.compressed_whole =
+      is_input ? input.is_gzip : system::looks_like_gzip(read_beginning(volume.payload, 2));
 }
 
-}  // namespace
-
-StoredVolume read_nifti_header(const std::filesystem::path& file) {
-  const NiftiHeader header(header_bytes(file));
+StoredVolume read_nifti_header(const NiftiHeader& header, const std::filesystem::path& file, const InputFile& input) {
   if (header.version() == 0)
     throw damaged(file, "it does not begin with a whole NIfTI header (348 or 540 bytes with its magic word)");
   StoredVolume volume;
@@ -281,14 +286,14 @@ StoredVolume read_nifti_header(const std::filesystem::path& file) {
   set_nifti_tags(header, volume);
   volume.times =
       scene::even_times(header.time_offset() * header.time_unit(), header.pixdim(4) * header.time_unit(), volume.steps);
-  set_nifti_payload(header, file, volume);
+  set_nifti_payload(header, file, input, volume);
   return volume;
 }
 
-StoredVolume read_analyze_header(const std::filesystem::path& file) {
-  const std::filesystem::path header_file = header_beside(file);
-  NiftiHeader header(header_bytes(header_file));
-  if (header.version() != 0) return read_nifti_header(header_file);
+StoredVolume read_analyze_header(const InputFile& input) {
+  const std::filesystem::path header_file = header_beside(input.path);
+  NiftiHeader header(header_file == input.path ? first_bytes(input.beginning) : header_bytes(header_file));
+  if (header.version() != 0) return read_nifti_header(header, header_file, input);
   if (!header.is_analyze())
     throw damaged(header_file, "it does not begin as an Analyze 7.5 or NIfTI header does (its size, 348, first)");
   StoredVolume volume;
@@ -301,8 +306,18 @@ StoredVolume read_analyze_header(const std::filesystem::path& file) {
     volume.grid.geometry.spacing[static_cast<int>(axis)] = spacing > 0 && std::isfinite(spacing) ? spacing : 1;
   }
   volume.notes.emplace_back("Analyze 7.5 says nothing of left and right: the axes are the file's");
-  set_nifti_payload(header, header_file, volume);
+  set_nifti_payload(header, header_file, input, volume);
   return volume;
+}
+
+}  // namespace
+
+VolumeFile open_nifti(const InputFile& file, const VolumeOptions& options) {
+  return open_stored(read_nifti_header(NiftiHeader(first_bytes(file.beginning)), file.path, file), options, file.name);
+}
+
+VolumeFile open_analyze(const InputFile& file, const VolumeOptions& options) {
+  return open_stored(read_analyze_header(file), options, file.name);
 }
 
 }  // namespace tessera::io

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/formats/input_file.hpp"
+#include "io/files/input_file.hpp"
 #include "io/text/header_text.hpp"
 #include "io/text/text_file.hpp"
 #include "io/volume/nrrd_axes.hpp"
@@ -109,11 +109,17 @@ void set_nrrd_tags(const NrrdFields& fields, StoredVolume& volume) {
   volume.tags.labels = key("intent") == "label" || fields.keys.contains("Segment0_LabelValue");
 }
 
-}  // namespace
-
-StoredVolume read_nrrd_header(const std::filesystem::path& file) {
+/// More than the file's beginning only if the header is longer, or lists files.
+std::string header_of(const InputFile& file) {
   constexpr std::size_t longest_nrrd_header = 1 << 20;
-  const std::string text = read_beginning(file, longest_nrrd_header);
+  const std::string& text = file.beginning;
+  const bool is_whole = text.find("LIST") == std::string::npos &&
+                        (text.find("\n\n") != std::string::npos || text.find("\n\r\n") != std::string::npos);
+  return is_whole || text.size() == file.size ? text : read_beginning(file.path, longest_nrrd_header);
+}
+
+StoredVolume read_nrrd_header(const InputFile& input, const std::string& text) {
+  const std::filesystem::path& file = input.path;
   const NrrdFields fields = nrrd_fields_of(text, file);
   StoredVolume volume;
   volume.format = "NRRD";
@@ -152,12 +158,13 @@ StoredVolume read_nrrd_header(const std::filesystem::path& file) {
   set_nrrd_tags(fields, volume);
 
   volume.payload = file;
+  volume.payload_size = input.size;
   volume.offset = fields.end;
   if (const auto* detached = fields.find("datafile")) {
     const auto most = static_cast<std::uint64_t>(sizes.back()) * static_cast<std::uint64_t>(sizes[sizes.size() - 2]);
     volume.slices = header_slices(*detached, std::string_view(text).substr(fields.end), most, file, "data file");
     volume.payload = volume.slices.empty() ? header_path(*detached, file, "data file") : volume.slices.front();
-    volume.offset = 0;
+    volume.payload_size = volume.offset = 0;
   }
   const auto* lines = fields.find("lineskip");
   if (lines && !volume.slices.empty() && *lines != "0")
@@ -176,6 +183,17 @@ StoredVolume read_nrrd_header(const std::filesystem::path& file) {
           fmt::format("{}: 'byte skip: -1' is for raw samples only; say where they begin", file.string()));
   }
   return volume;
+}
+
+}  // namespace
+
+VolumeFile open_nrrd(const InputFile& file, const VolumeOptions& options) {
+  require_recognized(file);
+  return with_tag_note(open_stored(read_nrrd_header(file, header_of(file)), options, file.name));
+}
+
+std::optional<std::uint64_t> end_of_nrrd(const InputFile& file) {
+  return end_in_gzip(read_nrrd_header(file, file.beginning), file);
 }
 
 }  // namespace tessera::io

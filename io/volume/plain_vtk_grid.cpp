@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <locale>
 #include <map>
 #include <sstream>
@@ -15,7 +16,6 @@
 #include <vector>
 
 #include "io/foreign/client/foreign_geometry.hpp"
-#include "io/formats/input_file.hpp"
 #include "io/text/scanner.hpp"
 #include "io/text/xml_elements.hpp"
 #include "io/volume/volume_formats.hpp"
@@ -228,7 +228,9 @@ bool is_plain(const GridElements& found, const std::string& kind) {
 }  // namespace
 
 std::optional<StoredVolume> read_plain_vtk_grid(const std::filesystem::path& path, std::uint64_t most_in_memory) {
-  GridWords words{read_beginning(path, longest_beginning)};
+  if (most_in_memory == std::numeric_limits<std::uint64_t>::max()) return std::nullopt;
+  const system::PositionalFile file(path);
+  GridWords words{file.beginning(longest_beginning)};
   GridElements found = elements_of(words.text, path.string());
   const std::string kind = word(found.file, "type");
   const auto type = vtk_xml_number_type(word(found.samples.attributes, "type"));
@@ -247,7 +249,6 @@ std::optional<StoredVolume> read_plain_vtk_grid(const std::filesystem::path& pat
   const std::uint64_t count = static_cast<std::uint64_t>(g.all_samples().count()) *
                               static_cast<std::uint64_t>(components[0]) * scene::size_of(volume.number);
   if (count <= most_in_memory) return std::nullopt;
-  const system::PositionalFile file(path);
   const auto end = end_of_vtk_array(file, *place, count);
   if (!end) return std::nullopt;
   if (word(found.samples.attributes, "format") == "binary") {
@@ -262,6 +263,7 @@ std::optional<StoredVolume> read_plain_vtk_grid(const std::filesystem::path& pat
   volume.active = found.active;
   volume.format = g.rectilinear() ? "VTK XML (rectilinear grid)" : "VTK XML (image data)";
   volume.payload = path;
+  volume.payload_size = file.size();
   if (place->base64 || place->codec != VtkCodec::none)
     volume.vtk_array = place;
   else

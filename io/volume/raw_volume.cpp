@@ -61,7 +61,6 @@ StoredVolume describe_raw(const std::filesystem::path& file, const VolumeOptions
   g.origin = options.origin.value_or(glm::dvec3(0));
   volume.number = *type;
   volume.swapped = scene::is_swapped(options.big_endian);
-  volume.payload = file;
   volume.offset = options.skip;
   volume.exact_size = true;  // else wrong dimensions would give a skewed picture without a word
   return volume;

@@ -7,8 +7,8 @@
 #include <cstring>
 #include <vector>
 
-#include "io/formats/input_file.hpp"
-#include "io/formats/whole_file.hpp"
+#include "io/files/input_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "io/volume/stored_samples.hpp"
 #include "system/gzip.hpp"
 #include "system/positional_file.hpp"
@@ -28,6 +28,10 @@ std::uint64_t bytes_needed(const StoredVolume& volume, const std::string& source
     throw scene::bad_input(fmt::format(
         "{}: its header asks for more samples than can be addressed; it is damaged, write it anew", source));
   return needed;
+}
+
+std::uint64_t size_of_payload(const StoredVolume& volume, const std::filesystem::path& file) {
+  return volume.payload_size > 0 ? volume.payload_size : require_file(file);
 }
 
 /// What is wanted of a file of samples: bytes [first, first + count) of the `all` that it holds.
@@ -78,7 +82,7 @@ VolumePayload kept(std::vector<std::byte> unpacked, std::uint64_t before) {
 
 VolumePayload payload_of_file(const StoredVolume& volume, const std::filesystem::path& file, const Wanted& wanted) {
   const std::string source = file.string();
-  const std::uint64_t size = require_file(file), end = wanted.first + wanted.count;
+  const std::uint64_t size = size_of_payload(volume, file), end = wanted.first + wanted.count;
   if (volume.compressed) {
     std::vector<std::byte> bytes;
     system::inflate_parts(file, range_of(volume, file, wanted, size), source, [&](std::span<const std::byte> part) {
@@ -163,7 +167,7 @@ void unpack_payload(const StoredVolume& volume, std::size_t step, const std::str
                     const system::ByteSink& use) {
   const Wanted wanted = wanted_of(volume, step, source);
   if (volume.vtk_array) return read_vtk_array(volume.payload, *volume.vtk_array, wanted.count, source, use);
-  const std::uint64_t size = require_file(volume.payload);
+  const std::uint64_t size = size_of_payload(volume, volume.payload);
   system::inflate_parts(volume.payload, range_of(volume, volume.payload, wanted, size), volume.payload.string(), use);
 }
 

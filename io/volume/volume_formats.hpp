@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "io/files/input_file.hpp"
 #include "io/text/clean_errors.hpp"
-#include "io/volume/plain_vtk_grid.hpp"
 #include "io/volume/volume_reader.hpp"
 #include "io/vtk/vtk_array.hpp"
 #include "scene/number_type.hpp"
@@ -25,6 +25,7 @@ struct StoredVolume {
   bool interleaved_steps = false;             ///< instead, a sample of each step together; one component
   bool swapped = false;                       ///< bytes are of the other order than this machine's
   std::filesystem::path payload;              ///< the file itself, or another
+  std::uint64_t payload_size = 0;             ///< of the file itself; of another 0
   std::vector<std::filesystem::path> slices;  ///< instead of one payload: files of equal parts of it, in order
   std::uint64_t offset = 0;                   ///< of the payload in it, or of its part in each of them
   bool at_end = false;                        ///< instead of an offset: the payload ends with the file
@@ -52,26 +53,29 @@ struct StoredVolume {
   VolumeTags tags{};
 };
 
-StoredVolume read_nifti_header(const std::filesystem::path& file);
-/// An Analyze 7.5 header, or the .img beside one.
-StoredVolume read_analyze_header(const std::filesystem::path& file);
-StoredVolume read_nrrd_header(const std::filesystem::path& file);
-StoredVolume read_meta_image_header(const std::filesystem::path& file);
+/// Fields, choice and source of one array of samples.
+VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const std::string& source);
+
+/// Throws Error(bad_input) of a file that is of its format by its name alone.
+void require_recognized(const InputFile& file);
+
+VolumeFile with_tag_note(VolumeFile volume);
+
+/// Where a gzip file's samples end by its header; no value if that does not tell.
+std::optional<std::uint64_t> end_in_gzip(const StoredVolume& volume, const InputFile& file);
+
+/// A .raw file by the options or by its name; the payload is left to be set.
 StoredVolume describe_raw(const std::filesystem::path& file, const VolumeOptions& options);
 
-/// .vti .pvti .vtr .pvtr .vtk by VTK.
-VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions& options);
-
-/// Whether a file of VTK's other formats, by the name of a reader in readers/vtk/vtk_main.cpp, holds one regular or
-/// rectilinear grid, so that it is a volume; and that grid.
-bool holds_grid_by_vtk(const std::filesystem::path& file, const char* reader);
-VolumeFile read_by_vtk(const std::filesystem::path& file, const char* reader, const VolumeOptions& options);
-
-/// Whether an XDMF file holds one regular or rectilinear grid, so that it is a volume; and that grid.
-bool holds_xdmf_grid(const std::filesystem::path& file);
-VolumeFile read_xdmf_grid(const std::filesystem::path& file, const VolumeOptions& options);
-
-/// DICOM: a folder of slices, or one of its files, or frames in one file.
-VolumeFile read_dicom(const std::filesystem::path& file, const VolumeOptions& options);
+// What the rows of the table of formats (io/formats/format_table.cpp) name of this directory.
+VolumeFile open_nifti(const InputFile& file, const VolumeOptions& options);
+/// An Analyze 7.5 header, or the .img beside one.
+VolumeFile open_analyze(const InputFile& file, const VolumeOptions& options);
+VolumeFile open_nrrd(const InputFile& file, const VolumeOptions& options);
+std::optional<std::uint64_t> end_of_nrrd(const InputFile& file);
+VolumeFile open_meta_image(const InputFile& file, const VolumeOptions& options);
+std::optional<std::uint64_t> end_of_meta_image(const InputFile& file);
+VolumeFile open_brick_file(const InputFile& file, const VolumeOptions& options);
+VolumeFile open_raw(const InputFile& file, const VolumeOptions& options);
 
 }  // namespace tessera::io

@@ -4,72 +4,40 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <glm/geometric.hpp>
 #include <utility>
 
 #include "cells/field_choice.hpp"
-#include "io/formats/file_kinds.hpp"
-#include "io/formats/inflated_file.hpp"
-#include "io/formats/input_file.hpp"
+#include "io/files/inflated_file.hpp"
 #include "io/text/clean_errors.hpp"
 #include "io/volume/brick_file.hpp"
 #include "io/volume/file_source.hpp"
 #include "io/volume/stored_payload.hpp"
 #include "io/volume/stored_samples.hpp"
 #include "io/volume/volume_formats.hpp"
-#include "io/vtk/vtk_field_words.hpp"
 #include "scene/number_type.hpp"
-#include "system/gzip.hpp"
 
 namespace tessera::io {
 namespace {
 
-/// What kind of volume a file begins as.
-enum class VolumeKind { none, vtk, netcdf, hdf5, minc, xdmf, meta_image, nrrd, nifti, analyze, dicom, bricks };
-
-/// Of NIfTI files gzip is a part of the format, so that they are inflated as they are read; others are inflated first.
-VolumeKind volume_kind_of(const std::filesystem::path& file) {
-  const FormatRow* const row = format_begun(file);
-  switch (row == nullptr ? FileKind::unread : row->kind) {
-    case FileKind::bricks:
-      return VolumeKind::bricks;
-    case FileKind::vtk_grid:
-      return VolumeKind::vtk;
-    case FileKind::netcdf:
-      return VolumeKind::netcdf;
-    case FileKind::hdf5:
-      return VolumeKind::hdf5;
-    case FileKind::minc:
-      return VolumeKind::minc;
-    case FileKind::xdmf:
-      return VolumeKind::xdmf;
-    case FileKind::nrrd:
-      return VolumeKind::nrrd;
-    case FileKind::meta_image:
-      return VolumeKind::meta_image;
-    case FileKind::nifti:
-      return VolumeKind::nifti;
-    case FileKind::analyze:
-      return VolumeKind::analyze;
-    case FileKind::dicom:
-      return VolumeKind::dicom;
-    default:
-      return VolumeKind::none;
-  }
-}
-
-/// NetCDF, HDF5 and XDMF hold all kinds of things.
-bool holds_grid(const std::filesystem::path& file, const FormatRow& row) {
-  if (row.kind == FileKind::netcdf) return holds_grid_by_vtk(file, "netcdf");
-  if (row.kind == FileKind::hdf5) return holds_grid_by_vtk(file, "hdf5");
-  if (row.kind == FileKind::xdmf) return holds_xdmf_grid(file);
-  return row.holds == FileHolds::grid || row.holds == FileHolds::grid_or_mesh;
-}
-
 /// The name that counts where the beginning says nothing: x.raw of x.raw.gz.
 std::filesystem::path without_gz(const std::filesystem::path& file) {
   return system::lower_extension(file) == ".gz" ? file.parent_path() / file.stem() : file;
+}
+
+bool is_named_raw(const InputFile& file) {
+  return !file.is_folder && system::lower_extension(without_gz(file.path)) == ".raw";
+}
+
+/// Whether it says of itself that it is a volume, and which.
+bool describes_itself(const InputFile& file) {
+  return file.is_recognized && file.format != nullptr && file.format->open_volume != nullptr;
+}
+
+[[noreturn]] void refuse_beginning(const InputFile& file) {
+  const std::string extension = system::lower_extension(without_gz(file.name));
+  throw scene::bad_input(fmt::format("{}: it does not begin as a {} does; check what it is", file.name,
+                                     extension.empty() ? "volume" : extension.substr(1)));
 }
 
 void list_range(const scene::ValueRange& range, cells::FieldSummary& field) {
@@ -144,7 +112,15 @@ std::unique_ptr<scene::SampleSource> source_of(const VolumePayload& payload, Cho
                                                samples.of_tuple, swapped);
 }
 
-/// Fields, choice and source of one array of samples.
+/// As little of a gzip file as holds the samples, or all of it.
+InflatedFile inflated_as_needed(const InputFile& file, bool is_raw) {
+  const auto end_of_samples = is_raw || !file.is_recognized ? nullptr : file.format->end_of_samples;
+  if (const auto end = end_of_samples == nullptr ? std::nullopt : end_of_samples(file)) return {file, *end};
+  return {file, InflatedFile::Holds::grid};
+}
+
+}  // namespace
+
 VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const std::string& source) {
   scene::validate(volume.grid, source);
   VolumeFile result;
@@ -186,21 +162,8 @@ VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const 
   return result;
 }
 
-/// Where the samples end in a gzip file with such a header; nothing if that does not tell.
-std::optional<std::uint64_t> end_of_samples(const std::filesystem::path& file, VolumeKind kind) {
-  if (kind != VolumeKind::meta_image && kind != VolumeKind::nrrd) return std::nullopt;
-  constexpr std::uint64_t longest_header = 1 << 20;
-  const InflatedFile beginning(file, longest_header);
-  return beginning.read([&](const std::filesystem::path& content) -> std::optional<std::uint64_t> {
-    const StoredVolume volume = kind == VolumeKind::nrrd ? read_nrrd_header(content) : read_meta_image_header(content);
-    if (volume.compressed || volume.at_end || volume.coding != StoredVolume::Coding::binary) return std::nullopt;
-    return volume.offset + payload_bytes(volume, content.string());
-  });
-}
-
-InflatedFile inflated_as_needed(const std::filesystem::path& file, VolumeKind kind) {
-  if (const auto end = end_of_samples(file, kind)) return {file, *end};
-  return {file, InflatedFile::Holds::grid};
+void require_recognized(const InputFile& file) {
+  if (!file.is_recognized) refuse_beginning(file);
 }
 
 VolumeFile with_tag_note(VolumeFile volume) {
@@ -208,92 +171,48 @@ VolumeFile with_tag_note(VolumeFile volume) {
   return volume;
 }
 
-VolumeFile open_vtk(const std::filesystem::path& file, const VolumeOptions& options, const std::string& source) {
-  auto plain = read_plain_vtk_grid(file, options.most_in_memory);
-  VolumeFile volume = plain ? open_stored(*std::move(plain), options, source) : read_vtk_grid(file, options);
-  for (const auto& [name, word] : vtk_field_words(file)) take_word(name, word, volume.body_axes, volume.tags);
-  return with_tag_note(std::move(volume));
+std::optional<std::uint64_t> end_in_gzip(const StoredVolume& volume, const InputFile& file) {
+  if (volume.compressed || volume.at_end || volume.coding != StoredVolume::Coding::binary) return std::nullopt;
+  return volume.offset + payload_bytes(volume, file.name);
 }
 
-/// A file that says of itself what it holds.
-VolumeFile open_described(const std::filesystem::path& file, VolumeKind kind, const VolumeOptions& options,
-                          const std::string& source) {
-  switch (kind) {
-    case VolumeKind::vtk:
-      require_no_time_step(options.time_step, source);
-      return open_vtk(file, options, source);
-    case VolumeKind::bricks:
-      require_no_time_step(options.time_step, source);
-      return with_tag_note(open_bricks(file, options));
-    case VolumeKind::netcdf:
-      return read_by_vtk(file, "netcdf", options);
-    case VolumeKind::hdf5:
-      return read_by_vtk(file, "hdf5", options);
-    case VolumeKind::minc:
-      return read_by_vtk(file, "minc", options);
-    case VolumeKind::xdmf:
-      return read_xdmf_grid(file, options);
-    case VolumeKind::meta_image:
-      return open_stored(read_meta_image_header(file), options, source);
-    case VolumeKind::nrrd:
-      return with_tag_note(open_stored(read_nrrd_header(file), options, source));
-    case VolumeKind::nifti:
-      return open_stored(read_nifti_header(file), options, source);
-    case VolumeKind::analyze:
-      return open_stored(read_analyze_header(file), options, source);
-    case VolumeKind::dicom:
-      return read_dicom(file, options);
-    case VolumeKind::none:
-      break;
-  }
-  const std::string extension = system::lower_extension(without_gz(file));
-  if (extension == ".img" || extension == ".hdr") return open_stored(read_analyze_header(file), options, source);
-  if (extension == ".dcm" || extension == ".dicom" || extension == ".ima") return read_dicom(file, options);
-  if (extension == ".nii") return open_stored(read_nifti_header(file), options, source);
-  throw scene::bad_input(fmt::format("{}: it does not begin as a {} does; check what it is", source,
-                                     extension.empty() ? "volume" : extension.substr(1)));
+VolumeFile open_raw(const InputFile& file, const VolumeOptions& options) {
+  StoredVolume volume = describe_raw(without_gz(file.name), options);
+  volume.payload = file.path;
+  volume.payload_size = file.size;
+  return open_stored(std::move(volume), options, file.name);
 }
 
 }  // namespace
 
-bool is_volume(const std::filesystem::path& file) {
-  std::error_code unknown;
-  if (system::lower_extension(without_gz(file)) == ".raw" && !std::filesystem::is_directory(file, unknown)) return true;
-  const FormatRow* const row = format_of(file);
-  return row != nullptr && holds_grid(file, *row);
+bool is_volume(const InputFile& file) {
+  if (is_named_raw(file)) return true;
+  if (file.format == nullptr || file.format->open_volume == nullptr) return false;
+  return file.format->holds_grid == nullptr || file.format->holds_grid(file);
 }
 
-void require_volume(const std::filesystem::path& file) {
-  require_file(file);
+void require_volume(const InputFile& file) {
   if (!is_volume(file))
-    throw scene::bad_input(
-        fmt::format("{}: it is no volume as the first step is one; give volumes only", file.string()));
+    throw scene::bad_input(fmt::format("{}: it is no volume as the first step is one; give volumes only", file.name));
 }
 
-VolumeFile open_unscanned_volume(const std::filesystem::path& file, const VolumeOptions& options) {
-  const std::string source = file.string();
-  require_file(file);
-  return with_clean_errors(source, [&] {
-    const std::filesystem::path name = without_gz(file);
-    const VolumeKind kind = volume_kind_of(file);
-    const bool raw = kind == VolumeKind::none && (system::lower_extension(name) == ".raw" || options.describes_raw());
-    if (!raw && options.describes_raw())
+VolumeFile open_unscanned_volume(const InputFile& file, const VolumeOptions& options) {
+  return with_clean_errors(file.name, [&] {
+    const bool is_raw = !describes_itself(file) && (is_named_raw(file) || options.describes_raw());
+    if (!is_raw && options.describes_raw())
       throw scene::bad_input(
           fmt::format("{}: `dims`, `type`, `spacing`, `origin`, `endian` and `skip` are for .raw files; this one says "
                       "them itself",
-                      source));
-    const auto open = [&](const std::filesystem::path& content) {
-      if (!raw) return open_described(content, kind, options, source);
-      StoredVolume volume = describe_raw(name, options);
-      volume.payload = content;
-      return open_stored(std::move(volume), options, source);
+                      file.name));
+    if (!is_raw && (file.format == nullptr || file.format->open_volume == nullptr)) refuse_beginning(file);
+    const auto open = [&](const InputFile& content) {
+      return is_raw ? open_raw(content, options) : file.format->open_volume(content, options);
     };
     VolumeFile volume;
-    if (is_input_folder(file) || kind == VolumeKind::nifti || kind == VolumeKind::analyze ||
-        (kind == VolumeKind::none && !raw) || !system::looks_like_gzip(read_beginning(file, 2))) {
+    if (!file.is_gzip || (!is_raw && file.format->reads_gzip)) {
       volume = open(file);
     } else {
-      const InflatedFile inflated = inflated_as_needed(file, kind);
+      const InflatedFile inflated = inflated_as_needed(file, is_raw);
       volume = inflated.read(open);
       for (std::string& note : volume.notes) note = inflated.renamed(std::move(note));
       volume.format += ", gzip";
@@ -319,9 +238,9 @@ void set_range(VolumeFile& volume, const std::filesystem::path& file, const scen
     volume.notes.push_back(fmt::format("{} samples are NaN, infinite or hidden: their voxels are blank", range.blanks));
 }
 
-VolumeFile open_volume(const std::filesystem::path& file, const VolumeOptions& options) {
+VolumeFile open_volume(const InputFile& file, const VolumeOptions& options) {
   VolumeFile volume = open_unscanned_volume(file, options);
-  with_clean_errors(file.string(), [&] { set_range(volume, file, scene::value_range(*volume.source)); });
+  with_clean_errors(file.name, [&] { set_range(volume, file.path, scene::value_range(*volume.source)); });
   return volume;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cells/mesh_options.hpp"
+#include "io/files/input_file.hpp"
 #include "io/volume/volume_tags.hpp"
 #include "scene/sample_source.hpp"
 #include "scene/time_step_read.hpp"
@@ -59,13 +60,12 @@ struct VolumeFile {
   bool beside_degrees = false;  ///< x and y are degrees, z is a length
 };
 
-/// Whether the file is a regular or rectilinear grid: by what it begins with, so that a .vtk may be a mesh or a volume
-/// and a name may be wrong; by its name where it is not there or is .raw. Of NetCDF, HDF5 and XDMF a helper looks,
-/// which takes some hundredths of a second.
-bool is_volume(const std::filesystem::path& file);
+/// Whether the file is a regular or rectilinear grid, or .raw. Of NetCDF, HDF5 and XDMF a helper looks, which takes
+/// some hundredths of a second.
+bool is_volume(const InputFile& file);
 
-/// Throws Error(bad_input) if the file is not there, or is a mesh. Does not read its samples.
-void require_volume(const std::filesystem::path& file);
+/// Throws Error(bad_input) of a mesh. Does not read samples.
+void require_volume(const InputFile& file);
 
 /// Opens a volume.
 ///
@@ -93,11 +93,11 @@ void require_volume(const std::filesystem::path& file);
 /// Headers are compared with the file's size before memory is asked for. Throws Error(bad_input) in one line for a
 /// missing, truncated, malformed or flat file, for more dimensions than three, time and components, for an encoding or
 /// type not known, for an unknown field or time step, or if no sample is finite.
-VolumeFile open_volume(const std::filesystem::path& file, const VolumeOptions& options = {});
+VolumeFile open_volume(const InputFile& file, const VolumeOptions& options = {});
 
 /// The same without its range and what follows from that, for those who scan the samples themselves and then call
 /// set_range(). Vectors of which a component is chosen are read nevertheless: they are listed by their lengths.
-VolumeFile open_unscanned_volume(const std::filesystem::path& file, const VolumeOptions& options = {});
+VolumeFile open_unscanned_volume(const InputFile& file, const VolumeOptions& options = {});
 
 /// Enters the range of all samples, and what follows from it into fields and notes. Throws Error(bad_input) if none is
 /// finite.

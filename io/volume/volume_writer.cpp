@@ -8,7 +8,7 @@
 #include <array>
 #include <cstring>
 
-#include "io/formats/input_file.hpp"
+#include "io/files/input_file.hpp"
 #include "io/text/xml_elements.hpp"
 #include "io/volume/brick_file.hpp"
 #include "io/vtk/vtk_xml_grid.hpp"

@@ -6,12 +6,11 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
-#include <initializer_list>
 #include <sstream>
 #include <string_view>
 #include <system_error>
 
-#include "io/formats/input_file.hpp"
+#include "io/files/input_file.hpp"
 #include "io/text/header_text.hpp"
 #include "io/text/text_file.hpp"
 #include "tessera/program/text.hpp"
@@ -27,14 +26,11 @@ std::string attribute_in(std::string_view element, std::string_view name) {
   return stop == std::string_view::npos ? std::string() : std::string(element.substr(from, stop - from));
 }
 
-constexpr std::size_t longest = 1 << 16;
-
 template <class Visit>
-void each_field_array(const std::filesystem::path& file, const Visit& visit) {
-  const std::string text = read_beginning(file, longest);
+void each_field_array(std::string_view text, const Visit& visit) {
   const std::size_t begin = text.find("<FieldData");
-  if (begin == std::string::npos) return;
-  std::string_view rest = std::string_view(text).substr(begin);
+  if (begin == std::string_view::npos) return;
+  std::string_view rest = text.substr(begin);
   rest = rest.substr(0, rest.find("</FieldData>"));
   constexpr std::string_view opening = "<DataArray";
   for (std::size_t at = rest.find(opening); at != std::string_view::npos; at = rest.find(opening, at + 1)) {
@@ -106,29 +102,29 @@ std::optional<double> legacy_time(std::string_view text) {
   return std::nullopt;
 }
 
+bool may_state_time(std::string_view extension) {
+  constexpr std::array extensions = {".vtk", ".vtu", ".vti", ".vtr", ".vts", ".pvtu", ".pvti", ".pvtr", ".pvts"};
+  return std::ranges::count(extensions, extension) > 0;
+}
+
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> vtk_field_words(const std::filesystem::path& file) {
+std::vector<std::pair<std::string, std::string>> vtk_field_words(std::string_view beginning) {
   std::vector<std::pair<std::string, std::string>> words;
-  each_field_array(file, [&](std::string_view element, std::string_view content) {
+  each_field_array(beginning, [&](std::string_view element, std::string_view content) {
     if (attribute_in(element, "type") == "String" && attribute_in(element, "format") == "ascii")
       words.emplace_back(attribute_in(element, "Name"), word_of_codes(content));
   });
   return words;
 }
 
-std::optional<double> vtk_time_value(const std::filesystem::path& file) {
+std::optional<double> vtk_time_value(const std::filesystem::path& file, std::string_view beginning) {
   const std::string extension = system::lower_extension(file);
-  const auto is_one_of = [&](std::initializer_list<std::string_view> all) {
-    return std::ranges::find(all, extension) != all.end();
-  };
-  std::error_code unreadable;
-  if (!std::filesystem::is_regular_file(file, unreadable)) return std::nullopt;
-  if (extension == ".vtk") return legacy_time(read_beginning(file, longest));
-  const bool is_list = is_one_of({".pvtu", ".pvti", ".pvtr", ".pvts"});
-  if (!is_list && !is_one_of({".vtu", ".vti", ".vtr", ".vts"})) return std::nullopt;
+  if (extension == ".vtk") return legacy_time(beginning);
+  if (!may_state_time(extension)) return std::nullopt;
+  const bool is_list = extension.starts_with(".p");
   std::optional<double> time;
-  each_field_array(file, [&](std::string_view element, std::string_view content) {
+  each_field_array(beginning, [&](std::string_view element, std::string_view content) {
     if (attribute_in(element, "Name") != "TimeValue") return;
     // VTK writes the range of each array, and so the one value of arrays that are not text.
     const std::string low = attribute_in(element, "RangeMin"), high = attribute_in(element, "RangeMax");
@@ -138,12 +134,18 @@ std::optional<double> vtk_time_value(const std::filesystem::path& file) {
       time = parse_number(low);
   });
   if (time || !is_list) return time;
-  const std::string text = read_beginning(file, longest);
-  const std::size_t piece = text.find("<Piece");
-  const std::string first =
-      piece == std::string::npos ? "" : attribute_in(std::string_view(text).substr(piece), "Source");
+  const std::size_t piece = beginning.find("<Piece");
+  const std::string first = piece == std::string_view::npos ? "" : attribute_in(beginning.substr(piece), "Source");
   return first.empty() || system::lower_extension(first).starts_with(".p") ? std::nullopt
                                                                            : vtk_time_value(file.parent_path() / first);
+}
+
+std::optional<double> vtk_time_value(const std::filesystem::path& file) {
+  constexpr std::size_t longest = 1 << 16;
+  std::error_code unreadable;
+  if (!may_state_time(system::lower_extension(file)) || !std::filesystem::is_regular_file(file, unreadable))
+    return std::nullopt;
+  return vtk_time_value(file, read_beginning(file, longest));
 }
 
 }  // namespace tessera::io

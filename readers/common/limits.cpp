@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <fstream>
 
-#include "io/formats/inflated_file.hpp"
-#include "io/formats/input_file.hpp"
+#include "io/files/inflated_file.hpp"
+#include "io/files/input_file.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/common/sandbox.hpp"
 

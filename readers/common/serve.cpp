@@ -20,8 +20,8 @@
 #include <thread>
 #include <vector>
 
+#include "io/files/input_file.hpp"
 #include "io/foreign/messages/helper_messages.hpp"
-#include "io/formats/input_file.hpp"
 #include "io/text/clean_errors.hpp"
 #include "readers/common/opened_files.hpp"
 #include "readers/common/readers.hpp"

@@ -13,8 +13,8 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "io/formats/file_beginnings.hpp"
-#include "io/formats/input_file.hpp"
+#include "io/files/file_beginnings.hpp"
+#include "io/files/input_file.hpp"
 #include "readers/common/holdings.hpp"
 #include "readers/common/opened_files.hpp"
 #include "readers/common/readers.hpp"

@@ -18,8 +18,8 @@
 #include <limits>
 #include <type_traits>
 
-#include "io/formats/input_file.hpp"
-#include "io/formats/whole_file.hpp"
+#include "io/files/input_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "readers/dicom/dicom_elements.hpp"
 #include "readers/dicom/dicom_frames.hpp"
 #include "scene/error.hpp"

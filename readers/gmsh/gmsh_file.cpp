@@ -13,8 +13,8 @@
 #include <optional>
 #include <string_view>
 
-#include "io/formats/input_file.hpp"
-#include "io/formats/whole_file.hpp"
+#include "io/files/input_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/gmsh/gmsh_blocks.hpp"
 #include "readers/gmsh/gmsh_view_names.hpp"

@@ -8,7 +8,7 @@
 #include <map>
 #include <string_view>
 
-#include "io/formats/whole_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "readers/gmsh/gmsh_types.hpp"
 #include "scene/byte_order.hpp"
 

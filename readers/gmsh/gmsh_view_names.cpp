@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/formats/whole_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "readers/gmsh/gmsh_tags.hpp"
 #include "scene/error.hpp"
 

@@ -14,7 +14,7 @@
 #include <tuple>
 #include <utility>
 
-#include "io/formats/whole_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::readers {

@@ -3,7 +3,7 @@
 // that library comes with another build of HDF5, for MPI, than VTK's.
 #include <nlohmann/json.hpp>
 
-#include "io/formats/inflated_file.hpp"
+#include "io/files/inflated_file.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/common/serve.hpp"
 #include "readers/med/med_file.hpp"

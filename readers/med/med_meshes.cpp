@@ -13,7 +13,7 @@
 #include <system_error>
 
 #include "cells/curved/node_orders.hpp"
-#include "io/formats/input_file.hpp"
+#include "io/files/input_file.hpp"
 #include "readers/med/med_file.hpp"
 #include "scene/error.hpp"
 

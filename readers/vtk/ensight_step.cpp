@@ -13,8 +13,8 @@
 #include <system_error>
 #include <utility>
 
-#include "io/formats/input_file.hpp"
-#include "io/formats/whole_file.hpp"
+#include "io/files/input_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "system/descriptor.hpp"
 
 namespace tessera::readers {

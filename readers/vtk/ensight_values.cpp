@@ -32,7 +32,7 @@
 #include <system_error>
 #include <vector>
 
-#include "io/formats/whole_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "tessera/program/text.hpp"
 
 namespace tessera::readers {

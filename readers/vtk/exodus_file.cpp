@@ -15,7 +15,7 @@
 #include "cells/block_choice.hpp"
 #include "cells/mesh_blocks.hpp"
 #include "cells/tuple_length.hpp"
-#include "io/formats/input_file.hpp"
+#include "io/files/input_file.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/common/serve.hpp"
 #include "readers/vtk/exodus_elements.hpp"

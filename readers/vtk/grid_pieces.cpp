@@ -23,9 +23,9 @@
 #include <optional>
 #include <sstream>
 
-#include "io/formats/file_beginnings.hpp"
-#include "io/formats/input_file.hpp"
-#include "io/formats/whole_file.hpp"
+#include "io/files/file_beginnings.hpp"
+#include "io/files/input_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "io/text/clean_errors.hpp"
 #include "io/text/xml_elements.hpp"
 #include "readers/common/readers.hpp"

@@ -17,7 +17,7 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
-#include "io/formats/input_file.hpp"
+#include "io/files/input_file.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/vtk/forest_leaves.hpp"
 #include "readers/vtk/grid_pieces.hpp"

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/formats/whole_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "scene/byte_order.hpp"
 #include "scene/error.hpp"
 

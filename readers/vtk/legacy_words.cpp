@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/formats/whole_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "scene/quote.hpp"
 #include "tessera/program/text.hpp"
 

@@ -13,7 +13,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "io/formats/whole_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::readers {

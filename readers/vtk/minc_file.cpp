@@ -17,7 +17,7 @@
 #include <span>
 #include <string_view>
 
-#include "io/formats/input_file.hpp"
+#include "io/files/input_file.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/vtk/netcdf/netcdf_size.hpp"
 #include "readers/vtk/vtk_parts.hpp"

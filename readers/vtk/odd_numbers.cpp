@@ -19,7 +19,7 @@
 #include <new>
 #include <string_view>
 
-#include "io/formats/whole_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "tessera/program/text.hpp"
 
 namespace tessera::readers {

@@ -16,7 +16,7 @@
 #include "cells/block_choice.hpp"
 #include "cells/mesh_blocks.hpp"
 #include "cells/part_range.hpp"
-#include "io/formats/input_file.hpp"
+#include "io/files/input_file.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/vtk/time_steps.hpp"
 #include "readers/vtk/vtk_parts.hpp"

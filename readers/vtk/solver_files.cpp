@@ -35,8 +35,8 @@
 #include <utility>
 #include <vector>
 
-#include "io/formats/input_file.hpp"
-#include "io/formats/whole_file.hpp"
+#include "io/files/input_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/vtk/cgns_zones.hpp"
 #include "readers/vtk/ensight_case.hpp"

@@ -27,7 +27,7 @@
 #include <span>
 
 #include "cells/curved/node_orders.hpp"
-#include "io/formats/input_file.hpp"
+#include "io/files/input_file.hpp"
 #include "io/vtk/vtk_xml_elements.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/vtk/extents.hpp"

@@ -9,8 +9,8 @@
 #include <XdmfHeavyDataController.hpp>
 #include <algorithm>
 
-#include "io/formats/inflated_file.hpp"
-#include "io/formats/input_file.hpp"
+#include "io/files/inflated_file.hpp"
+#include "io/files/input_file.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/xdmf/xdmf_references.hpp"
 #include "scene/error.hpp"

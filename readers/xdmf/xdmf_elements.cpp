@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/formats/whole_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "io/text/xml_elements.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"

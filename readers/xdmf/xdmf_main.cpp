@@ -21,8 +21,8 @@
 #include <set>
 
 #include "cells/block_choice.hpp"
-#include "io/formats/inflated_file.hpp"
-#include "io/formats/input_file.hpp"
+#include "io/files/inflated_file.hpp"
+#include "io/files/input_file.hpp"
 #include "readers/common/readers.hpp"
 #include "readers/common/serve.hpp"
 #include "readers/xdmf/xdmf_arrays.hpp"

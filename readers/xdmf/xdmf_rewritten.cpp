@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/formats/whole_file.hpp"
+#include "io/files/whole_file.hpp"
 #include "readers/xdmf/xdmf_elements.hpp"
 #include "readers/xdmf/xdmf_references.hpp"
 #include "scene/error.hpp"

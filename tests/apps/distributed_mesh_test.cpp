@@ -13,6 +13,7 @@
 #include "io/mesh/mesh_parts.hpp"
 #include "scene/error.hpp"
 #include "support/foam_case.hpp"
+#include "support/read_files.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -37,8 +38,8 @@ std::vector<DistributedMesh> read_on(int ranks, const std::filesystem::path& fil
                                      PartitionKind kind, const cells::MeshOptions& options = {}) {
   std::vector<DistributedMesh> result(static_cast<std::size_t>(ranks));
   exchange::run_ranks(ranks, [&](Transport& transport) {
-    result[static_cast<std::size_t>(transport.rank())] =
-        read_distributed(transport, std::span(&file, 1), options, {kind, 1}, projectors, 1, nullptr);
+    result[static_cast<std::size_t>(transport.rank())] = read_distributed(
+        transport, std::span(&file, 1), io::identify(file), options, {kind, 1}, projectors, 1, nullptr);
   });
   return result;
 }

@@ -18,7 +18,7 @@
 
 #include "apps/program.hpp"
 #include "cells/surface.hpp"
-#include "io/formats/reader_programs.hpp"
+#include "io/files/reader_programs.hpp"
 #include "support/await.hpp"
 
 namespace tessera::apps {

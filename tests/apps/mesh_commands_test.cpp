@@ -11,10 +11,10 @@
 
 #include "apps/program.hpp"
 #include "apps/quadratic_mesh.hpp"
-#include "io/formats/reader_programs.hpp"
+#include "io/files/reader_programs.hpp"
 #include "io/mesh/mesh_formats.hpp"
-#include "io/mesh/mesh_reader.hpp"
 #include "scene/mesh_facts.hpp"
+#include "support/read_files.hpp"
 
 namespace tessera::apps {
 namespace {

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "apps/program.hpp"
-#include "io/formats/reader_programs.hpp"
+#include "io/files/reader_programs.hpp"
 
 namespace tessera::apps {
 namespace {

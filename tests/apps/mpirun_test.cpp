@@ -11,7 +11,7 @@
 
 #include "apps/program.hpp"
 #include "apps/quadratic_mesh.hpp"
-#include "io/formats/reader_programs.hpp"
+#include "io/files/reader_programs.hpp"
 #include "io/mesh/mesh_formats.hpp"
 #include "support/some_cases.hpp"
 

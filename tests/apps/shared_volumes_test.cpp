@@ -16,7 +16,7 @@
 #include <sstream>
 
 #include "apps/program.hpp"
-#include "io/formats/reader_programs.hpp"
+#include "io/files/reader_programs.hpp"
 #include "io/mesh/mesh_formats.hpp"
 #include "support/await.hpp"
 #include "support/some_cases.hpp"

@@ -12,8 +12,8 @@
 
 #include "cells/mesh_assembly.hpp"
 #include "io/mesh/mesh_parts.hpp"
-#include "io/mesh/mesh_reader.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace tessera::io::duplicate_cells_test {
@@ -145,8 +145,8 @@ TEST_F(DuplicateFiles, ARepeatedPieceIsAWarningAndDrawnOnceIfAskedFor) {
   EXPECT_EQ(once.counts.tets_made, once.mesh.tets.size());
   EXPECT_NEAR(testing::volume(once.mesh), 1, 1e-9);
   EXPECT_TRUE(cells::warnings_on_cells(once.counts, once.higher_order).empty());
-  EXPECT_TRUE(readable_in_parts(file, {}));
-  EXPECT_FALSE(readable_in_parts(file, options)) << "two parts would each keep their copy";
+  EXPECT_TRUE(readable_in_parts(io::identify(file), {}));
+  EXPECT_FALSE(readable_in_parts(io::identify(file), options)) << "two parts would each keep their copy";
   // The same of several files of one mesh, as a .pvd lists those of one time.
   const std::vector<std::filesystem::path> files = {folder / "a.vtu", folder / "b.vtu"};
   EXPECT_EQ(read_mesh(files).counts.cells_duplicate, cells);

@@ -18,9 +18,9 @@
 #include "datasets/transfer_functions.hpp"
 #include "frame/mesh/render.hpp"
 #include "io/image/image_deep_exr.hpp"
-#include "io/mesh/mesh_reader.hpp"
 #include "scene/error.hpp"
 #include "support/deep_pixels.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/vtk_or_skip.hpp"
 

@@ -19,10 +19,10 @@
 #include "frame/random_clips.hpp"
 #include "frame/shared_meshes.hpp"
 #include "frame/surface_scenes.hpp"
-#include "io/mesh/mesh_reader.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
 #include "support/deep_pixels.hpp"
+#include "support/read_files.hpp"
 
 namespace tessera::frame::face_surfaces_test {
 namespace {

@@ -7,8 +7,8 @@
 #include "datasets/transfer_functions.hpp"
 #include "frame/mesh/render.hpp"
 #include "frame/shared_meshes.hpp"
-#include "io/mesh/mesh_reader.hpp"
 #include "reference/judge.hpp"
+#include "support/read_files.hpp"
 
 /// The promise of accuracy_test.cpp on meshes that nobody here made: curvilinear grids with seams and boundary layers,
 /// parts of machines, an oil reservoir with faults at coordinates of 7e6.

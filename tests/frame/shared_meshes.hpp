@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "io/formats/reader_programs.hpp"
+#include "io/files/reader_programs.hpp"
 #include "io/mesh/mesh_formats.hpp"
 
 /// Meshes that nobody here made, which lie beside the project on some machines only.

@@ -15,6 +15,7 @@
 #include "exchange/loopback_transport.hpp"
 #include "frame/grid/brick_memory.hpp"
 #include "scene/error.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/volume_bytes.hpp"
 
@@ -41,7 +42,7 @@ class SharedVolume : public ::testing::Test {
     std::mutex mutex;
     std::vector<io::VolumeFile> all(static_cast<std::size_t>(ranks));
     exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
-      io::VolumeFile volume = open_shared_volume(transport, file, options, 1);
+      io::VolumeFile volume = open_shared_volume(transport, io::identify(file), options, 1);
       const std::lock_guard lock(mutex);
       all[static_cast<std::size_t>(transport.rank())] = std::move(volume);
     });
@@ -55,7 +56,7 @@ class SharedVolume : public ::testing::Test {
     const test::Fault ended = test::fault_of([&] {
       exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
         try {
-          static_cast<void>(open_shared_volume(transport, file, {}, 1));
+          static_cast<void>(open_shared_volume(transport, io::identify(file), {}, 1));
         } catch (const scene::Error& error) {
           const std::lock_guard lock(mutex);
           told.insert(error.what());

@@ -14,11 +14,11 @@
 #include "frame/plateaus.hpp"
 #include "frame/shared_meshes.hpp"
 #include "frame/surface_scenes.hpp"
-#include "io/mesh/mesh_reader.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
 #include "support/deep_pixels.hpp"
 #include "support/instruction_sets.hpp"
+#include "support/read_files.hpp"
 
 /// Surfaces in the volume, against places and colours known in closed form and against the reference.
 namespace tessera::frame::surfaces_test {

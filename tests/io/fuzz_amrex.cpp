@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "io/formats/file_beginnings.hpp"
+#include "io/files/file_beginnings.hpp"
 #include "io/mesh/amrex_header.hpp"
 #include "support/fuzz_check.hpp"
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "io/volume/volume_formats.hpp"
-#include "io/volume/volume_reader.hpp"
 #include "support/fuzz_check.hpp"
 #include "support/fuzz_file.hpp"
+#include "support/read_files.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tessera;

@@ -10,9 +10,9 @@
 #include <random>
 
 #include "cells/amr/amr_values.hpp"
-#include "io/mesh/mesh_reader.hpp"
 #include "support/amr_files.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace tessera::io {

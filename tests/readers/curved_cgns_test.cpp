@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "io/mesh/mesh_reader.hpp"
 #include "support/curved_reference.hpp"
+#include "support/read_files.hpp"
 #include "support/some_cases.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/vtk_or_skip.hpp"

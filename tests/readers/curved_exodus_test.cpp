@@ -10,9 +10,9 @@
 
 #include "cells/mesh_assembly.hpp"
 #include "io/mesh/block_surface.hpp"
-#include "io/mesh/mesh_reader.hpp"
 #include "support/curved_reference.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/some_cases.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/vtk_or_skip.hpp"

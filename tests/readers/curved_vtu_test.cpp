@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "cells/curved/curved_lattice.hpp"
-#include "io/mesh/mesh_reader.hpp"
 #include "support/curved_reference.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/vtk_or_skip.hpp"
 

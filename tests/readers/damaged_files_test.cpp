@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <random>
 
-#include "io/mesh/mesh_reader.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 
 namespace tessera::io {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "io/formats/reader_programs.hpp"
-#include "io/volume/volume_reader.hpp"
+#include "io/files/reader_programs.hpp"
 #include "support/dicom_writing.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/volume_checks.hpp"
 

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "io/formats/file_kinds.hpp"
-#include "io/formats/reader_programs.hpp"
+#include "io/files/reader_programs.hpp"
+#include "io/formats/identify.hpp"
 #include "io/volume/volume_formats.hpp"
-#include "io/volume/volume_reader.hpp"
 #include "support/dicom_writing.hpp"
+#include "support/read_files.hpp"
 #include "support/some_cases.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/volume_bytes.hpp"

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "cells/mesh_assembly.hpp"
-#include "io/mesh/mesh_reader.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/vtk_or_skip.hpp"
 

@@ -3,10 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "io/mesh/mesh_reader.hpp"
 #include "io/scene/camera_file.hpp"
 #include "io/scene/transfer_function_file.hpp"
-#include "io/volume/volume_reader.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 #include "system/atomic_file.hpp"
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "cells/warp.hpp"
-#include "io/mesh/mesh_reader.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 #include "tessera/dataset.hpp"
 
@@ -56,7 +56,7 @@ double volume_of(const std::filesystem::path& file, const std::optional<Warp>& w
 TEST(ExodusSteps, AreAtTheirTimes) {
   const test::TemporaryFolder folder;
   write_cube(folder / "a.exo", {"v_"});
-  const scene::TimeStepRead steps = time_steps_of_mesh(folder / "a.exo");
+  const scene::TimeStepRead steps = time_steps_of_mesh(identify(folder / "a.exo"));
   EXPECT_EQ(steps.times, (std::vector<double>{0.5, 0.75, 4}));
   EXPECT_EQ(times_of(folder / "a.exo"), steps.times);
   const cells::MeshFile last = read_mesh(folder / "a.exo");

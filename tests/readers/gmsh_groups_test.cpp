@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "io/formats/reader_programs.hpp"
-#include "io/mesh/mesh_reader.hpp"
+#include "io/files/reader_programs.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace tessera::io::gmsh_groups_test {

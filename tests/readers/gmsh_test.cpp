@@ -9,10 +9,10 @@
 #include <fstream>
 #include <map>
 
-#include "io/formats/reader_programs.hpp"
-#include "io/mesh/mesh_formats.hpp"
-#include "io/mesh/mesh_reader.hpp"
+#include "io/files/reader_programs.hpp"
+#include "io/foreign/foreign_formats.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace tessera::io {
@@ -160,7 +160,7 @@ TEST_F(Gmsh, EveryVersionGivesTheSameCellsAndField) {
 
 TEST_F(Gmsh, PhysicalGroupsAreBlocksAndAField) {
   for (const std::string& text : {msh2(""), msh4("")}) {
-    const cells::MeshBlocks read = read_by_gmsh(folder.write("a.msh", text), "gmsh", {});
+    const cells::MeshBlocks read = read_foreign_mesh(identify(folder.write("a.msh", text)), {Reader::gmsh, "gmsh"}, {});
     ASSERT_EQ(read.blocks.size(), 2u);
     EXPECT_EQ(read.blocks[0].name, "left");
     EXPECT_EQ(read.blocks[1].name, "right");
@@ -282,7 +282,7 @@ TEST_F(Gmsh, SecondOrderNodesComeInVtksOrder) {
   };
   for (const Case& c : cases) {
     const auto file = folder.write("a.msh", one_cell(c.gmsh, with_middles(c.corners, c.theirs)));
-    const cells::MeshBlocks read = read_by_gmsh(file, "gmsh", {});
+    const cells::MeshBlocks read = read_foreign_mesh(identify(file), {Reader::gmsh, "gmsh"}, {});
     ASSERT_EQ(read.blocks.size(), 1u);
     ASSERT_EQ(read.blocks[0].types.size(), 1u);
     EXPECT_EQ(read.blocks[0].types[0], c.vtk);
@@ -304,7 +304,8 @@ TEST_F(Gmsh, ThirdOrderTetrahedraComeInVtksOrder) {
       with_thirds({{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 2}, {3, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {3, 1, 2}});
   const Points vtks =
       with_thirds({{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}, {{0, 1, 3}, {1, 2, 3}, {0, 2, 3}, {0, 1, 2}});
-  const cells::MeshBlocks read = read_by_gmsh(folder.write("a.msh", one_cell(29, theirs)), "gmsh", {});
+  const cells::MeshBlocks read =
+      read_foreign_mesh(identify(folder.write("a.msh", one_cell(29, theirs))), {Reader::gmsh, "gmsh"}, {});
   ASSERT_EQ(read.blocks.size(), 1u);
   EXPECT_EQ(read.blocks[0].types[0], 71);
   EXPECT_EQ(cell_points(read.blocks[0]), vtks);
@@ -322,7 +323,8 @@ TEST_F(Gmsh, ThirdOrderHexahedraComeInVtksOrder) {
   thirds(vtks, {{0, 1}, {1, 2}, {3, 2}, {0, 3}, {4, 5}, {5, 6}, {7, 6}, {4, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}});
   // Only where the edges' nodes go is looked at here: those of faces and inside may lie anywhere.
   for (int k = 0; k < 32; ++k) theirs.emplace_back(1.5, 1.5, 1.5 + 0.01 * k);
-  const cells::MeshBlocks read = read_by_gmsh(folder.write("a.msh", one_cell(92, theirs)), "gmsh", {});
+  const cells::MeshBlocks read =
+      read_foreign_mesh(identify(folder.write("a.msh", one_cell(92, theirs))), {Reader::gmsh, "gmsh"}, {});
   ASSERT_EQ(read.blocks.size(), 1u);
   EXPECT_EQ(read.blocks[0].types[0], 72);
   Points points = cell_points(read.blocks[0]);
@@ -336,7 +338,8 @@ TEST_F(Gmsh, CompleteQuadraticPyramidsComeInLagrangesOrder) {
   Points theirs = with_middles(corners, {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 4}, {2, 3}, {2, 4}, {3, 4}});
   Points ours = with_middles(corners, {{0, 1}, {1, 2}, {3, 2}, {0, 3}, {0, 4}, {1, 4}, {2, 4}, {3, 4}});
   theirs.emplace_back(1, 1.5, 0.25), ours.emplace_back(1, 1.5, 0.25);
-  const cells::MeshBlocks read = read_by_gmsh(folder.write("a.msh", one_cell(14, theirs)), "gmsh", {});
+  const cells::MeshBlocks read =
+      read_foreign_mesh(identify(folder.write("a.msh", one_cell(14, theirs))), {Reader::gmsh, "gmsh"}, {});
   ASSERT_EQ(read.blocks.size(), 1u);
   EXPECT_EQ(read.blocks[0].types[0], 74);
   EXPECT_EQ(cell_points(read.blocks[0]), ours);
@@ -355,7 +358,8 @@ TEST_F(Gmsh, ThirdOrderPrismsComeInVtksOrder) {
                        {0, 2, 3}, {0, 1, 3}, {0, 0, 1}, {0, 0, 2}, {3, 0, 1}, {3, 0, 2}, {0, 3, 1}, {0, 3, 2},
                        {1, 1, 0}, {1, 1, 3}, {1, 0, 1}, {2, 0, 1}, {1, 0, 2}, {2, 0, 2}, {2, 1, 1}, {1, 2, 1},
                        {2, 1, 2}, {1, 2, 2}, {0, 2, 1}, {0, 1, 1}, {0, 2, 2}, {0, 1, 2}, {1, 1, 1}, {1, 1, 2}};
-  const cells::MeshBlocks read = read_by_gmsh(folder.write("a.msh", one_cell(90, theirs)), "gmsh", {});
+  const cells::MeshBlocks read =
+      read_foreign_mesh(identify(folder.write("a.msh", one_cell(90, theirs))), {Reader::gmsh, "gmsh"}, {});
   ASSERT_EQ(read.blocks.size(), 1u);
   EXPECT_EQ(read.blocks[0].types[0], 73);
   EXPECT_EQ(cell_points(read.blocks[0]), vtks);

@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh/mesh_reader.hpp"
-#include "io/volume/volume_reader.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/volume_checks.hpp"
 

@@ -7,9 +7,9 @@
 #include <array>
 #include <string>
 
-#include "io/mesh/mesh_reader.hpp"
 #include "readers/vtk_hdf_files.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace tessera::io {

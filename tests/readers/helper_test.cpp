@@ -18,10 +18,9 @@
 
 #include "io/foreign/client/foreign_file.hpp"
 #include "io/foreign/client/helper_process.hpp"
-#include "io/mesh/mesh_reader.hpp"
-#include "io/volume/volume_reader.hpp"
 #include "support/foam_case.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace tessera::io {

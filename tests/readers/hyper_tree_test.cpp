@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
-#include "io/mesh/mesh_reader.hpp"
 #include "readers/hyper_tree_files.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace tessera::io {

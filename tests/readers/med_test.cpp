@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
-#include "io/formats/reader_programs.hpp"
+#include "io/files/reader_programs.hpp"
 #include "io/mesh/mesh_formats.hpp"
-#include "io/mesh/mesh_reader.hpp"
 #include "support/changed_bytes.hpp"
 #include "support/curved_reference.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace tessera::io {

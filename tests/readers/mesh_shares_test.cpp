@@ -12,9 +12,9 @@
 #include <array>
 #include <vector>
 
-#include "io/mesh/mesh_reader.hpp"
 #include "support/mesh_checks.hpp"
 #include "support/parts_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/some_cases.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -61,7 +61,7 @@ TEST(MeshShares, AnExodusMeshInSeveralFilesIsReadByTheNameOfOne) {
   const test::TemporaryFolder folder;
   for (int k = 0; k < 12; ++k) write_exodus(folder / fmt::format("m.ex2.12.{:02}", k), k);
   const auto file = folder / "m.ex2.12.07";
-  EXPECT_EQ(exodus_files(file).size(), 12u);
+  EXPECT_EQ(exodus_files(identify(file)).size(), 12u);
   const cells::MeshFile whole = read_mesh(file);
   EXPECT_NEAR(testing::volume(whole.mesh), 12, 1e-12);
   EXPECT_EQ(whole.blocks, (std::vector<std::string>{"block 1", "block 2"}));
@@ -90,7 +90,7 @@ TEST(MeshShares, OtherNumberedNamesAreFilesOfTheirOwn) {
   const test::TemporaryFolder folder;
   for (const char* name : {"m.4", "m.1.0", "m.2.2", "m.10.1", "m.ex2.2.x"}) {
     write_exodus(folder / name, 0);
-    EXPECT_TRUE(exodus_files(folder / name).empty()) << name;
+    EXPECT_TRUE(exodus_files(identify(folder / name)).empty()) << name;
     EXPECT_NEAR(testing::volume(read_mesh(folder / name).mesh), 1, 1e-12) << name;
   }
 }

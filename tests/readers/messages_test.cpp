@@ -12,11 +12,10 @@
 #include <vector>
 
 #include "cells/mesh_assembly.hpp"
-#include "io/formats/file_kinds.hpp"
-#include "io/mesh/mesh_reader.hpp"
-#include "io/volume/volume_reader.hpp"
+#include "io/formats/identify.hpp"
 #include "support/foam_case.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/vtk_or_skip.hpp"
 

@@ -8,10 +8,10 @@ extern "C" {
 #include <array>
 #include <vector>
 
-#include "io/mesh/mesh_reader.hpp"
 #include "io/volume/volume_formats.hpp"
 #include "support/changed_bytes.hpp"
 #include "support/marker.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/volume_checks.hpp"
 

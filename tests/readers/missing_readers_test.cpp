@@ -6,11 +6,10 @@
 #include <algorithm>
 #include <map>
 
-#include "io/formats/file_kinds.hpp"
-#include "io/formats/reader_programs.hpp"
-#include "io/mesh/mesh_reader.hpp"
+#include "io/files/reader_programs.hpp"
+#include "io/formats/identify.hpp"
 #include "io/mesh/triangle_file.hpp"
-#include "io/volume/volume_reader.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace tessera::io::missing_readers_test {
@@ -96,27 +95,28 @@ class MissingReaders : public ::testing::Test {
 TEST_F(MissingReaders, EveryFormatNamesItsReaderAndHowToGetIt) {
   const std::map<std::string, std::string> texts = beginnings();
   int formats = 0;
-  for (const FormatRow& row : format_rows()) {
-    const auto program = std::ranges::find_if(
-        reader_programs(), [&](const ReaderProgram& p) { return needs_reader(row.needs, p.reader); });
-    if (program == reader_programs().end()) continue;
+  for (const Format& row : formats()) {
+    if (row.needs.empty()) continue;
+    const ReaderProgram& program = reader_program(row.needs.front());
     const std::string extensions = row.extensions;
     // FLASH is found by its reader: to this library it is HDF5.
-    if (extensions.empty() && row.begins == nullptr) continue;
+    if (extensions.empty() && row.recognizes == nullptr) continue;
     SCOPED_TRACE(row.name);
     ++formats;
     const auto text = texts.find(row.name);
     ASSERT_NE(text, texts.end()) << "give it a beginning here";
     const auto file = folder.write("a" + extensions.substr(0, extensions.find(' ')), text->second);
-    ASSERT_NE(format_of(file), nullptr);
+    const InputFile identified = identify(file);
+    ASSERT_NE(identified.format, nullptr);
+    const std::string format = identified.format->name;
     // Lists are opened by this library; what they list needs the reader.
-    std::string subject = file.string(), format = format_of(file)->name;
-    if (format == "PLOT3D list") subject = (folder / "grid.xyz").string(), format = "PLOT3D";
-    if (row.holds != FileHolds::grid) expect_named(test::fault_of([&] { read_mesh(file); }), subject, format, *program);
+    const std::string subject = format == "PLOT3D list" ? (folder / "grid.xyz").string() : file.string();
+    if (row.holds != FileHolds::grid) expect_named(test::fault_of([&] { read_mesh(file); }), subject, format, program);
     if (row.holds == FileHolds::grid || row.holds == FileHolds::grid_or_mesh)
-      expect_named(test::fault_of([&] { open_volume(file); }), subject, format, *program);
-    EXPECT_EQ(is_volume(file), row.kind == FileKind::vtk_grid || row.holds == FileHolds::grid);
-    EXPECT_EQ(is_mesh_file(file), row.holds != FileHolds::grid);
+      expect_named(test::fault_of([&] { open_volume(file); }), subject, format, program);
+    const bool is_looked_into = row.holds_grid != nullptr || format == "HDF5";
+    EXPECT_EQ(is_volume(identified), row.open_volume != nullptr && !is_looked_into);
+    EXPECT_EQ(is_mesh(identified), row.read_mesh != nullptr);
     std::filesystem::remove(file);
   }
   EXPECT_GT(formats, 25);
@@ -132,18 +132,17 @@ TEST_F(MissingReaders, WhatIsRareInAFormatOfOurOwnReaderNamesTheOther) {
 }
 
 TEST_F(MissingReaders, SurfacesAreReadWhereOnlyFillingThemNeedsAReader) {
-  EXPECT_EQ(read_triangles(folder.write("a.ply", tetrahedron_ply)).triangles.size(), 4u);
+  EXPECT_EQ(read_triangles(identify(folder.write("a.ply", tetrahedron_ply))).triangles.size(), 4u);
   const auto file = folder.write("a.stl", "solid s\nfacet normal 0 0 1\n");
-  expect_named(test::fault_of([&] { read_triangles(file); }), file.string(), "STL", reader_program(Reader::vtk));
+  expect_named(test::fault_of([&] { read_triangles(identify(file)); }), file.string(), "STL",
+               reader_program(Reader::vtk));
 }
 
 TEST_F(MissingReaders, TheListOfFormatsNamesThem) {
   for (const FileFormat& format : file_formats()) {
-    const auto row = std::ranges::find_if(format_rows(), [&](const FormatRow& r) { return format.name == r.name; });
-    ASSERT_NE(row, format_rows().end());
-    const auto program = std::ranges::find_if(
-        reader_programs(), [&](const ReaderProgram& p) { return needs_reader(row->needs, p.reader); });
-    EXPECT_EQ(format.left_out, program == reader_programs().end() ? "" : program->program) << format.name;
+    const auto row = std::ranges::find_if(formats(), [&](const Format& r) { return format.name == r.name; });
+    ASSERT_NE(row, formats().end());
+    EXPECT_EQ(format.left_out, row->needs.empty() ? "" : reader_program(row->needs.front()).program) << format.name;
   }
 }
 

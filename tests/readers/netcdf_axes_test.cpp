@@ -9,9 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh/mesh_reader.hpp"
-#include "io/volume/volume_reader.hpp"
 #include "readers/netcdf_writer.hpp"
+#include "support/read_files.hpp"
 #include "support/some_cases.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/volume_checks.hpp"

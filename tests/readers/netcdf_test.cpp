@@ -8,12 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh/mesh_reader.hpp"
 #include "io/volume/volume_formats.hpp"
-#include "io/volume/volume_reader.hpp"
 #include "readers/netcdf_writer.hpp"
 #include "support/changed_bytes.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/volume_checks.hpp"
 

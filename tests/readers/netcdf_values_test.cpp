@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "io/volume/volume_reader.hpp"
 #include "readers/netcdf_writer.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/volume_checks.hpp"
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cstring>
 
-#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh/plot3d_layout.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/some_cases.hpp"
 
 namespace tessera::io {
@@ -271,7 +271,7 @@ TEST(Plot3d, ListsOfFilesAreReadOneTimeEach) {
   const cells::MeshFile before = read_mesh(list, first);
   EXPECT_EQ(before.mesh.field_name, "none");
   EXPECT_NEAR(testing::volume(before.mesh), 3, 1e-12);
-  EXPECT_EQ(time_steps_of_mesh(list, {}).count, 2u);
+  EXPECT_EQ(time_steps_of_mesh(identify(list)).count, 2u);
   first.time_step = 2;
   test::expect_bad_input([&] { read_mesh(list, first); }, {"a.p3d: there is no time step 2, the file has 2"});
   for (const auto& [entries, words] : std::vector<std::pair<std::string, std::string>>{

@@ -22,6 +22,7 @@
 #include "cells/mesh_assembly.hpp"
 #include "support/mesh_checks.hpp"
 #include "support/polyhedral_meshes.hpp"
+#include "support/read_files.hpp"
 
 namespace tessera::io::polyhedra_written_test {
 namespace {

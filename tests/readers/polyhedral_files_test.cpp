@@ -11,9 +11,9 @@
 #include <set>
 
 #include "cells/mesh_assembly.hpp"
-#include "io/mesh/mesh_reader.hpp"
 #include "support/mesh_checks.hpp"
 #include "support/polyhedral_meshes.hpp"
+#include "support/read_files.hpp"
 
 namespace tessera::io {
 namespace {

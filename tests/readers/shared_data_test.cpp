@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "io/mesh/mesh_reader.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 
 namespace tessera::io {
 namespace {

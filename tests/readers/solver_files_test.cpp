@@ -12,10 +12,10 @@
 #include <utility>
 
 #include "io/mesh/block_surface.hpp"
-#include "io/mesh/mesh_reader.hpp"
 #include "support/foam_case.hpp"
 #include "support/mesh_checks.hpp"
 #include "support/parts_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace tessera::io {

@@ -19,9 +19,9 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh/mesh_reader.hpp"
 #include "support/amr_files.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace tessera::io::vtk_amr_test {

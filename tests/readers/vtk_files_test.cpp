@@ -4,8 +4,8 @@
 #include <zlib.h>
 
 #include "io/mesh/mesh_formats.hpp"
-#include "io/mesh/mesh_reader.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace tessera::io {

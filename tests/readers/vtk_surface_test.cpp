@@ -6,9 +6,9 @@
 #include <algorithm>
 
 #include "cells/surface.hpp"
-#include "io/formats/reader_programs.hpp"
-#include "io/mesh/mesh_reader.hpp"
+#include "io/files/reader_programs.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/vtk_or_skip.hpp"
 

@@ -25,9 +25,9 @@
 
 #include "api/queries/mesh_check.hpp"
 #include "cells/cell_split.hpp"
-#include "io/mesh/mesh_reader.hpp"
 #include "io/volume/plain_vtk_grid.hpp"
 #include "io/volume/volume_formats.hpp"
+#include "support/read_files.hpp"
 #include "support/streamed_fixture.hpp"
 #include "support/temporary_folder.hpp"
 #include "tessera/cell_type.hpp"

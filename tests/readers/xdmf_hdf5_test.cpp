@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "io/formats/reader_programs.hpp"
-#include "io/mesh/mesh_reader.hpp"
+#include "io/files/reader_programs.hpp"
 #include "io/volume/volume_formats.hpp"
 #include "support/changed_bytes.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/volume_checks.hpp"
 

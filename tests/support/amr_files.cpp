@@ -13,8 +13,8 @@
 #include <map>
 #include <random>
 
-#include "io/mesh/mesh_reader.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/some_cases.hpp"
 
 namespace tessera::io::testing {

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "io/volume/volume_reader.hpp"
+#include "support/read_files.hpp"
 #include "support/some_cases.hpp"
 #include "support/volume_checks.hpp"
 

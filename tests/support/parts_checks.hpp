@@ -11,8 +11,8 @@
 
 #include "cells/block_choice.hpp"
 #include "cells/duplicate_cells.hpp"
-#include "io/mesh/mesh_formats.hpp"
 #include "io/mesh/mesh_parts.hpp"
+#include "support/read_files.hpp"
 
 /// Meshes read in parts beside the same ones read whole.
 namespace tessera::io::testing {
@@ -40,7 +40,7 @@ inline InParts read_in_parts(const std::filesystem::path& file, int parts, const
   std::vector<std::vector<cells::FieldTally>> tallies;
   std::vector<std::string> names;
   for (int p = 0; p < parts; ++p) {
-    readings.push_back(std::make_unique<MeshPartReading>(file, options, p, parts));
+    readings.push_back(std::make_unique<MeshPartReading>(identify(file), options, p, parts));
     tallies.push_back(readings.back()->tallies());
     cells::add_notes(readings.back()->block_names(), names);
   }
@@ -66,7 +66,7 @@ inline InParts read_in_parts(const std::filesystem::path& file, int parts, const
 }
 
 inline void expect_as_whole(const std::filesystem::path& file, const cells::MeshOptions& options = {}) {
-  ASSERT_TRUE(readable_in_parts(file, options));
+  ASSERT_TRUE(readable_in_parts(identify(file), options));
   const cells::MeshFile whole = read_mesh(file, options);
   for (const int parts : {1, 2, 3, 7}) {
     SCOPED_TRACE(::testing::Message() << file << " in " << parts << " parts");

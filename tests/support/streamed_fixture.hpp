@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "io/volume/volume_reader.hpp"
+#include "support/read_files.hpp"
 #include "support/scratch_folder.hpp"
 #include "support/temporary_folder.hpp"
 

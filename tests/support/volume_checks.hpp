@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "io/volume/volume_reader.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 
 namespace tessera::test {
 

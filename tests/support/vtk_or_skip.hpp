@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "io/formats/reader_programs.hpp"
+#include "io/files/reader_programs.hpp"
 
 /// Skips a test of files that tessera-read-vtk reads where that is not built (TESSERA_VTK=OFF).
 #define TESSERA_VTK_OR_SKIP() \

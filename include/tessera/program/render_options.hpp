@@ -14,6 +14,7 @@
 #include "tessera/dataset.hpp"
 #include "tessera/default_view.hpp"
 #include "tessera/image_file.hpp"
+#include "tessera/input_file.hpp"
 #include "tessera/program/film.hpp"
 #include "tessera/program/options.hpp"
 #include "tessera/settings.hpp"
@@ -38,10 +39,11 @@ struct AnnotationOptions {
   std::filesystem::path layer{};  ///< where the annotation goes alone; empty: over the picture
 };
 
-/// How `tessera render` was called, checked and in values. Files are not looked at yet.
+/// How `tessera render` was called, checked and in values.
 struct RenderOptions {
   OptionWords words;  ///< that all of this is made of
   FilmPlan plan;
+  std::optional<InputFile> first;  ///< the input or, of a list of files, its first one, as it was identified
   ReadOptions read;
   Settings settings;
   FrameSettings frame;
@@ -73,13 +75,21 @@ struct RenderOptions {
   /// The run's input: a mesh, a grid, or what names a time series; of several the first.
   [[nodiscard]] const std::filesystem::path& input() const { return plan.inputs.front(); }
   [[nodiscard]] bool is_grid() const { return plan.grids; }
+
+  /// Dataset::open, which does not identify `first` again.
+  [[nodiscard]] Dataset open(std::span<const std::filesystem::path> files, const ReadOptions& how,
+                             const Communicator& communicator = {}) const;
 };
 
 /// `-` as a file's name: standard input where it is read, standard output where it is written.
 inline constexpr std::string_view standard_stream = "-";
 
-/// Whether volumes are drawn: of a list of files its first says it.
-bool draws_grids(const OptionWords& words);
+/// The input or, of a list of files, its first one.
+InputFile first_input(const OptionWords& words);
+/// Whether volumes are drawn, if that is the first input.
+bool draws_grids(const OptionWords& words, const InputFile& first);
+/// Whether an input is a volume: by its content, or because options describe it as .raw.
+bool is_grid_input(const OptionWords& words, const InputFile& input);
 
 /// How the input is read, as a mesh or as a grid.
 ReadOptions read_options(const OptionWords& words, bool is_grid);

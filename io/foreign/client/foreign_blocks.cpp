@@ -360,4 +360,13 @@ std::vector<cells::CellBlock> blocks_of(const ForeignFile& file, std::vector<std
   return blocks;
 }
 
+cells::MeshBlocks mesh_of(const ForeignFile& file, GridsAre grids) {
+  const ForeignContents& contents = file.contents;
+  cells::MeshBlocks result{{}, contents.notes, contents.format, contents.block_names, contents.surface_names};
+  result.time_step = contents.time_step;
+  result.beside_degrees = contents.beside_degrees;
+  result.blocks = blocks_of(file, result.notes, grids);
+  return result;
+}
+
 }  // namespace tessera::io

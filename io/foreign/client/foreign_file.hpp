@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "cells/cell_block.hpp"
+#include "cells/mesh_blocks.hpp"
+#include "io/files/input_file.hpp"
 #include "io/foreign/client/helper_process.hpp"
 #include "io/foreign/messages/array_source.hpp"
 #include "io/foreign/messages/foreign_data.hpp"
@@ -28,6 +29,10 @@ struct ForeignFile {
 ForeignFile open_foreign(std::shared_ptr<HelperProcess> helper, const std::filesystem::path& file,
                          nlohmann::json request);
 
+/// The same by a helper of its own.
+ForeignFile open_foreign(const InputFile& file, nlohmann::json request, const ReadProgressFunction& progress = {},
+                         HelperTask task = {});
+
 /// A field whose numbers are fetched when it is first read, and forgotten with the last copy.
 cells::BlockField foreign_field(const ForeignFile& file, const ForeignArray& array, scene::Association association);
 
@@ -44,6 +49,9 @@ enum class GridsAre { volumes, hexahedra };
 /// Throws Error(bad_input) naming the cell at fault, and for images (regular grids).
 std::vector<cells::CellBlock> blocks_of(const ForeignFile& file, std::vector<std::string>& notes,
                                         GridsAre grids = GridsAre::volumes);
+
+/// The same with what the reader says of the whole.
+cells::MeshBlocks mesh_of(const ForeignFile& file, GridsAre grids = GridsAre::volumes);
 
 /// Bits of vtkGhostType for each point or cell; the older vtkGhostLevels (0 is one's own) becomes "duplicate". Empty if
 /// the part has neither.

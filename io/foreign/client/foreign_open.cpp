@@ -38,4 +38,11 @@ ForeignFile open_foreign(std::shared_ptr<HelperProcess> helper, const std::files
   return opened;
 }
 
+ForeignFile open_foreign(const InputFile& file, nlohmann::json request, const ReadProgressFunction& progress,
+                         HelperTask task) {
+  task.progress = progress;
+  task.format = file.format;
+  return open_foreign(std::make_shared<HelperProcess>(std::move(task)), file.path, std::move(request));
+}
+
 }  // namespace tessera::io

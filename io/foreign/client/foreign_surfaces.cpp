@@ -58,22 +58,22 @@ cells::Surface surface_of(const ForeignFile& file, const ForeignPart& part) {
   return surface;
 }
 
-ForeignFile open_surface(const std::string& source, const char* reader) {
-  ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(), source, {{"reader", reader}});
+ForeignFile open_surface(const InputFile& file, const char* reader) {
+  ForeignFile opened = open_foreign(file, {{"reader", reader}});
   if (opened.contents.parts.size() != 1 || opened.contents.parts.front().kind != ForeignPart::Kind::surface)
-    refuse_surface(source);
+    refuse_surface(opened.source);
   return opened;
 }
 
 }  // namespace
 
-cells::Surface read_stl(const std::string& source) {
-  const ForeignFile opened = open_surface(source, "stl");
+cells::Surface read_stl(const InputFile& file) {
+  const ForeignFile opened = open_surface(file, "stl");
   return surface_of(opened, opened.contents.parts.front());
 }
 
-VtkSurface read_vtk_surface(const std::string& source) {
-  const ForeignFile opened = open_surface(source, "vtk_surface");
+VtkSurface read_vtk_surface(const InputFile& file) {
+  const ForeignFile opened = open_surface(file, "vtk_surface");
   const ForeignPart& part = opened.contents.parts.front();
   VtkSurface result;
   result.notes = opened.contents.notes;

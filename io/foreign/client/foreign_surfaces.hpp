@@ -5,17 +5,18 @@
 #include <vector>
 
 #include "cells/surface.hpp"
+#include "io/files/input_file.hpp"
 
 namespace tessera::io {
 
-/// An STL surface by VTK, each face with points of its own. Throws Error(bad_input, "SOURCE: ...").
-cells::Surface read_stl(const std::string& source);
+/// An STL surface by VTK, each face with points of its own. Throws Error(bad_input, "FILE: ...").
+cells::Surface read_stl(const InputFile& file);
 
 /// A VTK surface, XML (.vtp) or legacy: its polygons and strips; point arrays of one component are its attributes.
 struct VtkSurface {
   cells::Surface surface;
   std::vector<std::string> attribute_names, notes;
 };
-VtkSurface read_vtk_surface(const std::string& source);
+VtkSurface read_vtk_surface(const InputFile& file);
 
 }  // namespace tessera::io

@@ -23,7 +23,7 @@
 #include <string_view>
 #include <utility>
 
-#include "io/formats/input_file.hpp"
+#include "io/files/input_file.hpp"
 #include "scene/error.hpp"
 #include "system/files_read.hpp"
 #include "system/idle_watch.hpp"
@@ -223,7 +223,7 @@ HelperMessage HelperProcess::exchange(const Json& request, const std::string& su
 
 void HelperProcess::send(const Json& request, const std::string& subject, int file) {
   if (death_) report_death(subject);
-  if (process_ < 0) throw missing_reader(task_.reader, subject);
+  if (process_ < 0) throw missing_reader(task_.reader, subject, task_.format);
   if (!has_begun_) has_begun_ = receive_message(socket_.get()).has_value();
   if (!has_begun_ || !send_message(socket_.get(), Json::to_cbor(request), file)) report_death(subject);
 }

@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "io/files/reader_programs.hpp"
 #include "io/foreign/messages/array_source.hpp"
 #include "io/foreign/messages/foreign_data.hpp"
 #include "io/foreign/messages/helper_messages.hpp"
-#include "io/formats/reader_programs.hpp"
 #include "scene/error.hpp"
 #include "tessera/read_progress.hpp"
 
@@ -51,6 +51,7 @@ class SharedBytes {
 struct HelperTask {
   std::string words = "reading it", remedy = "have it written again, or in another format";
   Reader reader = Reader::vtk;
+  const Format* format = nullptr;   ///< of the files, to be named if the program is not installed
   ReadProgressFunction progress{};  ///< hears how far it is; null: nobody
   std::string limit_remedy{};       ///< where it takes too long; empty: as ever
   /// For how long it may wait for something else than the caller, without any processor time: for a pipe, say.

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "io/formats/input_file.hpp"
+#include "io/files/input_file.hpp"
 #include "readers/vtk/netcdf/netcdf_size.hpp"
 #include "readers/vtk/vtk_words.hpp"
 #include "scene/error.hpp"

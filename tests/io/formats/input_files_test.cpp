@@ -12,17 +12,16 @@
 #include <cstring>
 #include <fstream>
 
-#include "io/formats/input_file.hpp"
-#include "io/formats/reader_programs.hpp"
-#include "io/formats/whole_file.hpp"
+#include "io/files/input_file.hpp"
+#include "io/files/reader_programs.hpp"
+#include "io/files/whole_file.hpp"
 #include "io/mesh/amrex_file.hpp"
-#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh/tets_file.hpp"
 #include "io/scene/time_series.hpp"
-#include "io/volume/volume_reader.hpp"
 #include "support/amr_files.hpp"
 #include "support/foam_case.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 #include "system/idle_watch.hpp"
 #include "system/positional_file.hpp"

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <fstream>
 
-#include "io/formats/file_beginnings.hpp"
-#include "io/formats/file_kinds.hpp"
+#include "io/files/file_beginnings.hpp"
+#include "io/formats/identify.hpp"
 #include "io/mesh/amrex_header.hpp"
-#include "io/mesh/mesh_reader.hpp"
 #include "support/amr_files.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace tessera::io {
@@ -66,8 +66,8 @@ TEST(Amrex, FieldsAreListedAndTheFolderIsToldByItsHeader) {
   EXPECT_EQ(read.fields[1].name, "f");
   EXPECT_EQ(read.mesh.field_name, "f") << "the one that varies";
   EXPECT_EQ(read.format, "AMReX plot file");
-  ASSERT_NE(format_of(plot), nullptr);
-  EXPECT_EQ(format_of(plot)->kind, FileKind::amr);
+  ASSERT_NE(identify(plot).format, nullptr);
+  EXPECT_STREQ(identify(plot).format->name, "AMReX plot file");
   // A Header is one by what is in it.
   EXPECT_FALSE(looks_like_amrex("Header of something\n2\na\nb\n3\n"));
   EXPECT_FALSE(looks_like_amrex("HyperCLaw-V1.1\n2\na\nb\n7\n"));

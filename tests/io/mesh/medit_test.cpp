@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh/mesh_reader.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace tessera::io::medit_test {

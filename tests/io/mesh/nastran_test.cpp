@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh/nastran_file.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace tessera::io::nastran_test {

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh/tecplot_file.hpp"
 #include "support/foam_case.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace tessera::io::tecplot_test {

@@ -6,11 +6,11 @@
 #include <numbers>
 
 #include "cells/surface.hpp"
-#include "io/formats/reader_programs.hpp"
+#include "io/files/reader_programs.hpp"
 #include "io/mesh/mesh_formats.hpp"
-#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh/tetgen_files.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 
 namespace tessera::io {
 namespace {

@@ -6,8 +6,8 @@
 #include <cstring>
 
 #include "cells/mesh_assembly.hpp"
-#include "io/mesh/mesh_reader.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/vtk_or_skip.hpp"
 
 namespace tessera::io {

@@ -9,7 +9,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "io/formats/input_file.hpp"
+#include "io/files/input_file.hpp"
 #include "io/mesh/vtu_checks.hpp"
 #include "io/mesh/vtu_writing.hpp"
 #include "support/mesh_checks.hpp"

@@ -10,11 +10,11 @@
 
 #include "cells/mesh_assembly.hpp"
 #include "io/mesh/mesh_formats.hpp"
-#include "io/mesh/mesh_reader.hpp"
 #include "io/mesh/vtu_checks.hpp"
 #include "io/mesh/vtu_writing.hpp"
 #include "support/mesh_checks.hpp"
 #include "support/polyhedral_meshes.hpp"
+#include "support/read_files.hpp"
 #include "support/some_cases.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
-#include "io/formats/reader_programs.hpp"
-#include "io/mesh/mesh_reader.hpp"
+#include "io/files/reader_programs.hpp"
+#include "support/read_files.hpp"
 #include "support/volume_bytes.hpp"
 #include "support/volume_checks.hpp"
 #include "support/vtk_or_skip.hpp"

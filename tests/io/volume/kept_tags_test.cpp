@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "io/volume/volume_reader.hpp"
 #include "io/volume/volume_writer.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/volume_bytes.hpp"
 #include "support/volume_checks.hpp"

@@ -9,9 +9,10 @@
 #include <fstream>
 #include <string>
 
-#include "io/formats/reader_programs.hpp"
+#include "io/files/reader_programs.hpp"
 #include "io/volume/volume_writer.hpp"
 #include "support/dicom_writing.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/volume_bytes.hpp"
 

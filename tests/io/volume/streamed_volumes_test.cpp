@@ -6,6 +6,7 @@
 
 #include "io/volume/brick_file.hpp"
 #include "io/volume/streamed_bricks.hpp"
+#include "support/read_files.hpp"
 #include "support/scratch_folder.hpp"
 #include "support/streamed_fixture.hpp"
 #include "support/volume_bytes.hpp"

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/volume/volume_formats.hpp"
+#include "support/read_files.hpp"
 #include "support/some_cases.hpp"
 #include "support/streamed_fixture.hpp"
 #include "support/volume_bytes.hpp"

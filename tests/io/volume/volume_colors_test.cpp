@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/volume/volume_reader.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/volume_bytes.hpp"
 #include "support/volume_checks.hpp"

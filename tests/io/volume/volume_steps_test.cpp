@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "io/formats/file_kinds.hpp"
-#include "io/volume/volume_reader.hpp"
+#include "io/formats/identify.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/volume_bytes.hpp"
 #include "support/volume_checks.hpp"
@@ -149,7 +149,7 @@ TEST_F(VolumeSteps, HeaderAndSamplesMayBeTwoFiles) {
   std::memcpy(header.data() + 80, spacing, sizeof spacing);
   const auto analyze = folder.write("old.hdr", header);
   const auto packed = folder.write("old.img.gz", gzip(bytes_of(counting<std::int16_t>(24))));
-  EXPECT_EQ(format_of(analyze)->kind, FileKind::analyze);
+  EXPECT_STREQ(identify(analyze).format->name, "Analyze 7.5");
   for (const auto& file : {analyze, packed}) {
     const VolumeFile volume = open_volume(file);
     EXPECT_EQ(all_samples(*volume.source), from(0));

@@ -8,7 +8,7 @@
 
 namespace tessera::io {
 
-/// A whole file in memory, for text and other files of which all is looked at. Throws as require_file
+/// A whole file in memory, for text and other files of which all is looked at. Throws as open_input
 /// (input_file.hpp), or Error(system_failure) if the file is shortened while it is read.
 ///
 /// Read, and not mapped: a file that another program shortens would end the process with SIGBUS at any later time.

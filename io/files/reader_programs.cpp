@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/formats/reader_programs.hpp"
+#include "io/files/reader_programs.hpp"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
 
-#include "io/formats/file_kinds.hpp"
+#include "io/files/format.hpp"
 
 namespace tessera::io {
 namespace {
@@ -64,12 +65,12 @@ bool is_trusted(const std::filesystem::path& program, const std::filesystem::pat
 }
 
 /// What a user can do without the reader.
-std::string other_remedy(Reader reader, const FormatRow* row) {
+std::string other_remedy(Reader reader, const Format* format) {
   if (reader == Reader::tetgen) return "give a mesh of tetrahedra";
   if (reader == Reader::dicom) return "convert them to .nii.gz with dcm2niix";
-  if (row == nullptr || std::string_view(row->extensions).starts_with(".vtu"))
+  if (format == nullptr || std::string_view(format->extensions).starts_with(".vtu"))
     return "convert the file to another format";
-  switch (row->holds) {
+  switch (format->holds) {
     case FileHolds::surface:
       return "convert the file to .ply";
     case FileHolds::grid:
@@ -104,40 +105,19 @@ std::filesystem::path find_reader(Reader reader) {
 
 bool has_reader(Reader reader) { return !find_reader(reader).empty(); }
 
-scene::Error missing_reader(Reader reader, const std::filesystem::path& file) {
-  const FormatRow* const row = format_of(file);
-  const std::string_view format = row != nullptr ? row->name : "such";
+scene::Error missing_reader(Reader reader, const std::string& source, const Format* format) {
   const ReaderProgram& program = reader_program(reader);
   // Formats that this library reads itself need a reader for what is rare in them.
-  const char* const words = row != nullptr && !needs_reader(row->needs, reader)
+  const char* const words = format != nullptr && !needs_reader(*format, reader)
                                 ? "{}: this {} file has parts that are {} by {} alone"
                                 : "{}: {} files are {} by {}";
-  return scene::bad_input(
-      fmt::format(fmt::runtime(words), file.string(), format, program.does, program.program) +
-      fmt::format(", which is not installed; install it (scripts/readers.sh of the sources builds it), or {}",
-                  other_remedy(reader, row)));
+  return scene::bad_input(fmt::format(fmt::runtime(words), source, format != nullptr ? format->name : "such",
+                                      program.does, program.program) +
+                          fmt::format(", which is not installed; install it (scripts/readers.sh of the sources builds "
+                                      "it), or {}",
+                                      other_remedy(reader, format)));
 }
 
-bool needs_reader(Needs needs, Reader reader) {
-  switch (reader) {
-    case Reader::vtk:
-      return needs == Needs::vtk || needs == Needs::vtk_and_tetgen;
-    case Reader::tetgen:
-      return needs == Needs::tetgen || needs == Needs::vtk_and_tetgen;
-    case Reader::gmsh:
-      return needs == Needs::gmsh;
-    case Reader::dicom:
-      return needs == Needs::dicom;
-    case Reader::xdmf:
-      return needs == Needs::xdmf;
-    case Reader::med:
-      return needs == Needs::med;
-  }
-  return false;
-}
-
-void require_reader(Reader reader, const std::filesystem::path& file) {
-  if (!has_reader(reader)) throw missing_reader(reader, file);
-}
+bool needs_reader(const Format& format, Reader reader) { return std::ranges::count(format.needs, reader) > 0; }
 
 }  // namespace tessera::io

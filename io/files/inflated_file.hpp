@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include "io/files/input_file.hpp"
 #include "scene/error.hpp"
 #include "system/descriptor.hpp"
 #include "system/gzip.hpp"
@@ -19,35 +20,30 @@ class InflatedFile {
   /// How many times the gzip file's size it may hold, beside 64 MiB. Meshes and surfaces take 3 to 30; grids of a few
   /// values, such as masks, hundreds.
   enum class Holds : std::uint16_t { mesh = 128, grid = 512 };
-  InflatedFile(const std::filesystem::path& file, Holds holds);
+  InflatedFile(const InputFile& file, Holds holds);
   /// Its first bytes alone: no more are inflated.
-  InflatedFile(const std::filesystem::path& file, std::uint64_t first);
+  InflatedFile(const InputFile& file, std::uint64_t first);
 
-  /// Calls `work` with a name that this process and its helper can open while this lives, and returns what it returns.
-  /// In the lines of its errors that name is replaced by the gzip file's. The name has no extension: what the content
-  /// is has to be told from it, or from inner_name().
+  /// Calls `work` with the content, under a path that this process and its helper can open while this lives, and
+  /// returns what it returns. In the lines of its errors that path is replaced by the gzip file's. It has no extension.
   template <class Work>
   auto read(const Work& work) const {
     try {
-      return work(path_);
+      return work(content_);
     } catch (const scene::Error& error) {
       throw renamed(error);
     }
   }
 
-  /// The gzip file's name without its .gz, if it has that.
-  [[nodiscard]] std::filesystem::path inner_name() const;
-
-  /// The line with the gzip file's name in place of path(), for notes.
+  /// The line with the gzip file's name in place of the content's path, for notes.
   [[nodiscard]] std::string renamed(std::string line) const;
 
  private:
-  InflatedFile(const std::filesystem::path& file, const system::PositionalFile& packed,
-               const system::InflateLimit& limit);
+  InflatedFile(const InputFile& file, const system::InflateLimit& limit);
 
   [[nodiscard]] scene::Error renamed(const scene::Error& error) const;
 
-  std::filesystem::path file_, path_;
+  InputFile content_;
   system::Descriptor descriptor_;
 };
 

@@ -4,12 +4,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 
 #include "scene/error.hpp"
 
 namespace tessera::io {
 
-enum class Needs : std::uint8_t;  // file_kinds.hpp
+struct Format;
 
 /// The programs that read files with other people's libraries (readers/README.md). Each links one of these libraries
 /// and may be installed or not: that is a fact about the machine at run time, not about the build of this library.
@@ -31,13 +32,11 @@ std::filesystem::path find_reader(Reader reader);
 
 bool has_reader(Reader reader);
 
-/// The error of a file whose reader is not installed: it names the format, the program and how to get it.
-scene::Error missing_reader(Reader reader, const std::filesystem::path& file);
+/// The error of a file whose reader is not installed: it names the format, if that is known, the program and how to get
+/// it.
+scene::Error missing_reader(Reader reader, const std::string& source, const Format* format);
 
-/// Whether formats with these needs are read, or filled, by that program.
-bool needs_reader(Needs needs, Reader reader);
-
-/// Throws missing_reader() unless the program is installed.
-void require_reader(Reader reader, const std::filesystem::path& file);
+/// Whether files of a format are read, or filled, by that program.
+bool needs_reader(const Format& format, Reader reader);
 
 }  // namespace tessera::io

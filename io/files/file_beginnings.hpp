@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 
-#include "io/formats/file_kinds.hpp"
+#include "io/files/format.hpp"
 
 /// Whether a file begins as one of a format does. None says yes to a file of another format of the table.
 namespace tessera::io {
+
+inline constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
 
 /// The `type` of <VTKFile type="...">, or else empty.
 std::string vtk_xml_type(std::string_view beginning);
@@ -28,7 +29,7 @@ bool begins_as_medit_binary(std::string_view beginning);
 bool begins_as_medit_text(std::string_view beginning);
 
 /// For VTK XML: throws Error(bad_input) for a file in UTF-16, whose words are not those that are looked for.
-void require_no_utf16(const std::filesystem::path& file);
+void require_no_utf16(std::string_view beginning, const std::string& source);
 
 /// The word after DATASET of legacy VTK, or else empty.
 std::string vtk_legacy_type(std::string_view beginning);
@@ -45,15 +46,13 @@ bool begins_as_vti(const FileBeginning& file);
 bool begins_as_vtr(const FileBeginning& file);
 bool begins_as_pvd(const FileBeginning& file);
 bool begins_as_file_series(const FileBeginning& file);
-bool begins_as_other_vtk_xml(const FileBeginning& file);
+bool begins_as_vtk_xml(const FileBeginning& file);
 bool begins_as_legacy_mesh(const FileBeginning& file);
 bool begins_as_legacy_grid(const FileBeginning& file);
 bool begins_as_exodus(const FileBeginning& file);
 bool begins_as_minc(const FileBeginning& file);
 bool begins_as_netcdf(const FileBeginning& file);
 bool begins_as_hdf5(const FileBeginning& file);
-/// Whether HDF5 begins behind a block of the user's own, whose size is 512 bytes or a power of two times that.
-bool has_hdf5_behind_block(const std::filesystem::path& file);
 bool begins_as_adf(const FileBeginning& file);
 bool begins_as_openfoam(const FileBeginning& file);
 bool begins_as_ensight(const FileBeginning& file);
@@ -85,7 +84,6 @@ bool begins_as_netgen(const FileBeginning& file);
 bool begins_as_nek5000(const FileBeginning& file);
 bool begins_as_amira(const FileBeginning& file);
 bool begins_as_brep(const FileBeginning& file);
-bool begins_as_d3plot(const FileBeginning& file);
 bool begins_as_fits(const FileBeginning& file);
 bool begins_as_frd(const FileBeginning& file);
 bool begins_as_gltf(const FileBeginning& file);

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/formats/whole_file.hpp"
+#include "io/files/whole_file.hpp"
 
 #include <fmt/format.h>
 #include <sys/mman.h>
 
 #include <new>
 
-#include "io/formats/inflated_file.hpp"
-#include "io/formats/input_file.hpp"
+#include "io/files/inflated_file.hpp"
+#include "io/files/input_file.hpp"
 #include "system/positional_file.hpp"
 
 namespace tessera::io {
 
-WholeFile::WholeFile(const std::filesystem::path& file) : size_(require_file(file)) {
-  const system::PositionalFile opened(file);
+WholeFile::WholeFile(const std::filesystem::path& file) {
+  const system::PositionalFile opened = open_input(file);
+  size_ = opened.size();
   // What this process inflated itself lies in memory already, and nobody shortens it.
   const bool is_mapped = is_inflated(file);
   start_ = is_mapped ? ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, opened.descriptor(), 0)

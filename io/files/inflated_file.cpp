@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/formats/inflated_file.hpp"
+#include "io/files/inflated_file.hpp"
 
 #include <fmt/format.h>
 #include <sys/mman.h>
@@ -11,7 +11,7 @@
 #include <new>
 #include <string_view>
 
-#include "io/formats/input_file.hpp"
+#include "io/files/input_file.hpp"
 #include "system/free_memory.hpp"
 #include "system/positional_file.hpp"
 
@@ -22,35 +22,31 @@ namespace {
 /// The name of the file without a name, which ends in the gzip file's size, so that helpers know it too.
 constexpr std::string_view name_begin = "tessera-gzip-";
 
-system::InflateLimit limit_of(const std::filesystem::path& packed, InflatedFile::Holds holds) {
+system::InflateLimit limit_of(const InputFile& packed, InflatedFile::Holds holds) {
   constexpr std::uint64_t always = 64 << 20;
-  return {always + static_cast<std::uint64_t>(holds) * require_file(packed), false};
+  return {always + static_cast<std::uint64_t>(holds) * packed.size, false};
 }
 
 }  // namespace
 
-InflatedFile::InflatedFile(const std::filesystem::path& file, Holds holds)
-    : InflatedFile(file, system::PositionalFile(file), limit_of(file, holds)) {}
+InflatedFile::InflatedFile(const InputFile& file, Holds holds) : InflatedFile(file, limit_of(file, holds)) {}
 
-InflatedFile::InflatedFile(const std::filesystem::path& file, std::uint64_t first)
-    : InflatedFile(file, system::PositionalFile(file), system::InflateLimit{first, true}) {}
+InflatedFile::InflatedFile(const InputFile& file, std::uint64_t first)
+    : InflatedFile(file, system::InflateLimit{first, true}) {}
 
-InflatedFile::InflatedFile(const std::filesystem::path& file, const system::PositionalFile& packed,
-                           const system::InflateLimit& limit)
-    : file_(file), descriptor_(::memfd_create(fmt::format("{}{}", name_begin, packed.size()).c_str(), MFD_CLOEXEC)) {
+InflatedFile::InflatedFile(const InputFile& file, const system::InflateLimit& limit)
+    : content_(file), descriptor_(::memfd_create(fmt::format("{}{}", name_begin, file.size).c_str(), MFD_CLOEXEC)) {
   if (!descriptor_.is_open()) throw std::bad_alloc();
-  if (system::inflate_to(descriptor_.get(), packed, limit, system::available_memory() / 10 * 9, file.string()) == 0)
-    throw scene::bad_input(fmt::format("{}: it holds nothing; write it anew", file.string()));
+  const system::PositionalFile packed(file.path);
+  content_.size = system::inflate_to(descriptor_.get(), packed, limit, system::available_memory() / 10 * 9, file.name);
+  if (content_.size == 0) throw scene::bad_input(fmt::format("{}: it holds nothing; write it anew", file.name));
   // By number, since the helper opens it too.
-  path_ = fmt::format("/proc/{}/fd/{}", ::getpid(), descriptor_.get());
-}
-
-std::filesystem::path InflatedFile::inner_name() const {
-  return system::lower_extension(file_) == ".gz" ? file_.parent_path() / file_.stem() : file_;
+  content_.path = fmt::format("/proc/{}/fd/{}", ::getpid(), descriptor_.get());
+  content_.is_gzip = false;
 }
 
 std::string InflatedFile::renamed(std::string line) const {
-  const std::string from = path_.string(), to = file_.string();
+  const std::string from = content_.path.string(), &to = content_.name;
   for (std::size_t at = line.find(from); at != std::string::npos; at = line.find(from, at + to.size()))
     line.replace(at, from.size(), to);
   return line;
@@ -85,7 +81,7 @@ void require_beside_others(const std::filesystem::path& file) {
 }
 
 scene::Error InflatedFile::renamed(const scene::Error& error) const {
-  return scene::with_subject(scene::Error(error.code(), renamed(std::string(error.what()))), file_.string());
+  return scene::with_subject(scene::Error(error.code(), renamed(std::string(error.what()))), content_.name);
 }
 
 }  // namespace tessera::io

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a file is, is told from what it begins with, then from its name.
-#include "io/formats/file_kinds.hpp"
+#include "io/formats/identify.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,10 +9,9 @@
 #include <fstream>
 #include <map>
 
-#include "io/formats/file_beginnings.hpp"
-#include "io/mesh/mesh_reader.hpp"
-#include "io/volume/volume_reader.hpp"
+#include "io/files/file_beginnings.hpp"
 #include "support/mesh_checks.hpp"
+#include "support/read_files.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace tessera::io {
@@ -20,20 +19,20 @@ namespace {
 
 using testing::message_of;
 
-class FileKinds : public ::testing::Test {
+class Identify : public ::testing::Test {
  protected:
   std::filesystem::path write(const std::string& name, const std::string& text) const {
     std::ofstream(folder / name, std::ios::binary) << text;
     return folder / name;
   }
   std::string name_of(const std::string& file, const std::string& text) const {
-    const FormatRow* const row = format_of(write(file, text));
-    return row == nullptr ? "" : row->name;
+    const Format* const format = identify(write(file, text)).format;
+    return format == nullptr ? "" : format->name;
   }
   test::TemporaryFolder folder;
 };
 
-TEST_F(FileKinds, FreeSurferVolumesAreNoBinaryMedit) {
+TEST_F(Identify, FreeSurferVolumesAreNoBinaryMedit) {
   std::string header(284 + 24, '\0');  // version, then width, height, depth, frames, type: big-endian
   header[3] = 1, header[7] = 4, header[11] = 3, header[15] = 2, header[19] = 1;
   for (const char* name : {"a.mgh", "a.mgz"}) {
@@ -88,51 +87,50 @@ const Beginning beginnings[] = {
     {"Abaqus or Ansys input", "*HEADING\nmodel\n"},
 };
 
-TEST_F(FileKinds, TheBeginningWinsOverTheName) {
+TEST_F(Identify, TheBeginningWinsOverTheName) {
   for (const Beginning& b : beginnings)
     for (const char* name : {"x", "x.dat", "x.ply", "x.vtu", "x.nrrd", "x.cas"})
       EXPECT_EQ(name_of(name, std::string(b.text)), b.format) << name;
 }
 
-TEST_F(FileKinds, TheTypeOfVtkXmlIsItsOwnAttributeInAnyOrder) {
+TEST_F(Identify, TheTypeOfVtkXmlIsItsOwnAttributeInAnyOrder) {
   EXPECT_EQ(vtk_xml_type("<?xml version=\"1.0\"?>\n<VTKFile header_type=\"UInt64\" type=\"ImageData\">"), "ImageData");
   EXPECT_EQ(vtk_xml_type("<VTKFile\n\ttype = 'RectilinearGrid' header_type='UInt32'>"), "RectilinearGrid");
   EXPECT_EQ(vtk_xml_type("<VTKFile header_type=\"UInt64\">\n<Piece type=\"ImageData\">"), "");
 }
 
-TEST_F(FileKinds, ClassicNetCdfIsExodusByItsDimensions) {
+TEST_F(Identify, ClassicNetCdfIsExodusByItsDimensions) {
   EXPECT_EQ(name_of("x.dat", std::string("CDF\1\0\0\0\0\0\0\0\12", 12) + "num_nodes"), "Exodus II");
   EXPECT_EQ(name_of("x.dat", std::string("CDF\1\0\0\0\0\0\0\0\12", 12) + "latitude"), "NetCDF grid");
   EXPECT_EQ(name_of("x.dat", std::string("CDF\1\0\0\0\0\0\0\0\12", 12) + "zspace yspace xspace"), "MINC");
 }
 
-TEST_F(FileKinds, BinaryStlIsToldByItsSize) {
+TEST_F(Identify, BinaryStlIsToldByItsSize) {
   std::string text(84 + 50, '\0');
   text[80] = 1;
   EXPECT_EQ(name_of("x.dat", text), "STL");
   EXPECT_EQ(name_of("y.dat", text + '\0'), "");
 }
 
-TEST_F(FileKinds, TheNameCountsWhereTheBeginningSaysNothing) {
+TEST_F(Identify, TheNameCountsWhereTheBeginningSaysNothing) {
   EXPECT_EQ(name_of("a.XYZ", "abc"), "PLOT3D");
   EXPECT_EQ(name_of("a.tets", "abc"), "raw tetrahedra");
   EXPECT_EQ(name_of("a.node", "4 3 0 0\n1 0 0 0\n"), "TetGen mesh");
   EXPECT_EQ(name_of("a.vtu", "Dear reader"), "VTK XML unstructured grid");
   EXPECT_EQ(name_of("a.vti", "<VTKFile"), "VTK XML image data");
-  EXPECT_EQ(format_of(folder / "absent.nii.gz")->kind, FileKind::nifti);
-  EXPECT_EQ(format_of(folder / "absent.dat"), nullptr);
+  EXPECT_EQ(name_of("d3plot01", "abc"), "LS-DYNA results");
 }
 
-TEST_F(FileKinds, WhatIsNotKnownOrNotReadIsTold) {
+TEST_F(Identify, WhatIsNotKnownOrNotReadIsTold) {
   EXPECT_NE(message_of([&] { read_mesh(write("x.dat", "Dear reader,")); }).find("`tessera formats` lists them"),
             std::string::npos);
   EXPECT_NE(message_of([&] { read_mesh(write("x.vtu", "MFEM mesh v1.0\n")); }).find("its format (MFEM) is not read"),
             std::string::npos);
-  EXPECT_FALSE(is_mesh_file(write("x.vtu", "MFEM mesh v1.0\n")));
+  EXPECT_FALSE(is_mesh(identify(write("x.vtu", "MFEM mesh v1.0\n"))));
   EXPECT_FALSE(is_volume(write("x.vti", "ply\nformat ascii 1.0\n")));
 }
 
-TEST_F(FileKinds, APointerOfGitLfsIsNamedWhateverTheNameOfTheFile) {
+TEST_F(Identify, APointerOfGitLfsIsNamedWhateverTheNameOfTheFile) {
   const std::string pointer =
       "version https://git-lfs.github.com/spec/v1\n"
       "oid sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f32b1258daaa5e2ca24d17e2393\nsize 12345\n";
@@ -154,7 +152,7 @@ TEST_F(FileKinds, APointerOfGitLfsIsNamedWhateverTheNameOfTheFile) {
   EXPECT_EQ(message_of([&] { open_volume(header); }), refusal_of(folder / "samples.raw"));
 }
 
-TEST_F(FileKinds, WhatHasTheNameOfASolversMeshAloneIsNotGivenToItsReader) {
+TEST_F(Identify, WhatHasTheNameOfASolversMeshAloneIsNotGivenToItsReader) {
   const std::string text = "26 0 0 1\nPATRAN neutral\n";
   EXPECT_NE(message_of([&] { read_mesh(write("x.neu", text)); }).find("it does not begin as a file of GAMBIT does"),
             std::string::npos);
@@ -162,16 +160,18 @@ TEST_F(FileKinds, WhatHasTheNameOfASolversMeshAloneIsNotGivenToItsReader) {
             std::string::npos);
 }
 
-TEST_F(FileKinds, AFolderIsACaseOrRefused) {
+TEST_F(Identify, AFolderIsACaseOrRefused) {
   std::filesystem::create_directories(folder / "case" / "system");
-  EXPECT_EQ(format_of(folder / "case"), nullptr);
+  EXPECT_NE(message_of([&] { identify(folder / "case"); }).find("it is a directory"), std::string::npos);
   write("case/system/controlDict", "FoamFile\n{\n}\n");
-  ASSERT_NE(format_of(folder / "case"), nullptr);
-  EXPECT_STREQ(format_of(folder / "case")->reader, "openfoam");
+  const InputFile found = identify(folder / "case");
+  ASSERT_NE(found.format, nullptr);
+  EXPECT_STREQ(found.format->name, "OpenFOAM case");
+  EXPECT_TRUE(found.is_folder && found.is_recognized);
   EXPECT_FALSE(is_volume(folder / "case"));
 }
 
-TEST_F(FileKinds, EveryExtensionBelongsToOneKindOfData) {
+TEST_F(Identify, EveryExtensionBelongsToOneKindOfData) {
   // .vtk alone is a mesh's and a grid's.
   std::map<std::string, int> rows;
   for (const FileFormat& format : file_formats()) {

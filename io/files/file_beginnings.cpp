@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/formats/file_beginnings.hpp"
+#include "io/files/file_beginnings.hpp"
 
 #include <fmt/format.h>
 
@@ -8,17 +8,14 @@
 #include <charconv>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <optional>
 #include <vector>
 
-#include "io/formats/input_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
 namespace {
 
-constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
 constexpr std::string_view white_space = " \t\r\n\v\f";
 
 std::string_view without_blanks(std::string_view text) {
@@ -139,9 +136,9 @@ bool begins_as_medit_binary(std::string_view beginning) {
   return false;
 }
 
-void require_no_utf16(const std::filesystem::path& file) {
-  if (const std::string beginning = read_beginning(file, 2); beginning == "\xff\xfe" || beginning == "\xfe\xff")
-    throw scene::bad_input(fmt::format("{}: it is text in UTF-16; save it in UTF-8", file.string()));
+void require_no_utf16(std::string_view beginning, const std::string& source) {
+  if (beginning.starts_with("\xff\xfe") || beginning.starts_with("\xfe\xff"))
+    throw scene::bad_input(fmt::format("{}: it is text in UTF-16; save it in UTF-8", source));
 }
 
 std::string vtk_xml_type(std::string_view text) {
@@ -179,9 +176,7 @@ bool begins_as_vtk_amr(const FileBeginning& file) {
   return is_xml_of(file, {"vtkOverlappingAMR", "vtkNonOverlappingAMR", "vtkHierarchicalBoxDataSet"});
 }
 bool begins_as_hyper_trees(const FileBeginning& file) { return is_xml_of(file, {"HyperTreeGrid", "PHyperTreeGrid"}); }
-bool begins_as_amrex(const FileBeginning& file) {
-  return file.file.filename() == "Header" && looks_like_amrex(file.text);
-}
+bool begins_as_amrex(const FileBeginning& file) { return looks_like_amrex(file.text); }
 bool begins_as_enzo(const FileBeginning& file) {
   if (!is_text(file.text)) return false;
   const auto lines = first_lines(file.text, '#', 8);
@@ -200,7 +195,7 @@ bool begins_as_file_series(const FileBeginning& file) {
   return without_blanks(file.text).starts_with('{') &&
          file.text.find("\"file-series-version\"") != std::string_view::npos;
 }
-bool begins_as_other_vtk_xml(const FileBeginning& file) { return file.text.find("<VTKFile") != std::string_view::npos; }
+bool begins_as_vtk_xml(const FileBeginning& file) { return file.text.find("<VTKFile") != std::string_view::npos; }
 
 bool begins_as_legacy_mesh(const FileBeginning& file) {
   return file.text.starts_with("# vtk DataFile") && !begins_as_legacy_grid(file) && !begins_as_vtk_surface(file);
@@ -223,13 +218,6 @@ bool begins_as_netcdf(const FileBeginning& file) {
          !begins_as_exodus(file) && !begins_as_minc(file);
 }
 bool begins_as_hdf5(const FileBeginning& file) { return file.text.starts_with(hdf5_signature); }
-bool has_hdf5_behind_block(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::array<char, hdf5_signature.size()> bytes{};
-  for (std::int64_t at = 512; in.seekg(at) && in.read(bytes.data(), bytes.size()); at *= 2)
-    if (std::string_view(bytes.data(), bytes.size()) == hdf5_signature) return true;
-  return false;
-}
 /// Four bytes before it are "@(#)" with the highest bit of some set.
 bool begins_as_adf(const FileBeginning& file) {
   return file.text.size() > 4 && file.text.substr(4).starts_with("ADF Database Version");
@@ -328,11 +316,9 @@ bool begins_as_nifti(const FileBeginning& file) {
          (size == 540 && has_magic(4, {"n+2\0", 4}, {"ni2\0", 4}));
 }
 bool begins_as_dicom(const FileBeginning& file) { return looks_like_dicom(file.text); }
-/// Without a magic word, so that its name counts too.
+/// Without a magic word.
 bool begins_as_analyze(const FileBeginning& file) {
-  const std::filesystem::path stem = system::lower_extension(file.file) == ".gz" ? file.file.stem() : file.file;
-  if (system::lower_extension(stem) != ".hdr" || begins_as_nifti(file) || nifti_header_size(file.text) != 348)
-    return false;
+  if (begins_as_nifti(file) || nifti_header_size(file.text) != 348) return false;
   const auto dimensions = [&](std::size_t low) { return file.text[low] >= 1 && file.text[low] <= 7; };
   return (file.text[41] == 0 && dimensions(40)) || (file.text[40] == 0 && dimensions(41));
 }
@@ -354,14 +340,9 @@ bool begins_as_abaqus(const FileBeginning& file) {
 }
 
 bool begins_as_medit(const FileBeginning& file) { return begins_as_medit_text(file.text); }
-/// It begins with a number 1 alone, as binary Medit does, so that its name tells.
-bool begins_as_freesurfer(const FileBeginning& file) {
-  const std::string name = file.file.filename().string();
-  return (name.ends_with(".mgh") || name.ends_with(".mgz")) && file.text.starts_with(std::string_view("\0\0\0\1", 4));
-}
-bool begins_as_meshb(const FileBeginning& file) {
-  return begins_as_medit_binary(file.text) && !begins_as_freesurfer(file);
-}
+/// It begins with a number 1 alone, as binary Medit does.
+bool begins_as_freesurfer(const FileBeginning& file) { return file.text.starts_with(std::string_view("\0\0\0\1", 4)); }
+bool begins_as_meshb(const FileBeginning& file) { return begins_as_medit_binary(file.text); }
 bool begins_as_mfem(const FileBeginning& file) {
   return file.text.starts_with("MFEM ") && first_lines(file.text, '#', 1)[0].find("mesh v") != std::string_view::npos;
 }
@@ -375,8 +356,6 @@ bool begins_as_ls_dyna(const FileBeginning& file) {
   const auto lines = first_lines(file.text, '$', 1);
   return is_text(file.text) && !lines.empty() && lines[0].substr(0, 8) == "*KEYWORD";
 }
-/// A database of binary files without a mark.
-bool begins_as_d3plot(const FileBeginning& file) { return file.file.filename().string().starts_with("d3plot"); }
 bool begins_as_frd(const FileBeginning& file) {
   return file.text.starts_with("    1C") && file.text.substr(0, 4096).find("\n    1U") != std::string_view::npos;
 }

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/formats/input_file.hpp"
+#include "io/files/input_file.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <system_error>
 
-#include "io/formats/file_beginnings.hpp"
+#include "io/files/file_beginnings.hpp"
 #include "scene/error.hpp"
-#include "system/files_read.hpp"
 #include "system/missing_file.hpp"
 #include "system/regular_file.hpp"
 
@@ -16,46 +14,39 @@ namespace tessera::io {
 namespace {
 
 /// Whether a file of `size` bytes is the text that Git LFS keeps in the place of a large file.
-bool is_git_lfs_pointer(const system::Descriptor& file, std::uint64_t size) {
+bool is_git_lfs_pointer(const system::PositionalFile& file, std::uint64_t size) {
   constexpr std::string_view first_line = "version https://git-lfs.github.com/spec/v1";
   constexpr std::uint64_t longest = 1024;  // by the specification of Git LFS
-  return size >= first_line.size() && size <= longest && beginning_of(file, first_line.size()) == first_line;
+  return size >= first_line.size() && size <= longest && file.beginning(first_line.size()) == first_line;
 }
 
-struct OpenedInput {
-  system::Descriptor file;
-  std::uint64_t size = 0;
-};
+}  // namespace
 
-/// Of a folder that stands for a file nothing is opened.
-OpenedInput open_input(const std::filesystem::path& file) {
+system::PositionalFile open_input(const std::filesystem::path& file) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status) && error != std::errc::permission_denied) throw system::missing_file(file);
-  if (is_input_folder(file)) return {};
   if (std::filesystem::is_directory(status))
     throw scene::bad_input(fmt::format(
         "{}: it is a directory; name a file in it, or the folder of an OpenFOAM case, an AMReX plot file or of DICOM "
         "files",
         file.string()));
-  OpenedInput opened{system::open_regular(file, file.string())};
-  opened.size = system::file_size(opened.file, file.string());
+  system::PositionalFile opened(file);
+  const std::uint64_t size = opened.size();
   // An empty .foam file only marks its folder as an OpenFOAM case.
-  if (opened.size == 0 && system::lower_extension(file) != ".foam" && system::lower_extension(file) != ".openfoam")
+  if (size == 0 && system::lower_extension(file) != ".foam" && system::lower_extension(file) != ".openfoam")
     throw scene::bad_input(fmt::format("{}: it is empty; write it anew", file.string()));
-  if (is_git_lfs_pointer(opened.file, opened.size))
+  if (is_git_lfs_pointer(opened, size))
     throw scene::bad_input(fmt::format("{}: a Git LFS pointer; `git lfs pull` brings the file itself", file.string()));
-  system::note_read(file);
   return opened;
 }
 
-}  // namespace
-
-std::uint64_t require_file(const std::filesystem::path& file) { return open_input(file).size; }
+std::uint64_t require_file(const std::filesystem::path& file) {
+  return is_input_folder(file) ? 0 : open_input(file).size();
+}
 
 std::string read_beginning(const std::filesystem::path& file, std::size_t limit) {
-  const OpenedInput opened = open_input(file);
-  return system::beginning_of(opened.file, std::min<std::uint64_t>(opened.size, limit));
+  return is_input_folder(file) ? std::string() : open_input(file).beginning(limit);
 }
 
 namespace {
@@ -86,12 +77,12 @@ bool is_amrex_folder(const std::filesystem::path& folder) {
 }
 
 bool is_input_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) return false;
   if (is_case_folder(folder) || is_amrex_folder(folder)) return true;
   // In many folders the slices lie one or two levels below, and other files beside them.
   constexpr int most = 1000;
   constexpr int deepest = 4;
-  std::error_code error;
-  if (!std::filesystem::is_directory(folder, error)) return false;
   std::filesystem::recursive_directory_iterator entry(folder, error);
   for (int files = 0; !error && files < most && entry != std::filesystem::recursive_directory_iterator(); ++files) {
     if (entry.depth() >= deepest) entry.disable_recursion_pending();

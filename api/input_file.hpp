@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <mutex>
+
+#include "io/files/input_file.hpp"
+#include "tessera/input_file.hpp"
+
+namespace tessera {
+inline namespace v0_1 {
+
+struct TESSERA_HIDDEN InputFile::Found {
+  explicit Found(const std::filesystem::path& path);
+  /// io::is_volume(), asked once.
+  [[nodiscard]] bool is_volume() const;
+
+  io::InputFile file;
+
+ private:
+  mutable std::once_flag once_;
+  mutable bool is_volume_ = false;
+};
+
+}  // namespace v0_1
+}  // namespace tessera

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "scene/time_step_read.hpp"
+#include "tessera/file_formats.hpp"
+
+namespace tessera::cells {
+struct MeshBlocks;
+struct MeshOptions;
+}  // namespace tessera::cells
+
+namespace tessera::io {
+
+struct InputFile;
+struct SurfaceFile;
+struct VolumeFile;
+struct VolumeOptions;
+enum class Reader : std::uint8_t;  // reader_programs.hpp
+
+/// What a file begins with, of a gzip file what it holds.
+struct FileBeginning {
+  std::string_view text;   ///< its first bytes, at most 4096
+  std::uint64_t size = 0;  ///< of the whole; 0 if it is compressed
+};
+
+/// Files of many formats, of whose beginning only this much is known.
+enum class Container : std::uint8_t { none, vtk_xml, hdf5 };
+
+/// A row of the one table of formats (io/formats/format_table.cpp): how its files are recognized and what reads them.
+/// What is listed, what a name means and which errors name a format follow from it.
+struct Format {
+  const char* name = "";
+  const char* extensions = "";  ///< in lower case, with blanks between; the first is what writers use
+  FileHolds holds = FileHolds::not_read;
+  std::span<const Reader> needs{};  ///< reader programs
+  const char* remark = "";          ///< what applies, limits; why it is not read
+  /// By what a file begins with alone; null: by its name alone.
+  bool (*recognizes)(const FileBeginning&) = nullptr;
+  bool by_name_too = false;  ///< such a beginning counts under one of the extensions only
+  /// A name of this format tells what a file is that begins as this container does. Of a row that is not listed: it
+  /// stands for the container.
+  Container container = Container::none;
+  bool is_listed = true;
+
+  // Null: files of this format have none.
+  cells::MeshBlocks (*read_mesh)(const InputFile&, const cells::MeshOptions&) = nullptr;
+  VolumeFile (*open_volume)(const InputFile&, const VolumeOptions&) = nullptr;
+  SurfaceFile (*read_surface)(const InputFile&) = nullptr;
+  /// Of meshes: how many there are and when; ReadOptions::time_step applies.
+  scene::TimeStepRead (*time_steps)(const InputFile&, const cells::MeshOptions&) = nullptr;
+
+  bool (*holds_grid)(const InputFile&) = nullptr;  ///< looks into a file that may hold a grid or a mesh
+  bool reads_gzip = false;  ///< open_volume does; other gzip files are inflated before they are read
+  /// Where a gzip file's samples end, by its header: no more is inflated. No value if that does not tell.
+  std::optional<std::uint64_t> (*end_of_samples)(const InputFile&) = nullptr;
+  const char* share_reader = nullptr;  ///< the helper's reader of a mesh in pieces that processes share
+};
+
+}  // namespace tessera::io
