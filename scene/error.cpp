@@ -48,6 +48,12 @@ std::string_view Error::subject() const noexcept { return between(what(), 0, sub
 std::string_view Error::problem() const noexcept { return between(what(), problem_begin_, problem_end_); }
 std::string_view Error::remedy() const noexcept { return between(what(), remedy_begin_, std::string_view::npos); }
 
+std::string_view Error::setting() const noexcept {
+  const std::string_view line = what();
+  const std::size_t end = line.starts_with('`') ? line.find('`', 1) : std::string_view::npos;
+  return end == std::string_view::npos ? std::string_view() : line.substr(1, end - 1);
+}
+
 }  // namespace v0_1
 }  // namespace tessera
 

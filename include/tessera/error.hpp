@@ -27,7 +27,8 @@ enum class ErrorCode : int {
 /// Problem  what is wrong and where.
 /// Remedy   what to do; empty where the problem says it already.
 /// Settings stand in backquotes by their names in C++, in the remedy too: "raise `memory`". The program writes such a
-/// name as the option that it is, --memory; no other text in backquotes is a setting's name.
+/// name as the option that it is, --memory; no other text in backquotes is a setting's name. A line may name several;
+/// one that begins with a name is about that setting: setting().
 ///
 /// what() is the whole on one line, `SUBJECT: PROBLEM; REMEDY`, without the mark beside a part that is empty. The parts
 /// lie in what() and live as long as the error.
@@ -48,6 +49,8 @@ class TESSERA_EXPORT Error : public std::runtime_error {
   [[nodiscard]] std::string_view subject() const noexcept;
   [[nodiscard]] std::string_view problem() const noexcept;
   [[nodiscard]] std::string_view remedy() const noexcept;
+  /// The setting that is wrong, without backquotes; empty where the error is not about one.
+  [[nodiscard]] std::string_view setting() const noexcept;
 
  private:
   ErrorCode code_;

@@ -50,6 +50,16 @@ TEST(Error, LinesOfNoFormAreAProblem) {
   EXPECT_EQ(split("a; "), (Parts{"", "a", ""}));
 }
 
+TEST(Error, IsAboutTheSettingThatItsLineBeginsWith) {
+  const auto setting = [](const std::string& line) { return std::string(bad_input(line).setting()); };
+  EXPECT_EQ(setting("`deep_accuracy` 0.5: it must be 1e-6 to 1"), "deep_accuracy");
+  EXPECT_EQ(setting("`zoom` is 0; it must be above 0"), "zoom");
+  EXPECT_EQ(setting("`shade`: `rasterizer` scanline does not shade; use `rasterizer` planes"), "shade");
+  EXPECT_EQ(setting("mesh.vtu: `smooth` is for meshes; leave it out"), "");
+  EXPECT_EQ(setting("`shade"), "");
+  EXPECT_EQ(setting(""), "");
+}
+
 TEST(Error, JoinsPartsWhateverTheyHold) {
   const Error error(ErrorCode::system_failure, "odd: name; 1.vtu", "is cut: short", "copy it; or write it anew");
   EXPECT_EQ(error.code(), ErrorCode::system_failure);
