@@ -103,7 +103,7 @@ std::shared_ptr<Dataset::State> opened_grid(const io::InputFile& input, const Re
   auto state = std::make_shared<Dataset::State>();
   io::VolumeFile volume = [&] {
     const scene::TraceScope timing(trace, "read");
-    return frame::open_shared_volume(transport, input, api::volume_options(options), options.threads);
+    return frame::open_shared_volume(transport, input, options);
   }();
   api::require_same_files(transport);  // which it names
   state->axis_scale = cells::chosen_scale(options.axis_scale, volume.beside_degrees,
@@ -199,40 +199,6 @@ auto together(exchange::Transport& transport, const Work& work) {
 
 }  // namespace
 
-}  // namespace v0_1
-
-namespace api {
-
-io::VolumeOptions volume_options(const ReadOptions& o) {
-  io::VolumeOptions volume{o.field, o.dims, o.type, o.spacing, o.origin, o.big_endian, o.skip, o.time_step, o.progress};
-  // Bricks are copies, for which as much is to be left.
-  if (o.memory_bytes > 0) volume.most_in_memory = o.memory_bytes / 2;
-  return volume;
-}
-
-cells::MeshOptions mesh_options(const ReadOptions& o) {
-  return {o.field,
-          o.smooth,
-          o.plot3d_q,
-          o.max_volume,
-          o.time_step,
-          o.threads,
-          o.blocks,
-          o.higher_order_tolerance,
-          o.higher_order_tets,
-          o.progress,
-          o.shape,
-          o.selection,
-          false,
-          o.warp,
-          o.drop_duplicates,
-          o.axis_scale};
-}
-
-}  // namespace api
-
-inline namespace v0_1 {
-
 std::shared_ptr<const projection::PreparedMesh> Dataset::State::prepared(int threads, scene::Trace* trace) const {
   std::call_once(once_, [&] {
     const scene::TraceScope timing(trace, "prepare");
@@ -302,8 +268,8 @@ Dataset open_together(std::span<const std::filesystem::path> files, std::optiona
       TracedMessages traced(*transport, options.trace);
       Trace* const trace = traced.face(options.trace);
       const Roles roles = assign_roles(transport->size(), ranks.projectors, ranks.compositors);
-      frame::DistributedMesh mesh = frame::read_distributed(*transport, files, first, api::mesh_options(options),
-                                                            ranks.partition, roles.projectors, options.threads, trace);
+      frame::DistributedMesh mesh =
+          frame::read_distributed(*transport, files, first, options, ranks.partition, roles.projectors, trace);
       api::require_same_files(*transport);  // which they name
       take_description(std::move(mesh.description), *state);
       set_own_time(first, state->time_step);

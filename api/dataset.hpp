@@ -75,10 +75,4 @@ struct TESSERA_HIDDEN Dataset::State {
 
 }  // namespace v0_1
 
-namespace api {
-
-cells::MeshOptions mesh_options(const ReadOptions& options);
-io::VolumeOptions volume_options(const ReadOptions& options);
-
-}  // namespace api
 }  // namespace tessera

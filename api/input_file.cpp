@@ -33,9 +33,8 @@ std::vector<double> times_of(const std::filesystem::path& file, const ReadOption
 
 std::vector<double> times_of(const InputFile& input, const ReadOptions& options) {
   const io::InputFile& file = StateAccess::of(input).file;
-  const scene::TimeStepRead read = input.opens_as_grid(options)
-                                       ? io::open_unscanned_volume(file, api::volume_options(options)).time_step
-                                       : io::time_steps_of_mesh(file, api::mesh_options(options));
+  const scene::TimeStepRead read = input.opens_as_grid(options) ? io::open_unscanned_volume(file, options).time_step
+                                                                : io::time_steps_of_mesh(file, options);
   if (!read.times.empty()) return read.times;
   std::vector<double> numbers(std::max<std::size_t>(read.count, 1));
   std::iota(numbers.begin(), numbers.end(), 0.0);

@@ -84,7 +84,7 @@ frame::UncutMesh uncut_mesh(const Dataset::State& data) {
   if (data.uncut) return {data.uncut->mesh, data.clip, data.mesh, data.uncut};
   if (data.files.empty())
     throw scene::bad_input("verify: this rank has a part of the mesh, and no file has the whole; verify on one rank");
-  cells::MeshOptions options = mesh_options(data.options);
+  ReadOptions options = data.options;
   options.selection.clip.clear();
   const io::InputFile first = frame::identify_input(data.files.front());
   auto whole = std::make_shared<const scene::TetMesh>(frame::read_input(data.files, first, options).mesh);

@@ -13,7 +13,7 @@
 #include "cells/cell_block.hpp"
 #include "cells/cell_split.hpp"
 #include "cells/curved/curved_cells.hpp"
-#include "cells/mesh_options.hpp"
+#include "cells/field_summary.hpp"
 #include "cells/polyhedron_split.hpp"
 
 namespace tessera::cells {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cells/cell_block.hpp"
-#include "cells/mesh_options.hpp"
+#include "cells/field_summary.hpp"
 
 namespace tessera::cells {
 
@@ -49,7 +49,7 @@ bool is_label_name(const std::string& name);
 /// as a rule. The default only if nothing else varies, and with a note.
 bool looks_like_noise(const FieldSummary& field);
 
-/// Resolves MeshOptions::field. Names win over syntax: "a:b" is the array of that name if there is one; a name of both
+/// Resolves ReadOptions::field. Names win over syntax: "a:b" is the array of that name if there is one; a name of both
 /// a point and a cell array means the point one. Without a wish: the file's active scalars if they vary, else the first
 /// that varies of point scalars, point vectors, cell scalars, cell vectors; of what looks like noise only if nothing
 /// else varies. Then a short array of floats that would be ids by its values alone, with a note. If only labels vary:
@@ -61,7 +61,7 @@ FieldChoice choose_field(const std::string& wish, std::span<const FieldSummary> 
 /// Whether samples are colors: of three or four bytes, as MetaImage, NIfTI and VTK's image data have them.
 bool look_like_colors(const FieldSummary& field);
 
-/// Throws Error(bad_input) if the magnitude of colors was chosen without being asked for: `wish` is MeshOptions::field.
+/// Throws Error(bad_input) if the magnitude of colors was chosen without being asked for: `wish` is ReadOptions::field.
 void refuse_colors(const FieldChoice& choice, const FieldSummary& field, const std::string& wish,
                    const std::string& source);
 

@@ -368,7 +368,7 @@ std::vector<std::string> warnings_on_cells(const MeshCounts& n, const HigherOrde
   return warnings;
 }
 
-MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options, const std::string& source,
+MeshFile assemble_mesh(std::vector<CellBlock> blocks, const ReadOptions& options, const std::string& source,
                        const HigherOrderPlanning& planning) {
   MeshFile file;
   const std::vector<FieldTally> tallies = tally_fields(blocks);

@@ -10,6 +10,7 @@
 #include "cells/curved/higher_order_plan.hpp"
 #include "cells/field_choice.hpp"
 #include "cells/mesh_blocks.hpp"
+#include "tessera/read_options.hpp"
 
 namespace tessera::cells {
 
@@ -44,12 +45,12 @@ std::vector<std::string> warnings_on_cells(const MeshCounts& counts, const Highe
 
 /// How higher-order cells are divided: plan_higher_order(), or what the parts of a mesh agree on.
 using HigherOrderPlanning =
-    std::function<HigherOrderPlan(std::span<const CellBlock> blocks, const MeshOptions& options,
+    std::function<HigherOrderPlan(std::span<const CellBlock> blocks, const ReadOptions& options,
                                   const FieldChoice& choice, std::span<const FieldSummary> fields)>;
 
 /// Makes the tet mesh of all of a file's blocks: chooses the field, assembles, smooths if asked. `format` is left
 /// empty. Throws as the functions above and choose_field.
-MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options, const std::string& source,
+MeshFile assemble_mesh(std::vector<CellBlock> blocks, const ReadOptions& options, const std::string& source,
                        const HigherOrderPlanning& planning = plan_higher_order);
 
 /// Replaces cell data by point data: each used vertex gets the mean of the cells that touch it, weighted by tet volume

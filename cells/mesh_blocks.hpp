@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cells/cell_block.hpp"
-#include "cells/mesh_options.hpp"
+#include "cells/field_summary.hpp"
 #include "scene/tet_mesh.hpp"
 #include "scene/time_step_read.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "cells/mesh_options.hpp"
+#include "cells/field_summary.hpp"
 #include "scene/selection.hpp"
 #include "scene/tet_mesh.hpp"
 

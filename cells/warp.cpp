@@ -58,7 +58,7 @@ bool is_displacement_name(const std::string& name) {
   return std::ranges::find(words, lower) != words.end();
 }
 
-void warp(MeshBlocks& read, const MeshOptions& options, const std::string& source) {
+void warp(MeshBlocks& read, const ReadOptions& options, const std::string& source) {
   Warp by;
   if (options.warp) {
     by = *options.warp;

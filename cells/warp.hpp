@@ -4,6 +4,7 @@
 #include <string>
 
 #include "cells/mesh_blocks.hpp"
+#include "tessera/read_options.hpp"
 
 namespace tessera::cells {
 
@@ -15,6 +16,6 @@ bool is_displacement_name(const std::string& name);
 /// Moves the points of the blocks as the options say, without a wish those of Exodus files by the first vector with the
 /// name of a displacement, and notes it. Blocks without the vector stay. Throws Error(bad_input) that lists the vectors
 /// if no block has the one that is asked for.
-void warp(MeshBlocks& read, const MeshOptions& options, const std::string& source);
+void warp(MeshBlocks& read, const ReadOptions& options, const std::string& source);
 
 }  // namespace tessera::cells

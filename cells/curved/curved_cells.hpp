@@ -15,7 +15,7 @@
 #include "cells/cell_block.hpp"
 #include "cells/curved/curved_lattice.hpp"
 #include "cells/curved/curved_split.hpp"
-#include "cells/mesh_options.hpp"
+#include "cells/field_summary.hpp"
 
 namespace tessera::cells {
 

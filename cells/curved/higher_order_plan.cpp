@@ -47,7 +47,7 @@ void for_curved_cells(std::span<const CellBlock> blocks, const FieldChoice& choi
 
 /// A node has up to eight cells of six tets round it, and a cell folded over takes some eight times what is foreseen of
 /// its tets.
-bool may_take_too_many(const MeshOptions& options, const HigherOrderPlan& plan, const ExcessTally& tally) {
+bool may_take_too_many(const ReadOptions& options, const HigherOrderPlan& plan, const ExcessTally& tally) {
   std::size_t worst = tally.size() - 1;
   while (worst > 0 && tally[worst] == 0) --worst;
   const double excess = std::exp2((static_cast<double>(worst) + 0.5) / 2) * options.higher_order_tolerance;
@@ -82,7 +82,7 @@ scene::Box joined(const scene::Box& a, const scene::Box& b) {
   return {glm::min(a.low, b.low), glm::max(a.high, b.high)};
 }
 
-CurvedSettings asked_tolerance(const MeshOptions& options, const scene::Box& box, const FieldChoice& choice,
+CurvedSettings asked_tolerance(const ReadOptions& options, const scene::Box& box, const FieldChoice& choice,
                                std::span<const FieldSummary> fields) {
   CurvedSettings asked;
   if (box.low.x > box.high.x || options.higher_order_tets == 0) return asked;
@@ -133,7 +133,7 @@ double tolerance_factor(const ExcessTally& tally, std::uint64_t most_tets) {
   return std::exp2(static_cast<double>(tally.size()) / 2);
 }
 
-HigherOrderPlan planned(const MeshOptions& options, const CurvedSettings& asked, const ExcessTally& tally) {
+HigherOrderPlan planned(const ReadOptions& options, const CurvedSettings& asked, const ExcessTally& tally) {
   HigherOrderPlan plan{asked, 0};
   if (asked.limit == 0) return plan;
   const bool is_chosen = options.higher_order_tets != default_higher_order_tets;
@@ -151,7 +151,7 @@ HigherOrderPlan planned(const MeshOptions& options, const CurvedSettings& asked,
   return plan;
 }
 
-HigherOrderPlan plan_higher_order(std::span<const CellBlock> blocks, const MeshOptions& options,
+HigherOrderPlan plan_higher_order(std::span<const CellBlock> blocks, const ReadOptions& options,
                                   const FieldChoice& choice, std::span<const FieldSummary> fields) {
   const CurvedSettings asked = asked_tolerance(options, higher_order_box(blocks), choice, fields);
   const ExcessTally tally = tally_excess(blocks, choice, asked);

@@ -8,8 +8,9 @@
 #include "cells/cell_block.hpp"
 #include "cells/curved/curved_cells.hpp"
 #include "cells/field_choice.hpp"
-#include "cells/mesh_options.hpp"
+#include "cells/field_summary.hpp"
 #include "scene/camera.hpp"
+#include "tessera/read_options.hpp"
 
 namespace tessera::cells {
 
@@ -22,7 +23,7 @@ scene::Box higher_order_box(std::span<const CellBlock> blocks);
 scene::Box joined(const scene::Box& a, const scene::Box& b);
 
 /// What is asked for of a mesh: the tolerance in the mesh's units, by its box and its field's range.
-CurvedSettings asked_tolerance(const MeshOptions& options, const scene::Box& box, const FieldChoice& choice,
+CurvedSettings asked_tolerance(const ReadOptions& options, const scene::Box& box, const FieldChoice& choice,
                                std::span<const FieldSummary> fields);
 
 /// How far the higher-order cells of some blocks are off, in tolerances of `asked`.
@@ -40,12 +41,12 @@ double tolerance_factor(const ExcessTally& tally, std::uint64_t most_tets);
 /// All of it for a mesh that is whole.
 struct HigherOrderPlan {
   CurvedSettings settings;
-  double tolerance = 0;  ///< relative, as MeshOptions::higher_order_tolerance
+  double tolerance = 0;  ///< relative, as ReadOptions::higher_order_tolerance
 };
-HigherOrderPlan plan_higher_order(std::span<const CellBlock> blocks, const MeshOptions& options,
+HigherOrderPlan plan_higher_order(std::span<const CellBlock> blocks, const ReadOptions& options,
                                   const FieldChoice& choice, std::span<const FieldSummary> fields);
 
 /// The same from what the parts of a mesh have found.
-HigherOrderPlan planned(const MeshOptions& options, const CurvedSettings& asked, const ExcessTally& tally);
+HigherOrderPlan planned(const ReadOptions& options, const CurvedSettings& asked, const ExcessTally& tally);
 
 }  // namespace tessera::cells

@@ -99,9 +99,9 @@ io::VolumeFile description_in(MessageReader& reader) {
 /// What a leader has read, and where the others of its machine find it.
 class Leader {
  public:
-  Leader(const io::InputFile& file, const io::VolumeOptions& options, bool shares, int threads) {
-    tbb::task_arena(scene::threads_for(threads)).execute([&] {
-      volume_ = io::open_unscanned_volume(file, options);
+  Leader(const io::InputFile& file, const ReadOptions& options, bool shares) {
+    tbb::task_arena(scene::threads_for(options.threads)).execute([&] {
+      volume_ = io::open_unscanned_volume(file, options, shares);
       // Some come as a whole only.
       if (shares && volume_.in_memory) volume_.scratch = io::scratch_bricks(*volume_.source, file.name);
     });
@@ -122,8 +122,8 @@ class Leader {
 };
 
 std::unique_ptr<scene::SampleSource> samples_at(const Place& place, const io::InputFile& file,
-                                                const io::VolumeOptions& options) {
-  if (place.path.empty()) return io::open_unscanned_volume(file, options).source;
+                                                const ReadOptions& options, bool shares) {
+  if (place.path.empty()) return io::open_unscanned_volume(file, options, shares).source;
   try {
     return io::open_bricks(place.path, {}, file.name).source;
   } catch (const scene::Error&) {
@@ -144,9 +144,11 @@ std::string note_on(const io::InputFile& file, const Place& place, std::size_t r
 }
 
 /// By one process, which keeps in memory what may be there.
-io::VolumeFile open_alone(const io::InputFile& file, const io::VolumeOptions& options, int threads) {
+io::VolumeFile open_alone(const io::InputFile& file, const ReadOptions& options) {
   io::VolumeFile volume;
-  tbb::task_arena(scene::threads_for(threads)).execute([&] { volume = io::open_unscanned_volume(file, options); });
+  tbb::task_arena(scene::threads_for(options.threads)).execute([&] {
+    volume = io::open_unscanned_volume(file, options);
+  });
   if (!volume.scratch) return volume;
   const system::ScratchFile& scratch = *volume.scratch;
   volume.notes.push_back(note_on(file, {scratch.path(), scratch.folder(), scratch.bytes()}, 1, 1));
@@ -155,15 +157,15 @@ io::VolumeFile open_alone(const io::InputFile& file, const io::VolumeOptions& op
 
 }  // namespace
 
-io::VolumeFile open_shared_volume(exchange::Transport& transport, const io::InputFile& file, io::VolumeOptions options,
-                                  int threads) {
-  if (transport.size() == 1) return open_alone(file, options, threads);
+io::VolumeFile open_shared_volume(exchange::Transport& transport, const io::InputFile& file,
+                                  const ReadOptions& options) {
+  if (transport.size() == 1) return open_alone(file, options);
   const std::vector<std::size_t> leader_of = leaders(transport);
   const auto self = static_cast<std::size_t>(transport.rank());
   const auto ranks_of = [&](std::size_t leader) { return std::ranges::count(leader_of, leader); };
-  if (ranks_of(leader_of[self]) > 1) options.most_in_memory = 0, options.scratch_is_needed = true;
+  const bool shares = ranks_of(leader_of[self]) > 1;
   std::optional<Leader> own;
-  if (leader_of[self] == self) own.emplace(file, options, ranks_of(self) > 1, threads);
+  if (leader_of[self] == self) own.emplace(file, options, shares);
   const std::vector<Bytes> all =
       exchange::gather_all(transport, own ? own->message() : exchange::begin_message(MessageKind::volume_facts));
 
@@ -182,7 +184,7 @@ io::VolumeFile open_shared_volume(exchange::Transport& transport, const io::Inpu
     volume = description_in(reader);
     volume.in_memory = own && own->in_memory();
     if (own) volume.source = own->take_samples();
-    if (!volume.source) volume.source = samples_at(place, file, options);
+    if (!volume.source) volume.source = samples_at(place, file, options, shares);
   }
   if (first) volume.notes.push_back(note_on(file, *first, sharing, machines));
   // Until then the leader has its file open, by which the others find it.

@@ -136,8 +136,7 @@ cells::CellBlock block_of(const MeshArrays& a) {
 
 ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty, const cells::HigherOrderPlanning& planning) {
   check_shapes(arrays);
-  cells::MeshOptions options;
-  options.threads = 0;
+  ReadOptions options;
   options.higher_order_tolerance = arrays.higher_order_tolerance;
   options.higher_order_tets = arrays.higher_order_tets;
   if (may_be_empty && arrays.tets.empty() && arrays.types.empty()) {

@@ -19,7 +19,7 @@ io::InputFile identify_input(const std::filesystem::path& input) {
 }
 
 cells::MeshFile read_input(std::span<const std::filesystem::path> files, const io::InputFile& first,
-                           const cells::MeshOptions& options) {
+                           const ReadOptions& options) {
   if (files.size() == 1) return io::read_mesh(first, options);
   std::vector<io::InputFile> all = {first};
   all.reserve(files.size());

@@ -17,7 +17,7 @@ io::InputFile identify_input(const std::filesystem::path& input);
 
 /// io::read_mesh of a mesh's files, whose first has been identified.
 cells::MeshFile read_input(std::span<const std::filesystem::path> files, const io::InputFile& first,
-                           const cells::MeshOptions& options);
+                           const ReadOptions& options);
 
 using tessera::diagonal;
 

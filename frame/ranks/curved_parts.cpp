@@ -33,7 +33,7 @@ struct Became {
 };
 
 cells::HigherOrderPlan plan_together(exchange::Transport& transport, std::span<const cells::CellBlock> blocks,
-                                     cells::MeshOptions options, cells::FieldChoice choice,
+                                     ReadOptions options, cells::FieldChoice choice,
                                      std::span<const cells::FieldSummary> fields) {
   Part whole{cells::higher_order_box(blocks), infinite, -infinite, options.higher_order_tolerance,
              options.higher_order_tets};
@@ -62,7 +62,7 @@ cells::HigherOrderPlan plan_together(exchange::Transport& transport, std::span<c
 
 ArrayMesh mesh_of_part(const MeshArrays& part, exchange::Transport& transport) {
   ArrayMesh mesh = mesh_of_arrays(part, true,
-                                  [&](std::span<const cells::CellBlock> blocks, const cells::MeshOptions& options,
+                                  [&](std::span<const cells::CellBlock> blocks, const ReadOptions& options,
                                       const cells::FieldChoice& choice, std::span<const cells::FieldSummary> fields) {
                                     return plan_together(transport, blocks, options, choice, fields);
                                   });

@@ -110,12 +110,11 @@ cells::MeshFile share_description(Transport& transport, std::span<const int> pro
 }
 
 /// Leaves of every rank's part what is selected; returns what the whole was before, null if that is all. Collective.
-std::shared_ptr<const FieldOfAll> select_part(Transport& transport, const cells::MeshOptions& options,
-                                              const std::string& source, int threads, scene::TetMesh& part,
-                                              MeshCounts& counts) {
+std::shared_ptr<const FieldOfAll> select_part(Transport& transport, const ReadOptions& options,
+                                              const std::string& source, scene::TetMesh& part, MeshCounts& counts) {
   if (options.selection.all()) return nullptr;
   auto all = std::make_shared<FieldOfAll>();
-  all->facts = agree_facts(transport, part, threads);
+  all->facts = agree_facts(transport, part, options.threads);
   // Samples go by the order that renderers give to corners, so that they are those of the whole.
   std::vector<scene::Tet> as_read = part.tets;
   std::vector<double> values;
@@ -127,7 +126,7 @@ std::shared_ptr<const FieldOfAll> select_part(Transport& transport, const cells:
       if (std::ranges::binary_search(fill->values, value)) value = std::numeric_limits<double>::quiet_NaN();
   }
   RenderSettings settings;
-  settings.threads = threads;
+  settings.threads = options.threads;
   order_corners(part, settings);
   all->samples = gather_field_samples(transport, part, numbered_by_rank(transport, part.tets.size()), all->facts);
   part.tets = std::move(as_read);
@@ -136,7 +135,7 @@ std::shared_ptr<const FieldOfAll> select_part(Transport& transport, const cells:
   return all;
 }
 
-cells::MeshOptions with_everything(cells::MeshOptions options) {
+ReadOptions with_everything(ReadOptions options) {
   options.selection.threshold.reset();
   options.selection.clip.clear();
   return options;
@@ -144,14 +143,13 @@ cells::MeshOptions with_everything(cells::MeshOptions options) {
 
 /// The whole by the first projector.
 DistributedMesh read_whole(Transport& transport, std::span<const std::filesystem::path> files,
-                           const io::InputFile& first, const cells::MeshOptions& options,
-                           std::span<const int> projectors, int threads) {
+                           const io::InputFile& first, const ReadOptions& options, std::span<const int> projectors) {
   DistributedMesh result;
   cells::MeshFile file;
   const bool reads = transport.rank() == projectors.front();
   if (reads) file = read_input(files, first, with_everything(options));
   const std::string source = files.front().string();
-  result.of_all = select_part(transport, options, source, threads, file.mesh, file.counts);
+  result.of_all = select_part(transport, options, source, file.mesh, file.counts);
   if (reads) cells::require_selected(file.counts, source);
   result.description = share_description(transport, projectors, file);
   result.part.mesh = std::move(file.mesh);
@@ -159,8 +157,8 @@ DistributedMesh read_whole(Transport& transport, std::span<const std::filesystem
 }
 
 /// A part by each projector.
-DistributedMesh read_parts(Transport& transport, const io::InputFile& input, const cells::MeshOptions& options,
-                           std::span<const int> projectors, int threads) {
+DistributedMesh read_parts(Transport& transport, const io::InputFile& input, const ReadOptions& options,
+                           std::span<const int> projectors) {
   const auto place = std::find(projectors.begin(), projectors.end(), transport.rank());
   const bool reads = place != projectors.end();
   const auto part = static_cast<std::size_t>(place - projectors.begin());
@@ -188,10 +186,10 @@ DistributedMesh read_parts(Transport& transport, const io::InputFile& input, con
   reading.reset();
   if (reads)  // nothing else is on the channel: all gather the summaries before they go on
     own.summary.counts.cells_duplicate =
-        count_shared_repetitions(transport, std::exchange(own.cell_keys, {}), projectors, threads);
+        count_shared_repetitions(transport, std::exchange(own.cell_keys, {}), projectors, options.threads);
 
   DistributedMesh result;
-  result.of_all = select_part(transport, options, input.name, threads, own.mesh, own.summary.counts);
+  result.of_all = select_part(transport, options, input.name, own.mesh, own.summary.counts);
   const io::PartSummary& s = own.summary;
   std::vector<io::PartSummary> summaries;
   std::uint64_t words = 0, first_tet = 0;
@@ -231,8 +229,8 @@ DistributedMesh read_parts(Transport& transport, const io::InputFile& input, con
 }  // namespace
 
 DistributedMesh read_distributed(Transport& transport, std::span<const std::filesystem::path> files,
-                                 const io::InputFile& first, const cells::MeshOptions& options,
-                                 const projection::Partition& partition, std::span<const int> projectors, int threads,
+                                 const io::InputFile& first, const ReadOptions& options,
+                                 const projection::Partition& partition, std::span<const int> projectors,
                                  scene::Trace* trace) {
   DistributedMesh result;
   if (transport.size() == 1) {
@@ -241,14 +239,13 @@ DistributedMesh read_distributed(Transport& transport, std::span<const std::file
       result.description = read_input(files, first, with_everything(options));
     }
     const std::string source = files.front().string();
-    result.of_all =
-        select_part(transport, options, source, threads, result.description.mesh, result.description.counts);
+    result.of_all = select_part(transport, options, source, result.description.mesh, result.description.counts);
     cells::require_selected(result.description.counts, source);
     result.part.mesh = std::move(result.description.mesh);
     result.description.mesh = {};
     result.description.mesh.field_name = result.part.mesh.field_name;
     result.description.mesh.association = result.part.mesh.association;
-    result.facts = scene::facts_of(result.part.mesh, threads);
+    result.facts = scene::facts_of(result.part.mesh, options.threads);
     return result;
   }
   try {
@@ -259,10 +256,10 @@ DistributedMesh read_distributed(Transport& transport, std::span<const std::file
       if (transport.rank() == projectors.front())
         in_parts = files.size() == 1 && io::readable_in_parts(first, options) ? 1 : 0;
       in_parts = exchange::broadcast_value(transport, projectors.front(), MessageKind::read_in_parts, in_parts);
-      result = in_parts != 0 ? read_parts(transport, first, options, projectors, threads)
-                             : read_whole(transport, files, first, options, projectors, threads);
+      result = in_parts != 0 ? read_parts(transport, first, options, projectors)
+                             : read_whole(transport, files, first, options, projectors);
     }
-    result.facts = agree_facts(transport, result.part.mesh, threads);
+    result.facts = agree_facts(transport, result.part.mesh, options.threads);
     result.part = redistribute(transport, std::move(result.part), result.facts, partition, projectors, trace);
   } catch (const scene::Error& error) {
     transport.fail(error);

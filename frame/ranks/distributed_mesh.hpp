@@ -31,11 +31,11 @@ struct DistributedMesh {
 /// read in parts (io::readable_in_parts) is read by all projectors at once, each its share; anything else by the first
 /// projector, which hands it on: one read, where every rank reading in turn would be many. The tets' numbers, and so
 /// every picture, do not depend on how it was read. With one rank it is io::read_mesh and nothing more. Spans `read`
-/// and `partition`. An error of one rank is transport.fail()ed and thrown on all. `threads` find the facts; 0 is all
-/// cores.
+/// and `partition`. An error of one rank is transport.fail()ed and thrown on all. Times go to
+/// `trace` in place of `options.trace`.
 DistributedMesh read_distributed(exchange::Transport& transport, std::span<const std::filesystem::path> files,
-                                 const io::InputFile& first, const cells::MeshOptions& options,
-                                 const projection::Partition& partition, std::span<const int> projectors, int threads,
+                                 const io::InputFile& first, const ReadOptions& options,
+                                 const projection::Partition& partition, std::span<const int> projectors,
                                  scene::Trace* trace);
 
 }  // namespace tessera::frame

@@ -11,12 +11,12 @@
 
 namespace tessera::cells {
 struct MeshBlocks;
-struct MeshOptions;
 }  // namespace tessera::cells
 
 namespace tessera::io {
 
 struct InputFile;
+struct MeshOptions;
 struct SurfaceFile;
 struct VolumeFile;
 struct VolumeOptions;
@@ -48,11 +48,11 @@ struct Format {
   bool is_listed = true;
 
   // Null: files of this format have none.
-  cells::MeshBlocks (*read_mesh)(const InputFile&, const cells::MeshOptions&) = nullptr;
+  cells::MeshBlocks (*read_mesh)(const InputFile&, const MeshOptions&) = nullptr;
   VolumeFile (*open_volume)(const InputFile&, const VolumeOptions&) = nullptr;
   SurfaceFile (*read_surface)(const InputFile&) = nullptr;
   /// Of meshes: how many there are and when; ReadOptions::time_step applies.
-  scene::TimeStepRead (*time_steps)(const InputFile&, const cells::MeshOptions&) = nullptr;
+  scene::TimeStepRead (*time_steps)(const InputFile&, const MeshOptions&) = nullptr;
 
   bool (*holds_grid)(const InputFile&) = nullptr;  ///< looks into a file that may hold a grid or a mesh
   bool reads_gzip = false;  ///< open_volume does; other gzip files are inflated before they are read

@@ -19,7 +19,7 @@ ForeignFile open_by(const ForeignReader& by, const InputFile& file, nlohmann::js
   return open_foreign(file, std::move(request), progress, std::move(task));
 }
 
-ForeignFile open_mesh_by(const ForeignReader& by, const InputFile& file, const cells::MeshOptions& options) {
+ForeignFile open_mesh_by(const ForeignReader& by, const InputFile& file, const MeshOptions& options) {
   nlohmann::json request{{"blocks", options.blocks}, {"field", options.field}};
   if (options.time_step) request["time_step"] = *options.time_step;
   if (options.surfaces) request["surfaces"] = true;
@@ -50,12 +50,11 @@ VolumeFile read_foreign_volume(const InputFile& file, const ForeignReader& by, c
   return grid_of(open_by(by, file, std::move(request), asked.progress), asked);
 }
 
-cells::MeshBlocks read_foreign_mesh(const InputFile& file, const ForeignReader& by, const cells::MeshOptions& options) {
+cells::MeshBlocks read_foreign_mesh(const InputFile& file, const ForeignReader& by, const MeshOptions& options) {
   return mesh_of(open_mesh_by(by, file, options), GridsAre::hexahedra);
 }
 
-scene::TimeStepRead foreign_time_steps(const InputFile& file, const ForeignReader& by,
-                                       const cells::MeshOptions& options) {
+scene::TimeStepRead foreign_time_steps(const InputFile& file, const ForeignReader& by, const MeshOptions& options) {
   return open_mesh_by(by, file, options).contents.time_step;
 }
 

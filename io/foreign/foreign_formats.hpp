@@ -30,7 +30,7 @@ struct ForeignReader {
 };
 
 /// All blocks, all arrays, one time step, by default the last; grids become hexahedra.
-cells::MeshBlocks read_foreign_mesh(const InputFile& file, const ForeignReader& by, const cells::MeshOptions& options);
+cells::MeshBlocks read_foreign_mesh(const InputFile& file, const ForeignReader& by, const MeshOptions& options);
 
 /// As a volume. Throws Error(bad_input) for a mesh, and for a file that is of the format by its name alone, unless that
 /// is DICOM's, whose files may lack a mark.
@@ -41,11 +41,10 @@ VolumeFile read_foreign_volume(const InputFile& file, const ForeignReader& by, c
 bool holds_one_grid(const InputFile& file, const ForeignReader& by);
 
 /// The time steps that the helper finds as it opens a mesh.
-scene::TimeStepRead foreign_time_steps(const InputFile& file, const ForeignReader& by,
-                                       const cells::MeshOptions& options);
+scene::TimeStepRead foreign_time_steps(const InputFile& file, const ForeignReader& by, const MeshOptions& options);
 
 template <Reader program, ReaderName name>
-cells::MeshBlocks mesh_by(const InputFile& file, const cells::MeshOptions& options) {
+cells::MeshBlocks mesh_by(const InputFile& file, const MeshOptions& options) {
   return read_foreign_mesh(file, {program, name.text}, options);
 }
 template <Reader program, ReaderName name>
@@ -57,42 +56,42 @@ bool holds_grid_by(const InputFile& file) {
   return holds_one_grid(file, {program, name.text});
 }
 template <Reader program, ReaderName name>
-scene::TimeStepRead steps_by(const InputFile& file, const cells::MeshOptions& options) {
+scene::TimeStepRead steps_by(const InputFile& file, const MeshOptions& options) {
   return foreign_time_steps(file, {program, name.text}, options);
 }
 
 /// VTK's XML files: .vtu .pvtu .vts .pvts .vtr .pvtr, and lists of them (.vtm .vtpc). The pieces of a .pvtu are a block
 /// each, their points not merged.
-cells::MeshBlocks read_vtk_xml(const InputFile& file, const cells::MeshOptions& options);
+cells::MeshBlocks read_vtk_xml(const InputFile& file, const MeshOptions& options);
 
 /// Legacy .vtk: unstructured, structured and rectilinear grids, ASCII or binary, all their arrays.
-cells::MeshBlocks read_vtk_legacy(const InputFile& file, const cells::MeshOptions& options);
+cells::MeshBlocks read_vtk_legacy(const InputFile& file, const MeshOptions& options);
 
 /// .vti .pvti .vtr .pvtr, and legacy .vtk of grids: in place, in this process or by VTK.
 VolumeFile open_vtk_grid(const InputFile& file, const VolumeOptions& options);
 
 /// Exodus II: all element blocks, nodal and element variables at one time step (default the last). Nodes are where
 /// they began (cells/warp.hpp). Variables NAME_x NAME_y NAME_z become one vector NAME.
-cells::MeshBlocks read_exodus(const InputFile& file, const cells::MeshOptions& options);
-scene::TimeStepRead exodus_time_steps(const InputFile& file, const cells::MeshOptions& options);
+cells::MeshBlocks read_exodus(const InputFile& file, const MeshOptions& options);
+scene::TimeStepRead exodus_time_steps(const InputFile& file, const MeshOptions& options);
 
 /// HDF5, by what is in it.
-cells::MeshBlocks read_hdf5(const InputFile& file, const cells::MeshOptions& options);
+cells::MeshBlocks read_hdf5(const InputFile& file, const MeshOptions& options);
 
 /// Files of solvers. VTK's readers do not check what other files of these names hold, so that it is done here.
-cells::MeshBlocks read_openfoam(const InputFile& file, const cells::MeshOptions& options);
-cells::MeshBlocks read_ensight(const InputFile& file, const cells::MeshOptions& options);
-cells::MeshBlocks read_fluent(const InputFile& file, const cells::MeshOptions& options);
-cells::MeshBlocks read_gambit(const InputFile& file, const cells::MeshOptions& options);
-cells::MeshBlocks read_avs_ucd(const InputFile& file, const cells::MeshOptions& options);
+cells::MeshBlocks read_openfoam(const InputFile& file, const MeshOptions& options);
+cells::MeshBlocks read_ensight(const InputFile& file, const MeshOptions& options);
+cells::MeshBlocks read_fluent(const InputFile& file, const MeshOptions& options);
+cells::MeshBlocks read_gambit(const InputFile& file, const MeshOptions& options);
+cells::MeshBlocks read_avs_ucd(const InputFile& file, const MeshOptions& options);
 
 /// PLOT3D grid and solution; the binary layout is found from the file's size. `plot3d_q` may be empty: then it is
 /// looked for beside the grid by its name, and if there is none the mesh has no field. IBLANK 0 hides a point's cells.
-cells::MeshBlocks read_plot3d(const InputFile& file, const cells::MeshOptions& options);
+cells::MeshBlocks read_plot3d(const InputFile& file, const MeshOptions& options);
 
 /// The same of one time of ParaView's list of such files (.p3d, plot3d_list.hpp), by default the last. `plot3d_q` takes
 /// the place of the solution that it names.
-cells::MeshBlocks read_plot3d_list(const InputFile& file, const cells::MeshOptions& options);
-scene::TimeStepRead plot3d_list_time_steps(const InputFile& file, const cells::MeshOptions& options);
+cells::MeshBlocks read_plot3d_list(const InputFile& file, const MeshOptions& options);
+scene::TimeStepRead plot3d_list_time_steps(const InputFile& file, const MeshOptions& options);
 
 }  // namespace tessera::io

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "io/foreign/client/foreign_file.hpp"
+#include "io/volume/volume_options.hpp"
 #include "io/volume/volume_reader.hpp"
 
 namespace tessera::io {

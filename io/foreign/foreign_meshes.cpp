@@ -46,13 +46,13 @@ cells::MeshBlocks named_format(const XmlKind& kind, const std::string& extension
 }
 
 /// One data set in this process, or by VTK's reader if it has what this one does not know.
-cells::MeshBlocks read_data_set(const InputFile& file, const std::string& type, const cells::MeshOptions& options) {
+cells::MeshBlocks read_data_set(const InputFile& file, const std::string& type, const MeshOptions& options) {
   std::optional<ForeignFile> opened = type.starts_with('P') ? std::nullopt : open_vtk_xml(file.path, options.progress);
   if (!opened) opened = open_foreign(file, {{"reader", "vtk_xml"}, {"type", type}}, options.progress);
   return mesh_of(*opened);
 }
 
-ForeignFile open_exodus(const InputFile& file, const char* reader, const cells::MeshOptions& options) {
+ForeignFile open_exodus(const InputFile& file, const char* reader, const MeshOptions& options) {
   nlohmann::json request{{"reader", reader}, {"blocks", options.blocks}};
   if (options.surfaces) request["surfaces"] = true;
   if (options.time_step) request["time_step"] = *options.time_step;
@@ -65,8 +65,7 @@ std::vector<Plot3dStep> steps_of_list(const InputFile& file) {
   return parse_plot3d_list(read_text_file(file.path), file.path);
 }
 
-scene::TimeStepRead chosen_of(std::span<const Plot3dStep> steps, const InputFile& file,
-                              const cells::MeshOptions& options) {
+scene::TimeStepRead chosen_of(std::span<const Plot3dStep> steps, const InputFile& file, const MeshOptions& options) {
   scene::TimeStepRead chosen = scene::chosen_step(options.time_step, steps.size(), file.name);
   for (const Plot3dStep& each : steps) chosen.times.push_back(each.time);
   return chosen;
@@ -79,7 +78,7 @@ scene::TimeStepRead chosen_of(std::span<const Plot3dStep> steps, const InputFile
 
 }  // namespace
 
-cells::MeshBlocks read_vtk_xml(const InputFile& file, const cells::MeshOptions& options) {
+cells::MeshBlocks read_vtk_xml(const InputFile& file, const MeshOptions& options) {
   const std::string &source = file.name, extension = system::lower_extension(file.path),
                     type = vtk_xml_type(file.beginning);
   const XmlKind* const kind = kind_of(type);
@@ -106,14 +105,14 @@ cells::MeshBlocks read_vtk_xml(const InputFile& file, const cells::MeshOptions& 
   return result;
 }
 
-cells::MeshBlocks read_vtk_legacy(const InputFile& file, const cells::MeshOptions& options) {
+cells::MeshBlocks read_vtk_legacy(const InputFile& file, const MeshOptions& options) {
   if (!file.beginning.starts_with("# vtk DataFile Version"))
     throw scene::bad_input(fmt::format(
         "{}: it does not begin with '# vtk DataFile Version'; check that it is a legacy VTK file", file.name));
   return mesh_of(open_foreign(file, {{"reader", "vtk_legacy"}}, options.progress));
 }
 
-cells::MeshBlocks read_exodus(const InputFile& file, const cells::MeshOptions& options) {
+cells::MeshBlocks read_exodus(const InputFile& file, const MeshOptions& options) {
   if (!exodus_files(file).empty()) return read_share(file, options, 0, 1);
   if (!file.beginning.starts_with("CDF") && !file.beginning.starts_with(hdf5_signature))
     throw scene::bad_input(
@@ -121,46 +120,46 @@ cells::MeshBlocks read_exodus(const InputFile& file, const cells::MeshOptions& o
   return mesh_of(open_exodus(file, "exodus", options));
 }
 
-scene::TimeStepRead exodus_time_steps(const InputFile& file, const cells::MeshOptions& options) {
+scene::TimeStepRead exodus_time_steps(const InputFile& file, const MeshOptions& options) {
   if (const auto files = exodus_files(file); !files.empty())
     return read_share(file, options, 0, static_cast<int>(files.size())).time_step;  // of the first
   return open_exodus(file, "exodus", options).contents.time_step;
 }
 
-cells::MeshBlocks read_hdf5(const InputFile& file, const cells::MeshOptions& options) {
+cells::MeshBlocks read_hdf5(const InputFile& file, const MeshOptions& options) {
   if (!exodus_files(file).empty()) return read_share(file, options, 0, 1);
   ForeignFile opened = open_exodus(file, "hdf5", options);
   return opened.contents.has_levels ? read_amr(std::move(opened), options) : mesh_of(opened, GridsAre::hexahedra);
 }
 
-cells::MeshBlocks read_openfoam(const InputFile& file, const cells::MeshOptions& options) {
+cells::MeshBlocks read_openfoam(const InputFile& file, const MeshOptions& options) {
   require_beside_others(file.path);
   return read_foreign_mesh(file, {Reader::vtk, "openfoam"}, options);
 }
 
-cells::MeshBlocks read_ensight(const InputFile& file, const cells::MeshOptions& options) {
+cells::MeshBlocks read_ensight(const InputFile& file, const MeshOptions& options) {
   require_beside_others(file.path);
   return read_foreign_mesh(file, {Reader::vtk, "ensight"}, options);
 }
 
-cells::MeshBlocks read_fluent(const InputFile& file, const cells::MeshOptions& options) {
+cells::MeshBlocks read_fluent(const InputFile& file, const MeshOptions& options) {
   // Good ones make it crash.
   constexpr const char* remedy = "VTK's reader does not know all kinds of it: export CGNS or EnSight";
   return read_foreign_mesh(file, {Reader::vtk, "fluent", remedy}, options);
 }
 
-cells::MeshBlocks read_gambit(const InputFile& file, const cells::MeshOptions& options) {
+cells::MeshBlocks read_gambit(const InputFile& file, const MeshOptions& options) {
   if (!file.is_recognized) refuse_beginning(file, "GAMBIT");
   return read_foreign_mesh(file, {Reader::vtk, "gambit"}, options);
 }
 
-cells::MeshBlocks read_avs_ucd(const InputFile& file, const cells::MeshOptions& options) {
+cells::MeshBlocks read_avs_ucd(const InputFile& file, const MeshOptions& options) {
   const bool is_binary = file.beginning.starts_with('\a');
   if (!file.is_recognized && !is_binary) refuse_beginning(file, "AVS UCD");
   return read_foreign_mesh(file, {Reader::vtk, "avs_ucd"}, options);
 }
 
-cells::MeshBlocks read_plot3d(const InputFile& input, const cells::MeshOptions& options) {
+cells::MeshBlocks read_plot3d(const InputFile& input, const MeshOptions& options) {
   const std::filesystem::path &file = input.path, &q_file = options.plot3d_q;
   const Plot3dLayout layout = detect_plot3d(file);
   const std::filesystem::path q = q_file.empty() ? find_plot3d_solution(file) : q_file;
@@ -194,11 +193,11 @@ cells::MeshBlocks read_plot3d(const InputFile& input, const cells::MeshOptions& 
   return result;
 }
 
-cells::MeshBlocks read_plot3d_list(const InputFile& file, const cells::MeshOptions& options) {
+cells::MeshBlocks read_plot3d_list(const InputFile& file, const MeshOptions& options) {
   const std::vector<Plot3dStep> steps = steps_of_list(file);
   scene::TimeStepRead chosen = chosen_of(steps, file, options);
   const Plot3dStep& step = steps[chosen.step];
-  cells::MeshOptions of_step = options;
+  MeshOptions of_step = options;
   of_step.time_step.reset();
   if (of_step.plot3d_q.empty()) of_step.plot3d_q = step.solution;
   cells::MeshBlocks result =
@@ -211,7 +210,7 @@ cells::MeshBlocks read_plot3d_list(const InputFile& file, const cells::MeshOptio
   return result;
 }
 
-scene::TimeStepRead plot3d_list_time_steps(const InputFile& file, const cells::MeshOptions& options) {
+scene::TimeStepRead plot3d_list_time_steps(const InputFile& file, const MeshOptions& options) {
   return chosen_of(steps_of_list(file), file, options);
 }
 

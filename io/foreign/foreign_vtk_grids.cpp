@@ -40,7 +40,7 @@ VolumeFile read_vtk_grid(const InputFile& file, const VolumeOptions& options) {
 VolumeFile open_vtk_grid(const InputFile& file, const VolumeOptions& options) {
   require_recognized(file);
   require_no_time_step(options.time_step, file.name);
-  auto plain = read_plain_vtk_grid(file.path, options.most_in_memory);
+  auto plain = read_plain_vtk_grid(file.path, options.most_in_memory());
   VolumeFile volume = plain ? open_stored(*std::move(plain), options, file.name) : read_vtk_grid(file, options);
   for (const auto& [name, word] : vtk_field_words(file.beginning)) take_word(name, word, volume.body_axes, volume.tags);
   return with_tag_note(std::move(volume));

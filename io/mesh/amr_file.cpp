@@ -165,7 +165,7 @@ void add_notes_on(std::span<const cells::CellBlock> fields, const cells::AmrLeav
           fmt::format("block '{}' lacks the field '{}': its cells are blanked", block.name, choice.name));
 }
 
-cells::MeshBlocks mesh_of(const OpenedAmr& opened, const cells::MeshOptions& options, const std::string& source) {
+cells::MeshBlocks mesh_of(const OpenedAmr& opened, const MeshOptions& options, const std::string& source) {
   if (opened.blocks.empty())
     throw scene::bad_input(fmt::format("{}: it holds no cells; check how it was written", source));
   std::vector<cells::CellBlock> fields = opened.fields;
@@ -214,27 +214,27 @@ void OpenedAmr::add(ForeignFile opened) {
   if (format.empty()) format = file.contents.format;
 }
 
-cells::MeshBlocks read_amrex(const InputFile& file, const cells::MeshOptions& options) {
+cells::MeshBlocks read_amrex(const InputFile& file, const MeshOptions& options) {
   return mesh_of(open_amrex(file.path), options, file.name);
 }
 
-cells::MeshBlocks read_amr_list(const InputFile& file, const cells::MeshOptions& options) {
+cells::MeshBlocks read_amr_list(const InputFile& file, const MeshOptions& options) {
   if (!has_reader(Reader::vtk)) throw missing_reader(Reader::vtk, file.name, file.format);  // else it names a block
   return mesh_of(open_amr_list(file), options, file.name);
 }
 
-cells::MeshBlocks read_hyper_trees(const InputFile& file, const cells::MeshOptions& options) {
+cells::MeshBlocks read_hyper_trees(const InputFile& file, const MeshOptions& options) {
   if (!has_reader(Reader::vtk)) throw missing_reader(Reader::vtk, file.name, file.format);
   return mesh_of(open_hyper_trees(file), options, file.name);
 }
 
-cells::MeshBlocks read_enzo(const InputFile& file, const cells::MeshOptions& options) {
+cells::MeshBlocks read_enzo(const InputFile& file, const MeshOptions& options) {
   OpenedAmr opened;
   opened.add(open_foreign(file, {{"reader", "enzo"}}));
   return mesh_of(opened, options, file.name);
 }
 
-cells::MeshBlocks read_amr(ForeignFile blocks, const cells::MeshOptions& options) {
+cells::MeshBlocks read_amr(ForeignFile blocks, const MeshOptions& options) {
   require_no_time_step(options.time_step, blocks.source);
   OpenedAmr opened;
   opened.add(std::move(blocks));

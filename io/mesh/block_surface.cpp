@@ -132,14 +132,14 @@ std::optional<cells::FieldChoice> field_of(std::span<const cells::CellBlock> blo
 
 }  // namespace
 
-BlockFaces read_block_faces(std::span<const InputFile> files, cells::MeshOptions options) {
-  options.surfaces = true;
+BlockFaces read_block_faces(std::span<const InputFile> files, const ReadOptions& read) {
+  const MeshOptions options{read, true};
   const std::string& source = files.front().name;
   return with_clean_errors(source, [&] {
     std::vector<cells::CellBlock> blocks;
     for (const InputFile& file : files) {
-      cells::MeshBlocks read = read_mesh_blocks(file, options);
-      std::move(read.blocks.begin(), read.blocks.end(), std::back_inserter(blocks));
+      cells::MeshBlocks mesh = read_mesh_blocks(file, options);
+      std::move(mesh.blocks.begin(), mesh.blocks.end(), std::back_inserter(blocks));
     }
     const std::optional<cells::FieldChoice> choice = field_of(blocks, options.field, source);
     BlockFaces result;

@@ -14,9 +14,9 @@ struct BlockFaces {
   bool has_volume = false;     ///< there are cells of volume too
 };
 
-/// The two-dimensional cells of the blocks that `options` choose, cut into triangles; of higher order by their corners.
-/// Values are of `options.field`, which may be empty or unknown: then there are none. Throws Error(bad_input) as
+/// The two-dimensional cells of the blocks that `read` chooses, cut into triangles; of higher order by their corners.
+/// Values are of `read.field`, which may be empty or unknown: then there are none. Throws Error(bad_input) as
 /// read_mesh_blocks, and for a point that is not finite.
-BlockFaces read_block_faces(std::span<const InputFile> files, cells::MeshOptions options);
+BlockFaces read_block_faces(std::span<const InputFile> files, const ReadOptions& read);
 
 }  // namespace tessera::io

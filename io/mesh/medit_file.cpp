@@ -274,11 +274,11 @@ std::vector<cells::CellBlock> parse_medit_text(std::string_view text, const std:
   return MeditText(text, source).blocks();
 }
 
-cells::MeshBlocks read_medit_text(const InputFile& file, const cells::MeshOptions& /*options*/) {
+cells::MeshBlocks read_medit_text(const InputFile& file, const MeshOptions& /*options*/) {
   return {parse_medit_text(WholeFile(file.path).text(), file.name), {}, "Medit"};
 }
 
-cells::MeshBlocks read_medit_binary(const InputFile& file, const cells::MeshOptions& /*options*/) {
+cells::MeshBlocks read_medit_binary(const InputFile& file, const MeshOptions& /*options*/) {
   return {parse_medit_binary(WholeFile(file.path).bytes(), file.name), {}, "Medit, binary"};
 }
 

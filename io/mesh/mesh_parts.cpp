@@ -24,7 +24,7 @@ bool is_tets(const InputFile& file) { return system::lower_extension(file.path) 
 
 }  // namespace
 
-bool readable_in_parts(const InputFile& file, const cells::MeshOptions& options) {
+bool readable_in_parts(const InputFile& file, const ReadOptions& options) {
   if (options.smooth || options.drop_duplicates) return false;
   if (is_tets(file)) return options.blocks.empty();
   return lists_pieces(file) || has_shares(file);
@@ -40,7 +40,7 @@ std::vector<std::filesystem::path> files_of_parts(const InputFile& file) {
 
 struct MeshPartReading::State {
   InputFile file;
-  cells::MeshOptions options;
+  ReadOptions options;
   cells::MeshBlocks blocks;
   std::vector<cells::FieldTally> tallies;
   scene::Box box;  ///< of the part, then of all
@@ -105,7 +105,7 @@ struct MeshPartReading::State {
   }
 };
 
-MeshPartReading::MeshPartReading(InputFile file, const cells::MeshOptions& options, int part, int parts)
+MeshPartReading::MeshPartReading(InputFile file, const ReadOptions& options, int part, int parts)
     : state_(std::make_unique<State>()) {
   state_->file = std::move(file);
   state_->options = options;

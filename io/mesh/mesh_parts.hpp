@@ -33,7 +33,7 @@ namespace tessera::io {
 /// Whether the file can be read in parts: .pvtu, whose pieces are divided over the parts, VTK's lists of blocks (.vtm
 /// .vtpc), whose files are, .tets, whose tets are, and meshes in shares (io/mesh/mesh_shares.hpp). Not if it is to be
 /// smoothed, which needs all cells round a point, or each cell drawn once, which needs all of them.
-bool readable_in_parts(const InputFile& file, const cells::MeshOptions& options);
+bool readable_in_parts(const InputFile& file, const ReadOptions& options);
 
 /// The files that such a file lists, or that it is one of; none of .tets and of what is in folders. Throws
 /// Error(bad_input).
@@ -64,7 +64,7 @@ class MeshPartReading {
  public:
   /// Reads part `part` of `parts`, which may be more than the file has pieces. The file has to be readable in parts.
   /// Throws as read_mesh; faults name the piece.
-  MeshPartReading(InputFile file, const cells::MeshOptions& options, int part, int parts);
+  MeshPartReading(InputFile file, const ReadOptions& options, int part, int parts);
   ~MeshPartReading();
 
   [[nodiscard]] const std::vector<cells::FieldTally>& tallies() const;

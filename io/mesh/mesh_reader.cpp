@@ -32,7 +32,7 @@ cells::MeshBlocks chosen_blocks(cells::MeshBlocks read, const cells::BlockChoice
   return read;
 }
 
-cells::MeshBlocks warped(cells::MeshBlocks read, const cells::MeshOptions& options, const std::string& source) {
+cells::MeshBlocks warped(cells::MeshBlocks read, const ReadOptions& options, const std::string& source) {
   cells::warp(read, options, source);
   return read;
 }
@@ -54,14 +54,14 @@ auto read_content(const InputFile& file, const Read& read) {
   });
 }
 
-cells::MeshBlocks read_unscaled_blocks(const InputFile& file, const cells::MeshOptions& options) {
+cells::MeshBlocks read_unscaled_blocks(const InputFile& file, const MeshOptions& options) {
   require_mesh(file);
   return read_content(file, [&](const InputFile& content) {
     return warped(chosen_blocks(file.format->read_mesh(content, options), options.blocks), options, file.name);
   });
 }
 
-cells::MeshBlocks read_blocks(const InputFile& file, const cells::MeshOptions& options) {
+cells::MeshBlocks read_blocks(const InputFile& file, const MeshOptions& options) {
   cells::MeshBlocks read = read_unscaled_blocks(file, options);
   const Box box = read.beside_degrees ? cells::box_of_points(read.blocks) : Box();
   read.axis_scale = cells::chosen_scale(options.axis_scale, read.beside_degrees, box, read.notes);
@@ -70,7 +70,7 @@ cells::MeshBlocks read_blocks(const InputFile& file, const cells::MeshOptions& o
 }
 
 /// What is left to be chosen of blocks.
-cells::MeshOptions options_after(const cells::MeshBlocks& read, cells::MeshOptions options) {
+ReadOptions options_after(const cells::MeshBlocks& read, ReadOptions options) {
   if (read.fields.empty()) return options;
   options.smooth = false;
   options.field.clear();
@@ -98,7 +98,7 @@ void require_mesh(const InputFile& file) {
   throw scene::bad_input(fmt::format("{}: it is a regular grid, no mesh; give it alone or among volumes", file.name));
 }
 
-cells::MeshBlocks read_mesh_blocks(const InputFile& file, const cells::MeshOptions& options) {
+cells::MeshBlocks read_mesh_blocks(const InputFile& file, const MeshOptions& options) {
   const std::string& source = file.name;
   return with_clean_errors(source, [&] {
     cells::MeshBlocks read = read_blocks(file, options);
@@ -108,13 +108,13 @@ cells::MeshBlocks read_mesh_blocks(const InputFile& file, const cells::MeshOptio
   });
 }
 
-cells::MeshFile read_mesh(const InputFile& file, const cells::MeshOptions& options) {
+cells::MeshFile read_mesh(const InputFile& file, const ReadOptions& options) {
   const std::string& source = file.name;
   return with_clean_errors(source, [&] {
-    cells::MeshBlocks read = read_blocks(file, options);
+    cells::MeshBlocks read = read_blocks(file, {options});
     if (file.format->time_steps == nullptr) require_no_time_step(options.time_step, source);
     cells::require_blocks(options.blocks, read.block_names, source);
-    const cells::MeshOptions rest = options_after(read, options);
+    const ReadOptions rest = options_after(read, options);
     cells::MeshFile result = cells::assemble_mesh(std::move(read.blocks), rest, source);
     if (!read.fields.empty()) result.fields = std::move(read.fields);
     result.format = std::move(read.format);
@@ -128,21 +128,21 @@ cells::MeshFile read_mesh(const InputFile& file, const cells::MeshOptions& optio
   });
 }
 
-scene::TimeStepRead time_steps_of_mesh(const InputFile& file, const cells::MeshOptions& options) {
+scene::TimeStepRead time_steps_of_mesh(const InputFile& file, const ReadOptions& options) {
   require_mesh(file);
   if (file.format->time_steps == nullptr) return {};
   return with_clean_errors(file.name, [&] {
-    return read_content(file, [&](const InputFile& content) { return file.format->time_steps(content, options); });
+    return read_content(file, [&](const InputFile& content) { return file.format->time_steps(content, {options}); });
   });
 }
 
-cells::MeshFile read_mesh(std::span<const InputFile> files, const cells::MeshOptions& options) {
+cells::MeshFile read_mesh(std::span<const InputFile> files, const ReadOptions& options) {
   if (files.size() == 1) return read_mesh(files.front(), options);
   cells::MeshBlocks all;
   for (const InputFile& file : files) {
     const std::string& source = file.name;
     with_clean_errors(source, [&] {
-      cells::MeshBlocks read = read_blocks(file, options);
+      cells::MeshBlocks read = read_blocks(file, {options});
       if (file.format->time_steps == nullptr) require_no_time_step(options.time_step, source);
       if (!read.fields.empty())
         throw scene::bad_input(fmt::format("{}: a mesh with levels is read by itself only; give it alone", source));

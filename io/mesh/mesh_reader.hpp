@@ -5,8 +5,8 @@
 #include <span>
 
 #include "cells/mesh_blocks.hpp"
-#include "cells/mesh_options.hpp"
 #include "io/files/input_file.hpp"
+#include "io/mesh/mesh_options.hpp"
 #include "scene/tet_mesh.hpp"
 
 namespace tessera::io {
@@ -16,19 +16,19 @@ namespace tessera::io {
 /// position, whatever piece they come from. Throws Error(bad_input) in one line for a missing, truncated, malformed or
 /// empty file, an unknown format or field, or if no cell is left; Error(system_failure) if memory runs out. Never
 /// leaves VTK's own messages on stderr.
-cells::MeshFile read_mesh(const InputFile& file, const cells::MeshOptions& options = {});
+cells::MeshFile read_mesh(const InputFile& file, const ReadOptions& options = {});
 
 /// Reads several files as the pieces of one mesh, their points not merged. Each has to have the chosen field. Throws as
 /// read_mesh.
-cells::MeshFile read_mesh(std::span<const InputFile> files, const cells::MeshOptions& options = {});
+cells::MeshFile read_mesh(std::span<const InputFile> files, const ReadOptions& options = {});
 
 /// The cells of a file's chosen blocks as they are before they are split, and the names of all its blocks. Throws as
 /// read_mesh, but not if there are none.
-cells::MeshBlocks read_mesh_blocks(const InputFile& file, const cells::MeshOptions& options);
+cells::MeshBlocks read_mesh_blocks(const InputFile& file, const MeshOptions& options);
 
 /// The time steps that a mesh file has, and when they are, without its numbers where its format has them apart. Throws
 /// as read_mesh.
-scene::TimeStepRead time_steps_of_mesh(const InputFile& file, const cells::MeshOptions& options = {});
+scene::TimeStepRead time_steps_of_mesh(const InputFile& file, const ReadOptions& options = {});
 
 /// Whether read_mesh knows the format. Rectilinear grids are volumes too.
 bool is_mesh(const InputFile& file);

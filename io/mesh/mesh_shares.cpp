@@ -42,7 +42,7 @@ const char* exodus_reader(const FileBeginning& start) {
   return begins_as_exodus(start) ? "exodus" : begins_as_hdf5(start) ? "hdf5" : nullptr;
 }
 
-nlohmann::json request_for(const char* reader, const cells::MeshOptions& options) {
+nlohmann::json request_for(const char* reader, const ReadOptions& options) {
   nlohmann::json request{{"reader", reader}, {"blocks", options.blocks}};
   if (options.time_step) request["time_step"] = *options.time_step;
   return request;
@@ -60,7 +60,7 @@ void add_blocks(const ForeignFile& opened, cells::MeshBlocks& blocks, const std:
 }
 
 cells::MeshBlocks read_exodus_files(std::span<const std::filesystem::path> files, const Format* format,
-                                    const cells::MeshOptions& options, int part, int parts) {
+                                    const ReadOptions& options, int part, int parts) {
   cells::MeshBlocks result;
   result.format = fmt::format("Exodus II in {} files", files.size());
   HelperTask task;
@@ -110,7 +110,7 @@ bool has_shares(const InputFile& file) {
          !exodus_files(file).empty();
 }
 
-cells::MeshBlocks read_share(const InputFile& file, const cells::MeshOptions& options, int part, int parts) {
+cells::MeshBlocks read_share(const InputFile& file, const ReadOptions& options, int part, int parts) {
   if (const auto files = exodus_files(file); !files.empty())
     return read_exodus_files(files, file.format, options, part, parts);
   require_beside_others(file.path);

@@ -20,6 +20,6 @@ std::vector<std::filesystem::path> exodus_files(const InputFile& file);
 
 /// Share `part` of `parts`, which may be empty: pieces in their order, each a block or more; all in one share are the
 /// whole. Throws Error(bad_input).
-cells::MeshBlocks read_share(const InputFile& file, const cells::MeshOptions& options, int part, int parts);
+cells::MeshBlocks read_share(const InputFile& file, const ReadOptions& options, int part, int parts);
 
 }  // namespace tessera::io

@@ -164,7 +164,7 @@ std::vector<cells::CellBlock> read_nastran(const std::filesystem::path& file) {
   return cells::blocks_by_number(cells.block(), elements.properties, "property", "PropertyId");
 }
 
-cells::MeshBlocks read_nastran_mesh(const InputFile& file, const cells::MeshOptions& /*options*/) {
+cells::MeshBlocks read_nastran_mesh(const InputFile& file, const MeshOptions& /*options*/) {
   return {read_nastran(file.path), {}, "Nastran"};
 }
 

@@ -165,7 +165,7 @@ std::vector<cells::CellBlock> parse_su2(std::string_view text, const std::string
   return blocks;
 }
 
-cells::MeshBlocks read_su2(const InputFile& file, const cells::MeshOptions& /*options*/) {
+cells::MeshBlocks read_su2(const InputFile& file, const MeshOptions& /*options*/) {
   return {parse_su2(WholeFile(file.path).text(), file.name), {}, "SU2"};
 }
 

@@ -89,7 +89,7 @@ SurfaceFile read_tetgen_surface(const InputFile& file) {
   return result;
 }
 
-cells::MeshBlocks fill_surface_file(const InputFile& file, const cells::MeshOptions& options) {
+cells::MeshBlocks fill_surface_file(const InputFile& file, const MeshOptions& options) {
   const std::optional<double>& max_volume = options.max_volume;
   const std::string source = file.path.string();
   if (max_volume && !(*max_volume > 0))
@@ -131,7 +131,7 @@ cells::MeshBlocks fill_surface_file(const InputFile& file, const cells::MeshOpti
   return result;
 }
 
-cells::MeshBlocks read_node_ele(const InputFile& input, const cells::MeshOptions& /*options*/) {
+cells::MeshBlocks read_node_ele(const InputFile& input, const MeshOptions& /*options*/) {
   const std::filesystem::path& file = input.path;
   require_beside_others(file);
   std::filesystem::path node_file = file, ele_file = file;

@@ -279,14 +279,14 @@ TecplotMesh parse_tecplot(std::string_view text, const std::string& source, std:
   return mesh;
 }
 
-cells::MeshBlocks read_tecplot(const InputFile& file, const cells::MeshOptions& options) {
+cells::MeshBlocks read_tecplot(const InputFile& file, const MeshOptions& options) {
   TecplotMesh read = parse_tecplot(WholeFile(file.path).text(), file.name, options.time_step);
   cells::MeshBlocks mesh{std::move(read.blocks), std::move(read.notes), "Tecplot (text)"};
   mesh.time_step = std::move(read.time_step);
   return mesh;
 }
 
-scene::TimeStepRead tecplot_time_steps(const InputFile& file, const cells::MeshOptions& options) {
+scene::TimeStepRead tecplot_time_steps(const InputFile& file, const MeshOptions& options) {
   return steps_in(parse_tecplot_header(WholeFile(file.path).text(), file.name), options.time_step, file.name);
 }
 

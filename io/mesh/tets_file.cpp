@@ -175,7 +175,7 @@ cells::MeshBlocks blocks_of_tets(scene::TetMesh mesh) {
   return result;
 }
 
-cells::MeshBlocks read_tets(const InputFile& file, const cells::MeshOptions& /*options*/) {
+cells::MeshBlocks read_tets(const InputFile& file, const MeshOptions& /*options*/) {
   return blocks_of_tets(parse_tets(TetsBytes(system::PositionalFile(file.path)), file.name));
 }
 

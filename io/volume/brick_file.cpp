@@ -165,7 +165,7 @@ BrickHeader parse_brick_header(const std::string& text, const std::filesystem::p
 
 }  // namespace
 
-VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& options, const std::string& name) {
+VolumeFile open_bricks(const std::filesystem::path& file, const ReadOptions& options, const std::string& name) {
   const system::PositionalFile opened = open_input(file);
   const std::uint64_t size = opened.size();
   std::uint64_t length = 0;
@@ -278,7 +278,7 @@ std::unique_ptr<system::ScratchFile> scratch_bricks(const scene::SampleSource& s
 bool unpacked_to_scratch(const StreamedSamples& samples, const VolumeOptions& options, const std::string& source,
                          VolumeFile& volume) {
   const std::uint64_t bytes = bytes_of(samples);
-  if (bytes <= options.most_in_memory || (!options.scratch_is_needed && !system::ScratchFile::has_room(bytes)))
+  if (bytes <= options.most_in_memory() || (!options.scratch_is_needed && !system::ScratchFile::has_room(bytes)))
     return false;
   volume.scratch = scratch_bricks(samples, source);
   volume.source = open_bricks(volume.scratch->path(), {}, source).source;

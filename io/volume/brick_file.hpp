@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "io/volume/streamed_bricks.hpp"
+#include "io/volume/volume_options.hpp"
 #include "io/volume/volume_reader.hpp"
 #include "scene/sample_source.hpp"
 #include "system/scratch_file.hpp"
@@ -29,7 +30,7 @@ namespace tessera::io {
 /// Everything little endian. No sample is stored twice: a brick with a border reads from up to 27 blocks.
 ///
 /// `name`: in the messages of later reads; empty: the file's.
-VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& options, const std::string& name = {});
+VolumeFile open_bricks(const std::filesystem::path& file, const ReadOptions& options, const std::string& name = {});
 
 /// Writes one with blocks of `side` samples (8 to 1024). Reads `source` once, one row of blocks at a time, on the
 /// threads of the caller's arena. Appears by rename. Throws Error(bad_input) for a side out of range,
@@ -42,8 +43,7 @@ void write_bricks(const scene::SampleSource& source, const std::filesystem::path
 std::unique_ptr<system::ScratchFile> scratch_bricks(const scene::SampleSource& source, const std::string& subject);
 
 /// Unpacks samples into such a file, a part at a time, and opens it: the volume's source and scratch. false, and
-/// nothing done, if they may stay in memory by VolumeOptions::most_in_memory or, if no room is no error, where there is
-/// none.
+/// nothing done, if they may stay in memory by VolumeOptions or, if no room is no error, where there is none.
 bool unpacked_to_scratch(const StreamedSamples& samples, const VolumeOptions& options, const std::string& source,
                          VolumeFile& volume);
 

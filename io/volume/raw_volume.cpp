@@ -34,7 +34,7 @@ std::optional<scene::SampleType> parse_sample_type(const std::string& text) {
   return std::nullopt;
 }
 
-StoredVolume describe_raw(const std::filesystem::path& file, const VolumeOptions& options) {
+StoredVolume describe_raw(const std::filesystem::path& file, const ReadOptions& options) {
   StoredVolume volume;
   volume.format = "raw samples";
   std::optional<scene::GridIndex> dims = options.dims;

@@ -47,7 +47,7 @@ void list_range(const scene::ValueRange& range, cells::FieldSummary& field) {
 }
 
 /// The step that is wanted.
-scene::TimeStepRead step_of(const StoredVolume& volume, const VolumeOptions& options, const std::string& source) {
+scene::TimeStepRead step_of(const StoredVolume& volume, const ReadOptions& options, const std::string& source) {
   if (volume.steps > 1) {
     scene::TimeStepRead read = scene::chosen_step(options.time_step, volume.steps, source);
     scene::set_times(read, volume.times);
@@ -196,7 +196,8 @@ void require_volume(const InputFile& file) {
     throw scene::bad_input(fmt::format("{}: it is no volume as the first step is one; give volumes only", file.name));
 }
 
-VolumeFile open_unscanned_volume(const InputFile& file, const VolumeOptions& options) {
+VolumeFile open_unscanned_volume(const InputFile& file, const ReadOptions& read, bool scratch_is_needed) {
+  const VolumeOptions options{read, scratch_is_needed};
   return with_clean_errors(file.name, [&] {
     const bool is_raw = !describes_itself(file) && (is_named_raw(file) || options.describes_raw());
     if (!is_raw && options.describes_raw())
@@ -238,7 +239,7 @@ void set_range(VolumeFile& volume, const std::filesystem::path& file, const scen
     volume.notes.push_back(fmt::format("{} samples are NaN, infinite or hidden: their voxels are blank", range.blanks));
 }
 
-VolumeFile open_volume(const InputFile& file, const VolumeOptions& options) {
+VolumeFile open_volume(const InputFile& file, const ReadOptions& options) {
   VolumeFile volume = open_unscanned_volume(file, options);
   with_clean_errors(file.name, [&] { set_range(volume, file.path, scene::value_range(*volume.source)); });
   return volume;

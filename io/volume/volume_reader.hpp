@@ -3,45 +3,21 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <glm/vec3.hpp>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "cells/mesh_options.hpp"
+#include "cells/field_summary.hpp"
 #include "io/files/input_file.hpp"
 #include "io/volume/volume_tags.hpp"
 #include "scene/sample_source.hpp"
 #include "scene/time_step_read.hpp"
 #include "system/scratch_file.hpp"
 #include "tessera/default_view.hpp"
+#include "tessera/read_options.hpp"
 
 namespace tessera::io {
-
-/// What the user may say about a volume file; the defaults read any file that describes itself.
-struct VolumeOptions {
-  std::string field{};  ///< as MeshOptions::field
-  // A .raw file says nothing of itself, but perhaps by its name: NAME_WxHxD_TYPE.raw. These win over the name, and are
-  // refused for other files.
-  std::optional<scene::GridIndex> dims{};
-  std::optional<scene::SampleType> type{};
-  std::optional<glm::dvec3> spacing{}, origin{};
-  bool big_endian = false;
-  std::uint64_t skip = 0;                  ///< bytes before the first sample
-  std::optional<std::size_t> time_step{};  ///< as MeshOptions::time_step
-  ReadProgressFunction progress{};         ///< called with the progress; may be null
-
-  /// Samples that have to be unpacked and take more bytes than this go into a file of bricks without a name
-  /// (system/scratch_file.hpp) as they come, where the format lets them come in parts: gzip, an array of .vti or .vtr,
-  /// what a helper holds. Without room for that they stay in memory, unless it is needed for others.
-  std::uint64_t most_in_memory = std::numeric_limits<std::uint64_t>::max();
-  bool scratch_is_needed = false;
-
-  /// Whether one of the .raw options is given.
-  [[nodiscard]] bool describes_raw() const { return dims || type || spacing || origin || big_endian || skip > 0; }
-};
 
 /// A volume whose samples wait in the file or, where they had to be decompressed, in memory or a scratch file.
 struct VolumeFile {
@@ -87,17 +63,21 @@ void require_volume(const InputFile& file);
 ///   .raw: described by the options or by its name, in place. .bricks: what write_bricks made, read brick by brick.
 ///   A gzip file of any of these is inflated into memory first, whatever its name.
 ///
-/// In memory: VolumeOptions::most_in_memory says what of it goes into a file instead.
+/// In memory: samples that have to be unpacked and take more than half of ReadOptions::memory_bytes go into a file of
+/// bricks without a name (system/scratch_file.hpp) as they come, where the format lets them come in parts: gzip, an
+/// array of .vti or .vtr, what a helper holds. Without room for that they stay in memory.
 /// World coordinates are the file's own (NIfTI's point right, anterior, up, DICOM's left,
 /// back, up; MetaImage's and NRRD's whatever they say).
 /// Headers are compared with the file's size before memory is asked for. Throws Error(bad_input) in one line for a
 /// missing, truncated, malformed or flat file, for more dimensions than three, time and components, for an encoding or
 /// type not known, for an unknown field or time step, or if no sample is finite.
-VolumeFile open_volume(const InputFile& file, const VolumeOptions& options = {});
+VolumeFile open_volume(const InputFile& file, const ReadOptions& options = {});
 
 /// The same without its range and what follows from that, for those who scan the samples themselves and then call
 /// set_range(). Vectors of which a component is chosen are read nevertheless: they are listed by their lengths.
-VolumeFile open_unscanned_volume(const InputFile& file, const VolumeOptions& options = {});
+/// `scratch_is_needed`: other processes read what is unpacked, so that it goes into a file whatever it takes.
+VolumeFile open_unscanned_volume(const InputFile& file, const ReadOptions& options = {},
+                                 bool scratch_is_needed = false);
 
 /// Enters the range of all samples, and what follows from it into fields and notes. Throws Error(bad_input) if none is
 /// finite.

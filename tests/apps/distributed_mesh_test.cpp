@@ -35,7 +35,8 @@ std::vector<double> content(const scene::TetMesh& mesh, std::size_t t) {
 }
 
 std::vector<DistributedMesh> read_on(int ranks, const std::filesystem::path& file, const std::vector<int>& projectors,
-                                     PartitionKind kind, const cells::MeshOptions& options = {}) {
+                                     PartitionKind kind, ReadOptions options = {}) {
+  options.threads = 1;
   std::vector<DistributedMesh> result(static_cast<std::size_t>(ranks));
   exchange::run_ranks(ranks, [&](Transport& transport) {
     result[static_cast<std::size_t>(transport.rank())] = read_distributed(
@@ -44,7 +45,8 @@ std::vector<DistributedMesh> read_on(int ranks, const std::filesystem::path& fil
   return result;
 }
 
-void expect_as_read_mesh(const std::filesystem::path& file, const cells::MeshOptions& options = {}) {
+void expect_as_read_mesh(const std::filesystem::path& file, ReadOptions options = {}) {
+  options.threads = 1;
   const cells::MeshFile whole = io::read_mesh(file, options);
   const scene::MeshFacts facts = scene::facts_of(whole.mesh);
   for (const PartitionKind kind : {PartitionKind::file, PartitionKind::curve, PartitionKind::random})
@@ -109,7 +111,7 @@ TEST(DistributedMesh, ADecomposedCaseIsReadByItsProcessors) {
   for (int part = 0; part < 4; ++part)
     io::testing::write_foam(place / fmt::format("processor{}", part), cubes, [&](int c) { return c / 16 == part; });
   io::testing::write_control(place);
-  cells::MeshOptions options;
+  ReadOptions options;
   options.time_step = 0;
   expect_as_read_mesh(place / "case.foam", options);
   options.smooth = true;
@@ -123,7 +125,7 @@ TEST(DistributedMesh, CellDataAndSmoothingAreAsInOneProcess) {
   mesh.scalars.clear();
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) mesh.scalars.push_back(0.1 * static_cast<double>(t % 17));
   const std::string file = write_pieces(folder, {mesh, datasets::cube(1)});
-  cells::MeshOptions options;
+  ReadOptions options;
   EXPECT_THROW(io::read_mesh(file, options), scene::Error);  // the second piece has another field
   const std::string same = write_pieces(folder, {mesh, mesh});
   expect_as_read_mesh(same);
@@ -139,7 +141,7 @@ TEST(DistributedMesh, DuplicatesAreCountedAcrossProcesses) {
   const std::string file = write_pieces(folder, {mesh, corner, datasets::cube(2), corner});
   EXPECT_GE(io::read_mesh(file, {}).counts.cells_duplicate, 34u);
   expect_as_read_mesh(file);
-  cells::MeshOptions options;
+  ReadOptions options;
   options.drop_duplicates = true;
   expect_as_read_mesh(file, options);
 }

@@ -44,7 +44,7 @@ TEST(BlockChoice, SurfacesAreNotedByName) {
 TEST(BlockChoice, OnlyTheNamedBlocksAreRead) {
   const test::TemporaryFolder folder;
   const auto file = folder.write("a.su2", "NZONE= 3\n" + zone(1, 0) + zone(2, 10) + zone(3, 20));
-  cells::MeshOptions options;
+  ReadOptions options;
   const cells::MeshFile all = read_mesh(file);
   EXPECT_EQ(all.blocks, (std::vector<std::string>{"zone 1", "zone 2", "zone 3"}));
   EXPECT_EQ(all.counts.cells_read, 3u);
@@ -58,7 +58,7 @@ TEST(BlockChoice, OnlyTheNamedBlocksAreRead) {
 TEST(BlockChoice, ANameOfNoBlockIsRefusedWithThoseThereAre) {
   const test::TemporaryFolder folder;
   const auto file = folder.write("a.su2", "NZONE= 2\n" + zone(1, 0) + zone(2, 10));
-  cells::MeshOptions options;
+  ReadOptions options;
   options.blocks = {"zone 1", "wing"};
   test::expect_bad_input([&] { read_mesh(file, options); }, {"a.su2", "no block 'wing'", "'zone 1', 'zone 2'"});
   std::string many = "NZONE= 40\n";

@@ -146,8 +146,8 @@ TEST(CurvedCell, AgreesWithItselfOnFacesAndEdges) {
   }
 }
 
-cells::MeshOptions tolerance(double relative) {
-  cells::MeshOptions options;
+ReadOptions tolerance(double relative) {
+  ReadOptions options;
   options.higher_order_tolerance = relative;
   options.field = "point:f";
   return options;
@@ -276,7 +276,7 @@ TEST(CurvedSplit, NeedsMoreTetsForLessError) {
 
 TEST(CurvedSplit, LoosensItsToleranceWhereThatTakesTooManyTets) {
   const Field wavy = [](const glm::dvec3& p) { return std::sin(5 * p.x) + p.y; };
-  cells::MeshOptions options = tolerance(1e-6);
+  ReadOptions options = tolerance(1e-6);
   options.higher_order_tets = 20000;
   const cells::MeshFile file = cells::assemble_mesh({warped_box(kinds[4], 2, bent, wavy, false)}, options, "mesh");
   EXPECT_GT(file.higher_order.tolerance, 1e-6);
@@ -430,14 +430,14 @@ cells::CellBlock folded_box(std::size_t folded, double by) {
 }
 
 TEST(CurvedSplit, RefusesCellsThatTakeTetsWithoutEnd) {
-  cells::MeshOptions options = tolerance(1e-5);
+  ReadOptions options = tolerance(1e-5);
   options.higher_order_tets = 20000;
-  const auto planning = [](const auto&, const cells::MeshOptions& o, const auto&...) {
+  const auto planning = [](const auto&, const ReadOptions& o, const auto&...) {
     return cells::HigherOrderPlan{{{.position = o.higher_order_tolerance}, 5000}, o.higher_order_tolerance};
   };
   test::expect_bad_input([&] { cells::assemble_mesh({folded_box(1, 2)}, options, "mesh", planning); },
                          {"mesh: cell 0 takes more than 5000 tets", "`higher_order_tolerance`"});
-  cells::MeshOptions remedy = options;
+  ReadOptions remedy = options;
   remedy.higher_order_tolerance = 0.1;
   EXPECT_NO_THROW(cells::assemble_mesh({folded_box(1, 2)}, remedy, "mesh", planning));
   // Few are tried out first.

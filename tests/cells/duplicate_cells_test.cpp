@@ -137,7 +137,7 @@ TEST_F(DuplicateFiles, ARepeatedPieceIsAWarningAndDrawnOnceIfAskedFor) {
   EXPECT_NE(warnings[0].find(std::to_string(cells) + " cells have the corners of other cells"), std::string::npos)
       << warnings[0];
   EXPECT_NE(warnings[0].find("`drop_duplicates`"), std::string::npos);
-  cells::MeshOptions options;
+  ReadOptions options;
   options.drop_duplicates = true;
   const cells::MeshFile once = read_mesh(file, options);
   EXPECT_EQ(once.counts.cells_duplicate, 0u);
@@ -175,7 +175,7 @@ TEST_F(DuplicateFiles, GhostCellsAreNotDuplicates) {
 }
 
 TEST_F(DuplicateFiles, EveryDuplicateOfALargeMeshIsCounted) {
-  const auto assembled = [](const cells::MeshOptions& options, bool repeated) {
+  const auto assembled = [](const ReadOptions& options, bool repeated) {
     std::vector<cells::CellBlock> blocks;
     blocks.push_back(testing::mixed_mesh(24, 5, false));
     blocks.push_back(testing::mixed_mesh(24, 5, false));
@@ -188,7 +188,7 @@ TEST_F(DuplicateFiles, EveryDuplicateOfALargeMeshIsCounted) {
   const cells::MeshFile once = assembled({}, false);
   ASSERT_GT(once.mesh.tets.size(), 65536u);
   EXPECT_EQ(once.counts.cells_duplicate, 0u);
-  cells::MeshOptions options;
+  ReadOptions options;
   options.threads = 3;
   EXPECT_EQ(assembled(options, true).counts.cells_duplicate, 3u);
   options.drop_duplicates = true;
@@ -223,7 +223,7 @@ TEST_F(DuplicateFiles, ABlankCopyIsNotDrawnAndNoDuplicate) {
   blocks.push_back(testing::mixed_mesh(3, 5, false));
   blocks[0].name = "with", blocks[1].name = "without";
   blocks[1].fields.clear();
-  cells::MeshOptions options;
+  ReadOptions options;
   options.drop_duplicates = true;
   const cells::MeshFile mesh = cells::assemble_mesh(std::move(blocks), options, "mesh");
   EXPECT_EQ(mesh.counts.duplicates_dropped, 0u);

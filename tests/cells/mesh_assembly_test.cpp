@@ -34,7 +34,7 @@ cells::CellBlock row_of_tets(std::size_t n) {
 }
 
 cells::MeshFile assemble(const cells::CellBlock& block, const std::string& field = "p") {
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = field;
   cells::MeshFile file = cells::assemble_mesh({block}, options, "mesh");
   scene::validate(file.mesh, "mesh");
@@ -149,7 +149,7 @@ TEST(MeshAssembly, HigherOrderCellsUseTheirCornersIfNoneMayBeDivided) {
   block.connectivity = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
   block.offsets = {0, 10};
   block.fields.pop_back();
-  cells::MeshOptions options;
+  ReadOptions options;
   options.higher_order_tets = 0;
   const cells::MeshFile file = cells::assemble_mesh({block}, options, "mesh");
   EXPECT_EQ(file.mesh.tets.front(), (scene::Tet{0, 1, 2, 3}));
@@ -175,7 +175,7 @@ TEST(MeshAssembly, BlocksFollowEachOtherAndALackingFieldBlanksItsBlock) {
   cells::CellBlock second = row_of_tets(2), third = row_of_tets(2);
   second.name = "shell";
   second.fields.clear();
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = "p";
   const cells::MeshFile file = cells::assemble_mesh({row_of_tets(2), second, third}, options, "mesh");
   scene::validate(file.mesh, "mesh");
@@ -212,7 +212,7 @@ cells::CellBlock many_cells(std::size_t n) {
 
 TEST(MeshAssembly, ThreadsMakeTheSameMesh) {
   constexpr std::size_t n = 150'001;
-  cells::MeshOptions options;
+  ReadOptions options;
   const auto assemble_with = [&](int threads) {
     options.threads = threads;
     return cells::assemble_mesh({many_cells(n), many_cells(n / 2), many_cells(20)}, options, "mesh");
@@ -244,7 +244,7 @@ TEST(MeshAssembly, TetsAreAsCellsOfTheirTypeWhicheverAreDropped) {
   constexpr std::size_t n = 40'000;
   for (const char* field : {"p", "c"})
     for (const int threads : {1, 2}) {
-      cells::MeshOptions options;
+      ReadOptions options;
       options.field = field, options.threads = threads;
       for (const std::size_t dropped : {n, std::size_t{0}, std::size_t{20'000}, n - 1}) {
         cells::CellBlock some = row_of_tets(n);
@@ -271,7 +271,7 @@ TEST(MeshAssembly, TetsAreAsCellsOfTheirTypeWhicheverAreDropped) {
 TEST(MeshAssembly, OfSeveralBadCellsTheFirstIsToldWhicheverThreadFindsIt) {
   cells::CellBlock block = many_cells(200'000);
   for (const std::size_t c : {150'000, 90'001, 90'000}) block.types[c] = 42;
-  cells::MeshOptions options;
+  ReadOptions options;
   for (options.threads = 0; options.threads < 3; ++options.threads)
     EXPECT_NE(message_of([&] { cells::assemble_mesh({block}, options, "mesh"); }).find("cell 90000 is a polyhedron"),
               std::string::npos);
@@ -299,7 +299,7 @@ cells::CellBlock two_tets(bool own_points) {
 }
 
 TEST(Smooth, WeightsByVolumeAndJoinsPointsByPosition) {
-  cells::MeshOptions options;
+  ReadOptions options;
   options.smooth = true;
   for (const bool own : {false, true}) {
     const cells::MeshFile file = cells::assemble_mesh({two_tets(own)}, options, "mesh");
@@ -317,7 +317,7 @@ TEST(Smooth, ASingleValueStaysThatValue) {
   cells::CellBlock block = two_tets(true);
   block.fields = {cells::field_of_values("c", "double", Association::cell, 1, {2.5, 2.5})};
   block.positions[3] = {0.25, 0.25, 0};  // a flat cell must not divide by its volume
-  cells::MeshOptions options;
+  ReadOptions options;
   options.smooth = true;
   for (const double s : cells::assemble_mesh({block}, options, "mesh").mesh.scalars) EXPECT_EQ(s, 2.5);
 }

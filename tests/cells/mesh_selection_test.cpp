@@ -184,7 +184,7 @@ TEST(Threshold, KeepsWholeCellsOfPointData) {
   std::vector<double> values(12, 1.0);
   values[0] = 3;
   block.fields.push_back(cells::field_of_values("f", "double", scene::Association::point, 1, values));
-  cells::MeshOptions options;
+  ReadOptions options;
   options.selection.threshold = {0.0, 2.0};
   const cells::MeshFile file = cells::assemble_mesh({block}, options, "mesh");
   EXPECT_EQ(file.counts.cells_out_of_range, 1u);

@@ -84,7 +84,7 @@ void expect_fills_the_box(const cells::MeshFile& file, unsigned seed, bool has_f
 }
 
 cells::MeshFile assemble_f(const cells::CellBlock& block) {
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = std::string("f");
   return cells::assemble_mesh({block}, options, "mesh");
 }
@@ -177,7 +177,7 @@ TEST(PolyhedronCells, InSeveralBlocksAgreeByPosition) {
       for (std::size_t c = first; c < all.size(); c += 2) cells.push_back(all[c]);
       blocks.push_back(polyhedra_of(whole.positions, cells, random));
     }
-    cells::MeshOptions options;
+    ReadOptions options;
     options.field = std::string("f");
     expect_fills_the_box(cells::assemble_mesh(blocks, options, "mesh"), seed);
   }
@@ -193,7 +193,7 @@ TEST(PolyhedronCells, MeetHexahedraWedgesAndPyramids) {
     for (std::size_t c = 0; c < some.types.size(); ++c)
       if (some.types[c] != 0) others.types[c] = 1;  // skipped there
     for (std::uint8_t& type : some.types) type = type == 0 ? 1 : type;
-    cells::MeshOptions options;
+    ReadOptions options;
     options.field = std::string("f");
     expect_fills_the_box(cells::assemble_mesh({some, others}, options, "mesh"), seed);
   }

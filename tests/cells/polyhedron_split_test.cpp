@@ -27,7 +27,7 @@ bool comes_before(const glm::dvec3& a, const glm::dvec3& b) {
 }
 
 cells::MeshFile assembled(const cells::CellBlock& block, const std::string& field = "f", int threads = 0) {
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = field, options.threads = threads;
   cells::MeshFile file = cells::assemble_mesh({block, block}, options, "mesh");
   file.counts.cells_duplicate = 0;  // the second block is on top of the first, which is of no interest here

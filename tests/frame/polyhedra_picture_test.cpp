@@ -68,7 +68,7 @@ TEST(PolyhedraPicture, IsThatOfTheBoxTheyFill) {
   for (int number = first; number < last; ++number) {
     Random random(1000003u + static_cast<std::uint64_t>(number));
     std::string words;
-    cells::MeshOptions options;
+    ReadOptions options;
     options.field = std::string("f");
     const cells::MeshFile file =
         cells::assemble_mesh({random_polyhedra(random, static_cast<unsigned>(number), words)}, options, "mesh");
@@ -101,7 +101,7 @@ TEST(PolyhedraPicture, OfCellDataIsThatOfTheCubesTheyAreMadeOf) {
   for (int number = 0; number < 10; ++number) {
     Random random(77u + static_cast<std::uint64_t>(number));
     std::vector<std::size_t> cell_of_cube;
-    cells::MeshOptions options;
+    ReadOptions options;
     options.field = std::string("c");
     const cells::MeshFile file = cells::assemble_mesh(
         {io::testing::agglomerates(n, 6, 0, static_cast<unsigned>(number), &cell_of_cube)}, options, "mesh");

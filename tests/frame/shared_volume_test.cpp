@@ -38,7 +38,8 @@ class SharedVolume : public ::testing::Test {
 
   /// What every one of `ranks` ranks opens.
   [[nodiscard]] static std::vector<io::VolumeFile> opened(const std::filesystem::path& file, int ranks,
-                                                          const io::VolumeOptions& options = {}) {
+                                                          ReadOptions options = {}) {
+    options.threads = 1;
     std::mutex mutex;
     std::vector<io::VolumeFile> all(static_cast<std::size_t>(ranks));
     exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
@@ -112,8 +113,8 @@ TEST_F(SharedVolume, IsKeptOnceWithTheDescriptionOfOneProcess) {
 
 TEST_F(SharedVolume, ByOneProcessIsOnDiskIfMemoryMayNotHoldIt) {
   const auto file = zipped("v.nii.gz", test::nifti());
-  io::VolumeOptions options;
-  options.most_in_memory = 47;  // of 24 numbers of two bytes
+  ReadOptions options;
+  options.memory_bytes = 2 * 47;  // of 24 numbers of two bytes
   const io::VolumeFile alone = io::open_unscanned_volume(file);
   const std::vector<io::VolumeFile> by_one = opened(file, 1, options);
   const io::VolumeFile& kept = by_one[0];
@@ -124,7 +125,7 @@ TEST_F(SharedVolume, ByOneProcessIsOnDiskIfMemoryMayNotHoldIt) {
                                   scratch_.path().string(), std::string("goes with the run")})
     EXPECT_NE(kept.notes.back().find(part), std::string::npos) << kept.notes.back();
   EXPECT_TRUE(scratch_.names().empty());
-  options.most_in_memory = 48;
+  options.memory_bytes = 2 * 48;
   EXPECT_EQ(opened(file, 1, options)[0].notes.size(), alone.notes.size());
 }
 
@@ -135,7 +136,7 @@ TEST_F(SharedVolume, OfAVectorHasTheComponentThatIsAskedForAndItsFieldsRange) {
   const std::string samples = test::bytes_of(test::counting<std::int16_t>(48));
   const auto packed = test::contents(zipped("samples", samples));
   const auto file = folder_.write("v.nrrd", nrrd + packed);
-  io::VolumeOptions options;
+  ReadOptions options;
   options.field = "samples:1";
   const io::VolumeFile alone = io::open_unscanned_volume(file, options);
   for (const io::VolumeFile& volume : opened(file, 3, options)) {

@@ -268,7 +268,7 @@ INSTANTIATE_TEST_SUITE_P(SharedData, RealMeshSurfaces, shared_meshes());
 
 TEST_P(RealMeshSurfaces, KeepThePromise) {
   if (const std::string missing = missing_mesh(GetParam()); !missing.empty()) GTEST_SKIP() << missing;
-  cells::MeshOptions read;
+  ReadOptions read;
   read.smooth = true;
   const scene::TetMesh mesh = io::read_mesh(shared_mesh(GetParam()), read).mesh;
   if (mesh.association == scene::Association::cell) GTEST_SKIP() << "cell data";

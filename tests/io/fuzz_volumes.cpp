@@ -37,8 +37,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   });
   // The same samples by way of a scratch file, which also takes plain .vti and .vtr files, or nothing again.
   test::parse_or_refuse([&] {
-    io::VolumeOptions options;
-    options.most_in_memory = 0;
+    ReadOptions options;
+    options.memory_bytes = 1;
     const io::VolumeFile volume = io::open_volume(file.path, options);
     const scene::SampleBox all = volume.source->geometry().all_samples();
     test::require(all.count() > 0 && all.count() <= 64 * static_cast<std::int64_t>(size + 64));

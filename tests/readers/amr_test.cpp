@@ -107,7 +107,7 @@ TEST(Amr, PointDataIsContinuousAcrossLevelsAndLinearWhereItIs) {
 TEST(Amr, SmoothedCellDataIsContinuousAndLinearInsideAndKeepsEachCellsValue) {
   const test::TemporaryFolder folder;
   const AmrScene amr = nested_blocks();
-  cells::MeshOptions options;
+  ReadOptions options;
   options.smooth = true;
   for (const auto& at : {linear, wavy}) {
     const cells::MeshFile read = read_mesh(write_vth(folder, amr, false, at), options);
@@ -123,7 +123,7 @@ TEST(Amr, BlocksThatCutThroughCoarserCellsLeaveTheRestOfThem) {
   for (const bool points : {false, true}) {
     const std::filesystem::path file = write_vth(folder, amr, points, linear);
     for (const bool smooth : {false, true}) {
-      cells::MeshOptions options;
+      ReadOptions options;
       options.smooth = smooth;
       const cells::MeshFile read = read_mesh(file, options);
       EXPECT_NEAR(testing::volume(read.mesh), std::pow(4 * AmrScene::unit, 3), 1e-11) << points << smooth;

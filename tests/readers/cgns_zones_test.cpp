@@ -216,7 +216,7 @@ std::vector<double> counted(std::size_t n, double from = 0) {
 
 cells::MeshFile read(const std::filesystem::path& file, const std::string& field = "cell:f",
                      std::optional<std::size_t> step = {}) {
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = field;
   options.time_step = step;
   return read_mesh(file, options);
@@ -425,7 +425,7 @@ TEST(CgnsZones, ZonesOfEveryKindAreBlocksAndShares) {
   const cells::MeshFile whole = read(folder / "a.cgns");
   expect_row(whole, 7);
   EXPECT_EQ(whole.blocks, (std::vector<std::string>{"base/cells first", "base/faces first", "base/structured"}));
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = "cell:f";
   testing::expect_as_whole(folder / "a.cgns", options);
   options.blocks = {"structured"};
@@ -546,7 +546,7 @@ TEST(CgnsZones, SolutionsOfSomePointsOrCellsAreBlankElsewhere) {
     if (!c.is_structured) file.write(cubes(row, 0, 4, 1), 4);
     file.write_part("some", c.location, c.set, c.count, c.indices, "f", values);
     file.close();
-    cells::MeshOptions options;
+    ReadOptions options;
     options.field = c.location == cell ? "cell:f" : "point:f";
     const cells::MeshFile mesh = read_mesh(folder / "a.cgns", options);
     std::uint64_t kept = 0;

@@ -151,7 +151,7 @@ void write_cgns(const std::filesystem::path& file, const BentCell& cell, CGNS_EN
 TEST(CurvedCgns, EveryTypeHasItsVolumeAndItsField) {
   TESSERA_VTK_OR_SKIP();
   const test::TemporaryFolder folder;
-  const cells::MeshOptions options = testing::coarse_options();
+  const ReadOptions options = testing::coarse_options();
   test::SomeCases some(3);
   for (const auto& [cell, type] : sids_cells()) {
     SCOPED_TRACE(cell.name);

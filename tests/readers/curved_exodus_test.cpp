@@ -162,7 +162,7 @@ cells::MeshFile read_back(const std::string& topology, const BentCell& cell, int
                           double tolerance = testing::coarse_options().higher_order_tolerance) {
   const test::TemporaryFolder folder;
   write_exodus((folder / "a.exo").string(), topology, cell, 0, cells);
-  cells::MeshOptions options = testing::coarse_options();
+  ReadOptions options = testing::coarse_options();
   options.higher_order_tolerance = tolerance;
   return read_mesh(folder / "a.exo", options);
 }
@@ -239,7 +239,7 @@ TEST(CurvedExodus, SidesOfEveryTypeCloseItsCorners) {
                       : cell.shape == cells::CurvedFamily::hexahedron ? 6
                                                                       : 5;
     write_exodus((folder / "a.exo").string(), cell.name, plane, sides, 2);
-    cells::MeshOptions options;
+    ReadOptions options;
     options.blocks = {"skin"};
     const BlockFaces faces = read_block_faces(std::vector<std::filesystem::path>{folder / "a.exo"}, options);
     double six_volumes = 0;

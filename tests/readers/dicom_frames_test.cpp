@@ -55,7 +55,7 @@ class DicomFrameFiles : public ::testing::Test {
   void SetUp() override {
     if (!has_reader(Reader::dicom)) GTEST_SKIP() << "tessera-read-dicom is not installed";
   }
-  VolumeFile open(const DicomFrames& file, const VolumeOptions& options = {}) {
+  VolumeFile open(const DicomFrames& file, const ReadOptions& options = {}) {
     return open_volume(folder.write("a.dcm", test::dicom_file(file)), options);
   }
   test::TemporaryFolder folder;

@@ -113,7 +113,7 @@ class EnsightValues : public ::testing::Test {
   }
 
   cells::MeshFile read(const std::string& field = "") const {
-    cells::MeshOptions options;
+    ReadOptions options;
     options.field = field;
     return read_mesh(folder.path() / "a.case", options);
   }
@@ -372,7 +372,7 @@ class EnsightSteps : public EnsightValues {
   }
 
   float least_of_step(const std::string& field, std::size_t step) const {
-    cells::MeshOptions options;
+    ReadOptions options;
     options.field = field;
     options.time_step = step;
     const cells::MeshFile file = read_mesh(folder.path() / "a.case", options);
@@ -431,7 +431,7 @@ TEST_F(EnsightSteps, TheFileOfAStepIsFoundByItsTimeAsFloat) {  // 0.7 as a float
   write_steps(Layout::gold_text, "");
   folder.write("a.f", steps[0] + steps[1] + steps[2]);
   std::filesystem::remove(folder.path() / "a.g05");
-  cells::MeshOptions options;
+  ReadOptions options;
   options.time_step = 1;
   const std::vector<std::string> notes = left_out(read_mesh(folder.path() / "a.case", options));
   ASSERT_EQ(notes.size(), 1u);

@@ -76,7 +76,7 @@ TEST(ExodusBlocks, AreReadByTheirNamesWithTheirValues) {
   const cells::MeshFile all = read_mesh(folder / "a.exo");
   EXPECT_EQ(all.blocks, (std::vector<std::string>{"steel", "block 8", "air"}));
   EXPECT_NEAR(testing::volume(all.mesh), 3, 1e-12);
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = "v";
   const std::array<const char*, 3> names = {"steel", "block 8", "air"};
   for (std::size_t b = 0; b < 3; ++b) {
@@ -97,7 +97,7 @@ TEST(ExodusBlocks, ElementSetsAreChosenLikeBlocks) {
   const cells::MeshFile all = read_mesh(folder / "a.exo");
   EXPECT_EQ(all.blocks, (std::vector<std::string>{"steel", "ends", "element set 4"}));
   EXPECT_NEAR(testing::volume(all.mesh), 3, 1e-12);  // each cube once
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = std::string("v");
   const auto read = [&](const std::vector<std::string>& names) {
     options.blocks = names;

@@ -47,7 +47,7 @@ void write_cube(const std::filesystem::path& file, const std::vector<std::string
 }
 
 double volume_of(const std::filesystem::path& file, const std::optional<Warp>& warp = {}, std::size_t step = 2) {
-  cells::MeshOptions options;
+  ReadOptions options;
   options.warp = warp;
   options.time_step = step;
   return testing::volume(read_mesh(file, options).mesh);
@@ -116,7 +116,7 @@ TEST(ExodusSteps, PartsOfAVectorNeedNotBeNeighbours) {
       ex_put_var(id, 1, EX_NODAL, v, 1, 4, values.data());
     }
     EXPECT_EQ(ex_close(id), EX_NOERR);
-    cells::MeshOptions still;
+    ReadOptions still;
     still.warp = Warp{};
     std::vector<std::string> fields;
     for (const cells::FieldSummary& f : read_mesh(folder / "a.exo", still).fields)
@@ -125,7 +125,7 @@ TEST(ExodusSteps, PartsOfAVectorNeedNotBeNeighbours) {
   };
   using Names = std::vector<std::string>;
   EXPECT_EQ(fields_of({"disp_x", "T", "disp_y", "disp_z"}), (Names{"disp3", "T1"}));
-  cells::MeshOptions moved;
+  ReadOptions moved;
   moved.field = "disp:z";
   const cells::MeshFile read = read_mesh(folder / "a.exo", moved);
   EXPECT_EQ(read.mesh.scalars.front(), 4.5);
@@ -192,7 +192,7 @@ TEST(ExodusSteps, WithoutFileSizeNodesHaveTheirValues) {
   const test::TemporaryFolder folder;
   write_as_meshio(folder / "a.e");
   for (const std::size_t step : {0u, 1u}) {
-    cells::MeshOptions options;
+    ReadOptions options;
     options.field = "T";
     options.time_step = step;
     const cells::MeshFile read = read_mesh(folder / "a.e", options);

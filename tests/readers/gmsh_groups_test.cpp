@@ -22,7 +22,7 @@ class GmshGroups : public ::testing::Test {
   }
   cells::MeshFile read(const std::string& text, const std::vector<std::string>& blocks = {},
                        const std::string& field = "") const {
-    cells::MeshOptions options;
+    ReadOptions options;
     options.blocks = blocks;
     options.field = field;
     return read_mesh(folder.write("a.msh", text), options);

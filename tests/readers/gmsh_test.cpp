@@ -165,7 +165,7 @@ TEST_F(Gmsh, PhysicalGroupsAreBlocksAndAField) {
     EXPECT_EQ(read.blocks[0].name, "left");
     EXPECT_EQ(read.blocks[1].name, "right");
     EXPECT_EQ(read.blocks[1].positions.size(), 8u);
-    cells::MeshOptions options;
+    ReadOptions options;
     options.blocks = {"right"};
     EXPECT_NEAR(testing::volume(read_mesh(folder / "a.msh", options).mesh), 1, 1e-12);
     const cells::MeshFile mesh = read_mesh(folder / "a.msh");
@@ -180,7 +180,7 @@ TEST_F(Gmsh, PhysicalGroupsAreBlocksAndAField) {
 
 TEST_F(Gmsh, TimeStepsOfAFieldCountFrom0WhateverTheFileCountsFrom) {
   const auto file = folder.write("a.msh", msh2(node_data("f", 1, 1) + node_data("f", 2, 10) + node_data("f", 3, 100)));
-  cells::MeshOptions options;
+  ReadOptions options;
   expect_cubes(read_mesh(file), 100);
   options.time_step = 1;
   expect_cubes(read_mesh(file, options), 10);
@@ -198,7 +198,7 @@ TEST_F(Gmsh, FieldsOfCellsAndOfCellsNodesKeepTheirJumps) {
     data += "\n";
   }
   const auto file = folder.write("a.msh", msh4(data + "$EndElementNodeData\n"));
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = "c";
   const cells::MeshFile cells = read_mesh(file, options);
   EXPECT_EQ(*std::ranges::max_element(cells.mesh.scalars), 4.5);

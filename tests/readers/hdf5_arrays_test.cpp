@@ -125,7 +125,7 @@ TEST(Hdf5Arrays, AreChosenByTheirPaths) {
   const VolumeFile first = open_volume(folder / "a.h5");
   EXPECT_EQ(first.range, (scene::ValueRange{0, 11, 0}));
   EXPECT_TRUE(has_note(first, "another grid, of 2 x 2 x 2 samples, is exchange/more/dark"));
-  VolumeOptions options;
+  ReadOptions options;
   for (const char* name : {"exchange/more/dark", "/exchange/more/dark"}) {
     options.field = name;
     EXPECT_EQ(open_volume(folder / "a.h5", options).range, (scene::ValueRange{100, 107, 0}));
@@ -140,7 +140,7 @@ TEST(Hdf5Arrays, OfMoreAxesHaveStepsAndComponents) {
     const Hdf5Writer w(folder / "steps.h5");
     w.array("v", H5T_STD_I32LE, {3, 2, 2, 5}, ramp(60));
   }
-  VolumeOptions options;
+  ReadOptions options;
   for (const std::size_t step : {0, 1, 2}) {
     options.time_step = step;
     EXPECT_EQ(test::all_samples(*open_volume(folder / "steps.h5", options).source),
@@ -285,7 +285,7 @@ TEST(VtkHdfImages, AreGridsWithTheirAxes) {
     w.array("VTKHDF/CellData/c", H5T_STD_U8LE, {1, 2, 3}, ramp(6));
   }
   ASSERT_TRUE(is_volume(folder / "a.vtkhdf"));
-  VolumeOptions options;
+  ReadOptions options;
   options.field = "f";
   const VolumeFile volume = open_volume(folder / "a.vtkhdf", options);
   EXPECT_EQ(volume.format, "VTKHDF");
@@ -311,7 +311,7 @@ TEST(VtkHdfImages, HaveTimeSteps) {
     w.array("VTKHDF/Steps/Values", H5T_IEEE_F64LE, {3}, {0, 0.5, 1});
     w.array("VTKHDF/Steps/PointDataOffsets/f", H5T_STD_I64LE, {3}, {0, 1, 0});  // the last is the first again
   }
-  VolumeOptions options;
+  ReadOptions options;
   for (const std::size_t step : {0, 1, 2}) {
     options.time_step = step;
     const VolumeFile read = open_volume(folder / "t.vtkhdf", options);

@@ -71,7 +71,7 @@ class Hdf5References : public ::testing::Test {
 
 TEST_F(Hdf5References, BesideTheFileAreFollowed) {
   EXPECT_NEAR(testing::volume(read_mesh(linked("a.vtkhdf", "tets.vtkhdf")).mesh), 4.0 / 6, 1e-12);
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = "g";
   const cells::MeshFile read = read_mesh(with_virtual_field("v.vtkhdf", "tets.vtkhdf", "/VTKHDF/PointData/f"), options);
   EXPECT_EQ(read.mesh.scalars.size(), 5u);

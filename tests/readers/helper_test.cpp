@@ -129,7 +129,7 @@ TEST(Helper, TellsHowFarItIs) {
   text.insert(text.find(element + ">") + element.size(), " TimeValues=\"0\"");  // VTK's reader alone knows them
   const auto file = folder.write("m.vtu", text);
   std::vector<ReadProgress> heard;
-  cells::MeshOptions options;
+  ReadOptions options;
   options.progress = [&](const ReadProgress& progress) { heard.push_back(progress); };
   const cells::MeshFile mesh = read_mesh(file, options);
   EXPECT_GT(mesh.mesh.positions.size(), 100000u);

@@ -45,7 +45,7 @@ TEST(HyperTrees, CellsAreThoseOfTheLeavesWithTheirValues) {
           scene.is_masked = is_masked;
           const auto file =
               folder.write("t.htg", htg_text(scene, wavy, {.version = version, .transposed = transposed}));
-          cells::MeshOptions options;
+          ReadOptions options;
           options.field = field;
           const cells::MeshFile read = read_mesh(file, options);
           scene::validate(read.mesh, "trees");
@@ -72,7 +72,7 @@ TEST(HyperTrees, CellsAreThoseOfTheLeavesWithTheirValues) {
 
 TEST(HyperTrees, SmoothedTheyAreContinuousAcrossLevelsAndLinearInside) {
   const test::TemporaryFolder folder;
-  cells::MeshOptions options;
+  ReadOptions options;
   options.smooth = true;
   options.field = std::string("f");
   for (const auto& axes : {even, uneven})
@@ -125,7 +125,7 @@ TEST(HyperTrees, PiecesAreOneGridAndGhostsAreLeftOut) {
       "<Piece Source=\"p1.htg\"/></PHyperTreeGrid></VTKFile>";
   const auto pieces = folder.write("p.phtg", list), whole = folder.write("whole.htg", htg_text(scene, wavy));
   for (const bool smooth : {false, true}) {
-    cells::MeshOptions options;
+    ReadOptions options;
     options.smooth = smooth;
     options.field = std::string("f");
     const cells::MeshFile a = read_mesh(pieces, options), b = read_mesh(whole, options);

@@ -109,7 +109,7 @@ TEST(Med, CylinderCoordinatesAreTurnedToXyz) {
 TEST(Med, CellsAndFieldsAreRead) {
   const test::TemporaryFolder folder;
   write_bar((folder / "bar.med").string());
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = "t";
   const cells::MeshFile mesh = read_mesh(folder / "bar.med", options);
   EXPECT_EQ(mesh.format, "MED");
@@ -129,7 +129,7 @@ TEST(Med, CellsAndFieldsAreRead) {
 TEST(Med, WhatAFieldHasNoValueForIsBlank) {
   const test::TemporaryFolder folder;
   write_bar((folder / "bar.med").string());
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = "p";
   const cells::MeshFile cells = read_mesh(folder / "bar.med", options);
   EXPECT_NEAR(testing::volume(cells.mesh), 1 + 1.0 / 6, 1e-12);  // the pyramid has none
@@ -195,7 +195,7 @@ TEST(Med, CellsOfSecondOrderHaveTheirVolumeAndTheirField) {
       {{"HEXA20", hexahedron, hexahedron20}, MED_HEXA20},
       {{"HEXA27", hexahedron, hexahedron27}, MED_HEXA27}};
   const test::TemporaryFolder folder;
-  const cells::MeshOptions options = testing::coarse_options();
+  const ReadOptions options = testing::coarse_options();
   for (const auto& [cell, kind] : cells) {
     SCOPED_TRACE(cell.name);
     const testing::BentCell bent = testing::bend(cell, true);

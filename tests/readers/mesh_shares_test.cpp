@@ -66,7 +66,7 @@ TEST(MeshShares, AnExodusMeshInSeveralFilesIsReadByTheNameOfOne) {
   EXPECT_NEAR(testing::volume(whole.mesh), 12, 1e-12);
   EXPECT_EQ(whole.blocks, (std::vector<std::string>{"block 1", "block 2"}));
   EXPECT_EQ(whole.format, "Exodus II in 12 files");
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = std::string("point:v");  // of a bare literal GCC 12 warns that it overlaps itself
   for (const std::size_t step : {std::size_t{0}, std::size_t{1}}) {
     options.time_step = step;
@@ -128,7 +128,7 @@ TEST(MeshShares, ZonesOfACgnsFileAreDivided) {
     EXPECT_NEAR(testing::volume(whole.mesh), zones, 1e-12);
     testing::expect_as_whole(file);
     if (zones == 1) continue;
-    cells::MeshOptions options;
+    ReadOptions options;
     options.blocks = {"zone 1"};
     EXPECT_EQ(read_mesh(file, options).counts.cells_read, 1u);
     testing::expect_as_whole(file, options);

@@ -71,7 +71,7 @@ TEST_F(EnsightMessages, AVariableWithoutItsFileIsLeftOutOfThatStep) {
   EXPECT_EQ(last.mesh.field_name, "g");
   EXPECT_EQ(last.mesh.scalars.front(), 11);
   EXPECT_TRUE(has_note(last, "f is left out: a.f0011 is missing"));
-  cells::MeshOptions options;
+  ReadOptions options;
   options.time_step = 1;
   EXPECT_EQ(read_mesh(folder / "a.case", options).mesh.field_name, "f");
   options.time_step = 2, options.field = "f";
@@ -119,7 +119,7 @@ TEST_F(Messages, NanInLegacyTextIsANumber) {
   TESSERA_VTK_OR_SKIP();
   for (const std::string odd : {"nan", "NaN", "-nan", "inf", "-Infinity", "1.#QNAN"})
     for (const std::string field : {"nan", "inf"}) {
-      cells::MeshOptions options;
+      ReadOptions options;
       options.field = field;
       const cells::MeshFile read = read_mesh(write("a.vtk", legacy(odd)), options);
       EXPECT_EQ(read.counts.cells_read, 2u) << odd;

@@ -158,7 +158,7 @@ TEST(Minc2, TimeStepsAreChosen) {
   write_minc2((folder / "f.mnc").string(), 2);
   EXPECT_EQ(open_volume(folder / "f.mnc").range, (scene::ValueRange{5 + 12, 5 + 23.5, 0}));
   EXPECT_EQ(open_volume(folder / "f.mnc").time_step.times, (std::vector<double>{3, 4.5}));
-  VolumeOptions options;
+  ReadOptions options;
   options.time_step = 0;
   EXPECT_EQ(open_volume(folder / "f.mnc", options).range, (scene::ValueRange{5, 5 + 11.5, 0}));
   options.time_step = 2;
@@ -196,7 +196,7 @@ TEST(Minc2, VectorsHaveComponents) {
   for (const misize_t steps : {1, 2}) {
     write_minc2_vectors((folder / "v.mnc").string(), steps);
     ASSERT_TRUE(is_volume(folder / "v.mnc"));
-    VolumeOptions options;
+    ReadOptions options;
     for (const int component : {0, 1, 2}) {
       options.field = "image:" + std::to_string(component);
       const VolumeFile volume = open_volume(folder / "v.mnc", options);

@@ -198,7 +198,7 @@ TEST(NetcdfAxes, ThatAreNoneOfSpaceAreSteps) {
               }
         w.put(v, values);
       }
-      VolumeOptions options;
+      ReadOptions options;
       for (const std::size_t step : {0, 1, 2}) {
         options.time_step = step;
         const VolumeFile volume = open_volume(folder / "members.nc", options);
@@ -225,7 +225,7 @@ TEST(NetcdfAxes, OfMembersAndTimesAreStepsTogether) {
     std::iota(values.begin(), values.end(), 0.0);
     w.put(v, values);
   }
-  VolumeOptions options;
+  ReadOptions options;
   options.time_step = 4;
   const VolumeFile volume = open_volume(folder / "both.nc", options);
   EXPECT_EQ(volume.range, (scene::ValueRange{32, 39, 0}));

@@ -76,7 +76,7 @@ TEST(NetcdfGrids, HaveTheirValuesAtTheirPlaces) {
     SCOPED_TRACE(mode);
     write_air(folder / "air", mode);  // its name does not matter
     ASSERT_TRUE(is_volume(folder / "air"));
-    VolumeOptions options;
+    ReadOptions options;
     options.field = "T";
     const VolumeFile volume = open_volume(folder / "air", options);
     EXPECT_EQ(volume.format, "NetCDF");
@@ -106,7 +106,7 @@ TEST(NetcdfGrids, HaveTheirValuesAtTheirPlaces) {
 TEST(NetcdfGrids, MayBeHdf5BehindAUserBlock) {
   const test::TemporaryFolder folder;
   write_air(folder / "a.nc", NC_NETCDF4);
-  VolumeOptions options;
+  ReadOptions options;
   options.field = "P";
   const std::vector<double> whole = all_samples(*open_volume(folder / "a.nc", options).source);
   for (const std::size_t block : {512u, 2048u}) {
@@ -123,7 +123,7 @@ TEST(NetcdfGrids, MayBeHdf5BehindAUserBlock) {
 TEST(NetcdfGrids, ArePackedOrOfOtherDimensionsByTheirField) {
   const test::TemporaryFolder folder;
   write_air(folder / "air.nc", 0);
-  VolumeOptions options;
+  ReadOptions options;
   options.field = "P";
   const std::vector<double> packed = all_samples(*open_volume(folder / "air.nc", options).source);
   EXPECT_TRUE(std::isnan(packed[8]));
@@ -166,7 +166,7 @@ TEST(NetcdfGrids, InAGzipFileAreReadOrToBeUnpacked) {
     return folder / "air.nc.gz";
   };
   ASSERT_TRUE(is_volume(packed(0)));
-  VolumeOptions options;
+  ReadOptions options;
   options.field = "T";
   EXPECT_EQ(open_volume(folder / "air.nc.gz", options).range, (scene::ValueRange{100, 159, 2}));
   const auto hdf5 = packed(NC_NETCDF4);
@@ -184,7 +184,7 @@ TEST(NetcdfGrids, KnowTimeByItsNameToo) {
     w.end_definitions();
     w.put(v, {0, 0, 0, 0}, {3, 2, 2, 2}, ramp(24, 0));
   }
-  VolumeOptions options;
+  ReadOptions options;
   for (const std::size_t step : {0, 1, 2}) {
     options.time_step = step;
     const double first = 8 * static_cast<double>(step);
@@ -458,7 +458,7 @@ TEST(Minc, TimeStepsAreChosen) {
   const VolumeFile last = open_volume(folder / "f.mnc");
   EXPECT_EQ(last.range, (scene::ValueRange{24, 47, 0}));
   EXPECT_EQ(last.time_step.times, (std::vector<double>{3, 4.5}));
-  VolumeOptions options;
+  ReadOptions options;
   options.time_step = 0;
   EXPECT_EQ(open_volume(folder / "f.mnc", options).range, (scene::ValueRange{0, 23, 0}));
   options.time_step = 2;

@@ -143,7 +143,7 @@ TEST(NetcdfValues, OfGroupsAreNamedByTheirPaths) {
     inner.end_definitions();
     inner.put(v, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11});
   }
-  VolumeOptions options;
+  ReadOptions options;
   options.field = "ocean/upper/t";
   const VolumeFile volume = open_volume(folder / "g.nc", options);
   EXPECT_EQ(volume.source->geometry().points, (scene::GridIndex{2, 2, 3}));

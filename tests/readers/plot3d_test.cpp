@@ -110,7 +110,7 @@ TEST(Plot3d, EveryLayoutIsFoundAndReadWithoutAnOption) {
     EXPECT_DOUBLE_EQ(testing::volume(read.mesh), layout.multi_grid ? 34 : 24);
     EXPECT_EQ(read.mesh.field_name, "Density");
     for (std::size_t v = 0; v < 60; ++v) EXPECT_EQ(read.mesh.scalars[v], read.mesh.positions[v].x);
-    cells::MeshOptions options;
+    ReadOptions options;
     options.field = "Momentum";
     EXPECT_EQ(read_mesh(file, options).mesh.scalars.front(), 3);
   }
@@ -240,7 +240,7 @@ TEST(Plot3d, TheSolutionIsFoundByNameOrGiven) {
   const auto grid = folder.write("fin.xyz", grid_bytes(layout));
   EXPECT_TRUE(find_plot3d_solution(grid).empty());
   EXPECT_EQ(read_mesh(grid).mesh.field_name, "none");
-  cells::MeshOptions options;
+  ReadOptions options;
   options.plot3d_q = folder.write("solution_17.bin", solution_bytes(layout));
   EXPECT_EQ(read_mesh(grid, options).mesh.field_name, "Density");
   folder.write("fin.q", solution_bytes(layout));
@@ -266,7 +266,7 @@ TEST(Plot3d, ListsOfFilesAreReadOneTimeEach) {
   EXPECT_EQ(last.time_step.count, 2u);
   EXPECT_EQ(last.time_step.step, 1u);
   EXPECT_EQ(std::ranges::count_if(last.notes, [](const auto& n) { return n.find("functions") != n.npos; }), 1);
-  cells::MeshOptions first;
+  ReadOptions first;
   first.time_step = 0;
   const cells::MeshFile before = read_mesh(list, first);
   EXPECT_EQ(before.mesh.field_name, "none");

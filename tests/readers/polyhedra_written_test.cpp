@@ -30,14 +30,14 @@ namespace {
 using testing::Faces;
 
 cells::MeshFile read_field(const std::filesystem::path& file) {
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = std::string("f");
   return read_mesh(file, options);
 }
 
 void expect_like(const std::filesystem::path& file, const cells::CellBlock& block) {
   SCOPED_TRACE(file);
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = std::string("f");
   const cells::MeshFile wanted = cells::assemble_mesh({block}, options, "mesh"), read = read_field(file);
   EXPECT_EQ(read.mesh.tets.size(), wanted.mesh.tets.size());
@@ -231,7 +231,7 @@ TEST(PolyhedraWritten, OfExodusAreFacesOfNsidedAndNfaced) {
   const cells::CellBlock block = testing::agglomerates(3, 5, 0.2, 2);
   write_exodus(folder / "m.exo", block);
   // The cube alone lies over others.
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = std::string("f");
   const cells::MeshFile both = read_mesh(folder / "m.exo", options);
   EXPECT_EQ(both.counts.cells_read, block.types.size() + 1);

@@ -28,13 +28,13 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 cells::MeshFile read_field(const std::filesystem::path& file, const char* field) {
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = std::string(field);
   return read_mesh(file, options);
 }
 
 cells::MeshFile in_memory(const cells::CellBlock& block, const char* field) {
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = std::string(field);
   return cells::assemble_mesh({block}, options, "mesh");
 }

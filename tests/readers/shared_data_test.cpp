@@ -19,7 +19,7 @@ class SharedData : public ::testing::Test {
   }
 
   static cells::MeshFile read(const std::string& name, const std::string& field = "") {
-    cells::MeshOptions options;
+    ReadOptions options;
     options.field = field;
     cells::MeshFile file = read_mesh(data / name, options);
     scene::validate(file.mesh, name);
@@ -100,7 +100,7 @@ TEST_F(SharedData, DiskOutIsReadFromExodus) {
   EXPECT_NEAR(scene::scalar_range(file.mesh)[1], 913, 0.5);
   EXPECT_EQ(read("disk-out/disk_out_ref.ex2", "V:z").mesh.field_name, "V:z");
   boundary_triangles(file.mesh);
-  cells::MeshOptions options;
+  ReadOptions options;
   options.time_step = 1;
   EXPECT_NE(testing::message_of([&] { read_mesh(data / "disk-out/disk_out_ref.ex2", options); }).find("no time step 1"),
             std::string::npos);

@@ -181,7 +181,7 @@ TEST(SolverFiles, AFluentCaseIsAMeshWithTheValuesBesideItIfAny) {
   pressure.replace(pressure.find("(300 (3"), 7, "(300 (1");
   for (const std::string& text : {data + ")\n", line + ")", pressure + line + ")\n", line + " )\n"}) {
     folder.write("a.dat", text);
-    cells::MeshOptions options;
+    ReadOptions options;
     options.field = "TEMPERATURE";
     EXPECT_EQ(read_mesh(file, options).mesh.scalars, read.mesh.scalars) << text;
   }
@@ -205,7 +205,7 @@ TEST(SolverFiles, AnOpenFoamCaseIsReadAtItsLastTimeOrTheOneAskedFor) {
     EXPECT_EQ(read_mesh(other).mesh.scalars, last.mesh.scalars) << other;
   EXPECT_EQ(last.mesh.field_name, "p");
   EXPECT_EQ(last.mesh.scalars.front(), 1000);
-  cells::MeshOptions first;
+  ReadOptions first;
   first.time_step = 0;
   const cells::MeshFile begin = read_mesh(folder / "case.foam", first);
   for (std::size_t t = 0; t < begin.mesh.tets.size(); ++t) {
@@ -225,7 +225,7 @@ TEST(SolverFiles, PatchesOfAnOpenFoamCaseAreReadByName) {
   write_foam(folder.path(), Cubes(3), [](int) { return true; });
   write_control(folder.path());
   const std::array files = {folder / "case.foam"};
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = "cell:p";
   options.blocks = {"walls"};
   const BlockFaces walls = read_block_faces(files, options);
@@ -250,13 +250,13 @@ TEST(SolverFiles, ADecomposedOpenFoamCaseIsReadWhole) {
   expect_cube(whole, 4);
   EXPECT_EQ(whole.mesh.scalars.front(), 1000);
   for (const std::size_t step : {std::size_t{0}, std::size_t{1}}) {
-    cells::MeshOptions options;
+    ReadOptions options;
     options.time_step = step;
     testing::expect_as_whole(folder / "case.foam", options);
     options.blocks = {"internalMesh"};
     testing::expect_as_whole(folder / "case.foam", options);
   }
-  cells::MeshOptions none;
+  ReadOptions none;
   none.blocks = {"solid"};
   test::expect_bad_input([&] { testing::read_in_parts(folder / "case.foam", 2, none); },
                          {"case.foam", "there is no block", "internalMesh"});
@@ -290,7 +290,7 @@ TEST(SolverFiles, RegionsOfADecomposedOpenFoamCaseAreBlocksOfAllProcessors) {
   EXPECT_EQ(all.blocks, (std::vector<std::string>{"fluid/internalMesh", "solid/internalMesh"}));
   EXPECT_EQ(all.counts.cells_read, 64u + 216u);
   testing::expect_as_whole(folder / "case.foam");
-  cells::MeshOptions options;
+  ReadOptions options;
   options.blocks = {"solid"};
   EXPECT_EQ(read_mesh(folder / "case.foam", options).counts.cells_read, 216u);
   testing::expect_as_whole(folder / "case.foam", options);
@@ -313,7 +313,7 @@ TEST(SolverFiles, RegionsOfAnOpenFoamCaseAreBlocks) {
   const cells::MeshFile all = read_mesh(folder / "case.foam");
   EXPECT_EQ(all.blocks, (std::vector<std::string>{"fluid/internalMesh", "solid/internalMesh"}));
   EXPECT_EQ(all.counts.cells_read, 8u + 27u);
-  cells::MeshOptions options;
+  ReadOptions options;
   options.blocks = {"solid"};
   EXPECT_EQ(read_mesh(folder / "case.foam", options).counts.cells_read, 27u);
 }
@@ -344,7 +344,7 @@ TEST(SolverFiles, AMultiBlockFilesVolumesAreDrawnTogether) {
       file.notes.end());
   EXPECT_EQ(file.blocks, (std::vector<std::string>{"fluid", "1"}));
   EXPECT_EQ(file.surfaces, std::vector<std::string>{"2"});
-  cells::MeshOptions options;
+  ReadOptions options;
   options.blocks = {"solid"};
   // The block that is not asked for is not even there.
   const std::string nested =
@@ -377,7 +377,7 @@ TEST(SolverFiles, AMultiBlockFilesSurfacesAreReadByName) {
       "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet><DataSet index=\"0\" "
       "name=\"fluid\" "
       "file=\"a.vtu\"/><DataSet index=\"1\" name=\"lid\" file=\"s.vtp\"/></vtkMultiBlockDataSet></VTKFile>")};
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = "f";
   options.blocks = {"lid"};
   const BlockFaces lid = read_block_faces(files, options);

@@ -140,8 +140,8 @@ AmrScene oct_tree() {
   return scene;
 }
 
-cells::MeshOptions with(const char* field, bool smooth) {
-  cells::MeshOptions options;
+ReadOptions with(const char* field, bool smooth) {
+  ReadOptions options;
   options.field = std::string(field);
   options.smooth = smooth;
   return options;
@@ -180,7 +180,7 @@ TEST(Flash, DamagesAreOneLine) {
   ASSERT_NE(packed, std::string::npos);
   for (std::size_t k = 20; k < 60; ++k) text[packed + k] ^= '\x5a';
   fault(text);
-  cells::MeshOptions options;
+  ReadOptions options;
   options.time_step = 3;
   folder.write("run_hdf5_plt_cnt_0003", good);
   EXPECT_NE(message_of([&] { read_mesh(file, options); }), "");

@@ -214,7 +214,7 @@ TEST_F(VtkFiles, TheLegacyVectorIsReadByComponentAndMagnitude) {
             "CELL_TYPES 1\n10\nPOINT_DATA 4\nVECTORS vel double\n3 4 0 0 0 0 1 0 0 0 0 2\n"
             "SCALARS a int 1\nLOOKUP_TABLE default\n1 1 1 1\nSCALARS b int 1\nLOOKUP_TABLE default\n1 2 3 5\n");
   EXPECT_EQ(read_mesh(file).mesh.field_name, "b");
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = "vel";
   EXPECT_EQ(read_mesh(file, options).mesh.scalars, (std::vector<double>{5, 0, 1, 2}));
   options.field = "vel:z";

@@ -64,7 +64,7 @@ TEST(VtkHdf, EveryStepHasItsOwnPartsPointsAndFields) {
   write_steps(HdfWriter((folder / "t.vtkhdf").string(), "UnstructuredGrid"));
   for (std::size_t step = 0; step < 3; ++step) {
     SCOPED_TRACE(step);
-    cells::MeshOptions options;
+    ReadOptions options;
     options.time_step = step;
     options.field = "f";
     cells::MeshFile read = read_mesh(folder / "t.vtkhdf", options);
@@ -84,7 +84,7 @@ TEST(VtkHdf, EveryStepHasItsOwnPartsPointsAndFields) {
     EXPECT_EQ(read.mesh.scalars, (std::vector<double>{first, first + 1}));
   }
   EXPECT_EQ(read_mesh(folder / "t.vtkhdf").time_step.step, 2u);
-  cells::MeshOptions options;
+  ReadOptions options;
   options.time_step = 3;
   test::expect_bad_input([&] { read_mesh(folder / "t.vtkhdf", options); }, {"t.vtkhdf", "no time step 3", "has 3"});
 }

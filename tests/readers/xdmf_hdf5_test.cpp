@@ -61,7 +61,7 @@ TEST(XdmfHdf5, CellsAndFieldsAreReadFromTheFileBeside) {
   if (!has_reader(Reader::xdmf)) GTEST_SKIP() << "tessera-read-xdmf is not installed";
   const test::TemporaryFolder folder;
   write_data((folder / "a.h5").string());
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = "u:0";
   const cells::MeshFile mesh = read_mesh(folder.write("a.xdmf", mesh_text("a.h5")), options);
   EXPECT_EQ(mesh.counts.cells_read, 1u);

@@ -48,7 +48,7 @@ class XdmfItems : public ::testing::Test {
   }
 
   std::vector<double> values(const std::string& item) const {
-    VolumeOptions options;
+    ReadOptions options;
     options.field = "T";
     return all_samples(*open_volume(folder.write("a.xmf", file_of(regular, item)), options).source);
   }

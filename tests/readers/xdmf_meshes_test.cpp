@@ -58,7 +58,7 @@ class XdmfMeshes : public ::testing::Test {
   }
   cells::MeshFile read(const std::string& domain, std::optional<std::size_t> time_step = std::nullopt,
                        const std::string& field = "", const std::vector<std::string>& blocks = {}) const {
-    cells::MeshOptions options;
+    ReadOptions options;
     options.time_step = time_step;
     options.field = field;
     options.blocks = blocks;

@@ -67,11 +67,11 @@ class Xdmf : public ::testing::Test {
   void SetUp() override {
     if (!has_reader(Reader::xdmf)) GTEST_SKIP() << "tessera-read-xdmf is not installed";
   }
-  cells::MeshFile read(const std::string& domain, const cells::MeshOptions& options = {}) const {
+  cells::MeshFile read(const std::string& domain, const ReadOptions& options = {}) const {
     return read_mesh(folder.write("a.xmf", file_of(domain)), options);
   }
   void expect_refused(const std::string& domain, const std::vector<std::string>& words,
-                      const cells::MeshOptions& options = {}) const {
+                      const ReadOptions& options = {}) const {
     std::vector<std::string> all = {"a.xmf: ", "; "};
     all.insert(all.end(), words.begin(), words.end());
     test::expect_bad_input([&] { read(domain, options); }, all);
@@ -89,7 +89,7 @@ TEST_F(Xdmf, TetsHaveTheirPlacesAndFields) {
     const glm::dvec3& p = mesh.mesh.positions[v];
     EXPECT_EQ(mesh.mesh.scalars[v], p.x + 2 * p.y + 3 * p.z);
   }
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = "c";
   const cells::MeshFile cells = read(two_tets("m", 0, 1), options);
   EXPECT_EQ(cells.mesh.scalars, (std::vector<double>{7, 8}));
@@ -106,7 +106,7 @@ TEST_F(Xdmf, TimeStepsAreInTheOrderOfTheirTimes) {
       attribute("f", "Node", item("5", "0 10 20 30 -90")) + "</Grid>\n";
   const std::string series = collection("s", "Temporal", two_tets("early", 0, 1, timed(1)) + later);
   const auto range = [&](std::optional<std::size_t> step) {
-    cells::MeshOptions options;
+    ReadOptions options;
     options.time_step = step;
     options.field = "f";
     const cells::MeshFile mesh = read(series, options);
@@ -116,7 +116,7 @@ TEST_F(Xdmf, TimeStepsAreInTheOrderOfTheirTimes) {
   EXPECT_EQ(read(series).time_step.times, (std::vector<double>{1, 2}));
   EXPECT_EQ(range(0), 3);
   EXPECT_EQ(range(1), 30);
-  cells::MeshOptions options;
+  ReadOptions options;
   options.time_step = 2;
   expect_refused(series, {"there is no time step 2, the file has 2"}, options);
 }
@@ -132,7 +132,7 @@ TEST_F(Xdmf, GridsInSpaceAreBlocks) {
   const cells::MeshFile both = read(parts);
   EXPECT_EQ(both.blocks, (std::vector<std::string>{"left", "right"}));
   EXPECT_NEAR(testing::volume(both.mesh), 8.0 / 6, 1e-12);
-  cells::MeshOptions options;
+  ReadOptions options;
   options.blocks = {"right"};
   const cells::MeshFile one = read(parts, options);
   EXPECT_NEAR(testing::volume(one.mesh), 4.0 / 6, 1e-12);
@@ -162,7 +162,7 @@ TEST_F(Xdmf, RegularGridsAreVolumes) {
       attribute("c", "Cell", item("1 2 3", "0 1 2 3 4 5")) + "</Grid>\n";
   const auto file = folder.write("g.xdmf", file_of(grid));
   ASSERT_TRUE(is_volume(file));
-  VolumeOptions options;
+  ReadOptions options;
   options.field = "s";
   const VolumeFile volume = open_volume(file, options);
   EXPECT_EQ(volume.source->geometry().points, (GridIndex{4, 3, 2}));

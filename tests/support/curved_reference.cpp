@@ -124,8 +124,8 @@ double field_integral(const scene::TetMesh& mesh) {
   return sum;
 }
 
-cells::MeshOptions coarse_options() {
-  cells::MeshOptions options;
+ReadOptions coarse_options() {
+  ReadOptions options;
   options.field = "f";
   options.higher_order_tolerance = 2e-3;
   return options;

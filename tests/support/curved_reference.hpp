@@ -52,7 +52,7 @@ std::vector<glm::dvec3> places_of(const ReferenceCell& cell);
 double field_integral(const scene::TetMesh& mesh);
 
 /// Of a field "f": cells divided to 4e-4 of their size, which is quick.
-cells::MeshOptions coarse_options();
+ReadOptions coarse_options();
 
 /// That what was read has the volume and the integral, of a number of such cells, and that none is drawn by its
 /// corners.

@@ -35,7 +35,7 @@ struct InParts {
   cells::MeshFile whole;  ///< its mesh empty
 };
 
-inline InParts read_in_parts(const std::filesystem::path& file, int parts, const cells::MeshOptions& options = {}) {
+inline InParts read_in_parts(const std::filesystem::path& file, int parts, const ReadOptions& options = {}) {
   std::vector<std::unique_ptr<MeshPartReading>> readings;
   std::vector<std::vector<cells::FieldTally>> tallies;
   std::vector<std::string> names;
@@ -65,7 +65,7 @@ inline InParts read_in_parts(const std::filesystem::path& file, int parts, const
   return result;
 }
 
-inline void expect_as_whole(const std::filesystem::path& file, const cells::MeshOptions& options = {}) {
+inline void expect_as_whole(const std::filesystem::path& file, const ReadOptions& options = {}) {
   ASSERT_TRUE(readable_in_parts(identify(file), options));
   const cells::MeshFile whole = read_mesh(file, options);
   for (const int parts : {1, 2, 3, 7}) {

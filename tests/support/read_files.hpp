@@ -11,11 +11,10 @@
 /// Files identified and read by their names, as most tests do.
 namespace tessera::io {
 
-inline cells::MeshFile read_mesh(const std::filesystem::path& file, const cells::MeshOptions& options = {}) {
+inline cells::MeshFile read_mesh(const std::filesystem::path& file, const ReadOptions& options = {}) {
   return read_mesh(identify(file), options);
 }
-inline cells::MeshFile read_mesh(const std::vector<std::filesystem::path>& files,
-                                 const cells::MeshOptions& options = {}) {
+inline cells::MeshFile read_mesh(const std::vector<std::filesystem::path>& files, const ReadOptions& options = {}) {
   std::vector<InputFile> all;
   for (const std::filesystem::path& file : files) all.push_back(identify(file));
   return read_mesh(all, options);

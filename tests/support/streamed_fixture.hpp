@@ -46,10 +46,10 @@ class StreamedVolumes : public ::testing::Test {
     gzclose(out);
     return file;
   }
-  static io::VolumeOptions streaming(const std::string& field = "") {
-    io::VolumeOptions options;
+  static ReadOptions streaming(const std::string& field = "") {
+    ReadOptions options;
     options.field = field;
-    options.most_in_memory = 0;
+    options.memory_bytes = 1;
     return options;
   }
   /// Samples and description of `file` must be the same unpacked into memory and into a file; whether it was.

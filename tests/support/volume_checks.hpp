@@ -22,7 +22,7 @@ inline std::vector<double> all_samples(const scene::SampleSource& source) {
 
 /// Opens the file and expects one line of refusal that holds `words`, says what to do and names no unnamed file.
 inline void expect_no_volume(const std::filesystem::path& file, const std::string& words,
-                             const io::VolumeOptions& options = {}) {
+                             const ReadOptions& options = {}) {
   const Fault fault = fault_of([&] { io::open_volume(file, options); });
   EXPECT_EQ(fault.code, scene::ErrorCode::bad_input) << fault.message;
   EXPECT_NE(fault.message.find(words), std::string::npos) << fault.message;

@@ -19,8 +19,8 @@ namespace {
 
 using namespace testing;
 
-cells::MeshOptions field_f(bool smooth) {
-  cells::MeshOptions options;
+ReadOptions field_f(bool smooth) {
+  ReadOptions options;
   options.field = std::string("f");
   options.smooth = smooth;
   return options;

@@ -61,7 +61,7 @@ std::string numbers_to(std::size_t end, std::size_t first) {
 class CurvedText : public ::testing::Test {
  protected:
   cells::MeshFile read(const std::string& name, const std::string& text, const std::string& field = "f") const {
-    cells::MeshOptions options = testing::coarse_options();
+    ReadOptions options = testing::coarse_options();
     options.field = field;
     return read_mesh(folder.write(name, text), options);
   }
@@ -245,7 +245,7 @@ TEST_F(CurvedText, IdeasParabolicElementsGoRoundFromCornerToMiddle) {
         std::tuple(hex20, 116, of_brick), std::tuple(hex20, 105, of_brick)}) {
     SCOPED_TRACE(type);
     const BentCell bent = testing::bend(cell);
-    cells::MeshOptions options = testing::coarse_options();
+    ReadOptions options = testing::coarse_options();
     options.field.clear();
     const cells::MeshFile read = read_mesh(folder.write("a.unv", universal(bent.positions, type, nodes)), options);
     EXPECT_NEAR(testing::volume(read.mesh), bent.volume, 5e-3 * bent.volume);

@@ -122,7 +122,7 @@ TEST(MeditBinary, EveryVersionAndByteOrderIsTheSameMesh) {
               std::ranges::any_of(read.mesh.tets[t], [&](std::uint32_t v) { return read.mesh.positions[v].z > 2; });
           EXPECT_EQ(read.mesh.scalars[t], is_top ? 2 : 5);
         }
-        cells::MeshOptions options;
+        ReadOptions options;
         options.blocks = {"reference 2"};
         EXPECT_NEAR(testing::volume(read_mesh(file, options).mesh), 1, 1e-12);
       }

@@ -66,7 +66,7 @@ TEST_F(MeshParts, PiecesGiveTheTetsCountsAndFieldOfTheWhole) {
   EXPECT_EQ(read_mesh(file).mesh.field_name, "piece");
   expect_as_whole(file);
   for (const char* field : {"noisy", "cells", "point:piece"}) {
-    cells::MeshOptions options;
+    ReadOptions options;
     options.field = field;
     expect_as_whole(file, options);
   }
@@ -112,7 +112,7 @@ TEST_F(MeshParts, ListsOfBlocksAreReadInParts) {
   EXPECT_EQ(whole.blocks, (std::vector<std::string>{"a", "middle/b", "c"}));
   EXPECT_GT(whole.counts.tets_made, read_mesh(folder / "m.pvtu").counts.tets_made);
   expect_as_whole(file);
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = "cells";
   expect_as_whole(file, options);
   options.field = "piece";
@@ -166,7 +166,7 @@ TEST_F(MeshParts, FaultsNameThePiece) {
   EXPECT_EQ(message_of([&] { read_mesh(file); }).substr(0, expected.size()), expected);
   EXPECT_EQ(message_of([&] { read_in_parts(file, 2); }), message_of([&] { read_mesh(file); }));
   EXPECT_EQ(message_of([&] { read_in_parts(file, 3); }), message_of([&] { read_mesh(file); }));
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = "noisy";  // which all have
   EXPECT_NO_THROW(read_in_parts(file, 3, options));
   options.field = "absent";
@@ -267,7 +267,7 @@ TEST_F(MeshParts, TetRangesCheckTheirIndicesAndSizes) {
 TEST_F(MeshParts, OtherFormatsAndSmoothingAreReadWhole) {
   TESSERA_VTK_OR_SKIP();
   const auto pvtu = write_pieces({piece_at(0)});
-  cells::MeshOptions smooth;
+  ReadOptions smooth;
   smooth.smooth = true;
   EXPECT_TRUE(readable_in_parts(identify(pvtu), {}));
   EXPECT_FALSE(readable_in_parts(identify(pvtu), smooth));

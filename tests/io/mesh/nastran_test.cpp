@@ -237,7 +237,7 @@ TEST_F(Nastran, PropertiesAreBlocksAndAField) {
   EXPECT_EQ(read.mesh.field_name, "PropertyId");
   for (std::size_t t = 0; t < read.mesh.tets.size(); ++t)
     EXPECT_EQ(read.mesh.scalars[t], read.mesh.positions[read.mesh.tets[t][0]].x < 2 ? 4 : 30);
-  cells::MeshOptions options;
+  ReadOptions options;
   options.blocks = {"property 30"};
   EXPECT_NEAR(testing::volume(read_mesh(file, options).mesh), 1, 1e-12);
 }

@@ -64,7 +64,7 @@ std::string zone(const std::string& more) {
 
 cells::MeshFile read(const std::filesystem::path& file, const std::string& field,
                      std::optional<std::size_t> step = {}) {
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = field;
   options.time_step = step;
   return read_mesh(file, options);
@@ -228,7 +228,7 @@ TEST_F(Tecplot, BricksWithRepeatedNodesAreWedgesPyramidsAndTetrahedra) {
       "1 2 3 3 5 6 7 7\n1 3 4 4 5 7 8 8\n5 6 7 8 9 9 9 9\n10 11 12 12 1 1 1 1\n";
   const TecplotMesh mesh = parse_tecplot(text, "a.tec", std::nullopt);
   EXPECT_EQ(mesh.blocks.at(0).types, (std::vector<std::uint8_t>{13, 13, 14, 10}));
-  cells::MeshOptions options;
+  ReadOptions options;
   EXPECT_EQ(read_mesh(folder.write("a.tec", text), options).counts.cells_tangled, 0u);
 }
 

@@ -33,7 +33,7 @@ TEST(NodeEle, EitherNameReadsPointsTetsAndAttributes) {
     EXPECT_EQ(read.mesh.field_name, "attribute0");
     EXPECT_EQ(read.mesh.scalars, (std::vector<double>{0, 1, 2, 3, 5}));
   }
-  cells::MeshOptions options;
+  ReadOptions options;
   options.field = "cell:attribute0";
   EXPECT_EQ(read_mesh(node, options).mesh.scalars, (std::vector<double>{1.5, 2.5}));
   options.field = "attribute1";
@@ -183,7 +183,7 @@ class Filled : public ::testing::Test {
 
 TEST_F(Filled, ASphereHasThePolyhedronsVolumeAndDepth) {
   const Sphere s = sphere(24, {3, -2, 5}, 2);
-  cells::MeshOptions options;
+  ReadOptions options;
   options.max_volume = s.volume / 5000;
   std::vector files = {folder.write("s.ply", ply({s}))};
   if (has_reader(Reader::vtk)) files.push_back(folder.write("s.stl", stl(s)));
@@ -217,7 +217,7 @@ TEST_F(Filled, SizeAndPlaceDoNotMatter) {
 }
 
 TEST_F(Filled, APolyKeepsItsLinearAttribute) {
-  cells::MeshOptions options;
+  ReadOptions options;
   options.max_volume = 1e-3;
   const cells::MeshFile read = read_mesh(folder.write("cube.poly", cube_poly), options);
   EXPECT_NEAR(testing::volume(read.mesh), 1, 1e-9);
@@ -260,7 +260,7 @@ TEST_F(Filled, OpenCuttingFlatAndEmptySurfacesAreTold) {
   Sphere nan = s;
   nan.points[3].x = NAN;
   expect_bad_input([&] { read_mesh(folder.write("n.ply", ply({nan}))); }, {"n.ply: "});
-  cells::MeshOptions options;
+  ReadOptions options;
   options.max_volume = -1;
   expect_bad_input([&] { read_mesh(folder.write("s.ply", ply({s})), options); }, {"give a positive one"});
 }
@@ -276,7 +276,7 @@ TEST_F(Filled, WarpedPolygonsAreCutIntoTriangles) {
     text += fmt::format("{} {} {}\n", std::cos(angle), std::sin(angle), v / 3);
   }
   text += "3 0 2 1\n3 3 4 5\n4 0 1 4 3\n4 1 2 5 4\n4 2 0 3 5\n";
-  cells::MeshOptions options;
+  ReadOptions options;
   options.max_volume = 0.01;
   const cells::MeshFile read = read_mesh(folder.write("w.ply", text), options);
   // Each side's diagonal is one of two: what is inside lies between the volumes of all inward and all outward.

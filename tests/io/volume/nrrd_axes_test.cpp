@@ -123,7 +123,7 @@ TEST_F(NrrdAxes, TimesOfASpaceWithTimeAreThoseOfTheFourthDimension) {
 }
 
 TEST_F(NrrdAxes, KindsAndDirectionsTellListsComponentsAndTimeApartWhereverTheyAre) {
-  const auto open = [&](const std::string& about, const VolumeOptions& options = {}) {
+  const auto open = [&](const std::string& about, const ReadOptions& options = {}) {
     return open_volume(write(about), options);
   };
   const std::string last = "dimension: 4\nsizes: 4 3 2 2\nkinds: space space space ";

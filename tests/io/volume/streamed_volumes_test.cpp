@@ -79,15 +79,14 @@ TEST_F(StreamedVolumes, ThatAreDamagedAreRefusedInOneLine) {
 
 TEST_F(StreamedVolumes, GoIntoAFileIfTheyAreLargeAndThereIsRoom) {
   const auto file = zipped("a.nii.gz", nifti_of(2, 1));
-  VolumeOptions options;
-  options.most_in_memory = samples;
+  ReadOptions options;
+  options.memory_bytes = 2 * samples;
   EXPECT_EQ(open_volume(file, options).scratch, nullptr);
-  options.most_in_memory = samples - 1;
+  options.memory_bytes = 2 * (samples - 1);
   EXPECT_NE(open_volume(file, options).scratch, nullptr);
   const test::ScratchFolder nowhere(scratch / "nowhere");
   EXPECT_TRUE(open_volume(file, options).in_memory);
-  options.scratch_is_needed = true;
-  test::expect_bad_input([&] { open_volume(file, options); }, {"a.nii.gz: its samples", "set TMPDIR"});
+  test::expect_bad_input([&] { open_unscanned_volume(file, options, true); }, {"a.nii.gz: its samples", "set TMPDIR"});
 }
 
 TEST_F(StreamedVolumes, AreWrittenInAnyPartsThatTheyComeIn) {

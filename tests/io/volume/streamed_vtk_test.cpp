@@ -254,7 +254,7 @@ TEST_F(StreamedVtk, WithDamagedCoordinatesAreWhatItsOwnReaderFinds) {
     }
     const auto file = folder.write("v.vtr", text);
     std::vector<std::uint64_t> whole, parts;
-    const auto geometry = [&](const VolumeOptions& options) {
+    const auto geometry = [&](const ReadOptions& options) {
       return test::bits_of(open_volume(file, options).source->geometry());
     };
     const test::Fault fault = test::fault_of([&] { whole = geometry({}); });

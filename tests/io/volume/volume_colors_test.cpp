@@ -69,7 +69,7 @@ TEST(VolumeColors, AreRefusedUnlessAComponentOrTheLengthIsAskedFor) {
   for (const std::filesystem::path& file : files) {
     SCOPED_TRACE(file.string());
     test::expect_no_volume(file, "'samples' has colors, of ");
-    VolumeOptions options;
+    ReadOptions options;
     options.field = "samples";
     test::expect_no_volume(file, "choose one with `field` samples:0 (red), or their length with samples:mag", options);
     options.field = "samples:1";

@@ -42,7 +42,7 @@ std::vector<std::string> names_written() {
 class VolumeFiles : public ::testing::Test {
  protected:
   /// Opens the file and expects one line of refusal that holds `words`.
-  void expect_refused(const std::filesystem::path& file, const std::string& words, const VolumeOptions& options = {}) {
+  void expect_refused(const std::filesystem::path& file, const std::string& words, const ReadOptions& options = {}) {
     const test::Fault fault = test::fault_of([&] { open_volume(file, options); });
     EXPECT_EQ(fault.code, scene::ErrorCode::bad_input) << fault.message;
     EXPECT_NE(fault.message.find(words), std::string::npos) << fault.message;
@@ -265,7 +265,7 @@ TEST_F(VolumeFiles, RawFilesAreDescribedByOptionsOrByName) {
   const std::string samples = bytes_of(counting<std::uint16_t>(24));
   const VolumeFile named = open_volume(folder.write("skull_4x3x2_uint16.raw", samples));
   EXPECT_EQ(all_samples(*named.source), counting<double>(24));
-  VolumeOptions options;
+  ReadOptions options;
   options.dims = GridIndex{2, 3, 4};
   options.type = SampleType::uint16;
   options.spacing = glm::dvec3(1, 2, 0.5);

@@ -50,7 +50,7 @@ std::string gzip(const std::string& bytes) {
 
 class VolumeSteps : public ::testing::Test {
  protected:
-  std::vector<double> samples(const std::filesystem::path& file, const VolumeOptions& options = {}) {
+  std::vector<double> samples(const std::filesystem::path& file, const ReadOptions& options = {}) {
     return all_samples(*open_volume(file, options).source);
   }
   /// Three steps, 0 to 23, 24 to 47 and 48 to 71.

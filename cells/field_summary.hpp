@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tessera/field_info.hpp"
+
+namespace tessera::cells {
+
+using tessera::HigherOrderCells;
+using tessera::MeshCounts;
+
+using FieldSummary = tessera::FieldInfo;
+
+}  // namespace tessera::cells

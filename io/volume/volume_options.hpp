@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "tessera/read_options.hpp"
+
+namespace tessera::io {
+
+/// How a volume file is read.
+struct VolumeOptions : ReadOptions {
+  bool scratch_is_needed = false;  ///< by other processes
+
+  /// Samples that are unpacked and take more bytes go into a scratch file. Bricks are copies, for which as much is
+  /// left.
+  [[nodiscard]] std::uint64_t most_in_memory() const {
+    if (scratch_is_needed) return 0;
+    return memory_bytes > 0 ? memory_bytes / 2 : std::numeric_limits<std::uint64_t>::max();
+  }
+};
+
+}  // namespace tessera::io
