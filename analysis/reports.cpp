@@ -70,11 +70,24 @@ Json grid_counters_json(const FrameStatistics& statistics) {
   return json;
 }
 
+/// By groups, without those that have nothing to say.
+void add_counters_of(const MeshCounts& counts, Json& json) {
+  const auto group_of = [](const MeshCounter& counter) { return counter.name.substr(0, counter.name.find('/')); };
+  for (const MeshCounter& counter : mesh_counters) {
+    const bool says_something = std::ranges::any_of(mesh_counters, [&](const MeshCounter& other) {
+      return group_of(other) == group_of(counter) && (!other.if_any || counts.*other.member > 0);
+    });
+    if (!counter.name.empty() && says_something)
+      json[Json::json_pointer("/" + std::string(counter.name))] = counts.*counter.member;
+  }
+}
+
 Json higher_order_json(const Description& data) {
-  const HigherOrderCells& cells = data.higher_order;
-  Json json = {
-      {"divided", cells.divided},     {"by_corners", cells.by_corners},         {"tets", cells.tets},
-      {"tolerance", cells.tolerance}, {"position_error", cells.position_error}, {"field_error", cells.field_error}};
+  Json json;
+  for (const HigherOrderCounter& counter : higher_order_counters)
+    json[std::string(counter.name)] = data.higher_order.*counter.member;
+  for (const HigherOrderBound& bound : higher_order_bounds)
+    json[std::string(bound.name)] = data.higher_order.*bound.member;
   if (data.higher_order_pixels > 0) json["pixel_error"] = data.higher_order_pixels;  // null: not bounded
   return json;
 }
@@ -116,31 +129,8 @@ Json program_json() {
 Json data_json(const std::filesystem::path& input, const Description& data) {
   Json json = {{"file", input.string()}, {"format", data.format}};
   if (data.is_mesh) {
-    const MeshCounts& counts = data.counts;
-    json["cells"] = {{"read", counts.cells_read},
-                     {"ghost", counts.cells_ghost},
-                     {"hidden", counts.cells_hidden},
-                     {"nan", counts.cells_nan},
-                     {"not_volumetric", counts.cells_not_volumetric},
-                     {"zero_volume", counts.cells_zero_volume},
-                     {"open", counts.cells_open},
-                     {"tangled", counts.cells_tangled},
-                     {"quadratic", counts.cells_quadratic},
-                     {"duplicate", counts.cells_duplicate},
-                     {"duplicates_dropped", counts.duplicates_dropped}};
-    if (counts.cells_out_of_range + counts.cells_clipped + counts.cells_cut > 0)
-      json["selection"] = {{"cells_out_of_range", counts.cells_out_of_range},
-                           {"cells_clipped", counts.cells_clipped},
-                           {"cells_cut", counts.cells_cut}};
-    if (counts.cells_polyhedra > 0)
-      json["polyhedra"] = {{"kept", counts.cells_polyhedra},
-                           {"from_inside", counts.polyhedra_from_inside},
-                           {"in_pieces", counts.polyhedra_in_pieces},
-                           {"tangled", counts.polyhedra_tangled}};
-    json["tets"] = counts.tets_made;
-    json["tets_collapsed"] = counts.tets_collapsed;
-    json["points"] = {{"read", counts.points_read}, {"unused", counts.points_unused}};
-    if (counts.cells_quadratic > 0) json["higher_order"] = higher_order_json(data);
+    add_counters_of(data.counts, json);
+    if (data.counts.cells_quadratic > 0) json["higher_order"] = higher_order_json(data);
   } else {
     const GridGeometry& g = data.geometry;
     json["points"] = g.points;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <optional>
@@ -22,22 +23,22 @@ using scene::Tet;
 /// Tets that each higher-order cell may become beside CurvedSettings::all of them together.
 constexpr std::uint64_t each_curved_cell = 64;
 
-/// Of MeshCounts::solids.
-std::optional<std::size_t> solid_kind(CellKind kind) {
+/// Where cells of a kind are counted, and those of them that are tangled; null: nowhere.
+std::array<std::uint64_t MeshCounts::*, 2> counters_of(CellKind kind) {
   switch (kind) {
     case CellKind::hexahedron:
-      return 0;
+      return {&MeshCounts::hexahedra, &MeshCounts::hexahedra_tangled};
     case CellKind::wedge:
-      return 1;
+      return {&MeshCounts::wedges, &MeshCounts::wedges_tangled};
     case CellKind::pyramid:
-      return 2;
+      return {&MeshCounts::pyramids, &MeshCounts::pyramids_tangled};
     case CellKind::voxel:
-      return 3;
+      return {&MeshCounts::voxels, &MeshCounts::voxels_tangled};
     case CellKind::pentagonal_prism:
     case CellKind::hexagonal_prism:
-      return 4;
+      return {&MeshCounts::prisms, &MeshCounts::prisms_tangled};
     default:
-      return std::nullopt;
+      return {};
   }
 }
 
@@ -70,9 +71,9 @@ void BlockCells::split(std::size_t first, std::size_t last, BlockTets& out) cons
     const std::uint64_t tangled = out.counts.cells_tangled;
     split_cell(c, work, out);
     if (block_.types.empty() || out.tets.size() == tets) continue;
-    if (const auto kind = solid_kind(shapes_[block_.types[c]].kind)) {
-      ++out.counts.solids[*kind];
-      out.counts.solids_tangled[*kind] += out.counts.cells_tangled - tangled;
+    if (const auto [all, of_them_tangled] = counters_of(shapes_[block_.types[c]].kind); all != nullptr) {
+      ++(out.counts.*all);
+      out.counts.*of_them_tangled += out.counts.cells_tangled - tangled;
     }
   }
   out.counts.cells_read = last - first;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tessera/field_info.hpp"
+#include "tessera/mesh_counts.hpp"
 
 namespace tessera::cells {
 

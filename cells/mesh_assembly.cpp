@@ -14,6 +14,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numeric>
+#include <tuple>
 
 #include "cells/block_tets.hpp"
 #include "cells/duplicate_cells.hpp"
@@ -345,13 +346,18 @@ std::vector<std::string> warnings_on_cells(const MeshCounts& n, const HigherOrde
         fmt::format("{} higher-order cells are rendered as linear ones by their corner nodes, without an error bound "
                     "for what that leaves out",
                     higher_order.by_corners));
-  constexpr std::array kinds = {"hexahedra", "wedges", "pyramids", "voxels", "prisms"};
-  for (std::size_t kind = 0; kind < kinds.size(); ++kind)
-    if (n.solids[kind] > 0 && n.solids_tangled[kind] == n.solids[kind])
+  const std::tuple<const char*, std::uint64_t, std::uint64_t> kinds[] = {
+      {"hexahedra", n.hexahedra, n.hexahedra_tangled},
+      {"wedges", n.wedges, n.wedges_tangled},
+      {"pyramids", n.pyramids, n.pyramids_tangled},
+      {"voxels", n.voxels, n.voxels_tangled},
+      {"prisms", n.prisms, n.prisms_tangled}};
+  for (const auto& [kind, count, tangled] : kinds)
+    if (count > 0 && tangled == count)
       warnings.push_back(
           fmt::format("all {} {} are tangled, so that they are not drawn as they were meant: is the order of their "
                       "nodes VTK's? It is another in many programs; write them in VTK's",
-                      n.solids[kind], kinds[kind]));
+                      count, kind));
   if (n.cells_open > 0)
     warnings.push_back(fmt::format("{} polyhedra are left out: their faces are no closed surface", n.cells_open));
   if (n.polyhedra_tangled > 0)

@@ -201,28 +201,15 @@ std::string samples_line(const Description& grid) {
 }
 
 std::string cells_line(const MeshCounts& counts) {
-  const std::uint64_t dropped = counts.cells_ghost + counts.cells_hidden + counts.cells_nan +
-                                counts.cells_not_volumetric + counts.cells_open + counts.cells_out_of_range +
-                                counts.cells_clipped + counts.duplicates_dropped;
-  std::string line =
-      fmt::format("{} of {} cells kept as {} tets", counts.cells_read - dropped, counts.cells_read, counts.tets_made);
-  const std::pair<std::uint64_t, std::string_view> reasons[] = {
-      {counts.cells_ghost, "ghost dropped"},
-      {counts.cells_hidden, "hidden dropped"},
-      {counts.cells_nan, "dropped for NaN, infinite or missing numbers"},
-      {counts.cells_not_volumetric, "without volume by type skipped"},
-      {counts.cells_zero_volume, "of zero volume kept"},
-      {counts.cells_open, "not closed dropped"},
-      {counts.cells_tangled, "tangled kept"},
-      {counts.cells_quadratic, "of higher order"},
-      {counts.cells_duplicate, "duplicate kept"},
-      {counts.duplicates_dropped, "duplicate dropped"},
-      {counts.cells_out_of_range, "outside the threshold dropped"},
-      {counts.cells_clipped, "clipped away"},
-      {counts.cells_cut, "cut"}};
-  for (const auto& [count, reason] : reasons)
-    if (count > 0) line += fmt::format(", {} {}", count, reason);
-  return line;
+  std::uint64_t kept = counts.cells_read;
+  std::string fates;
+  for (const MeshCounter& counter : mesh_counters) {
+    const std::uint64_t count = counts.*counter.member;
+    if (counter.fate == MeshCounter::Fate::other || count == 0) continue;
+    if (counter.fate == MeshCounter::Fate::dropped) kept -= count;
+    fates += fmt::format(", {} {}", count, counter.meaning);
+  }
+  return fmt::format("{} of {} cells kept as {} tets{}", kept, counts.cells_read, counts.tets_made, fates);
 }
 
 std::string higher_order_note(double error, double accuracy) {

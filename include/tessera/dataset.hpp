@@ -19,6 +19,7 @@
 #include "tessera/field_info.hpp"
 #include "tessera/grid.hpp"
 #include "tessera/mesh_check.hpp"
+#include "tessera/mesh_counts.hpp"
 #include "tessera/read_options.hpp"
 #include "tessera/sample_source.hpp"
 #include "tessera/selection.hpp"

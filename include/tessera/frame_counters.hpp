@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cstddef>
 #include <cstdint>
-#include <string_view>
 #include <type_traits>
+
+#include "tessera/counter.hpp"
 
 namespace tessera {
 inline namespace v0_1 {
 
-/// What a frame of a mesh took, counted. Processes send it as it stands (exchange/wire.hpp); frame_counters says how
-/// they are put together and what reports and docs/REFERENCE.md say of them.
+/// What a frame of a mesh took, counted. frame_counters is the table of them, whose meanings docs/REFERENCE.md repeats.
 struct FrameCounters {
   std::uint64_t tets_total = 0;
   std::uint64_t tets_invisible = 0;
@@ -34,8 +32,7 @@ struct FrameCounters {
   FrameCounters& operator+=(const FrameCounters& other);
 };
 
-/// What a frame of a grid took, counted. Processes send it as it stands (frame/grid/sort_first.hpp); grid_counters is
-/// the list of them.
+/// What a frame of a grid took, counted. grid_counters is the table of them.
 struct GridCounters {
   std::uint64_t rays = 0;
   std::uint64_t voxels_visited = 0;
@@ -61,16 +58,6 @@ struct GridCounters {
   GridCounters& operator+=(const GridCounters& other);
 };
 
-/// A counter's name in reports, how those of several processes are put together, and what it counts.
-template <class Counters>
-struct Counter {
-  enum class Together { sum, largest };
-  std::string_view name;
-  std::uint64_t Counters::*member;
-  Together together;
-  bool if_any;  ///< reports leave it out where it is 0
-  std::string_view meaning;
-};
 using FrameCounter = Counter<FrameCounters>;
 using GridCounter = Counter<GridCounters>;
 
@@ -141,19 +128,10 @@ inline constexpr std::array<GridCounter, 20> grid_counters{{
     {"composite_us", &GridCounters::composite_us, GridCounter::Together::largest, true,
      "sort-last: microseconds from a process's last ray to its last composited pixel, waiting included"},
 }};
-static_assert(sizeof(FrameCounters) == frame_counters.size() * sizeof(std::uint64_t), "a counter is not in the list");
-static_assert(sizeof(GridCounters) == grid_counters.size() * sizeof(std::uint64_t), "a counter is not in the list");
+static_assert(sizeof(FrameCounters) == frame_counters.size() * sizeof(std::uint64_t), "a counter is not in the table");
+static_assert(sizeof(GridCounters) == grid_counters.size() * sizeof(std::uint64_t), "a counter is not in the table");
 static_assert(std::is_trivially_copyable_v<FrameCounters> && std::is_trivially_copyable_v<GridCounters>,
               "processes send them as they stand");
-
-/// `sums` and `others`, each counter as its list says.
-template <class Counters, std::size_t count>
-void add_counters(const std::array<Counter<Counters>, count>& list, const Counters& others, Counters& sums) {
-  for (const Counter<Counters>& c : list) {
-    const std::uint64_t mine = sums.*c.member, theirs = others.*c.member;
-    sums.*c.member = c.together == Counter<Counters>::Together::sum ? mine + theirs : std::max(mine, theirs);
-  }
-}
 
 inline FrameCounters& FrameCounters::operator+=(const FrameCounters& other) {
   add_counters(frame_counters, other, *this);

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "tessera/field_info.hpp"
 #include "tessera/grid.hpp"
 #include "tessera/read_progress.hpp"
 #include "tessera/selection.hpp"
@@ -19,6 +18,13 @@ namespace tessera {
 inline namespace v0_1 {
 
 class Trace;
+
+/// How near tets come to cells of second and higher order where nothing else is said: in position of the mesh's
+/// diagonal, in value of the field's range; and about how many there may be: not more than 2^18 and twice as many as
+/// the mesh takes without the worst 48 of the tets that its cells' corners make, so that damage takes no memory out of
+/// proportion. Any other number is taken as it is.
+inline constexpr double default_higher_order_tolerance = 1e-4;
+inline constexpr std::uint64_t default_higher_order_tets = std::uint64_t{1} << 21;
 
 /// What may be said about a file; the defaults read any file that describes itself.
 struct ReadOptions {

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace tessera {
+inline namespace v0_1 {
+
+/// A row of a table of counters: its name in reports, how those of several processes are put together, and what it
+/// counts. The tables are all that sums, messages between processes and reports know of counters: a new one is a member
+/// and a row.
+template <class Counters, class Number = std::uint64_t>
+struct Counter {
+  enum class Together { sum, largest };
+  std::string_view name;
+  Number Counters::*member;
+  Together together;
+  bool if_any;  ///< reports leave it out where it is 0
+  std::string_view meaning;
+};
+
+/// `sums` and `others`, each counter as its row of the table says.
+template <class Row, std::size_t count, class Counters>
+void add_counters(const std::array<Row, count>& table, const Counters& others, Counters& sums) {
+  for (const Row& row : table) {
+    const auto mine = sums.*row.member, theirs = others.*row.member;
+    sums.*row.member = row.together == Row::Together::sum ? mine + theirs : std::max(mine, theirs);
+  }
+}
+
+}  // namespace v0_1
+}  // namespace tessera

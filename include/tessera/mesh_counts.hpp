@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "tessera/counter.hpp"
+
+namespace tessera {
+inline namespace v0_1 {
+
+/// What became of a mesh's cells and points. A cell is counted as read, then in at most one of ghost, hidden, nan,
+/// not_volumetric; what remains is split into tets. mesh_counters is the table of them.
+struct MeshCounts {
+  std::uint64_t cells_read = 0;
+  std::uint64_t cells_ghost = 0;            ///< dropped: another piece's (vtkGhostType bit 1, vtkGhostLevels > 0)
+  std::uint64_t cells_hidden = 0;           ///< dropped: vtkGhostType bit 32, or a point of it hidden (2), IBLANK 0
+  std::uint64_t cells_nan = 0;              ///< blanked: a coordinate or scalar of it is missing, NaN or infinite
+  std::uint64_t cells_not_volumetric = 0;   ///< skipped: points, lines, faces
+  std::uint64_t cells_zero_volume = 0;      ///< kept: all their tets have exactly no volume
+  std::uint64_t cells_open = 0;             ///< dropped: polyhedra whose faces are no closed surface
+  std::uint64_t cells_tangled = 0;          ///< kept: their tets differ in orientation, so they overlap
+  std::uint64_t cells_quadratic = 0;        ///< kept: second or higher order (HigherOrderCells)
+  std::uint64_t cells_polyhedra = 0;        ///< kept: polyhedra and convex point sets
+  std::uint64_t polyhedra_from_inside = 0;  ///< of those: split from a point that was added inside
+  std::uint64_t polyhedra_in_pieces = 0;    ///< of those: cut into tets one by one, as no point sees all of the inside
+  std::uint64_t polyhedra_tangled = 0;      ///< of those: among cells_tangled
+  /// Kept: an earlier cell has the same corners, and is drawn there too.
+  std::uint64_t cells_duplicate = 0;
+  std::uint64_t duplicates_dropped = 0;  ///< such cells that were dropped (ReadOptions::drop_duplicates)
+  /// Kept cells of these kinds, prisms those of five or six sides, and how many of them are among cells_tangled.
+  std::uint64_t hexahedra = 0, hexahedra_tangled = 0, wedges = 0, wedges_tangled = 0, pyramids = 0,
+                pyramids_tangled = 0, voxels = 0, voxels_tangled = 0, prisms = 0, prisms_tangled = 0;
+  std::uint64_t points_read = 0;
+  std::uint64_t points_unused = 0;   ///< of no tet
+  std::uint64_t tets_made = 0;       ///< in the mesh
+  std::uint64_t tets_collapsed = 0;  ///< not made: two of their corners are one point in space
+  // Of ReadOptions::selection, and only of cells that are kept otherwise:
+  std::uint64_t cells_out_of_range = 0;  ///< dropped: their values are not all within the threshold
+  std::uint64_t cells_clipped = 0;       ///< dropped: clipped away altogether
+  std::uint64_t cells_cut = 0;           ///< kept in part
+
+  MeshCounts& operator+=(const MeshCounts& other);  ///< of another part
+  bool operator==(const MeshCounts&) const = default;
+};
+
+/// What is before a slash in a name is a group, which reports leave out where all of it is 0 (Counter::if_any); reports
+/// have no counter without a name. `meaning` follows the number in the program's line on cells.
+struct MeshCounter : Counter<MeshCounts> {
+  enum class Fate {
+    other,  ///< not in that line
+    kept,
+    dropped  ///< read, but not in the mesh
+  };
+  Fate fate;
+};
+
+/// All of them, in the order of reports.
+inline constexpr std::array<MeshCounter, 32> mesh_counters{{
+    {{"cells/read", &MeshCounts::cells_read, MeshCounter::Together::sum, false, "of the file"},
+     MeshCounter::Fate::other},
+    {{"cells/ghost", &MeshCounts::cells_ghost, MeshCounter::Together::sum, false, "ghost dropped"},
+     MeshCounter::Fate::dropped},
+    {{"cells/hidden", &MeshCounts::cells_hidden, MeshCounter::Together::sum, false, "hidden dropped"},
+     MeshCounter::Fate::dropped},
+    {{"cells/nan", &MeshCounts::cells_nan, MeshCounter::Together::sum, false,
+      "dropped for NaN, infinite or missing numbers"},
+     MeshCounter::Fate::dropped},
+    {{"cells/not_volumetric", &MeshCounts::cells_not_volumetric, MeshCounter::Together::sum, false,
+      "without volume by type skipped"},
+     MeshCounter::Fate::dropped},
+    {{"cells/zero_volume", &MeshCounts::cells_zero_volume, MeshCounter::Together::sum, false, "of zero volume kept"},
+     MeshCounter::Fate::kept},
+    {{"cells/open", &MeshCounts::cells_open, MeshCounter::Together::sum, false, "not closed dropped"},
+     MeshCounter::Fate::dropped},
+    {{"cells/tangled", &MeshCounts::cells_tangled, MeshCounter::Together::sum, false, "tangled kept"},
+     MeshCounter::Fate::kept},
+    {{"cells/quadratic", &MeshCounts::cells_quadratic, MeshCounter::Together::sum, false, "of higher order"},
+     MeshCounter::Fate::kept},
+    {{"cells/duplicate", &MeshCounts::cells_duplicate, MeshCounter::Together::sum, false, "duplicate kept"},
+     MeshCounter::Fate::kept},
+    {{"cells/duplicates_dropped", &MeshCounts::duplicates_dropped, MeshCounter::Together::sum, false,
+      "duplicate dropped"},
+     MeshCounter::Fate::dropped},
+    {{"selection/cells_out_of_range", &MeshCounts::cells_out_of_range, MeshCounter::Together::sum, true,
+      "outside the threshold dropped"},
+     MeshCounter::Fate::dropped},
+    {{"selection/cells_clipped", &MeshCounts::cells_clipped, MeshCounter::Together::sum, true, "clipped away"},
+     MeshCounter::Fate::dropped},
+    {{"selection/cells_cut", &MeshCounts::cells_cut, MeshCounter::Together::sum, true, "cut"}, MeshCounter::Fate::kept},
+    {{"polyhedra/kept", &MeshCounts::cells_polyhedra, MeshCounter::Together::sum, true,
+      "polyhedra and convex point sets"},
+     MeshCounter::Fate::other},
+    {{"polyhedra/from_inside", &MeshCounts::polyhedra_from_inside, MeshCounter::Together::sum, true,
+      "split from a point inside"},
+     MeshCounter::Fate::other},
+    {{"polyhedra/in_pieces", &MeshCounts::polyhedra_in_pieces, MeshCounter::Together::sum, true,
+      "cut into tets one by one"},
+     MeshCounter::Fate::other},
+    {{"polyhedra/tangled", &MeshCounts::polyhedra_tangled, MeshCounter::Together::sum, true,
+      "drawn by tets that overlap"},
+     MeshCounter::Fate::other},
+    {{"tets", &MeshCounts::tets_made, MeshCounter::Together::sum, false, "in the mesh"}, MeshCounter::Fate::other},
+    {{"tets_collapsed", &MeshCounts::tets_collapsed, MeshCounter::Together::sum, false, "not made"},
+     MeshCounter::Fate::other},
+    {{"points/read", &MeshCounts::points_read, MeshCounter::Together::sum, false, "of the file"},
+     MeshCounter::Fate::other},
+    {{"points/unused", &MeshCounts::points_unused, MeshCounter::Together::sum, false, "of no tet"},
+     MeshCounter::Fate::other},
+    {{"", &MeshCounts::hexahedra, MeshCounter::Together::sum, true, "kept"}, MeshCounter::Fate::other},
+    {{"", &MeshCounts::hexahedra_tangled, MeshCounter::Together::sum, true, "of them tangled"},
+     MeshCounter::Fate::other},
+    {{"", &MeshCounts::wedges, MeshCounter::Together::sum, true, "kept"}, MeshCounter::Fate::other},
+    {{"", &MeshCounts::wedges_tangled, MeshCounter::Together::sum, true, "of them tangled"}, MeshCounter::Fate::other},
+    {{"", &MeshCounts::pyramids, MeshCounter::Together::sum, true, "kept"}, MeshCounter::Fate::other},
+    {{"", &MeshCounts::pyramids_tangled, MeshCounter::Together::sum, true, "of them tangled"},
+     MeshCounter::Fate::other},
+    {{"", &MeshCounts::voxels, MeshCounter::Together::sum, true, "kept"}, MeshCounter::Fate::other},
+    {{"", &MeshCounts::voxels_tangled, MeshCounter::Together::sum, true, "of them tangled"}, MeshCounter::Fate::other},
+    {{"", &MeshCounts::prisms, MeshCounter::Together::sum, true, "kept"}, MeshCounter::Fate::other},
+    {{"", &MeshCounts::prisms_tangled, MeshCounter::Together::sum, true, "of them tangled"}, MeshCounter::Fate::other},
+}};
+static_assert(sizeof(MeshCounts) == mesh_counters.size() * sizeof(std::uint64_t), "a counter is not in the table");
+
+inline MeshCounts& MeshCounts::operator+=(const MeshCounts& other) {
+  add_counters(mesh_counters, other, *this);
+  return *this;
+}
+
+/// What became of a mesh's cells of second and higher order.
+struct HigherOrderCells {
+  std::uint64_t divided = 0;     ///< into tets that are as near to them as the bounds below say
+  std::uint64_t by_corners = 0;  ///< drawn as linear cells by their corners, of kinds that are not divided: no bound
+  std::uint64_t tets = 0;        ///< made of those divided
+  double tolerance = 0;          ///< what was asked for or, where that took too many tets, what was aimed at instead
+  double position_error = 0;     ///< the most that a point of a tet is away from where the cell has it, world units
+  double field_error = 0;        ///< the most that the field is off at one place, in its unit; to first order
+
+  HigherOrderCells& operator+=(const HigherOrderCells& other);  ///< of another part
+  bool operator==(const HigherOrderCells&) const = default;
+};
+using HigherOrderCounter = Counter<HigherOrderCells>;
+using HigherOrderBound = Counter<HigherOrderCells, double>;
+
+/// All of them, in the order of reports.
+inline constexpr std::array<HigherOrderCounter, 3> higher_order_counters{{
+    {"divided", &HigherOrderCells::divided, HigherOrderCounter::Together::sum, false, "cells divided into tets"},
+    {"by_corners", &HigherOrderCells::by_corners, HigherOrderCounter::Together::sum, false, "cells drawn by corners"},
+    {"tets", &HigherOrderCells::tets, HigherOrderCounter::Together::sum, false, "made of those divided"},
+}};
+inline constexpr std::array<HigherOrderBound, 3> higher_order_bounds{{
+    {"tolerance", &HigherOrderCells::tolerance, HigherOrderBound::Together::largest, false, "asked for, or aimed at"},
+    {"position_error", &HigherOrderCells::position_error, HigherOrderBound::Together::largest, false, "world units"},
+    {"field_error", &HigherOrderCells::field_error, HigherOrderBound::Together::largest, false, "in the field's unit"},
+}};
+static_assert(sizeof(HigherOrderCells) == (higher_order_counters.size() + higher_order_bounds.size()) * sizeof(double),
+              "a counter is not in the tables");
+
+inline HigherOrderCells& HigherOrderCells::operator+=(const HigherOrderCells& other) {
+  add_counters(higher_order_counters, other, *this);
+  add_counters(higher_order_bounds, other, *this);
+  return *this;
+}
+static_assert(std::is_trivially_copyable_v<MeshCounts> && std::is_trivially_copyable_v<HigherOrderCells>,
+              "processes send them as they stand");
+
+}  // namespace v0_1
+}  // namespace tessera
