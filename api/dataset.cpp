@@ -169,10 +169,7 @@ void take_description(cells::MeshFile&& file, Dataset::State& state) {
 
 /// Makes a mesh the state's own, its corners in the order that needs no copy unless theirs is to be kept.
 void keep(scene::TetMesh mesh, const ReadOptions& options, scene::Trace* trace, Dataset::State& state) {
-  frame::RenderSettings settings;
-  settings.threads = options.threads;
-  settings.trace = trace;
-  if (!options.keep_corners) frame::order_corners(mesh, settings);
+  if (!options.keep_corners) frame::order_corners(mesh, options.threads, trace);
   auto kept = std::make_shared<const scene::TetMesh>(std::move(mesh));
   state.mesh = *kept;
   state.owner = std::move(kept);

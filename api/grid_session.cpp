@@ -59,35 +59,32 @@ class GridByRays final : public Session::State {
  public:
   GridByRays(Dataset dataset, const Settings& settings, std::shared_ptr<exchange::Transport> transport)
       : State(std::move(dataset), settings), transport_(std::move(transport)), trace_(settings.trace) {
-    check();
-    make_renderer({});
-    make_frames();
+    make_frames({});
   }
 
   std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
                      Sink& sink, const std::stop_token& stop) override {
-    if (settings.deep || settings.peel) check_deep(settings);
     if (settings.keep_uncertainty != keeps_uncertainty_ || settings.keep_cost != keeps_cost_) {
       keeps_uncertainty_ = settings.keep_uncertainty, keeps_cost_ = settings.keep_cost;
-      make_frames();
+      make_frames(settings);
     }
-    if (!settings.deep && !settings.peel && !settings.keep_cost) return render_list(views, function, sink, stop);
+    if (!settings.by_depth() && !settings.keep_cost) return render_list(views, function, sink, stop);
     for (std::size_t i = 0; i < views.size(); ++i) {
-      make_renderer(views[i].size);
-      bool stopped = false;
-      std::exception_ptr of_sink;
+      std::optional<RenderedFrame> frame;
       try {
-        stopped = !make(i, views[i], function, settings, sink, stop, of_sink);
+        make_renderer(views[i].size);
+        frame = make(i, views[i], function, settings, sink, stop);
+      } catch (const api::SinkFailure& failure) {
+        std::rethrow_exception(failure.cause);
       } catch (const std::exception& fault) {
         tell_others(fault);
         throw;
       }
-      if (of_sink) std::rethrow_exception(of_sink);
-      if (stopped) {
+      if (!frame) {
         sink.frame(stopped_frame(i));
         return i;
       }
-      if (!give(i + 1 == views.size(), sink)) return i;
+      if (!give(std::move(*frame), i + 1 == views.size(), sink)) return i;
     }
     return views.size();
   }
@@ -113,61 +110,28 @@ class GridByRays final : public Session::State {
  private:
   [[nodiscard]] bool sorts_last() const { return settings().ranks.distribution == Distribution::sort_last; }
 
-  void make_frames() {
-    if (sorts_last()) {
-      frames_ = std::make_unique<frame::SortLast>(
-          *transport_, frame::SortLastSettings{settings().ranks.direct_send, keeps_uncertainty_, trace_});
-      return;
-    }
-    frame::SortFirstSettings sort_first = api::sort_first_settings(settings());
-    sort_first.keep_error_bounds = keeps_uncertainty_;
-    sort_first.keep_cost = keeps_cost_;
-    sort_first.trace = trace_;
-    frames_ = std::make_unique<frame::SortFirst>(*transport_, std::move(sort_first));
+  void make_frames(const FrameSettings& frame) {
+    if (sorts_last())
+      frames_ = std::make_unique<frame::SortLast>(*transport_, settings(), frame);
+    else
+      frames_ = std::make_unique<frame::SortFirst>(*transport_, settings(), frame);
   }
 
-  void check() const {
-    if (settings().mesh.rasterizer != Rasterizer::planes)
-      throw scene::bad_input("`rasterizer`: is for meshes, and the data set is a grid; leave it out");
-    if (settings().ranks.frames_in_flight < 1)
-      throw scene::bad_input(
-          fmt::format("`frames_in_flight` {}: it must be at least 1", settings().ranks.frames_in_flight));
-    if (sorts_last() && settings().integrator.kind == IntegratorKind::preintegrated)
-      throw scene::bad_input(
-          "`distribution` sort-last: a pre-integrated step from one process's part to the next would be missed; use "
-          "`integrator` automatic, exact or sampled, or sort-first");
-  }
-  void check_deep(const FrameSettings& frame) const {
-    if (!(frame.deep_accuracy >= 1e-6 && frame.deep_accuracy <= 1))
-      throw scene::bad_input(fmt::format("`deep_accuracy` {}: it must be 1e-6 to 1", frame.deep_accuracy));
-    if (!api::promised_error(api::grid_settings(settings())))
-      throw scene::bad_input(
-          fmt::format("{}: steps along rays give light other than that of their parts; set `integrator` automatic or "
-                      "exact",
-                      frame::deep_word(frame.peel.has_value())));
-    if (settings().grid.shading && !frame.peel)
-      throw scene::bad_input("deep picture: it is not shaded; leave `shade` out");
+  [[nodiscard]] volume::RenderSettings render_settings() const {
+    return {settings(), data().clip, sorts_last() ? transport_->size() : 1};
   }
 
   /// Bricks get what the budget leaves beside a picture of this size: the renderer is made once it is known.
-  void make_renderer(std::optional<ImageSize> size) {
-    volume::RenderSettings grid = api::grid_settings(settings());
-    grid.clip = data().clip;
-    if (sorts_last()) grid.parts = transport_->size();
-    if (!size) {
-      // Only for its checks.
-      const volume::Renderer checked(*data().samples, grid, data().ranges);
-      return;
-    }
+  void make_renderer(ImageSize size) {
     if (renderer_) return;
     const scene::TraceScope timing(trace_, "prepare");
-    grid.trace = trace_;
+    volume::RenderSettings render = render_settings();
     const scene::Grid& samples = data().samples->grid();
-    const std::uint64_t frames = frame::bytes_of_frames(samples.geometry, *data().ranges, grid, *size);
-    const std::uint64_t brick =
-        volume::BrickCache::bytes_of({samples.geometry, grid.brick_size, grid.edge_bricks}, 0, samples.type);
-    grid.memory_bytes = frame::brick_memory(grid.memory_bytes, {resident_, frames, *size, grid.threads}, brick);
-    renderer_.emplace(*data().samples, grid, data().ranges);
+    const std::uint64_t frames = frame::bytes_of_frames(samples.geometry, *data().ranges, render, size);
+    const std::uint64_t brick = volume::BrickCache::bytes_of(
+        {samples.geometry, render.grid.brick_size, render.grid.edge_bricks}, 0, samples.type);
+    render.memory_bytes = frame::brick_memory(render.memory_bytes, {resident_, frames, size, render.threads}, brick);
+    renderer_.emplace(*data().samples, render, data().ranges);
   }
 
   /// The others wait for a rank that has failed; throws what ends the run on all.
@@ -219,55 +183,62 @@ class GridByRays final : public Session::State {
     return complete;
   }
 
-  /// False if it was stopped; what the sink threw, if that stopped it, is in `of_sink`.
-  bool make(std::size_t number, const View& view, const TransferFunction& function, const FrameSettings& settings,
-            Sink& sink, const std::stop_token& stop, std::exception_ptr& of_sink) {
+  /// None if it was stopped. Throws SinkFailure, on rank 0, where its sink stopped it.
+  std::optional<RenderedFrame> make(std::size_t number, const View& view, const TransferFunction& function,
+                                    const FrameSettings& settings, Sink& sink, const std::stop_token& stop) {
     scene::FrameWatch watch(stop, tiles_to(sink, number));
     std::optional<frame::FinishedVolumeFrame> finished;
+    std::optional<api::SinkFailure> failure;
     try {
       finished = frames_->render(*renderer_, function, {view.camera, view.size}, traced(number), &watch);
-    } catch (const api::SinkFailure& failure) {
-      of_sink = failure.cause;
+    } catch (const api::SinkFailure& thrown) {
+      failure = thrown;
     }
-    if (agreed(of_sink || (finished && finished->stopped))) return false;
-    std::optional<DeepImage> deep;
-    const auto flat = std::chrono::steady_clock::now();
-    if (settings.deep || settings.peel) try {
-        const scene::TraceScope timing(trace_, "project");
-        frame::StopRelay::Run relayed(frames_->relay(), stop);
-        const volume::GridSurfaces surfaces(this->settings().surfaces, function, *data().ranges);
-        deep = frame::deep_rows(
-            *transport_, *data().samples, view.camera, view.size, function,
-            {settings.deep_accuracy, this->settings().emission, this->settings().threads, this->settings().memory_bytes,
-             data().clip, &surfaces, settings.peel, this->settings().grid.shading},
-            static_cast<std::int32_t>(number), relayed.token());
-      } catch (const scene::FrameStopped&) {
-        return false;
-      }
-    RenderedFrame& frame = made_;
-    frame = {};
+    if (agreed(failure || (finished && finished->stopped))) {
+      if (failure) throw api::SinkFailure(*failure);
+      return std::nullopt;
+    }
+    RenderedFrame frame;
     frame.number = number;
     if (finished) {
       frame.statistics = statistics_of(*finished, name_of(this->settings().integrator.kind));
-      if (deep)  // a pass of its own
-        frame.statistics.milliseconds +=
-            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - flat).count();
       frame.image = std::move(finished->image);
       frame.uncertainty = std::move(finished->error_bounds);
       split_ = std::move(finished->split);
       cost_ = std::move(finished->cost);
       parts_ = finished->parts;
     }
-    if (deep) frame::put_deep(std::move(*deep), settings, frame);
+    if (settings.by_depth() && !add_depth(view, function, settings, stop, frame)) return std::nullopt;
+    return frame;
+  }
+
+  /// The deep picture or layers, a pass of its own. False if it was stopped.
+  bool add_depth(const View& view, const TransferFunction& function, const FrameSettings& settings,
+                 const std::stop_token& stop, RenderedFrame& frame) {
+    const auto start = std::chrono::steady_clock::now();
+    std::optional<DeepImage> deep;
+    try {
+      const scene::TraceScope timing(trace_, "project");
+      frame::StopRelay::Run relayed(frames_->relay(), stop);
+      const volume::GridSurfaces surfaces(this->settings().surfaces, function, *data().ranges);
+      deep = frame::deep_rows(*transport_, *data().samples, view.camera, view.size, function,
+                              {render_settings(), settings, &surfaces}, static_cast<std::int32_t>(frame.number),
+                              relayed.token());
+    } catch (const scene::FrameStopped&) {
+      return false;
+    }
+    if (!deep) return true;
+    frame.statistics.milliseconds +=
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    frame::put_deep(std::move(*deep), settings, frame);
     return true;
   }
 
-  /// Hands out what was made. False if rank 0's sink threw and this rank is another; not asked for the last frame.
-  bool give(bool last, Sink& sink) {
+  /// Hands out a frame. False if rank 0's sink threw and this rank is another; not asked for the last frame.
+  bool give(RenderedFrame&& frame, bool last, Sink& sink) {
     std::exception_ptr thrown;
     try {
-      RenderedFrame made = std::exchange(made_, {});
-      if (assembles()) sink.frame(std::move(made));
+      if (assembles()) sink.frame(std::move(frame));
     } catch (...) {
       thrown = std::current_exception();
     }
@@ -284,7 +255,6 @@ class GridByRays final : public Session::State {
 
   std::shared_ptr<exchange::Transport> transport_;
   scene::Trace* trace_;
-  RenderedFrame made_;  ///< on its way to the sink
   volume::ImageSplit split_;
   volume::CostMap cost_;
   std::vector<volume::VoxelBox> parts_;

@@ -12,7 +12,6 @@
 #include "frame/mesh/mesh_input.hpp"
 #include "frame/mesh/peel.hpp"
 #include "frame/ranks/distributed.hpp"
-#include "integrals/segment_integrator.hpp"
 #include "projection/partition.hpp"
 #include "projection/scanline/segment_tuple.hpp"
 #include "scene/error.hpp"
@@ -20,11 +19,6 @@
 namespace tessera {
 inline namespace v0_1 {
 namespace {
-
-/// Throws Error(bad_input) for a method that is out of range, before anybody waits for a frame.
-void check_method(const Settings& settings) {
-  integrals::SegmentIntegrator(TransferFunction({Knot{}}), settings.integrator, settings.emission);
-}
 
 using Clock = std::chrono::steady_clock;
 using api::stopped_frame;
@@ -46,18 +40,14 @@ class MeshAlone final : public Session::State {
  public:
   MeshAlone(Dataset dataset, const Settings& settings)
       : State(std::move(dataset), settings),
-        renderer_(data().prepared(settings.threads, settings.trace), data().facts, traced(settings)) {
-    check_method(settings);
-    frame::check_surfaces(traced(settings), data().mesh.association);
-    frame::check_shading(traced(settings));
-    frame::check_device_rasterizer(traced(settings), api::compositing_settings(settings.mesh.device));
+        renderer_(data().prepared(settings.threads, settings.trace), data().facts, settings) {
     frame::assign_roles(1, settings.ranks.projectors, settings.ranks.compositors);  // of one rank there are not more
   }
 
   std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
                      Sink& sink, const std::stop_token& stop) override {
-    renderer_.set_deep(settings.deep_accuracy, settings.peel);
-    const bool deep = settings.deep || settings.peel;
+    renderer_.set_frame(settings);
+    const bool deep = settings.by_depth();
     for (std::size_t i = 0; i < views.size(); ++i) {
       RenderedFrame frame;
       frame.number = i;
@@ -83,12 +73,6 @@ class MeshAlone final : public Session::State {
   }
 
  private:
-  static frame::RenderSettings traced(const Settings& settings) {
-    frame::RenderSettings mesh = api::mesh_settings(settings);
-    mesh.trace = settings.trace;
-    return mesh;
-  }
-
   frame::Renderer renderer_;
 };
 
@@ -97,16 +81,15 @@ class MeshOnRanks final : public Session::State {
  public:
   MeshOnRanks(Dataset dataset, const Settings& settings, std::shared_ptr<exchange::Transport> transport)
       : State(std::move(dataset), settings),
-        distributed_(api::distributed_settings(settings, transport->size())),
+        distributed_{.render = settings,
+                     .roles = assign_roles(transport->size(), settings.ranks.projectors, settings.ranks.compositors),
+                     .exchange = exchange_of(settings, false)},
         transport_(std::move(transport)) {
-    check_method(settings);
     if (settings.trace != nullptr) {
       distributed_.projecting = &projecting_.emplace(*settings.trace, TraceRole::projector);
       distributed_.compositing = &compositing_.emplace(*settings.trace, TraceRole::compositor);
     }
     const Dataset::State& state = data();
-    frame::check_surfaces(distributed_.render, state.mesh.association);
-    frame::check_shading(distributed_.render);
     check_exchange(distributed_.exchange);
     const auto projects = [&](int rank) { return distributed_.roles.projects(rank); };
     if (state.ranks > 1 && state.ranks != transport_->size())
@@ -131,12 +114,11 @@ class MeshOnRanks final : public Session::State {
 
   std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
                      Sink& sink, const std::stop_token& stop) override {
-    const bool deep = settings.deep || settings.peel;
     Part part;
     do {
-      const Exchange exchange = overlapping_ ? Exchange::segments : exchange_of(this->settings(), deep);
+      const Exchange exchange = overlapping_ ? Exchange::segments : exchange_of(this->settings(), settings.by_depth());
       check_exchange(exchange);
-      renderer_->set_deep(deep, settings.deep_accuracy, settings.peel, exchange);
+      renderer_->set_frame(settings, exchange);
       part = render_from(part.complete, views, function, settings, sink, stop);
       overlapping_ |= part.overlapping != 0;
     } while (part.overlapping != 0);
@@ -176,7 +158,7 @@ class MeshOnRanks final : public Session::State {
       frame.image = std::move(finished.image);
       frame.statistics = statistics_of(finished.statistics, finished.frame_ms);
       frame.statistics.overlapping = overlapping_;
-      if (settings.deep || settings.peel) frame::put_deep(std::move(finished.deep), settings, frame);
+      if (settings.by_depth()) frame::put_deep(std::move(finished.deep), settings, frame);
       api::call_sink([&] { sink.frame(std::move(frame)); });
     };
     if (sink.wants_tiles())
@@ -216,7 +198,7 @@ class MeshOnRanks final : public Session::State {
     mesh.diagonal = frame::diagonal(state.facts.box);
     mesh.box = state.facts.box;
     mesh.scalar_range = state.facts.scalar_range;
-    if (distributed_.render.rasterizer == Rasterizer::scanline) {
+    if (distributed_.render.mesh.rasterizer == Rasterizer::scanline) {
       mesh.longest_edge = projection::longest_edge(state.mesh);
       if (state.ranks > 1) mesh.longest_edge = longest_of_all(mesh.longest_edge);
     }
@@ -244,7 +226,7 @@ class MeshOnRanks final : public Session::State {
       share->mesh = scene::subset(state.mesh, mine);
       share->numbers.assign(mine.begin(), mine.end());
     }
-    frame::order_corners(share->mesh, distributed_.render);
+    frame::order_corners(share->mesh, settings().threads);
     mesh.part = share->mesh;
     mesh.global_tet = share->numbers;
     mesh.owner = std::move(share);

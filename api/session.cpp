@@ -113,8 +113,21 @@ Verification public_form(const api::Verified& verified) {
   return result;
 }
 
+DataKind kind_of(const Dataset& data) { return data.is_grid() ? DataKind::grid : DataKind::mesh; }
+
+void check_data(const Settings& settings, const Dataset& data) {
+  if (!settings.surfaces.iso.empty() && data.association() == Association::cell)
+    throw scene::bad_input(
+        fmt::format("`iso`: the field has one value a cell, so no iso-surfaces; use {}a `field` with values at points",
+                    data.is_mesh() ? "`smooth`, or " : ""));
+  if (data.is_grid() && data.grid_geometry().rectilinear() && volume::in_steps(settings.integrator.kind))
+    throw scene::bad_input("`integrator`: a rectilinear grid is not rendered in steps; use auto or exact");
+}
+
 std::unique_ptr<Session::State> make_state(Dataset dataset, const Settings& settings,
                                            std::shared_ptr<exchange::Transport> transport) {
+  validate(settings, kind_of(dataset));
+  check_data(settings, dataset);
   if (dataset.is_grid()) return api::grid_by_rays(std::move(dataset), settings, std::move(transport));
   if (transport->size() == 1 && settings.mesh.device.backends.empty())
     return api::mesh_alone(std::move(dataset), settings);
@@ -143,6 +156,7 @@ std::size_t Session::render(std::span<const View> views, const TransferFunction&
                             const FrameSettings& settings, Sink& sink, const std::stop_token& stop) {
   if (transfer_function.knots().empty())
     throw scene::bad_input("transfer function: it has no knots; give at least one, or load a preset");
+  validate(settings, this->settings(), kind_of(dataset()));
   std::vector<View> seen;
   seen.reserve(views.size());
   for (const View& view : views) {
@@ -156,10 +170,7 @@ std::size_t Session::render(std::span<const View> views, const TransferFunction&
 
 bool Session::assembles() const { return state_->assembles(); }
 
-std::optional<double> Session::promised_error() const {
-  return dataset().is_grid() ? api::promised_error(api::grid_settings(settings()))
-                             : api::promised_error(api::mesh_settings(settings()));
-}
+std::optional<double> Session::promised_error() const { return api::promised_error(settings(), kind_of(dataset())); }
 
 Verification Session::verify(const RenderedFrame& frame, const View& view, const TransferFunction& transfer_function,
                              std::size_t count) const {
@@ -168,15 +179,11 @@ Verification Session::verify(const RenderedFrame& frame, const View& view, const
     throw scene::bad_input("verify: the frame is not of this view's size; give the view it was rendered with");
   const api::Layers layers{frame.layers, frame.peel};
   const Dataset::State& data = StateAccess::of(dataset());
-  if (dataset().is_grid()) {
-    volume::RenderSettings grid = api::grid_settings(settings());
-    grid.clip = data.clip;
-    return public_form(api::verify_all(frame.image, layers, *data.samples, view.camera, transfer_function, grid,
-                                       frame.uncertainty, count));
-  }
-  const frame::RenderSettings settings = api::mesh_settings(this->settings());
+  if (dataset().is_grid())
+    return public_form(api::verify_all(frame.image, layers, *data.samples, view.camera, transfer_function,
+                                       {settings(), data.clip}, frame.uncertainty, count));
   return public_form(
-      api::verify_all(frame.image, layers, api::uncut_mesh(data), view.camera, transfer_function, settings, count));
+      api::verify_all(frame.image, layers, api::uncut_mesh(data), view.camera, transfer_function, settings(), count));
 }
 
 BalancePictures Session::State::balance_pictures(const RenderedFrame&, const View&, const TransferFunction&) const {

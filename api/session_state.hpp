@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "api/dataset.hpp"
-#include "api/session_settings.hpp"
 #include "exchange/transport.hpp"
 #include "scene/frame_watch.hpp"
 #include "tessera/session.hpp"
+#include "tessera/settings.hpp"
 
 namespace tessera {
 inline namespace v0_1 {

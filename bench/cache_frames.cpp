@@ -127,7 +127,7 @@ struct Shown {
 
 Shown shown_of(const scene::SampleSource& source, const volume::RenderSettings& settings,
                const std::shared_ptr<const volume::CellRanges>& ranges, const scene::TransferFunction& function) {
-  const volume::BrickLayout layout(source.geometry(), settings.brick_size, settings.edge_bricks);
+  const volume::BrickLayout layout(source.geometry(), settings.grid.brick_size, settings.grid.edge_bricks);
   Shown shown;
   shown.bricks = layout.count();
   for (const auto& [low, high] : volume::Renderer(source, settings, ranges).visible_bricks(function)) {
@@ -143,12 +143,12 @@ void report(const Run& run, const Scanned& of) {
   const auto& [source, ranges] = of;
   const scene::TransferFunction function = function_of(run.words.at("volume"));
   volume::RenderSettings settings;
-  settings.method = volume::Method::sampled;
-  settings.step = run.numbers.at("step");
+  settings.integrator.kind = IntegratorKind::sampled;
+  settings.grid.step = run.numbers.at("step");
   settings.threads = 1;
-  settings.brick_size = run.whole("brick");
-  settings.cache = run.words.at("cache") == "proximity" ? volume::CachePolicy::proximity : volume::CachePolicy::lru;
-  settings.preload_limit = run.whole("preload");
+  settings.grid.brick_size = run.whole("brick");
+  settings.grid.cache = run.words.at("cache") == "proximity" ? CachePolicy::proximity : CachePolicy::lru;
+  settings.grid.preload_limit = run.whole("preload");
   const Shown shown = shown_of(*source, settings, ranges, function);
   settings.memory_bytes =
       static_cast<std::uint64_t>(run.numbers.at("share") * static_cast<double>(shown.visible_bytes));
@@ -157,8 +157,8 @@ void report(const Run& run, const Scanned& of) {
   exchange::run_ranks(run.whole("units"), [&, &source = source, &ranges = ranges](exchange::Transport& transport) {
     const ThrottledSource slow(*source, run.numbers.at("read_us"));
     volume::Renderer renderer(slow, settings, ranges);
-    frame::SortFirstSettings split;
-    split.balance = Balance::backface;
+    Settings split;
+    split.ranks.balance = Balance::backface;
     frame::SortFirst sort_first(transport, split);
     for (int n = 0; n < run.whole("frames"); ++n) {
       const auto frame = sort_first.render(renderer, function, {camera_at(run, n), size}, static_cast<std::size_t>(n));

@@ -83,14 +83,14 @@ int main(int argc, char** argv) {
         ->UseRealTime();
   };
   volume::RenderSettings automatic, exact, sampled, shaded;
-  exact.method = volume::Method::exact;
-  sampled.method = volume::Method::sampled;
-  shaded.shading.emplace();
+  exact.integrator.kind = IntegratorKind::exact;
+  sampled.integrator.kind = IntegratorKind::sampled;
+  shaded.grid.shading.emplace();
   for (const double accuracy : {1e-5, 1e-4, 1e-3}) {
-    automatic.accuracy = accuracy;
+    automatic.integrator.accuracy = accuracy;
     add(fmt::format("auto/{:g}", accuracy), automatic);
   }
-  automatic.accuracy = 1e-4;
+  automatic.integrator.accuracy = 1e-4;
   add("auto/0.0001/8bit", automatic, 8);
   add("auto/0.0001/opaque", automatic, 32, "opaque");
   add("auto/0.0001/sparse", automatic, 32, "sparse");

@@ -374,9 +374,8 @@ MeshParts divided(const scene::TetMesh& mesh, int ranks) {
   return parts;
 }
 
-Parts pictures_of(const MeshParts& meshes, const frame::RenderSettings& settings,
-                  const scene::TransferFunction& function, const scene::Camera& camera, scene::ImageSize size,
-                  scene::Image whole, std::uint64_t& covered) {
+Parts pictures_of(const MeshParts& meshes, const Settings& settings, const scene::TransferFunction& function,
+                  const scene::Camera& camera, scene::ImageSize size, scene::Image whole, std::uint64_t& covered) {
   Parts parts;
   parts.whole = std::move(whole);
   for (const scene::TetMesh& mesh : meshes.meshes) {
@@ -398,7 +397,7 @@ Parts pictures_of(const MeshParts& meshes, const frame::RenderSettings& settings
 }
 
 /// Runs from N projectors to N compositors; `fragments` gets how many.
-std::vector<Cost> runs(const MeshParts& parts, const scene::MeshFacts& facts, const frame::RenderSettings& settings,
+std::vector<Cost> runs(const MeshParts& parts, const scene::MeshFacts& facts, const Settings& settings,
                        const scene::TransferFunction& function, std::span<const frame::FrameJob> jobs,
                        std::span<const Parts> views, std::uint64_t& fragments) {
   std::vector<Cost> costs(jobs.size());
@@ -407,7 +406,7 @@ std::vector<Cost> runs(const MeshParts& parts, const scene::MeshFacts& facts, co
     frame::DistributedSettings mine;
     mine.render = settings;
     mine.roles = assign_roles(ranks, ranks, ranks);
-    mine.share_memory = false;
+    mine.render.use.sharing = false;
     frame::render_distributed(
         transport, mine, jobs, function,
         [&](std::size_t) {
@@ -441,7 +440,7 @@ void of_mesh(const Run& run) {
   const scene::TransferFunction function(
       {{low, {0.1, 0.2, 0.8}, 0.1 * k}, {0.5 * (low + high), {0.9, 0.8, 0.3}, 0.4 * k}, {high, {1, 0.3, 0.1}, k}});
   const scene::ImageSize size{run.whole("size"), run.whole("size")};
-  frame::RenderSettings settings;
+  Settings settings;
   std::vector<frame::FrameJob> jobs;
   std::vector<scene::Image> whole;
   frame::Renderer renderer(mesh, settings);

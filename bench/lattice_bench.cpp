@@ -168,7 +168,7 @@ void kernels(benchmark::State& state, const scene::TetMesh& mesh, int pixels, st
 
 void frames(benchmark::State& state, const scene::TetMesh& mesh, int threads, std::int64_t target) {
   choose(target);
-  frame::RenderSettings settings;
+  Settings settings;
   settings.integrator.kind = scene::IntegratorKind::exact;
   settings.threads = threads;
   frame::Renderer renderer(mesh, settings);

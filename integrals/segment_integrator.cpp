@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "scene/error.hpp"
 #include "scene/error_budget.hpp"
 
 namespace tessera::integrals {
@@ -18,24 +17,15 @@ SegmentIntegrator::SegmentIntegrator(const scene::TransferFunction& function, co
     case scene::IntegratorKind::exact:
       break;
     case scene::IntegratorKind::sampled:
-      if (integrator.samples < 1)
-        throw scene::bad_input(
-            fmt::format("`integrator` sampled:{}: the number of samples must be at least 1", integrator.samples));
       samples_ = integrator.samples;
       break;
     case scene::IntegratorKind::preintegrated:
-      if (integrator.table_size < 8 || integrator.table_size > 512)
-        throw scene::bad_input(
-            fmt::format("`integrator` preintegrated:{}: the table's size must be 8 to 512", integrator.table_size));
       segments_ = std::make_shared<SegmentTable>(function, emission, integrator.table_size);
       break;
     case scene::IntegratorKind::partial:
-      if (emission == scene::Emission::independent)
-        throw scene::bad_input("`integrator` partial: knows emission by absorption only; use exact or auto");
       psi_ = std::make_shared<PsiTable>();
       break;
     case scene::IntegratorKind::automatic:
-      scene::check_accuracy(integrator.accuracy);
       termination_error_ = scene::error_budget::ended(integrator.accuracy);
       if (emission == scene::Emission::absorption)
         pieces_ = ExactPieces::within(std::min(integrator.accuracy, 4e-2), function.max_color());

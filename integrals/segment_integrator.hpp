@@ -39,8 +39,7 @@ struct ExactPieces {
 /// Volume Rendering", 1995), for a transfer function that is piecewise linear in the scalar.
 class SegmentIntegrator {
  public:
-  /// Throws Error(bad_input) if the integrator's numbers are out of range, or for `partial` with independent emission,
-  /// which its table knows nothing of. Tables are made here and shared by copies.
+  /// Of an integrator that is valid for meshes (tessera::validate). Tables are made here and shared by copies.
   SegmentIntegrator(const scene::TransferFunction& function, const scene::Integrator& integrator,
                     scene::Emission emission);
 

@@ -32,8 +32,8 @@ class Renderer;
 /// Order    chunks come front to back along every ray (boxes_front_to_back()); a ray never goes back. What lies between
 ///          two chunks counts as empty.
 /// Covers   every method, point and cell data, shading, surfaces, both projections, regular and rectilinear grids. With
-///          Method::preintegrated a step that begins in one chunk and ends in the next needs the ray's state: it is
-///          left out where a cast begins in the middle of the volume, so sort-last is for the other methods.
+///          IntegratorKind::preintegrated a step that begins in one chunk and ends in the next needs the ray's state:
+///          it is left out where a cast begins in the middle of the volume, so sort-last is for the other methods.
 /// Bits     one emit() after all chunks gives those of Renderer::render() where chunks are whole slices of the volume
 ///          that begin at multiples of 32 voxels, counted along the axis that the rays move along most from where they
 ///          come in (regular grids). Other chunks, and fragments composited, give the same picture to rounding: 1e-6,

@@ -91,9 +91,9 @@ FrameSetup::FrameSetup(RendererState& state, const scene::Camera& camera, scene:
   view_.largest_color = static_cast<float>(std::max(1e-30, function.max_color()));
   view_.lanes = state.ranges.lanes;
   // Surfaces of small values, and gradients, ask for them as they are.
-  const bool wants_gradients = !view_.cell_data && (state.settings.shading || surfaces_.any());
-  view_.lanes.whole = state.in_steps() || (!table_.has_steps && !wants_gradients);
-  view_.has_rest = wants_gradients && !view_.lanes.exact && !state.in_steps();
+  const bool wants_gradients = !view_.cell_data && (state.settings.grid.shading || surfaces_.any());
+  view_.lanes.whole = in_steps(state.settings.integrator.kind) || (!table_.has_steps && !wants_gradients);
+  view_.has_rest = wants_gradients && !view_.lanes.exact && !in_steps(state.settings.integrator.kind);
   if (view_.has_rest) view_.rest_noise = noise_of_rest;
   view_.tally = tally;
   // A thousand packets or more, whatever the picture's size.
@@ -102,15 +102,16 @@ FrameSetup::FrameSetup(RendererState& state, const scene::Camera& camera, scene:
   view_.trace = state.settings.trace;
   set_up_method(state, function);
   if (surfaces_.any()) set_up_surfaces(state, function);
-  if (state.settings.shading)
-    view_.shading = &shading_.emplace(shading_view(*state.settings.shading, camera, geometry, state.voxel_side));
+  if (state.settings.grid.shading)
+    view_.shading = &shading_.emplace(shading_view(*state.settings.grid.shading, camera, geometry, state.voxel_side));
 }
 
 void FrameSetup::find_visible(RendererState& state) {
   const RenderSettings& settings = state.settings;
   const scene::TraceScope scope(settings.trace, "cull");
   const auto begin = std::chrono::steady_clock::now();
-  visible_ = settings.method == Method::preintegrated ? visible_to_table(state) : visible_cells(state.ranges, table_);
+  visible_ = settings.integrator.kind == IntegratorKind::preintegrated ? visible_to_table(state)
+                                                                       : visible_cells(state.ranges, table_);
   if (!settings.use.culling || !settings.use.skipping)
     show_more(state.ranges, state.bricks.layout(), !settings.use.culling, !settings.use.skipping, visible_);
   if (surfaces_.any())
@@ -124,7 +125,8 @@ std::vector<std::uint8_t> FrameSetup::visible_to_table(const RendererState& stat
   const auto [low, high] = lane_range(state.ranges);
   const float entry =
       std::max(high - low, 1.0f) / static_cast<float>(PreintegratedTable::size_for(table_, low, high) - 1);
-  const std::array<glm::dvec3, 3> rows = index_rows(state.source.geometry(), state.settings.step * state.voxel_side);
+  const std::array<glm::dvec3, 3> rows =
+      index_rows(state.source.geometry(), state.settings.grid.step * state.voxel_side);
   std::array<double, 3> reach;
   // Places along rays are rounded by much less.
   for (std::size_t a = 0; a < 3; ++a) reach[a] = glm::length(rows[a]) + 0.05;
@@ -146,10 +148,11 @@ void FrameSetup::set_up_surfaces(const RendererState& state, const scene::Transf
 
 /// What only some methods have.
 void FrameSetup::set_up_method(const RendererState& state, const scene::TransferFunction& function) {
-  if (state.in_steps()) {
-    view_.step = state.settings.step * state.voxel_side / state.length_unit;
+  if (in_steps(state.settings.integrator.kind)) {
+    view_.step = state.settings.grid.step * state.voxel_side / state.length_unit;
   } else if (view_.tally == nullptr) {
-    const double promised = state.settings.method == Method::exact ? scene::error_budget::exact_grid : state.accuracy();
+    const double promised =
+        state.settings.integrator.kind == IntegratorKind::exact ? scene::error_budget::exact_grid : state.accuracy();
     view_.error_tolerance = static_cast<float>(scene::error_budget::noted(promised) / state.settings.parts);
     error_bound_ =
         LaneErrorBound(function, table_, state.ranges,
@@ -158,7 +161,7 @@ void FrameSetup::set_up_method(const RendererState& state, const scene::Transfer
     if (error_bound_.any()) view_.error_bound = &error_bound_;
     if (!state.lanes_suffice(function)) view_.error_tolerance = -1;  // all rays again, in double precision
   }
-  if (state.settings.method != Method::preintegrated || view_.tally != nullptr) return;
+  if (state.settings.integrator.kind != IntegratorKind::preintegrated || view_.tally != nullptr) return;
   const auto [low, high] = lane_range(state.ranges);
   preintegrated_.emplace(table_, low, high, static_cast<float>(view_.step),
                          PreintegratedTable::size_for(table_, low, high));

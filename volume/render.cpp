@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "volume/render.hpp"
 
-#include <fmt/format.h>
 #include <hwy/targets.h>
 #include <tbb/task_arena.h>
 
@@ -11,9 +10,6 @@
 #include <glm/glm.hpp>
 #include <utility>
 
-#include "scene/error.hpp"
-#include "scene/error_budget.hpp"
-#include "scene/surface_set.hpp"
 #include "scene/threads.hpp"
 #include "volume/bricks/cell_ranges.hpp"
 #include "volume/frame_cast.hpp"
@@ -26,36 +22,6 @@
 
 namespace tessera::volume {
 namespace {
-
-void check(const RenderSettings& settings, const scene::GridGeometry& geometry) {
-  if (settings.brick_size < 2 || settings.brick_size > 1 << 16)
-    throw scene::bad_input(fmt::format("`brick_size` {}: it must be 2 to 65536 voxels", settings.brick_size));
-  scene::check_accuracy(settings.accuracy);
-  if (!(settings.step > 0) || !std::isfinite(settings.step))
-    throw scene::bad_input(fmt::format("`step` {}: it must be positive, in voxels", settings.step));
-  if (settings.threads < 0 || settings.threads > 4096)
-    throw scene::bad_input(fmt::format("`threads` {}: it must be 0 (all cores) to 4096", settings.threads));
-  if (settings.preload_limit < 0)
-    throw scene::bad_input(fmt::format("`preload` {}: it must be 0 or more", settings.preload_limit));
-  const bool in_steps = settings.method == Method::sampled || settings.method == Method::preintegrated;
-  if (geometry.rectilinear() && in_steps)
-    throw scene::bad_input("`integrator`: a rectilinear grid is not rendered in steps; use auto or exact");
-  if (settings.shading && in_steps)
-    throw scene::bad_input("`shade`: shading needs the exact or auto method; leave one of the two out");
-  if (settings.shading && settings.emission == scene::Emission::independent)
-    throw scene::bad_input("`shade`: shading needs emission in proportion to extinction; leave one of the two out");
-  if (settings.shading && !(glm::length(settings.shading->to_light) > 0))
-    throw scene::bad_input("`light`: the direction to the light has no length; give one that has");
-  scene::validate(settings.surfaces);
-  if (!settings.surfaces.empty() && in_steps)
-    throw scene::bad_input("`iso`: iso-surfaces need the exact or auto method; leave one of the two out");
-  if (!settings.surfaces.empty() && geometry.association == scene::Association::cell)
-    throw scene::bad_input(
-        "`iso`: the field has one value a cell, so no iso-surfaces; use a `field` with values at points");
-  if (settings.method == Method::preintegrated && settings.emission == scene::Emission::independent)
-    throw scene::bad_input(
-        "`integrator`: pre-integration needs emission in proportion to extinction; use sampled or exact");
-}
 
 scene::PixelRect within(scene::ImageSize size, const std::optional<scene::PixelRect>& region) {
   if (!region) return {0, 0, size.width, size.height};
@@ -90,19 +56,14 @@ CostMap cost_of_planes(const scene::Camera& camera, scene::ImageSize image, cons
 }  // namespace
 
 Renderer::Renderer(const scene::SampleSource& source, const RenderSettings& settings,
-                   std::shared_ptr<const CellRanges> ranges) {
-  check(settings, source.geometry());
-  state_ = std::make_unique<RendererState>(source, settings, std::move(ranges));
-}
+                   std::shared_ptr<const CellRanges> ranges)
+    : state_(std::make_unique<RendererState>(source, settings, std::move(ranges))) {}
 
 Renderer::Renderer(const scene::SampleSource& source, const RenderSettings& settings, CellRanges ranges)
     : Renderer(source, settings, std::make_shared<const CellRanges>(std::move(ranges))) {}
 
-Renderer::Renderer(const scene::SampleSource& source, const RenderSettings& settings) {
-  check(settings, source.geometry());
-  state_ =
-      std::make_unique<RendererState>(source, settings, std::make_shared<const CellRanges>(source, settings.threads));
-}
+Renderer::Renderer(const scene::SampleSource& source, const RenderSettings& settings)
+    : Renderer(source, settings, std::make_shared<const CellRanges>(source, settings.threads)) {}
 
 Renderer::~Renderer() = default;
 
@@ -220,7 +181,7 @@ Cast cast_rectilinear(RendererState& state, const scene::Camera& camera, scene::
 
 ObjectSplit Renderer::object_split(const scene::TransferFunction& transfer_function, int processes) const {
   const RendererState& state = *state_;
-  return {state.source.geometry().voxels(), cells_shown(state, transfer_function), state.settings.brick_size,
+  return {state.source.geometry().voxels(), cells_shown(state, transfer_function), state.settings.grid.brick_size,
           processes};
 }
 
@@ -312,7 +273,7 @@ CostMap Renderer::cost_map(const scene::Camera& camera, scene::ImageSize size,
   const scene::GridGeometry& geometry = state.source.geometry();
   if (geometry.rectilinear()) return cost_of_planes(camera, size, geometry, state_->settings.clip, resolution, region);
   const std::vector<std::uint8_t> visible = cells_shown(state, transfer_function);
-  const bool by_voxels = state.settings.method == Method::automatic || state.settings.method == Method::exact;
+  const bool by_voxels = !in_steps(state.settings.integrator.kind);
   std::vector<CostBox> bricks;
   if (method != CostMethod::visited) bricks = bricks_shown(state, visible);
   CostMap map;

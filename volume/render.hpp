@@ -13,50 +13,26 @@
 #include "scene/camera.hpp"
 #include "scene/frame_watch.hpp"
 #include "scene/image.hpp"
-#include "scene/mechanisms.hpp"
-#include "scene/optical_model.hpp"
 #include "scene/pixel_rect.hpp"
 #include "scene/sample_source.hpp"
 #include "scene/selection.hpp"
-#include "scene/shading.hpp"
-#include "scene/trace.hpp"
 #include "scene/transfer_function.hpp"
 #include "tessera/settings.hpp"
 #include "tessera/statistics.hpp"
-#include "tessera/surfaces.hpp"
 
 namespace tessera::volume {
 
-/// How the field along a ray becomes colour and opacity.
-enum class Method {
-  automatic,     ///< as exact, to `accuracy`: the default
-  exact,         ///< the trilinear field's cubic, cut where it crosses knots; error below 1e-5, mostly near 1e-6
-  sampled,       ///< one sample in the middle of each step (midpoint rule, second order)
-  preintegrated  ///< a table over the scalars at both ends of a step (Engel, Kraus, Ertl 2001)
-};
-
-using tessera::CachePolicy;
-
-using tessera::EdgeBricks;
-
-struct RenderSettings {
-  Method method = Method::automatic;
-  double accuracy = 1e-4;  ///< automatic only: largest error in linear RGBA
-  double step = 0.5;       ///< sampled, preintegrated: in voxels (cube root of a mean voxel's volume), > 0
-  scene::Emission emission = scene::Emission::absorption;
-  std::optional<scene::Shading> shading;  ///< with exact and automatic, emission in proportion to absorption
-  int threads = 0;                        ///< 0: all cores
-  int brick_size = 32;                    ///< voxels a side, 2 or more; bricks share their border samples
-  EdgeBricks edge_bricks = EdgeBricks::variable;
-  std::uint64_t memory_bytes = 4ull << 30;  ///< budget of the bricks in memory
-  CachePolicy cache = CachePolicy::lru;
-  int preload_limit = 0;  ///< proximity: bricks of the next view loaded ahead, at most, a frame (look_ahead.hpp)
+/// A session's settings, and what differs between its processes and data sets. `memory_bytes` is the budget of the
+/// bricks in memory.
+struct RenderSettings : Settings {
   std::vector<scene::HalfSpace> clip{};  ///< that rays are kept in (tessera/selection.hpp)
-  Surfaces surfaces{};                   ///< of point data, with exact and automatic
-  int parts = 1;          ///< that rays are composited of, each by one process: all of them together are `accurate`
-  scene::Mechanisms use;  ///< what saves work
-  scene::Trace* trace = nullptr;
+  int parts = 1;  ///< that rays are composited of, each by one process: all of them together have the accuracy asked
 };
+
+/// Whether rays are sampled in steps of GridSettings::step; else they go from voxel to voxel.
+inline bool in_steps(IntegratorKind kind) {
+  return kind == IntegratorKind::sampled || kind == IntegratorKind::preintegrated;
+}
 
 /// What happened in one frame.
 struct RenderStatistics : GridCounters {
@@ -89,7 +65,8 @@ enum class CostMethod;
 ///        and region.
 class Renderer {
  public:
-  /// Takes ranges that have been found before, of this very source. Throws Error(bad_input) for settings out of range.
+  /// Of settings that are valid for grids (tessera::validate), and for this one: not in steps if it is rectilinear,
+  /// iso-surfaces of point data alone. Takes ranges that have been found before, of this very source.
   Renderer(const scene::SampleSource& source, const RenderSettings& settings, CellRanges ranges);
   /// The same, of ranges that others use too.
   Renderer(const scene::SampleSource& source, const RenderSettings& settings, std::shared_ptr<const CellRanges> ranges);
@@ -121,7 +98,7 @@ class Renderer {
   /// Sort-last: the light of a part of the volume, as if the rest of it were empty, of the pixels of `region`, which
   /// hold all that the part may cover (footprint() in cost_map.hpp). Pictures of parts that make up the volume,
   /// composited front to back, are the picture to rounding. Reads bricks that hold voxels of the part, no others.
-  /// Method::preintegrated would miss steps from one part to the next. As render() otherwise.
+  /// IntegratorKind::preintegrated would miss steps from one part to the next. As render() otherwise.
   scene::Image render_part(const VoxelBox& part, const scene::Camera& camera, scene::ImageSize size,
                            const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
                            const scene::PixelRect& region, std::vector<float>* error_bounds, scene::FrameWatch* watch);

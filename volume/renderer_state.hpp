@@ -41,25 +41,25 @@ struct RendererState {
         settings(settings_),
         ranges_owner(std::move(ranges_)),
         ranges(*ranges_owner),
-        bricks(source_, BrickLayout(source_.geometry(), settings_.brick_size, settings_.edge_bricks),
-               settings_.memory_bytes, settings_.cache) {
-    if (settings_.cache == CachePolicy::proximity && !source.geometry().rectilinear())
-      look_ahead.emplace(bricks, settings_.preload_limit, settings_.trace);
+        bricks(source_, BrickLayout(source_.geometry(), settings_.grid.brick_size, settings_.grid.edge_bricks),
+               settings_.memory_bytes, settings_.grid.cache) {
+    if (settings_.grid.cache == CachePolicy::proximity && !source.geometry().rectilinear())
+      look_ahead.emplace(bricks, settings_.grid.preload_limit, settings_.trace);
   }
 
-  [[nodiscard]] bool in_steps() const {
-    return settings.method == Method::sampled || settings.method == Method::preintegrated;
-  }
   [[nodiscard]] integrals::LaneTable table_of(const scene::TransferFunction& function) const {
-    return {function,          ranges.lanes.origin,
-            ranges.lanes.unit, length_unit,
-            settings.emission, in_steps() ? integrals::StepRounding::nearest : integrals::StepRounding::up};
+    return {function,
+            ranges.lanes.origin,
+            ranges.lanes.unit,
+            length_unit,
+            settings.emission,
+            in_steps(settings.integrator.kind) ? integrals::StepRounding::nearest : integrals::StepRounding::up};
   }
 
   /// A ray that lets less through is done.
   [[nodiscard]] float least_transmittance(const scene::TransferFunction& function) const {
     if (!settings.use.termination) return 0;
-    if (settings.method == Method::sampled || settings.method == Method::preintegrated) return 1e-6f;
+    if (in_steps(settings.integrator.kind)) return 1e-6f;
     return static_cast<float>(
         std::min(0.25, scene::error_budget::ended(accuracy()) / std::max(1.0, brightest(function))));
   }
@@ -79,21 +79,23 @@ struct RendererState {
                                                  const GridSurfaces* surfaces) const {
     return {{settings.emission, scene::error_budget::precise_piece(accuracy()),
              static_cast<double>(least_transmittance(function)), visible},
-            settings.shading,
+            settings.grid.shading,
             settings.clip,
             surfaces->any() ? surfaces : nullptr};
   }
   [[nodiscard]] double accuracy() const {
-    return settings.method == Method::exact ? scene::error_budget::casting_of_exact_grid : settings.accuracy;
+    return settings.integrator.kind == IntegratorKind::exact ? scene::error_budget::casting_of_exact_grid
+                                                             : settings.integrator.accuracy;
   }
   /// Whether float lanes are near enough for such a function.
   [[nodiscard]] bool lanes_suffice(const scene::TransferFunction& function) const {
     const scene::Box box = scene::bounds(source.geometry());
     const double surfaces = scene::SurfaceSet(settings.surfaces, function).max_color();
     const double light = surfaces + scene::most_light(function, settings.emission, glm::length(box.high - box.low));
-    return settings.method == Method::exact
+    return settings.integrator.kind == IntegratorKind::exact
                ? scene::error_budget::exact_grid_in_lanes(light) <= scene::error_budget::exact_grid
-               : scene::error_budget::grid_in_lanes(settings.accuracy, light) <= settings.accuracy;
+               : scene::error_budget::grid_in_lanes(settings.integrator.accuracy, light) <=
+                     settings.integrator.accuracy;
   }
 
   /// By cell: what a cast in double precision of a whole frame has to walk through.

@@ -74,10 +74,10 @@ SuspicionMap second_opinion(const scene::Image& image, const scene::SampleSource
   });
   scene::Image again(image.size);
   // What is looked for is as large as the bound.
-  const double bound = promised_error(settings).value_or(Integrator().accuracy);
+  const double bound = promised_error(settings, DataKind::grid).value_or(Integrator().accuracy);
   const volume::GridSurfaces surfaces(settings.surfaces, function);
   const volume::VoxelCastSettings cast{{settings.emission, bound / 1000, bound / 64},
-                                       settings.shading,
+                                       settings.grid.shading,
                                        settings.clip,
                                        surfaces.any() ? &surfaces : nullptr};
   tbb::task_arena arena(scene::threads_for(settings.threads));
@@ -103,34 +103,31 @@ bool checks_all(scene::ImageSize size, std::size_t count) {
 
 }  // namespace
 
-std::optional<double> promised_error(const frame::RenderSettings& settings) {
-  if (settings.rasterizer == Rasterizer::scanline || !settings.bounded) return std::nullopt;
-  const scene::Integrator& integrator = settings.integrator;
-  switch (integrator.kind) {
-    case scene::IntegratorKind::exact:
-      return scene::error_budget::exact_mesh;
-    case scene::IntegratorKind::automatic:
-      return integrator.accuracy;
-    case scene::IntegratorKind::sampled:
-    case scene::IntegratorKind::preintegrated:
-    case scene::IntegratorKind::partial:
+std::optional<double> promised_error(const Settings& settings, DataKind data) {
+  const bool mesh = data == DataKind::mesh;
+  const DeviceSettings& device = settings.mesh.device;
+  if (mesh && settings.mesh.rasterizer == Rasterizer::scanline) return std::nullopt;
+  if (mesh && !device.backends.empty() && device.method == GlMethod::fragment) return std::nullopt;
+  switch (settings.integrator.kind) {
+    case IntegratorKind::exact:
+      return mesh ? scene::error_budget::exact_mesh : scene::error_budget::exact_grid;
+    case IntegratorKind::automatic:
+      return settings.integrator.accuracy;
+    case IntegratorKind::sampled:
+    case IntegratorKind::preintegrated:
+    case IntegratorKind::partial:
       break;
   }
   return std::nullopt;
 }
 
-std::optional<double> promised_error(const volume::RenderSettings& settings) {
-  if (settings.method == volume::Method::automatic) return settings.accuracy;
-  if (settings.method == volume::Method::exact) return scene::error_budget::exact_grid;
-  return std::nullopt;
-}
-
 reference::Suspects suspects(const scene::Image& image, const scene::TetMeshView& mesh, const scene::Camera& camera,
-                             const scene::TransferFunction& transfer_function, const frame::RenderSettings& settings,
+                             const scene::TransferFunction& transfer_function, const Settings& settings,
                              std::size_t count) {
   if (checks_all(image.size, count)) return {};
   Collector collector(image.size, count);
-  const auto picture = reference::suspect(image, least_suspicious(promised_error(settings)), settings.threads);
+  const auto picture =
+      reference::suspect(image, least_suspicious(promised_error(settings, DataKind::mesh)), settings.threads);
   collector.add(picture);
   const auto scene =
       reference::suspect(mesh, camera, transfer_function, settings.emission, image, picture.edge, settings.threads);
@@ -145,7 +142,7 @@ reference::Suspects suspects(const scene::Image& image, const scene::SampleSourc
                              std::span<const float> error_bounds, std::size_t count) {
   if (checks_all(image.size, count)) return {};
   Collector collector(image.size, count);
-  const double least = least_suspicious(promised_error(settings));
+  const double least = least_suspicious(promised_error(settings, DataKind::grid));
   const auto picture = reference::suspect(image, least, settings.threads);
   collector.add(picture);
   const auto scene =
@@ -156,7 +153,7 @@ reference::Suspects suspects(const scene::Image& image, const scene::SampleSourc
   collector.add(Suspicion::estimate, suspicion_of(error_bounds, least));
   reference::Suspects found = collector.take();
   // Pictures of rectilinear grids are made that very way.
-  if (source.geometry().rectilinear() || !promised_error(settings)) return found;
+  if (source.geometry().rectilinear() || !promised_error(settings, DataKind::grid)) return found;
   const SuspicionMap again = second_opinion(image, source, camera, transfer_function, settings, found, count);
   found[static_cast<std::size_t>(Suspicion::estimate)] = reference::ranked(again, image.size, count);
   return found;
@@ -185,11 +182,11 @@ Verified judged(const scene::Image& image, const Layers& layers, const Reference
 
 Verified verify_all(const scene::Image& image, const Layers& layers, const frame::UncutMesh& mesh,
                     const scene::Camera& camera, const scene::TransferFunction& transfer_function,
-                    const frame::RenderSettings& settings, std::size_t count) {
+                    const Settings& settings, std::size_t count) {
   const reference::Suspects where = suspects(image, mesh.rendered, camera, transfer_function, settings, count);
   const reference::Reference reference(mesh.mesh, camera, image.size, transfer_function, settings.emission,
-                                       settings.surfaces, mesh.kept, settings.shading);
-  return judged(image, layers, reference, promised_error(settings), count, where, settings.threads);
+                                       settings.surfaces, mesh.kept, settings.mesh.shading);
+  return judged(image, layers, reference, promised_error(settings, DataKind::mesh), count, where, settings.threads);
 }
 
 Verified verify_all(const scene::Image& image, const Layers& layers, const scene::SampleSource& source,
@@ -197,12 +194,12 @@ Verified verify_all(const scene::Image& image, const Layers& layers, const scene
                     const volume::RenderSettings& settings, std::span<const float> error_bounds, std::size_t count) {
   const reference::Suspects where = suspects(image, source, camera, transfer_function, settings, error_bounds, count);
   const reference::GridReference reference(source, camera, image.size, transfer_function, settings.emission,
-                                           settings.shading, settings.clip, settings.surfaces);
-  return judged(image, layers, reference, promised_error(settings), count, where, settings.threads);
+                                           settings.grid.shading, settings.clip, settings.surfaces);
+  return judged(image, layers, reference, promised_error(settings, DataKind::grid), count, where, settings.threads);
 }
 
 reference::Verification verify(const scene::Image& image, const frame::UncutMesh& mesh, const scene::Camera& camera,
-                               const scene::TransferFunction& transfer_function, const frame::RenderSettings& settings,
+                               const scene::TransferFunction& transfer_function, const Settings& settings,
                                std::size_t count) {
   return verify_all(image, {}, mesh, camera, transfer_function, settings, count).picture;
 }

@@ -5,7 +5,6 @@
 #include <optional>
 #include <span>
 
-#include "frame/mesh/render.hpp"
 #include "frame/mesh/uncut_mesh.hpp"
 #include "reference/layer_verification.hpp"
 #include "reference/verification.hpp"
@@ -18,19 +17,16 @@
 
 namespace tessera::api {
 
-/// The largest error that is promised, in linear RGBA: 2e-5 for exact, what was asked for automatic, none for sampled,
-/// preintegrated and partial, with the scanline rasterizer, or composited as printed (gl-fragment): there the error is
-/// only reported.
-std::optional<double> promised_error(const frame::RenderSettings& settings);
-
-/// Of volumes: 1e-5 for exact, what was asked for automatic, none where steps decide it.
-std::optional<double> promised_error(const volume::RenderSettings& settings);
+/// The largest error that is promised, in linear RGBA: for exact 2e-5 of meshes and 1e-5 of grids, what was asked for
+/// automatic. None for methods that take steps or samples, with the scanline rasterizer, or composited as printed
+/// (gl-fragment): there the error is only reported.
+std::optional<double> promised_error(const Settings& settings, DataKind data);
 
 /// Where a finished picture is to be looked at when `count` of its pixels are judged: where the picture itself, the
 /// scene and the frame's own estimates make it least sure (reference/suspicion.hpp). Depends on the arguments alone,
 /// `threads` excepted, so that a second run, on any number of ranks, looks at the same pixels.
 reference::Suspects suspects(const scene::Image& image, const scene::TetMeshView& mesh, const scene::Camera& camera,
-                             const scene::TransferFunction& transfer_function, const frame::RenderSettings& settings,
+                             const scene::TransferFunction& transfer_function, const Settings& settings,
                              std::size_t count);
 
 /// `error_bounds`: by pixel, of volume::Renderer::render; empty if there are none.
@@ -57,18 +53,18 @@ double layer_bound(const std::optional<double>& promised);
 /// its layers the same ones.
 Verified verify_all(const scene::Image& image, const Layers& layers, const frame::UncutMesh& mesh,
                     const scene::Camera& camera, const scene::TransferFunction& transfer_function,
-                    const frame::RenderSettings& settings, std::size_t count);
+                    const Settings& settings, std::size_t count);
 Verified verify_all(const scene::Image& image, const Layers& layers, const scene::SampleSource& source,
                     const scene::Camera& camera, const scene::TransferFunction& transfer_function,
                     const volume::RenderSettings& settings, std::span<const float> error_bounds, std::size_t count);
 
 /// The same of pictures without layers.
 reference::Verification verify(const scene::Image& image, const frame::UncutMesh& mesh, const scene::Camera& camera,
-                               const scene::TransferFunction& transfer_function, const frame::RenderSettings& settings,
+                               const scene::TransferFunction& transfer_function, const Settings& settings,
                                std::size_t count);
 inline reference::Verification verify(const scene::Image& image, const scene::TetMeshView& mesh,
                                       const scene::Camera& camera, const scene::TransferFunction& transfer_function,
-                                      const frame::RenderSettings& settings, std::size_t count) {
+                                      const Settings& settings, std::size_t count) {
   return verify(image, frame::UncutMesh{mesh, {}, mesh, nullptr}, camera, transfer_function, settings, count);
 }
 reference::Verification verify(const scene::Image& image, const scene::SampleSource& source,

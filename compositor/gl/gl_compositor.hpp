@@ -22,8 +22,7 @@ enum class GlFault { none, lost, memory };
 
 struct GlSettings {
   GlMethod method = GlMethod::compute;
-  bool half = true;            ///< fragment: 16-bit framebuffer, as the paper's; false: 32-bit
-  bool by_local_rank = false;  ///< --egl-device local-rank
+  bool half = true;  ///< fragment: 16-bit framebuffer, as the paper's; false: 32-bit
   gl::EglDevice egl_device;
   std::size_t batch_fragments = 1 << 20;  ///< that should come in one job
   std::size_t batch_cells = 1 << 16;      ///< that are on the device at once

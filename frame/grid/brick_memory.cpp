@@ -41,14 +41,14 @@ std::uint64_t bytes_of_frames(const scene::GridGeometry& geometry, const volume:
   std::uint64_t a_cell = 1;
   if (settings.parts > 1) a_cell += 1;
   if (!settings.surfaces.empty()) a_cell += 2;
-  if (settings.method == volume::Method::preintegrated) a_cell += 2 * sizeof(float);  // ranges within reach of a step
-  const bool in_steps = settings.method == volume::Method::preintegrated || settings.method == volume::Method::sampled;
+  const IntegratorKind kind = settings.integrator.kind;
+  if (kind == IntegratorKind::preintegrated) a_cell += 2 * sizeof(float);  // ranges within reach of a step
   // A thread that casts rays again, and one that walks to surfaces, have blocks of samples each.
-  const std::uint64_t walks = (in_steps ? 0 : 1) + (settings.surfaces.empty() ? 0 : 1);
+  const std::uint64_t walks = (volume::in_steps(kind) ? 0 : 1) + (settings.surfaces.empty() ? 0 : 1);
   const std::uint64_t a_thread = walks * volume::SampleBlocks::most_bytes(geometry) + bytes_of_tile(geometry, picture);
   const auto threads = static_cast<std::uint64_t>(scene::threads_for(settings.threads));
   return ranges.count() * a_cell + threads * a_thread +
-         volume::BrickCache::bytes_of_table({geometry, settings.brick_size, settings.edge_bricks});
+         volume::BrickCache::bytes_of_table({geometry, settings.grid.brick_size, settings.grid.edge_bricks});
 }
 
 std::uint64_t brick_memory(std::uint64_t memory, const BesideBricks& rest, std::uint64_t brick) {

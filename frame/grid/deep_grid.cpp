@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "frame/grid/deep_grid.hpp"
 
-#include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -20,7 +19,6 @@
 #include "compositor/deep/peel_sink.hpp"
 #include "integrals/segment_batch.hpp"
 #include "integrals/segment_integrator.hpp"
-#include "scene/error.hpp"
 #include "scene/frame_watch.hpp"
 #include "scene/threads.hpp"
 #include "volume/precise/surface_walk.hpp"
@@ -43,7 +41,8 @@ class LayerPixels final : public PixelSamples {
  public:
   LayerPixels(const scene::SampleSource& source, const scene::Camera& camera, const scene::TransferFunction& function,
               const DeepSettings& settings)
-      : rays_(source, camera, function, {settings.emission, *settings.peel, settings.shading, settings.surfaces}) {}
+      : rays_(source, camera, function,
+              {settings.emission, *settings.frame.peel, settings.grid.shading, settings.surfaces_of_grid}) {}
 
   void add(const volume::VoxelRay& ray, std::vector<scene::DeepImageSample>& to) override {
     layers_.clear();
@@ -60,12 +59,13 @@ class LayerPixels final : public PixelSamples {
 class DeepPixels final : public PixelSamples, public volume::WalkSink {
  public:
   DeepPixels(const scene::SampleSource& source, const scene::TransferFunction& function, const DeepSettings& settings)
-      : cutter_(volume::over_knot_numbers(function), settings.emission, settings.accuracy),
+      : cutter_(volume::over_knot_numbers(function), settings.emission, settings.frame.deep_accuracy),
         integrator_(volume::over_knot_numbers(function), {.kind = scene::IntegratorKind::exact}, settings.emission),
-        accuracy_(settings.accuracy),
+        accuracy_(settings.frame.deep_accuracy),
         least_(least(source, function, settings)),
         walk_(source, function, {.emission = settings.emission, .least = least_}) {
-    if (settings.surfaces != nullptr && settings.surfaces->any()) surfaces_.emplace(source, *settings.surfaces);
+    if (settings.surfaces_of_grid != nullptr && settings.surfaces_of_grid->any())
+      surfaces_.emplace(source, *settings.surfaces_of_grid);
   }
 
   void add(const volume::VoxelRay& ray, std::vector<scene::DeepImageSample>& to) override {
@@ -141,7 +141,7 @@ class DeepPixels final : public PixelSamples, public volume::WalkSink {
     const scene::Box box = scene::bounds(source.geometry());
     return integrator_.termination_error() /
            std::max(integrals::opacity_weight(function.max_color(), glm::length(box.high - box.low), settings.emission),
-                    settings.surfaces != nullptr ? settings.surfaces->set().max_color() : 0);
+                    settings.surfaces_of_grid != nullptr ? settings.surfaces_of_grid->set().max_color() : 0);
   }
 
   compositor::PieceCutter cutter_;
@@ -163,14 +163,12 @@ scene::DeepImage deep_image(const scene::SampleSource& source, const scene::Came
                             const std::stop_token& stop) {
   scene::validate(camera);
   scene::validate(size);
-  if (!(settings.accuracy >= 1e-6 && settings.accuracy <= 1))
-    throw scene::bad_input(fmt::format("`deep_accuracy` {}: it must be 1e-6 to 1", settings.accuracy));
   const volume::VoxelRays rays(camera, size, source.geometry(), settings.clip);
   compositor::DeepCollector collector(size, settings.memory_bytes / 2);
   tbb::task_arena arena(scene::threads_for(settings.threads));
   arena.execute([&] {
     tbb::enumerable_thread_specific<std::unique_ptr<PixelSamples>> pixels([&]() -> std::unique_ptr<PixelSamples> {
-      if (settings.peel) return std::make_unique<LayerPixels>(source, camera, function, settings);
+      if (settings.frame.peel) return std::make_unique<LayerPixels>(source, camera, function, settings);
       return std::make_unique<DeepPixels>(source, function, settings);
     });
     constexpr int side = 32;

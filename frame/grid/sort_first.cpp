@@ -40,9 +40,9 @@ PixelRect scaled(const PixelRect& r, double resolution, scene::ImageSize map, sc
 }
 
 /// Of the cost map. One ray a packet is as good as more where pilot rays say what it costs.
-double resolution_of(const SortFirstSettings& settings) {
-  return settings.balance == Balance::learned ? std::min(settings.resolution, 1.0 / volume::region_grain)
-                                              : settings.resolution;
+double resolution_of(const RankSettings& settings) {
+  return settings.balance == Balance::learned ? std::min(settings.balance_resolution, 1.0 / volume::region_grain)
+                                              : settings.balance_resolution;
 }
 
 /// Tells this process from others on any machine.
@@ -72,15 +72,18 @@ volume::CostMethod method_of(Balance balance) {
 /// One rank's part.
 class SortFirst::State {
  public:
-  State(exchange::Transport& transport, SortFirstSettings settings)
+  State(exchange::Transport& transport, const Settings& settings, const FrameSettings& frame)
       : transport_(transport),
-        settings_(std::move(settings)),
-        weights_(settings_.weights.empty() ? std::vector<double>(static_cast<std::size_t>(transport.size()), 1.0)
-                                           : settings_.weights) {
+        settings_(settings.ranks),
+        frame_(frame),
+        threads_(settings.threads),
+        trace_(settings.trace),
+        weights_(weights_are_given() ? settings_.balance_weights
+                                     : std::vector<double>(static_cast<std::size_t>(transport.size()), 1.0)) {
     if (weights_.size() != static_cast<std::size_t>(transport.size()))
       throw scene::bad_input(
           fmt::format("balance: {} weights for {} processes; give one for each", weights_.size(), transport.size()));
-    if (settings_.measured && !settings_.weights.empty())
+    if (settings_.balance_measured && weights_are_given())
       throw scene::bad_input("`balance_weights`: they are either given or measured; leave one of the two out");
     if (!std::all_of(weights_.begin(), weights_.end(), [](double w) { return w > 0 && std::isfinite(w); }))
       throw scene::bad_input("balance: weights must be positive numbers");
@@ -90,7 +93,7 @@ class SortFirst::State {
                   std::size_t number, scene::FrameWatch& watch) {
     const double cpu_at_first = process_cpu_seconds();
     const ImageSplit split = [&] {
-      const scene::TraceScope timing(settings_.trace, "partition", static_cast<std::int32_t>(number));
+      const scene::TraceScope timing(trace_, "partition", static_cast<std::int32_t>(number));
       if (std::optional<ImageSplit> known = known_split(renderer, function, job)) return std::move(*known);
       sample_work(renderer, function, job, watch);
       return split_of(renderer, function, job);
@@ -104,14 +107,14 @@ class SortFirst::State {
     bool stopped = false;
     try {
       image = renderer.render_regions(job.camera, job.size, function, &statistics, mine,
-                                      settings_.keep_error_bounds ? &error_bounds : nullptr, &watch,
+                                      frame_.keep_uncertainty ? &error_bounds : nullptr, &watch,
                                       goes_by_times() ? &times : nullptr);
     } catch (const scene::FrameStopped&) {
       stopped = true;
     }
     const double cpu = process_cpu_seconds() - cpu_before;
     if (settings_.balance == Balance::previous) share_times(cpu);
-    if (settings_.measured && !goes_by_times()) learn_speed(cpu, stopped);
+    if (settings_.balance_measured && !goes_by_times()) learn_speed(cpu, stopped);
     last_split_ = split;
     last_size_ = job.size;
     VolumePart part;
@@ -128,11 +131,12 @@ class SortFirst::State {
   }
 
  private:
+  [[nodiscard]] bool weights_are_given() const { return !settings_.balance_weights.empty(); }
+
   /// Whether tiles are timed, and splits found from that. Weights share out work, which times alone do not tell, and a
   /// cost that is shown is to be the same in each run.
   [[nodiscard]] bool goes_by_times() const {
-    return settings_.balance == Balance::learned && transport_.size() > 1 && settings_.weights.empty() &&
-           !settings_.keep_cost;
+    return settings_.balance == Balance::learned && transport_.size() > 1 && !weights_are_given() && !frame_.keep_cost;
   }
 
   /// What rank 0 knows from the pictures before; where that is no split, maybe how much each rank should get of one.
@@ -215,8 +219,8 @@ class SortFirst::State {
                                rates_ ? &*rates_ : nullptr);
     };
     const bool by_times = balance == Balance::previous && !times_.empty();
-    if (settings_.keep_cost && transport_.rank() == 0)
-      cost_ = by_times ? map_of_times(job.size) : cost_of(settings_.resolution, {});
+    if (frame_.keep_cost && transport_.rank() == 0)
+      cost_ = by_times ? map_of_times(job.size) : cost_of(settings_.balance_resolution, {});
     if (processes == 1) return {{0, job.size.height}, {{0, job.size.width}}};
     const PixelRect area = volume::footprint(job.camera, job.size, renderer.geometry());
     if (by_times) return volume::split(map_of_times(job.size), job.size, weights_, volume::region_grain);
@@ -241,7 +245,7 @@ class SortFirst::State {
   /// Collective.
   void sample_work(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
                    scene::FrameWatch& watch) {
-    if ((transport_.size() == 1 && !settings_.keep_cost) || settings_.balance != Balance::learned) return;
+    if ((transport_.size() == 1 && !frame_.keep_cost) || settings_.balance != Balance::learned) return;
     const bool has_last = last_split_.has_value() && last_size_ == job.size;
     const PixelRect area = volume::footprint(job.camera, job.size, renderer.geometry());
     const PixelRect part = has_last ? last_split_->region(transport_.rank())
@@ -304,7 +308,7 @@ class SortFirst::State {
   /// Weights by the CPU time that the last frame took each rank, a thread of it: who took longer than the mean gets
   /// less of the next one. Half of the way, for costs are estimates. Collective.
   void learn_speed(double cpu_seconds, bool stopped) {
-    const double own = stopped ? 0 : cpu_seconds / scene::threads_for(settings_.threads);
+    const double own = stopped ? 0 : cpu_seconds / scene::threads_for(threads_);
     const std::vector<double> seconds = exchange::gather_values(transport_, MessageKind::seconds, own);
     // Who had next to nothing to do says nothing of its speed.
     const double most = *std::max_element(seconds.begin(), seconds.end());
@@ -316,12 +320,12 @@ class SortFirst::State {
   /// The times of the last frame, each spread over its rectangle.
   [[nodiscard]] CostMap map_of_times(scene::ImageSize size) const {
     CostMap map;
-    map.resolution = settings_.resolution;
-    map.size = volume::map_size(size, settings_.resolution);
+    map.resolution = settings_.balance_resolution;
+    map.size = volume::map_size(size, settings_.balance_resolution);
     map.region = {0, 0, map.size.width, map.size.height};
     map.cost.assign(static_cast<std::size_t>(map.size.width) * static_cast<std::size_t>(map.size.height), 0);
     for (int rank = 0; rank < transport_.size(); ++rank) {
-      const PixelRect r = scaled(last_split_->region(rank), settings_.resolution, map.size, last_size_);
+      const PixelRect r = scaled(last_split_->region(rank), settings_.balance_resolution, map.size, last_size_);
       const double pixels = std::max(1.0, static_cast<double>(r.x1 - r.x0) * (r.y1 - r.y0));
       const double nanoseconds = 1e9 * times_[static_cast<std::size_t>(rank)] / pixels;
       for (int y = r.y0; y < std::min(r.y1, map.size.height); ++y)
@@ -333,7 +337,10 @@ class SortFirst::State {
   }
 
   exchange::Transport& transport_;
-  const SortFirstSettings settings_;
+  const RankSettings settings_;
+  const FrameSettings frame_;
+  const int threads_;
+  scene::Trace* const trace_;
   std::vector<double> weights_, times_;
   std::optional<volume::WorkTally> tally_;
   std::vector<std::uint64_t> learned_;         ///< tallies of all ranks, since the view last changed much
@@ -350,8 +357,8 @@ class SortFirst::State {
   CostMap cost_;
 };
 
-SortFirst::SortFirst(exchange::Transport& transport, SortFirstSettings settings)
-    : VolumeFrames(transport, settings.trace), state_(std::make_unique<State>(transport, std::move(settings))) {}
+SortFirst::SortFirst(exchange::Transport& transport, const Settings& settings, const FrameSettings& frame)
+    : VolumeFrames(transport, settings.trace), state_(std::make_unique<State>(transport, settings, frame)) {}
 SortFirst::~SortFirst() = default;
 
 VolumePart SortFirst::make(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,

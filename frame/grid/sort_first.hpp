@@ -10,21 +10,6 @@
 
 namespace tessera::frame {
 
-using tessera::Balance;
-
-struct SortFirstSettings {
-  Balance balance = Balance::learned;
-  double resolution = 0.5;      ///< of the cost map, map pixels an image pixel along each axis; learned: 0.25 at most
-  std::vector<double> weights;  ///< how much of the work each rank should get; empty: equal
-  bool measured =
-      false;        ///< in place of weights: by the CPU time that frames before took each rank, as learned does anyway
-  int threads = 0;  ///< of this rank's renderer; 0: all cores
-  bool keep_cost = false;  ///< rank 0 finds the cost of the whole picture too, to be shown
-  bool keep_error_bounds =
-      false;  ///< rank 0 gets each pixel's error bound (volume::Renderer::render) too; alike on all ranks
-  scene::Trace* trace = nullptr;
-};
-
 /// Renders pictures of volumes with all ranks of `transport` (sort first): each casts the rays of one rectangle through
 /// its own renderer of the same volume, rank 0 gathers (Moloney, "Ray Coherence in Parallel Volume Rendering", SFU
 /// 2008, 6.3.2). A single rank casts all and splits nothing.
@@ -33,10 +18,13 @@ struct SortFirstSettings {
 /// frame's (split_by_times.hpp). Else it is found by all ranks together in two stages (volume/split/image_split.hpp):
 /// each finds the cost of the rectangle it had in the frame before, of an even tile in the first one. The bits of the
 /// picture are those of one process, for any split.
+///
+/// Rank 0 gets the cost of the whole picture too with FrameSettings::keep_cost, and each pixel's error bound
+/// (volume::Renderer::render) with FrameSettings::keep_uncertainty; alike on all ranks.
 class SortFirst final : public VolumeFrames {
  public:
   /// Throws Error(bad_input) unless there are no weights or as many positive ones as ranks.
-  SortFirst(exchange::Transport& transport, SortFirstSettings settings);
+  SortFirst(exchange::Transport& transport, const Settings& settings, const FrameSettings& frame = {});
   ~SortFirst() override;
 
  private:

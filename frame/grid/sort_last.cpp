@@ -42,8 +42,12 @@ std::vector<PixelRect> footprints(const volume::ObjectSplit& split, const Volume
 /// One rank's part.
 class SortLast::State {
  public:
-  State(exchange::Transport& transport, const SortLastSettings& settings)
-      : transport_(transport), settings_(settings), sender_(transport) {}
+  State(exchange::Transport& transport, const Settings& settings, const FrameSettings& frame)
+      : transport_(transport),
+        direct_send_(settings.ranks.direct_send),
+        keeps_error_bounds_(frame.keep_uncertainty),
+        trace_(settings.trace),
+        sender_(transport) {}
 
   VolumePart make(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
                   std::size_t number, scene::FrameWatch& watch) {
@@ -57,12 +61,11 @@ class SortLast::State {
 
     const std::vector<PixelRect> own = footprints(*split_, job, geometry, area);
     const std::vector<int> bands = exchange::band_numbers(own);
-    exchange::DirectSendTask task{order,  bands, area,           own[static_cast<std::size_t>(rank)],
-                                  number, false, settings_.trace};
+    exchange::DirectSendTask task{order, bands, area, own[static_cast<std::size_t>(rank)], number, false, trace_};
     Picture mine = cast(renderer, function, job, part, task.own, watch);
     task.stopped = mine.stopped;
     const auto cast_end = Clock::now();
-    const exchange::DirectSendResult sent = sender_.run(settings_.direct_send, task, mine.image, mine.error_bounds);
+    const exchange::DirectSendResult sent = sender_.run(direct_send_, task, mine.image, mine.error_bounds);
     GridCounters& counters = mine.statistics;
     counters.exchange_bytes = sent.bytes, counters.exchange_messages = sent.messages;
     counters.composite_us = static_cast<std::uint64_t>(
@@ -98,7 +101,7 @@ class SortLast::State {
   /// Every rank finds the same boxes: all know what every cell of the volume holds.
   void divide(const volume::Renderer& renderer, const scene::TransferFunction& function) {
     if (split_ && std::ranges::equal(function.knots(), knots_)) return;
-    const scene::TraceScope timing(settings_.trace, "partition");
+    const scene::TraceScope timing(trace_, "partition");
     split_.emplace(renderer.object_split(function, transport_.size()));
     knots_.assign(function.knots().begin(), function.knots().end());
   }
@@ -112,26 +115,28 @@ class SortLast::State {
     try {
       if (!region.empty())
         mine.image = renderer.render_part(part, job.camera, job.size, function, &mine.statistics, region,
-                                          settings_.keep_error_bounds ? &mine.error_bounds : nullptr, &quiet);
+                                          keeps_error_bounds_ ? &mine.error_bounds : nullptr, &quiet);
       mine.stopped = watch.stopped();
     } catch (const scene::FrameStopped&) {
       mine.stopped = true;
     }
     mine.cpu_seconds = process_cpu_seconds() - cpu_before;
     if (mine.image.size.width == 0) mine.image = scene::Image(job.size);
-    if (settings_.keep_error_bounds) mine.error_bounds.resize(mine.image.depth.size(), 0.0f);
+    if (keeps_error_bounds_) mine.error_bounds.resize(mine.image.depth.size(), 0.0f);
     return mine;
   }
 
   exchange::Transport& transport_;
-  const SortLastSettings settings_;
+  const DirectSend direct_send_;
+  const bool keeps_error_bounds_;
+  scene::Trace* const trace_;
   exchange::DirectSender sender_;
   std::optional<volume::ObjectSplit> split_;
   std::vector<tessera::Knot> knots_;  ///< that it is for
 };
 
-SortLast::SortLast(exchange::Transport& transport, const SortLastSettings& settings)
-    : VolumeFrames(transport, settings.trace), state_(std::make_unique<State>(transport, settings)) {}
+SortLast::SortLast(exchange::Transport& transport, const Settings& settings, const FrameSettings& frame)
+    : VolumeFrames(transport, settings.trace), state_(std::make_unique<State>(transport, settings, frame)) {}
 SortLast::~SortLast() = default;
 
 VolumePart SortLast::make(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,

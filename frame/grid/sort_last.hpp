@@ -8,12 +8,6 @@
 
 namespace tessera::frame {
 
-struct SortLastSettings {
-  DirectSend direct_send = DirectSend::asynchronous;
-  bool keep_error_bounds = false;  ///< rank 0 gets each pixel's error bound too; alike on all ranks
-  scene::Trace* trace = nullptr;
-};
-
 /// Renders pictures of volumes with all ranks of `transport` (sort last): each casts all rays through one box of the
 /// volume (volume/split/object_split.hpp), whose bricks alone it ever reads, by a renderer that knows the number of
 /// parts (volume::RenderSettings::parts); the boxes' pictures are composited front to back by direct send
@@ -22,10 +16,10 @@ struct SortLastSettings {
 ///
 /// A ray ends early within a box, not for what lies in front of it in another's: what that costs is
 /// docs/EXPERIMENTS.md, Figure 6.15. Pictures of other numbers of ranks, or brick sizes, differ by
-/// rounding; else the bits are always the same.
+/// rounding; else the bits are always the same. FrameSettings::keep_uncertainty as SortFirst's.
 class SortLast final : public VolumeFrames {
  public:
-  SortLast(exchange::Transport& transport, const SortLastSettings& settings);
+  SortLast(exchange::Transport& transport, const Settings& settings, const FrameSettings& frame = {});
   ~SortLast() override;
 
  private:

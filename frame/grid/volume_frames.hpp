@@ -36,7 +36,7 @@ struct FinishedVolumeFrame {
   std::vector<float> error_bounds;  ///< by pixel, if asked for
   bool stopped = false;             ///< the image lacks pixels
   volume::ImageSplit split;         ///< sort-first: what `regions` are of
-  volume::CostMap cost;             ///< sort-first: of the whole picture, if SortFirstSettings::keep_cost
+  volume::CostMap cost;             ///< sort-first: of the whole picture, if FrameSettings::keep_cost
   std::vector<volume::VoxelBox> parts;  ///< sort-last: of each rank
 };
 

@@ -24,14 +24,6 @@
 namespace tessera::frame {
 namespace {
 
-const RenderSettings& checked(const RenderSettings& settings) {
-  if (settings.threads < 0 || settings.threads > 4096)
-    throw scene::bad_input(fmt::format("`threads` {}: it must be 0 (all cores) to 4096", settings.threads));
-  if (settings.tile_size < 1 || settings.tile_size > 1024)
-    throw scene::bad_input(fmt::format("`tile_size` {}: it must be 1 to 1024 pixels", settings.tile_size));
-  return settings;
-}
-
 void check_scanline(const FrameProjector::Task& task, const projection::ProjectedMesh& projected, float longest_edge) {
   if (task.team != nullptr) task.team->barrier();  // it looks at all vertices
   if (task.space->perspective())
@@ -102,7 +94,7 @@ class Worker final : public TileWorker {
 };
 
 /// What is left of the budget for segments, shared by the threads.
-std::uint64_t segment_budget(const RenderSettings& settings, std::uint64_t held, int threads) {
+std::uint64_t segment_budget(const Settings& settings, std::uint64_t held, int threads) {
   const std::uint64_t least = held + static_cast<std::uint64_t>(threads) * (1u << 20);
   if (settings.memory_bytes < least)
     throw scene::bad_input(
@@ -113,16 +105,15 @@ std::uint64_t segment_budget(const RenderSettings& settings, std::uint64_t held,
 
 }  // namespace
 
-void order_corners(scene::TetMesh& mesh, const RenderSettings& settings) {
-  const scene::TraceScope timing(settings.trace, "prepare");
-  tbb::task_arena(scene::threads_for(checked(settings).threads)).execute([&] { projection::order_corners(mesh); });
+void order_corners(scene::TetMesh& mesh, int threads, scene::Trace* trace) {
+  const scene::TraceScope timing(trace, "prepare");
+  tbb::task_arena(scene::threads_for(threads)).execute([&] { projection::order_corners(mesh); });
 }
 
 namespace {
 
-std::shared_ptr<const projection::PreparedMesh> prepared(const scene::TetMeshView& mesh,
-                                                         const RenderSettings& settings) {
-  return tbb::task_arena(scene::threads_for(checked(settings).threads)).execute([&] {
+std::shared_ptr<const projection::PreparedMesh> prepared(const scene::TetMeshView& mesh, const Settings& settings) {
+  return tbb::task_arena(scene::threads_for(settings.threads)).execute([&] {
     const scene::TraceScope timing(settings.trace, "prepare");
     return std::make_shared<const projection::PreparedMesh>(mesh);
   });
@@ -130,17 +121,14 @@ std::shared_ptr<const projection::PreparedMesh> prepared(const scene::TetMeshVie
 
 }  // namespace
 
-FrameProjector::FrameProjector(const scene::TetMeshView& mesh, const RenderSettings& settings)
+FrameProjector::FrameProjector(const scene::TetMeshView& mesh, const Settings& settings)
     : FrameProjector(prepared(mesh, settings), scene::bounds(mesh, settings.threads), settings) {}
 
 FrameProjector::FrameProjector(std::shared_ptr<const projection::PreparedMesh> mesh, const scene::Box& box,
-                               const RenderSettings& settings)
-    : settings_(checked(settings)),
-      arena_(scene::threads_for(settings.threads)),
-      prepared_(std::move(mesh)),
-      box_(box) {
+                               const Settings& settings)
+    : settings_(settings), arena_(scene::threads_for(settings.threads)), prepared_(std::move(mesh)), box_(box) {
   diagonal_ = box_.empty() ? 0 : glm::length(box_.high - box_.low);
-  if (settings.rasterizer == Rasterizer::scanline)
+  if (settings.mesh.rasterizer == Rasterizer::scanline)
     longest_edge_ = arena_.execute([&] { return projection::longest_edge(prepared_->mesh()); });
 }
 
@@ -363,14 +351,14 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   const projection::IsoView iso{task.surfaces, &space, task.lattice};
   if (task.surfaces != nullptr && !task.surfaces->iso_values().empty()) projected.iso = &iso;
   const float longest_edge = task.longest_edge > 0 ? task.longest_edge : longest_edge_;
-  if (settings_.rasterizer == Rasterizer::scanline) check_scanline(task, projected, longest_edge);
+  if (settings_.mesh.rasterizer == Rasterizer::scanline) check_scanline(task, projected, longest_edge);
   if (task.lattice != nullptr) place_on_lattice(task, stop);
 
   const double longest_ray = task.longest_ray > 0 ? task.longest_ray : diagonal_;
   // Sampling promises nothing that steps could break.
-  const bool exact =
-      settings_.rasterizer != Rasterizer::scanline && (settings_.integrator.kind == scene::IntegratorKind::exact ||
-                                                       settings_.integrator.kind == scene::IntegratorKind::automatic);
+  const bool exact = settings_.mesh.rasterizer != Rasterizer::scanline &&
+                     (settings_.integrator.kind == scene::IntegratorKind::exact ||
+                      settings_.integrator.kind == scene::IntegratorKind::automatic);
   std::vector<projection::Step> steps;
   projection::CellsAtSteps at_steps;
   std::optional<projection::TileLists> lists;
@@ -397,7 +385,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
                             lists->depth_origin(),
                             segment_budget(settings_, held, arena_.max_concurrency()) / 4 * 3,
                             settings_.trace,
-                            settings_.rasterizer,
+                            settings_.mesh.rasterizer,
                             longest_edge,
                             usual_optical_depth(*task.function, diagonal_) > opaque_depth,
                             steps,

@@ -26,11 +26,10 @@ namespace tessera::frame {
 /// the mesh. What becomes of the segments is the sinks' business.
 class FrameProjector {
  public:
-  /// The mesh must outlive this object. Throws Error(bad_input) for settings out of range.
-  FrameProjector(const scene::TetMeshView& mesh, const RenderSettings& settings);
+  /// The mesh must outlive this object; the settings are valid.
+  FrameProjector(const scene::TetMeshView& mesh, const Settings& settings);
   /// Of a mesh that has been prepared; `box` is its scene::bounds().
-  FrameProjector(std::shared_ptr<const projection::PreparedMesh> mesh, const scene::Box& box,
-                 const RenderSettings& settings);
+  FrameProjector(std::shared_ptr<const projection::PreparedMesh> mesh, const scene::Box& box, const Settings& settings);
 
   struct Task {
     const projection::PixelSpace* space;
@@ -85,7 +84,7 @@ class FrameProjector {
   void project_vertices(const Task& task, const std::stop_token& stop);
   void place_on_lattice(const Task& task, const std::stop_token& stop);
 
-  RenderSettings settings_;
+  Settings settings_;
   tbb::task_arena arena_;
   std::shared_ptr<const projection::PreparedMesh> prepared_;
   scene::Box box_;

@@ -57,12 +57,12 @@ double most_length_per_depth(const projection::PixelSpace& space) { return space
 
 std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
                                          const std::array<double, 2>& scalar_range,
-                                         const scene::TransferFunction& function, const RenderSettings& settings) {
+                                         const scene::TransferFunction& function, const Settings& settings) {
   using scene::Lattice;
   const bool exact = settings.integrator.kind == scene::IntegratorKind::exact ||
                      settings.integrator.kind == scene::IntegratorKind::automatic;
-  if (!settings.use.lattice || settings.rasterizer == Rasterizer::scanline || !exact || box.empty() ||
-      settings.surfaces.has_faces() || settings.shading || !projection::lattice_available())
+  if (!settings.use.lattice || settings.mesh.rasterizer == Rasterizer::scanline || !exact || box.empty() ||
+      settings.surfaces.has_faces() || settings.mesh.shading || !projection::lattice_available())
     return std::nullopt;
   const auto [near, far] = depth_range(space, box);
   if (!(near <= far) || !std::isfinite(far - near)) return std::nullopt;

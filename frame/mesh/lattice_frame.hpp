@@ -9,6 +9,7 @@
 #include "projection/pixel_space.hpp"
 #include "scene/camera.hpp"
 #include "scene/lattice.hpp"
+#include "scene/optical_model.hpp"
 #include "scene/transfer_function.hpp"
 
 namespace tessera::frame {
@@ -26,7 +27,7 @@ namespace tessera::frame {
 ///   - nothing is in front of the eye, or the processor has no lanes, and Highway emulates them.
 std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
                                          const std::array<double, 2>& scalar_range,
-                                         const scene::TransferFunction& function, const RenderSettings& settings);
+                                         const scene::TransferFunction& function, const Settings& settings);
 
 /// Which single cells need double precision on that lattice. `longest_ray` bounds a ray's length in the whole mesh,
 /// world units.

@@ -13,11 +13,6 @@
 namespace tessera::frame {
 
 void check_peel(const Peel& peel, scene::ImageSize size, std::uint64_t memory_bytes) {
-  constexpr int most_layers = 64;
-  if (!(peel.threshold > 0 && peel.threshold < 1))
-    throw scene::bad_input(fmt::format("`peel` {}: the threshold must be above 0 and below 1", peel.threshold));
-  if (peel.layers < 1 || peel.layers > most_layers)
-    throw scene::bad_input(fmt::format("`peel`: {} layers; there may be 1 to {}", peel.layers, most_layers));
   const auto pixels = static_cast<std::uint64_t>(size.width) * static_cast<std::uint64_t>(size.height);
   const std::uint64_t bytes = pixels * 5 * sizeof(float) * static_cast<std::uint64_t>(peel.layers);
   if (bytes > memory_bytes / 2)

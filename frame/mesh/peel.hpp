@@ -13,8 +13,7 @@
 /// them in place of its own samples, and the rank that assembles the frame makes images of them.
 namespace tessera::frame {
 
-/// Throws Error(bad_input) for a threshold or a number of layers that is out of range; Error(system_failure) if half
-/// the memory budget does not hold so many images.
+/// Throws Error(system_failure) if half the memory budget does not hold so many images.
 void check_peel(const Peel& peel, scene::ImageSize size, std::uint64_t memory_bytes);
 
 /// What is asked for, for messages: `peel` or a deep picture.

@@ -8,6 +8,7 @@
 #include <array>
 
 #include "exchange/collectives.hpp"
+#include "frame/ranks/distributed.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::frame {
@@ -42,25 +43,11 @@ std::string reason(const scene::Error& error) {
 
 }  // namespace
 
-void check_device_rasterizer(const RenderSettings& render, const CompositingSettings& settings) {
-  if (render.rasterizer != Rasterizer::device) return;
-  const std::vector<Backend>& backends = settings.backends;
-  const auto on_cpu = static_cast<std::size_t>(std::count(backends.begin(), backends.end(), Backend::cpu));
-  if (on_cpu == backends.size())
-    throw scene::bad_input(
-        "`rasterizer` device: it is for `compositor` gl-compute; add that, or use `rasterizer` planes");
-  if (on_cpu > 0)
-    throw scene::bad_input(
-        "`rasterizer` device: `backend` leaves some compositors to the CPU; name a device for each, or use "
-        "`rasterizer` planes");
-  if (settings.gl.method == compositor::GlMethod::fragment)
-    throw scene::bad_input(
-        "`rasterizer` device: `compositor` gl-fragment takes ray segments; use gl-compute, or `rasterizer` planes");
-}
-
-void open_compositing_device(const CompositingSettings& settings, const Roles& roles, exchange::Transport& transport,
-                             scene::Trace* trace, CompositingDevice& made) {
-  const std::vector<Backend>& backends = settings.backends;
+void open_compositing_device(const DistributedSettings& settings, exchange::Transport& transport,
+                             CompositingDevice& made) {
+  const DeviceSettings& device = settings.render.mesh.device;
+  const std::vector<Backend>& backends = device.backends;
+  const Roles& roles = settings.roles;
   if (std::all_of(backends.begin(), backends.end(), [](Backend b) { return b == Backend::cpu; })) {
     made.name = "cpu";
     return;
@@ -69,7 +56,9 @@ void open_compositing_device(const CompositingSettings& settings, const Roles& r
     throw scene::bad_input(fmt::format("`backend`: {} words for {} compositors; give one, or one for each",
                                        backends.size(), roles.compositors.size()));
   compositor::GlSettings gl = settings.gl;
-  if (gl.by_local_rank) gl.egl_device.local_rank = local_rank(transport);
+  gl.method = device.method, gl.half = device.half;
+  gl.egl_device.number = device.egl_device;
+  if (device.by_local_rank) gl.egl_device.local_rank = local_rank(transport);
   std::string name;
   const auto self = std::find(roles.compositors.begin(), roles.compositors.end(), transport.rank());
   if (self != roles.compositors.end()) {
@@ -80,7 +69,7 @@ void open_compositing_device(const CompositingSettings& settings, const Roles& r
     gl.egl_device.hardware_only = backend == Backend::automatic && !settings.software_will_do;
     if (backend != Backend::cpu) try {
         made.device = std::make_unique<compositor::GlCompositor>(
-            backend == Backend::osmesa ? gl::Platform::osmesa : gl::Platform::egl, gl, trace);
+            backend == Backend::osmesa ? gl::Platform::osmesa : gl::Platform::egl, gl, settings.compositing);
         name = made.device->name();
       } catch (const scene::Error& error) {
         if (backend != Backend::automatic || error.code() != scene::ErrorCode::system_failure) throw;

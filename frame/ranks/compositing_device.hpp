@@ -4,23 +4,13 @@
 #include <atomic>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "compositor/gl/gl_compositor.hpp"
 #include "exchange/transport.hpp"
-#include "frame/mesh/render.hpp"
-#include "frame/ranks/roles.hpp"
 
 namespace tessera::frame {
 
-using tessera::Backend;
-
-/// How all compositors of a job work.
-struct CompositingSettings {
-  std::vector<Backend> backends;  ///< one a compositor, or one for all; none: the CPU
-  compositor::GlSettings gl;      ///< of those on a device
-  bool software_will_do = false;  ///< tests: automatic takes a software device
-};
+struct DistributedSettings;
 
 /// This rank's device, if it has one, and what all compositors work on, in words: "cpu", "gl-compute (EGL, ...)",
 /// "cpu (EGL: no hardware device answers)"; several kinds are joined by " + ".
@@ -32,12 +22,9 @@ struct CompositingDevice {
   std::string name;
 };
 
-/// Throws Error(bad_input) if devices are to rasterize and it is known that some compositor has none that can.
-void check_device_rasterizer(const RenderSettings& render, const CompositingSettings& settings);
-
 /// Opens this rank's device into `made`. Collective. Throws Error(bad_input) if there is neither one backend nor one
 /// for each compositor, Error(system_failure) if a device that was asked for by name cannot be opened.
-void open_compositing_device(const CompositingSettings& settings, const Roles& roles, exchange::Transport& transport,
-                             scene::Trace* trace, CompositingDevice& made);
+void open_compositing_device(const DistributedSettings& settings, exchange::Transport& transport,
+                             CompositingDevice& made);
 
 }  // namespace tessera::frame

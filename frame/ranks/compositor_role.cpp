@@ -40,16 +40,16 @@ int assembling_threads(const DistributedSettings& settings) {
 }
 
 std::optional<compositor::MatterLight> light_of(const DistributedRun& run, const FrameJob& job) {
-  if (!run.settings.render.shading) return std::nullopt;
-  return compositor::MatterLight(*run.settings.render.shading, job.camera);
+  if (!run.settings.render.mesh.shading) return std::nullopt;
+  return compositor::MatterLight(*run.settings.render.mesh.shading, job.camera);
 }
 
 /// A frame at its compositor.
 struct Frame {
   Frame(const DistributedRun& run, std::uint32_t number, int compositor)
       : number(number),
-        grid{job_of(run, number).size, run.settings.render.tile_size},
-        map(grid.count(), static_cast<int>(run.settings.roles.compositors.size()), run.settings.tile_seed),
+        grid{job_of(run, number).size, run.settings.render.mesh.tile_size},
+        map(grid.count(), static_cast<int>(run.settings.roles.compositors.size()), run.settings.render.ranks.tile_seed),
         collector(static_cast<int>(run.settings.roles.projectors.size()), map, compositor),
         space(job_of(run, number).camera, job_of(run, number).size),
         integrator(run.function, run.settings.render.integrator, run.settings.render.emission),
@@ -223,12 +223,12 @@ class CompositorLoop {
 
   /// What the mergers of a frame know of it.
   compositor::MergeContext context_of(Frame& of, double longest_ray, float longest_edge, bool on_lattice) {
-    const RenderSettings& render = run_.settings.render;
+    const Settings& render = run_.settings.render;
     compositor::MergeContext context{
         &of.space, &of.integrator, run_.function.max_color(), longest_ray, longest_edge, render.emission, budget_.tile};
     context.function = &run_.function;
-    context.deep_accuracy = run_.settings.deep ? render.deep_accuracy : 0;
-    context.peel = render.peel;
+    context.deep_accuracy = run_.settings.frame.by_depth() ? run_.settings.frame.deep_accuracy : 0;
+    context.peel = run_.settings.frame.peel;
     context.lattice = run_.device.device != nullptr ? &of.units : &of.collector.lattice();
     context.table = of.table ? &*of.table : nullptr;
     context.trace = trace_;
@@ -316,9 +316,9 @@ std::exception_ptr run_assembler(const DistributedRun& run, const DistributedCal
   std::optional<WorkerThreads> workers;
   compositor::AssemblySettings how;
   how.grid_of = [&](std::uint32_t frame) {
-    return projection::TileGrid{job_of(run, frame).size, settings.render.tile_size};
+    return projection::TileGrid{job_of(run, frame).size, settings.render.mesh.tile_size};
   };
-  how.deep_bytes = settings.deep ? settings.render.memory_bytes / 2 : 0;
+  how.deep_bytes = settings.frame.by_depth() ? settings.render.memory_bytes / 2 : 0;
   how.trace = settings.compositing;
   if (callbacks.tile)
     how.finished = [&](std::uint32_t frame, const scene::PixelRect& rect, const scene::Image& image) {

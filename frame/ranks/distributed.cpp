@@ -79,13 +79,11 @@ const FrameJob& job_of(const DistributedRun& run, std::uint32_t number) {
 namespace {
 
 void check(const DistributedSettings& settings) {
-  if (settings.frames_in_flight < 1)
-    throw scene::bad_input(fmt::format("`frames_in_flight` {}: it must be at least 1", settings.frames_in_flight));
-  if (settings.render.rasterizer == Rasterizer::scanline && settings.exchange == Exchange::runs)
+  if (settings.render.mesh.rasterizer == Rasterizer::scanline && settings.exchange == Exchange::runs)
     throw scene::bad_input("`exchange` runs: segments of `rasterizer` scanline do not touch; use `exchange` segments");
-  if (settings.deep && settings.exchange == Exchange::runs)
+  if (settings.frame.by_depth() && settings.exchange == Exchange::runs)
     throw scene::bad_input(fmt::format("`exchange` runs: {} needs the segments that runs are made of; use segments",
-                                       settings.render.peel ? "`peel`" : "a deep picture"));
+                                       settings.frame.peel ? "`peel`" : "a deep picture"));
   const scene::Integrator& integrator = settings.render.integrator;
   if (settings.exchange == Exchange::runs && integrator.kind == scene::IntegratorKind::automatic &&
       !scene::error_budget::runs_keep(integrator.accuracy))
@@ -93,21 +91,19 @@ void check(const DistributedSettings& settings) {
         fmt::format("`exchange` runs: `accuracy` {} leaves no room for the {} that runs may err; use "
                     "`exchange` segments",
                     integrator.accuracy, scene::error_budget::runs));
-  check_device_rasterizer(settings.render, settings.compositing_on);
-  const auto& backends = settings.compositing_on.backends;
-  const bool on_device = std::any_of(backends.begin(), backends.end(), [](Backend b) { return b != Backend::cpu; });
+  const DeviceSettings& device = settings.render.mesh.device;
+  const bool on_device = std::ranges::any_of(device.backends, [](Backend b) { return b != Backend::cpu; });
   if (on_device && !settings.render.surfaces.empty())
     throw scene::bad_input(fmt::format("{}: surfaces are composited on the CPU; leave out `compositor` and `backend`",
                                        surface_word(settings.render.surfaces)));
-  if (on_device && settings.render.shading)
+  if (on_device && settings.render.mesh.shading)
     throw scene::bad_input("`shade`: meshes are shaded on the CPU; leave out `compositor` and `backend`");
-  if (on_device && settings.deep)
+  if (on_device && settings.frame.by_depth())
     throw scene::bad_input(fmt::format("{}: it is made on the CPU; leave out `compositor` and `backend`",
-                                       deep_word(settings.render.peel.has_value())));
-  if (on_device && settings.compositing_on.gl.method == compositor::GlMethod::fragment &&
-      settings.exchange == Exchange::runs)
+                                       deep_word(settings.frame.peel.has_value())));
+  if (on_device && device.method == GlMethod::fragment && settings.exchange == Exchange::runs)
     throw scene::bad_input("`exchange` runs: `compositor` gl-fragment takes ray segments; use `exchange` segments");
-  if (on_device && settings.compositing_on.gl.method == compositor::GlMethod::fragment &&
+  if (on_device && device.method == GlMethod::fragment &&
       (settings.render.integrator.kind == scene::IntegratorKind::preintegrated ||
        settings.render.integrator.kind == scene::IntegratorKind::partial))
     throw scene::bad_input("`integrator`: `compositor` gl-fragment knows sampled:N, exact and auto; use one of these");
@@ -122,31 +118,29 @@ class DistributedRenderer::State {
     check(settings_);
   }
 
-  void set_deep(bool deep, double accuracy, const std::optional<Peel>& peel, Exchange exchange) {
+  void set_frame(const FrameSettings& frame, Exchange exchange) {
     DistributedSettings settings = settings_;
-    settings.deep = deep;
+    settings.frame = frame;
     settings.exchange = exchange;
-    settings.render.deep_accuracy = accuracy;
-    settings.render.peel = peel;
     check(settings);
     settings_ = std::move(settings);
   }
 
   void render(std::span<const FrameJob> jobs, const scene::TransferFunction& function,
               const DistributedCallbacks& callbacks, const std::stop_token& asked) {
-    if (settings_.deep) check_deep(settings_.render, function);
     StopRelay::Run relayed(relay_, asked);
     const std::stop_token stop = relayed.token();
     if (!opened_) {
       const bool projects = settings_.roles.projects(transport_.rank());
       // Triangles of surfaces are each rank's own.
-      if (settings_.share_memory && settings_.roles.projectors.size() > 1 && !settings_.render.surfaces.has_faces())
+      if (settings_.render.use.sharing && settings_.roles.projectors.size() > 1 &&
+          !settings_.render.surfaces.has_faces())
         team_ = exchange::HostTeam::form(transport_, projects);
       if (projects) loaded_.emplace(transport_, settings_, mesh_of_, team_.get());
     }
     if (!jobs.empty()) load(jobs.front().mesh);
     if (!opened_) {
-      open_compositing_device(settings_.compositing_on, settings_.roles, transport_, settings_.compositing, device_);
+      open_compositing_device(settings_, transport_, device_);
       opened_ = true;
     }
     exchange::barrier(transport_);  // a frame's time does not count reading
@@ -212,8 +206,8 @@ DistributedRenderer::DistributedRenderer(exchange::Transport& transport, Distrib
     : state_(std::make_unique<State>(transport, std::move(settings), std::move(mesh_of))) {}
 DistributedRenderer::~DistributedRenderer() = default;
 
-void DistributedRenderer::set_deep(bool deep, double accuracy, const std::optional<Peel>& peel, Exchange exchange) {
-  state_->set_deep(deep, accuracy, peel, exchange);
+void DistributedRenderer::set_frame(const FrameSettings& frame, Exchange exchange) {
+  state_->set_frame(frame, exchange);
 }
 
 void DistributedRenderer::render(std::span<const FrameJob> jobs, const scene::TransferFunction& function,

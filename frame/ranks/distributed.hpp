@@ -8,28 +8,25 @@
 #include <span>
 #include <stop_token>
 
+#include "compositor/gl/gl_compositor.hpp"
 #include "exchange/transport.hpp"
 #include "frame/mesh/render.hpp"
-#include "frame/ranks/compositing_device.hpp"
 #include "frame/ranks/roles.hpp"
 #include "scene/pixel_rect.hpp"
 #include "tessera/settings.hpp"
 
 namespace tessera::frame {
 
-using tessera::Exchange;
-
+/// A session's settings, and what differs between its lists of frames and its ranks.
 struct DistributedSettings {
-  RenderSettings render;  ///< `memory_bytes` and `threads` are each rank's; `trace` is not used
-  Roles roles;
-  Exchange exchange = Exchange::runs;
-  CompositingSettings compositing_on;
-  bool deep = false;                    ///< deep pictures, or layers, too (Renderer::render); they need raw segments
-  bool share_memory = true;             ///< projectors of one machine project together (exchange/host_team.hpp)
-  int frames_in_flight = 2;             ///< frames a projector may be ahead of the assembled picture, at least 1
-  std::uint64_t tile_seed = 1;          ///< of the tile map
+  Settings render;        ///< `memory_bytes` and `threads` are each rank's; `trace` is not used
+  FrameSettings frame{};  ///< deep pictures, and layers, need raw segments
+  Roles roles{};
+  Exchange exchange = Exchange::runs;   ///< in place of RankSettings::exchange
   scene::Trace* projecting = nullptr;   ///< face of this rank's trace for its projector; null: no timing
   scene::Trace* compositing = nullptr;  ///< for its compositor
+  compositor::GlSettings gl{};          ///< of devices, besides what DeviceSettings specify
+  bool software_will_do = false;        ///< tests: Backend::automatic takes a software device
 };
 
 /// One picture to make.
@@ -82,21 +79,21 @@ class DistributedRenderer {
  public:
   using MeshOf = std::function<ProjectorMesh(std::size_t)>;
 
-  /// Throws Error(bad_input) for settings that do not go together. `transport` must outlive this object.
+  /// Of settings that are valid for meshes. Throws Error(bad_input) for what several ranks or devices cannot do.
+  /// `transport` must outlive this object.
   DistributedRenderer(exchange::Transport& transport, DistributedSettings settings, MeshOf mesh_of);
   ~DistributedRenderer();
   DistributedRenderer(const DistributedRenderer&) = delete;
   DistributedRenderer& operator=(const DistributedRenderer&) = delete;
 
-  /// Makes a list of pictures, deep ones too if DistributedSettings::deep or set_deep() says so. Collective: the same
+  /// Makes a list of pictures, deep ones too if DistributedSettings::frame asks for them. Collective: the same
   /// jobs and function on every rank. The transfer function is one for all of them, so that a film does not flicker.
   /// `stop`, asked for on any rank, ends the list early on all, within one batch of cells; all return and can go on.
   /// Throws the run's error, on every rank.
   void render(std::span<const FrameJob> jobs, const scene::TransferFunction& function,
               const DistributedCallbacks& callbacks, const std::stop_token& stop = {});
-  /// Of later lists: whether deep pictures are made and of what, and what is sent. Throws Error(bad_input) where the
-  /// settings cannot do it.
-  void set_deep(bool deep, double accuracy, const std::optional<Peel>& peel, Exchange exchange);
+  /// Of later lists. Throws Error(bad_input) where the settings cannot do it.
+  void set_frame(const FrameSettings& frame, Exchange exchange);
 
  private:
   class State;

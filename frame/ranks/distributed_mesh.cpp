@@ -125,9 +125,7 @@ std::shared_ptr<const FieldOfAll> select_part(Transport& transport, const ReadOp
     for (double& value : part.scalars)  // no sample lies beside one
       if (std::ranges::binary_search(fill->values, value)) value = std::numeric_limits<double>::quiet_NaN();
   }
-  RenderSettings settings;
-  settings.threads = options.threads;
-  order_corners(part, settings);
+  order_corners(part, options.threads);
   all->samples = gather_field_samples(transport, part, numbered_by_rank(transport, part.tets.size()), all->facts);
   part.tets = std::move(as_read);
   if (!values.empty()) part.scalars = std::move(values);

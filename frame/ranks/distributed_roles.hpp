@@ -8,6 +8,7 @@
 #include "exchange/host_team.hpp"
 #include "frame/mesh/boundary_faces.hpp"
 #include "frame/mesh/frame_projector.hpp"
+#include "frame/ranks/compositing_device.hpp"
 #include "frame/ranks/distributed.hpp"
 
 /// The three parts of a distributed run, each a loop on a thread of its own; DistributedRenderer starts those that a
@@ -47,7 +48,7 @@ class LoadedMesh {
   void share_mesh();
 
   exchange::Transport& transport_;
-  RenderSettings settings_;
+  Settings settings_;
   const std::function<ProjectorMesh(std::size_t)>& mesh_of_;
   exchange::HostTeam* team_;
   std::optional<std::size_t> number_;

@@ -26,7 +26,7 @@ void await_frame(const DistributedRun& run) {
 
 /// Waits until no more than `in_flight - 1` frames before this one are on their way.
 void wait_for_turn(const DistributedRun& run, std::size_t frame, std::size_t& left) {
-  const auto in_flight = static_cast<std::size_t>(run.settings.frames_in_flight);
+  const auto in_flight = static_cast<std::size_t>(run.settings.render.ranks.frames_in_flight);
   if (frame < left + in_flight) return;
   const scene::TraceScope timing(run.settings.projecting, "wait", static_cast<std::int32_t>(run.first + frame));
   for (; frame >= left + in_flight; ++left) await_frame(run);
@@ -48,7 +48,7 @@ class FrameSinks {
              std::function<bool(std::size_t tile)> packs, exchange::PartWriter::Deliver deliver)
       : settings_(run.settings),
         makes_pixels_(has_all_cells && run.settings.exchange == Exchange::runs &&
-                      run.settings.compositing_on.backends.empty()),
+                      run.settings.render.mesh.device.backends.empty()),
         packs_(std::move(packs)),
         mesh_(mesh),
         deliver_(std::move(deliver)),
@@ -58,13 +58,14 @@ class FrameSinks {
         surfaces_(settings_.render.surfaces, run.function),
         normals_(mesh.part),
         scene_{&space_, &integrator_, 1} {
-    if (settings_.render.shading) light_.emplace(*settings_.render.shading, job.camera);
+    if (settings_.render.mesh.shading) light_.emplace(*settings_.render.mesh.shading, job.camera);
     const double max_color = light_ ? light_->brightest(run.function.max_color()) : run.function.max_color();
     scene_.left_out_per_transmittance =
         std::max(integrals::opacity_weight(max_color, mesh.diagonal, settings_.render.emission), surfaces_.max_color());
     if (!surfaces_.empty()) scene_.surfaces = &surfaces_;
     if (light_) scene_.light = &*light_, scene_.normals = &normals_;
-    if (!settings_.deep) lattice_ = lattice_of(space_, mesh.box, mesh.scalar_range, run.function, settings_.render);
+    if (!settings_.frame.by_depth())
+      lattice_ = lattice_of(space_, mesh.box, mesh.scalar_range, run.function, settings_.render);
     if (!lattice_) return;
     table_.emplace(run.function, *lattice_, settings_.render.emission);
     surfaces_.place_on(*lattice_);
@@ -81,7 +82,7 @@ class FrameSinks {
   [[nodiscard]] std::unique_ptr<compositor::TileSink<sorting::DoubleEncoding>> make() const {
     if (makes_pixels_)
       return std::make_unique<compositor::PixelSink<sorting::DoubleEncoding>>(scene_, packs_, deliver_);
-    if (settings_.render.rasterizer == Rasterizer::scanline)
+    if (settings_.render.mesh.rasterizer == Rasterizer::scanline)
       return std::make_unique<compositor::TupleSink>(mesh_.longest_edge, deliver_);
     if (settings_.exchange == Exchange::segments)
       return std::make_unique<compositor::SegmentSink<sorting::DoubleEncoding>>(
@@ -90,7 +91,7 @@ class FrameSinks {
   }
   /// Whether devices rasterize: where light of segments is beyond them (GlMerger), the CPU does it all.
   [[nodiscard]] bool have_cells() const {
-    return settings_.render.rasterizer == Rasterizer::device && (lattice_ || integrator_.samples() > 0);
+    return settings_.render.mesh.rasterizer == Rasterizer::device && (lattice_ || integrator_.samples() > 0);
   }
   [[nodiscard]] std::unique_ptr<compositor::CellSink> make_for_cells() const {
     return std::make_unique<compositor::CellSink>(mesh_.global_tet, deliver_);
@@ -135,8 +136,9 @@ void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t 
                    exchange::Outbox& outbox) {
   const DistributedSettings& settings = run.settings;
   const ProjectorMesh& mesh = loaded.mesh();
-  const projection::TileGrid grid{job.size, settings.render.tile_size};
-  const exchange::TileMap map(grid.count(), static_cast<int>(settings.roles.compositors.size()), settings.tile_seed);
+  const projection::TileGrid grid{job.size, settings.render.mesh.tile_size};
+  const exchange::TileMap map(grid.count(), static_cast<int>(settings.roles.compositors.size()),
+                              settings.render.ranks.tile_seed);
   const std::size_t projectors = loaded.team() != nullptr ? loaded.team()->ranks().size() : 1;
   const auto packs = [&](std::size_t tile) {
     const int compositor = settings.roles.compositors[static_cast<std::size_t>(map.owner(tile))];

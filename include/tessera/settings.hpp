@@ -171,7 +171,7 @@ struct Settings {
   Emission emission = Emission::absorption;
   Surfaces surfaces;                        ///< meshes: by the planes rasterizer, on the CPU; grids: not in steps
   Mechanisms use;                           ///< what saves work
-  int threads = 0;                          ///< of each process; 0: all cores
+  int threads = 0;                          ///< of each process, 0 to 1024; 0: all cores
   std::uint64_t memory_bytes = 4ull << 30;  ///< of each process: frame buffers beside a mesh, bricks of a grid
   MeshSettings mesh;
   GridSettings grid;
@@ -201,7 +201,19 @@ struct FrameSettings {
   bool keep_cost = false;
   /// The picture in layers too: RenderedFrame::layers.
   std::optional<Peel> peel{};
+  /// Whether light is asked for by its depth.
+  [[nodiscard]] bool by_depth() const { return deep || peel.has_value(); }
 };
+
+/// What is rendered.
+enum class DataKind { mesh, grid };
+
+/// Throws Error(bad_input) for settings that are out of range, or that do not go together for this kind of data. A
+/// Session checks its own, and what it asks of several ranks besides; nothing else does.
+TESSERA_EXPORT void validate(const Settings& settings, DataKind data);
+
+/// The same of a frame by these settings, but for the number of layers that memory holds.
+TESSERA_EXPORT void validate(const FrameSettings& frame, const Settings& settings, DataKind data);
 
 }  // namespace v0_1
 }  // namespace tessera

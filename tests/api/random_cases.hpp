@@ -48,8 +48,8 @@ struct RandomCase {
   scene::Camera camera;
   scene::TransferFunction function;
   std::string words;
-  scene::Surfaces surfaces{};
-  std::optional<scene::Shading> shading{};
+  Surfaces surfaces{};
+  std::optional<Shading> shading{};
 };
 
 /// Renders each with `exact`, and automatically to 1e-4 and 1e-5, on the lattice where that holds it; every fourth in
@@ -65,14 +65,14 @@ void expect_random_cases_right(std::uint64_t seed, int cases, Make make) {
     if (!some.next()) continue;
     Random random(seed * 1000003 + static_cast<std::uint64_t>(number));
     const RandomCase c = make(random);
-    const reference::Reference reference(c.mesh, c.camera, size, c.function, scene::Emission::absorption, c.surfaces,
-                                         {}, c.shading);
+    const reference::Reference reference(c.mesh, c.camera, size, c.function, Emission::absorption, c.surfaces, {},
+                                         c.shading);
     for (const double bound : {2e-5, 1e-4, 1e-5}) {
-      RenderSettings settings;
+      Settings settings;
       settings.threads = 1;
       settings.use.lattice = number % 4 != 3;
       settings.surfaces = c.surfaces;
-      settings.shading = c.shading;
+      settings.mesh.shading = c.shading;
       settings.integrator.kind = bound == 2e-5 ? scene::IntegratorKind::exact : scene::IntegratorKind::automatic;
       settings.integrator.accuracy = bound;
       FrameStatistics statistics;

@@ -571,16 +571,6 @@ TEST(SessionSettings, FaultsNameTheSetting) {
   settings.threads = -1;
   EXPECT_NE(error_of([&] { Session(mesh, settings); }).find("threads"), std::string::npos);
   EXPECT_NE(error_of([&] { Session(grid, settings); }).find("threads"), std::string::npos);
-  settings = {};
-  settings.integrator.kind = IntegratorKind::partial;
-  EXPECT_NE(error_of([&] { Session(grid, settings); }).find("integrator"), std::string::npos);
-  settings = {};
-  settings.integrator.accuracy = 0;
-  EXPECT_EQ(error_of([&] { Session(mesh, settings); }), "`accuracy` 0: it must be positive");
-  EXPECT_EQ(error_of([&] { Session(grid, settings); }), "`accuracy` 0: it must be positive");
-  settings = {};
-  settings.grid.brick_size = 1;
-  EXPECT_EQ(error_of([&] { Session(grid, settings); }), "`brick_size` 1: it must be 2 to 65536 voxels");
   Session session(mesh);
   View view = view_of(mesh);
   view.camera.position.x = NAN;

@@ -11,6 +11,7 @@
 #include <random>
 
 #include "exchange/loopback_transport.hpp"
+#include "frame/mesh/render.hpp"
 #include "frame/render_sort_first.hpp"
 #include "reference/reference.hpp"
 #include "reference/small_meshes.hpp"
@@ -52,7 +53,7 @@ float alpha(const scene::Image& image, int x, int y) { return image.rgba[4 * ima
 
 Scene of_mesh(scene::TetMesh mesh, const scene::Camera& camera, const scene::TransferFunction& function) {
   const auto kept = std::make_shared<const scene::TetMesh>(std::move(mesh));
-  RenderSettings settings;
+  Settings settings;
   settings.threads = 2;
   Scene scene;
   scene.image = Renderer(*kept, settings).render(camera, size, function);
@@ -207,7 +208,7 @@ TEST(VerifyLooksAt, TiedPixels) {
   const scene::ImageSize odd{257, 257};
   const scene::TetMesh mesh = reference::box_of_tets(2, {0, -0.4, -0.4}, {0.8, 0.4, 0.4}, waves);
   const scene::TransferFunction function({{0, {1, 1, 1}, 3}});
-  RenderSettings settings;
+  Settings settings;
   const scene::Image image = Renderer(mesh, settings).render(camera, odd, function);
   const auto chosen =
       reference::choose_pixels(odd, looked_at, api::suspects(image, mesh, camera, function, settings, looked_at));
@@ -253,7 +254,7 @@ TEST(Verify, ACorruptedPictureFailsAndTheReasonIsNamed) {
   const scene::TetMesh mesh = reference::box_of_tets(4, glm::dvec3(-1), glm::dvec3(1), waves, 0.15);
   const scene::Camera camera = oblique(1.8);
   const scene::ImageSize small{96, 96};
-  RenderSettings settings;
+  Settings settings;
   scene::Image image = Renderer(mesh, settings).render(camera, small, haze());
   const auto good = api::verify(image, mesh, camera, haze(), settings, 300);
   EXPECT_TRUE(good.met());
@@ -283,14 +284,13 @@ TEST(Verify, LooksAtTheSamePixelsOnAnyNumberOfRanksAndThreads) {
         volume::RenderSettings settings;
         settings.threads = threads;
         volume::Renderer renderer(*source, settings);
-        SortFirstSettings balance;
-        balance.keep_error_bounds = true;
-        render_sort_first(transport, balance, jobs, function, renderer, [&](FinishedVolumeFrame frame) {
+        const auto choose = [&](const FinishedVolumeFrame& frame) {
           choices.push_back(reference::choose_pixels(
               {101, 67}, 500,
               api::suspects(frame.image, *source, jobs[0].camera, function, settings, frame.error_bounds, 500)));
           error_bounds.push_back(frame.error_bounds);
-        });
+        };
+        render_sort_first(transport, settings, jobs, function, renderer, choose, {.keep_uncertainty = true});
       });
   ASSERT_EQ(choices.size(), 4u);
   EXPECT_GT(*std::max_element(error_bounds[0].begin(), error_bounds[0].end()), 0.0f);

@@ -18,7 +18,6 @@ namespace tessera::frame::accuracy_test {
 namespace {
 
 using scene::Camera;
-using scene::Emission;
 using scene::ImageSize;
 using scene::ProjectionKind;
 using scene::TransferFunction;
@@ -117,7 +116,7 @@ TEST_P(Accuracy, ExactKeepsItsPromise) {
       const double thickness = std::array{0.002, 1.0, 1000.0}[n % 3];
       const Emission emission = n % 4 == 3 ? Emission::independent : Emission::absorption;
       ++n;
-      RenderSettings settings;
+      Settings settings;
       settings.integrator.kind = scene::IntegratorKind::exact;
       settings.emission = emission;
       const TransferFunction function = datasets::scaled(f.function, thickness);
@@ -138,7 +137,7 @@ TEST_P(Accuracy, RaysHitTheMeshWhereTheReferenceDoesAndAreAsLongInIt) {
   const scene::TetMesh mesh = GetParam().make();
   const double extinction = 0.25, diagonal = 3.4;
   const TransferFunction haze({{0, {1, 1, 1}, extinction}});
-  RenderSettings settings;
+  Settings settings;
   settings.integrator.kind = scene::IntegratorKind::exact;
   for (const NamedView& v : views()) {
     const scene::Image image = Renderer(mesh, settings).render(v.camera, size, haze);
@@ -158,8 +157,8 @@ TEST(AccuracyOfLanes, WhatTheyCannotTellIsRenderedInDoublePrecision) {
   const scene::TetMesh mesh = datasets::cube(6, 0.2);
   const Camera camera = view(ProjectionKind::orthographic, 1.4, {2.2, 1.4, 3}, {0, 0, 0});
   const auto expect_kept = [&](double accuracy, const TransferFunction& function, Emission emission,
-                               const scene::Surfaces& surfaces) {
-    RenderSettings settings;
+                               const Surfaces& surfaces) {
+    Settings settings;
     settings.integrator.accuracy = accuracy;
     settings.emission = emission;
     settings.surfaces = surfaces;
@@ -170,7 +169,7 @@ TEST(AccuracyOfLanes, WhatTheyCannotTellIsRenderedInDoublePrecision) {
     EXPECT_LE(reference::judge(image, truth, accuracy).max_error_not_excused, accuracy) << accuracy;
   };
   const TransferFunction ramp({{0, {0.1, 0.2, 0.9}, 0.2}, {1, {1, 0.6, 0.1}, 3}});
-  scene::Surfaces surface;
+  Surfaces surface;
   surface.iso = {{0.505, glm::dvec3(1, 0, 0), 0.4}};
   for (const double accuracy : {1e-6, 3e-6}) {
     expect_kept(accuracy, ramp, Emission::absorption, {});
@@ -182,7 +181,7 @@ TEST(AccuracyOfLanes, WhatTheyCannotTellIsRenderedInDoublePrecision) {
 }
 
 TEST(AccuracyAtSurfaces, AnEyeExactlyOnAVertexEdgeOrFaceSeesAllCells) {
-  RenderSettings settings;
+  Settings settings;
   settings.integrator.kind = scene::IntegratorKind::exact;
   const TransferFunction function = datasets::scaled(datasets::benchmark_transfer_function(), 2);
   for (const bool jittered : {false, true}) {

@@ -66,11 +66,11 @@ TEST(ClipPicture, IsThatOfRaysCutShort) {
     const scene::TransferFunction function =
         random.chance(0.5) ? datasets::smooth_knots(20, scene::scalar_range(mesh), random.power(-0.5, 2) / extent, 3)
                            : datasets::step_knots(10, scene::scalar_range(mesh), random.power(-0.5, 2) / extent, 3);
-    RenderSettings settings;
+    Settings settings;
     settings.integrator.kind = scene::IntegratorKind::exact;
     settings.use.lattice = number % 4 != 3;
     const scene::Image image = Renderer(cut, settings).render(camera, size, function);
-    const reference::Reference reference(mesh, camera, size, function, scene::Emission::absorption, {}, clip);
+    const reference::Reference reference(mesh, camera, size, function, Emission::absorption, {}, clip);
     const reference::Judgement judged = reference::judge(image, reference, promised_error);
     EXPECT_LE(judged.max_error_not_excused, promised_error)
         << "case " << number << ", " << words << ", at (" << judged.worst_x << ", " << judged.worst_y << ')';
@@ -100,10 +100,10 @@ TEST(ClipPicture, HoldsAlongTheAxes) {
       camera.projection = scene::ProjectionKind::orthographic;
       camera.parallel_scale = 17.0 / 32;  // 16 pixels are 0.5: planes go through their centres
       const scene::ImageSize odd{35, 34};
-      RenderSettings settings;
+      Settings settings;
       settings.integrator.kind = scene::IntegratorKind::exact;
       const scene::Image image = Renderer(cut, settings).render(camera, odd, function);
-      const reference::Reference reference(mesh, camera, odd, function, scene::Emission::absorption, {}, clip);
+      const reference::Reference reference(mesh, camera, odd, function, Emission::absorption, {}, clip);
       const reference::Judgement judged = reference::judge(image, reference, promised_error);
       EXPECT_LE(judged.max_error, promised_error)
           << "axis " << axis << ", at (" << judged.worst_x << ", " << judged.worst_y << ')';
@@ -126,7 +126,7 @@ TEST_P(ClippedData, IsWithinThePromise) {
   cells::select(cut, {clip}, counts, "mesh");
   ASSERT_FALSE(cut.tets.empty());
   EXPECT_GT(counts.cells_cut, 0u);
-  RenderSettings settings;
+  Settings settings;
   settings.integrator.kind = scene::IntegratorKind::exact;
   Renderer renderer(cut, settings);
   const scene::ImageSize wide{120, 90};
@@ -137,9 +137,9 @@ TEST_P(ClippedData, IsWithinThePromise) {
         extinction < 100 ? datasets::smooth_knots(40, scene::scalar_range(mesh), extinction / diagonal, 3)
                          : datasets::step_knots(20, scene::scalar_range(mesh), extinction / diagonal, 3);
     const scene::Image image = renderer.render(camera, wide, function);
-    const auto judged = reference::judge(
-        image, reference::Reference(mesh, camera, wide, function, scene::Emission::absorption, {}, clip),
-        promised_error, pixels);
+    const auto judged =
+        reference::judge(image, reference::Reference(mesh, camera, wide, function, Emission::absorption, {}, clip),
+                         promised_error, pixels);
     EXPECT_TRUE(judged.passed) << "extinction " << extinction << ": max " << judged.max_error << " at "
                                << judged.worst_x << ',' << judged.worst_y;
     std::printf("%s, extinction %g: largest error %.3g, %zu excused\n", GetParam(), extinction,
@@ -218,17 +218,17 @@ TEST(ClipPicture, OfVolumesIsThatOfRaysCutShort) {
         random.chance(0.5) ? datasets::smooth_knots(20, {0, 1}, random.power(-0.5, 2) / glm::length(extent), 3)
                            : datasets::step_knots(10, {0, 1}, random.power(-0.5, 2) / glm::length(extent), 3);
     volume::RenderSettings settings;
-    settings.method = volume::Method::exact;
+    settings.integrator.kind = IntegratorKind::exact;
     settings.clip = clip;
     settings.threads = 1;
-    if (random.chance(0.3)) settings.shading.emplace();
+    if (random.chance(0.3)) settings.grid.shading.emplace();
     const scene::Image image = volume::Renderer(source, settings).render(camera, size, function);
-    const reference::GridReference reference(source, camera, size, function, scene::Emission::absorption,
-                                             settings.shading, clip);
+    const reference::GridReference reference(source, camera, size, function, Emission::absorption,
+                                             settings.grid.shading, clip);
     const reference::Judgement judged = reference::judge(image, reference, 1e-5);
     EXPECT_LE(judged.max_error_not_excused, 1e-5)
         << "case " << number << ", kind " << kind << ", at (" << judged.worst_x << ", " << judged.worst_y << ')'
-        << (g.rectilinear() ? " rectilinear" : "") << (settings.shading ? " shaded" : "");
+        << (g.rectilinear() ? " rectilinear" : "") << (settings.grid.shading ? " shaded" : "");
     worst = std::max(worst, judged.max_error_not_excused), excused += judged.excused, pixels += judged.pixels_checked;
   }
   EXPECT_LE(static_cast<double>(excused), 1e-4 * static_cast<double>(pixels) + 3);

@@ -19,8 +19,7 @@ namespace {
 constexpr double promised_error = 2e-5;  // docs/ACCURACY.md: of exact
 constexpr scene::ImageSize size{40, 40};
 
-scene::TetMesh clipped(const scene::TetMesh& mesh, const std::vector<HalfSpace>& clip,
-                       const scene::Surfaces& surfaces) {
+scene::TetMesh clipped(const scene::TetMesh& mesh, const std::vector<HalfSpace>& clip, const Surfaces& surfaces) {
   scene::TetMesh cut = mesh;
   MeshCounts counts;
   scene::Selection selection{clip};
@@ -33,7 +32,7 @@ struct Clipping {
   scene::TetMesh mesh;
   std::vector<HalfSpace> clip;
   std::string words;
-  scene::Surfaces surfaces;
+  Surfaces surfaces;
 };
 
 Clipping random_clipping(Random& random) {
@@ -74,13 +73,12 @@ TEST(ClippedSurfaces, AreThoseOfRaysCutShort) {
     const auto [camera, extent] = random_view(random, cut);
     const scene::TransferFunction function =
         datasets::smooth_knots(20, scene::scalar_range(c.mesh), random.power(-1, 1) / extent, 3);
-    RenderSettings settings;
+    Settings settings;
     settings.integrator.kind = scene::IntegratorKind::exact;
     settings.use.lattice = number % 4 != 3;
     settings.surfaces = c.surfaces;
     const scene::Image image = Renderer(cut, settings).render(camera, size, function);
-    const reference::Reference reference(c.mesh, camera, size, function, scene::Emission::absorption, c.surfaces,
-                                         c.clip);
+    const reference::Reference reference(c.mesh, camera, size, function, Emission::absorption, c.surfaces, c.clip);
     const reference::Judgement judged = reference::judge(image, reference, promised_error);
     EXPECT_LE(judged.max_error_not_excused, promised_error)
         << "case " << number << ", " << c.words << ", at (" << judged.worst_x << ", " << judged.worst_y << ") of "

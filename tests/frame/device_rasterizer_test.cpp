@@ -209,29 +209,6 @@ TEST(DeviceRasterizer, TheCpuTakesOverWhereTheDeviceFails) {
   }
 }
 
-std::string error_of(const GlJobSetup& setup) {
-  try {
-    rendered(setup, small_cube());
-  } catch (const scene::Error& error) {
-    return error.code() == scene::ErrorCode::bad_input ? error.what() : "other code";
-  }
-  return "";
-}
-
-TEST(DeviceRasterizer, IsRefusedWhereACompositorHasNoneThatCan) {
-  GlJobSetup setup = on_device();
-  setup.backends = {};
-  EXPECT_NE(error_of(setup).find("it is for `compositor` gl-compute"), std::string::npos) << error_of(setup);
-  setup.backends = {Backend::cpu};
-  EXPECT_NE(error_of(setup).find("it is for `compositor` gl-compute"), std::string::npos) << error_of(setup);
-  setup.compositors = 2;
-  setup.backends = {Backend::osmesa, Backend::cpu};
-  EXPECT_NE(error_of(setup).find("name a device for each"), std::string::npos) << error_of(setup);
-  setup.backends = {Backend::osmesa};
-  setup.gl.method = compositor::GlMethod::fragment;
-  EXPECT_NE(error_of(setup).find("use gl-compute"), std::string::npos) << error_of(setup);
-}
-
 TEST(DeviceRasterizer, WhatIsNotThereIsTheCpusUnderAutomatic) {
   GlJobSetup setup = on_device(Backend::automatic);
   setup.software_will_do = false;

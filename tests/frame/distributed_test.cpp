@@ -51,8 +51,8 @@ TransferFunction six_knots() {
                            {1, {1, 1, 1}, 8}});
 }
 
-RenderSettings exact() {
-  RenderSettings settings;
+Settings exact() {
+  Settings settings;
   settings.integrator.kind = scene::IntegratorKind::exact;
   settings.threads = 1;
   settings.memory_bytes = 256ull << 20;
@@ -126,17 +126,17 @@ double difference(const Image& a, const Image& b) {
 std::vector<FinishedFrame> render(const Parts& parts, const Shape& shape, DistributedSettings settings,
                                   const std::vector<FrameJob>& jobs, const TransferFunction& function,
                                   double diagonal = 4, float longest_edge = 0) {
-  settings.share_memory = false;
+  settings.render.use.sharing = false;
   auto frames = render_once(parts, shape, settings, jobs, function, diagonal, longest_edge);
   if (shape.projectors < 2) return frames;
-  settings.share_memory = true;
+  settings.render.use.sharing = true;
   const auto shared = render_once(parts, shape, settings, jobs, function, diagonal, longest_edge);
   EXPECT_EQ(shared.size(), frames.size());
   for (std::size_t i = 0; i < std::min(shared.size(), frames.size()); ++i) {
     const Image &one = frames[i].image, &other = shared[i].image;
     EXPECT_EQ(one.rgba.size(), other.rgba.size());
     // Parts are rounded run by run.
-    if (settings.exchange == Exchange::segments && settings.render.rasterizer != Rasterizer::scanline)
+    if (settings.exchange == Exchange::segments && settings.render.mesh.rasterizer != Rasterizer::scanline)
       EXPECT_TRUE(same_bits(one, other)) << "frame " << i;
     else
       EXPECT_LE(difference(one, other), 2e-6) << "frame " << i;
@@ -174,7 +174,7 @@ TEST_P(AnyShape, SegmentsGiveTheBitsOfASingleProcessAndRunsAlmost) {
           DistributedSettings settings;
           settings.render = exact();
           settings.render.threads = threads;
-          settings.render.tile_size = 16;
+          settings.render.mesh.tile_size = 16;
           settings.exchange = Exchange::segments;
           const auto segments = render(numbered, shape, settings, {{camera, size}}, six_knots());
           ASSERT_EQ(segments.size(), 1u);
@@ -195,7 +195,7 @@ TEST(Distributed, SegmentsOfAPlateauAtAStepGiveTheBitsOfASingleProcess) {
     for (const bool lattice : {true, false}) {
       // In double precision only the last places of doubles need care.
       const scene::TetMesh mesh = plateau(1, places, lattice ? LastPlace::of_float : LastPlace::of_double, false, 11);
-      RenderSettings alone = exact();
+      Settings alone = exact();
       alone.use.lattice = lattice;
       for (const Camera& camera : {oblique(), inside()}) {
         const Image expected = Renderer(mesh, alone).render(camera, size, step_at(1, true));
@@ -218,7 +218,7 @@ TEST(Distributed, TuplesOfTheScanlineRasterizerGiveItsPictureOfASingleProcess) {
   const scene::TetMesh mesh = datasets::cube(8, 0.2);
   DistributedSettings settings;
   settings.render = exact();
-  settings.render.rasterizer = Rasterizer::scanline;
+  settings.render.mesh.rasterizer = Rasterizer::scanline;
   settings.render.integrator = {.kind = scene::IntegratorKind::sampled, .samples = 8};
   settings.exchange = Exchange::segments;
   const ImageSize size{90, 70};
@@ -319,7 +319,7 @@ TEST(Distributed, ProjectorsThatShareMemoryMakeEachTileOnce) {
   const std::vector<FrameJob> jobs{{oblique(), {96, 80}}};
   std::uint64_t runs[2];
   for (const bool shared : {false, true}) {
-    settings.share_memory = shared;
+    settings.render.use.sharing = shared;
     runs[shared ? 1 : 0] = render_once(parts, {4, 4, 4}, settings, jobs, six_knots(), 4, 0).at(0).statistics.fragments;
   }
   // Together they send finished pixels; scattered parts are several runs a pixel that shows something.
@@ -343,7 +343,7 @@ TEST(Distributed, TakesRanksWithoutCellsARankWithOneAndMoreCompositorsThanTiles)
   for (const int rank : {0, 1, 3, 5}) parts[static_cast<std::size_t>(rank)] = {};
   DistributedSettings settings;
   settings.render = exact();
-  settings.render.tile_size = 32;  // 4 tiles
+  settings.render.mesh.tile_size = 32;  // 4 tiles
   settings.exchange = Exchange::segments;
   for (const Shape& shape : {Shape{6, 6, 6}, Shape{15, 6, 9}}) {
     const auto frames = render(parts, shape, settings, {{oblique(), size}}, six_knots());
@@ -373,7 +373,7 @@ TEST(Distributed, FramesComeInOrderEachWithItsOwnViewAndSize) {
     DistributedSettings settings;
     settings.render = exact();
     settings.exchange = Exchange::segments;
-    settings.frames_in_flight = in_flight;
+    settings.render.ranks.frames_in_flight = in_flight;
     const auto frames = render(slices(mesh, 3), {5, 3, 2}, settings, jobs, six_knots());
     ASSERT_EQ(frames.size(), jobs.size());
     for (std::size_t i = 0; i < jobs.size(); ++i) {
@@ -401,7 +401,7 @@ TEST(Distributed, DeepTilesStreamThroughALittleMemoryWithoutDeadlock) {
       settings.render = exact();
       settings.render.memory_bytes = 24ull << 20;
       settings.render.threads = 3;
-      settings.render.tile_size = 16;
+      settings.render.mesh.tile_size = 16;
       settings.exchange = exchange;
       const auto frames = render(datasets::parts(mesh, 3, datasets::Partition::interleaved, 2), shape, settings,
                                  {{camera, size}, {camera, size}}, function);
@@ -433,7 +433,7 @@ TEST(Distributed, CellsThatOverlapBeyondMemoryAreSentOnce) {
     settings.render = exact();
     settings.render.memory_bytes = 96ull << 20;  // compositors hold a tile's runs, projectors not all its windows
     settings.render.threads = 2;
-    settings.render.tile_size = 8;
+    settings.render.mesh.tile_size = 8;
     const auto frames = render(datasets::parts(mesh, 2, partition, 2), {4, 2, 2}, settings, {{camera, size}}, function);
     ASSERT_EQ(frames.size(), 1u);
     EXPECT_GT(frames[0].statistics.tiles_split, 0u);

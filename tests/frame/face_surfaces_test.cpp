@@ -62,7 +62,7 @@ TEST(BoundarySurface, IsTheSidesOfACubeInTheFieldsColour) {
   scene::TetMesh mesh = datasets::cube(4);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) mesh.scalars[i] = mesh.positions[i].z / 2 + 0.5;
   const TransferFunction ramp({{0, {0, 0, 0}, 0}, {1, {1, 0.5, 0.25}, 0}});
-  scene::Surfaces surfaces;
+  Surfaces surfaces;
   surfaces.boundary = {{{}, 0.4}};
   const auto image =
       Renderer(mesh, exact(surfaces)).render(view(ProjectionKind::orthographic, {0, 0, 4}), {16, 16}, ramp);
@@ -79,7 +79,7 @@ TEST(BoundarySurface, OfCellDataHasEachCellsColour) {
   mesh.association = scene::Association::cell;
   mesh.scalars.assign(mesh.tets.size(), 0.25);
   const TransferFunction ramp({{0, {0, 0, 0}, 0}, {1, {1, 1, 1}, 0}});
-  scene::Surfaces surfaces;
+  Surfaces surfaces;
   surfaces.boundary = {{}};
   surfaces.light = even_light;
   const auto image =
@@ -88,7 +88,7 @@ TEST(BoundarySurface, OfCellDataHasEachCellsColour) {
 }
 
 TEST(TriangleSurface, LiesBetweenWhatIsBeforeAndBehindIt) {
-  scene::Surfaces surfaces;
+  Surfaces surfaces;
   surfaces.light = even_light;
   const scene::TetMesh mesh = datasets::cube(3, 0.2);
   for (const double z : {0.0, 0.5, 1.5, -1.5}) {
@@ -107,7 +107,7 @@ TEST(TriangleSurface, LiesBetweenWhatIsBeforeAndBehindIt) {
 }
 
 TEST(TriangleSurface, HasNoGapsAtItsEdgesAndNoneIsMetTwice) {
-  scene::Surfaces surfaces;
+  Surfaces surfaces;
   surfaces.light = even_light;
   // Pixel centres lie on the diagonal, and rows and columns of them on the sides of inner squares.
   std::vector<glm::dvec3> points;
@@ -144,14 +144,13 @@ TEST(BoundarySurface, OfCellsThatOverlapIsInTheOrderOfDepth) {
   }
   const scene::TetMesh mesh = datasets::merged(boxes);
   const TransferFunction two({{0, {1, 0, 0}, 0}, {1, {0, 1, 0}, 0}});
-  scene::Surfaces surfaces;
+  Surfaces surfaces;
   surfaces.light = even_light;
   surfaces.boundary = {{{}, 0.5}};
   const scene::Camera camera = view(ProjectionKind::orthographic, {0, 0, 4});
   const scene::ImageSize size{8, 8};
   const auto image = Renderer(mesh, exact(surfaces)).render(camera, size, two);
-  const auto truth =
-      reference::Reference(mesh, camera, size, two, scene::Emission::absorption, surfaces).pixel(4.5, 4.5);
+  const auto truth = reference::Reference(mesh, camera, size, two, Emission::absorption, surfaces).pixel(4.5, 4.5);
   // Green, red, green, red.
   const double red = 1. / 4 + 1. / 16, green = 1. / 2 + 1. / 8;
   EXPECT_NEAR(image.rgba[4 * image.index(4, 4)], red, 1e-6);
@@ -162,7 +161,7 @@ TEST(BoundarySurface, OfCellsThatOverlapIsInTheOrderOfDepth) {
 
 TEST(BoundarySurface, ThatTouchesItselfIsTheLimitOfShiftedRays) {
   const TransferFunction fog = grey_fog();
-  scene::Surfaces surfaces;
+  Surfaces surfaces;
   surfaces.boundary = {{glm::dvec3(1, 0, 0), 0.6}};
   scene::TetMesh all = datasets::cube(2, 0);
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
@@ -181,13 +180,13 @@ TEST(BoundarySurface, ThatTouchesItselfIsTheLimitOfShiftedRays) {
     for (glm::dvec3& p : shifted.positions) p.x -= 1e-6 * pixel, p.y += 1e-9 * pixel;
     const auto limit = Renderer(shifted, exact(surfaces)).render(camera, size, fog);
     for (std::size_t i = 0; i < image.rgba.size(); ++i) ASSERT_NEAR(image.rgba[i], limit.rgba[i], 1e-5) << seed;
-    const reference::Reference truth(mesh, camera, size, fog, scene::Emission::absorption, surfaces);
+    const reference::Reference truth(mesh, camera, size, fog, Emission::absorption, surfaces);
     EXPECT_LE(reference::judge(image, truth, promised_error).max_error_not_excused, promised_error) << seed;
   }
 }
 
 TEST(TriangleSurface, ThatCoincidesWithTheBoundaryComesFirstHoweverNearTheEyeItIs) {
-  scene::Surfaces surfaces;
+  Surfaces surfaces;
   surfaces.light = even_light;
   surfaces.boundary = {{glm::dvec3(0, 1, 0), 1}};
   surfaces.triangles = {{square(0.97, 1), glm::dvec3(1, 0, 0), 0.5}};
@@ -203,7 +202,7 @@ TEST(TriangleSurface, ThatCoincidesWithTheBoundaryComesFirstHoweverNearTheEyeItI
     camera.position.z = 1 + (0.5 + 0.05) * pixel / std::sqrt(1 + slope * slope);
     camera.focal_point = camera.position + glm::dvec3(0, 1, -slope);
     const auto image = Renderer(mesh, exact(surfaces)).render(camera, size, clear());
-    const reference::Reference reference(mesh, camera, size, clear(), scene::Emission::absorption, surfaces);
+    const reference::Reference reference(mesh, camera, size, clear(), Emission::absorption, surfaces);
     for (int x = 4; x < 36; ++x) {
       const int y = 20;
       EXPECT_NEAR(image.depth[image.index(x, y)], 0.05 * pixel / slope, 1e-8);
@@ -328,10 +327,10 @@ TEST(BoundarySurface, OfAClippedMeshHasTheCutFaces) {
     const auto [camera, extent] = random_view(random, cut);
     const TransferFunction function =
         datasets::smooth_knots(20, scene::scalar_range(mesh), random.power(-1, 1) / extent, 3);
-    scene::Surfaces surfaces;
+    Surfaces surfaces;
     surfaces.boundary = {{{}, random.uniform(0.2, 1)}};
     const auto image = Renderer(cut, exact(surfaces)).render(camera, size, function);
-    const reference::Reference reference(mesh, camera, size, function, scene::Emission::absorption, surfaces, clip);
+    const reference::Reference reference(mesh, camera, size, function, Emission::absorption, surfaces, clip);
     const auto judged = reference::judge(image, reference, promised_error);
     EXPECT_LE(judged.max_error_not_excused, promised_error)
         << "case " << number << ", " << words << ", at (" << judged.worst_x << ", " << judged.worst_y << ") of "
@@ -344,7 +343,7 @@ TEST(BoundarySurface, OfAClippedMeshHasTheCutFaces) {
 TEST(FaceSurfaces, ArePointsAmongDeepSamples) {
   const scene::ImageSize size{24, 24};
   const scene::TetMesh mesh = datasets::cube(5, 0.2);
-  scene::Surfaces surfaces;
+  Surfaces surfaces;
   surfaces.boundary = {{{}, 0.3}};
   surfaces.triangles = {{square(1.2, 0.1), {}, 0.5}};
   const scene::Camera camera = view(ProjectionKind::perspective, {2.9, 2.1, 4.3});
@@ -368,32 +367,6 @@ TEST(FaceSurfaces, ArePointsAmongDeepSamples) {
   }
 }
 
-TEST(FaceSurfaces, WhatCannotBeRenderedIsSaid) {
-  const auto message = [](const RenderSettings& settings) -> std::string {
-    try {
-      check_surfaces(settings, scene::Association::cell);
-    } catch (const scene::Error& error) {
-      return error.what();
-    }
-    return "";
-  };
-  scene::Surfaces surfaces;
-  surfaces.boundary = {{}};
-  surfaces.triangles = {{square(1, 0), {}, 1}};
-  EXPECT_EQ(message(exact(surfaces)), "");
-  RenderSettings scanline = exact(surfaces);
-  scanline.rasterizer = Rasterizer::scanline;
-  EXPECT_NE(message(scanline).find("planes"), std::string::npos);
-  surfaces.boundary[0].opacity = 1.5;
-  EXPECT_NE(message(exact(surfaces)).find("opacity 1.5"), std::string::npos);
-  surfaces.boundary.clear();
-  auto broken = std::make_shared<TriangleMesh>();
-  broken->points = {{0, 0, 0}, {1, 0, 0}};
-  broken->triangles = {{0, 1, 2}};
-  surfaces.triangles[0].mesh = broken;
-  EXPECT_NE(message(exact(surfaces)).find("uses point 2 of 2"), std::string::npos);
-}
-
 class RealMeshFaces : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(SharedData, RealMeshFaces, shared_meshes());
 
@@ -403,7 +376,7 @@ TEST_P(RealMeshFaces, KeepThePromise) {
   const auto range = scene::scalar_range(mesh);
   const scene::Box box = scene::bounds(mesh);
   const glm::dvec3 middle = (box.low + box.high) / 2.0, half = (box.high - box.low) * 0.6;
-  scene::Surfaces surfaces;
+  Surfaces surfaces;
   surfaces.boundary = {{{}, 0.3}};
   surfaces.triangles = {{triangles({middle - half, middle + glm::dvec3(half.x, -half.y, half.z), middle + half}),
                          glm::dvec3(1, 0.5, 0), 0.5}};
@@ -416,7 +389,7 @@ TEST_P(RealMeshFaces, KeepThePromise) {
     camera.projection = kind;
     camera.view_angle = 40;
     const auto image = Renderer(mesh, exact(surfaces)).render(camera, size, function);
-    const reference::Reference reference(mesh, camera, size, function, scene::Emission::absorption, surfaces);
+    const reference::Reference reference(mesh, camera, size, function, Emission::absorption, surfaces);
     const auto judgement = reference::judge(image, reference, promised_error, pixels);
     EXPECT_LE(judgement.max_error_not_excused, promised_error)
         << judgement.over_bound << " over, " << judgement.excused << " excused, at (" << judgement.worst_x << ", "

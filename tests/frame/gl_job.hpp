@@ -64,11 +64,13 @@ inline std::vector<FinishedFrame> rendered(const GlJobSetup& setup, const scene:
   DistributedSettings settings;
   settings.render.integrator.kind = setup.integrator;
   settings.render.integrator.samples = 5;
-  settings.render.rasterizer = setup.rasterizer;
+  settings.render.mesh.rasterizer = setup.rasterizer;
   settings.render.threads = 1;
-  settings.render.tile_size = setup.tile_size;
+  settings.render.mesh.tile_size = setup.tile_size;
   settings.exchange = setup.exchange;
-  settings.compositing_on = {setup.backends, setup.gl, setup.software_will_do};
+  settings.render.mesh.device = {.backends = setup.backends, .method = setup.gl.method, .half = setup.gl.half};
+  settings.gl = setup.gl;
+  settings.software_will_do = setup.software_will_do;
   settings.roles = assign_roles(ranks, setup.projectors, setup.compositors);
   std::vector<FinishedFrame> frames;
   exchange::run_ranks(ranks, [&](exchange::Transport& transport) {

@@ -30,7 +30,7 @@ scene::TransferFunction function() {
 }
 
 scene::Image rendered(const scene::TetMesh& mesh, bool lattice, FrameStatistics& statistics) {
-  RenderSettings settings;
+  Settings settings;
   settings.integrator.kind = scene::IntegratorKind::exact;
   settings.use.lattice = lattice;
   return Renderer(mesh, settings).render(camera(), size, function(), &statistics);

@@ -69,7 +69,7 @@ scene::TransferFunction function() {
 
 Method renderer(bool lattice) {
   return [lattice](const TetMesh& mesh, const View& view) {
-    RenderSettings settings;
+    Settings settings;
     settings.integrator.kind = scene::IntegratorKind::exact;
     settings.use.lattice = lattice;
     settings.threads = 1;

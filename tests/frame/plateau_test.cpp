@@ -27,7 +27,7 @@ scene::Camera view(ProjectionKind kind) {
 }
 
 void expect_promise(const scene::TetMesh& mesh, const scene::TransferFunction& function, bool lattice) {
-  RenderSettings settings;
+  Settings settings;
   settings.integrator.kind = scene::IntegratorKind::exact;
   settings.use.lattice = lattice;
   for (const ProjectionKind kind : {ProjectionKind::orthographic, ProjectionKind::perspective}) {
@@ -86,7 +86,7 @@ TEST(Plateau, BetweenTwoStepsTooCloseForTheLatticeGoesInDoublePrecision) {
     if (s >= low) s = beside(low, 2, LastPlace::of_double);
   mesh.scalars[0] = 1;
   expect_promise(mesh, function, false);
-  RenderSettings settings;
+  Settings settings;
   FrameStatistics statistics;
   Renderer(mesh, settings).render(view(ProjectionKind::orthographic), size, function, &statistics);
   EXPECT_FALSE(statistics.on_lattice);

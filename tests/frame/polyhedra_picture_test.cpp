@@ -76,7 +76,7 @@ TEST(PolyhedraPicture, IsThatOfTheBoxTheyFill) {
     counts += file.counts;
     const scene::Camera camera = random_camera(random);
     const scene::TransferFunction function = random_function(random);
-    RenderSettings settings;
+    Settings settings;
     settings.integrator.kind = scene::IntegratorKind::exact;
     settings.use.lattice = number % 4 != 3;
     const scene::Image image = Renderer(file.mesh, settings).render(camera, size, function);
@@ -117,7 +117,7 @@ TEST(PolyhedraPicture, OfCellDataIsThatOfTheCubesTheyAreMadeOf) {
                        {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)},
                        random.power(-1, 1)});
     const scene::TransferFunction function{knots};
-    RenderSettings settings;
+    Settings settings;
     settings.integrator.kind = scene::IntegratorKind::exact;
     const scene::Image image = Renderer(file.mesh, settings).render(camera, size, function);
     const reference::Judgement judgement =

@@ -38,8 +38,8 @@ class RealMesh : public testing::TestWithParam<const char*> {
     cameras.push_back(inside);
   }
 
-  static RenderSettings exact() {
-    RenderSettings settings;
+  static Settings exact() {
+    Settings settings;
     settings.integrator.kind = scene::IntegratorKind::exact;
     return settings;
   }

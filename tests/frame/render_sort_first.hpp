@@ -12,11 +12,11 @@ namespace tessera::frame {
 
 /// A list of pictures of one volume. Each rank calls this with the same arguments but for `done`, which runs on rank 0,
 /// in order. Throws the run's error, on every rank.
-inline void render_sort_first(exchange::Transport& transport, const SortFirstSettings& settings,
-                              std::span<const VolumeJob> jobs, const scene::TransferFunction& function,
-                              volume::Renderer& renderer, const std::function<void(FinishedVolumeFrame)>& done) {
+inline void render_sort_first(exchange::Transport& transport, const Settings& settings, std::span<const VolumeJob> jobs,
+                              const scene::TransferFunction& function, volume::Renderer& renderer,
+                              const std::function<void(FinishedVolumeFrame)>& done, const FrameSettings& frame = {}) {
   try {
-    SortFirst run(transport, settings);
+    SortFirst run(transport, settings, frame);
     for (std::size_t number = 0; number < jobs.size(); ++number)
       if (auto finished = run.render(renderer, function, jobs[number], number)) done(std::move(*finished));
   } catch (const scene::Error& error) {

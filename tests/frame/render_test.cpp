@@ -40,8 +40,8 @@ TransferFunction six_knots() {
                            {1, {1, 1, 1}, 8}});
 }
 
-RenderSettings exact() {
-  RenderSettings settings;
+Settings exact() {
+  Settings settings;
   settings.integrator.kind = scene::IntegratorKind::exact;
   return settings;
 }
@@ -51,7 +51,7 @@ bool same_bits(const Image& a, const Image& b) { return a.rgba == b.rgba && a.de
 TEST(Render, GivesTheSameBitsWithCornersOrderedBeforehand) {
   const scene::TetMesh mesh = datasets::cube(12, 0.2);
   scene::TetMesh ordered = mesh;
-  order_corners(ordered, exact());
+  order_corners(ordered, 1);
   ASSERT_NE(ordered.tets, mesh.tets);
   const ImageSize size{97, 61};
   EXPECT_TRUE(same_bits(Renderer(ordered, exact()).render(oblique(), size, six_knots()),
@@ -74,9 +74,9 @@ TEST(Render, GivesTheSameBitsForAnyThreadsTilesAndMemory) {
       for (const int tile : {1, 7, 32, 1024})
         for (const std::uint64_t memory : {64ull << 20, 8ull << 20}) {
           if (!some.next()) continue;
-          RenderSettings settings = exact();
+          Settings settings = exact();
           settings.threads = threads;
-          settings.tile_size = tile;
+          settings.mesh.tile_size = tile;
           settings.memory_bytes = memory;
           EXPECT_TRUE(same_bits(Renderer(mesh, settings).render(camera, size, six_knots()), expected))
               << threads << " threads, tile " << tile << ", memory " << memory;
@@ -84,9 +84,9 @@ TEST(Render, GivesTheSameBitsForAnyThreadsTilesAndMemory) {
   }
 }
 
-RenderSettings scanline() {
-  RenderSettings settings = exact();
-  settings.rasterizer = Rasterizer::scanline;
+Settings scanline() {
+  Settings settings = exact();
+  settings.mesh.rasterizer = Rasterizer::scanline;
   return settings;
 }
 
@@ -112,9 +112,9 @@ TEST(Render, ScanlineGivesTheSameBitsForAnyThreadsTilesAndMemory) {
       for (const int tile : {1, 7, 32, 1024})
         for (const std::uint64_t memory : {64ull << 20, 8ull << 20}) {
           if (!some.next()) continue;
-          RenderSettings settings = scanline();
+          Settings settings = scanline();
           settings.threads = threads;
-          settings.tile_size = tile;
+          settings.mesh.tile_size = tile;
           settings.memory_bytes = memory;
           EXPECT_TRUE(same_bits(Renderer(*m, settings).render(camera, size, six_knots()), expected))
               << threads << " threads, tile " << tile << ", memory " << memory;
@@ -129,12 +129,12 @@ TEST(Render, ScanlineIsPlanesToFloatRoundingWithEveryIntegrator) {
   for (const auto kind :
        {scene::IntegratorKind::exact, scene::IntegratorKind::sampled, scene::IntegratorKind::automatic})
     for (const scene::Emission emission : {scene::Emission::absorption, scene::Emission::independent}) {
-      RenderSettings settings = scanline();
+      Settings settings = scanline();
       settings.integrator.kind = kind;
       settings.integrator.samples = 8;
       settings.emission = emission;
       const Image paper = Renderer(mesh, settings).render(oblique(), size, six_knots());
-      settings.rasterizer = Rasterizer::planes;
+      settings.mesh.rasterizer = Rasterizer::planes;
       const Image ours = Renderer(mesh, settings).render(oblique(), size, six_knots());
       // Depths to 5e-7 each, colours and extinctions of up to 8 that change over scalars of 0.1.
       EXPECT_LT(largest_difference(paper, ours), 1e-5);
@@ -187,7 +187,7 @@ TEST(Render, AStackOfTwentyThousandThinCellsIsRightInBoundedMemory) {
   EXPECT_GT(reference.segments(12.5, 12.5).size(), 20000u);
   EXPECT_LT(reference::judge(roomy, reference, 2e-5).max_error, 2e-5);
 
-  RenderSettings settings = exact();
+  Settings settings = exact();
   settings.threads = 2;
   settings.memory_bytes = 24ull << 20;  // 80 pixels of 20,000 segments at 100 bytes would take 160 MB
   FrameStatistics statistics;
@@ -206,7 +206,7 @@ TEST(Render, OpaqueMatterIsRightAndTheSameInAnyTilesAndThreads) {
   const TransferFunction function(knots);
   const reference::Reference reference(mesh, oblique(), size, function);
   for (const double accuracy : {0.0, 1e-4}) {
-    RenderSettings settings = exact();
+    Settings settings = exact();
     if (accuracy > 0) {
       settings.integrator.kind = scene::IntegratorKind::automatic;
       settings.integrator.accuracy = accuracy;
@@ -217,7 +217,7 @@ TEST(Render, OpaqueMatterIsRightAndTheSameInAnyTilesAndThreads) {
     const double bound = accuracy > 0 ? accuracy : 2e-5;
     EXPECT_LT(reference::judge(image, reference, bound).max_error, bound);
     for (const int tile : {1, 7, 16}) {
-      settings.tile_size = tile;
+      settings.mesh.tile_size = tile;
       settings.threads = tile % 3 + 1;
       EXPECT_TRUE(same_bits(Renderer(mesh, settings).render(oblique(), size, function), image)) << "tile " << tile;
     }
@@ -275,8 +275,8 @@ TEST(Render, AnEyeFarAwayHoldsNoMoreSegmentsAlive) {
     Camera camera;
     camera.position = glm::dvec3(0.3, 0.2, 1) * distance;
     camera.parallel_scale = 1.8;
-    RenderSettings settings = exact();
-    settings.tile_size = 64;
+    Settings settings = exact();
+    settings.mesh.tile_size = 64;
     FrameStatistics statistics;
     Renderer(mesh, settings).render(camera, {64, 64}, six_knots(), &statistics);
     return statistics.max_segments_alive;
@@ -295,7 +295,7 @@ TEST(Render, ScalarsRoundedAlikeAllAlongARayStayWithinTheBound) {
       for (int i = 0; i < 256; ++i)
         knots.push_back({i / 255.0, glm::dvec3(i % 2, 0.5, 1 - i % 2), least + (i % 2) * (1 + least / 4)});
       const TransferFunction function(knots);
-      RenderSettings settings = exact();
+      Settings settings = exact();
       settings.emission = emission;
       for (const double value : {0.0013, 0.3333, 0.9017}) {
         scene::TetMesh mesh = datasets::cube(6, 0.2);
@@ -314,10 +314,7 @@ TEST(Render, ScalarsRoundedAlikeAllAlongARayStayWithinTheBound) {
 
 TEST(Render, RefusesWhatCannotBe) {
   const scene::TetMesh mesh = datasets::cube(4, 0);
-  RenderSettings settings = exact();
-  settings.tile_size = 0;
-  EXPECT_THROW(Renderer(mesh, settings), scene::Error);
-  settings = exact();
+  Settings settings = exact();
   settings.memory_bytes = 1000;
   EXPECT_THROW(Renderer(mesh, settings).render(oblique(), {8, 8}, six_knots()), scene::Error);
   Camera camera = oblique();

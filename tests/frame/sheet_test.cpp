@@ -37,7 +37,7 @@ TEST_P(Sheets, KeepTheirThicknessUnderWidePerspective) {
   const scene::TransferFunction function(
       {{low, {0.2, 0.4, 0.9}, sheet.extinction}, {high, {0.9, 0.5, 0.2}, 0.7 * sheet.extinction}});
   for (const double bound : {2e-5, 1e-5}) {
-    RenderSettings settings;
+    Settings settings;
     settings.integrator.kind = bound == 2e-5 ? scene::IntegratorKind::exact : scene::IntegratorKind::automatic;
     settings.integrator.accuracy = bound;
     const scene::Image image = Renderer(mesh, settings).render(camera, size, function);

@@ -44,8 +44,7 @@ std::vector<std::uint64_t> samples_of(const FinishedVolumeFrame& frame) {
   return samples;
 }
 
-std::vector<FinishedVolumeFrame> render(int ranks, const SortFirstSettings& settings,
-                                        const std::vector<VolumeJob>& jobs) {
+std::vector<FinishedVolumeFrame> render(int ranks, const Settings& settings, const std::vector<VolumeJob>& jobs) {
   const auto source = ball();
   std::vector<FinishedVolumeFrame> frames;
   exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
@@ -71,10 +70,10 @@ TEST(SortFirst, AnyNumberOfProcessesAndAnyBalanceGivesTheBitsOfOne) {
     for (const Balance balance : {Balance::learned, Balance::accurate, Balance::backface, Balance::splatting,
                                   Balance::previous, Balance::even}) {
       if (!some.next()) continue;
-      SortFirstSettings settings;
-      settings.balance = balance;
-      settings.resolution = ranks == 3 ? 1.0 : 0.5;
-      settings.measured = ranks == 6;
+      Settings settings;
+      settings.ranks.balance = balance;
+      settings.ranks.balance_resolution = ranks == 3 ? 1.0 : 0.5;
+      settings.ranks.balance_measured = ranks == 6;
       const auto frames = render(ranks, settings, jobs);
       ASSERT_EQ(frames.size(), jobs.size());
       for (std::size_t i = 0; i < jobs.size(); ++i) {
@@ -95,8 +94,8 @@ TEST(SortFirst, AnyNumberOfProcessesAndAnyBalanceGivesTheBitsOfOne) {
 
 TEST(SortFirst, EveryCounterIsThatOfAllRanksTogether) {
   // Without a pilot pass, whose bricks would be in memory already.
-  SortFirstSettings settings;
-  settings.balance = Balance::even;
+  Settings settings;
+  settings.ranks.balance = Balance::even;
   const std::vector<VolumeJob> jobs{orbit(1)[0]};
   const auto frames = render(3, settings, jobs);
   ASSERT_EQ(frames.size(), 1u);
@@ -135,8 +134,8 @@ TEST(SortFirst, LearnedBalanceSharesCountedSamplesInTheFirstFrameAndWhereRaysEnd
   const auto source = ball();
   const auto worst_of = [&](Balance balance) {
     double worst = 0;
-    SortFirstSettings settings;
-    settings.balance = balance;
+    Settings settings;
+    settings.ranks.balance = balance;
     exchange::run_ranks(6, [&](exchange::Transport& transport) {
       volume::RenderSettings render;
       render.threads = 1;
@@ -177,13 +176,13 @@ TEST(SortFirst, LearnedBalanceGoesByTheTimesOfTilesWhereViewsAreNear) {
 }
 
 TEST(SortFirst, WeightsShareTheWorkAndWrongOnesAreRefused) {
-  SortFirstSettings settings;
-  settings.weights = {3, 1};
+  Settings settings;
+  settings.ranks.balance_weights = {3, 1};
   const auto frames = render(2, settings, orbit(2));
   ASSERT_EQ(frames.size(), 3u);
   // A hundred pixels, edges on every fourth.
   for (const FinishedVolumeFrame& frame : frames) EXPECT_GT(frame.ranks[0].samples, 2 * frame.ranks[1].samples);
-  settings.weights = {1, 1, 1};
+  settings.ranks.balance_weights = {1, 1, 1};
   EXPECT_THROW(static_cast<void>(render(2, settings, orbit(1))), scene::Error);
 }
 

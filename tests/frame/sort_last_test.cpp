@@ -33,7 +33,6 @@ struct Case {
   scene::Camera camera;
   std::vector<scene::Knot> knots;
   volume::RenderSettings render;
-  SortLastSettings sort_last;
   int ranks = 1;
   std::string words;
   [[nodiscard]] scene::TransferFunction function() const { return scene::TransferFunction(knots); }
@@ -105,19 +104,19 @@ Case random_case(Random& random) {
   volume::RenderSettings& render = c.render;
   render.threads = 1;
   const int sizes[] = {5, 8, 16, 32};
-  render.brick_size = random.of(sizes);
+  render.grid.brick_size = random.of(sizes);
   const int method = random.below(3);
-  if (method == 0) render.method = volume::Method::exact;
-  render.accuracy = method == 1 ? 1e-5 : 1e-4;
-  if (random.chance(0.15)) render.emission = scene::Emission::independent;
-  if (!cell_data && render.emission == scene::Emission::absorption && random.chance(0.2)) render.shading.emplace();
+  if (method == 0) render.integrator.kind = IntegratorKind::exact;
+  render.integrator.accuracy = method == 1 ? 1e-5 : 1e-4;
+  if (random.chance(0.15)) render.emission = Emission::independent;
+  if (!cell_data && render.emission == Emission::absorption && random.chance(0.2)) render.grid.shading.emplace();
   if (!cell_data && random.chance(0.2))
     render.surfaces.iso.push_back({random.uniform(0.2, 0.8), std::nullopt, random.chance(0.5) ? 1.0 : 0.4});
   c.ranks = 1 + random.below(12);
-  if (random.chance(0.3)) c.sort_last.direct_send = DirectSend::synchronous;
+  if (random.chance(0.3)) c.render.ranks.direct_send = DirectSend::synchronous;
   std::ostringstream words;
-  words << c.ranks << " ranks, bricks of " << render.brick_size << (cell_data ? ", cell data" : "")
-        << (rectilinear ? ", rectilinear" : "") << (render.shading ? ", shaded" : "")
+  words << c.ranks << " ranks, bricks of " << render.grid.brick_size << (cell_data ? ", cell data" : "")
+        << (rectilinear ? ", rectilinear" : "") << (render.grid.shading ? ", shaded" : "")
         << (render.surfaces.empty() ? "" : ", a surface") << ", " << knots << " knots, method " << method;
   c.words = words.str();
   return c;
@@ -130,7 +129,7 @@ std::optional<FinishedVolumeFrame> render(const Case& c, scene::ImageSize size) 
     volume::RenderSettings render = c.render;
     render.parts = c.ranks;
     volume::Renderer renderer(*c.source, render, ranges);
-    SortLast run(transport, c.sort_last);
+    SortLast run(transport, c.render);
     if (auto frame = run.render(renderer, c.function(), {c.camera, size}, 0)) finished = std::move(frame);
   });
   return finished;
@@ -147,9 +146,9 @@ TEST(SortLast, PicturesAreWithinAccuracyInRandomCases) {
     const Case c = random_case(random);
     const auto frame = render(c, size);
     ASSERT_TRUE(frame);
-    const reference::GridReference truth(*c.source, c.camera, size, c.function(), c.render.emission, c.render.shading,
-                                         {}, c.render.surfaces);
-    const double bound = c.render.method == volume::Method::exact ? 1e-5 : c.render.accuracy;
+    const reference::GridReference truth(*c.source, c.camera, size, c.function(), c.render.emission,
+                                         c.render.grid.shading, {}, c.render.surfaces);
+    const double bound = c.render.integrator.kind == IntegratorKind::exact ? 1e-5 : c.render.integrator.accuracy;
     const auto judgement = reference::judge(frame->image, truth, bound, {}, 2);
     EXPECT_LE(judgement.max_error_not_excused, bound)
         << "case " << number << ", " << c.words << ": " << judgement.over_bound << " over at (" << judgement.worst_x
@@ -173,7 +172,7 @@ Case ball(int ranks) {
   c.camera.parallel_scale = 1.6;
   c.knots = {{0, {0.2, 0.4, 1}, 0.1}, {1, {1, 0.5, 0.2}, 5}};
   c.render.threads = 1;
-  c.render.brick_size = 16;
+  c.render.grid.brick_size = 16;
   c.ranks = ranks;
   return c;
 }
@@ -210,9 +209,9 @@ TEST(SortLast, EachProcessReadsItsOwnBricksAlone) {
     // A quarter of the bricks and no more than that.
     render.memory_bytes = 17 * 17 * 17 * 4 * (64 / 4 + 4);
     // Nor are others loaded ahead.
-    if (transport.rank() % 2 == 0) render.cache = volume::CachePolicy::proximity, render.preload_limit = 8;
+    if (transport.rank() % 2 == 0) render.grid.cache = CachePolicy::proximity, render.grid.preload_limit = 8;
     volume::Renderer renderer(part, render, ranges);
-    SortLast run(transport, c.sort_last);
+    SortLast run(transport, c.render);
     std::uint64_t loaded = 0, evicted = 0;
     for (std::size_t number = 0; number < 6; ++number) {
       const auto frame =
@@ -239,9 +238,7 @@ TEST(SortLast, CountersPartsAndTilesAreThoseOfTheWholePicture) {
   std::optional<FinishedVolumeFrame> finished;
   exchange::run_ranks(c.ranks, [&](exchange::Transport& transport) {
     volume::Renderer renderer(*c.source, c.render, ranges);
-    SortLastSettings settings;
-    settings.keep_error_bounds = true;
-    SortLast run(transport, settings);
+    SortLast run(transport, c.render, {.keep_uncertainty = true});
     scene::FrameWatch watch({}, [&](const scene::PixelRect& rect, const scene::Image& image) {
       for (int y = rect.y0; y < rect.y1; ++y)
         for (int x = rect.x0; x < rect.x1; ++x) {
@@ -278,7 +275,7 @@ TEST(SortLast, TheSameJobGivesTheSameBitsEitherWayItSends) {
   const auto first = render(c, {60, 50});
   c.render.threads = 3;
   const auto again = render(c, {60, 50});
-  c.sort_last.direct_send = DirectSend::synchronous;
+  c.render.ranks.direct_send = DirectSend::synchronous;
   const auto synchronous = render(c, {60, 50});
   ASSERT_TRUE(first && again && synchronous);
   for (const auto* other : {&again, &synchronous}) {
@@ -294,7 +291,7 @@ TEST(SortLast, AStopOnAnyRankEndsThePictureOnAllAndTheNextIsWhole) {
   std::optional<FinishedVolumeFrame> stopped, whole;
   exchange::run_ranks(c.ranks, [&](exchange::Transport& transport) {
     volume::Renderer renderer(*c.source, c.render, ranges);
-    SortLast run(transport, c.sort_last);
+    SortLast run(transport, c.render);
     std::stop_source stop;
     if (transport.rank() == 1) stop.request_stop();
     scene::FrameWatch watch(stop.get_token());

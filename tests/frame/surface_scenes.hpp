@@ -10,8 +10,8 @@
 /// What tests of surfaces in a cube [-1, 1]^3 share.
 namespace tessera::frame {
 
-inline RenderSettings exact(const scene::Surfaces& surfaces, bool lattice = true) {
-  RenderSettings settings;
+inline Settings exact(const Surfaces& surfaces, bool lattice = true) {
+  Settings settings;
   settings.integrator.kind = scene::IntegratorKind::exact;
   settings.surfaces = surfaces;
   settings.use.lattice = lattice;

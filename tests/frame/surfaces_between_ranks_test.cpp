@@ -168,7 +168,7 @@ TEST(RunsBetweenRanks, SayWhereCellsOverlap) {
     for (const bool lattice : {true, false}) {
       DistributedSettings settings;
       settings.exchange = Exchange::runs;
-      settings.share_memory = false;  // ranks of one machine have all cells of a tile else
+      settings.render.use.sharing = false;  // ranks of one machine have all cells of a tile else
       settings.render.use.lattice = lattice;
       std::vector<scene::TetMesh> parts{cube_at(0), cube_at(apart)};
       std::uint32_t number = 0;
@@ -192,7 +192,7 @@ TEST(SurfacesBetweenRanks, AreInDeepPicturesToo) {
   settings.render.surfaces = faces();
   settings.render.surfaces.iso = {{0.4, {}, 0.3}, {0.6, {}, 1}};
   settings.exchange = Exchange::segments;
-  settings.deep = true;
+  settings.frame.deep = true;
   FrameJob job{{}, {31, 23}, 0};
   job.camera.position = {3.1, 2.3, 4.2};
   scene::DeepImage expected;

@@ -38,7 +38,7 @@ scene::TetMesh ramp(double jitter) {
 
 TEST(IsoSurface, OfARampIsAPlaneLitByItsAngleAtTheDepthWhereTheFieldHasItsValue) {
   const scene::ImageSize size{24, 24};
-  scene::Surfaces surfaces;
+  Surfaces surfaces;
   surfaces.iso = {{0.625, glm::dvec3(0.5, 0.25, 0), 0.4}};
   for (const double jitter : {0.0, 0.2})  // without, the plane coincides with faces
     for (const bool lattice : {true, false}) {
@@ -63,7 +63,7 @@ TEST(IsoSurface, OfARampIsAPlaneLitByItsAngleAtTheDepthWhereTheFieldHasItsValue)
 
 TEST(IsoSurface, LiesBetweenWhatIsBeforeAndBehindIt) {
   const scene::ImageSize size{8, 8};
-  scene::Surfaces surfaces;
+  Surfaces surfaces;
   surfaces.iso = {{0.5, glm::dvec3(1, 0, 0), 1}};
   surfaces.light = {1, 0, 0, 1};
   const scene::TetMesh mesh = ramp(0.2);
@@ -80,7 +80,7 @@ TEST(IsoSurface, LiesBetweenWhatIsBeforeAndBehindIt) {
 
 TEST(IsoSurface, AtTheValueOfVerticesOfFacesAndOfWholeCellsIsMetOnce) {
   const scene::ImageSize size{33, 33};
-  scene::Surfaces surfaces;
+  Surfaces surfaces;
   surfaces.iso = {{0.5, glm::dvec3(1), 0.5}};
   surfaces.light = {1, 0, 0, 1};
   scene::TetMesh plateau = datasets::regular_split(8, 8, 8, glm::dvec3(0.25), glm::dvec3(-1));
@@ -101,7 +101,7 @@ TEST(IsoSurface, AtTheValueOfVerticesOfFacesAndOfWholeCellsIsMetOnce) {
 }
 
 TEST(IsoSurface, BeyondTheFieldsRangeOrOnlyOnTheBoundaryIsNone) {
-  scene::Surfaces surfaces;
+  Surfaces surfaces;
   surfaces.iso = {{-0.1, {}, 1}, {1.1, {}, 1}, {0, {}, 1}};
   const scene::TetMesh mesh = ramp(0);
   Renderer renderer(mesh, exact(surfaces, true));
@@ -109,9 +109,9 @@ TEST(IsoSurface, BeyondTheFieldsRangeOrOnlyOnTheBoundaryIsNone) {
   for (const float v : image.rgba) EXPECT_EQ(v, 0.0f);
 }
 
-scene::Surfaces random_surfaces(Random& random, const scene::TetMesh& mesh) {
+Surfaces random_surfaces(Random& random, const scene::TetMesh& mesh) {
   const auto range = scene::scalar_range(mesh);
-  scene::Surfaces surfaces;
+  Surfaces surfaces;
   const int n = 1 + random.below(random.chance(0.2) ? 30 : 5);
   for (int i = 0; i < n; ++i) {
     IsoSurface iso;
@@ -181,7 +181,7 @@ TEST(IsoSurface, RandomOnesKeepThePromise) { expect_random_cases_right(7, 200, r
 TEST(IsoSurface, ManyInACellKeepThePromiseOnEveryInstructionSet) {
   const scene::TetMesh mesh = datasets::cube(3, 0.2);
   const auto range = scene::scalar_range(mesh);
-  scene::Surfaces surfaces;
+  Surfaces surfaces;
   for (int i = 0; i < 40; ++i)
     surfaces.iso.push_back({range[0] + (range[1] - range[0]) * (i + 0.5) / 40, {}, 0.02 + 0.01 * (i % 5)});
   const scene::ImageSize size{36, 28};
@@ -191,7 +191,7 @@ TEST(IsoSurface, ManyInACellKeepThePromiseOnEveryInstructionSet) {
         surfaces.light.shininess = shininess;
         const auto camera = view(kind, {2.9, 2.1, 4.3});
         const auto image = Renderer(mesh, exact(surfaces, true)).render(camera, size, grey_fog());
-        const reference::Reference reference(mesh, camera, size, grey_fog(), scene::Emission::absorption, surfaces);
+        const reference::Reference reference(mesh, camera, size, grey_fog(), Emission::absorption, surfaces);
         const auto judgement = reference::judge(image, reference, promised_error);
         EXPECT_LE(judgement.max_error_not_excused, promised_error) << name << ", shininess " << shininess;
         EXPECT_EQ(judgement.excused, 0u) << name << ", shininess " << shininess;
@@ -204,12 +204,12 @@ TEST(IsoSurface, AtAPlateausLevelKeepsThePromise) {
     for (const int places : {0, 1, 16, 256, 10000})
       for (const bool lattice : {true, false}) {
         const scene::TetMesh mesh = plateau(0.7, places, kind, false, 3);
-        scene::Surfaces surfaces;
+        Surfaces surfaces;
         surfaces.iso = {{0.7, glm::dvec3(1, 0.5, 0), 0.5}, {beside(0.7, 1, kind), glm::dvec3(0, 0.5, 1), 0.3}};
         const auto camera = view(ProjectionKind::perspective, {2.9, 2.1, 4.3});
         const scene::ImageSize size{32, 24};
         const auto image = Renderer(mesh, exact(surfaces, lattice)).render(camera, size, grey_fog());
-        const reference::Reference reference(mesh, camera, size, grey_fog(), scene::Emission::absorption, surfaces);
+        const reference::Reference reference(mesh, camera, size, grey_fog(), Emission::absorption, surfaces);
         EXPECT_LE(reference::judge(image, reference, promised_error).max_error_not_excused, promised_error)
             << places << (kind == LastPlace::of_float ? " float" : " double") << (lattice ? " lattice" : "");
       }
@@ -218,7 +218,7 @@ TEST(IsoSurface, AtAPlateausLevelKeepsThePromise) {
 TEST(IsoSurface, IsAPointAmongDeepSamples) {
   const scene::ImageSize size{24, 24};
   const scene::TetMesh mesh = datasets::cube(5, 0.2);
-  scene::Surfaces surfaces;
+  Surfaces surfaces;
   surfaces.iso = {{0.4, glm::dvec3(1, 0.2, 0), 0.4}, {0.6, {}, 1}};
   const scene::Camera camera = view(ProjectionKind::perspective, {2.9, 2.1, 4.3});
   scene::DeepImage deep;
@@ -241,28 +241,6 @@ TEST(IsoSurface, IsAPointAmongDeepSamples) {
   }
 }
 
-TEST(IsoSurface, WhatCannotBeRenderedIsSaid) {
-  const auto message = [](const RenderSettings& settings, scene::Association association) -> std::string {
-    try {
-      check_surfaces(settings, association);
-    } catch (const scene::Error& error) {
-      return error.what();
-    }
-    return "";
-  };
-  scene::Surfaces surfaces;
-  surfaces.iso = {{0.5, {}, 1}};
-  EXPECT_EQ(message(exact(surfaces, true), scene::Association::point), "");
-  EXPECT_NE(message(exact(surfaces, true), scene::Association::cell).find("one value a cell"), std::string::npos);
-  RenderSettings scanline = exact(surfaces, true);
-  scanline.rasterizer = Rasterizer::scanline;
-  EXPECT_NE(message(scanline, scene::Association::point).find("planes"), std::string::npos);
-  surfaces.iso[0].opacity = 0;
-  EXPECT_NE(message(exact(surfaces, true), scene::Association::point).find("opacity 0"), std::string::npos);
-  surfaces.iso[0] = {std::nan(""), {}, 1};
-  EXPECT_NE(message(exact(surfaces, true), scene::Association::point).find("not finite"), std::string::npos);
-}
-
 class RealMeshSurfaces : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(SharedData, RealMeshSurfaces, shared_meshes());
 
@@ -274,7 +252,7 @@ TEST_P(RealMeshSurfaces, KeepThePromise) {
   if (mesh.association == scene::Association::cell) GTEST_SKIP() << "cell data";
   const auto range = scene::scalar_range(mesh);
   const auto value = [&](double part) { return range[0] + part * (range[1] - range[0]); };
-  scene::Surfaces surfaces;
+  Surfaces surfaces;
   for (int i = 1; i < 10; ++i) surfaces.iso.push_back({value(0.1 * i), {}, 0.1 * i});
   surfaces.iso.push_back({mesh.scalars[mesh.scalars.size() / 2], glm::dvec3(1, 0, 0), 0.5});
   const scene::ImageSize size{120, 90};
@@ -288,7 +266,7 @@ TEST_P(RealMeshSurfaces, KeepThePromise) {
       camera.projection = kind;
       camera.view_angle = 40;
       const auto image = Renderer(mesh, exact(surfaces, lattice)).render(camera, size, function);
-      const reference::Reference reference(mesh, camera, size, function, scene::Emission::absorption, surfaces);
+      const reference::Reference reference(mesh, camera, size, function, Emission::absorption, surfaces);
       const auto judgement = reference::judge(image, reference, promised_error, pixels);
       EXPECT_LE(judgement.max_error_not_excused, promised_error)
           << judgement.over_bound << " over, " << judgement.excused << " excused, at (" << judgement.worst_x << ", "

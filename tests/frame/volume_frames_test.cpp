@@ -44,8 +44,8 @@ std::vector<VolumeJob> turn() {
 enum class Way { first, last };
 
 std::unique_ptr<VolumeFrames> frames_of(Way way, exchange::Transport& transport) {
-  if (way == Way::first) return std::make_unique<SortFirst>(transport, SortFirstSettings{});
-  return std::make_unique<SortLast>(transport, SortLastSettings{});
+  if (way == Way::first) return std::make_unique<SortFirst>(transport, Settings{});
+  return std::make_unique<SortLast>(transport, Settings{});
 }
 
 /// Calls `work` on every rank with its renderer, its frames and the list.
@@ -55,7 +55,7 @@ void on_ranks(Way way, int ranks, const scene::SampleSource& source,
   exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
     volume::RenderSettings settings;
     settings.threads = 1;
-    settings.brick_size = 8;
+    settings.grid.brick_size = 8;
     settings.parts = way == Way::last ? ranks : 1;
     volume::Renderer renderer(source, settings, ranges);
     const auto frames = frames_of(way, transport);
@@ -203,7 +203,7 @@ TEST_P(VolumeLists, AFaultOnAnyRankEndsTheRunOnAll) {
       const Failing failing(*source);
       failing.left = transport.rank() == faulty ? 5 : 1000000;
       volume::RenderSettings settings;
-      settings.threads = 1, settings.brick_size = 8, settings.parts = GetParam() == Way::last ? 3 : 1;
+      settings.threads = 1, settings.grid.brick_size = 8, settings.parts = GetParam() == Way::last ? 3 : 1;
       volume::Renderer renderer(failing, settings, ranges);
       const auto frames = frames_of(GetParam(), transport);
       const VolumeCallbacks callbacks{[](FinishedVolumeFrame&&) {}, {}};

@@ -331,14 +331,5 @@ TEST(SegmentIntegrator, FindsWhereExtinctionBegins) {
   EXPECT_FALSE(integrator.first_visible(0.9, 0.9).has_value());
 }
 
-TEST(SegmentIntegrator, RefusesNumbersOutOfRange) {
-  const TransferFunction f({{0, {1, 1, 1}, 1}});
-  EXPECT_THROW(SegmentIntegrator(f, {IntegratorKind::sampled, 0, 0}, Emission::absorption), scene::Error);
-  EXPECT_THROW(SegmentIntegrator(f, {IntegratorKind::automatic, 0, -1}, Emission::absorption), scene::Error);
-  EXPECT_THROW(SegmentIntegrator(f, {.kind = IntegratorKind::preintegrated, .table_size = 7}, Emission::absorption),
-               scene::Error);
-  EXPECT_THROW(SegmentIntegrator(f, {IntegratorKind::partial}, Emission::independent), scene::Error);
-}
-
 }  // namespace
 }  // namespace tessera::integrals::segment_integrator_test

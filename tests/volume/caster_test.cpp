@@ -25,7 +25,7 @@ using namespace tests;  // small volumes and views
 
 /// Largest difference from double precision over pixels of a coarse lattice.
 double error_of(const scene::Image& image, const Volume& v, const scene::Camera& camera,
-                const scene::TransferFunction& function, scene::Emission emission = scene::Emission::absorption) {
+                const scene::TransferFunction& function, Emission emission = Emission::absorption) {
   const tests::DoubleCaster caster{v.grid.geometry, [&](auto i, auto j, auto k) { return v.at(i, j, k); }, function,
                                    emission};
   double worst = 0;
@@ -89,7 +89,7 @@ TEST(VolumeCaster, AutomaticMeetsItsAccuracyInNoise) {
   test::SomeCases some(5);
   for (const double accuracy : {1e-3, 1e-4, 1e-5}) {
     volume::RenderSettings s;
-    s.accuracy = accuracy;
+    s.integrator.accuracy = accuracy;
     for (const auto& function : {smooth_function(), sharp_function()}) {
       if (!some.next()) continue;
       EXPECT_LT(error_of(render(v, view("oblique"), function, s), v, view("oblique"), function), accuracy);
@@ -106,9 +106,9 @@ scene::TransferFunction bright_function(double light) {
 
 TEST(VolumeCaster, WhatFloatLanesCannotTellIsCastInDoublePrecision) {
   const Volume v = make_volume({13, 11, 9}, Field::noise);
-  const auto expect_kept = [&](double accuracy, const scene::TransferFunction& function, scene::Emission emission) {
+  const auto expect_kept = [&](double accuracy, const scene::TransferFunction& function, Emission emission) {
     volume::RenderSettings s;
-    s.accuracy = accuracy;
+    s.integrator.accuracy = accuracy;
     s.emission = emission;
     volume::RenderStatistics statistics;
     const scene::Image image = render(v, view("oblique"), function, s, &statistics);
@@ -117,9 +117,9 @@ TEST(VolumeCaster, WhatFloatLanesCannotTellIsCastInDoublePrecision) {
   };
   for (const double accuracy : {1e-6, 4e-6})
     for (const auto& function : {smooth_function(), sharp_function()})
-      expect_kept(accuracy, function, scene::Emission::absorption);
+      expect_kept(accuracy, function, Emission::absorption);
   // Light of hundreds, of which lanes keep 1e-6.
-  expect_kept(1e-4, bright_function(200), scene::Emission::independent);
+  expect_kept(1e-4, bright_function(200), Emission::independent);
 }
 
 TEST(VolumeCaster, EveryInstructionSetIsWithin1e5) {
@@ -144,7 +144,7 @@ TEST(VolumeCaster, CellDataAreConstantVoxels) {
 TEST(VolumeCaster, IndependentEmission) {
   const Volume v = make_volume({21, 18, 17}, Field::noise);
   volume::RenderSettings s = exact();
-  s.emission = scene::Emission::independent;
+  s.emission = Emission::independent;
   EXPECT_LT(
       error_of(render(v, view("oblique"), smooth_function(), s), v, view("oblique"), smooth_function(), s.emission),
       1e-5);
@@ -190,10 +190,10 @@ TEST(VolumeCaster, SameBitsForAnyBricksThreadsAndCache) {
       for (const int threads : {1, 2}) {
         if (!some.next()) continue;
         volume::RenderSettings s;
-        s.brick_size = brick, s.threads = threads;
+        s.grid.brick_size = brick, s.threads = threads;
         EXPECT_TRUE(same_bits(render(v, view(name), sharp_function(), s), image)) << name << ' ' << brick;
         s.memory_bytes = static_cast<std::uint64_t>(4 * std::pow(brick + 1, 3)) * 3;
-        s.cache = brick % 2 == 0 ? volume::CachePolicy::proximity : volume::CachePolicy::lru;
+        s.grid.cache = brick % 2 == 0 ? CachePolicy::proximity : CachePolicy::lru;
         volume::RenderStatistics statistics;
         EXPECT_TRUE(same_bits(render(v, view(name), sharp_function(), s, &statistics), image)) << name << ' ' << brick;
         EXPECT_LE(statistics.peak_bytes, s.memory_bytes);
@@ -239,7 +239,7 @@ TEST(VolumeCaster, InvisibleBricksAreNotLoaded) {
   v.source = scene::MemorySource::of(v.grid, v.values);
   const scene::TransferFunction function({{0.5, {1, 1, 1}, 0}, {1, {1, 1, 1}, 3}});
   volume::RenderSettings s;
-  s.brick_size = 16;
+  s.grid.brick_size = 16;
   volume::RenderStatistics statistics;
   EXPECT_LT(error_of(render(v, view("oblique"), function, s, &statistics), v, view("oblique"), function), 1e-4);
   EXPECT_EQ(statistics.bricks_total, 64u);
@@ -260,13 +260,13 @@ TEST(VolumeCaster, AHomogeneousBoxFollowsBeerAndLambert) {
 }
 
 /// Largest error of RGBA over a coarse lattice of pixels, at falling steps.
-std::vector<double> errors_of(volume::Method method, const Volume& v, const scene::TransferFunction& function,
+std::vector<double> errors_of(IntegratorKind method, const Volume& v, const scene::TransferFunction& function,
                               std::initializer_list<double> steps) {
   const scene::Image truth = render(v, view("perspective"), function, exact());
   std::vector<double> errors;
   for (const double step : steps) {
     volume::RenderSettings s;
-    s.method = method, s.step = step;
+    s.integrator.kind = method, s.grid.step = step;
     const scene::Image image = render(v, view("perspective"), function, s);
     double sum = 0;
     for (std::size_t n = 0; n < image.rgba.size(); ++n) sum += std::pow(double(image.rgba[n]) - truth.rgba[n], 2);
@@ -277,7 +277,7 @@ std::vector<double> errors_of(volume::Method method, const Volume& v, const scen
 
 TEST(VolumeCaster, SampledConvergesWithTheSquareOfTheStep) {
   const Volume v = make_volume({37, 30, 26}, Field::smooth);
-  const auto e = errors_of(volume::Method::sampled, v, smooth_function(), {1, 0.5, 0.25, 0.125});
+  const auto e = errors_of(IntegratorKind::sampled, v, smooth_function(), {1, 0.5, 0.25, 0.125});
   // Second order where a step crosses neither knot nor voxel face; those that do spread it a little.
   for (std::size_t n = 1; n < e.size(); ++n) EXPECT_GT(e[n - 1] / e[n], 3) << e[n];
   EXPECT_LT(e.back(), 1e-4);
@@ -285,21 +285,21 @@ TEST(VolumeCaster, SampledConvergesWithTheSquareOfTheStep) {
 
 TEST(VolumeCaster, PreintegratedIsBetterThanSampledWhereTheFunctionIsSharp) {
   const Volume v = make_volume({37, 30, 26}, Field::smooth);
-  const auto table = errors_of(volume::Method::preintegrated, v, sharp_function(), {1, 0.5, 0.25});
-  const auto samples = errors_of(volume::Method::sampled, v, sharp_function(), {1, 0.5, 0.25});
+  const auto table = errors_of(IntegratorKind::preintegrated, v, sharp_function(), {1, 0.5, 0.25});
+  const auto samples = errors_of(IntegratorKind::sampled, v, sharp_function(), {1, 0.5, 0.25});
   for (std::size_t n = 0; n < table.size(); ++n) EXPECT_LT(5 * table[n], samples[n]) << table[n];
-  const auto smooth = errors_of(volume::Method::preintegrated, v, smooth_function(), {1, 0.5, 0.25});
+  const auto smooth = errors_of(IntegratorKind::preintegrated, v, smooth_function(), {1, 0.5, 0.25});
   for (std::size_t n = 1; n < smooth.size(); ++n) EXPECT_GT(smooth[n - 1] / smooth[n], 2.5) << smooth[n];
 }
 
 TEST(VolumeCaster, SteppingHasTheSameBitsForAnyBricksThreadsAndCache) {
   const Volume v = make_volume({37, 30, 65}, Field::smooth);
-  for (const auto method : {volume::Method::sampled, volume::Method::preintegrated}) {
+  for (const auto method : {IntegratorKind::sampled, IntegratorKind::preintegrated}) {
     volume::RenderSettings s;
-    s.method = method, s.step = 1.7;
+    s.integrator.kind = method, s.grid.step = 1.7;
     const scene::Image image = render(v, view("inside"), sharp_function(), s);
     for (const int brick : {2, 11, 64}) {
-      s.brick_size = brick, s.threads = brick % 3;
+      s.grid.brick_size = brick, s.threads = brick % 3;
       s.memory_bytes = static_cast<std::uint64_t>(4 * std::pow(brick + 1, 3)) * 4;
       EXPECT_TRUE(same_bits(render(v, view("inside"), sharp_function(), s), image)) << brick;
     }
@@ -321,12 +321,12 @@ TEST(VolumeCaster, ShadingOfALinearFieldFollowsBlinnAndPhong) {
     for (const bool camera_light : {true, false}) {
       volume::RenderSettings s = exact();
       const scene::Image plain = render(v, view(name), smooth_function(), s);
-      s.shading = scene::Shading{0.3, 0.6, 0.4, 9, {0.4, -0.3, 0.8}, camera_light};
+      s.grid.shading = Shading{0.3, 0.6, 0.4, 9, {0.4, -0.3, 0.8}, camera_light};
       const scene::Image shaded = render(v, view(name), smooth_function(), s);
       const scene::Camera camera = view(name);
       const scene::ViewBasis basis = scene::view_basis(camera);
       const bool perspective = camera.projection == scene::ProjectionKind::perspective;
-      const glm::dvec3 l0 = glm::normalize(s.shading->to_light);
+      const glm::dvec3 l0 = glm::normalize(s.grid.shading->to_light);
       const glm::dvec3 l = camera_light ? basis.right * l0.x + basis.up * l0.y - basis.forward * l0.z : l0;
       const glm::dvec3 normal = glm::normalize(gradient);
       double worst = 0;
@@ -369,9 +369,9 @@ TEST(BrickCache, TheLastBrickOf2048CubedIsFound) {
   grid.geometry.points = {side, side, side};
   grid.type = scene::SampleType::uint8;
   const scene::MemorySource source(grid, {owner.get(), bytes}, owner, "large");
-  const volume::BrickLayout layout(source.geometry(), 32, volume::EdgeBricks::variable);
+  const volume::BrickLayout layout(source.geometry(), 32, EdgeBricks::variable);
   ASSERT_EQ(layout.count(), 64u * 64u * 64u);
-  volume::BrickCache cache(source, layout, 1 << 20, volume::CachePolicy::lru);
+  volume::BrickCache cache(source, layout, 1 << 20, CachePolicy::lru);
   const auto sample = [&](std::int64_t i, std::int64_t j, std::int64_t k) {
     const auto brick = static_cast<std::size_t>(i / 32 + 64 * (j / 32 + 64 * (k / 32)));
     const scene::SampleBox box = layout.box(layout.place(brick));

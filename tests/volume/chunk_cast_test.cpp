@@ -91,12 +91,12 @@ double difference(const scene::Image& a, const scene::Image& b) {
   return worst;
 }
 
-volume::RenderSettings with(volume::Method method, bool shaded = false) {
+volume::RenderSettings with(IntegratorKind method, bool shaded = false) {
   volume::RenderSettings s;
-  s.method = method;
-  s.step = 0.7;
+  s.integrator.kind = method;
+  s.grid.step = 0.7;
   s.threads = 2;
-  if (shaded) s.shading = scene::Shading{};
+  if (shaded) s.grid.shading = Shading{};
   return s;
 }
 
@@ -115,7 +115,7 @@ TEST(ChunkCast, FragmentsOfChunksCompositedGiveThePicture) {
       const scene::Image whole = render(v, camera, function, exact());
       for (const scene::GridIndex& sides : chunk_sizes(v.grid.geometry.voxels())) {
         Composite sink(size);
-        cast_apart(v, with(volume::Method::exact), camera, function,
+        cast_apart(v, with(IntegratorKind::exact), camera, function,
                    boxes_front_to_back(v.grid.geometry, sides, camera), sink);
         // Rounding of places where rays go from chunk to chunk, and of what they let through: a few last places of 1.
         EXPECT_LT(difference(sink.image, whole), 1e-6) << name << ", chunks of " << sides[0] << ' ' << sides[1];
@@ -131,7 +131,7 @@ TEST(ChunkCast, EveryInstructionSetCastsChunks) {
   tests::for_each_instruction_set([&](const char* name) {
     const scene::Image whole = render(v, camera, sharp_function(), exact());
     Composite sink(size);
-    cast_apart(v, with(volume::Method::exact), camera, sharp_function(),
+    cast_apart(v, with(IntegratorKind::exact), camera, sharp_function(),
                boxes_front_to_back(v.grid.geometry, {13, 7, 11}, camera), sink);
     EXPECT_LT(difference(sink.image, whole), 1e-6) << name;
   });
@@ -151,9 +151,9 @@ TEST(ChunkCast, CellDataShadingAndSamplesGoInChunksToo) {
         EXPECT_LT(difference(sink.image, whole), 1e-6) << what << ' ' << name << ' ' << sides[0];
       }
     };
-    check(cells, with(volume::Method::exact), "cell data");
-    check(points, with(volume::Method::exact, true), "shaded");
-    check(points, with(volume::Method::sampled), "sampled");
+    check(cells, with(IntegratorKind::exact), "cell data");
+    check(points, with(IntegratorKind::exact, true), "shaded");
+    check(points, with(IntegratorKind::sampled), "sampled");
   }
 }
 
@@ -161,10 +161,10 @@ TEST(ChunkCast, PreintegrationGoesOnFromTheRaysState) {
   const Volume v = make_volume({37, 30, 36}, Field::smooth);
   const auto check = [&](const char* name, const scene::TransferFunction& function, double most) {
     const scene::Camera camera = view(name);
-    const scene::Image whole = render(v, camera, function, with(volume::Method::preintegrated));
+    const scene::Image whole = render(v, camera, function, with(IntegratorKind::preintegrated));
     for (const scene::GridIndex& sides : chunk_sizes(v.grid.geometry.voxels())) {
       Composite sink(size);
-      cast_on(v, with(volume::Method::preintegrated), camera, function,
+      cast_on(v, with(IntegratorKind::preintegrated), camera, function,
               boxes_front_to_back(v.grid.geometry, sides, camera), true, sink);
       EXPECT_LT(difference(sink.image, whole), most) << name << ' ' << sides[0];
     }
@@ -196,10 +196,10 @@ TEST(ChunkCast, RectilinearGridsGoInChunksToo) {
       if (!some.next()) continue;
       const std::vector<VoxelBox> chunks = boxes_front_to_back(v.grid.geometry, sides, camera);
       Composite sink(size);
-      cast_apart(v, with(volume::Method::exact), camera, smooth_function(), chunks, sink);
+      cast_apart(v, with(IntegratorKind::exact), camera, smooth_function(), chunks, sink);
       EXPECT_LT(difference(sink.image, whole), 1e-6) << name << ' ' << sides[0];
       EXPECT_TRUE(sink.in_order) << name << ' ' << sides[0];
-      EXPECT_LT(difference(image_of(v, with(volume::Method::exact), camera, smooth_function(), chunks), whole), 1e-6);
+      EXPECT_LT(difference(image_of(v, with(IntegratorKind::exact), camera, smooth_function(), chunks), whole), 1e-6);
     }
   }
 }
@@ -212,7 +212,7 @@ TEST(ChunkCast, RaysThatAreNotSureAreCastAgainWithinTheirChunk) {
   volume::RenderStatistics statistics;
   const scene::Image whole = render(v, camera, steps, exact(), &statistics);
   ASSERT_GT(statistics.pixels_again, 0u);
-  volume::Renderer renderer(*v.source, with(volume::Method::exact));
+  volume::Renderer renderer(*v.source, with(IntegratorKind::exact));
   ChunkCast cast(renderer, camera, size, steps);
   Composite sink(size);
   for (const VoxelBox& chunk : boxes_front_to_back(v.grid.geometry, {11, 18, 17}, camera)) {
@@ -241,19 +241,19 @@ TEST(ChunkCast, ARayThatGoesOnHasTheBitsOfOneInOneGo) {
                             render(v, camera, sharp_function(), settings)))
           << what << ' ' << name;
     };
-    check(points, with(volume::Method::exact), "exact");
-    check(points, with(volume::Method::automatic), "automatic");
-    check(points, with(volume::Method::exact, true), "shaded");
-    check(points, with(volume::Method::sampled), "sampled");
-    check(points, with(volume::Method::preintegrated), "preintegrated");
-    check(cells, with(volume::Method::exact), "cell data");
+    check(points, with(IntegratorKind::exact), "exact");
+    check(points, with(IntegratorKind::automatic), "automatic");
+    check(points, with(IntegratorKind::exact, true), "shaded");
+    check(points, with(IntegratorKind::sampled), "sampled");
+    check(points, with(IntegratorKind::preintegrated), "preintegrated");
+    check(cells, with(IntegratorKind::exact), "cell data");
   }
 }
 
 TEST(ChunkCast, AChunkOfAllIsTheDefaultFrame) {
   const Volume v = make_volume({37, 30, 26}, Field::noise);
   for (const char* name : views)
-    EXPECT_TRUE(same_bits(image_of(v, with(volume::Method::automatic), view(name), smooth_function(),
+    EXPECT_TRUE(same_bits(image_of(v, with(IntegratorKind::automatic), view(name), smooth_function(),
                                    {VoxelBox::all_of(v.grid.geometry)}),
                           render(v, view(name), smooth_function())))
         << name;
@@ -265,9 +265,9 @@ TEST(ChunkCast, ClosedRaysDoNoMoreWorkAndKeepWhatTheyHave) {
   const scene::Camera camera = view("oblique");
   const std::vector<VoxelBox> chunks = boxes_front_to_back(v.grid.geometry, {36, 29, 16}, camera);
   ASSERT_GT(chunks.size(), 2u);
-  const scene::Image first = image_of(v, with(volume::Method::exact), camera, smooth_function(), {chunks[0]}),
-                     all = image_of(v, with(volume::Method::exact), camera, smooth_function(), chunks);
-  volume::Renderer renderer(*v.source, with(volume::Method::exact));
+  const scene::Image first = image_of(v, with(IntegratorKind::exact), camera, smooth_function(), {chunks[0]}),
+                     all = image_of(v, with(IntegratorKind::exact), camera, smooth_function(), chunks);
+  volume::Renderer renderer(*v.source, with(IntegratorKind::exact));
   ChunkCast cast(renderer, camera, size, smooth_function());
   cast.advance(chunks[0]);
   for (int y = 0; y < size.height; ++y)
@@ -317,7 +317,7 @@ TEST(ChunkCast, RaysEndEarlyInWhateverChunks) {
   render(v, camera, opaque, endless, &to_the_end);
   ASSERT_LT(3 * in_one.samples, to_the_end.samples);  // 3.5 with AVX2, above 4 with AVX-512
   for (const bool emit_each : {false, true}) {
-    volume::Renderer renderer(*v.source, with(volume::Method::exact));
+    volume::Renderer renderer(*v.source, with(IntegratorKind::exact));
     ChunkCast cast(renderer, camera, size, opaque);
     Composite sink(size);
     std::size_t needed = 0;
@@ -347,7 +347,7 @@ TEST(ChunkCast, WhatGetsThroughAfterAChunkIsTheLightThatIsLeft) {
   const scene::Camera light = view("along z");
   const scene::TransferFunction function({{0, {1, 1, 1}, 2}});
   for (const bool emit_each : {false, true}) {
-    volume::Renderer renderer(*v.source, with(volume::Method::exact));
+    volume::Renderer renderer(*v.source, with(IntegratorKind::exact));
     ChunkCast cast(renderer, light, size, function);
     Composite sink(size);
     double depth = 0;
@@ -384,8 +384,8 @@ class PartOfVolume final : public scene::SampleSource {
 
 TEST(ChunkCast, AChunkReadsItsOwnBricksAlone) {
   const Volume v = make_volume({49, 49, 49}, Field::noise);
-  volume::RenderSettings settings = with(volume::Method::exact);
-  settings.brick_size = 16;
+  volume::RenderSettings settings = with(IntegratorKind::exact);
+  settings.grid.brick_size = 16;
   const auto ranges = std::make_shared<const volume::CellRanges>(*v.source, 1);
   for (const char* name : {"oblique", "from -x", "inside"})
     for (const VoxelBox& chunk : boxes_front_to_back(v.grid.geometry, {16, 16, 32}, view(name))) {
@@ -403,7 +403,7 @@ TEST(ChunkCast, AChunkReadsItsOwnBricksAlone) {
 
 TEST(ChunkCast, StopsAndRefusesWhatIsNoChunk) {
   const Volume v = make_volume({21, 18, 17}, Field::noise);
-  volume::Renderer renderer(*v.source, with(volume::Method::exact));
+  volume::Renderer renderer(*v.source, with(IntegratorKind::exact));
   ChunkCast cast(renderer, view("oblique"), size, smooth_function());
   EXPECT_THROW(cast.advance({{0, 0, 0}, {21, 17, 16}}), scene::Error) << "21 samples are 20 voxels";
   EXPECT_THROW(cast.advance({{-1, 0, 0}, {20, 17, 16}}), scene::Error);

@@ -77,7 +77,7 @@ const std::vector<scene::Knot> sharp{
 
 volume::RenderSettings automatic(double accuracy) {
   volume::RenderSettings settings;
-  settings.accuracy = accuracy;
+  settings.integrator.accuracy = accuracy;
   return settings;
 }
 
@@ -114,7 +114,7 @@ TEST(GridStress, RaysThatTouchAStepAreCastAgain) {
       for (int x = 0; x < all.width; ++x) pixels.push_back({x, y});
     for (const bool exact : {false, true}) {
       volume::RenderSettings settings = automatic(1e-4);
-      if (exact) settings.method = volume::Method::exact;
+      if (exact) settings.integrator.kind = IntegratorKind::exact;
       const double bound = exact ? 1e-5 : 1e-4;
       volume::RenderStatistics statistics;
       const scene::Image image = volume::Renderer(*source, settings).render(camera, all, function, &statistics);
@@ -123,7 +123,7 @@ TEST(GridStress, RaysThatTouchAStepAreCastAgain) {
       EXPECT_GT(statistics.pixels_again, 0u);
       EXPECT_LT(statistics.pixels_again, pixels.size());
 
-      settings.brick_size = 3, settings.threads = 1;
+      settings.grid.brick_size = 3, settings.threads = 1;
       const scene::Image other = volume::Renderer(*source, settings).render(camera, all, function);
       EXPECT_EQ(other.rgba, image.rgba);
       EXPECT_EQ(other.depth, image.depth);
@@ -158,7 +158,7 @@ TEST(GridStress, SpacingsOfOneToAThousandKeepTheAccuracy) {
 TEST(GridStress, BricksOfTwoVoxelsInACacheOfFewAreRight) {
   const auto source = volume_of({14, 11, 9}, {1, 1.5, 0.5}, noise());
   volume::RenderSettings settings = automatic(1e-4);
-  settings.brick_size = 2;
+  settings.grid.brick_size = 2;
   settings.memory_bytes = 1 << 14;
   for (const auto& knots : {smooth, sharp})
     for (const scene::Camera& camera : views_of(*source))
@@ -175,9 +175,9 @@ TEST(GridStress, PreintegratedStepsOfTenVoxelsSeeALinearFieldAsItIs) {
       const auto function = function_of(knots, *source);
       for (const double step : {0.5, 10.0, 1000.0}) {
         volume::RenderSettings settings;
-        settings.method = volume::Method::preintegrated;
-        settings.step = step;
-        settings.brick_size = 4;
+        settings.integrator.kind = IntegratorKind::preintegrated;
+        settings.grid.step = step;
+        settings.grid.brick_size = 4;
         // What the table's own resolution leaves: linear between its entries.
         EXPECT_LE(error_of(*source, camera, function, settings, 4e-3), 4e-3) << step;
       }
@@ -191,8 +191,8 @@ TEST(GridStress, SampledStepsOfTenVoxelsSeeAConstantFieldAsItIs) {
   for (const scene::Camera& camera : views_of(*source))
     for (const double step : {0.3, 10.0, 1000.0}) {
       volume::RenderSettings settings;
-      settings.method = volume::Method::sampled;
-      settings.step = step;
+      settings.integrator.kind = IntegratorKind::sampled;
+      settings.grid.step = step;
       EXPECT_LE(error_of(*source, camera, function, settings, 2e-6), 2e-6) << step;  // float sums
     }
 }

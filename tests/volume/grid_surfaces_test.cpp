@@ -148,7 +148,7 @@ TEST(GridSurface, ManyInOneVoxelAreAllMetInTheirOrder) {
   for (const bool shaded : {false, true})
     for (const double side : {1.0, -1.0}) {
       volume::RenderSettings settings = exact_with(surfaces);
-      if (shaded) settings.shading.emplace();
+      if (shaded) settings.grid.shading.emplace();
       const auto image = volume::Renderer(*source, settings).render(from({1, 0.7, 4 * side}), {24, 24}, clear());
       const std::size_t middle = 4 * image.index(12, 12);
       EXPECT_NEAR(image.rgba[middle], side > 0 ? first : last, 1e-6);
@@ -327,13 +327,13 @@ Case random_case(unsigned number) {
                      {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)},
                      random.chance(0.4) ? 0 : std::pow(10, random.uniform(-1, 1.5)) / size_of_all});
   c.function = TransferFunction(knots);
-  if (random.chance(0.25)) c.settings.shading.emplace();
+  if (random.chance(0.25)) c.settings.grid.shading.emplace();
   if (random.chance(0.25)) {
     const glm::dvec3 inside = box.low + extent * glm::dvec3(random.uniform(0.2, 0.8), random.uniform(0.2, 0.8), 0.5);
     c.settings.clip.push_back({inside, random.direction()});
   }
   if (random.chance(0.15)) c.camera.clipping_range = scene::ClippingRange{1.3 * size_of_all, 1.8 * size_of_all};
-  if (random.chance(0.2)) c.settings.emission = scene::Emission::independent, c.settings.shading.reset();
+  if (random.chance(0.2)) c.settings.emission = scene::Emission::independent, c.settings.grid.shading.reset();
   c.source = scene::MemorySource::of(grid, std::move(values));
   return c;
 }
@@ -350,11 +350,11 @@ TEST(GridSurface, RandomOnesKeepThePromise) {
     const Case c = random_case(static_cast<unsigned>(number));
     const auto image = volume::Renderer(*c.source, c.settings).render(c.camera, small, c.function);
     const reference::GridReference truth(*c.source, c.camera, small, c.function, c.settings.emission,
-                                         c.settings.shading, c.settings.clip, c.settings.surfaces);
+                                         c.settings.grid.shading, c.settings.clip, c.settings.surfaces);
     const auto judged = reference::judge(image, truth, promised_error, {}, 2);
     EXPECT_LE(judged.max_error_not_excused, promised_error)
         << "case " << number << ", at (" << judged.worst_x << ", " << judged.worst_y << ") of " << judged.over_bound
-        << (c.source->geometry().rectilinear() ? " rectilinear" : "") << (c.settings.shading ? " shaded" : "")
+        << (c.source->geometry().rectilinear() ? " rectilinear" : "") << (c.settings.grid.shading ? " shaded" : "")
         << (c.settings.clip.empty() ? "" : " clipped");
     volume::RenderSettings without = c.settings;
     without.surfaces = {};
@@ -375,7 +375,7 @@ TEST(GridSurface, RandomOnesKeepThePromiseOnEveryInstructionSet) {
       const Case c = random_case(number);
       const auto image = volume::Renderer(*c.source, c.settings).render(c.camera, small, c.function);
       const reference::GridReference truth(*c.source, c.camera, small, c.function, c.settings.emission,
-                                           c.settings.shading, c.settings.clip, c.settings.surfaces);
+                                           c.settings.grid.shading, c.settings.clip, c.settings.surfaces);
       EXPECT_LE(reference::judge(image, truth, promised_error, {}, 2).max_error_not_excused, promised_error)
           << name << ", case " << number;
     }
@@ -391,10 +391,10 @@ TEST(GridSurface, BitsDoNotDependOnBricksThreadsOrRegionsNorLightOnSkippedSpace)
     for (const bool shaded : {false, true}) {
       if (!some.next()) continue;
       volume::RenderSettings settings = exact_with(surfaces);
-      if (shaded) settings.shading.emplace();
+      if (shaded) settings.grid.shading.emplace();
       const scene::Image image = render(volume, view(name), sharp_function(), settings);
       volume::RenderSettings other = settings;
-      other.brick_size = 5, other.threads = 1;
+      other.grid.brick_size = 5, other.threads = 1;
       EXPECT_TRUE(same_bits(render(volume, view(name), sharp_function(), other), image)) << name;
       other.use.skipping = other.use.culling = false;
       const scene::Image all = render(volume, view(name), sharp_function(), other);
@@ -424,25 +424,6 @@ TEST(GridSurface, GoesInChunksToo) {
     cast.emit(sink);
     for (std::size_t n = 0; n < image.rgba.size(); ++n) ASSERT_NEAR(image.rgba[n], whole.rgba[n], 2e-6) << name;
   }
-}
-
-TEST(GridSurface, WhatCannotBeRenderedIsSaid) {
-  Surfaces surfaces;
-  surfaces.iso = {{0.5, {}, 1}};
-  const auto message = [&](bool cell_data, volume::Method method) -> std::string {
-    const Volume volume = make_volume({4, 4, 4}, Field::smooth, cell_data);
-    volume::RenderSettings settings = exact_with(surfaces);
-    settings.method = method;
-    try {
-      const volume::Renderer renderer(*volume.source, settings);
-    } catch (const scene::Error& error) {
-      return error.what();
-    }
-    return "";
-  };
-  EXPECT_EQ(message(false, volume::Method::automatic), "");
-  EXPECT_NE(message(true, volume::Method::automatic).find("one value a cell"), std::string::npos);
-  EXPECT_NE(message(false, volume::Method::sampled).find("`iso`"), std::string::npos);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ void expect_right(const std::string& what, const scene::SampleSource& source, co
   settings.threads = 2;
   for (const char* from : {"oblique", "from -x", "from y", "perspective"}) {
     const scene::Camera camera = view(from);
-    const reference::GridReference truth(source, camera, size, function, settings.emission, settings.shading);
+    const reference::GridReference truth(source, camera, size, function, settings.emission, settings.grid.shading);
     const auto pixels = reference::random_pixels(size, 60, 3);
     int sets = 0;
     for_each_instruction_set([&](const char* name) {
@@ -44,9 +44,9 @@ void expect_right(const std::string& what, const scene::SampleSource& source, co
 
 // Bounds are what is promised of one process (docs/ACCURACY.md): exact 1e-5 in float32, automatic its accuracy, 1e-4
 // by default.
-volume::RenderSettings by(volume::Method method) {
+volume::RenderSettings by(IntegratorKind method) {
   volume::RenderSettings s;
-  s.method = method;
+  s.integrator.kind = method;
   return s;
 }
 
@@ -67,8 +67,8 @@ TEST(VolumeKernels, CellDataBlanksShadingAndOtherLight) {
   volume::RenderSettings independent = exact();
   independent.emission = scene::Emission::independent;
   expect_right("independent emission", *points.source, smooth_function(), independent, 1e-5);
-  volume::RenderSettings shaded = by(volume::Method::automatic);
-  shaded.shading = scene::Shading{};
+  volume::RenderSettings shaded = by(IntegratorKind::automatic);
+  shaded.grid.shading = scene::Shading{};
   expect_right("shaded", *make_volume({37, 30, 36}, Field::smooth).source, smooth_function(), shaded, 1e-4);
   std::mt19937 random(3);
   for (Volume* v : {&cells, &points}) {
@@ -121,13 +121,13 @@ TEST(VolumeKernels, SamplesOfEveryType) {
 TEST(VolumeKernels, Steps) {
   // The method errs far more than lanes do; at a tenth of a voxel by less than 2e-3, which a wrong step would not.
   const Volume v = make_volume({37, 30, 36}, Field::smooth), cells = make_volume({19, 17, 20}, Field::noise, true);
-  volume::RenderSettings sampled = by(volume::Method::sampled), table = by(volume::Method::preintegrated);
-  sampled.step = table.step = 0.1;
+  volume::RenderSettings sampled = by(IntegratorKind::sampled), table = by(IntegratorKind::preintegrated);
+  sampled.grid.step = table.grid.step = 0.1;
   expect_right("sampled", *v.source, smooth_function(), sampled, 2e-3);
   expect_right("preintegrated", *v.source, smooth_function(), table, 2e-3);
   sampled.emission = scene::Emission::independent;
   expect_right("sampled, independent emission", *v.source, smooth_function(), sampled, 2e-3);
-  sampled.emission = scene::Emission::absorption, sampled.step = 0.01;
+  sampled.emission = scene::Emission::absorption, sampled.grid.step = 0.01;
   expect_right("sampled, cell data", *cells.source, smooth_function(), sampled, 2e-2);
 }
 

@@ -56,7 +56,7 @@ TEST(NextView, TakesAJumpForNoMotion) {
 
 TEST(ViewFrustum, NoPointInTheViewIsOutsideOfIt) {
   const Volume v = make_volume({33, 29, 25}, Field::smooth);
-  const volume::BrickLayout layout(v.grid.geometry, 4, volume::EdgeBricks::variable);
+  const volume::BrickLayout layout(v.grid.geometry, 4, EdgeBricks::variable);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(0, 1);
   int far = 0;
@@ -92,8 +92,8 @@ TEST(ViewFrustum, NoPointInTheViewIsOutsideOfIt) {
 
 TEST(BrickCache, ProximityThrowsOutTheFarthestAndLoadsTheNearestAhead) {
   const Volume v = make_volume({65, 65, 65}, Field::smooth);
-  const volume::BrickLayout layout(v.grid.geometry, 16, volume::EdgeBricks::variable);
-  BrickCache cache(*v.source, layout, 4 * 17 * 17 * 17 * 4, volume::CachePolicy::proximity);
+  const volume::BrickLayout layout(v.grid.geometry, 16, EdgeBricks::variable);
+  BrickCache cache(*v.source, layout, 4 * 17 * 17 * 17 * 4, CachePolicy::proximity);
   std::vector<float> distances(layout.count());
   for (std::size_t n = 0; n < distances.size(); ++n) distances[n] = static_cast<float>(n);
   cache.set_distances(distances);
@@ -147,10 +147,10 @@ TEST(LookAhead, GoesOnFromFrameToFrameAndChangesNoBit) {
   const SlowSource slow(*v.source);
   volume::RenderSettings s;
   s.threads = 2;
-  s.brick_size = 8;
+  s.grid.brick_size = 8;
   volume::Renderer by_need(slow, s);
-  s.cache = volume::CachePolicy::proximity;
-  s.preload_limit = 60;
+  s.grid.cache = CachePolicy::proximity;
+  s.grid.preload_limit = 60;
   volume::Renderer ahead(slow, s);
   std::uint64_t loads = 0, loads_ahead = 0, loads_by_need = 0;
   int frame = 0;
@@ -172,9 +172,9 @@ TEST(LookAhead, LoadsWhileFramesFollowEachOtherAtOnce) {
   const Volume v = make_volume({65, 65, 65}, Field::smooth);
   volume::RenderSettings s;
   s.threads = 1;
-  s.brick_size = 8;
-  s.cache = volume::CachePolicy::proximity;
-  s.preload_limit = 12;
+  s.grid.brick_size = 8;
+  s.grid.cache = CachePolicy::proximity;
+  s.grid.preload_limit = 12;
   volume::Renderer renderer(*v.source, s);
   // Some frame of a turn without an end finds the loading thread at work.
   int frame = 0;
@@ -192,22 +192,22 @@ TEST(LookAhead, ARendererThatGoesEndsIt) {
   const SlowSource slow(*v.source);
   volume::RenderSettings s;
   s.threads = 2;
-  s.brick_size = 8;
-  s.cache = volume::CachePolicy::proximity;
-  s.preload_limit = 1000;
+  s.grid.brick_size = 8;
+  s.grid.cache = CachePolicy::proximity;
+  s.grid.preload_limit = 1000;
   for (int n = 0; n < 3; ++n) volume::Renderer(slow, s).render(turned(n), size, smooth_function());
 }
 
 TEST(VolumeCaster, AVolumeFourTimesTheBudgetStaysWithinItAndPreloadsBetweenFrames) {
   const Volume v = make_volume({65, 65, 65}, Field::smooth);
   const scene::Image whole = render(v, view("perspective"), smooth_function());
-  for (const auto cache : {volume::CachePolicy::lru, volume::CachePolicy::proximity}) {
+  for (const auto cache : {CachePolicy::lru, CachePolicy::proximity}) {
     volume::RenderSettings s;
     s.threads = 2;
-    s.brick_size = 16;
+    s.grid.brick_size = 16;
     s.memory_bytes = 65 * 65 * 65 * sizeof(float) / 4;
-    s.cache = cache;
-    s.preload_limit = cache == volume::CachePolicy::proximity ? 6 : 0;
+    s.grid.cache = cache;
+    s.grid.preload_limit = cache == CachePolicy::proximity ? 6 : 0;
     volume::Renderer renderer(*v.source, s);
     volume::RenderStatistics statistics;
     for (int frame = 0; frame < 3; ++frame) {

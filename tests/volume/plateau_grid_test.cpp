@@ -61,11 +61,11 @@ void expect_right(const scene::SampleSource& source, const std::vector<scene::Kn
   int number = 0;
   for (const scene::Camera& camera : views_of(source, size)) {
     const reference::GridReference truth(source, camera, size, function, scene::Emission::absorption);
-    for (const volume::Method method : {volume::Method::exact, volume::Method::automatic}) {
+    for (const IntegratorKind method : {IntegratorKind::exact, IntegratorKind::automatic}) {
       volume::RenderSettings settings;
-      settings.method = method;
+      settings.integrator.kind = method;
       settings.threads = 2;
-      const double bound = method == volume::Method::exact ? 1e-5 : 1e-4;
+      const double bound = method == IntegratorKind::exact ? 1e-5 : 1e-4;
       const scene::Image image = volume::Renderer(source, settings).render(camera, size, function);
       const auto judgement = reference::judge(image, truth, bound, {}, 2);
       EXPECT_LE(judgement.max_error_not_excused, bound)
@@ -197,7 +197,7 @@ TEST(PlateauGrid, LastPlacesOfDoublesAreNumbersLikeOthers) {
       const reference::GridReference near_truth(*near, camera, size, near_function, scene::Emission::absorption),
           truth(*plain, camera, size, plain_function, scene::Emission::absorption);
       volume::RenderSettings settings;
-      settings.method = volume::Method::exact;
+      settings.integrator.kind = IntegratorKind::exact;
       settings.threads = 2;
       const scene::Image image = volume::Renderer(*near, settings).render(camera, size, near_function);
       const auto judgement = reference::judge(image, truth, 1e-5, {}, 2);
@@ -291,7 +291,7 @@ TEST(PlateauGrid, RaysInALatticePlaneHaveItsValues) {
       camera.parallel_scale = 0.8;
       const reference::GridReference truth(*source, camera, size, function, scene::Emission::absorption);
       volume::RenderSettings settings;
-      settings.method = volume::Method::exact;
+      settings.integrator.kind = IntegratorKind::exact;
       const scene::Image image = volume::Renderer(*source, settings).render(camera, size, function);
       const std::size_t middle = image.index(4, 4);
       const double alpha =
@@ -323,7 +323,7 @@ TEST(PlateauGrid, RaysInALatticePlaneStayOnOneSide) {
             camera.parallel_scale = 1.3;
             const reference::GridReference truth(*source, camera, size, function, scene::Emission::absorption);
             volume::RenderSettings settings;
-            settings.method = volume::Method::exact;
+            settings.integrator.kind = IntegratorKind::exact;
             settings.threads = 2;
             const scene::Image image = volume::Renderer(*source, settings).render(camera, size, function);
             const auto judgement = reference::judge(image, truth, 1e-5, {}, 2);
@@ -345,9 +345,9 @@ void expect_lit_right(const scene::SampleSource& source, const std::string& what
     for (const bool has_surface : {false, true}) {
       const Surfaces& shown = has_surface ? surfaces : Surfaces();
       volume::RenderSettings settings;
-      settings.method = volume::Method::exact;
+      settings.integrator.kind = IntegratorKind::exact;
       settings.threads = 2;
-      settings.shading = shading;
+      settings.grid.shading = shading;
       settings.surfaces = shown;
       const reference::GridReference truth(source, camera, size, grey, scene::Emission::absorption, shading, {}, shown);
       const scene::Image image = volume::Renderer(source, settings).render(camera, size, grey);

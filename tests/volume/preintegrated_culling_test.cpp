@@ -49,7 +49,7 @@ TEST(PreintegratedCulling, ChangesNoBit) {
           for (const char* name : {"oblique", "from y", "inside"}) {
             if (!some.next()) continue;
             volume::RenderSettings s;
-            s.method = volume::Method::preintegrated, s.step = step, s.brick_size = 8;
+            s.integrator.kind = IntegratorKind::preintegrated, s.grid.step = step, s.grid.brick_size = 8;
             volume::RenderStatistics culled, all;
             const scene::Image image = render(v, view(name), function, s, &culled);
             s.use.culling = s.use.skipping = false;
@@ -65,10 +65,10 @@ TEST(PreintegratedCulling, ChangesNoBit) {
 TEST(PreintegratedCulling, LoadsLittleMoreThanWhatShows) {
   const Volume v = blobs(false, false);
   volume::RenderSettings s;
-  s.brick_size = 8;
+  s.grid.brick_size = 8;
   volume::RenderStatistics exact_ones, culled;
   render(v, view("oblique"), between(), s, &exact_ones);
-  s.method = volume::Method::preintegrated;
+  s.integrator.kind = IntegratorKind::preintegrated;
   const scene::Image image = render(v, view("oblique"), between(), s, &culled);
   EXPECT_GT(*std::max_element(image.rgba.begin(), image.rgba.end()), 0.1f);
   EXPECT_GT(culled.bricks_invisible, culled.bricks_total / 2);

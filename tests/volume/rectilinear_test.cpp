@@ -77,11 +77,11 @@ TEST(Rectilinear, PicturesKeepTheirPromiseHoweverUnequalTheSpacings) {
             for (const bool shaded : {false, true}) {
               if (!some.next()) continue;
               volume::RenderSettings s;
-              s.method = shaded ? volume::Method::automatic : volume::Method::exact;
-              if (shaded) s.shading = scene::Shading{.to_light = {0.3, 0.8, 0.5}, .camera_light = perspective};
+              s.integrator.kind = shaded ? IntegratorKind::automatic : IntegratorKind::exact;
+              if (shaded) s.grid.shading = scene::Shading{.to_light = {0.3, 0.8, 0.5}, .camera_light = perspective};
               const scene::Camera camera = view(perspective, eye);
               const scene::Image image = volume::Renderer(*source, s).render(camera, size, steep());
-              const reference::GridReference truth(*source, camera, size, steep(), s.emission, s.shading);
+              const reference::GridReference truth(*source, camera, size, steep(), s.emission, s.grid.shading);
               const auto pixels = reference::random_pixels(size, 300, 7);
               const auto judged = reference::judge(image, truth, shaded ? 1e-4 : 1e-5, pixels);
               EXPECT_TRUE(judged.passed) << ratio << ' ' << int(association) << ' ' << smooth << ' ' << perspective
@@ -103,7 +103,7 @@ TEST(Rectilinear, PeaksAHundredthOfTheRangeWideKeepThePromise) {
     for (const bool smooth : {true, false}) {
       const auto source = graded(ratio, scene::Association::point, smooth);
       volume::RenderSettings s;
-      s.method = volume::Method::exact;
+      s.integrator.kind = IntegratorKind::exact;
       const scene::Camera camera = view(false, {1.9, 1.3, 2.6});
       const scene::Image image = volume::Renderer(*source, s).render(camera, size, peaks);
       const reference::GridReference truth(*source, camera, size, peaks, s.emission);
@@ -124,7 +124,7 @@ TEST(Rectilinear, EqualSpacingsGiveTheRegularGridsPicture) {
   listed->read(plain.geometry.all_samples(), std::span<float>(values));
   const auto regular = scene::MemorySource::of(plain, values);
   volume::RenderSettings s;
-  s.method = volume::Method::exact;
+  s.integrator.kind = IntegratorKind::exact;
   for (const bool perspective : {false, true}) {
     const scene::Camera camera = view(perspective, {2, 1.5, 2.5});
     const scene::Image a = volume::Renderer(*listed, s).render(camera, size, steep());
@@ -151,7 +151,7 @@ TEST(Rectilinear, RegionsThreadsAndWhatIsSkippedShowInNoBit) {
   const scene::Image whole = volume::Renderer(*source, s).render(camera, size, steep(), &statistics);
   EXPECT_GT(statistics.rays, 0u);
   EXPECT_GT(statistics.voxels_visited, statistics.rays);
-  s.threads = 3, s.brick_size = 5;
+  s.threads = 3, s.grid.brick_size = 5;
   s.use.culling = s.use.skipping = false;
   volume::Renderer renderer(*source, s);
   scene::Image pieces(size);
@@ -173,15 +173,6 @@ TEST(Rectilinear, CostIsWhereVoxelsAre) {
   const auto at = [&](int x, int y) { return map.cost[static_cast<std::size_t>(y * map.size.width + x)]; };
   EXPECT_EQ(at(0, 0), 0u);
   EXPECT_GE(at(map.size.width / 2, map.size.height / 2), 64u * 20);  // all planes of z but the first
-}
-
-TEST(Rectilinear, StepsAreRefused) {
-  const auto source = graded(2, scene::Association::point, true);
-  volume::RenderSettings s;
-  for (const auto method : {volume::Method::sampled, volume::Method::preintegrated}) {
-    s.method = method;
-    EXPECT_THROW(volume::Renderer(*source, s), scene::Error);
-  }
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ inline scene::Image render(const Volume& v, const scene::Camera& camera, const s
 
 inline volume::RenderSettings exact() {
   volume::RenderSettings s;
-  s.method = volume::Method::exact;
+  s.integrator.kind = IntegratorKind::exact;
   return s;
 }
 

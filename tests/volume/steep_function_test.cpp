@@ -69,9 +69,9 @@ Outcome outcome_of(const scene::SampleSource& source, const scene::Camera& camer
     settings.emission = emission;
     settings.threads = 2;
     if (accuracy == 0)
-      settings.method = volume::Method::exact;
+      settings.integrator.kind = IntegratorKind::exact;
     else
-      settings.accuracy = accuracy;
+      settings.integrator.accuracy = accuracy;
     const double bound = accuracy == 0 ? 1e-5 : accuracy;
     volume::RenderStatistics statistics;
     const scene::Image image = volume::Renderer(source, settings).render(camera, size, function, &statistics);
