@@ -22,11 +22,35 @@
 #include "scene/threads.hpp"
 
 namespace tessera::frame {
+
+/// What culling leaves of a frame.
+struct FrameProjector::Culled {
+  std::vector<projection::Step> steps;  ///< of the transfer function and surfaces
+  projection::CellsAtSteps at_steps;    ///< whose segments are cut there
+  projection::TileLists lists;
+  std::optional<projection::FrameFaces> faces;
+};
+
 namespace {
 
-void check_scanline(const FrameProjector::Task& task, const projection::ProjectedMesh& projected, float longest_edge) {
-  if (task.team != nullptr) task.team->barrier();  // it looks at all vertices
-  if (task.space->perspective())
+std::shared_ptr<const projection::PreparedMesh> prepared(const scene::TetMeshView& mesh, const Settings& settings) {
+  return tbb::task_arena(scene::threads_for(settings.threads)).execute([&] {
+    const scene::TraceScope timing(settings.trace, "prepare");
+    return std::make_shared<const projection::PreparedMesh>(mesh);
+  });
+}
+
+/// Room for `size` elements of no value, in the team's memory if there is one.
+template <class T>
+void make_room(projection::LargeArray<T>& array, std::size_t size, scene::Team* team, scene::Team::Room room) {
+  if (team == nullptr)
+    array.reset(size);
+  else
+    array.refer(team->memory_of<T>(room, size), size);
+}
+
+void check_scanline(const FrameTask& frame, const projection::ProjectedMesh& projected, float longest_edge) {
+  if (frame.space->perspective())
     throw scene::bad_input(
         "`rasterizer` scanline: it projects orthographically only; use an orthographic view, or `rasterizer` planes");
   if (!projection::fits_scanline(projected, longest_edge))
@@ -103,23 +127,160 @@ std::uint64_t segment_budget(const Settings& settings, std::uint64_t held, int t
   return (settings.memory_bytes - held) / static_cast<std::uint64_t>(threads);
 }
 
+using Workers = tbb::enumerable_thread_specific<std::unique_ptr<TileWorker>>;
+
+/// TileSinks::prepare in parallel with other work, ended when this is.
+class SideTask {
+ public:
+  SideTask(const std::function<void()>& work, scene::Trace* trace, std::int32_t frame) {
+    if (!work) return;
+    group_.run([&work, trace, frame] {
+      const scene::TraceScope timing(trace, "prepare", frame);
+      work();
+    });
+  }
+  ~SideTask() {
+    if (waited_for_) return;
+    try {
+      group_.wait();
+    } catch (...) {  // the frame ends with another error
+    }
+  }
+  SideTask(const SideTask&) = delete;
+  SideTask& operator=(const SideTask&) = delete;
+  /// Throws what the work threw.
+  void wait() {
+    waited_for_ = true;
+    group_.wait();
+  }
+
+ private:
+  tbb::task_group group_;
+  bool waited_for_ = false;
+};
+
+/// Which process renders a tile.
+enum class Owner : std::uint8_t { none, self, another, first_to_come };
+
+/// The owner of each tile: of a process alone, itself of those that have cells or triangles. A team's members get half
+/// of the cells beforehand, equally many each: a tile goes to the one that is preferred, unless that has a hundredth
+/// more than another, then to the one that has least. The rest, the tiles that come last, are shared out one by one, so
+/// that no member waits for a slower one at the end.
+std::vector<Owner> share_out(const FrameTask& frame, const TeamTask& team, const projection::TileLists& lists,
+                             const projection::FrameFaces* faces) {
+  std::vector<Owner> owners(frame.grid.count(), Owner::none);
+  std::uint64_t all = 0;
+  for (std::size_t tile = 0; tile < owners.size(); ++tile) {
+    if (lists.entry_count(tile) > 0 || (faces != nullptr && faces->owns_in(tile))) owners[tile] = Owner::self;
+    all += lists.entry_count(tile);
+  }
+  if (team.team == nullptr) return owners;
+  std::vector<std::uint64_t> given(static_cast<std::size_t>(team.team->size()));
+  const std::uint64_t most_ahead = all / given.size() / 100;
+  std::uint64_t shared_out = 0;
+  for (std::size_t tile = 0; tile < owners.size(); ++tile) {
+    if (owners[tile] == Owner::none) continue;
+    if (2 * shared_out >= all) {
+      owners[tile] = Owner::first_to_come;
+      continue;
+    }
+    auto least = std::min_element(given.begin(), given.end());
+    const int preferred = team.preferred ? team.preferred(tile) : -1;
+    if (preferred >= 0 && given[static_cast<std::size_t>(preferred)] <= *least + most_ahead)
+      least = given.begin() + preferred;
+    *least += lists.entry_count(tile);
+    shared_out += lists.entry_count(tile);
+    owners[tile] = least - given.begin() == team.team->rank() ? Owner::self : Owner::another;
+  }
+  return owners;
+}
+
+void announce(const TileSinks& sinks, const std::vector<Owner>& owners) {
+  if (!sinks.announce) return;
+  std::vector<bool> may_come(owners.size());
+  for (std::size_t tile = 0; tile < owners.size(); ++tile)
+    may_come[tile] = owners[tile] == Owner::self || owners[tile] == Owner::first_to_come;
+  sinks.announce(may_come);
+}
+
+/// The tiles that a team's members share out one by one, for the threads of one.
+class SharedTiles {
+ public:
+  SharedTiles(const TeamTask& team, const std::vector<Owner>& owners) : team_(&team) {
+    for (std::size_t tile = 0; tile < owners.size(); ++tile)
+      if (owners[tile] == Owner::first_to_come) tiles_.push_back(tile);
+  }
+  /// Takes the next tile before `last`; `last` if there is none.
+  std::size_t take(std::size_t last) {
+    if (tiles_.empty()) return last;
+    const auto count = static_cast<std::size_t>(std::lower_bound(tiles_.begin(), tiles_.end(), last) - tiles_.begin());
+    const std::lock_guard lock(mutex_);  // what other threads of this process take is not another member's
+    const std::size_t taken = team_->team->draw(static_cast<std::uint32_t>(count));
+    for (; seen_ < taken; ++seen_)
+      if (team_->skip) team_->skip(tiles_[seen_]);
+    if (taken >= count) return last;
+    ++seen_;
+    return tiles_[taken];
+  }
+
+ private:
+  const TeamTask* team_;
+  std::vector<std::size_t> tiles_;
+  std::mutex mutex_;
+  std::size_t seen_ = 0;  ///< that this process has taken or skipped
+};
+
+std::uint64_t members_of(const TeamTask& team) {
+  return team.team != nullptr ? static_cast<std::uint64_t>(team.team->size()) : 1;
+}
+
+/// Renders tiles [first, last), whose lists are filled.
+void render_tiles(const FrameTask& frame, const scene::Image* image, projection::TileLists& lists,
+                  const std::vector<Owner>& owners, SharedTiles& shared, Workers& workers, std::size_t first,
+                  std::size_t last, const std::stop_token& stop) {
+  // Threads take tiles in order: fragments then leave in the order in which all processes send them.
+  std::atomic<std::size_t> next = first;
+  tbb::parallel_for(
+      0, tbb::this_task_arena::max_concurrency(),
+      [&](int) {
+        TileWorker& worker = *workers.local();
+        for (std::size_t tile = next++; tile < last; tile = next++) {
+          scene::throw_if_stopped(stop);
+          const scene::PixelRect rect = frame.grid.rect(tile);
+          if (owners[tile] == Owner::self) worker.render(tile, rect, lists.tile(tile));
+          if (image != nullptr && frame.watch != nullptr) frame.watch->finished(rect, *image);
+        }
+        for (std::size_t tile = shared.take(last); tile < last; tile = shared.take(last)) {
+          scene::throw_if_stopped(stop);
+          worker.render(tile, frame.grid.rect(tile), lists.tile(tile));
+        }
+      },
+      tbb::simple_partitioner());
+}
+
+/// Of this process's share and its workers.
+FrameStatistics count(const FrameTask& frame, const TeamTask& team, const projection::PreparedMesh& mesh,
+                      const projection::TileLists& lists, const Workers& workers) {
+  constexpr std::size_t block = projection::PreparedMesh::block_tets;
+  const scene::Share blocks = scene::share_of(mesh.block_count(), team.team);
+  const projection::CullCounts& culled = lists.counts();
+  FrameStatistics statistics;
+  statistics.tets_total = std::min(blocks.last * block, mesh.tet_count()) - blocks.first * block;
+  statistics.tets_invisible = culled.invisible;
+  statistics.tets_outside_view = culled.outside_view;
+  statistics.tets_between_pixels = culled.between_pixels;
+  statistics.tets_projected = culled.projected;
+  statistics.on_lattice = frame.lattice != nullptr;
+  for (const std::unique_ptr<TileWorker>& worker : workers) worker->add_to(statistics);
+  return statistics;
+}
+
 }  // namespace
 
 void order_corners(scene::TetMesh& mesh, int threads, scene::Trace* trace) {
   const scene::TraceScope timing(trace, "prepare");
   tbb::task_arena(scene::threads_for(threads)).execute([&] { projection::order_corners(mesh); });
 }
-
-namespace {
-
-std::shared_ptr<const projection::PreparedMesh> prepared(const scene::TetMeshView& mesh, const Settings& settings) {
-  return tbb::task_arena(scene::threads_for(settings.threads)).execute([&] {
-    const scene::TraceScope timing(settings.trace, "prepare");
-    return std::make_shared<const projection::PreparedMesh>(mesh);
-  });
-}
-
-}  // namespace
 
 FrameProjector::FrameProjector(const scene::TetMeshView& mesh, const Settings& settings)
     : FrameProjector(prepared(mesh, settings), scene::bounds(mesh, settings.threads), settings) {}
@@ -132,312 +293,151 @@ FrameProjector::FrameProjector(std::shared_ptr<const projection::PreparedMesh> m
     longest_edge_ = arena_.execute([&] { return projection::longest_edge(prepared_->mesh()); });
 }
 
-namespace {
-
-/// Room for `size` elements of no value, in the team's memory if there is one.
-template <class T>
-void make_room(projection::LargeArray<T>& array, std::size_t size, scene::Team* team, scene::Team::Room room) {
-  if (team == nullptr)
-    array.reset(size);
-  else
-    array.refer(team->memory_of<T>(room, size), size);
+FrameStatistics FrameProjector::project(const FrameTask& frame, const TileSinks& sinks, const TeamTask& team) {
+  return arena_.execute([&] { return project_in_arena(frame, sinks, team); });
 }
 
-}  // namespace
+FrameStatistics FrameProjector::project_in_arena(const FrameTask& frame, const TileSinks& sinks, const TeamTask& team) {
+  const std::stop_token stop = frame.watch != nullptr ? frame.watch->stop() : std::stop_token();
+  scene::throw_if_stopped(stop);
+  SideTask side(sinks.prepare, settings_.trace, frame.number);
+  projection::ProjectedMesh projected = transform(frame, team, stop);
+  const projection::IsoView iso{frame.surfaces, frame.space, frame.lattice};
+  if (frame.surfaces != nullptr && !frame.surfaces->iso_values().empty()) projected.iso = &iso;
+  const float longest_edge = frame.longest_edge > 0 ? frame.longest_edge : longest_edge_;
+  if (settings_.mesh.rasterizer == Rasterizer::scanline) {
+    if (team.team != nullptr) team.team->barrier();  // it looks at all vertices
+    check_scanline(frame, projected, longest_edge);
+  }
+  if (frame.lattice != nullptr) place_on_lattice(frame, team, stop);
 
-void FrameProjector::project_vertices(const Task& task, const std::stop_token& stop) {
-  const scene::TraceScope timing(settings_.trace, "transform", task.frame);
+  Culled culled = cull(frame, projected, team, stop);
+  const projection::FrameFaces* const faces = culled.faces ? &*culled.faces : nullptr;
+  const std::vector<Owner> owners = share_out(frame, team, culled.lists, faces);
+  announce(sinks, owners);
+  SharedTiles shared(team, owners);
+
+  const std::uint64_t vertex_bytes = (vertices_.bytes() + lattice_vertices_.bytes()) / members_of(team);
+  const std::uint64_t held =
+      vertex_bytes + culled.lists.bytes() + (faces != nullptr ? faces->bytes() : 0) + sinks.kept_bytes;
+  const TileContext context{.projected = &projected,
+                            .depth_origin = culled.lists.depth_origin(),
+                            .budget_bytes = segment_budget(settings_, held, arena_.max_concurrency()) / 4 * 3,
+                            .trace = settings_.trace,
+                            .rasterizer = settings_.mesh.rasterizer,
+                            .longest_edge = longest_edge,
+                            .opaque = usual_optical_depth(*frame.function, diagonal_) > opaque_depth,
+                            .steps = culled.steps,
+                            .at_steps = culled.at_steps.empty() ? nullptr : &culled.at_steps,
+                            .faces = faces,
+                            .stop = stop};
+  Workers workers([&]() -> std::unique_ptr<TileWorker> {
+    auto cells = sinks.of_cells ? sinks.of_cells() : nullptr;
+    if (frame.lattice == nullptr)
+      return std::make_unique<Worker<DoubleSource>>(sinks.in_double(), std::move(cells), context);
+    const projection::LatticeView view{
+        projected,
+        {lattice_vertices_.data(), lattice_vertices_.size()},
+        *frame.lattice,
+        frame.space->perspective(),
+        depth_limits_of(*frame.space, *frame.lattice, *frame.function, settings_.emission, longest_ray(frame)),
+        culled.steps,
+        context.at_steps};
+    return std::make_unique<Worker<LatticeSource>>(sinks.on_lattice(), std::move(cells), context, view);
+  });
+  side.wait();
+  const std::uint64_t most_list_bytes =
+      render_bands(frame, team, culled.lists, held, [&](std::size_t first, std::size_t last) {
+        render_tiles(frame, sinks.image, culled.lists, owners, shared, workers, first, last, stop);
+      });
+
+  FrameStatistics statistics = count(frame, team, *prepared_, culled.lists, workers);
+  statistics.peak_buffer_bytes += vertex_bytes + most_list_bytes;
+  return statistics;
+}
+
+projection::ProjectedMesh FrameProjector::transform(const FrameTask& frame, const TeamTask& team,
+                                                    const std::stop_token& stop) {
+  const scene::TraceScope timing(settings_.trace, "transform", frame.number);
+  const projection::PixelSpace& space = *frame.space;
   const std::span<const glm::dvec3> positions = prepared_->mesh().positions;
-  make_room(vertices_, positions.size(), task.team, scene::Team::Room::vertices);
-  const scene::Share own = scene::share_of(positions.size(), task.team);
+  make_room(vertices_, positions.size(), team.team, scene::Team::Room::vertices);
+  const scene::Share own = scene::share_of(positions.size(), team.team);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(own.first, own.last, 4096), [&](const auto& range) {
     scene::throw_if_stopped(stop);
-    const scene::TraceScope helping(settings_.trace, "transform", task.frame);
+    const scene::TraceScope helping(settings_.trace, "transform", frame.number);
     const std::size_t n = range.end() - range.begin();
-    task.space->project(positions.subspan(range.begin(), n), {vertices_.data() + range.begin(), n});
+    space.project(positions.subspan(range.begin(), n), {vertices_.data() + range.begin(), n});
   });
+  return {prepared_.get(),
+          {vertices_.data(), vertices_.size()},
+          space.near_depth(),
+          space.far_depth(),
+          space.pixels_per_tangent()};
 }
 
-void FrameProjector::place_on_lattice(const Task& task, const std::stop_token& stop) {
+void FrameProjector::place_on_lattice(const FrameTask& frame, const TeamTask& team, const std::stop_token& stop) {
   const scene::TetMeshView& mesh = prepared_->mesh();
   const bool per_point = mesh.association == scene::Association::point;
-  make_room(lattice_vertices_, vertices_.size(), task.team, scene::Team::Room::lattice_vertices);
-  const scene::Share own = scene::share_of(vertices_.size(), task.team);
+  make_room(lattice_vertices_, vertices_.size(), team.team, scene::Team::Room::lattice_vertices);
+  const scene::Share own = scene::share_of(vertices_.size(), team.team);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(own.first, own.last, 4096), [&](const auto& range) {
     scene::throw_if_stopped(stop);
     const scene::TraceScope timing(settings_.trace, "transform");
     const std::size_t n = range.end() - range.begin();
     projection::make_lattice_vertices(
         std::span<const projection::PixelVertex>(vertices_.data() + range.begin(), n),
-        per_point ? std::span(mesh.scalars).subspan(range.begin(), n) : std::span<const double>(), *task.lattice,
-        task.space->perspective(), {lattice_vertices_.data() + range.begin(), n});
+        per_point ? std::span(mesh.scalars).subspan(range.begin(), n) : std::span<const double>(), *frame.lattice,
+        frame.space->perspective(), {lattice_vertices_.data() + range.begin(), n});
   });
 }
 
-FrameStatistics FrameProjector::project(const Task& task) {
-  return arena_.execute([&] { return project_in_arena(task); });
-}
-
-namespace {
-
-using Workers = tbb::enumerable_thread_specific<std::unique_ptr<TileWorker>>;
-
-/// Who makes a tile.
-enum class Maker : std::uint8_t { nobody, self, another, first_to_come };
-
-/// Who makes which tile: of a process alone, itself those that have cells or triangles. A team's members get half of
-/// the cells beforehand, equally many each: a tile goes to the one that is preferred, unless that has a hundredth more
-/// than another, then to the one that has least. The rest, the tiles that come last, are drawn one by one, so that none
-/// waits for a slower one at the end.
-std::vector<Maker> makers(const FrameProjector::Task& task, const projection::TileLists& lists,
-                          const projection::FrameFaces* faces) {
-  std::vector<Maker> made_by(task.grid.count(), Maker::nobody);
-  std::uint64_t all = 0;
-  for (std::size_t tile = 0; tile < made_by.size(); ++tile) {
-    if (lists.entry_count(tile) > 0 || (faces != nullptr && faces->owns_in(tile))) made_by[tile] = Maker::self;
-    all += lists.entry_count(tile);
-  }
-  if (task.team == nullptr) return made_by;
-  std::vector<std::uint64_t> given(static_cast<std::size_t>(task.team->size()));
-  const std::uint64_t most_ahead = all / given.size() / 100;
-  std::uint64_t shared_out = 0;
-  for (std::size_t tile = 0; tile < made_by.size(); ++tile) {
-    if (made_by[tile] == Maker::nobody) continue;
-    if (2 * shared_out >= all) {
-      made_by[tile] = Maker::first_to_come;
-      continue;
-    }
-    auto least = std::min_element(given.begin(), given.end());
-    const int preferred = task.preferred ? task.preferred(tile) : -1;
-    if (preferred >= 0 && given[static_cast<std::size_t>(preferred)] <= *least + most_ahead)
-      least = given.begin() + preferred;
-    *least += lists.entry_count(tile);
-    shared_out += lists.entry_count(tile);
-    made_by[tile] = least - given.begin() == task.team->rank() ? Maker::self : Maker::another;
-  }
-  return made_by;
-}
-
-void announce(const FrameProjector::Task& task, const std::vector<Maker>& made_by) {
-  if (!task.announce) return;
-  std::vector<bool> may_come(made_by.size());
-  for (std::size_t tile = 0; tile < made_by.size(); ++tile)
-    may_come[tile] = made_by[tile] == Maker::self || made_by[tile] == Maker::first_to_come;
-  task.announce(may_come);
-}
-
-/// The tiles that a team's members draw, for the threads of one.
-class DrawnTiles {
- public:
-  DrawnTiles(const FrameProjector::Task& task, const std::vector<Maker>& made_by) : task_(&task) {
-    for (std::size_t tile = 0; tile < made_by.size(); ++tile)
-      if (made_by[tile] == Maker::first_to_come) tiles_.push_back(tile);
-  }
-  /// The next tile before `last`; `last` if there is none.
-  std::size_t next(std::size_t last) {
-    if (tiles_.empty()) return last;
-    const auto count = static_cast<std::size_t>(std::lower_bound(tiles_.begin(), tiles_.end(), last) - tiles_.begin());
-    const std::lock_guard lock(mutex_);  // what other threads of this process draw is not another member's
-    const std::size_t drawn = task_->team->draw(static_cast<std::uint32_t>(count));
-    for (; passed_ < drawn; ++passed_)
-      if (task_->pass) task_->pass(tiles_[passed_]);
-    if (drawn >= count) return last;
-    ++passed_;
-    return tiles_[drawn];
-  }
-
- private:
-  const FrameProjector::Task* task_;
-  std::vector<std::size_t> tiles_;
-  std::mutex mutex_;
-  std::size_t passed_ = 0;  ///< that this process has drawn or passed
-};
-
-std::uint64_t members_of(const FrameProjector::Task& task) {
-  return task.team != nullptr ? static_cast<std::uint64_t>(task.team->size()) : 1;
-}
-
-void count_culled(const projection::CullCounts& culled, FrameStatistics& statistics) {
-  statistics.tets_invisible = culled.invisible;
-  statistics.tets_outside_view = culled.outside_view;
-  statistics.tets_between_pixels = culled.between_pixels;
-  statistics.tets_projected = culled.projected;
-}
-
-/// Of this process's share and its workers.
-FrameStatistics counted(const FrameProjector::Task& task, const projection::PreparedMesh& mesh,
-                        const projection::TileLists& lists, const Workers& workers) {
-  constexpr std::size_t block = projection::PreparedMesh::block_tets;
-  const scene::Share blocks = scene::share_of(mesh.block_count(), task.team);
-  FrameStatistics statistics;
-  statistics.tets_total = std::min(blocks.last * block, mesh.tet_count()) - blocks.first * block;
-  statistics.on_lattice = task.lattice != nullptr;
-  count_culled(lists.counts(), statistics);
-  for (const std::unique_ptr<TileWorker>& worker : workers) worker->add_to(statistics);
-  return statistics;
-}
-
-/// Renders tiles [first, last) of a task, whose lists are filled.
-void render_tiles(const FrameProjector::Task& task, projection::TileLists& lists, const std::vector<Maker>& made_by,
-                  DrawnTiles& drawn, Workers& workers, std::size_t first, std::size_t last,
-                  const std::stop_token& stop) {
-  // Threads draw tiles in order: fragments then leave in the order in which all processes send them.
-  std::atomic<std::size_t> next = first;
-  tbb::parallel_for(
-      0, tbb::this_task_arena::max_concurrency(),
-      [&](int) {
-        TileWorker& worker = *workers.local();
-        for (std::size_t tile = next++; tile < last; tile = next++) {
-          scene::throw_if_stopped(stop);
-          const scene::PixelRect rect = task.grid.rect(tile);
-          if (made_by[tile] == Maker::self) worker.render(tile, rect, lists.tile(tile));
-          if (task.image != nullptr && task.watch != nullptr) task.watch->finished(rect, *task.image);
-        }
-        for (std::size_t tile = drawn.next(last); tile < last; tile = drawn.next(last)) {
-          scene::throw_if_stopped(stop);
-          worker.render(tile, task.grid.rect(tile), lists.tile(tile));
-        }
-      },
-      tbb::simple_partitioner());
-}
-
-}  // namespace
-
-namespace {
-
-/// A task's work beside the mesh, ended when this is.
-class Beside {
- public:
-  Beside(const FrameProjector::Task& task, scene::Trace* trace) {
-    if (!task.beside) return;
-    group_.run([&task, trace] {
-      const scene::TraceScope timing(trace, "prepare", task.frame);
-      task.beside();
-    });
-  }
-  ~Beside() {
-    if (waited_for_) return;
-    try {
-      group_.wait();
-    } catch (...) {  // the frame ends with another error
-    }
-  }
-  Beside(const Beside&) = delete;
-  Beside& operator=(const Beside&) = delete;
-  /// Throws what the work threw.
-  void wait() {
-    waited_for_ = true;
-    group_.wait();
-  }
-
- private:
-  tbb::task_group group_;
-  bool waited_for_ = false;
-};
-
-}  // namespace
-
-FrameStatistics FrameProjector::project_in_arena(const Task& task) {
-  const projection::PixelSpace& space = *task.space;
-  const std::stop_token stop = task.watch != nullptr ? task.watch->stop() : std::stop_token();
-  scene::throw_if_stopped(stop);
-  Beside beside(task, settings_.trace);
-  project_vertices(task, stop);
-  projection::ProjectedMesh projected{prepared_.get(),
-                                      {vertices_.data(), vertices_.size()},
-                                      space.near_depth(),
-                                      space.far_depth(),
-                                      space.pixels_per_tangent()};
-  const projection::IsoView iso{task.surfaces, &space, task.lattice};
-  if (task.surfaces != nullptr && !task.surfaces->iso_values().empty()) projected.iso = &iso;
-  const float longest_edge = task.longest_edge > 0 ? task.longest_edge : longest_edge_;
-  if (settings_.mesh.rasterizer == Rasterizer::scanline) check_scanline(task, projected, longest_edge);
-  if (task.lattice != nullptr) place_on_lattice(task, stop);
-
-  const double longest_ray = task.longest_ray > 0 ? task.longest_ray : diagonal_;
+FrameProjector::Culled FrameProjector::cull(const FrameTask& frame, const projection::ProjectedMesh& projected,
+                                            const TeamTask& team, const std::stop_token& stop) {
   // Sampling promises nothing that steps could break.
-  const bool exact = settings_.mesh.rasterizer != Rasterizer::scanline &&
-                     (settings_.integrator.kind == scene::IntegratorKind::exact ||
-                      settings_.integrator.kind == scene::IntegratorKind::automatic);
+  const bool exact =
+      settings_.mesh.rasterizer != Rasterizer::scanline &&
+      (settings_.integrator.kind == IntegratorKind::exact || settings_.integrator.kind == IntegratorKind::automatic);
+  const scene::TraceScope timing(settings_.trace, "cull", frame.number);
   std::vector<projection::Step> steps;
   projection::CellsAtSteps at_steps;
-  std::optional<projection::TileLists> lists;
-  std::optional<projection::FrameFaces> faces;
-  {
-    const scene::TraceScope timing(settings_.trace, "cull", task.frame);
-    if (exact || projected.iso != nullptr) {
-      if (exact) steps = projection::steps_of(*task.function, settings_.emission, longest_ray);
-      steps = projection::with_surfaces(std::move(steps), projected.iso);
-      at_steps = projection::CellsAtSteps(*prepared_, steps, longest_ray, task.lattice, stop, task.team);
-    }
-    lists.emplace(projected, task.grid, *task.function, settings_.emission == scene::Emission::independent,
-                  settings_.trace, &list_buffers_, settings_.use.culling, stop, task.team);
-    if (!task.faces.empty()) faces.emplace(task.faces, space, task.grid);
+  if (exact || projected.iso != nullptr) {
+    if (exact) steps = projection::steps_of(*frame.function, settings_.emission, longest_ray(frame));
+    steps = projection::with_surfaces(std::move(steps), projected.iso);
+    at_steps = projection::CellsAtSteps(*prepared_, steps, longest_ray(frame), frame.lattice, stop, team.team);
   }
-  const projection::FrameFaces* const faces_or_null = faces ? &*faces : nullptr;
-  const std::vector<Maker> made_by = makers(task, *lists, faces_or_null);
-  announce(task, made_by);
-  DrawnTiles drawn(task, made_by);
-
-  const std::uint64_t vertex_bytes = (vertices_.bytes() + lattice_vertices_.bytes()) / members_of(task);
-  const std::uint64_t held = vertex_bytes + lists->bytes() + (faces ? faces->bytes() : 0) + task.kept_bytes;
-  const TileContext context{&projected,
-                            lists->depth_origin(),
-                            segment_budget(settings_, held, arena_.max_concurrency()) / 4 * 3,
-                            settings_.trace,
-                            settings_.mesh.rasterizer,
-                            longest_edge,
-                            usual_optical_depth(*task.function, diagonal_) > opaque_depth,
-                            steps,
-                            at_steps.empty() ? nullptr : &at_steps,
-                            faces_or_null,
-                            stop};
-  Workers workers([&]() -> std::unique_ptr<TileWorker> {
-    auto cells = task.make_cell_sink ? task.make_cell_sink() : nullptr;
-    if (task.lattice == nullptr)
-      return std::make_unique<Worker<DoubleSource>>(task.make_sink(), std::move(cells), context);
-    const projection::LatticeView view{
-        projected,
-        {lattice_vertices_.data(), lattice_vertices_.size()},
-        *task.lattice,
-        space.perspective(),
-        depth_limits_of(space, *task.lattice, *task.function, settings_.emission, longest_ray),
-        steps,
-        context.at_steps};
-    return std::make_unique<Worker<LatticeSource>>(task.make_lattice_sink(), std::move(cells), context, view);
-  });
-  beside.wait();
-  const std::uint64_t most_list_bytes = render_bands(task, *lists, held, [&](std::size_t first, std::size_t last) {
-    render_tiles(task, *lists, made_by, drawn, workers, first, last, stop);
-  });
-
-  FrameStatistics statistics = counted(task, *prepared_, *lists, workers);
-  statistics.peak_buffer_bytes += vertex_bytes + most_list_bytes;
-  return statistics;
+  const bool shows_color_alone = settings_.emission == Emission::independent;
+  using Faces = std::optional<projection::FrameFaces>;
+  return {.steps = std::move(steps),
+          .at_steps = std::move(at_steps),
+          .lists = {projected, frame.grid, *frame.function, shows_color_alone, settings_.trace, &list_buffers_,
+                    settings_.use.culling, stop, team.team},
+          .faces = frame.faces.empty() ? Faces() : Faces(std::in_place, frame.faces, *frame.space, frame.grid)};
 }
 
 /// Calls `render` for band after band of tiles, as many as a quarter of what is left of the budget holds lists for; the
 /// rest is for segments. Returns the most bytes of lists.
-std::uint64_t FrameProjector::render_bands(const Task& task, projection::TileLists& lists, std::uint64_t held,
+std::uint64_t FrameProjector::render_bands(const FrameTask& frame, const TeamTask& team, projection::TileLists& lists,
+                                           std::uint64_t held,
                                            const std::function<void(std::size_t, std::size_t)>& render) const {
   const std::uint64_t most_entries =
       scene::least_of(
           std::max<std::uint64_t>(segment_budget(settings_, held, 1) / 4 / sizeof(projection::TileEntry), 1),
-          task.team) *
-      members_of(task);
+          team.team) *
+      members_of(team);
   std::uint64_t most_bytes = 0;
-  for (std::size_t first = 0; first < task.grid.count();) {
+  for (std::size_t first = 0; first < frame.grid.count();) {
     std::size_t last = first;
-    for (std::uint64_t entries = 0; last < task.grid.count(); ++last) {
+    for (std::uint64_t entries = 0; last < frame.grid.count(); ++last) {
       entries += lists.entry_count(last);
       if (last > first && entries > most_entries) break;
     }
-    if (first > 0 && task.team != nullptr) {
-      if (task.before_waiting) task.before_waiting();
-      task.team->barrier();  // nobody reads the last band's lists any more
+    if (first > 0 && team.team != nullptr) {
+      if (team.before_waiting) team.before_waiting();
+      team.team->barrier();  // no member reads the last band's lists any more
     }
     {
-      const scene::TraceScope timing(settings_.trace, "bin", task.frame);
+      const scene::TraceScope timing(settings_.trace, "bin", frame.number);
       lists.fill(first, last);
     }
     most_bytes = std::max<std::uint64_t>(most_bytes, lists.bytes());

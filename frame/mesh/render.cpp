@@ -77,24 +77,12 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   const projection::PixelSpace space(camera, size);
   const integrals::SegmentIntegrator& integrator = state_->integrator(transfer_function);
   scene::Image image;
-  FrameProjector::Task task;
-  task.beside = [&] { image = scene::Image(size); };  // whose pages are new, so slow to fill
-  task.space = &space;
-  task.grid = {size, settings.mesh.tile_size};
-  task.function = &transfer_function;
-  task.watch = watch;
-  task.image = &image;
   scene::SurfaceSet surfaces(settings.surfaces, transfer_function);
-  task.surfaces = &surfaces;
   const std::vector<projection::SurfaceFaces> faces =
       faces_of(settings.surfaces, surfaces, state_->boundary ? &*state_->boundary : nullptr);
-  task.faces = faces;
   const double longest_ray = state_->projector.diagonal();
   std::optional<compositor::DeepCollector> collector;
-  if (deep != nullptr) {
-    task.kept_bytes = settings.memory_bytes / 2;
-    collector.emplace(size, task.kept_bytes);
-  }
+  if (deep != nullptr) collector.emplace(size, settings.memory_bytes / 2);
   std::optional<compositor::MatterLight> light;
   if (settings.mesh.shading) light.emplace(*settings.mesh.shading, camera);
   const double max_color = light ? light->brightest(transfer_function.max_color()) : transfer_function.max_color();
@@ -104,7 +92,7 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   if (!surfaces.empty()) scene.surfaces = &surfaces;
   if (light) scene.light = &*light, scene.normals = &state_->normals;
   const compositor::ImageWindow window{&image};
-  task.make_sink = [&]() -> std::unique_ptr<compositor::TileSink<sorting::DoubleEncoding>> {
+  const auto sink_in_double = [&]() -> std::unique_ptr<compositor::TileSink<sorting::DoubleEncoding>> {
     if (!collector) return std::make_unique<compositor::PictureSink<sorting::DoubleEncoding>>(scene, window);
     if (frame.peel)
       return std::make_unique<compositor::PeelSink>(scene, window, transfer_function, settings.emission, *frame.peel,
@@ -121,12 +109,20 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
     surfaces.place_on(*lattice);
     scene.table = &*table;
     scene.lattice = *lattice;
-    task.lattice = &*lattice;
-    task.make_lattice_sink = [&] {
-      return std::make_unique<compositor::PictureSink<sorting::LatticeEncoding>>(scene, window);
-    };
   }
-  FrameStatistics counted = state_->projector.project(task);
+  FrameStatistics counted = state_->projector.project(
+      {.space = &space,
+       .grid = {size, settings.mesh.tile_size},
+       .function = &transfer_function,
+       .surfaces = &surfaces,
+       .faces = faces,
+       .lattice = lattice ? &*lattice : nullptr,
+       .watch = watch},
+      {.in_double = sink_in_double,
+       .on_lattice = [&] { return std::make_unique<compositor::PictureSink<sorting::LatticeEncoding>>(scene, window); },
+       .kept_bytes = collector ? settings.memory_bytes / 2 : 0,
+       .image = &image,
+       .prepare = [&] { image = scene::Image(size); }});  // whose pages are new, so slow to fill
   counted.instruction_set = projection::instruction_set();
   counted.integrator = integrator.name();
   if (collector) {

@@ -149,34 +149,20 @@ void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t 
     const scene::TraceScope timing(settings.projecting, "pack", number, part.records.size(), 0);
     outbox.put(std::move(part));
   });
-  FrameProjector::Task task;
-  task.space = &sinks.space();
-  task.grid = grid;
-  task.function = &run.function;
-  task.surfaces = &sinks.surfaces();
   const std::vector<projection::SurfaceFaces> faces = faces_of(
       settings.render.surfaces, sinks.surfaces(), loaded.boundary(), static_cast<std::uint32_t>(number_of(run)),
       static_cast<std::uint32_t>(settings.roles.projectors.size()));
-  task.faces = faces;
-  task.frame = number;
-  task.longest_edge = mesh.longest_edge;
-  task.longest_ray = mesh.box.empty() ? 0 : glm::length(mesh.box.high - mesh.box.low);
-  task.make_sink = [&] { return sinks.make(); };
-  if (sinks.lattice()) {
-    task.lattice = &*sinks.lattice();
-    task.make_lattice_sink = [&] { return sinks.make_on_lattice(); };
-  }
-  if (run.device.everywhere && sinks.have_cells()) task.make_cell_sink = [&] { return sinks.make_for_cells(); };
   std::vector<int> members;
+  TeamTask team;
   if (loaded.team() != nullptr) {
-    task.team = loaded.team();
-    task.pass = [&](std::size_t tile) { outbox.pass(static_cast<std::uint32_t>(tile)); };
-    task.before_waiting = [&] { outbox.flush(); };
     members = members_that_composite(run, *loaded.team());
-    task.preferred = [&](std::size_t tile) { return members[static_cast<std::size_t>(map.owner(tile))]; };
+    team = {.team = loaded.team(),
+            .preferred = [&](std::size_t tile) { return members[static_cast<std::size_t>(map.owner(tile))]; },
+            .skip = [&](std::size_t tile) { outbox.pass(static_cast<std::uint32_t>(tile)); },
+            .before_waiting = [&] { outbox.flush(); }};
   }
   bool announced = false, stopped = false;
-  task.announce = [&](const std::vector<bool>& has_any) {
+  const auto announce = [&](const std::vector<bool>& has_any) {
     announced = true;
     outbox.begin_frame(static_cast<std::uint32_t>(number), map, has_any,
                        {.longest_ray = mesh.diagonal,
@@ -185,18 +171,32 @@ void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t 
                         .stopped = stopped ? 1u : 0u,
                         .lattice = sinks.lattice().value_or(scene::Lattice{})});
   };
+  TileSinks tile_sinks{.in_double = [&] { return sinks.make(); },
+                       .on_lattice = [&] { return sinks.make_on_lattice(); },
+                       .announce = announce};
+  if (run.device.everywhere && sinks.have_cells()) tile_sinks.of_cells = [&] { return sinks.make_for_cells(); };
   scene::FrameWatch watch(run.stop);
-  task.watch = &watch;
   exchange::FrameEnd end{};
   run.transport.set_working(true);
   if (loaded.team() != nullptr) loaded.team()->begin();
   try {
-    end = counts_of(loaded.projector().project(task));
+    end = counts_of(
+        loaded.projector().project({.space = &sinks.space(),
+                                    .grid = grid,
+                                    .function = &run.function,
+                                    .surfaces = &sinks.surfaces(),
+                                    .faces = faces,
+                                    .lattice = sinks.lattice() ? &*sinks.lattice() : nullptr,
+                                    .number = number,
+                                    .longest_edge = mesh.longest_edge,
+                                    .longest_ray = mesh.box.empty() ? 0 : glm::length(mesh.box.high - mesh.box.low),
+                                    .watch = &watch},
+                                   tile_sinks, team));
   } catch (const scene::FrameStopped&) {
     // The others wait for what they were told of: it ends here, empty.
     stopped = true;
     if (loaded.team() != nullptr) loaded.team()->leave();
-    if (!announced) task.announce(std::vector<bool>(task.grid.count(), false));
+    if (!announced) announce(std::vector<bool>(grid.count(), false));
     outbox.end_tiles();
     end.stopped = 1;
   }
