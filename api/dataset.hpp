@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "api/state_access.hpp"
+#include "exchange/transport.hpp"
 #include "frame/ranks/field_of_all.hpp"
 #include "frame/ranks/mesh_exchange.hpp"
 #include "io/mesh/mesh_reader.hpp"
 #include "io/volume/volume_reader.hpp"
 #include "projection/prepared_mesh.hpp"
+#include "scene/error.hpp"
 #include "scene/mesh_facts.hpp"
 #include "scene/sample_source.hpp"
 #include "tessera/dataset.hpp"
@@ -75,4 +77,26 @@ struct TESSERA_HIDDEN Dataset::State {
 
 }  // namespace v0_1
 
+namespace api {
+
+scene::MeshFacts facts_of_grid(const scene::Grid& grid, const scene::ValueRange& range);
+
+/// Facts of a grid whose samples and ranges are known.
+void complete_grid(Dataset::State& state);
+
+/// This rank's error ends the run for all, and the run's one error is thrown on each.
+template <class Work>
+auto together(exchange::Transport& transport, const Work& work) {
+  try {
+    return work();
+  } catch (const scene::Error& error) {
+    if (transport.size() > 1) {
+      transport.fail(error);
+      transport.check();
+    }
+    throw;
+  }
+}
+
+}  // namespace api
 }  // namespace tessera

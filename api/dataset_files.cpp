@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Data sets from files.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "api/communicator.hpp"
+#include "api/dataset.hpp"
+#include "api/grid_values.hpp"
+#include "api/input_file.hpp"
+#include "api/same_files.hpp"
+#include "api/selected_dataset.hpp"
+#include "cells/axis_scale.hpp"
+#include "exchange/transport.hpp"
+#include "frame/grid/scan_together.hpp"
+#include "frame/grid/shared_volume.hpp"
+#include "frame/mesh/render.hpp"
+#include "frame/ranks/distributed_mesh.hpp"
+#include "frame/ranks/roles.hpp"
+#include "io/volume/volume_reader.hpp"
+#include "io/vtk/vtk_field_words.hpp"
+#include "scene/error.hpp"
+#include "scene/fill_value.hpp"
+#include "scene/scaled_source.hpp"
+#include "scene/threshold_source.hpp"
+#include "system/files_read.hpp"
+#include "tessera/input_file.hpp"
+
+namespace tessera {
+inline namespace v0_1 {
+namespace {
+
+void check_grid_options(const std::filesystem::path& file, const ReadOptions& options) {
+  const auto refuse = [&](const char* setting) {
+    throw scene::bad_input(
+        fmt::format("{}: `{}` is for meshes, and this is a grid; leave it out", file.string(), setting));
+  };
+  if (options.smooth) refuse("smooth");
+  if (options.warp) refuse("warp");
+  if (options.drop_duplicates) refuse("drop_duplicates");
+  if (options.max_volume) refuse("max_volume");
+  if (!options.blocks.empty()) refuse("block");
+  if (!options.plot3d_q.empty()) refuse("plot3d_q");
+}
+
+void check_mesh_options(const std::filesystem::path& file, const ReadOptions& options) {
+  if (options.describes_raw())
+    throw scene::bad_input(
+        fmt::format("{}: `dims`, `type`, `spacing`, `origin`, `endian` and `skip` are for .raw files; leave them out",
+                    file.string()));
+}
+
+/// The same note on every rank.
+void note_fill_value(exchange::Transport& transport, Dataset::State& state) {
+  std::optional<scene::FillValue> fill = frame::find_fill_value(transport, state.mesh, state.facts);
+  if (!fill) return;
+  const bool of_points = state.facts.association == Association::point;
+  if (of_points && transport.size() > 1) fill->count = 0;  // parts have the points between them in common
+  state.notes.push_back(scene::words_on(*fill, of_points ? "points" : "tets"));
+}
+
+/// Of a file of one step, what its field data state.
+void set_own_time(const io::InputFile& file, scene::TimeStepRead& read) {
+  if (read.count > 1 || !read.times.empty()) return;
+  if (const auto time = io::vtk_time_value(file.path, file.beginning)) read = {1, 0, {*time}};
+}
+
+void check_axis_scale(const std::optional<glm::dvec3>& scale) {
+  if (!scale) return;
+  for (int axis = 0; axis < 3; ++axis)
+    if (!((*scale)[axis] > 0) || !std::isfinite((*scale)[axis]))
+      throw scene::bad_input(
+          fmt::format("`scale` is {} {} {}; each factor must be above 0", scale->x, scale->y, scale->z));
+}
+
+std::shared_ptr<Dataset::State> opened_grid(const io::InputFile& input, const ReadOptions& options,
+                                            exchange::Transport& transport, scene::Trace* trace) {
+  const std::filesystem::path& file = input.path;
+  check_grid_options(file, options);
+  auto state = std::make_shared<Dataset::State>();
+  io::VolumeFile volume = [&] {
+    const scene::TraceScope timing(trace, "read");
+    return frame::open_shared_volume(transport, input, options);
+  }();
+  api::require_same_files(transport);  // which it names
+  state->axis_scale = cells::chosen_scale(options.axis_scale, volume.beside_degrees,
+                                          scene::bounds(volume.source->geometry()), volume.notes);
+  if (state->axis_scale != glm::dvec3(1))
+    volume.source = std::make_unique<scene::ScaledSource>(std::move(volume.source), state->axis_scale, file.string());
+  {
+    const scene::TraceScope timing(trace, "prepare");
+    state->labels = api::take_labels(file, options, transport, volume);
+    state->ranges =
+        std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source, options.threads));
+  }
+  api::note_byte_order(volume, options, state->ranges->range);
+  api::leave_fill_values_out(volume, file, options, transport, state->ranges);
+  scene::ValueRange range = state->ranges->range;
+  if (const auto& threshold = options.selection.threshold) {
+    state->of_all = std::make_shared<const frame::FieldOfAll>(
+        frame::FieldOfAll{api::facts_of_grid(volume.source->grid(), range), scene::sample_grid(*volume.source)});
+    volume.source = std::make_unique<scene::ThresholdSource>(std::move(volume.source), *threshold, file.string());
+    const scene::TraceScope timing(trace, "prepare");
+    state->ranges =
+        std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source, options.threads));
+    range = state->ranges->range;
+    if (range.empty())
+      throw scene::bad_input(fmt::format(
+          "{}: no sample's value is in `threshold`, nothing is left to render; give a wider range", file.string()));
+    if (range.blanks > 0)
+      volume.notes.push_back(
+          fmt::format("{} samples are blank or not in `threshold`: voxels that have one are left out",
+                      std::exchange(range.blanks, 0)));
+  }
+  io::set_range(volume, file, range);
+  state->fields = std::move(volume.fields);
+  state->notes = std::move(volume.notes);
+  state->format = std::move(volume.format);
+  state->body_axes = volume.body_axes;
+  state->tags = std::move(volume.tags);
+  state->time_step = std::move(volume.time_step);
+  set_own_time(input, state->time_step);
+  state->samples = std::move(volume.source);
+  return state;
+}
+
+void take_description(cells::MeshFile&& file, Dataset::State& state) {
+  state.field_name = std::move(file.mesh.field_name);
+  state.fields = std::move(file.fields);
+  state.notes = std::move(file.notes);
+  state.blocks = std::move(file.blocks);
+  state.surfaces = std::move(file.surfaces);
+  state.format = std::move(file.format);
+  state.counts = file.counts;
+  state.higher_order = file.higher_order;
+  state.time_step = std::move(file.time_step);
+  state.axis_scale = file.axis_scale;
+}
+
+/// Makes a mesh the state's own, its corners in the order that needs no copy unless theirs is to be kept.
+void keep(scene::TetMesh mesh, const ReadOptions& options, scene::Trace* trace, Dataset::State& state) {
+  if (!options.keep_corners) frame::order_corners(mesh, options.threads, trace);
+  auto kept = std::make_shared<const scene::TetMesh>(std::move(mesh));
+  state.mesh = *kept;
+  state.owner = std::move(kept);
+}
+
+/// Spans of messages go to a face of the reader's trace while this lives.
+class TracedMessages {
+ public:
+  TracedMessages(exchange::Transport& transport, Trace* trace) : transport_(transport) {
+    if (trace == nullptr || transport.size() == 1) return;
+    face_.emplace(*trace, TraceRole::projector);
+    transport_.trace_to(&*face_, nullptr);
+  }
+  ~TracedMessages() {
+    if (face_) transport_.trace_to(nullptr, nullptr);
+  }
+  TracedMessages(const TracedMessages&) = delete;
+  TracedMessages& operator=(const TracedMessages&) = delete;
+
+  /// The face, or `alone` of one process.
+  [[nodiscard]] Trace* face(Trace* alone) { return face_ ? &*face_ : alone; }
+
+ private:
+  exchange::Transport& transport_;
+  std::optional<Trace> face_;
+};
+
+/// `identified`: the one file, if it has been.
+Dataset open_together(std::span<const std::filesystem::path> files, std::optional<InputFile> identified,
+                      const ReadOptions& options, const Communicator& communicator, const RankSettings& ranks) {
+  const std::shared_ptr<exchange::Transport> transport = StateAccess::of(communicator).connect();
+  return api::together(*transport, [&] {
+    std::shared_ptr<Dataset::State> state;
+    if (files.empty()) throw scene::bad_input("input: no file is named; name one");
+    check_axis_scale(options.axis_scale);
+    for (const auto& file : files) system::note_read(file);
+    api::require_same_files(*transport);  // first of all: what ranks do together goes by them
+    if (!identified) identified.emplace(files.front());
+    const io::InputFile& first = StateAccess::of(*identified).file;
+    if (files.size() == 1 && identified->opens_as_grid(options)) {
+      state = opened_grid(first, options, *transport, options.trace);
+      api::complete_grid(*state);
+      if (!options.selection.clip.empty()) api::clip_box(*state, options.selection, files.front().string());
+    } else {
+      check_mesh_options(files.front(), options);
+      state = std::make_shared<Dataset::State>();
+      TracedMessages traced(*transport, options.trace);
+      Trace* const trace = traced.face(options.trace);
+      const Roles roles = assign_roles(transport->size(), ranks.projectors, ranks.compositors);
+      frame::DistributedMesh mesh =
+          frame::read_distributed(*transport, files, first, options, ranks.partition, roles.projectors, trace);
+      api::require_same_files(*transport);  // which they name
+      take_description(std::move(mesh.description), *state);
+      set_own_time(first, state->time_step);
+      state->facts = mesh.facts;
+      state->of_all = std::move(mesh.of_all);
+      state->ranks = transport->size();
+      state->global_tet = std::move(mesh.part.global_tet);
+      keep(std::move(mesh.part.mesh), options, trace, *state);
+      if (!options.selection.threshold) note_fill_value(*transport, *state);
+      state->shape = options.shape && state->field_name == shape_field_name;
+      state->gather_field_samples(*transport);
+    }
+    state->source = files.front().string();
+    state->files.assign(files.begin(), files.end());
+    state->options = options;
+    state->clip = options.selection.clip;
+    state->options.trace = nullptr;  // which need not live as long
+    state->options.progress = nullptr;
+    return StateAccess::make(std::move(state));
+  });
+}
+
+}  // namespace
+
+Dataset Dataset::open(const std::filesystem::path& file, const ReadOptions& options) {
+  return open(std::span(&file, 1), options);
+}
+
+Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOptions& options) {
+  return open(files, options, Communicator());
+}
+
+Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOptions& options,
+                      const Communicator& communicator, const RankSettings& ranks) {
+  return open_together(files, std::nullopt, options, communicator, ranks);
+}
+
+Dataset Dataset::open(const InputFile& file, const ReadOptions& options) { return open(file, options, Communicator()); }
+
+Dataset Dataset::open(const InputFile& file, const ReadOptions& options, const Communicator& communicator,
+                      const RankSettings& ranks) {
+  return open_together(std::span(&file.path(), 1), file, options, communicator, ranks);
+}
+
+}  // namespace v0_1
+}  // namespace tessera
