@@ -26,6 +26,7 @@
 #include "scene/scaled_source.hpp"
 #include "scene/threshold_source.hpp"
 #include "system/files_read.hpp"
+#include "system/missing_file.hpp"
 #include "tessera/input_file.hpp"
 
 namespace tessera {
@@ -180,6 +181,7 @@ Dataset open_together(std::span<const std::filesystem::path> files, std::optiona
     for (const auto& file : files) system::note_read(file);
     api::require_same_files(*transport);  // first of all: what ranks do together goes by them
     if (!identified) identified.emplace(files.front());
+    if (!StateAccess::of(*identified).is_there) throw system::missing_file(files.front());
     const io::InputFile& first = StateAccess::of(*identified).file;
     if (files.size() == 1 && identified->opens_as_grid(options)) {
       state = opened_grid(first, options, *transport, options.trace);

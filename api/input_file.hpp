@@ -15,7 +15,8 @@ struct TESSERA_HIDDEN InputFile::Found {
   /// io::is_volume(), asked once.
   [[nodiscard]] bool is_volume() const;
 
-  io::InputFile file;
+  bool is_there;
+  io::InputFile file;  ///< by its name alone if it is not there
 
  private:
   mutable std::once_flag once_;

@@ -102,8 +102,10 @@ ExitCode run(int argc, char** argv, Job& job) {
   if (command == Trait::info) {
     const InputFile first = first_input(words);
     const bool is_grid = draws_grids(words, first);
-    if (words.given("check") && is_grid)
+    if (words.given("check") && is_grid) {
+      require_input(input);
       throw bad_input("--check: is for meshes, and the input is a volume; leave it out");
+    }
     ReadOptions options = read_options(words, is_grid);
     options.shape = !is_grid;  // as render without options
     info(input, first, options, words.given("json"), words.given("check"));

@@ -8,6 +8,7 @@
 #include "api/options/setting_name.hpp"
 #include "api/options/values.hpp"
 #include "tessera/error.hpp"
+#include "tessera/input_file.hpp"
 
 namespace tessera {
 inline namespace v0_1 {
@@ -19,6 +20,7 @@ void refuse_others(const OptionWords& words, bool is_grid) {
     if (!row->is(Trait::render) || !words.given(row->key())) continue;
     const auto choices = row->choices();
     if (is_grid && !choices.empty() && words.word(row->key()) == choices.front()) continue;
+    require_input(words.word("input"));  // one that is not there is neither
     throw bad_input(fmt::format("{}: is for {}; leave it out", api::setting_name(row->key()),
                                 is_grid ? "meshes, and the input is a volume" : "volumes, and the input is a mesh"));
   }

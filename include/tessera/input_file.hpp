@@ -19,8 +19,8 @@ inline namespace v0_1 {
 /// changes has to be identified again.
 class TESSERA_EXPORT InputFile {
  public:
-  /// Throws Error(bad_input) unless it is a readable file that is not empty, or a folder that stands for one; and for
-  /// the name of a time series.
+  /// A file that is not there is identified by its name alone; opening it reports that. Throws Error(bad_input) for one
+  /// that cannot be read or is empty, a folder that does not stand for a file, and the name of a time series.
   explicit InputFile(const std::filesystem::path& file);
 
   [[nodiscard]] const std::filesystem::path& path() const;

@@ -92,4 +92,10 @@ InputFile identify(const std::filesystem::path& path) {
   return file;
 }
 
+InputFile identify_by_name(const std::filesystem::path& path) {
+  InputFile file{.path = path, .name = path.string()};
+  set_format(file, nullptr);
+  return file;
+}
+
 }  // namespace tessera::io

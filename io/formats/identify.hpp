@@ -17,4 +17,7 @@ std::span<const Format> formats();
 /// Throws as require_file.
 InputFile identify(const std::filesystem::path& file);
 
+/// By its name alone, a file that is not there.
+InputFile identify_by_name(const std::filesystem::path& file);
+
 }  // namespace tessera::io

@@ -172,7 +172,8 @@ VolumeFile with_tag_note(VolumeFile volume) {
 }
 
 std::optional<std::uint64_t> end_in_gzip(const StoredVolume& volume, const InputFile& file) {
-  if (volume.compressed || volume.at_end || volume.coding != StoredVolume::Coding::binary) return std::nullopt;
+  const bool are_in_file = volume.payload == file.path && !volume.compressed && !volume.at_end;
+  if (!are_in_file || volume.coding != StoredVolume::Coding::binary) return std::nullopt;
   return volume.offset + payload_bytes(volume, file.name);
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/volume/plain_vtk_grid.hpp"
 #include "io/volume/volume_formats.hpp"
 #include "support/read_files.hpp"
 #include "support/some_cases.hpp"
