@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "api/options/surface_file_name.hpp"
-#include "api/options/text_excerpt.hpp"
+#include "scene/quote.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/error.hpp"
 #include "tessera/program/nearest_name.hpp"
@@ -28,8 +28,8 @@ const OptionRow& key_named(const std::string& name) {
     names.emplace_back(row->key());
   }
   if (const auto near = nearest_name(name, names))
-    throw bad_input(fmt::format("state: {} is no key; did you mean {}?", excerpt(name), *near));
-  throw bad_input(fmt::format("state: {} is no key; docs/SERVER.md has those there are", excerpt(name)));
+    throw bad_input(fmt::format("state: {} is no key; did you mean {}?", scene::quote(name), *near));
+  throw bad_input(fmt::format("state: {} is no key; docs/SERVER.md has those there are", scene::quote(name)));
 }
 
 Error wrong_kind(const std::string& name, const char* kind) {
