@@ -84,7 +84,7 @@ std::string shown_name(const OptionRow& row) {
 std::string option_form(const OptionRow& row, bool all) {
   std::vector<std::string> names = written_names(row);
   if (!all) names.resize(names.front().starts_with("--") ? 1 : 2);
-  const std::string form = fmt::format("{}", fmt::join(names, ", "));
+  std::string form = fmt::format("{}", fmt::join(names, ", "));
   if (row.value.empty() || row.is(Trait::flag | Trait::place)) return form;
   std::string type(row.value);
   const std::size_t room = left_column > form.size() + 5 ? left_column - form.size() - 5 : 0;

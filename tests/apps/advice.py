@@ -179,7 +179,7 @@ def follow_in_time(tessera, data, folder, row):
 
 def uncovered(source, said, is_partial):
     """Messages that no row made and that are not excepted; exceptions of no use. `is_partial`: not all rows ran."""
-    every = messages_of(source, ("apps", "cells", "io", "readers", "system"))
+    every = messages_of(source, ("api/options", "apps", "cells", "io", "readers", "system"))
     messages = [message for message in every if not any(re.search(known, str(message)) for known in NO_ADVICE)]
     followed = [message for message in messages if message.pattern.search(said)]
     rest = [message for message in messages if message not in followed]

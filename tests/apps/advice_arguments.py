@@ -6,6 +6,10 @@ from advice_row import row
 
 R = "render m.vtu -o a.png --size 16x16 "
 V = "render v.vti -o a.png --size 16x16 "
+ONE_CELL = (
+    "# vtk DataFile Version 3.0\n-\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n"
+    + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\nCELL_DATA 1\nSCALARS f float 1\nLOOKUP_TABLE default\n1\n"
+)
 
 ROWS = [
     row(R + "--light 1,1,1", "add it, or leave --light out", R + "--light 1,1,1 --shade"),
@@ -140,6 +144,15 @@ ROWS = [
     ),
     row(R + "--config s.toml", "see tessera render --help-all", "render --help-all", {"s.toml": "qqqqqqqqqq = 1\n"}),
     row(R + "--config s.toml", "leave it out", R, {"s.toml": "config = 't.toml'\n"}),
+    row(R + "--config s.toml", "takes one value; give one", None, {"s.toml": "iso = '1'\nzoom = [1, 2]\n"}, {"s.toml": "zoom = 2\n"}),
+    row(R + "--config s.toml", "by two names; keep one", None, {"s.toml": "opacity = 1\nopacity-scale = 2\n"}, {"s.toml": "opacity = 2\n"}),
+    row(V + "--surface walls", "shows a surface in one", V + "--iso 0.5"),
+    row(
+        "render c.vtk -o a.png --size 16x16 --field f --shade",
+        "gives values at the points",
+        "render c.vtk -o a.png --size 16x16 --field f --shade --smooth",
+        {"c.vtk": ONE_CELL},
+    ),
     row(
         R + "--config s.toml",
         "save it as UTF-8",

@@ -19,7 +19,7 @@ ADVICE = re.compile(r"; [a-z`(]|, (?:write|give) |(?:^|\n)(?:" + "|".join(VERBS)
 # What takes words that nobody is told.
 ASKING = set(
     """if while for switch find rfind contains starts_with ends_with substr count at attribute child get find_first_of
-       find_last_of find_first_not_of begins_with""".split()
+       find_last_of find_first_not_of begins_with word words given""".split()
 )
 DECLARING = set("add_option add_flag add_option_function add_flag_function add_subcommand static_assert footer".split())
 
