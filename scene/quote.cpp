@@ -7,7 +7,9 @@ namespace tessera::scene {
 
 std::string quote(std::string_view text) {
   constexpr std::size_t most = 40;
-  return "'" + printable_ascii(text.substr(0, most)) + (text.size() > most ? "...'" : "'");
+  std::string quoted = "'";
+  quoted += printable_ascii(text.substr(0, most));
+  return quoted += text.size() > most ? "...'" : "'";
 }
 
 }  // namespace tessera::scene

@@ -65,7 +65,7 @@ VolumeFile with_tag_note(VolumeFile volume);
 std::optional<std::uint64_t> end_in_gzip(const StoredVolume& volume, const InputFile& file);
 
 /// A .raw file by the options or by its name; the payload is left to be set.
-StoredVolume describe_raw(const std::filesystem::path& file, const VolumeOptions& options);
+StoredVolume describe_raw(const std::filesystem::path& file, const ReadOptions& options);
 
 // What the rows of the table of formats (io/formats/format_table.cpp) name of this directory.
 VolumeFile open_nifti(const InputFile& file, const VolumeOptions& options);

@@ -184,8 +184,6 @@ VolumeFile open_raw(const InputFile& file, const VolumeOptions& options) {
   return open_stored(std::move(volume), options, file.name);
 }
 
-}  // namespace
-
 bool is_volume(const InputFile& file) {
   if (is_named_raw(file)) return true;
   if (file.format == nullptr || file.format->open_volume == nullptr) return false;
