@@ -39,8 +39,8 @@ std::vector<DistributedMesh> read_on(int ranks, const std::filesystem::path& fil
   options.threads = 1;
   std::vector<DistributedMesh> result(static_cast<std::size_t>(ranks));
   exchange::run_ranks(ranks, [&](Transport& transport) {
-    result[static_cast<std::size_t>(transport.rank())] = read_distributed(
-        transport, std::span(&file, 1), io::identify(file), options, {kind, 1}, projectors, 1, nullptr);
+    result[static_cast<std::size_t>(transport.rank())] =
+        read_distributed(transport, std::span(&file, 1), io::identify(file), options, {kind, 1}, projectors, nullptr);
   });
   return result;
 }

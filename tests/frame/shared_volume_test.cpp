@@ -43,7 +43,7 @@ class SharedVolume : public ::testing::Test {
     std::mutex mutex;
     std::vector<io::VolumeFile> all(static_cast<std::size_t>(ranks));
     exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
-      io::VolumeFile volume = open_shared_volume(transport, io::identify(file), options, 1);
+      io::VolumeFile volume = open_shared_volume(transport, io::identify(file), options);
       const std::lock_guard lock(mutex);
       all[static_cast<std::size_t>(transport.rank())] = std::move(volume);
     });
@@ -57,7 +57,7 @@ class SharedVolume : public ::testing::Test {
     const test::Fault ended = test::fault_of([&] {
       exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
         try {
-          static_cast<void>(open_shared_volume(transport, io::identify(file), {}, 1));
+          static_cast<void>(open_shared_volume(transport, io::identify(file), {}));
         } catch (const scene::Error& error) {
           const std::lock_guard lock(mutex);
           told.insert(error.what());

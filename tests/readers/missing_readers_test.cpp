@@ -94,7 +94,7 @@ class MissingReaders : public ::testing::Test {
 
 TEST_F(MissingReaders, EveryFormatNamesItsReaderAndHowToGetIt) {
   const std::map<std::string, std::string> texts = beginnings();
-  int formats = 0;
+  int read_by_programs = 0;
   for (const Format& row : formats()) {
     if (row.needs.empty()) continue;
     const ReaderProgram& program = reader_program(row.needs.front());
@@ -102,7 +102,7 @@ TEST_F(MissingReaders, EveryFormatNamesItsReaderAndHowToGetIt) {
     // FLASH is found by its reader: to this library it is HDF5.
     if (extensions.empty() && row.recognizes == nullptr) continue;
     SCOPED_TRACE(row.name);
-    ++formats;
+    ++read_by_programs;
     const auto text = texts.find(row.name);
     ASSERT_NE(text, texts.end()) << "give it a beginning here";
     const auto file = folder.write("a" + extensions.substr(0, extensions.find(' ')), text->second);
@@ -119,7 +119,7 @@ TEST_F(MissingReaders, EveryFormatNamesItsReaderAndHowToGetIt) {
     EXPECT_EQ(is_mesh(identified), row.read_mesh != nullptr);
     std::filesystem::remove(file);
   }
-  EXPECT_GT(formats, 25);
+  EXPECT_GT(read_by_programs, 25);
 }
 
 TEST_F(MissingReaders, WhatIsRareInAFormatOfOurOwnReaderNamesTheOther) {
