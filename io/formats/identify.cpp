@@ -10,8 +10,6 @@
 namespace tessera::io {
 namespace {
 
-constexpr std::size_t longest_beginning = 1 << 16;
-
 bool has_extension(const Format& format, const std::string& extension) {
   std::string_view rest = format.extensions;
   while (!rest.empty()) {
@@ -80,10 +78,11 @@ InputFile identify(const std::filesystem::path& path) {
   }
   const system::PositionalFile opened = open_input(path);
   file.size = opened.size();
-  file.beginning = opened.beginning(longest_beginning);
+  file.beginning = opened.beginning(InputFile::longest_beginning);
   file.is_gzip = system::looks_like_gzip(file.beginning);
   if (file.is_gzip) {
-    const auto inner = system::inflate_beginning(std::as_bytes(std::span(file.beginning)), longest_beginning);
+    const auto inner =
+        system::inflate_beginning(std::as_bytes(std::span(file.beginning)), InputFile::longest_beginning);
     file.beginning.assign(reinterpret_cast<const char*>(inner.data()), inner.size());
   }
   const Format* begun = recognized(file.start(), extension_of(path));

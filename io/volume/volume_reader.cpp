@@ -114,7 +114,10 @@ std::unique_ptr<scene::SampleSource> source_of(const VolumePayload& payload, Cho
 
 /// As little of a gzip file as holds the samples, or all of it.
 InflatedFile inflated_as_needed(const InputFile& file, bool is_raw) {
-  const auto end_of_samples = is_raw || !file.is_recognized ? nullptr : file.format->end_of_samples;
+  // A file that is known whole may be truncated within its header, which inflating it reports.
+  const bool is_known_whole =
+      file.size <= InputFile::longest_beginning && file.beginning.size() < InputFile::longest_beginning;
+  const auto end_of_samples = is_raw || !file.is_recognized || is_known_whole ? nullptr : file.format->end_of_samples;
   if (const auto end = end_of_samples == nullptr ? std::nullopt : end_of_samples(file)) return {file, *end};
   return {file, InflatedFile::Holds::grid};
 }

@@ -12,6 +12,7 @@ exit status 1 if there is one.
 """
 
 import argparse
+import json
 import os
 import re
 import shlex
@@ -200,6 +201,16 @@ def uncovered(source, said, is_partial):
     return wrong, f"{len(messages)} messages give advice, {counts}"
 
 
+def unread_formats(tessera, said):
+    """Formats that are known but not read, of which no row followed what their row of the table advises."""
+    listed = json.loads(subprocess.run([tessera, "formats", "--json"], check=True, capture_output=True).stdout)
+    return [
+        f"no row: {each['name']}: {each['remark']}"
+        for each in listed
+        if each["holds"] == "not read" and f"({each['name']}) is not read; {each['remark']}" not in said
+    ]
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--tessera", required=True)
@@ -228,7 +239,7 @@ def main():
         unfollowed, counts = uncovered(
             options.source, "\n".join(everything), options.sanitized or len(everything) < len(rows)
         )
-        wrong += unfollowed
+        wrong += unfollowed + unread_formats(tessera, "\n".join(everything))
     print("\n".join(wrong))
     print(f"{counts}; {len(rows)} rows, {len(wrong)} wrong")
     sys.exit(1 if wrong else 0)

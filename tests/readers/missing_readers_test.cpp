@@ -59,6 +59,7 @@ std::map<std::string, std::string> beginnings() {
           {"PLOT3D", plot3d_cube},
           {"PLOT3D list", R"({"version": 1, "filenames": [{"time": 0, "xyz": "grid.xyz"}]})"},
           {"STL", "solid s\nfacet normal 0 0 1\n"},
+          {"VTK XML", vtk_xml("Graph")},
           {"VTK surface", vtk_xml("PolyData")},
           {"PLY", tetrahedron_ply},
           {"TetGen surface", tetrahedron_poly},

@@ -108,7 +108,7 @@ test("surfaces that the file names are offered", async () => {
 
 test("errors and notes name the page's controls", async () => {
   await change({ threshold: "5,1" });
-  const alert = page.getByRole("alert").filter({ hasText: "“Threshold”: '5,1' is no range" });
+  const alert = page.getByRole("alert").filter({ hasText: "“Threshold”: '5,1' does not ascend" });
   await alert.waitFor();
   await alert.getByRole("button", { name: "Undo" }).click();
   await at_rest(page);
