@@ -59,7 +59,6 @@ std::map<std::string, std::string> beginnings() {
           {"PLOT3D", plot3d_cube},
           {"PLOT3D list", R"({"version": 1, "filenames": [{"time": 0, "xyz": "grid.xyz"}]})"},
           {"STL", "solid s\nfacet normal 0 0 1\n"},
-          {"VTK XML", vtk_xml("Graph")},
           {"VTK surface", vtk_xml("PolyData")},
           {"PLY", tetrahedron_ply},
           {"TetGen surface", tetrahedron_poly},
@@ -102,6 +101,8 @@ TEST_F(MissingReaders, EveryFormatNamesItsReaderAndHowToGetIt) {
     const std::string extensions = row.extensions;
     // FLASH is found by its reader: to this library it is HDF5.
     if (extensions.empty() && row.recognizes == nullptr) continue;
+    // Of VTK XML of a kind that no row has, this library itself reports which that is.
+    if (row.container == Container::vtk_xml && !row.is_listed) continue;
     SCOPED_TRACE(row.name);
     ++read_by_programs;
     const auto text = texts.find(row.name);
