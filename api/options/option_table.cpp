@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Long: one table, of which help, command line, states and messages are made.
+// Long: the one table from which help, command line, states and messages follow.
 #include <array>
 
 #include "tessera/program/options.hpp"

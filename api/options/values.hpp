@@ -10,7 +10,7 @@
 /// Words of options to values, by subject: the parts of render_options(), and the functions that throw as it does.
 namespace tessera::api {
 
-/// `all`, or FIRST:LAST, or FIRST:LAST:STRIDE of --time-step; nothing for other words, which are one step.
+/// `all`, FIRST:LAST or FIRST:LAST:STRIDE of --time-step; no value for other words, which name one step.
 std::optional<StepRange> time_steps(const OptionWords& words);
 
 void set_function(const OptionWords& words, RenderOptions& options);
@@ -18,14 +18,14 @@ void set_view(const OptionWords& words, RenderOptions& options);
 
 /// With the triangles of files; names of blocks go to `blocks`.
 Surfaces surfaces_of(const OptionWords& words, std::vector<BlockSurfaceWord>& blocks);
-/// Of them those of a value.
+/// Only the iso-surfaces.
 std::vector<IsoSurface> iso_surfaces_of(const OptionWords& words);
-/// A warning for each surface of a value that the field does not have.
+/// A warning for each iso-surface whose value is outside `range`, the field's.
 std::vector<std::string> unseen_surfaces(const Surfaces& surfaces, const std::array<double, 2>& range);
 
 /// How pixels are computed, once it is known whether of meshes or grids.
 void set_method(const OptionWords& words, RenderOptions& options);
-/// Nothing given: no backends, which is the CPU without a word about devices.
+/// Without options of devices: no backends, which means the CPU.
 DeviceSettings device_settings(const OptionWords& words, bool for_volume);
 /// Jobs of several ranks.
 void set_ranks(const OptionWords& words, RenderOptions& options);

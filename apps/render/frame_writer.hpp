@@ -27,7 +27,7 @@ struct FinishedFrame {
 };
 
 /// Writes frames to their files, annotated, on threads of its own while the next ones are rendered. Used by the one
-/// rank that writes; on others it has no threads and is given nothing.
+/// rank that writes; on other ranks it has no threads.
 class FrameWriter {
  public:
   /// Of the planned `frames`. `options` and `traces` outlive it.
@@ -36,9 +36,9 @@ class FrameWriter {
 
   /// Throws what writing an earlier frame threw.
   void add(FinishedFrame frame);
-  /// Takes over a frame whose image memory is used again by a later one, once it is written.
+  /// Takes a frame over; once it is written, a later one uses its image's memory.
   std::shared_ptr<const RenderedFrame> reusing(RenderedFrame&& rendered);
-  /// An image whose memory is used again.
+  /// Images of earlier frames, whose memory later ones use.
   SpareImages& spare_images() { return spare_images_; }
   /// After the last frame: waits until all are written, then films appear. Throws as add().
   void finish();

@@ -14,8 +14,8 @@
 
 namespace tessera::apps {
 
-/// What a run prints while it goes on and at its end: its line, times, verifications, progress, and the report. Only
-/// the rank that prints does any of this; on others all functions but line() do nothing.
+/// The output of a run besides images: its line, times, verifications, progress, and the report. Only the rank that
+/// prints writes any of it; other ranks may call the same functions.
 class RunOutput {
  public:
   /// Of the planned `frames`; `ranks` of the job. References outlive it; `options` may be completed meanwhile.
@@ -34,7 +34,7 @@ class RunOutput {
   /// Writes the report, if asked. Complete, or accuracy_not_met.
   ExitCode finish();
 
-  /// What the run is at. Shown by the rank that prints.
+  /// The line that shows the current stage, on the rank that prints.
   [[nodiscard]] StatusLine& line() { return line_; }
 
   [[nodiscard]] std::size_t rendered() const { return rendered_; }

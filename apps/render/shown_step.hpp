@@ -27,7 +27,7 @@ class ShownStep {
   ShownStep(RenderOptions& options, std::vector<FilmFrame>& frames, RunOutput& output, Job& job, int writing_rank,
             Trace* trace);
 
-  /// Opens and prepares the frame's step, unless it is that already. Throws Error, also for outputs that are among the
+  /// Opens and prepares the frame's step, unless it is open. Throws Error, also for outputs that are among the
   /// files read.
   void show(const FilmFrame& frame);
   /// Whether show() was called; what follows is valid only then.
@@ -41,15 +41,15 @@ class ShownStep {
   [[nodiscard]] Session& session() { return *session_; }
   /// Of the first step; 0 for grids.
   [[nodiscard]] std::uint64_t tets() const { return first_ ? first_->tets : 0; }
-  /// The session's spans in the trace end with it.
+  /// Ends the session, and with it its spans in the trace.
   void close_session() { session_.reset(); }
 
-  /// At the end of a run, `empty` as its frames were: warnings of values out of the transfer function's range, and of
-  /// images that show nothing. Collective.
+  /// Prints the warnings that only a whole run allows: values outside the range that the transfer function was chosen
+  /// for, and the empty images that `empty` has collected. Collective.
   void warn_at_end(const EmptyPictures& empty) const;
 
  private:
-  /// What later steps keep of the first.
+  /// Properties of the first step that all later steps use.
   struct First {
     Box box;
     BodyAxes axes;

@@ -16,9 +16,9 @@ namespace tessera::exchange {
 /// composites. They double while nothing comes, and end when this process has something to do, or another rank rings.
 class Naps {
  public:
-  /// A look begins: what wakes the thread from now on ends the nap after it. Returns the bells in use, or null.
+  /// Before a look for messages: a wake-up from now on ends the nap after it. Returns the bells in use, or null.
   std::shared_ptr<Bells> begin_look();
-  /// After the look. `came`: it found messages; `moving`: some are on their way and need looks to get on.
+  /// After the look. `came`: it found messages; `moving`: some are in transit and need further looks to proceed.
   void take(bool came, bool moving);
 
   // By any thread.

@@ -31,10 +31,10 @@ class SendQueue {
     if (!messages.empty()) settle(posting_, false);
   }
 
-  /// Nothing is handed over any more: what is queued stays here.
+  /// From now on no queued message is handed over.
   void end() { settle(ended_, true); }
 
-  /// What was pushed before is on the old traces when this returns.
+  /// Messages that were pushed earlier are recorded in the old traces when this returns.
   void trace_to(scene::Trace* projecting, scene::Trace* compositing);
   /// A span of what a user asks about: fragments, meshes and tiles. For a message that is being handed over.
   [[nodiscard]] scene::TraceScope traced(const Outgoing& message) const;

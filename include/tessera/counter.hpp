@@ -10,9 +10,9 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// A row of a table of counters: its name in reports, how those of several processes are put together, and what it
-/// counts. The tables are all that sums, messages between processes and reports know of counters: a new one is a member
-/// and a row.
+/// A row of a table of counters: its name in reports, how the values of several processes are combined, and what it
+/// counts. Sums, messages between processes and reports are loops over these tables: a new counter is a member and a
+/// row.
 template <class Counters, class Number = std::uint64_t>
 struct Counter {
   enum class Together { sum, largest };

@@ -22,13 +22,13 @@ struct VolumeFile;
 struct VolumeOptions;
 enum class Reader : std::uint8_t;  // reader_programs.hpp
 
-/// What a file begins with, of a gzip file what it holds.
+/// The first bytes of a file, unpacked if it is gzip.
 struct FileBeginning {
   std::string_view text;   ///< its first bytes, at most 4096
   std::uint64_t size = 0;  ///< of the whole; 0 if it is compressed
 };
 
-/// Files of many formats, of whose beginning only this much is known.
+/// Containers that several formats share, so that a beginning identifies only the container.
 enum class Container : std::uint8_t { none, vtk_xml, hdf5 };
 
 /// A row of the one table of formats (io/formats/format_table.cpp): how its files are recognized and what reads them.
@@ -41,9 +41,9 @@ struct Format {
   const char* remark = "";          ///< what applies, limits; why it is not read
   /// By what a file begins with alone; null: by its name alone.
   bool (*recognizes)(const FileBeginning&) = nullptr;
-  bool by_name_too = false;  ///< such a beginning counts under one of the extensions only
-  /// A name of this format tells what a file is that begins as this container does. Of a row that is not listed: it
-  /// stands for the container.
+  bool by_name_too = false;  ///< recognized only under one of the extensions
+  /// A file that begins as this container is of this format if its name is. A row that is not listed stands for the
+  /// container itself.
   Container container = Container::none;
   bool is_listed = true;
 

@@ -12,15 +12,14 @@
 
 namespace tessera::io {
 
-/// A file or folder, opened once and identified (io/formats/identify.hpp). Readers take this, and open a file again for
-/// its data alone.
+/// A file or folder that was opened once and identified (io/formats/identify.hpp). Readers take this, and open the file
+/// again only for its data.
 struct InputFile {
   static constexpr std::size_t longest_beginning = 1 << 16;
 
   std::filesystem::path path{};
-  std::string name{};       ///< for messages: the path that the user gave, also of what a gzip file held
-  std::string beginning{};  ///< its first bytes, at most longest_beginning; of a gzip file
-                            ///< what it holds; of a folder none
+  std::string name{};       ///< for messages: the path that the user gave, also for content of a gzip file
+  std::string beginning{};  ///< its first bytes, unpacked if gzip, at most longest_beginning; empty for a folder
   std::uint64_t size = 0;   ///< as it is stored; of a folder 0
   bool is_folder = false;
   bool is_gzip = false;

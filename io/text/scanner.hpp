@@ -25,10 +25,9 @@ std::size_t line_number(std::string_view text, std::size_t at);
 /// What TextScanner::number() found.
 enum class Scanned : std::uint8_t { number, nothing, other_word, out_of_range };
 
-/// Walks through a text by words and numbers, which `blanks` part: line by line with next_line(), or through the whole
-/// text, to which ends of lines are blanks as others if `blanks` has them. What follows `comment` on its line is passed
-/// over; 0: there are no comments. A byte order mark of UTF-8 is none of the text's. Text and source must outlive the
-/// scanner and the words.
+/// Reads words and numbers that `blanks` separate: line by line with next_line(), or through the whole text, where line
+/// ends separate words too if `blanks` contains them. The rest of a line from `comment` on is skipped; 0: no comments.
+/// A UTF-8 byte order mark at the beginning is skipped. Text and source must outlive the scanner and its words.
 class TextScanner {
  public:
   TextScanner(std::string_view text, const std::string& source, std::string_view blanks = ascii_blanks,
@@ -51,7 +50,7 @@ class TextScanner {
     return false;
   }
 
-  /// Passes over blanks and comments; true if nothing else is left of the line or text.
+  /// Skips blanks and comments; true if the line or text has nothing else.
   bool at_end() {
     for (; at_ < end_; ++at_) {
       if (is_blank(text_[at_])) continue;
@@ -100,7 +99,7 @@ class TextScanner {
 
   [[nodiscard]] std::size_t at() const { return at_; }
   void go_to(std::size_t at) { at_ = at; }
-  /// What is left of the line that next_line() went to, or of the text.
+  /// The unread rest of the line that next_line() went to, or of the text.
   [[nodiscard]] std::string_view line() const { return text_.substr(at_, end_ - at_); }
   /// All that follows, the lines after this one too.
   [[nodiscard]] std::string_view rest() const { return text_.substr(at_); }
