@@ -62,7 +62,7 @@ bool to_mesh(const InputFile& input, const std::filesystem::path& output) {
 }
 
 ExitCode render_words(OptionWords& words, Job& job) {
-  const std::string given = config_text(words);
+  const std::string given = words.state().toml();
   apply_like(words);
   apply_method_preset(job.size(), words);
   RenderOptions options = render_options(words);

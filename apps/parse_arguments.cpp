@@ -143,7 +143,10 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, bool
   }
   if (command->trait == Trait::completion && words->given("shell")) return say(completion_script(words->word("shell")));
   if (command->trait == Trait::help) return say(help_of(*words));
-  if (words->given("config")) apply_config(words->word("config"), *words);
+  if (words->given("config")) {
+    const std::string& file = words->word("config");
+    words->set_defaults(State::from_toml(read_text(file), file));
+  }
   for (const OptionRow* row : option_rows(command->trait))
     if (row->is(Trait::required) && !words->given(row->key()))
       throw bad_input(fmt::format("arguments: {} is required; see {}", shown_name(*row), help));

@@ -3,28 +3,22 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
+#include "api/options/choices.hpp"
 #include "api/options/setting_name.hpp"
 #include "api/options/values.hpp"
 #include "tessera/error.hpp"
 
-namespace tessera::api {
+namespace tessera {
+namespace api {
 namespace {
-
-constexpr std::array<std::pair<std::string_view, Place>, 8> places{{{"top-left", Place::top_left},
-                                                                    {"top", Place::top},
-                                                                    {"top-right", Place::top_right},
-                                                                    {"left", Place::left},
-                                                                    {"right", Place::right},
-                                                                    {"bottom-left", Place::bottom_left},
-                                                                    {"bottom", Place::bottom},
-                                                                    {"bottom-right", Place::bottom_right}}};
 
 std::optional<Place> place_of(std::string_view word) {
   const auto* found = std::ranges::find(places, word, &std::pair<std::string_view, Place>::first);
-  return found == places.end() ? std::nullopt : std::optional(found->second);
+  return found == std::end(places) ? std::nullopt : std::optional(found->second);
 }
 
 /// A flag's place, or `otherwise` for the bare flag.
@@ -49,7 +43,7 @@ ColorBar parse_color_bar(const OptionWords& words) {
   bar.title = words.given("color-bar-title") ? words.word("color-bar-title") : "{field}";
   if (words.given("field-unit")) bar.title += fmt::format(" [{}]", words.word("field-unit"));
   bar.range = words.interval("color-bar-range");
-  const auto scale = words.choice("color-bar-scale", {false, true});
+  const auto scale = words.choice("color-bar-scale", off_on);
   // By default as the function, where all values have a logarithm.
   bar.logarithmic = scale.value_or(words.given("log") && (!bar.range || (*bar.range)[0] > 0));
   return bar;
@@ -108,4 +102,28 @@ AnnotationOptions annotation_options(const OptionWords& words, const ImageFileOp
   return options;
 }
 
-}  // namespace tessera::api
+}  // namespace api
+
+inline namespace v0_1 {
+
+AnnotationValues annotation_values(const Dataset& data, double time, const std::string& file, int frame) {
+  const auto [low, high] = data.range();
+  return {data.field_name(),        fmt::format("{:g}", time),  file,
+          fmt::format("{}", frame), fmt::format("{:.6g}", low), fmt::format("{:.6g}", high)};
+}
+
+Annotation filled_annotation(const Annotation& annotation, const AnnotationValues& values) {
+  const std::array<AnnotationWord, 6> words = {{{"field", values.field},
+                                                {"time", values.time},
+                                                {"file", values.file},
+                                                {"frame", values.frame},
+                                                {"min", values.min},
+                                                {"max", values.max}}};
+  Annotation result = annotation;
+  for (Text& text : result.texts) text.text = fill_in(text.text, words);
+  if (result.color_bar) result.color_bar->title = fill_in(result.color_bar->title, words);
+  return result;
+}
+
+}  // namespace v0_1
+}  // namespace tessera

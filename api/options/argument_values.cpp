@@ -12,6 +12,7 @@
 #include <string_view>
 #include <utility>
 
+#include "api/options/choices.hpp"
 #include "api/options/color_names.hpp"
 #include "tessera/error.hpp"
 #include "tessera/program/nearest_name.hpp"
@@ -125,17 +126,13 @@ Integrator parse_integrator(const std::string& option, const std::string& text) 
 
 WithoutWords parse_without(const std::string& option, const std::string& text) {
   WithoutWords without;
-  const std::pair<std::string_view, bool*> switches[] = {
-      {"culling", &without.use.culling}, {"skipping", &without.use.skipping}, {"termination", &without.use.termination},
-      {"lattice", &without.use.lattice}, {"sharing", &without.use.sharing},   {"merging", &without.merging}};
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find(',', at), text.size());
     const std::string_view word = std::string_view(text).substr(at, end - at);
-    const auto* found =
-        std::find_if(std::begin(switches), std::end(switches), [&](auto& s) { return s.first == word; });
-    if (found == std::end(switches) || end + 1 == text.size())
+    const auto* found = std::ranges::find(mechanisms, word, &std::pair<std::string_view, bool Mechanisms::*>::first);
+    if ((found == std::end(mechanisms) && word != "merging") || end + 1 == text.size())
       throw wrong(option, text, "known; write some of culling, skipping, termination, lattice, sharing, merging");
-    *found->second = false;
+    (found == std::end(mechanisms) ? without.merging : without.use.*found->second) = false;
     at = end + 1;
   }
   return without;
@@ -162,7 +159,7 @@ glm::dvec3 parse_color(const std::string& option, const std::string& text) {
   if (channels.size() != 3) throw wrong(option, text, allowed);
   glm::dvec3 color{};
   for (std::size_t channel = 0; channel < 3; ++channel) {
-    const auto value = number_of<float>(channels[channel]);
+    const auto value = number_of<double>(channels[channel]);
     if (!value || !std::isfinite(*value) || *value < 0) throw wrong(option, text, allowed);
     color[static_cast<int>(channel)] = *value;
   }

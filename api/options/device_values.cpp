@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "api/options/argument_values.hpp"
+#include "api/options/choices.hpp"
 #include "api/options/values.hpp"
 #include "tessera/error.hpp"
 
@@ -11,12 +12,11 @@ namespace tessera::api {
 namespace {
 
 std::vector<Backend> backends_of(const std::string& words) {
-  constexpr Backend backends[] = {Backend::automatic, Backend::cpu, Backend::osmesa, Backend::egl};
   const auto known = find_option(Trait::render, "backend")->choices();
   std::vector<Backend> result;
   if (words.empty()) return result;
   for (const std::string& word : split_at_commas(words))
-    result.push_back(backends[parse_choice("`backend`", word, known)]);
+    result.push_back(backend_kinds.begin()[parse_choice("`backend`", word, known)]);
   return result;
 }
 
@@ -26,7 +26,7 @@ DeviceSettings device_settings(const OptionWords& words, bool for_volume) {
   DeviceSettings settings;
   static_cast<void>(words.choice("compositor"));
   const std::string& compositor = words.word("compositor");
-  assign(settings.half, words.choice("framebuffer", {true, false}));
+  assign(settings.half, words.choice("framebuffer", on_off));
   if (words.given("framebuffer") && compositor != "gl-fragment")
     throw bad_input("`framebuffer`: is for `compositor` gl-fragment; leave one of the two out");
   const bool asks_for_gl = compositor.starts_with("gl-");

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "api/options/argument_values.hpp"
+#include "api/options/choices.hpp"
 #include "api/options/values.hpp"
 #include "tessera/error.hpp"
 #include "tessera/program/method_words.hpp"
@@ -17,7 +18,7 @@ std::vector<std::array<double, 2>> opacity_points(const OptionWords& words) {
   for (const std::string& point : split_at_commas(words.word("opacity-points"))) {
     const std::size_t colon = point.find(':');
     if (colon == std::string::npos)
-      throw bad_input(fmt::format("`opacity_points`: '{}' is no point; write T:A, like 0.3:0.02", point));
+      throw bad_input(fmt::format("`opacity_points`: '{}' has no opacity; write T:A, like 0.3:0.02", point));
     const double place = parse_number("`opacity_points`", point.substr(0, colon));
     const double opacity = parse_number("`opacity_points`", point.substr(colon + 1));
     if (!(place >= (points.empty() ? 0 : points.back()[0])) || !(place <= 1))
@@ -40,18 +41,14 @@ void set_function(const OptionWords& words, RenderOptions& options) {
   function.rescale_presets = true;
   assign(function.unit_distance, words.positive("unit-distance"));
   assign(function.opacity_scale, words.positive("opacity"));
-  assign(function.display_colors, words.choice("blend", {false, true}));
+  assign(function.display_colors, words.choice("blend", off_on));
   function.logarithmic = words.given("log");
   function.range = words.interval("range");
   function.opacity_points = opacity_points(words);
   options.read.shape = !options.is_grid() && options.transfer_function.empty();
 }
 
-}  // namespace api
-
-inline namespace v0_1 {
-
-LoadedTransferFunction transfer_function_of(const Dataset& data, const RenderOptions& options) {
+LoadedTransferFunction chosen_function(const Dataset& data, const RenderOptions& options) {
   TransferFunctionOptions function = options.function;
   function.emission = options.settings.emission;
   function.with_surfaces = !options.settings.surfaces.empty() || !options.block_surfaces.empty();
@@ -60,8 +57,17 @@ LoadedTransferFunction transfer_function_of(const Dataset& data, const RenderOpt
     loaded.warnings.emplace_back(
         "`shade`: lights nothing, a value of each cell has no gradient; `smooth` gives values at the points");
   if (!options.settings.surfaces.empty())
-    for (const std::string& warning : api::unseen_surfaces(options.settings.surfaces, data.range()))
+    for (const std::string& warning : unseen_surfaces(options.settings.surfaces, data.range()))
       loaded.warnings.push_back(warning);
+  return loaded;
+}
+
+}  // namespace api
+
+inline namespace v0_1 {
+
+LoadedTransferFunction transfer_function_of(const Dataset& data, const RenderOptions& options) {
+  LoadedTransferFunction loaded = api::chosen_function(data, options);
   loaded.name = with_options(loaded.name);
   loaded.unit_distance_source = with_options(loaded.unit_distance_source);
   loaded.warnings = with_options(loaded.warnings);

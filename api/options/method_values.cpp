@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "api/options/argument_values.hpp"
+#include "api/options/choices.hpp"
 #include "api/options/values.hpp"
 #include "tessera/error.hpp"
 #include "tessera/higher_order.hpp"
@@ -52,7 +53,7 @@ std::optional<Shading> shading_of(const OptionWords& words) {
 
 void set_mesh(const OptionWords& words, RenderOptions& options) {
   MeshSettings& mesh = options.settings.mesh;
-  assign(mesh.rasterizer, words.choice("rasterizer", {Rasterizer::planes, Rasterizer::scanline, Rasterizer::device}));
+  assign(mesh.rasterizer, words.choice("rasterizer", rasterizers));
   assign(mesh.tile_size, words.count("tile-size", 1, 1024));
   mesh.shading = shading_of(words);
   if (words.given("higher-order-tolerance")) return;
@@ -72,8 +73,8 @@ void set_grid(const OptionWords& words, RenderOptions& options) {
   assign(grid.step, words.positive("step"));
   grid.shading = shading_of(words);
   assign(grid.brick_size, words.count("brick-size", 2, 1 << 20));
-  assign(grid.edge_bricks, words.choice("edge-bricks", {EdgeBricks::variable, EdgeBricks::fixed}));
-  assign(grid.cache, words.choice("cache", {CachePolicy::lru, CachePolicy::proximity}));
+  assign(grid.edge_bricks, words.choice("edge-bricks", edge_brick_kinds));
+  assign(grid.cache, words.choice("cache", cache_policies));
   if (words.given("preload") && grid.cache != CachePolicy::proximity)
     throw bad_input("`preload`: has no effect without `cache` proximity; add it, or leave `preload` out");
   assign(grid.preload_limit, words.count("preload", 0, 1 << 20));
@@ -84,7 +85,7 @@ void set_grid(const OptionWords& words, RenderOptions& options) {
 void set_method(const OptionWords& words, RenderOptions& options) {
   Settings& settings = options.settings;
   settings.integrator = integrator_of(words, options.is_grid());
-  assign(settings.emission, words.choice("emission", {Emission::absorption, Emission::independent}));
+  assign(settings.emission, words.choice("emission", emissions));
   settings.threads = options.read.threads;
   assign(settings.memory_bytes, words.bytes("memory"));
   settings.use = parse_without("`without`", words.word("without")).use;

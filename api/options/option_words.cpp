@@ -140,6 +140,18 @@ void OptionWords::set_default(std::string_view name, std::string value) {
   if (!given(name)) set(name, std::move(value));
 }
 
+void OptionWords::set_defaults(const State& state) {
+  for (const auto& [name, values] : state.words())
+    if (!given(name)) set(name, values);
+}
+
+State OptionWords::state() const {
+  State state;
+  for (const auto& [name, values] : words_)
+    if (name != "config") state.set(name, values);
+  return state;
+}
+
 std::optional<double> OptionWords::number(std::string_view name) const { return parsed(*this, name, parse_number); }
 
 std::optional<double> OptionWords::positive(std::string_view name) const {

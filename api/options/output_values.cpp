@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "api/options/choices.hpp"
 #include "api/options/values.hpp"
 #include "tessera/error.hpp"
 #include "tessera/film_file.hpp"
@@ -63,25 +64,25 @@ void refuse_deep_volumes(const RenderOptions& options) {
   if (options.settings.grid.shading) throw bad_input("deep picture: it is not shaded; leave `shade` out");
 }
 
-ImageFileOptions image_options(const OptionWords& words, const RenderOptions& options) {
-  ImageFileOptions image;
-  image.half = words.given("half");
-  image.png_bits = words.choice("png-bits", {8, 16}).value_or(8);
-  image.encode_srgb = !options.function.display_colors;
-  image.threads = options.settings.threads;
-  image.background = words.color("background");
-  return image;
-}
-
 /// Pictures that cannot be annotated.
 void refuse_unannotated(const RenderOptions& options) {
   if (options.show_balance) throw bad_input("`show` balance: its pictures are not annotated; leave one of the two out");
   if (options.annotation.layer.empty() && options.films.empty() && !options.to_standard_output &&
-      std::ranges::all_of(options.plan.outputs, is_deep_name))
+      !options.plan.outputs.empty() && std::ranges::all_of(options.plan.outputs, is_deep_name))
     throw bad_input("deep picture: it is not annotated; name an .exr, .png or .pfm too, or an `annotation_layer`");
 }
 
 }  // namespace
+
+ImageFileOptions image_options(const OptionWords& words) {
+  ImageFileOptions image;
+  image.half = words.given("half");
+  assign(image.png_bits, words.choice("png-bits", png_depths));
+  image.encode_srgb = !words.choice("blend", off_on).value_or(false);
+  assign(image.threads, words.count("threads", 1, 1024));
+  image.background = words.color("background");
+  return image;
+}
 
 void set_outputs(const OptionWords& words, RenderOptions& options) {
   for (const std::string& output : words.words("output")) {
@@ -124,7 +125,7 @@ void set_pictures(const OptionWords& words, RenderOptions& options) {
   assign(options.frame.deep_accuracy, words.positive("deep-accuracy"));
   if (words.given("peel")) set_peel(words, options);
   if (options.is_grid() && options.frame.deep) refuse_deep_volumes(options);
-  options.image = image_options(words, options);
+  options.image = image_options(words);
   options.annotation = annotation_options(words, options.image);
   if (options.annotation.annotation) refuse_unannotated(options);
   assign(options.repeat, words.count("repeat", 1));

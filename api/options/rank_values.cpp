@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "api/options/argument_values.hpp"
+#include "api/options/choices.hpp"
 #include "api/options/setting_name.hpp"
 #include "api/options/values.hpp"
 #include "tessera/error.hpp"
@@ -11,8 +12,8 @@ namespace {
 
 /// How a volume's picture is split between ranks.
 void set_balance(const OptionWords& words, RankSettings& ranks) {
-  assign(ranks.distribution, words.choice("distribution", {Distribution::sort_first, Distribution::sort_last}));
-  assign(ranks.direct_send, words.choice("direct-send", {DirectSend::asynchronous, DirectSend::synchronous}));
+  assign(ranks.distribution, words.choice("distribution", distributions));
+  assign(ranks.direct_send, words.choice("direct-send", direct_sends));
   const bool sorts_last = ranks.distribution == Distribution::sort_last;
   if (!sorts_last && words.given("direct-send"))
     throw bad_input("`direct_send`: has no effect without `distribution` sort-last; add it, or leave it out");
@@ -22,8 +23,7 @@ void set_balance(const OptionWords& words, RankSettings& ranks) {
           fmt::format("{}: has no effect with `distribution` sort-last, which splits the volume; leave one "
                       "of the two out",
                       setting_name(option)));
-  assign(ranks.balance, words.choice("balance", {Balance::learned, Balance::accurate, Balance::backface,
-                                                 Balance::splatting, Balance::previous, Balance::even}));
+  assign(ranks.balance, words.choice("balance", balances));
   assign(ranks.balance_resolution, words.positive("balance-resolution"));
   if (ranks.balance_resolution > 1 || ranks.balance_resolution < 1e-3)
     throw bad_input(fmt::format("`balance_resolution`: {} is not from 0.001 to 1", words.word("balance-resolution")));
@@ -43,14 +43,13 @@ void set_ranks(const OptionWords& words, RenderOptions& options) {
   set_balance(words, ranks);
   ranks.projectors = words.count("projectors", 1);
   ranks.compositors = words.count("compositors", 1);
-  ranks.exchange = words.choice("exchange", {Exchange::runs, Exchange::segments});
+  ranks.exchange = words.choice("exchange", exchanges);
   if (!parse_without("`without`", words.word("without")).merging) {
     if (ranks.exchange == Exchange::runs)
       throw bad_input("`without` merging: is `exchange` segments, but runs were asked for; leave one of the two out");
     ranks.exchange = Exchange::segments;
   }
-  assign(ranks.partition.kind,
-         words.choice("partition", {PartitionKind::curve, PartitionKind::file, PartitionKind::random}));
+  assign(ranks.partition.kind, words.choice("partition", partition_kinds));
   assign(ranks.frames_in_flight, words.count("frames-in-flight", 1, 64));
   const auto seed = words.count("seed", 0);
   assign(ranks.tile_seed, seed);

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "api/options/argument_values.hpp"
+#include "api/options/choices.hpp"
 #include "api/options/values.hpp"
 #include "tessera/error.hpp"
 #include "tessera/higher_order.hpp"
@@ -127,9 +128,9 @@ ReadOptions read_options(const OptionWords& words, bool is_grid) {
   }
   read.spacing = words.vector("spacing", true);
   read.origin = words.vector("origin");
-  assign(read.big_endian, words.choice("endian", {false, true}));
+  assign(read.big_endian, words.choice("endian", api::off_on));
   assign(read.skip, words.count("skip", 0));
-  read.labels = words.choice("labels", {true, false});
+  read.labels = words.choice("labels", api::on_off);
   if (is_grid) {
     read.memory_bytes = words.bytes("memory").value_or(Settings().memory_bytes);
   } else {

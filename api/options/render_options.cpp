@@ -20,7 +20,7 @@ void refuse_others(const OptionWords& words, bool is_grid) {
     if (!row->is(Trait::render) || !words.given(row->key())) continue;
     const auto choices = row->choices();
     if (is_grid && !choices.empty() && words.word(row->key()) == choices.front()) continue;
-    require_input(words.word("input"));  // one that is not there is neither
+    if (words.given("input")) require_input(words.word("input"));  // one that is not there is neither
     throw bad_input(fmt::format("{}: is for {}; leave it out", api::setting_name(row->key()),
                                 is_grid ? "meshes, and the input is a volume" : "volumes, and the input is a mesh"));
   }

@@ -13,6 +13,11 @@ namespace tessera::api {
 /// `all`, FIRST:LAST or FIRST:LAST:STRIDE of --time-step; no value for other words, which name one step.
 std::optional<StepRange> time_steps(const OptionWords& words);
 
+/// transfer_function_of(), in the words of the library.
+LoadedTransferFunction chosen_function(const Dataset& data, const RenderOptions& options);
+/// How pictures become files.
+ImageFileOptions image_options(const OptionWords& words);
+
 void set_function(const OptionWords& words, RenderOptions& options);
 void set_view(const OptionWords& words, RenderOptions& options);
 
@@ -32,7 +37,7 @@ void set_ranks(const OptionWords& words, RenderOptions& options);
 
 /// Pictures, films and standard output.
 void set_outputs(const OptionWords& words, RenderOptions& options);
-/// How pictures become files, and what they contain: deep samples, layers. The method is set already.
+/// What pictures contain: deep samples, layers, annotation. The method is set already.
 void set_pictures(const OptionWords& words, RenderOptions& options);
 
 /// `image` has the picture's background and colours.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include "api/options/choices.hpp"
 #include "api/options/setting_name.hpp"
 #include "api/options/values.hpp"
 #include "tessera/error.hpp"
@@ -41,7 +42,7 @@ void set_view(const OptionWords& words, RenderOptions& options) {
   options.plan.size = words.size("size");
   assign(options.plan.orbit, words.count("orbit", 1, 1'000'000));
   options.view = view_request(words);
-  assign(options.projection, words.choice("projection", {ProjectionKind::orthographic, ProjectionKind::perspective}));
+  assign(options.projection, words.choice("projection", projections));
 }
 
 }  // namespace tessera::api

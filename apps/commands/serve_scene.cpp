@@ -14,7 +14,6 @@
 #include "apps/render/frame_annotation.hpp"
 #include "apps/render/progress.hpp"
 #include "tessera/error.hpp"
-#include "tessera/higher_order.hpp"
 #include "tessera/program/film.hpp"
 #include "tessera/program/render_options.hpp"
 #include "tessera/program/state_words.hpp"
@@ -108,21 +107,13 @@ class RenderScene final : public server::Scene {
     if (frame_.data.in_file) read.time_step = frame_.data.in_file;
     read.progress = progress;
     frame_.require_still_there();
-    const auto open_with = [&](const ReadOptions& with) {
-      return Dataset::open(frame_.data.files, with, communicator, options().settings.ranks);
-    };
-    Dataset data = open_with(read);
-    if (!options().higher_order_accuracy || data.higher_order_cells().divided == 0) return data;
-    // As `render` comes near enough to higher-order cells.
-    return read_for_accuracy(
-               read, options().higher_order_accuracy,
-               [&, is_open = true](const ReadOptions& with) mutable {
-                 const bool is_same = with.higher_order_tolerance == read.higher_order_tolerance;
-                 return std::exchange(is_open, false) && is_same ? std::move(data) : open_with(with);
-               },
-               [&](const Dataset& each) { return function(each).function; },
-               [&](const Dataset& each) { return view(each); }, options().settings, communicator)
-        .dataset;
+    return open_for_accuracy(
+        options(), read,
+        [&](const ReadOptions& with) {
+          return Dataset::open(frame_.data.files, with, communicator, options().settings.ranks);
+        },
+        [&](const Dataset& data) { return function(data).function; }, [&](const Dataset& data) { return view(data); },
+        communicator);
   }
 
   [[nodiscard]] LoadedTransferFunction function(const Dataset& data) const override {

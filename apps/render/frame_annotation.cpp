@@ -1,38 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/render/frame_annotation.hpp"
 
-#include <fmt/format.h>
-
-#include <array>
-
 namespace tessera::apps {
 namespace {
 
-/// What stands for the words in braces, in their order.
-constexpr std::array word_names = {"field", "time", "file", "frame", "min", "max"};
-using WordValues = std::array<std::string, word_names.size()>;
-
-Annotation filled(const Annotation& annotation, const WordValues& values) {
-  std::vector<AnnotationWord> words;
-  for (std::size_t i = 0; i < values.size(); ++i) words.emplace_back(word_names[i], values[i]);
-  Annotation result = annotation;
-  for (Text& text : result.texts) text.text = fill_in(text.text, words);
-  if (result.color_bar) result.color_bar->title = fill_in(result.color_bar->title, words);
-  return result;
-}
-
 Annotation filled(const Annotation& annotation, const FilmFrame& frame, const Dataset& data) {
-  const auto [low, high] = data.range();
   const double time = frame.data.has_time ? frame.data.time : data.time().value_or(frame.data.time);
-  return filled(annotation, {data.field_name(), fmt::format("{:g}", time), frame.data.files.front().filename().string(),
-                             fmt::format("{}", frame.number), fmt::format("{:.6g}", low), fmt::format("{:.6g}", high)});
+  const std::string file = frame.data.files.front().filename().string();
+  return filled_annotation(annotation, annotation_values(data, time, file, frame.number));
 }
 
 }  // namespace
 
 void check_annotation(const AnnotationOptions& options) {
   if (!options.annotation) return;
-  Annotation annotation = filled(*options.annotation, WordValues{});
+  Annotation annotation = filled_annotation(*options.annotation, {});
   // The bar's range may be the transfer function's.
   if (annotation.color_bar && !annotation.color_bar->range) annotation.color_bar.reset();
   validate(annotation, {});

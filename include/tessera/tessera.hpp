@@ -30,6 +30,7 @@
 #include "tessera/session.hpp"
 #include "tessera/settings.hpp"
 #include "tessera/sink.hpp"
+#include "tessera/state.hpp"
 #include "tessera/statistics.hpp"
 #include "tessera/surfaces.hpp"
 #include "tessera/time_series.hpp"

@@ -4,11 +4,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <glm/vec3.hpp>
 #include <initializer_list>
 #include <limits>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -16,6 +14,7 @@
 #include <vector>
 
 #include "tessera/camera.hpp"
+#include "tessera/state.hpp"
 
 /// The options of the program `tessera`, each one row of one table (api/options/option_table.cpp). Command line, help,
 /// manual pages, completion, files of options, states of `tessera serve` and the names in messages are loops over it.
@@ -111,10 +110,9 @@ std::vector<std::string> with_options(const std::vector<std::string>& notes);
 /// nothing was given: none.
 class OptionWords {
  public:
-  using Words = std::map<std::string, std::vector<std::string>, std::less<>>;
-
   OptionWords() = default;  ///< of `render`
   explicit OptionWords(Trait command) : command_(command) {}
+  explicit OptionWords(const State& state) : words_(state.words()) {}
 
   [[nodiscard]] bool given(std::string_view name) const { return !words(name).empty(); }
   [[nodiscard]] bool given_one_of(std::initializer_list<std::string_view> names) const;
@@ -126,8 +124,11 @@ class OptionWords {
   void set(std::string_view name, std::string value) { set(name, std::vector{std::move(value)}); }
   /// As `set`, unless it is given.
   void set_default(std::string_view name, std::string value);
+  void set_defaults(const State& state);
   /// All that are given, by key in alphabetical order.
-  [[nodiscard]] const Words& all() const { return words_; }
+  [[nodiscard]] const State::Words& all() const { return words_; }
+  /// Of `render`, but for --config.
+  [[nodiscard]] State state() const;
 
   [[nodiscard]] std::optional<double> number(std::string_view name) const;
   [[nodiscard]] std::optional<double> positive(std::string_view name) const;
@@ -151,7 +152,7 @@ class OptionWords {
   [[nodiscard]] const OptionRow& row(std::string_view name) const;
 
   Trait command_ = Trait::render;
-  Words words_;
+  State::Words words_;
 };
 
 /// All of `text` as a finite number, whatever the locale. Throws Error(bad_input), its subject `option`.

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <span>
@@ -107,6 +108,21 @@ LoadedTransferFunction transfer_function_of(const Dataset& data, const RenderOpt
 /// Whether a picture is shaded because the default transfer function means it to be, and no option speaks against it.
 bool shades_by_default(const LoadedTransferFunction& loaded, const RenderOptions& options);
 
+/// What stands for the words in braces of an annotation's texts.
+struct AnnotationValues {
+  std::string field, time, file, frame, min, max;
+};
+AnnotationValues annotation_values(const Dataset& data, double time, const std::string& file, int frame);
+/// Throws as fill_in().
+Annotation filled_annotation(const Annotation& annotation, const AnnotationValues& values);
+
+/// The data as `open` reads them with options; a mesh with higher-order cells as finely as the options' accuracy needs
+/// (read_for_accuracy()).
+Dataset open_for_accuracy(const RenderOptions& options, const ReadOptions& read,
+                          const std::function<Dataset(const ReadOptions&)>& open,
+                          const std::function<TransferFunction(const Dataset&)>& function,
+                          const std::function<View(const Dataset&)>& view, const Communicator& communicator);
+
 /// The blocks that words name in what was read: the longest name that there is, which may hold colons, and a look
 /// behind it. Throws Error(bad_input) for what is no look.
 std::vector<BlockSurfaceWord> found_blocks(std::span<const BlockSurfaceWord> words, const Dataset& data);
@@ -130,14 +146,6 @@ void apply_like(OptionWords& words);
 ///                processes project, each its own part, the others composite. OpenGL is Mesa's software unless
 ///                --backend names another.
 void apply_method_preset(int ranks, OptionWords& words);
-
-/// A run of `render` as a TOML file: options by their keys, in the words of the command line; of several values an
-/// array. File names are relative to where the program is called. `words` with what the file has and they have not.
-/// Throws Error(bad_input) naming the file and what in it is no option.
-void apply_config(const std::filesystem::path& file, OptionWords& words);
-
-/// The text of such a file, but for --config and --save-config.
-std::string config_text(const OptionWords& words);
 
 }  // namespace v0_1
 }  // namespace tessera
