@@ -19,6 +19,7 @@ HDF5 = "needs HDF5 files, which nothing but HDF5's library writes; io's tests of
 HELPER = "needs a helper program that speaks and then dies or lies; readers/helper_test.cpp has one"
 VTK_XML = "the damage that each names is in io/mesh/vtu_damaged_test.cpp"
 RARE = "needs rare cells or bounds that no small file has; io's tests of the format"
+STATE = "said of states as JSON and as values; apps/state_test.cpp"
 SERVER = "said by a server, which does not end; server/serve_test.py and server/state_words_test.cpp"
 TIME = "takes minutes: a limit of time or of tets that sound files do not come near"
 
@@ -26,7 +27,11 @@ EXCEPTIONS = {
     r"apps/main\.cpp:\d+: standard input: only one process has it|^system/scratch_file\.cpp:\d+: ": (2, RANKS),
     r"this build leaves (out|\.(jpg|tif) out); build with": (6, OTHER_BUILD),
     r"this build has no server; configure": (1, OTHER_BUILD),
-    r"^api/options/state_words\.cpp:\d+: state|^apps/commands/serve_scene\.cpp:\d+": (10, SERVER),
+    r"^api/options/state_words\.cpp:\d+: state|^apps/commands/serve_scene\.cpp:\d+": (9, SERVER),
+    r"^api/options/state_(of_values|values)\.cpp|^api/options/state_text\.cpp:\d+: (\{\}: \{\} is (no \{\}|empty; leave)|state: )": (
+        6,
+        STATE,
+    ),
     r"^apps/commands/serve_command\.cpp:\d+|: arguments: serve shows one file": (3, SERVER),
     r"^io/text/json_text\.cpp:\d+: \{\}: has more than": (1, "takes twenty million values; io/text/json_text_test.cpp has fewer"),
     r"^io/scene/json_transfer_function\.cpp:\d+: transfer function: it has no knot": (1, LIBRARY),
