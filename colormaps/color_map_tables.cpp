@@ -132,7 +132,7 @@ constexpr std::array<dvec3, 2> gray{{{0, 0, 0}, {1, 1, 1}}};
 // Density alone, like fog or an inverted radiograph.
 constexpr std::array<dvec3, 1> white{{{1, 1, 1}}};
 
-constexpr std::array<ColorMapTable, 10> tables{{
+constexpr ColorMapTable tables[] = {
     {"cool-warm", ColorSpace::diverging, cool_warm},
     {"viridis", ColorSpace::rgb, viridis},
     {"plasma", ColorSpace::rgb, plasma},
@@ -143,7 +143,7 @@ constexpr std::array<ColorMapTable, 10> tables{{
     {"black-body", ColorSpace::lab, black_body},
     {"gray", ColorSpace::lab, gray},
     {"white", ColorSpace::rgb, white},
-}};
+};
 
 }  // namespace
 
