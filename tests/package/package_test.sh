@@ -52,6 +52,15 @@ build_examples() {  # build_examples FOLDER PREFIX [OPTION...]
   } >"$SCRATCH/grid.nrrd"
   "$folder/tiles_and_stop" "$SCRATCH/grid.nrrd" >"$SCRATCH/log" || failed "$folder/tiles_and_stop"
   [ "$(sed 's/.*: //' "$SCRATCH/log" | tr '\n' ' ')" = "stopped whole " ] || failed "$folder/tiles_and_stop: $(cat "$SCRATCH/log")"
+  printf '%s' '{"size": "64x48", "view": "front", "transfer-function": "viridis:rise", "iso": [300, "500:red:0.5"]}' \
+    >"$SCRATCH/state.json"
+  (cd "$folder" && quietly ./picture_of_state "$SCRATCH/grid.nrrd" "$SCRATCH/state.json") || failed "$folder/picture_of_state"
+  if [ "$APPS" = 1 ]; then # the picture of the program, from the other form of the same state
+    printf '%s\n' 'size = "64x48"' 'view = "front"' 'transfer-function = "viridis:rise"' 'iso = [300, "500:red:0.5"]' \
+      >"$SCRATCH/state.toml"
+    quietly "$first/bin/tessera" render "$SCRATCH/grid.nrrd" --config "$SCRATCH/state.toml" -o "$SCRATCH/picture.png" --quiet
+    cmp "$folder/picture.png" "$SCRATCH/picture.png" || failed "$folder/picture_of_state draws another picture than the program"
+  fi
   if [ "$CAIRO" = 1 ]; then
     (cd "$folder" && quietly ./annotated_picture "$SCRATCH/grid.nrrd" && [ -s annotated.png ] && [ -s layer.png ]) ||
       failed "$folder/annotated_picture"
