@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What it takes to put a picture together on one rank: bytes that come, and CPU time of the stage `assemble`.
 
-    bench/assembly.py --tessera PROGRAM [--tessera BEFORE ...] --work FOLDER [--results docs/SCALING.md] [--nodes 8] [--frames 20] [--repeat 3]
+    bench/assembly.py --tessera PROGRAM [--tessera BEFORE ...] --work FOLDER [--results docs/RESULTS.md] [--nodes 8] [--frames 20] [--repeat 3]
                       [--packing PROGRAM]
 
 Each program renders the same films of 1024 x 1024 pixels, in turn with the others, with a projector and a compositor process of one thread
@@ -55,7 +55,7 @@ def main():
     programs, args.work = [p.resolve() for p in args.tessera], args.work.resolve()
     args.work.mkdir(parents=True, exist_ok=True)
     load = os.getloadavg()[0]
-    lines = ["| picture | program | MB a frame that come | bytes a pixel | assemble, CPU ms a frame | each run |", "|---|---|---:|---:|---:|---|"]
+    lines = ["| picture | program | MB a frame that come | bytes a pixel | assemble, CPU ms a frame |", "|---|---|---:|---:|---:|"]
     for name, (kind, file, *parameters) in MESHES.items():
         mesh, trace = args.work / file, args.work / "trace.json"
         if not mesh.exists():
@@ -69,8 +69,7 @@ def main():
                 found.append(figures(trace, args.nodes))
         for which, found in zip(("this", *(f"before ({n})" for n in range(1, len(programs)))), runs):
             megabytes = statistics.median(m for _, m in found)
-            lines.append(f"| {name} | {which} | {megabytes:.2f} | {1e6 * megabytes / SIZE ** 2:.2f} | {statistics.median(ms for ms, _ in found):.1f} | "
-                         f"{', '.join(f'{ms:.1f}' for ms, _ in found)} |")
+            lines.append(f"| {name} | {which} | {megabytes:.2f} | {1e6 * megabytes / SIZE ** 2:.2f} | {statistics.median(ms for ms, _ in found):.1f} |")
             print(lines[-1], flush=True)
     if args.packing:
         pictures = [args.work / f"{name.replace(' ', '-')}.exr" for name in MESHES]

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Moloney, Ray Coherence in Parallel Volume Rendering (2008), Tables 6.4 and 6.5, Figures 6.8 to 6.10: how evenly processes share a picture.
 
-    bench/balance.py --tessera PROGRAM [--document docs/EXPERIMENTS.md] [--only "table 6.4"] [--processes 6] [--size 1024x1024] [--brick-size 64] [--volume FILE]
+    bench/balance.py --tessera PROGRAM [--document docs/RESULTS.md] [--only "table 6.4"] [--processes 6] [--size 1024x1024] [--brick-size 64] [--volume FILE]
                      [--transfer-function NAME] [--frames 60] [--runs 1]
 
 Two smooth recorded animations: a turn of two degrees a frame round an oblique axis, which shows all of the volume, and a zoom from
@@ -107,22 +107,22 @@ def table_4(bench):
             measured = {method: bench.frames(kind, method, resolution, 0) for method in METHODS}
             for method, frames in measured.items():
                 shares.setdefault((method, name), []).append(split_share(frames))
-            printed = [f"{p} %" for p in PRINTED_4.get((kind, name), ())] or ["at most 0.5 points worse"] * 3
-            here = [deviation(measured[method]) + " %" for method in METHODS]
+            printed = PRINTED_4.get((kind, name)) or ["+0.5 at most"] * 3
+            here = [deviation(measured[method]) for method in METHODS]
             lines.append(f"| {kind}, {name} | {here[0]} | " + " | ".join(f"{h} | {p}" for h, p in zip(here[1:], printed)) + " |")
             print(lines[-1], flush=True)
-    lines += ["", "CPU time of finding the split, over that of rendering (of the turn, of the zoom):", "", "| cost map | " + " | ".join(METHODS) + " |",
+    lines += ["", "CPU time of finding the split over that of rendering, rotation / zoom [%]:", "", "| cost map | " + " | ".join(METHODS) + " |",
               "|---|" + "---|" * len(METHODS)]
     for name in RESOLUTIONS:
-        lines.append(f"| {name} | " + " | ".join(" / ".join(f"{s:.1f}" for s in shares[method, name]) + " %" for method in METHODS) + " |")
+        lines.append(f"| {name} | " + " | ".join(" / ".join(f"{s:.1f}" for s in shares[method, name]) for method in METHODS) + " |")
     return lines
 
 
 def table_5(bench):
     lines = ["| frames left out | back face, a quarter: here | printed | learned | the frame before: here | printed |", "|---:|---|---|---|---|---|"]
     for left_out, (cost, before) in PRINTED_5.items():
-        here = [deviation(bench.frames("rotation", method, 0.5, left_out)) + " %" for method in ("backface", "learned", "previous")]
-        lines.append(f"| {left_out} | {here[0]} | {cost} % | {here[1]} | {here[2]} | {before} % |")
+        here = [deviation(bench.frames("rotation", method, 0.5, left_out)) for method in ("backface", "learned", "previous")]
+        lines.append(f"| {left_out} | {here[0]} | {cost} | {here[1]} | {here[2]} | {before} |")
         print(lines[-1], flush=True)
     return lines
 
@@ -188,7 +188,7 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             lines = table(Bench(args, pathlib.Path(folder)))
         if args.document:
-            says = ": deviation of CPU time, mean ± standard deviation over frames" if name.startswith("table") else ""
+            says = ": deviation of CPU time [%], mean ± standard deviation over frames" if name.startswith("table") else ""
             caption = f"{results_file.made(load)} `{results_file.command('balance.py')}`{says}"
             results_file.put(args.document, f"balance.py {name}", caption, lines)
 

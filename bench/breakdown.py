@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Moloney, Ray Coherence in Parallel Volume Rendering (2008), Figure 6.24: what a frame's time goes to, stage by stage.
 
-    bench/breakdown.py --tessera PROGRAM [--document docs/EXPERIMENTS.md] [--processes 6] [--samples 400] [--frames 13] [--zoom 8]
+    bench/breakdown.py --tessera PROGRAM [--document docs/RESULTS.md] [--processes 6] [--samples 400] [--frames 13] [--zoom 8]
 
 Three volumes of `tessera generate` in place of the thesis's, two transfer functions that hide the same bricks, of which one is opaque, and pictures of
 1 and 2 megapixels (1024x1024 and 1792x1170): four rotations, about three axes and the diagonal, of seven degrees a frame, and seven zooms, along three
@@ -68,7 +68,7 @@ def breakdown(args, folder, volume, function, size):
 
 
 def table(args, folder):
-    lines = ["| data, function, megapixels | bricks that show | " + " | ".join(f"{name}, ms" for name in STAGES) + " | all | rendering's share |",
+    lines = ["| data, function, megapixels | visible bricks | " + " | ".join(f"{name} [ms]" for name in STAGES) + " | all | rendering [%] |",
              "|---|---:|" + "---:|" * (len(STAGES) + 2)]
     for name in VOLUMES:
         volume = folder / f"{name}.nrrd"
@@ -83,7 +83,7 @@ def table(args, folder):
                 all_ms = sum(cpu.values())
                 shown = counters["bricks_total"] - counters["bricks_invisible"]
                 lines.append(f"| {name}, {words}, {megapixels} | {shown} of {counters['bricks_total']} | " + " | ".join(f"{ms:.1f}" for ms in cpu.values()) +
-                             f" | {all_ms:.1f} | {100 * cpu['rendering'] / all_ms:.0f} % |")
+                             f" | {all_ms:.1f} | {100 * cpu['rendering'] / all_ms:.0f} |")
                 print(lines[-1], flush=True)
     return lines
 

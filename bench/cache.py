@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Moloney, Ray Coherence in Parallel Volume Rendering (2008): Tables 6.2 and 6.3, Figures 6.21 to 6.23: bricks and their cache.
 
-    bench/cache.py --tessera PROGRAM --frames-program build/release/bench/cache_frames [--document docs/EXPERIMENTS.md] [--only "table 6.3"]
+    bench/cache.py --tessera PROGRAM --frames-program build/release/bench/cache_frames [--document docs/RESULTS.md] [--only "table 6.3"]
 
     Table 6.2    brick sizes: samples in visible bricks, samples stored with edge bricks of fixed and of variable size, frames a second
     Table 6.3    frames in which a unit waits for more bricks than the threshold: lru, and proximity that loads as many ahead
@@ -54,8 +54,8 @@ def table_2(args, folder):
     volume, function, report = folder / "head.nrrd", folder / "function.txt", folder / "report.json"
     subprocess.run([args.tessera, "generate", "head", volume, "n=225", "bits=8", "--quiet"], check=True)
     function.write_text("64 0.8 0.5 0.4 0\n255 1 1 0.9 2\n")  # as in cache_frames.cpp
-    lines = ["| brick size, here / printed | samples rendered, of all: here | printed | stored, fixed: here | printed | stored, variable: here | printed | "
-             "frames a second of CPU time, by bricks | printed frames/s | default |", "|---|---|---|---|---|---|---|---|---|---|"]
+    lines = ["| brick size, here / printed | samples rendered [%]: here | printed | stored, fixed [%]: here | printed | stored, variable [%]: here | printed | "
+             "frames/s, by bricks: here | printed | default |", "|---|---|---|---|---|---|---|---|---|---|"]
     everything = 225 ** 3
 
     def render(brick, *words):
@@ -73,7 +73,7 @@ def table_2(args, folder):
     for shown, (brick, (rendered, fixed, variable, rate)) in zip(every, PRINTED_2.items()):
         stored = {edge: render(brick, "--without", "skipping,termination", "--edge-bricks", edge) for edge in ("fixed", "variable")}
         default = render(brick)
-        share = lambda samples, of: f"{100 * samples / of:.1f} %"
+        share = lambda samples, of: f"{100 * samples / of:.1f}"
         lines.append(f"| {brick}^3 / {2 * brick}^3 | {share(shown['visible_voxels'], 224 ** 3)} | {share(rendered, PRINTED_ALL)} | "
                      f"{share(stored['fixed'][0], everything)} | {share(fixed, PRINTED_ALL)} | {share(stored['variable'][0], everything)} | "
                      f"{share(variable, PRINTED_ALL)} | {stored['variable'][1]:.1f} | {rate} | {default[1]:.1f} |")
@@ -84,7 +84,7 @@ def table_2(args, folder):
 def spikes(run, threshold):
     """Per cent of frames in which a unit waits for more bricks, over units."""
     over = [loaded > threshold for frame in run["frames"][1:] for loaded, _, _ in frame["units"]]
-    return f"{100 * statistics.mean(over):.2f} %"
+    return f"{100 * statistics.mean(over):.2f}"
 
 
 def table_3(args, folder):
@@ -95,7 +95,7 @@ def table_3(args, folder):
     lines = ["| threshold | 4 units, lru: here | printed | proximity: here | printed | 9 units, lru: here | printed | proximity: here | printed |", "|---:|---|---|---|---|---|---|---|---|"]
     for threshold, printed in PRINTED_3.items():
         here = [spikes(runs[units, cache], threshold) for units in (4, 9) for cache in ("lru", threshold)]
-        lines.append(f"| {threshold} | " + " | ".join(f"{h} | {p:.2f} %" for h, p in zip(here, printed)) + " |")
+        lines.append(f"| {threshold} | " + " | ".join(f"{h} | {p:.2f}" for h, p in zip(here, printed)) + " |")
     loads = lambda run: sum(loaded + ahead for frame in run["frames"][1:] for loaded, ahead, _ in frame["units"])
     lines += ["", "Bricks loaded in all, over those of lru: " + "; ".join(
         f"{units} units, " + ", ".join(f"{t}: {loads(runs[units, t]) / loads(runs[units, 'lru']):.2f}" for t in PRINTED_3) for units in (4, 9)) + "."]
@@ -109,8 +109,8 @@ def rate(run):
 
 def figure_21(args, folder):
     limit = round(30 * visible_bricks(args, "head") / 2265)
-    lines = [f"| degrees a frame | turn, proximity, {limit} ahead: frames/s | waited for bricks, ms a unit | lru: frames/s | waited, ms | zoom, proximity: frames/s | "
-             "waited, ms | lru: frames/s | waited, ms |", "|---:|---|---|---|---|---|---|---|---|"]
+    lines = [f"| degrees a frame | turn, proximity, {limit} ahead: frames/s | wait [ms] | turn, lru: frames/s | wait [ms] | zoom, proximity: frames/s | "
+             "wait [ms] | zoom, lru: frames/s | wait [ms] |", "|---:|---|---|---|---|---|---|---|---|"]
     for degrees in SPEEDS:
         cells = []
         for run in frames_of(args, [dict(volume="head", animation=animation, degrees=degrees, units=6, step=1, frames=args.frames // 10, share=211 / 566,
@@ -125,11 +125,10 @@ def figure_21(args, folder):
 
 def most_loaded(args, volume, share, limit):
     """Rows by cache and speed: quantiles over frames of the most bricks that any unit loads."""
-    lines = ["| degrees a frame | cache | most a frame, waited for and ahead: median | 90 % | largest | waited for alone: median | 90 % | largest | "
-             f"frames with more than {limit} |", "|---:|---|---|---|---|---|---|---|---|"]
+    lines = ["| degrees a frame | cache | bricks loaded, most of a unit: median | largest | waited for alone: median | largest | "
+             f"frames over {limit} [%] |", "|---:|---|---|---|---|---|---|"]
     kinds = {"lru": dict(cache="lru", read_us=READ_US), "proximity": dict(cache="proximity", read_us=READ_US),
-             f"proximity, {limit} ahead": dict(cache="proximity", preload=limit, read_us=READ_US),
-             "the same, reading at once": dict(cache="proximity", preload=limit)}
+             f"proximity, {limit} ahead": dict(cache="proximity", preload=limit, read_us=READ_US)}
     for degrees in (2, 7, 14):
         runs = frames_of(args, [dict(volume=volume, animation="turn", degrees=degrees, units=6, frames=min(args.frames, 720 // degrees), share=share, **words)
                                 for words in kinds.values()])
@@ -137,9 +136,8 @@ def most_loaded(args, volume, share, limit):
             every = [[max(loaded + ahead for loaded, ahead, _ in frame["units"]), max(loaded for loaded, _, _ in frame["units"])] for frame in run["frames"][1:]]
             cells = []
             for loads in zip(*every):
-                ordered = sorted(loads)
-                cells += [f"{statistics.median(ordered):g}", str(ordered[int(0.9 * len(ordered))]), str(ordered[-1])]
-            cells.append(f"{100 * statistics.mean(waited > limit for _, waited in every):.1f} %")
+                cells += [f"{statistics.median(loads):g}", str(max(loads))]
+            cells.append(f"{100 * statistics.mean(waited > limit for _, waited in every):.1f}")
             lines.append(f"| {degrees} | {name} | " + " | ".join(cells) + " |")
             print(lines[-1], flush=True)
     return lines

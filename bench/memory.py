@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What memory processes take that render volumes, and what they read again where a volume is larger than that.
 
-    bench/memory.py --tessera PROGRAM [--document docs/EXPERIMENTS.md] [--only "of processes"] [--samples 512] [--large 2048] [--folder FOLDER]
+    bench/memory.py --tessera PROGRAM [--document docs/RESULTS.md] [--only "of processes"] [--samples 512] [--large 2048] [--folder FOLDER]
 
     of processes   the largest resident set of each rank, by volume, format, budget and number of ranks, sort-first and sort-last
     of sort-last   a volume that no rank may hold and all together may: bricks loaded and thrown out by frame, in both ways

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sections of bench/RESULTS.md: a table, and what it means nothing without.
+"""Sections of docs/RESULTS.md and bench/RESULTS.md: a table, with commit, machine and command.
 
 A section lies between two marks, `<!-- NAME begin -->` and `<!-- NAME end -->`, and is replaced whole by the next run of
 the script it is named after; what stands outside the marks is kept. A section that is new goes to the end of the file.
@@ -14,6 +14,8 @@ import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 WIDTH = 160  # columns of a line of Markdown
+PLACES = ("--tessera", "--program", "--frames-program", "--packing", "--work", "--folder", "--output", "--document", "--results", "--json", "--figure",
+          "--images")  # options that name programs, folders and outputs: they are one machine's
 
 
 def commit():
@@ -28,15 +30,21 @@ def processor():
 
 
 def made(load_before):
-    """Date, commit, machine, and the load average before and after."""
+    """Date, commit, machine, and the load average from before to after."""
     name, cores = processor()
-    return (f"{datetime.date.today().isoformat()}, commit {commit()}: {name}, {cores} cores, load average {load_before:.1f} before, "
-            f"{os.getloadavg()[0]:.1f} after.")
+    return (f"{datetime.date.today().isoformat()}, commit {commit()}: {name}, {cores} cores, load {load_before:.1f} to "
+            f"{os.getloadavg()[0]:.1f}.")
 
 
 def command(script):
-    """The command line of this run, without the folders of absolute paths: they are one machine's."""
-    words = [re.sub(r"(^|=)/.*/", r"\1", word) for word in sys.argv[1:]]
+    """The command line of this run without PLACES and without the folders of absolute paths."""
+    words, rest = [], iter(sys.argv[1:])
+    for word in rest:
+        name, has_value, _ = word.partition("=")
+        if name not in PLACES:
+            words.append(re.sub(r"(^|=)/.*/", r"\1", word))
+        elif not has_value:
+            next(rest, None)
     return " ".join([f"bench/{script}", *words])
 
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Juliachs et al. 2007, Table 1 and Figure 9: how rendering scales with nodes.
 
-    bench/scaling.py --tessera PROGRAM --work FOLDER [--results docs/SCALING.md] [--frames 50] [--nodes 2,4,8] [--millions 15.7,51.1]
+    bench/scaling.py --tessera PROGRAM --work FOLDER [--results docs/RESULTS.md] [--frames 50] [--nodes 2,4,8] [--millions 15.7,51.1]
 
 Cubes of as many tetrahedra are generated and kept in --work; each node has a projector and a compositor process, as printed, of one
 thread each. Every run leaves a file of figures in --work, and what is there is not run again: so a run that was ended goes on, and
@@ -135,7 +135,7 @@ def model_of(figures):
 
 
 def sums(figures, role):
-    """CPU seconds a frame by stage: (average over the role's ranks, those of the rank that has the most in all)."""
+    """CPU seconds a frame by stage: (average over the role's ranks, each rank's)."""
     ranks = [one for one in figures["ranks"] if one["role"] == role]
     totals = []
     for one in ranks:
@@ -143,38 +143,23 @@ def sums(figures, role):
         for frame in one["frames"][1:]:
             total.update(frame)
         totals.append({k: v / (figures["frames"] - 1) for k, v in total.items()})
-    worst = max(totals, key=busy)
     average = {stage: sum(t.get(stage, 0) for t in totals) / len(totals) for stage in STAGES[role]}
-    return average, {stage: worst.get(stage, 0) for stage in STAGES[role]}, totals
+    return average, totals
 
 
 def table_1(runs, has_cores):
-    lines = []
-    for million in sorted({r["million"] for r in runs}):
-        lines += [f"### {million} M tetrahedra", "",
-                  "| | " + " | ".join(f"{n} nodes" for n in sorted({r['nodes'] for r in runs})) + " |", "|---|" + "---:|" * len({r["nodes"] for r in runs})]
-        for method in ("printed", "default"):
-            speed, efficiency, limit = [], [], []
-            first = None
-            for nodes in sorted({r["nodes"] for r in runs}):
-                found = [r for r in runs if (r["million"], r["nodes"]) == (million, nodes)]
-                if method == "printed":
-                    printed = PRINTED.get(million, {}).get(nodes)
-                    speed.append(f"{printed[0]}" if printed else "-"), efficiency.append(f"{printed[1]:.2f}" if printed else "-")
-                elif found:
-                    seconds, slowest, _ = model_of(found[0])
-                    if has_cores:
-                        seconds, slowest = sum(found[0]["frame_ms"][1:]) / (found[0]["frames"] - 1) * 1e-3, "wall time"
-                    rate = found[0]["tets"] / seconds / 1e3
-                    first = first or (rate, nodes)
-                    speed.append(f"{rate:.0f}"), limit.append(slowest)
-                    efficiency.append(f"{rate / first[0] * first[1] / nodes:.2f}")
-                else:
-                    speed.append("-"), efficiency.append("-"), limit.append("-")
-            lines += [f"| {method}: kTets/s | " + " | ".join(speed) + " |", f"| {method}: efficiency | " + " | ".join(efficiency) + " |"]
-            if limit:
-                lines.append(f"| {method}: what takes longest | " + " | ".join(limit) + " |")
-        lines.append("")
+    lines = ["| M tets | nodes | printed: kTets/s | efficiency | here: kTets/s | efficiency | slowest |", "|---:|---:|---:|---:|---:|---:|---|"]
+    first = {}
+    for r in sorted(runs, key=lambda r: (r["million"], r["nodes"])):
+        million, nodes = r["million"], r["nodes"]
+        seconds, slowest, _ = model_of(r)
+        if has_cores:
+            seconds, slowest = sum(r["frame_ms"][1:]) / (r["frames"] - 1) * 1e-3, "wall time"
+        rate = r["tets"] / seconds / 1e3
+        base_rate, base_nodes = first.setdefault(million, (rate, nodes))
+        printed = PRINTED.get(million, {}).get(nodes)
+        printed = f"{printed[0]} | {printed[1]:.2f}" if printed else "- | -"
+        lines.append(f"| {million} | {nodes} | {printed} | {rate:.0f} | {rate / base_rate * base_nodes / nodes:.2f} | {slowest} |")
     return lines
 
 
@@ -183,11 +168,11 @@ def figure_9(runs):
     for role in ("projector", "compositor"):
         some = sorted(runs, key=lambda r: (r["million"], r["nodes"]))
         shown = [s for s in STAGES[role] if any(sums(r, role)[0][s] >= 5e-5 for r in some)]
-        lines += [f"### {role}s: CPU time a frame [ms], average (worst rank)", "",
+        lines += [f"{role.capitalize()}s: CPU time a frame [ms], average over ranks (worst rank):", "",
                   "| M tets | nodes | " + " | ".join(shown) + " | all | imbalance |", "|---:|---:|" + "---:|" * (len(shown) + 2)]
         for r in some:
-            average, worst, totals = sums(r, role)
-            cells = [f"{1e3 * average[s]:.1f} ({1e3 * worst[s]:.1f})" for s in shown]
+            average, totals = sums(r, role)
+            cells = [f"{1e3 * average[s]:.1f}" for s in shown]
             all_of = [busy(t) for t in totals]
             mean = sum(all_of) / len(all_of)
             lines.append(f"| {r['million']} | {r['nodes']} | " + " | ".join(cells) +
@@ -197,13 +182,13 @@ def figure_9(runs):
 
 
 def traffic(runs):
-    lines = ["| M tets | nodes | MB a frame, all | MB a frame, busiest rank, sent / received | messages a frame | largest memory of a rank [MiB] | frames | load | commit |",
-             "|---:|---:|---:|---:|---:|---:|---:|---:|---|"]
+    lines = ["| M tets | nodes | MB a frame, all | busiest rank, sent / received | messages | largest memory of a rank [MiB] | load | commit |",
+             "|---:|---:|---:|---:|---:|---:|---:|---|"]
     for r in sorted(runs, key=lambda r: (r["million"], r["nodes"])):
-        totals = sums(r, "projector")[2] + sums(r, "compositor")[2]
+        totals = sums(r, "projector")[1] + sums(r, "compositor")[1]
         sent, received = ([t.get("bytes " + way, 0) / 1e6 for t in totals] for way in ("send", "receive"))
         lines.append(f"| {r['million']} | {r['nodes']} | {sum(sent):.1f} | {max(sent):.1f} / {max(received):.1f} | "
-                     f"{sum(t.get('messages', 0) for t in totals):.0f} | {max(r['memory']) / 2**20:.0f} | {r['frames']} | {r['load']:.1f} | {r['commit']} |")
+                     f"{sum(t.get('messages', 0) for t in totals):.0f} | {max(r['memory']) / 2**20:.0f} | {r['load']:.1f} | {r['commit']} |")
     return lines
 
 
@@ -253,8 +238,8 @@ def main():
     if args.results:
         name, cores = results_file.processor()
         caption = f"{name}, {cores} cores. `{results_file.command('scaling.py')}`"
-        results_file.put(args.results, "scaling.py table 1", caption, ["", *table_1(runs, has_cores)])
-        results_file.put(args.results, "scaling.py figure 9", caption, ["", *figure_9(runs), *traffic(runs)])
+        results_file.put(args.results, "scaling.py table 1", caption, table_1(runs, has_cores))
+        results_file.put(args.results, "scaling.py figure 9", caption, [*figure_9(runs), *traffic(runs)])
         draw(runs, args.results.parent / "images" / "scaling-figure9.svg")
 
 

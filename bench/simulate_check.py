@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """bench/simulate.py against real runs: nodes that are network namespaces, on a bridge, with links limited by tc.
 
-    bench/simulate_check.py --tessera PROGRAM --work FOLDER [--results docs/SCALING.md] [--nodes 2,4,8] [--mbit 100,1000] [--side 48]
+    bench/simulate_check.py --tessera PROGRAM --work FOLDER [--results docs/RESULTS.md] [--nodes 2,4,8] [--mbit 100,1000] [--side 48]
                             [--size 512] [--frames 14] [--repeat 3]
 
 Needs root, ip, tc and Open MPI. For each number of nodes the same film is traced once without namespaces, over the loopback device: the model
@@ -155,11 +155,9 @@ def row(nodes, mbit, found):
     """A line of the table: of each run (measured, others, predicted, replayed)."""
     def cells(at):
         errors = [100 * (one[at] / one[0] - 1) for one in found]
-        return f"{milliseconds(at)} | {statistics.median(errors):+.0f} % (" + ", ".join(f"{e:+.0f}" for e in errors) + ")"
-
-    def milliseconds(at):
-        return ", ".join(f"{1e3 * one[at]:.0f}" for one in found)
-    return f"| {nodes} | {mbit} Mbit/s | {milliseconds(0)} | " + ", ".join(f"{one[1]:.1f}" for one in found) + f" | {cells(2)} | {cells(3)} |"
+        return f"{statistics.median(errors):+.0f} (" + ", ".join(f"{e:+.0f}" for e in errors) + ")"
+    measured = ", ".join(f"{1e3 * one[0]:.0f}" for one in found)
+    return f"| {nodes} | {mbit} | {measured} | {max(one[1] for one in found):.1f} | {cells(2)} | {cells(3)} |"
 
 
 def main():
@@ -180,8 +178,8 @@ def main():
     load = os.getloadavg()[0]
     byte, speed = byte_cost()
     print(f"{1e9 * byte:.2f} ns of a core for a byte at either end; {8e-9 * speed:.1f} Gbit/s without limit", flush=True)
-    lines = ["| nodes | link | measured, each run [ms] | others | predicted from the loopback run before it [ms] | error: median (each) "
-             "| replayed from its own trace [ms] | error: median (each) |", "|---:|---|---|---|---|---|---|---|"]
+    lines = ["| nodes | Mbit/s | measured, each run [ms] | others | error of the prediction [%]: median (each) | error of the replay [%]: median (each) |",
+             "|---:|---:|---|---:|---|---|"]
     for nodes in map(int, args.nodes.split(",")):
         for mbit in map(int, args.mbit.split(",")):
             found = []

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What bench/simulate.py foretells for machines that are not here: 8, 64 and 1024 nodes, 15.7 million to 10^10 tetrahedra.
 
-    bench/simulate_cluster.py --tessera PROGRAM --work FOLDER [--results docs/SCALING.md] [--sides 69,138] [--frames 4] [--jobs 1]
+    bench/simulate_cluster.py --tessera PROGRAM --work FOLDER [--results docs/RESULTS.md] [--sides 69,138] [--frames 4] [--jobs 1]
 
 Traces cubes of two sizes on 8 nodes (1024 x 1024 pixels), and scales their work to M tets and N nodes by these rules:
 
@@ -18,6 +18,7 @@ Only Python's standard library.
 import argparse
 import collections
 import functools
+import itertools
 import math
 import multiprocessing
 import os
@@ -34,7 +35,7 @@ STRIPS = 12  # io/image/picture_strips.hpp: rows of 256 KiB, of 3 bytes a pixel
 PARTS = ("projection", "imbalance", "last tile", "compositing", "assembly", "wire")
 MILLIONS = (15.7, 51.1, 1e3, 1e4)
 MANY = 512  # nodes: a run of the model takes so long that only the least and the most tets are
-MACHINES = ((32, 10), (2, 10), (32, 1), (32, 100))  # cores a node, Gbit/s
+MACHINES = ((32, 10), (2, 10), (32, 1))  # cores a node, Gbit/s
 
 
 class Base:
@@ -130,11 +131,11 @@ def foretell(small, large, frames, case):
     return losses(work, settings)
 
 
-def line(case, whole, parts):
-    cores, gbit, millions, nodes = case
-    tets = f"{millions} M" if millions < 1000 else f"10^{round(math.log10(millions)) + 6}"
-    return (f"| {cores} | {gbit} | {tets} | {nodes} | {1e3 * whole:.0f} | {millions / whole:.3g} | " +
-            " | ".join(f"{round(100 * parts[name] / whole)}" for name in PARTS) + " |")
+def cell(whole, parts):
+    """A frame's milliseconds, the share of it that projection is, and the largest loss if it is more than 5 %."""
+    share = {name: 100 * parts[name] / whole for name in PARTS}
+    loss = max(PARTS[1:], key=share.get)
+    return f"{1e3 * whole:.0f} ms, {share['projection']:.0f} %" + (f", {loss} {share[loss]:.0f} %" if round(share[loss]) > 5 else "")
 
 
 def main():
@@ -152,14 +153,18 @@ def main():
     load = os.getloadavg()[0]
     small, large = (base(args, int(side)) for side in args.sides.split(","))
     a, b = cells_and_segments(small, large)
-    cases = [(*machine, millions, nodes) for machine in MACHINES for millions in MILLIONS for nodes in map(int, args.nodes.split(","))
+    columns = [int(nodes) for nodes in args.nodes.split(",")]
+    cases = [(*machine, millions, nodes) for machine in MACHINES for millions in MILLIONS for nodes in columns
              if nodes < MANY or millions in (MILLIONS[0], MILLIONS[-1])]
-    lines = ["| cores a node | Gbit/s | tets | nodes | frame [ms] | MTets/s | " + " | ".join(f"{p} [%]" for p in PARTS) + " |",
-             "|---:|---:|---:|---:|---:|---:|" + "---:|" * len(PARTS)]
+    cells = {}
     with multiprocessing.Pool(args.jobs) as pool:
-        for case, (whole, parts) in zip(cases, pool.imap(functools.partial(foretell, small, large, args.frames), cases)):
-            lines.append(line(case, whole, parts))
-            print(lines[-1], flush=True)
+        for case, found in zip(cases, pool.imap(functools.partial(foretell, small, large, args.frames), cases)):
+            cells[case] = cell(*found)
+            print(*case, cells[case], flush=True)
+    lines = ["| cores a node | Gbit/s | tets | " + " | ".join(f"{nodes} nodes" for nodes in columns) + " |", "|---:|---:|---:|" + "---|" * len(columns)]
+    for (cores, gbit), millions in itertools.product(MACHINES, MILLIONS):
+        tets = f"{millions} M" if millions < 1000 else f"10^{round(math.log10(millions)) + 6}"
+        lines.append(f"| {cores} | {gbit} | {tets} | " + " | ".join(cells.get((cores, gbit, millions, nodes), "") for nodes in columns) + " |")
     found = (f"From {small.millions:.1f} and {large.millions:.1f} M tets on {BASE_NODES} nodes: tiles on all projectors "
              f"{1e3 * a:.1f} ms a M + {1e3 * b:.0f} ms M^(1/3) of CPU time for M million tets, culling and binning {1e3 * large.setup / large.millions:.1f} ms a M, "
              f"fragments {large.bytes / 1e6:.1f} MB (as M^{power(small, large, lambda x: x.bytes):.2f}), their compositing "
@@ -168,7 +173,7 @@ def main():
     print(found)
     if args.results:
         made = re.sub(r"\.$", "", results_file.made(load))
-        results_file.put(args.results, "simulate_cluster.py", f"{made}. `{results_file.command('simulate_cluster.py')}`. {found}", lines)
+        results_file.put(args.results, "simulate_cluster.py", f"{made}. `{results_file.command('simulate_cluster.py')}`.", lines)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Moloney, Ray Coherence in Parallel Volume Rendering (2008), Figures 1.1, 6.6, 6.7 and 6.15: rays in one place, or in pieces.
 
-    bench/sort_last.py --tessera PROGRAM [--document docs/EXPERIMENTS.md] [--only "figure 6.15"] [--size 512x512] [--samples 192] [--frames 5]
+    bench/sort_last.py --tessera PROGRAM [--document docs/RESULTS.md] [--only "figure 6.15"] [--size 512x512] [--samples 192] [--frames 5]
 
     Figure 6.15  sort-first and sort-last by number of processes, with and without early termination; bricks of 32^3, nothing culled, rotation about y,
                  sort-first split by the frame before as printed, and by our default
@@ -65,7 +65,7 @@ def slowest(frames):
 
 def figure_15(bench):
     ways = {"sort-first, previous": ["--balance", "previous"], "sort-first, learned": [], "sort-last": ["--distribution", "sort-last"]}
-    lines = ["| processes | " + " | ".join(f"{way}: with / without ERT, frames/s | gain kept" for way in ways) + " |", "|---:|" + "---:|---:|" * len(ways)]
+    lines = ["| processes | " + " | ".join(f"{way}: with / without ERT [frames/s] | gain kept [%]" for way in ways) + " |", "|---:|" + "---:|---:|" * len(ways)]
     alone = {}
     for units in UNITS:
         cells = []
@@ -76,7 +76,7 @@ def figure_15(bench):
                 rate[without] = 1e3 / slowest(frames)
             fast, slow = rate.values()
             alone.setdefault(way, fast / slow - 1)
-            cells.append(f"{fast:.2f} / {slow:.2f} | {100 * (fast / slow - 1) / alone[way]:.0f} %")
+            cells.append(f"{fast:.2f} / {slow:.2f} | {100 * (fast / slow - 1) / alone[way]:.0f}")
         lines.append(f"| {units} | " + " | ".join(cells) + " |")
         print(lines[-1], flush=True)
     gain = next(iter(alone.values()))
@@ -85,7 +85,7 @@ def figure_15(bench):
 
 
 def figure_1(bench):
-    lines = ["| distance from the middle, of the volume's half diagonal | sort-first: largest over mean | deviation | sort-last: largest over mean | deviation |", "|---:|---:|---:|---:|---:|"]
+    lines = ["| distance, half diagonals | sort-first: largest over mean | deviation [%] | sort-last: largest over mean | deviation [%] |", "|---:|---:|---:|---:|---:|"]
     for distance in (4, 2, 1, 0.5, 0.25):
         place = [d * distance * math.sqrt(3) / math.sqrt(0.6 ** 2 + 0.35 ** 2 + 0.72 ** 2) for d in (0.6, 0.35, 0.72)]
         path = [{"position": place, "focal_point": [p * 0.5 for p in place], "view_up": [0, 1, 0], "view_angle": 40}] * 3
@@ -94,7 +94,7 @@ def figure_1(bench):
             frames = bench.frames(6, bench.args.size, bench.thin, path, *words)
             of = [[p["cpu_ms"] + p["split_cpu_ms"] for p in frame["balance"]["processes"]] for frame in frames]
             cells += [f"{statistics.median(max(cpu) / statistics.mean(cpu) for cpu in of):.2f}",
-                      f"{100 * statistics.median(frame['balance']['cpu_deviation'] for frame in frames):.0f} %"]
+                      f"{100 * statistics.median(frame['balance']['cpu_deviation'] for frame in frames):.0f}"]
         lines.append(f"| {distance} | " + " | ".join(cells) + " |")
         print(lines[-1], flush=True)
     return lines
@@ -107,12 +107,12 @@ def sent(frames):
 
 
 def figure_6(bench):
-    lines = ["| processes | MB a process sends | of 20 bytes a pixel | messages | ms at 95 MB/s | asynchronous, ms | synchronous, ms |", "|---:|---:|---:|---:|---:|---:|---:|"]
+    lines = ["| processes | MB a process sends | of 20 bytes a pixel [%] | messages | ms at 95 MB/s | asynchronous, ms | synchronous, ms |", "|---:|---:|---:|---:|---:|---:|---:|"]
     for units in UNITS[1:]:
         asynchronous, synchronous = (sent(bench.frames(units, "1024x1024", bench.thin, list(rotation(bench.args.frames)), "--distribution", "sort-last",
                                                        "--direct-send", how)) for how in ("asynchronous", "synchronous"))
         each = asynchronous[0] / units
-        lines.append(f"| {units} | {each / 1e6:.2f} | {100 * each / (20 * 1024 ** 2 * (units - 1) / units):.0f} % | {asynchronous[1] / units:.0f} | "
+        lines.append(f"| {units} | {each / 1e6:.2f} | {100 * each / (20 * 1024 ** 2 * (units - 1) / units):.0f} | {asynchronous[1] / units:.0f} | "
                      f"{1e3 * each / BANDWIDTH:.0f} | {asynchronous[2]:.0f} | {synchronous[2]:.0f} |")
         print(lines[-1], flush=True)
     return lines

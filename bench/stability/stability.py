@@ -3,7 +3,7 @@
 """Turns one parameter after the other until a method breaks.
 
     bench/stability/stability.py [--tessera build/release/apps/tessera] [--only WORD,...] [--methods WORD,...] [--reduced]
-        [--large] [--json FILE [--resume]] [--document docs/STABILITY.md] [--figure docs/images/stability.svg]
+        [--large] [--json FILE [--resume]] [--document docs/RESULTS.md] [--figure docs/images/stability.svg]
 
 Each picture is judged by `--verify` against the double-precision reference of that very scene. For every method: the
 first value at which its error passes 1e-3, and the first at which it fails outright (no picture, NaN, a crash). Partitions
@@ -20,6 +20,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import textwrap
 import time
 
 import partitions
@@ -74,6 +75,11 @@ class Runner:
                 "arithmetic": judged.get("arithmetic"), "shows": shows(self.folder / "picture.pfm"), "command": command}
 
 
+def exponent(x):
+    """1e-7: one digit."""
+    return f"{x:.0e}".replace("e-0", "e-").replace("e+00", "")
+
+
 def value_words(v):
     return v if isinstance(v, str) else f"{v:g}"
 
@@ -85,21 +91,24 @@ def verdicts(results):
     return worse, failed
 
 
+def steady(method):
+    """Whether the parameter changes nothing: all values pass, or all fail alike."""
+    errors = [r["error"] for r in method["results"] if "failed" not in r]
+    return not errors or len(errors) == len(method["results"]) and (max(errors) <= BAD or errors[0] > BAD and max(errors) < 2 * errors[0])
+
+
 def words_of(method):
-    """A cell of the tables."""
+    """A cell of the tables: the largest error, bold where it is above BAD, and from which value on."""
     results = method["results"]
-    errors = [r.get("error", math.inf) for r in results]
-    worst = max((e for e, r in zip(errors, results) if "failed" not in r), default=0)
+    worst = max((r.get("error", math.inf) for r in results if "failed" not in r), default=0)
     if method["fails"] is not None and all("failed" in r for r in results):
-        return "**refuses all**"
-    if method["above_1e-3"] is None:
-        words = f"passes, {worst:.0e}"
-    elif method["above_1e-3"] == results[0]["value"] and "failed" not in results[0]:
-        # No doing of the parameter, or not of it alone.
-        words = f"{worst:.0e} throughout" if worst < 2 * errors[0] else f"{errors[0]:.0e} from the start, worst {worst:.0e}"
-    else:
-        words = f"**> 1e-3 at {method['above_1e-3']}**, worst {worst:.0e}"
-    return words + (f", **fails at {method['fails']}**" if method["fails"] is not None else "")
+        return "refused"
+    words = exponent(worst)
+    if method["above_1e-3"] is not None:
+        words = f"**{words}**"
+        if method["above_1e-3"] != results[0]["value"] or "failed" in results[0]:
+            words += f" from {method['above_1e-3']}"
+    return words + (f", fails at {method['fails']}" if method["fails"] is not None else "")
 
 
 def measure(args, folder):
@@ -189,6 +198,14 @@ def excused_of(stresses):
     return excused, pixels
 
 
+def values_of(stress):
+    return f"{stress['values'][0]}…{stress['values'][-1]}"
+
+
+def largest(method, stresses):
+    return exponent(max((r.get("error", math.inf) for s in stresses for r in s["methods"].get(method, {"results": []})["results"]), default=0))
+
+
 def document(path, stresses, rows, figure):
     lines = [BEGIN, ""]
     if figure:
@@ -197,34 +214,35 @@ def document(path, stresses, rows, figure):
         mine = [s for s in stresses if s["kind"] == kind]
         if not mine:
             continue
-        methods = list(dict.fromkeys(m for s in mine for m in s["methods"]))
-        lines += [f"### {title}", "", "| stress, parameter | values | " + " | ".join(methods) + " |",
-                  "|---|---|" + "---|" * len(methods)]
+        methods = [m for m in dict.fromkeys(m for s in mine for m in s["methods"]) if m != "exact"]
+        still = [s for s in mine if all(map(steady, s["methods"].values()))]
+        lines += [f"### {title}", ""]
+        if still:
+            says = ("These change no method's result: " + "; ".join(f"{s['name']} ({s['parameter']}, {values_of(s)})" for s in still) + ". The default's errors there "
+                    f"reach {largest('default', still)}, those of `exact` anywhere {largest('exact', mine)}.")
+            lines += [textwrap.fill(says, 160, break_long_words=False, break_on_hyphens=False), ""]
+        lines += ["| stress, parameter | values | " + " | ".join(methods) + " |", "|---|---|" + "---|" * len(methods)]
         for s in mine:
+            if s in still:
+                continue
             cells = [words_of(s["methods"][m]) if m in s["methods"] else "" for m in methods]
-            lines.append(f"| {s['name']}: {s['parameter']} | {s['values'][0]} to {s['values'][-1]} | " + " | ".join(cells) + " |")
+            lines.append(f"| {s['name']}: {s['parameter']} | {values_of(s)} | " + " | ".join(cells) + " |")
         lines.append("")
     printed = [s for s in stresses if s["kind"] == "printed"]
     if printed:
         lines += ["### The printed methods' own limits", "", "| limit, parameter | values | what becomes of them |", "|---|---|---|"]
         for s in printed:
             words = [f"{m}: {words_of(d)}" for m, d in s["methods"].items()]
-            lines.append(f"| {s['name']}: {s['parameter']} | {s['values'][0]} to {s['values'][-1]} | " + "; ".join(words) + " |")
+            lines.append(f"| {s['name']}: {s['parameter']} | {values_of(s)} | " + "; ".join(words) + " |")
         lines.append("")
     if rows:
         lines += ["### Partitions over MPI", "", "Against one process with the whole mesh; `segments` promises its bits, `runs` 2e-6.", "",
-                  "| partition | ranks | `segments`: the same bits | `runs`: largest difference |", "|---|---|---|---|"]
-        lines += [f"| {r['partition']} | {r['ranks']} | " + (f"{'yes' if r['same_bits'] else '**no**'} | {r['runs_difference']:.1e} |"
-                  if "failed" not in r else f"**failed** | {r['failed']} |") for r in rows]
-        lines.append("")
-    reasons = sorted({(m, s["name"], r["value"], r["failed"]) for s in stresses for m, d in s["methods"].items()
-                      for r in d["results"] if "failed" in r})
-    if reasons:
-        lines += ["What \"fails\" means, in the program's words:", ""]
-        said = {}
-        for m, name, value, words in reasons:
-            said.setdefault((m, words.replace("tessera: ", "")), {}).setdefault(name, []).append(value)
-        lines += [f"- {m}: {words} ({'; '.join(n + ' at ' + ', '.join(v) for n, v in where.items())})" for (m, words), where in said.items()]
+                  "| partitions (ranks) | `segments`: the same bits | `runs`: largest difference |", "|---|---|---|"]
+        alike = {}
+        for r in rows:
+            found = (f"{'yes' if r['same_bits'] else '**no**'} | {r['runs_difference']:.1e}" if "failed" not in r else f"**failed** | {r['failed']}")
+            alike.setdefault(found, []).append(f"{r['partition']} ({r['ranks']})")
+        lines += [f"| {'; '.join(names)} | {found} |" for found, names in alike.items()]
         lines.append("")
     text = path.read_text()
     begin, end = text.index(BEGIN), text.index(END)

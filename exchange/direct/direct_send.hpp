@@ -23,7 +23,7 @@ inline constexpr int packet_rows = 64;
 PixelRect band_of(const PixelRect& area, int number, int ranks);
 
 /// The number of each rank's band, by where ranks may have pixels: higher up for who has them higher up, so that much
-/// of what a rank has stays with it (docs/EXPERIMENTS.md, Exchanges).
+/// of what a rank has stays with it (docs/RESULTS.md, Exchanges).
 std::vector<int> band_numbers(std::span<const PixelRect> own);
 
 /// Whom the rank at `place` of a depth order (ranks, front to back) sends to, in this order: those behind it from the

@@ -15,7 +15,7 @@ namespace tessera::frame {
 /// transfer function only.
 ///
 /// A ray ends early within a box, not for what lies in front of it in another's: what that costs is
-/// docs/EXPERIMENTS.md, Figure 6.15. Pictures of other numbers of ranks, or brick sizes, differ by
+/// docs/RESULTS.md, Figure 6.15. Pictures of other numbers of ranks, or brick sizes, differ by
 /// rounding; else the bits are always the same. FrameSettings::keep_uncertainty as SortFirst's.
 class SortLast final : public VolumeFrames {
  public:
