@@ -1,21 +1,25 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""No library's message names an option: it names the setting, `tile_size`, and apps/ makes --tile-size of it.
+"""The option table, api/options/option_table.cpp, agrees with the libraries' messages and with docs/REFERENCE.md.
 
-Looks at every string literal of the library folders' C++ sources, comments left aside. Says file:line of each that
-holds an option, or a name in backquotes that is no option's (api/options/option_table.cpp has those that are, and their
-help), which the program would print as it stands. Exit status 1 if there is one.
+A library's message names the setting, `tile_size`, of which apps/ makes --tile-size. Looks at every string literal of the
+library folders' C++ sources, comments left aside, and reports file:line of each that contains an option, or a name in
+backquotes that is not an option's, which the program would print as it is. The list of options in docs/REFERENCE.md has
+to be the one that --write writes there, between two marker lines. Exit status 1 if there is a fault.
 
-    option_names.py SOURCE_TREE
+    option_names.py SOURCE_TREE [--write]
 """
 
 import re
 import sys
+import textwrap
 from pathlib import Path
 
 FOLDERS = """include scene system colormaps cells io readers integrals exchange projection gl sorting compositor volume reference
              frame api datasets annotation analysis""".split()
 TABLE = "api/options/option_table.cpp"
+PAGE, BEGIN, END = "docs/REFERENCE.md", "<!-- option_names.py begin -->\n", "<!-- option_names.py end -->\n"
+COMMANDS = "render serve info convert generate chart timing formats presets help completion".split()
 SUFFIXES = {".cpp", ".hpp", ".h", ".inl"}
 
 TOKEN = re.compile(
@@ -40,15 +44,50 @@ def in_literals(pattern, source):
             yield source.count("\n", 0, token.start(group) + match.start()) + 1, match[1]
 
 
-def settings_known(tree):
+def option_rows(tree):
+    """(topic, names, value, traits, help) of every row, in the order of help pages."""
     table = (tree / TABLE).read_text(encoding="utf-8")
-    names = re.findall(r'^    \{"([a-z,-]+)", ', table, re.MULTILINE)
-    return {name.replace("-", "_") for row in names for name in row.split(",")}
+    traits = {name: words.split(" | ") for name, words in re.findall(r"constexpr Trait (\w+) = ([\w |]+);", table)}
+    text = r'((?:"(?:[^"\\]|\\.)*"\s*)+)'
+    row = re.compile(rf"\{{{text},\s*{text},\s*([\w |]+),\s*{text}\}}")
+    for topic, rows in re.findall(r'\{"([^"]*)", (\w+_rows)\}', table):
+        begin = table.index(f" {rows}[] = ")
+        for names, value, words, meaning in row.findall(table, begin, table.index("\n};", begin)):
+            joined = ["".join(re.findall(r'"((?:[^"\\]|\\.)*)"', part)) for part in (names, value, meaning)]
+            expanded = [trait for word in words.split(" | ") for trait in traits.get(word, [word])]
+            expanded = [trait for word in expanded for trait in traits.get(word, [word])]
+            yield topic, joined[0].split(","), joined[1], expanded, joined[2]
+
+
+def option_list(tree):
+    """The list as Markdown; of options that `render` lacks with the commands that have them."""
+    lines, title = [], None
+    for topic, names, value, traits, meaning in option_rows(tree):
+        if "positional" in traits:
+            continue
+        if topic != title:
+            lines += ["", f"### {topic}", ""]
+            title = topic
+        form = ", ".join(("-" if len(name) == 1 < len(names) else "--") + name for name in names)
+        value = "" if not value or "flag" in traits or "place" in traits else " " + value
+        commands = [command for command in COMMANDS if command in traits]
+        of = "" if "render" in commands else f" ({', '.join(commands)})"
+        lines += textwrap.wrap(f"- `{form}{value}`{of} {meaning}", 160, subsequent_indent="  ", break_on_hyphens=False,
+                               break_long_words=False)
+    return "\n".join([*lines, "", ""])
+
+
+def page_with(tree, options):
+    page = (tree / PAGE).read_text(encoding="utf-8")
+    return page[:page.index(BEGIN) + len(BEGIN)] + options + page[page.index(END):]
 
 
 def main():
     tree = Path(sys.argv[1])
-    known = settings_known(tree)
+    known = {name.replace("-", "_") for _, names, *_ in option_rows(tree) for name in names}
+    page = page_with(tree, option_list(tree))
+    if sys.argv[2:] == ["--write"]:
+        (tree / PAGE).write_text(page, encoding="utf-8")
     looked_at, faults = 0, []
     for folder in FOLDERS:
         for file in sorted((tree / folder).rglob("*")):
@@ -60,7 +99,9 @@ def main():
                 faults.append(f"{name}:{line}: names --{option}; write `{option.replace('-', '_')}`")
             for line, setting in in_literals(SETTING, source):
                 if setting not in known | COLUMNS:
-                    faults.append(f"{name}:{line}: names `{setting}`, which is no option; see {TABLE}")
+                    faults.append(f"{name}:{line}: names `{setting}`, which is not an option; see {TABLE}")
+    if page != (tree / PAGE).read_text(encoding="utf-8"):
+        faults.append(f"{PAGE}: the list of options is not that of {TABLE}; run {Path(__file__).name} {tree} --write")
     if looked_at < 100:
         sys.exit(f"{tree}: only {looked_at} sources of libraries found; give the source tree")
     print(*faults, f"{looked_at} sources, {len(known)} settings, {len(faults)} faults", sep="\n")
