@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""How the error of the caster's methods falls with step or asked accuracy: the tables of docs/ACCURACY.md, "Volumes".
+"""How the error of the caster's methods falls with step or asked accuracy (docs/ACCURACY.md, "Volumes by steps").
 
     bench/volume_convergence.py --tessera build/release/apps/tessera [--volume FILE] [--size 200x200] [--pixels 2000]
 
