@@ -17,7 +17,7 @@ inline namespace v0_1 {
 /// How a number is stored.
 enum class NumberType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 
-/// The type that a C++ number is stored as.
+/// The type in which a C++ number is stored.
 template <class T>
 requires std::is_arithmetic_v<T>
 constexpr NumberType number_type_of() {
@@ -30,9 +30,9 @@ constexpr NumberType number_type_of() {
   }
 }
 
-/// Numbers in the caller's memory, next to each other: any vector, array or span of numbers, of glm::dvec3, which
-/// counts as three, or of CellType, which counts as uint8. Keeps nothing: the memory must stay for as long as the view
-/// is used.
+/// Contiguous numbers in the caller's memory: any vector, array or span of numbers, of glm::dvec3, which counts as
+/// three, or of CellType, which counts as uint8. It does not own the memory, which must stay valid while the view is
+/// used.
 class ArrayView {
  public:
   ArrayView() = default;
@@ -57,12 +57,12 @@ class ArrayView {
   ArrayView(const void* data, std::size_t size, NumberType type) : data_(data), size_(size), type_(type) {}
 
   [[nodiscard]] const void* data() const { return data_; }
-  /// How many numbers.
+  /// Number of elements.
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] bool empty() const { return size_ == 0; }
   [[nodiscard]] NumberType type() const { return type_; }
 
-  /// The numbers themselves, if they are stored as T; else an empty span.
+  /// The numbers themselves if they are stored as T; otherwise an empty span.
   template <class T>
   [[nodiscard]] std::span<const T> as() const {
     return type_ == number_type_of<T>() ? std::span(static_cast<const T*>(data_), size_) : std::span<const T>();

@@ -9,13 +9,13 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// Width and height of the picture in pixels. Pixel (0,0) is the top left; its centre is at (0.5, 0.5).
+/// Width and height of the image in pixels. Pixel (0,0) is the top left; its centre is at (0.5, 0.5).
 struct ImageSize {
   int width = 1024, height = 1024;
   bool operator==(const ImageSize&) const = default;
 };
 
-/// Largest width or height accepted; one past it, pixel coordinates would need more than 16 bits.
+/// Largest width or height accepted; beyond it, pixel coordinates would need more than 16 bits.
 inline constexpr int max_image_side = 65536;
 
 enum class ProjectionKind { orthographic, perspective };
@@ -26,28 +26,27 @@ struct ClippingRange {
   bool operator==(const ClippingRange&) const = default;
 };
 
-/// A view in VTK's words. World units, right-handed. Pixels are square: the width of the window follows from the image.
+/// A view in VTK's terms. World units, right-handed. Pixels are square: the width of the window follows from the image.
 struct Camera {
   glm::dvec3 position{0, 0, 1}, focal_point{0, 0, 0}, view_up{0, 1, 0};
   ProjectionKind projection = ProjectionKind::orthographic;
   double parallel_scale = 1;  ///< orthographic: half the window's height, world units
   double view_angle = 30;     ///< perspective: vertical field of view, degrees, in (0, 180)
-  /// Without it only the eye clips: what lies at planar depth <= 0 is not seen, in either projection.
+  /// Without a range only the eye clips: anything at planar depth <= 0 is invisible in both projections.
   std::optional<ClippingRange> clipping_range;
   bool operator==(const Camera&) const = default;
 };
 
-/// Orthonormal axes of a view, world frame. `up` points to the top of the picture, `forward` into it.
+/// Orthonormal axes of a view, world frame. `up` points to the top of the image, `forward` into it.
 struct ViewBasis {
   glm::dvec3 right, up, forward;
 };
 
 /// Throws Error(bad_input) if the camera has no direction, a `view_up` along it, a non-finite number, a scale or an
-/// angle out of range, or an empty clipping range. The message names the word at fault and says what is allowed.
+/// angle out of range, or an empty clipping range. The message names the wrong member and states what is allowed.
 TESSERA_EXPORT void validate(const Camera& camera);
 
-/// Throws Error(bad_input) unless both sides are in [1, max_image_side] and the pixel count fits in memory's
-/// arithmetic.
+/// Throws Error(bad_input) unless both sides are in [1, max_image_side].
 TESSERA_EXPORT void validate(ImageSize size);
 
 /// Axes of a valid camera. Axis-aligned views give exact unit vectors.
@@ -63,14 +62,14 @@ struct Box {
 /// Length of a box's diagonal, world units; 0 if it has no extent.
 TESSERA_EXPORT double diagonal(const Box& box);
 
-/// A view of the whole box from a fixed oblique direction, with a small margin; the longest side of the box lies across
-/// the picture. A flat, thin or one-point box still gives a valid camera. Perspective: 30 degrees, the eye as near as
-/// the box allows, always outside of it. `turning`: wide enough for the box at every turn of orbit().
+/// A view of the whole box from a fixed oblique direction, with a small margin; the longest side of the box runs across
+/// the image. A flat, thin or one-point box still gives a valid camera. Perspective: 30 degrees, with the eye as near
+/// as the box allows, always outside it. `turning`: wide enough for the box at every turn of orbit().
 TESSERA_EXPORT Camera frame_box(const Box& box, ImageSize size,
                                 ProjectionKind projection = ProjectionKind::orthographic, bool turning = false);
 
-/// The same view turned by `turn` (0..1 is one full turn) round the axis `view_up` through the focal point: an orbit's
-/// frame.
+/// The same view turned by `turn` (0..1 is one full turn) about the axis `view_up` through the focal point: one frame
+/// of an orbit.
 TESSERA_EXPORT Camera orbit(const Camera& camera, double turn);
 
 }  // namespace v0_1

@@ -8,7 +8,7 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// A view as a file gives it, with the picture's size if the file names one.
+/// A view read from a file, with the image size if the file states one.
 struct CameraFile {
   Camera camera;
   std::optional<ImageSize> size{};

@@ -23,7 +23,7 @@ enum class CellType : std::uint8_t {
   convex_point_set = 41,  ///< any number; the cell is their convex hull
   polyhedron = 42,        ///< any number; the cell is given by its faces (MeshArrays::faces)
 
-  // Cells of second order, corners first, then the middles of edges, faces and the cell.
+  // Cells of second order: corners first, then the middles of edges, faces and the cell.
   quadratic_tetra = 24,                   ///< 10
   quadratic_hexahedron = 25,              ///< 20
   quadratic_wedge = 26,                   ///< 15
@@ -34,7 +34,7 @@ enum class CellType : std::uint8_t {
   biquadratic_quadratic_hexahedron = 33,  ///< 24
   triquadratic_pyramid = 37,              ///< 19
 
-  // Cells of any order, the same along all axes. With another number of points they are drawn by their corners.
+  // Cells of any order, the same along all axes. With any other number of points they are drawn by their corners.
   lagrange_tetrahedron = 71,  ///< (n + 1) (n + 2) (n + 3) / 6, n up to 100; or 5, 7, 8, 11, 14, 15, 16
   lagrange_hexahedron = 72,   ///< (n + 1)^3, n up to 100; or 9, 16, 21, 26, 32, 56
   lagrange_wedge = 73,        ///< (n + 1)^2 (n + 2) / 2, n up to 100; or 16, 20, 21, 24, 38

@@ -9,17 +9,18 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// The processes that work on one data set or picture together, numbered from 0: this process alone, or those of an MPI
-/// communicator (tessera/mpi.hpp makes it from an MPI_Comm).
+/// The processes that work on one data set or frame together, numbered from 0: this process alone, or those of an MPI
+/// communicator (tessera/mpi.hpp makes one from an MPI_Comm).
 ///
-/// What is given a communicator duplicates it, so that its messages never meet the caller's or another session's, and
-/// leaves MPI itself alone: it neither starts nor ends it. Its own thread speaks MPI while the caller's threads may, so
-/// the caller starts MPI with MPI_THREAD_MULTIPLE; anything less is an Error. Of one process no MPI is needed at all.
+/// Sessions and data sets duplicate the communicator they receive, so that their messages are separate from those of
+/// the caller and of other sessions. They neither start nor end MPI. A thread of their own calls MPI while the caller's
+/// threads may do so too, so the caller must start MPI with MPI_THREAD_MULTIPLE; a lower level is an Error. A single
+/// process needs no MPI at all.
 class TESSERA_EXPORT Communicator {
  public:
   /// This process alone.
   Communicator();
-  /// Of an MPI communicator by its Fortran handle (MPI_Comm_c2f). Throws Error(bad_input) if MPI has not been
+  /// From an MPI communicator, by its Fortran handle (MPI_Comm_c2f). Throws Error(bad_input) if MPI has not been
   /// initialised; Error(system_failure) in a build without MPI. Sessions and data sets of more than one rank throw
   /// Error(bad_input) without MPI_THREAD_MULTIPLE.
   static Communicator of_handle(int fortran_handle);
@@ -36,8 +37,9 @@ class TESSERA_EXPORT Communicator {
   std::shared_ptr<const State> state_;
 };
 
-/// Runs `work` once a rank, each on a thread of its own, with a communicator of these threads, and returns when all
-/// have: a job's shape without MPI. An exception of one rank ends the run for all; the run's one error is thrown here.
+/// Runs `work` once per rank, each on its own thread, with a communicator of these threads, and returns when all have
+/// returned: a parallel job without MPI. An exception on one rank ends the run for all ranks; the first error is thrown
+/// here.
 TESSERA_EXPORT void run_ranks(int ranks, const std::function<void(const Communicator&)>& work);
 
 }  // namespace v0_1

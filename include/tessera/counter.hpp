@@ -11,19 +11,18 @@ namespace tessera {
 inline namespace v0_1 {
 
 /// A row of a table of counters: its name in reports, how the values of several processes are combined, and what it
-/// counts. Sums, messages between processes and reports are loops over these tables: a new counter is a member and a
-/// row.
+/// counts. Sums, messages between processes and reports loop over these tables: a new counter is a member and a row.
 template <class Counters, class Number = std::uint64_t>
 struct Counter {
   enum class Together { sum, largest };
   std::string_view name;
   Number Counters::*member;
   Together together;
-  bool if_any;  ///< reports leave it out where it is 0
+  bool if_any;  ///< reports omit it if it is 0
   std::string_view meaning;
 };
 
-/// `sums` and `others`, each counter as its row of the table says.
+/// Adds `others` to `sums`, combining each counter as its row of the table states.
 template <class Row, std::size_t count, class Counters>
 void add_counters(const std::array<Row, count>& table, const Counters& others, Counters& sums) {
   for (const Row& row : table) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Marks what the shared library shows; everything else stays inside of it.
+/// Marks the symbols that the shared library exports; all others stay internal.
 #define TESSERA_EXPORT __attribute__((visibility("default")))
-/// Keeps what a class that is shown declares inside.
+/// Hides members of an exported class.
 #define TESSERA_HIDDEN __attribute__((visibility("hidden")))

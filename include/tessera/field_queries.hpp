@@ -17,68 +17,68 @@
 #include "tessera/transfer_function.hpp"
 #include "tessera/view.hpp"
 
-/// What an editor of transfer functions asks of a field: how its values share the volume, and what one ray meets.
+/// Queries for an editor of transfer functions: the distribution of a field's values, and the values along one ray.
 namespace tessera {
 inline namespace v0_1 {
 
-/// Histograms and quantiles are of some ten thousand places spread evenly over the volume, those by which the default
-/// transfer function is chosen: quick, the same for any number of threads and ranks, and to be called on any rank
-/// alone. A share of the volume of 1 % comes out right to about a tenth of itself. Blank samples and what a selection
-/// leaves out do not count.
+/// Histograms and quantiles are taken from some ten thousand places spread evenly over the volume, the same ones by
+/// which the default transfer function is chosen. This is fast, gives the same result for any number of threads and
+/// ranks, and may be called on any rank alone. A share of 1 % of the volume is correct to about a tenth of itself.
+/// Blank samples and parts left out by a selection do not count.
 struct HistogramOptions {
   std::size_t bins = 256;                        ///< 1 to 65536, of equal width
-  std::optional<std::array<double, 2>> range{};  ///< low < high; default: the field's; of one value a unit round it
-  /// Bins of equal width in the value's logarithm. A range that begins at 0 or below begins at the smallest positive
-  /// value found.
+  std::optional<std::array<double, 2>> range{};  ///< low < high; default: the field's, or of width 1 if it is constant
+  /// Bins of equal width in the logarithm of the value. A range that begins at or below 0 begins at the smallest
+  /// positive value found.
   bool logarithmic = false;
-  /// Only what lies in the picture of this view, whatever hides it.
+  /// Only places inside the view, even if they are hidden.
   std::optional<View> seen{};
 };
 
 struct Histogram {
   std::array<double, 2> range{};  ///< from the first bin to the last
   bool logarithmic = false;
-  /// By bin, the share of the volume with values in it. They sum to 1; all 0 if the range holds nothing.
+  /// The share of the volume with values in each bin. They sum to 1; all are 0 if the range is empty.
   std::vector<double> shares{};
-  double outside = 0;  ///< the share of all the volume looked at whose values are not in the range
+  double outside = 0;  ///< the share of the sampled volume whose values are outside the range
 };
 
-/// Throws Error(bad_input) for a range that is none, for logarithms of a field without positive values, or an invalid
-/// view.
+/// Throws Error(bad_input) for an invalid range, for logarithms of a field without positive values, or an invalid view.
 TESSERA_EXPORT Histogram histogram(const Dataset& dataset, const HistogramOptions& options = {});
 
-/// For each fraction (0 to 1, in any order) the value that so much of the volume lies below. Of nothing, as of a view
-/// that shows no data, NaN. Throws Error(bad_input) for a fraction out of range or an invalid view.
+/// For each fraction (0 to 1, in any order) the value below which that fraction of the volume is. NaN if there are no
+/// values, as in a view that shows no data. Throws Error(bad_input) for a fraction out of range or an invalid view.
 TESSERA_EXPORT std::vector<double> quantiles(const Dataset& dataset, std::span<const double> fractions,
                                              const std::optional<View>& seen = {});
 
-/// A place on a ray.
+/// A point on a ray.
 struct RayPoint {
-  double depth = std::numeric_limits<double>::infinity();   ///< planar, from the eye along the view's direction, world
+  double depth = std::numeric_limits<double>::infinity();   ///< planar, from the eye along the view direction, world
   glm::dvec3 position{0};                                   ///< world
   double value = std::numeric_limits<double>::quiet_NaN();  ///< of the field; NaN between cells
 };
 
-/// What the ray through the middle of a pixel meets, front to back.
+/// The values along the ray through the centre of a pixel, front to back.
 struct RayProbe {
-  /// The pixel as the reference renders it, which pictures keep to (Session::promised_error()).
+  /// The pixel as the reference renders it; images agree with it within Session::promised_error().
   ReferencePixel pixel{};
-  /// Where something is first visible: its depth is the picture's Z. None where nothing is.
+  /// Where something first becomes visible: its depth is the image's Z. None if nothing is visible.
   std::optional<RayPoint> first{};
-  /// Where the opacity reaches a hundredth and half of the pixel's own. Where a surface takes it beyond, on that.
+  /// Where the opacity reaches a hundredth and half of the pixel's own. If a surface exceeds it, the point is on the
+  /// surface.
   std::optional<RayPoint> front{}, half{};
-  /// At even depths from where the ray enters the data to where it leaves them for the last time, both ends included;
-  /// empty if it does not meet them.
+  /// At equal spacing from where the ray first enters the data to where it last leaves them, both ends included; empty
+  /// if the ray misses the data.
   std::vector<double> depth{};
-  std::vector<double> value{};    ///< of the field at those depths; NaN where there is no cell, or a blank one
-  std::vector<double> opacity{};  ///< of all from the eye up to those depths
+  std::vector<double> value{};    ///< of the field at those depths; NaN outside cells and in blank ones
+  std::vector<double> opacity{};  ///< accumulated from the eye to those depths
 };
 
-/// The ray of a pixel; (0, 0) is the top left. Of the settings those count that change what is seen: emission, surfaces
-/// and shading. `samples` along the ray: 2 to 65536. A mesh of 12 million tets takes about a tenth of a second.
+/// The ray of a pixel; (0, 0) is the top left. Only the settings that change the image count: emission, surfaces and
+/// shading. `samples` along the ray: 2 to 65536. A mesh of 12 million tets takes about a tenth of a second.
 ///
-/// Of a mesh in parts, one a rank, collective: all ranks call it, with the data set's communicator, and get the same.
-/// Throws as Reference, and Error(bad_input) for a pixel outside of the picture.
+/// Collective for a mesh in parts, one per rank: all ranks call it with the data set's communicator and get the same
+/// result. Throws as Reference, and Error(bad_input) for a pixel outside the image.
 TESSERA_EXPORT RayProbe probe(const Dataset& dataset, const View& view, const TransferFunction& transfer_function,
                               PixelIndex pixel, std::size_t samples = 256, const Settings& settings = {},
                               const Communicator& communicator = {});

@@ -10,28 +10,28 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// What a file of a format holds.
+/// What files of a format contain.
 enum class FileHolds : std::uint8_t {
   mesh,
   surface,       ///< closed: it is filled with tets
   grid,          ///< regular or rectilinear: a volume
-  grid_or_mesh,  ///< a grid, which Dataset::open gives as a mesh if asked (ReadOptions::grid_as_mesh); of some formats
-                 ///< (NetCDF, XDMF) either by what is in the file
-  series,        ///< a list of files, one a time step (tessera/time_series.hpp)
-  not_read       ///< known, so that it can be refused by its name
+  grid_or_mesh,  ///< a grid, which Dataset::open can open as a mesh (ReadOptions::grid_as_mesh); in some formats
+                 ///< (NetCDF, XDMF) either, depending on the contents
+  series,        ///< a list of files, one per time step (tessera/time_series.hpp)
+  not_read       ///< known, so that messages can name the format
 };
 
-/// One format of files, as the reader itself knows it.
+/// One file format, from the table that the readers use.
 struct FileFormat {
   std::string name;                     ///< "VTK XML unstructured grid", "NRRD", ...
   std::vector<std::string> extensions;  ///< in lower case, with the dot; may be empty
   FileHolds holds = FileHolds::mesh;
-  std::string remark;              ///< what applies, and limits; of what is not read, why
-  bool told_by_beginning = false;  ///< a wrong name does no harm
+  std::string remark;              ///< conditions and limits; for formats that are not read, the reason
+  bool told_by_beginning = false;  ///< recognised by content: a wrong name does not matter
   std::string left_out;  ///< the reader program that is not installed ("tessera-read-vtk"); empty if it is read
 };
 
-/// All formats, those that are not read last.
+/// All formats; those that are not read come last.
 TESSERA_EXPORT std::vector<FileFormat> file_formats();
 
 }  // namespace v0_1

@@ -13,37 +13,38 @@ namespace tessera {
 inline namespace v0_1 {
 
 struct FilmFileOptions {
-  ImageFileOptions image;         ///< background and encode_srgb count: films have 8 bits and no alpha
+  ImageFileOptions image;         ///< background and encode_srgb apply: films have 8 bits and no alpha
   double frames_per_second = 25;  ///< least_film_rate to most_film_rate
 };
 
-/// What ffmpeg and players of films take.
+/// Frame rates that ffmpeg and video players accept.
 inline constexpr double least_film_rate = 0.01, most_film_rate = 1000;
 
-/// Whether a film is written by this name: .mp4 .mov .mkv .webm or .gif, upper or lower case.
+/// Whether a file of this name is written as a film: .mp4 .mov .mkv .webm or .gif, upper or lower case.
 TESSERA_EXPORT bool is_film_name(const std::filesystem::path& file);
 
-/// Before any rendering: throws Error(bad_input) unless the name is a film's, the program `ffmpeg` is on PATH and the
-/// file could be created now.
+/// For use before rendering: throws Error(bad_input) unless the name is that of a film, the program `ffmpeg` is on PATH
+/// and the file can be created.
 TESSERA_EXPORT void check_film_file(const std::filesystem::path& file);
 
-/// A film that the program `ffmpeg` writes from pictures, one after the other: H.264 (.mp4 .mov .mkv), VP9 (.webm), or
-/// a .gif of 256 colours. Without a background the pictures stand on black. Sides are made even, as these encoders need
-/// them, by a line more of that ground. It appears whole, by commit(), or not at all, even where the process is killed.
+/// A film that the program `ffmpeg` encodes from a sequence of images: H.264 (.mp4 .mov .mkv), VP9 (.webm), or a .gif
+/// of 256 colours. Without a background the images are on black. Sides are made even, as these encoders require, by one
+/// more line of the background. The file appears whole, by commit(), or not at all, even if the process is killed.
 class TESSERA_EXPORT FilmFile {
  public:
-  /// Starts ffmpeg. `size` is every picture's. Throws as check_film_file(), Error(system_failure) if it does not start.
+  /// Starts ffmpeg. `size` is that of every image. Throws as check_film_file(), Error(system_failure) if it does not
+  /// start.
   FilmFile(std::filesystem::path file, ImageSize size, const FilmFileOptions& options);
   ~FilmFile();
   FilmFile(const FilmFile&) = delete;
   FilmFile& operator=(const FilmFile&) = delete;
 
-  /// Throws Error(bad_input) for a picture of another size, Error(system_failure) with ffmpeg's own last line if it has
-  /// ended, and as write_image() for what is no number.
+  /// Throws Error(bad_input) for an image of another size, Error(system_failure) with ffmpeg's last line of output if
+  /// it has ended, and as write_image() for values that are not finite.
   void add(const Image& image);
   /// Throws Error(system_failure) as add().
   void commit();
-  /// In place of commit(): the film itself. No file appears. Throws Error(system_failure) as add().
+  /// Instead of commit(): returns the contents of the film; no file appears. Throws Error(system_failure) as add().
   std::string take();
 
  private:

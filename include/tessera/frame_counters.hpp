@@ -10,7 +10,7 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// What a frame of a mesh took, counted. frame_counters is the table of them, whose meanings docs/REFERENCE.md repeats.
+/// Counters of one frame of a mesh. frame_counters is their table; docs/REFERENCE.md repeats the meanings.
 struct FrameCounters {
   std::uint64_t tets_total = 0;
   std::uint64_t tets_invisible = 0;
@@ -32,7 +32,7 @@ struct FrameCounters {
   FrameCounters& operator+=(const FrameCounters& other);
 };
 
-/// What a frame of a grid took, counted. grid_counters is the table of them.
+/// Counters of one frame of a grid. grid_counters is their table.
 struct GridCounters {
   std::uint64_t rays = 0;
   std::uint64_t voxels_visited = 0;
@@ -61,7 +61,7 @@ struct GridCounters {
 using FrameCounter = Counter<FrameCounters>;
 using GridCounter = Counter<GridCounters>;
 
-/// All of them, in the order of reports. tets_total is the sum of the four that follow.
+/// All of them, in the order of reports. tets_total is the sum of the four counters that follow it.
 inline constexpr std::array<FrameCounter, 16> frame_counters{{
     {"tets_total", &FrameCounters::tets_total, FrameCounter::Together::sum, false, "tetrahedra of the mesh"},
     {"tets_invisible", &FrameCounters::tets_invisible, FrameCounter::Together::sum, false,
@@ -92,7 +92,8 @@ inline constexpr std::array<FrameCounter, 16> frame_counters{{
      "of the messages they went in, those to the same process included"},
     {"exchange_messages", &FrameCounters::exchange_messages, FrameCounter::Together::sum, true, "how many"},
 }};
-/// All of a grid's, in the order of reports. What is the same on all processes is put together as the largest.
+/// All counters of grids, in the order of reports. Values that are the same on all processes are combined as the
+/// largest.
 inline constexpr std::array<GridCounter, 20> grid_counters{{
     {"rays", &GridCounters::rays, GridCounter::Together::sum, false, "rays that meet the volume"},
     {"voxels_visited", &GridCounters::voxels_visited, GridCounter::Together::sum, false,

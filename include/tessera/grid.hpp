@@ -17,17 +17,17 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// How a sample is stored. Other types (64-bit integers, bits) become float64 or uint8 in the reader.
+/// How a sample is stored. Readers convert other types (64-bit integers, bits) to float64 or uint8.
 enum class SampleType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
 /// Bytes of one sample: 1, 2, 4 or 8.
 TESSERA_EXPORT std::size_t size_of(SampleType type);
 /// "uint8", "float32", ...
 TESSERA_EXPORT const char* name_of(SampleType type);
-/// The type of that name (float and double too); none if there is none.
+/// The type of that name (also float and double); none for an unknown name.
 TESSERA_EXPORT std::optional<SampleType> sample_type_named(const std::string& name);
 TESSERA_EXPORT bool is_float(SampleType type);
-/// Whether single precision holds every number of the type.
+/// Whether single precision represents every number of the type.
 TESSERA_EXPORT bool fits_float(SampleType type);
 
 /// Numbers along the axes i, j, k; i is the fastest in memory and in files.
@@ -44,25 +44,25 @@ struct SampleBox {
   bool operator==(const SampleBox&) const = default;
 };
 
-/// Where the lattice of a regular or rectilinear grid lies.
+/// The position of the lattice of a regular or rectilinear grid.
 ///
 /// Frames  index: lattice numbers, (0, 0, 0) at the first lattice point, continuous between them.
 ///         local: lengths along the grid's own axes. Regular: index * spacing. Rectilinear: coordinates[axis][index].
 ///         world: origin + direction * local.
 /// Data    point: a sample at every lattice point, trilinear between; the volume is the box between the first and the
 ///         last of them. Cell: a sample for each voxel between lattice points, one fewer along each axis, constant in
-///         the voxel. A voxel (i, j, k) lies between lattice points (i, j, k) and (i + 1, j + 1, k + 1), for both.
+///         the voxel. For both, voxel (i, j, k) is between lattice points (i, j, k) and (i + 1, j + 1, k + 1).
 /// Units   world units of the file; int64 everywhere, so 2048^3 samples and more are addressable.
-/// Holds   (validate) at least two lattice points along each axis; spacing > 0; coordinates, if there are any along an
-///         axis, as many as lattice points, finite and strictly increasing; direction's columns of length one,
-///         independent, of either handedness, not always orthogonal (NIfTI may shear); all finite.
+/// Holds   (validate) at least two lattice points along each axis; spacing > 0; coordinates, if an axis has any, as
+///         many as lattice points, finite and strictly increasing; direction's columns of unit length, independent, of
+///         either handedness, not always orthogonal (NIfTI may shear); all finite.
 struct GridGeometry {
   GridIndex points{0, 0, 0};  ///< lattice points along each axis
   Association association = Association::point;
   glm::dvec3 origin{0};       ///< world, of local (0, 0, 0)
   glm::dmat3 direction{1.0};  ///< column a: the grid's axis a in the world, of length one
-  glm::dvec3 spacing{1.0};    ///< world units between lattice points; of no meaning along rectilinear axes
-  std::array<std::vector<double>, 3> coordinates;  ///< rectilinear: local coordinate of each lattice point; else empty
+  glm::dvec3 spacing{1.0};    ///< world units between lattice points; unused along rectilinear axes
+  std::array<std::vector<double>, 3> coordinates;  ///< rectilinear: local coordinates of lattice points; else empty
 
   /// Samples along each axis.
   [[nodiscard]] GridIndex samples() const {
@@ -74,7 +74,7 @@ struct GridGeometry {
   [[nodiscard]] bool rectilinear(std::size_t axis) const { return !coordinates[axis].empty(); }
   [[nodiscard]] bool rectilinear() const { return rectilinear(0) || rectilinear(1) || rectilinear(2); }
 
-  /// Local coordinate of lattice point `index` along `axis`; the same double wherever it is asked for.
+  /// Local coordinate of lattice point `index` along `axis`; always the same double for one point.
   [[nodiscard]] double lattice(std::size_t axis, std::int64_t index) const {
     return coordinates[axis].empty() ? spacing[static_cast<int>(axis)] * static_cast<double>(index)
                                      : coordinates[axis][static_cast<std::size_t>(index)];
@@ -83,7 +83,7 @@ struct GridGeometry {
   bool operator==(const GridGeometry&) const = default;
 };
 
-/// World position of a continuous lattice index. Outside of the lattice the first and last spacing go on.
+/// World position of a continuous lattice index. Outside the lattice the first and last spacing continue.
 TESSERA_EXPORT glm::dvec3 world_of_index(const GridGeometry& geometry, const glm::dvec3& index);
 /// The inverse.
 TESSERA_EXPORT glm::dvec3 index_of_world(const GridGeometry& geometry, const glm::dvec3& p_world);
@@ -93,16 +93,18 @@ TESSERA_EXPORT glm::dmat3 world_to_local(const GridGeometry& geometry);
 /// World box round the volume's eight corners.
 TESSERA_EXPORT Box bounds(const GridGeometry& geometry);
 
-/// Volume over the largest face of bounds(): what scene::mean_thickness is for the same matter as a mesh. World units.
+/// Volume over the largest face of bounds(): comparable to scene::mean_thickness of the same matter as a mesh. World
+/// units.
 TESSERA_EXPORT double mean_thickness(const GridGeometry& geometry);
 
-/// A volume but for its samples: what every reader finds and every renderer asks for first.
+/// A volume without its samples: what every reader provides and every renderer needs first.
 ///
-/// Value   of the field = scale * sample + shift (NIfTI's slope and intercept); transfer functions, ranges and pictures
-///         mean the value. Both are finite, scale is not zero. Trilinear interpolation commutes with it.
-/// Blank   a sample that is NaN or infinite. A voxel with such a corner (cell data: whose sample is such) is not part
-///         of the volume: it neither absorbs nor emits. Readers give blanks of integer files (ghost arrays) as NaN of a
-///         float type.
+/// Value   of the field = scale * sample + shift (NIfTI's slope and intercept); transfer functions, ranges and images
+///         refer to the value. Both are finite, scale is not zero. Trilinear interpolation commutes with the
+///         conversion.
+/// Blank   a sample that is NaN or infinite. A voxel with a blank corner (cell data: with a blank sample) is not part
+///         of the volume: it neither absorbs nor emits. Readers convert integer files with blanks (ghost arrays) to a
+///         float type with NaN.
 struct Grid {
   GridGeometry geometry;
   SampleType type = SampleType::float32;  ///< as stored

@@ -14,36 +14,37 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// A mesh whose higher-order cells became tets, and what these change in a picture.
+/// A mesh whose higher-order cells were divided into tets, and the effect of that on an image.
 struct HigherOrderRead {
   Dataset dataset;
-  ReadOptions options;  ///< that it was read with
-  /// About how far a pixel's color or opacity is off because of the tets: see read_for_accuracy(). 0 without
+  ReadOptions options;  ///< with which it was read
+  /// The approximate error of a pixel's colour or opacity that is due to the tets: see read_for_accuracy(). 0 without
   /// higher-order cells, infinite if some are drawn by their corners.
   double pixel_error = 0;
 };
 
-/// The accuracy that `render` and `serve` use if none is given: half a step of an 8-bit picture.
+/// The accuracy that `render` and `serve` use by default: half a step of an 8-bit image.
 inline constexpr double default_higher_order_accuracy = 1.0 / 512;
 
-/// The tolerance that read_for_accuracy() begins with: a mesh read so is not read twice.
+/// The tolerance that read_for_accuracy() begins with: a mesh read with this tolerance is not read twice.
 inline double first_higher_order_tolerance(double accuracy) { return accuracy < 0.1 / 64 ? 64 * accuracy : 0.1; }
 
-/// Reads a mesh with a `higher_order_tolerance` for which its tets change pixels by about `accuracy` at most, and with
-/// no more tets than that takes. Without an accuracy the tolerance is that of `options`, and only the error is found.
+/// Reads a mesh with a `higher_order_tolerance` for which its tets change pixels by at most about `accuracy`, with no
+/// more tets than that requires. Without an accuracy the tolerance is that of `options`, and only the error is
+/// estimated.
 ///
-/// Method  The mesh is read with smaller and smaller tolerances, and pictures of the view, of tolerances four times
-///         apart or more, are compared: of its own pixels, or of 65,536 if it has more. How they differ in the mean
-///         gives how the error falls, in proportion to the tolerance, or to its square root where many rays touch the
-///         surface; so the largest difference gives the error. 1.75 times that is stated, since a pixel's error varies
-///         by chance from one tolerance to the next. Of two pictures alone it is taken to fall the slower way.
-/// Limits  It is an estimate, of the volume's light alone: not of surfaces and shading, nor of other views. Where
-///         `higher_order_tets` allows too few, it is that of the tets that there are.
+/// Method  The mesh is read with smaller and smaller tolerances. Images of the view (with its own pixels, or 65,536 if
+///         it has more) whose tolerances differ by a factor of four or more are compared. Their mean difference gives
+///         the rate at which the error falls: between the tolerance itself and, where many rays touch the surface, its
+///         square root. The largest difference then gives the error; 1.75 times that is reported, since a pixel's error
+///         varies by chance from one tolerance to the next. With only two images the slower rate is assumed.
+/// Limits  The result is an estimate for the light of the volume alone, not for surfaces, shading or other views. If
+///         `higher_order_tets` allows too few tets, it is the error of the tets that were made.
 ///
-/// `open` reads the mesh with other options; `function` gives the transfer function, and `view` the view, of what was
-/// read; without one it is the default view of 128 x 128 pixels. Collective on the ranks of `communicator`, which must
-/// be those of `open`; `settings` gives emission, threads, memory and ranks. Throws what these functions throw, and as
-/// Session.
+/// `open` reads the mesh with other options; `function` and `view` return the transfer function and the view for the
+/// data that were read; without `view` it is the default view of 128 x 128 pixels. Collective on the ranks of
+/// `communicator`, which must be those of `open`; `settings` supplies emission, threads, memory and ranks. Throws
+/// whatever these functions throw, and as Session.
 TESSERA_EXPORT HigherOrderRead read_for_accuracy(const ReadOptions& options, std::optional<double> accuracy,
                                                  const std::function<Dataset(const ReadOptions&)>& open,
                                                  const std::function<TransferFunction(const Dataset&)>& function,

@@ -10,10 +10,10 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// A finished picture. Row-major, row 0 at the top.
-/// `rgba`: 4 floats a pixel, linear RGB premultiplied by A; A = 1 - transmittance.
+/// A finished image. Row-major, row 0 at the top.
+/// `rgba`: 4 floats per pixel, linear RGB premultiplied by A; A = 1 - transmittance.
 /// `depth`: planar depth of the first visible sample (A > 0) along the view direction, world units; +inf where nothing
-/// is.
+/// is visible.
 struct Image {
   ImageSize size{0, 0};
   std::vector<float> rgba;
@@ -26,7 +26,7 @@ struct Image {
         depth(static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height),
               std::numeric_limits<float>::infinity()) {}
 
-  /// Index of a pixel in `depth`; times four in `rgba`.
+  /// Index of a pixel in `depth`; multiply by four for `rgba`.
   [[nodiscard]] std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width) + static_cast<std::size_t>(x);
   }

@@ -16,36 +16,37 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// What is done about a rank that is silent: its process is stopped, or its machine hangs.
+/// What happens if a rank is silent because its process is stopped or its machine hangs.
 struct StallSettings {
-  std::chrono::milliseconds timeout = std::chrono::seconds(120);  ///< of silence, more than 0
-  bool ends_run = false;  ///< by an error that names the rank; else it is waited for
-  /// Tells the user of a rank that is waited for, and of its return; from a thread of the job's own. May be empty.
+  std::chrono::milliseconds timeout = std::chrono::seconds(120);  ///< of silence, > 0
+  bool ends_run = false;  ///< with an error that names the rank; otherwise the job waits
+  /// Called to report a rank that the job waits for, and its return, on a thread of the job. May be empty.
   std::function<void(const std::string& words)> say;
 };
 
-/// What a job says of itself, and where its errors go.
+/// How a job identifies itself and reports errors.
 struct JobVoice {
-  std::string program;  ///< lines begin with it
-  std::string remedy;   ///< of a run that was ended from outside: what to do
-  /// Tells the user of the run's error, from any thread, on one rank before any rank can end.
+  std::string program;  ///< prefix of its lines
+  std::string remedy;   ///< advice for a run that was terminated from outside
+  /// Called to report the run's error, on any thread, on one rank before any rank can end.
   std::function<void(const Error&)> speak;
-  /// All ranks must have been started with the same: compared as they first meet, in answer_termination() or
-  /// agree_instruction_sets(), which throw Error(bad_input) on all ranks if they differ.
+  /// The arguments of this rank. All ranks must have been started with the same: they are compared when the ranks first
+  /// communicate, in answer_termination() or agree_instruction_sets(), which throw Error(bad_input) on all ranks if
+  /// they differ.
   std::vector<std::string> arguments{};
 };
 
 /// The ranks that a launcher (mpirun, srun) started this program as, or this process alone, without MPI. For programs
-/// that leave MPI to Tessera: it starts and ends MPI, once a process. Who has a communicator of its own takes
+/// that leave MPI to Tessera: it starts and ends MPI, once per process. Callers that have their own communicator use
 /// tessera/mpi.hpp instead.
 ///
-/// One thread of the job's own speaks MPI. The first error of a rank is the run's: every rank throws it, and one tells
-/// the user. A rank that cannot end in an orderly way within five seconds after that speaks and ends its process. What
-/// a job does to its process: under a launcher SIGPIPE is ignored from the beginning.
+/// All MPI calls are made on one thread of the job. The first error of any rank is the run's error: every rank throws
+/// it, and one rank reports it. A rank that cannot end in an orderly way within the next five seconds reports it too
+/// and ends its process. Effect on the process: under a launcher SIGPIPE is ignored from the constructor on.
 class TESSERA_EXPORT Job {
  public:
-  /// Starts MPI under a launcher. Throws Error(system_failure) if MPI cannot start; a rank that MPI ends as it starts
-  /// is reported by MPI and the launcher alone.
+  /// Starts MPI under a launcher. Throws Error(system_failure) if MPI cannot start. If MPI itself terminates a rank
+  /// during startup, only MPI and the launcher report it.
   explicit Job(JobVoice voice);
   ~Job();
   Job(const Job&) = delete;
@@ -53,42 +54,43 @@ class TESSERA_EXPORT Job {
 
   [[nodiscard]] int rank() const;
   [[nodiscard]] int size() const;
-  /// Of all ranks, for data sets and sessions. They share the job's connection, so they are made and used one after the
-  /// other, in the same order on every rank.
+  /// A communicator of all ranks, for data sets and sessions. They share the job's connection, so they must be created
+  /// and used one after the other, in the same order on every rank.
   [[nodiscard]] Communicator communicator();
 
-  /// From now on SIGTERM is answered: ranks that are ended from outside say so, in one line of all ranks, and end with
-  /// the status ErrorCode::system_failure. The launcher ends all ranks at once, as it does when one has died: then the
-  /// first that is ended on rank 0's machine speaks. A rank that anybody else ends ends the run for all, by an error. A
-  /// launcher that dies takes its ranks with it. Collective; does nothing for one process (Linux).
+  /// Handles SIGTERM from now on: ranks that are terminated from outside report it, in one line for all ranks, and exit
+  /// with ErrorCode::system_failure. A launcher terminates all ranks at once, for example after one has died: then the
+  /// first one terminated on rank 0's machine reports it. A rank terminated by anything else ends the run for all, with
+  /// an error. If the launcher dies, its ranks end too. Collective; does nothing for one process (Linux).
   void answer_termination();
-  /// Looks for ranks that have stopped, from now on until MPI ends. Every rank calls this, with the same settings but
-  /// for `say`.
+  /// Watches for ranks that have stopped, from now on until MPI ends. Every rank calls this, with the same settings
+  /// except for `say`.
   void watch_stalls(const StallSettings& settings);
-  /// Restricts every rank's kernels to the instruction sets that all ranks have, as bits differ between sets and a
-  /// picture must not depend on which machine made a tile. Collective, before the first kernel runs; of the process.
-  /// Throws Error(system_failure), as does answer_termination(), on a rank whose address space is limited and which has
-  /// heard nothing of the others for 20 seconds: MPI starts ranks that lack the memory to send.
+  /// Restricts every rank's kernels to the instruction sets that all ranks have: bits differ between sets, and an image
+  /// must not depend on which machine rendered a tile. Collective; it must precede the first kernel and applies to the
+  /// whole process. It throws Error(system_failure), as does answer_termination(), on a rank whose address space is
+  /// limited and which has received nothing from the others for 20 seconds: MPI starts ranks that lack the memory to
+  /// send.
   void agree_instruction_sets();
-  /// `bytes` of rank `root`, on every rank. Collective. Throws the run's error.
+  /// Broadcasts the `bytes` of rank `root` to every rank. Collective. Throws the run's error.
   std::vector<std::byte> broadcast(int root, std::vector<std::byte> bytes);
 
-  /// Throws Error(bad_input) if ranks have read different files under one name so far; a data set's own are compared as
-  /// it is opened. Collective.
+  /// Throws Error(bad_input) if ranks have so far read different files under one name; the files of a data set are
+  /// compared when it is opened. Collective.
   void require_same_files();
 
-  /// Runs `work` on all ranks with a communicator that holds for as long as it runs, such as for opening a data set. An
-  /// error of one rank is thrown on all of them and, unlike any other, leaves the job usable. Collective.
+  /// Runs `work` on all ranks with a communicator that is valid while it runs, for example to open a data set. An error
+  /// of one rank is thrown on all of them and, unlike any other error, leaves the job usable. Collective.
   void attempt(const std::function<void(const Communicator&)>& work);
 
-  /// Ends the run for all ranks with this error, unless another came first.
+  /// Ends the run for all ranks with this error, unless there was an earlier one.
   void fail(const Error& error);
-  /// The end of every rank's part, after an error too: waits until all ranks are here and shuts MPI down. Returns the
-  /// run's error, the same on all ranks, if there is one; one rank has spoken.
+  /// Ends every rank's part, also after an error: waits for all ranks and shuts MPI down. Returns the run's error, if
+  /// any; it is the same on all ranks, and one rank has reported it.
   std::optional<Error> finish();
 
-  /// Writes a line to stderr, unless one was written before: by any rank on this machine from answer_termination() on,
-  /// before that by this process. From any thread.
+  /// Writes a line to stderr unless one was already written: by any rank on this machine since answer_termination(),
+  /// before that by this process. May be called from any thread.
   static void say_once(const std::string& line);
 
  private:

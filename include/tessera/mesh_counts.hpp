@@ -10,43 +10,44 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// What became of a mesh's cells and points. A cell is counted as read, then in at most one of ghost, hidden, nan,
-/// not_volumetric; what remains is split into tets. mesh_counters is the table of them.
+/// Counts of a mesh's cells and points by how they were handled. A cell is counted as read, then in at most one of
+/// ghost, hidden, nan, not_volumetric; the remaining cells are split into tets. mesh_counters is the table of these
+/// counters.
 struct MeshCounts {
   std::uint64_t cells_read = 0;
   std::uint64_t cells_ghost = 0;            ///< dropped: another piece's (vtkGhostType bit 1, vtkGhostLevels > 0)
-  std::uint64_t cells_hidden = 0;           ///< dropped: vtkGhostType bit 32, or a point of it hidden (2), IBLANK 0
-  std::uint64_t cells_nan = 0;              ///< blanked: a coordinate or scalar of it is missing, NaN or infinite
+  std::uint64_t cells_hidden = 0;           ///< dropped: vtkGhostType bit 32, or a hidden point (2), IBLANK 0
+  std::uint64_t cells_nan = 0;              ///< blanked: a coordinate or scalar is missing, NaN or infinite
   std::uint64_t cells_not_volumetric = 0;   ///< skipped: points, lines, faces
-  std::uint64_t cells_zero_volume = 0;      ///< kept: all their tets have exactly no volume
-  std::uint64_t cells_open = 0;             ///< dropped: polyhedra whose faces are no closed surface
+  std::uint64_t cells_zero_volume = 0;      ///< kept: all their tets have exactly zero volume
+  std::uint64_t cells_open = 0;             ///< dropped: polyhedra whose faces do not form a closed surface
   std::uint64_t cells_tangled = 0;          ///< kept: their tets differ in orientation, so they overlap
   std::uint64_t cells_quadratic = 0;        ///< kept: second or higher order (HigherOrderCells)
   std::uint64_t cells_polyhedra = 0;        ///< kept: polyhedra and convex point sets
-  std::uint64_t polyhedra_from_inside = 0;  ///< of those: split from a point that was added inside
-  std::uint64_t polyhedra_in_pieces = 0;    ///< of those: cut into tets one by one, as no point sees all of the inside
-  std::uint64_t polyhedra_tangled = 0;      ///< of those: among cells_tangled
-  /// Kept: an earlier cell has the same corners, and is drawn there too.
+  std::uint64_t polyhedra_from_inside = 0;  ///< of these: split from a point that was added inside
+  std::uint64_t polyhedra_in_pieces = 0;    ///< of these: cut into tets one by one, as no point sees the whole inside
+  std::uint64_t polyhedra_tangled = 0;      ///< of these: also counted in cells_tangled
+  /// Kept: an earlier cell has the same corners, and both are drawn.
   std::uint64_t cells_duplicate = 0;
-  std::uint64_t duplicates_dropped = 0;  ///< such cells that were dropped (ReadOptions::drop_duplicates)
-  /// Kept cells of these kinds, prisms those of five or six sides, and how many of them are among cells_tangled.
+  std::uint64_t duplicates_dropped = 0;  ///< duplicate cells that were dropped (ReadOptions::drop_duplicates)
+  /// Kept cells of these kinds (prisms with five or six sides), and how many of them are among cells_tangled.
   std::uint64_t hexahedra = 0, hexahedra_tangled = 0, wedges = 0, wedges_tangled = 0, pyramids = 0,
                 pyramids_tangled = 0, voxels = 0, voxels_tangled = 0, prisms = 0, prisms_tangled = 0;
   std::uint64_t points_read = 0;
-  std::uint64_t points_unused = 0;   ///< of no tet
+  std::uint64_t points_unused = 0;   ///< used by no tet
   std::uint64_t tets_made = 0;       ///< in the mesh
-  std::uint64_t tets_collapsed = 0;  ///< not made: two of their corners are one point in space
-  // Of ReadOptions::selection, and only of cells that are kept otherwise:
+  std::uint64_t tets_collapsed = 0;  ///< not made: two of their corners have the same position
+  // By ReadOptions::selection, counting only cells that are otherwise kept:
   std::uint64_t cells_out_of_range = 0;  ///< dropped: their values are not all within the threshold
-  std::uint64_t cells_clipped = 0;       ///< dropped: clipped away altogether
+  std::uint64_t cells_clipped = 0;       ///< dropped: completely clipped away
   std::uint64_t cells_cut = 0;           ///< kept in part
 
-  MeshCounts& operator+=(const MeshCounts& other);  ///< of another part
+  MeshCounts& operator+=(const MeshCounts& other);  ///< adds those of another part
   bool operator==(const MeshCounts&) const = default;
 };
 
-/// What is before a slash in a name is a group, which reports leave out where all of it is 0 (Counter::if_any); reports
-/// have no counter without a name. `meaning` follows the number in the program's line on cells.
+/// A name's prefix before a slash is a group, which reports omit if all its counters are 0 (Counter::if_any). Reports
+/// omit counters without a name. `meaning` follows the number in the program's line about cells.
 struct MeshCounter : Counter<MeshCounts> {
   enum class Fate {
     other,  ///< not in that line
@@ -128,16 +129,16 @@ inline MeshCounts& MeshCounts::operator+=(const MeshCounts& other) {
   return *this;
 }
 
-/// What became of a mesh's cells of second and higher order.
+/// Counts and errors of a mesh's cells of second and higher order.
 struct HigherOrderCells {
-  std::uint64_t divided = 0;     ///< into tets that are as near to them as the bounds below say
-  std::uint64_t by_corners = 0;  ///< drawn as linear cells by their corners, of kinds that are not divided: no bound
-  std::uint64_t tets = 0;        ///< made of those divided
-  double tolerance = 0;          ///< what was asked for or, where that took too many tets, what was aimed at instead
-  double position_error = 0;     ///< the most that a point of a tet is away from where the cell has it, world units
-  double field_error = 0;        ///< the most that the field is off at one place, in its unit; to first order
+  std::uint64_t divided = 0;     ///< divided into tets within the errors below
+  std::uint64_t by_corners = 0;  ///< drawn as linear cells by their corners, as their kind is not divided: no bound
+  std::uint64_t tets = 0;        ///< made from the divided cells
+  double tolerance = 0;          ///< as requested or, if that took too many tets, the larger value used instead
+  double position_error = 0;     ///< largest distance of a point of a tet from its place in the cell, world units
+  double field_error = 0;        ///< largest error of the field at one place, in its unit; to first order
 
-  HigherOrderCells& operator+=(const HigherOrderCells& other);  ///< of another part
+  HigherOrderCells& operator+=(const HigherOrderCells& other);  ///< adds those of another part
   bool operator==(const HigherOrderCells&) const = default;
 };
 using HigherOrderCounter = Counter<HigherOrderCells>;

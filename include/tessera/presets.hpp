@@ -13,15 +13,15 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// The transfer function of a name, COLOURS or COLOURS:OPACITY (preset_names()), over the values from 0 to 1, per unit
-/// distance 1. Throws Error(bad_input) for an unknown name, with those known.
+/// The transfer function of this name, COLOURS or COLOURS:OPACITY (preset_names()), over the values from 0 to 1, per
+/// unit distance 1. Throws Error(bad_input) for an unknown name, listing the known ones.
 TESSERA_EXPORT TransferFunction preset_function(std::string_view name);
 
-/// The colours of a name (preset_names()) at `count` even places from the low end to the high one: display (sRGB)
-/// values, 0 to 1. Throws as preset_function(), and Error(bad_input) for fewer than two.
+/// The colours of a name (preset_names()) at `count` evenly spaced places from the low end to the high end: display
+/// (sRGB) values, 0 to 1. Throws as preset_function(), and Error(bad_input) for fewer than two.
 TESSERA_EXPORT std::vector<glm::dvec3> preset_colors(std::string_view name, std::size_t count);
 
-/// What OPACITY may be, the default first.
+/// The values that OPACITY may have, the default first.
 TESSERA_EXPORT std::vector<std::string> preset_opacity_names();
 
 }  // namespace v0_1

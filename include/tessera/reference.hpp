@@ -17,11 +17,11 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// What a ray sees.
+/// The result for one ray.
 struct ReferencePixel {
   double r = 0, g = 0, b = 0, a = 0;  ///< linear RGB premultiplied by a; a = 1 - transmittance
   double z = 0;                       ///< planar depth where a begins to grow; infinite if a is 0
-  double length = 0;                  ///< world length of the ray inside the mesh (overlapping cells count each)
+  double length = 0;                  ///< world length of the ray inside the mesh (overlapping cells each count)
   std::size_t segments = 0;
 };
 
@@ -31,12 +31,13 @@ struct PixelIndex {
   bool operator==(const PixelIndex&) const = default;
 };
 
-/// The truth that pictures are judged against, as Session::verify() does: what rays of one view see, in double
-/// precision and by code that shares nothing with the renderers. Slow: a ray meets every tet or voxel on its way.
+/// The reference solution that images are compared with, as in Session::verify(): the result of individual rays of one
+/// view, in double precision and by code that shares nothing with the renderers. Slow: a ray is tested against every
+/// tet or voxel on its path.
 class TESSERA_EXPORT Reference {
  public:
-  /// Of the settings the emission, surfaces and a grid's shading count. Throws Error(bad_input) for an invalid view, an
-  /// empty transfer function, or a mesh of which this rank has a part.
+  /// Only the emission, the surfaces and a grid's shading of the settings count. Throws Error(bad_input) for an invalid
+  /// view, an empty transfer function, or a mesh of which this rank has only a part.
   Reference(Dataset dataset, const View& view, const TransferFunction& transfer_function,
             const Settings& settings = {});
   ~Reference();
@@ -51,8 +52,8 @@ class TESSERA_EXPORT Reference {
   std::unique_ptr<const State> state_;
 };
 
-/// `count` different pixels, each set equally likely, row-major; all of them if there are no more. The same seed gives
-/// the same pixels everywhere.
+/// `count` different pixels, row-major, where every set is equally likely; all pixels if there are no more. The same
+/// seed gives the same pixels everywhere.
 TESSERA_EXPORT std::vector<PixelIndex> random_pixels(ImageSize size, std::size_t count, std::uint64_t seed);
 
 }  // namespace v0_1

@@ -25,18 +25,18 @@ struct ValueRange {
 };
 
 /// How read() lays out samples: i fastest; `row_pitch` samples from one row (j) to the next, `slice_pitch` from one
-/// slice (k) to the next. Zero: close together, box.extent(0) and row_pitch * box.extent(1).
+/// slice (k) to the next. Zero: contiguous, that is box.extent(0) and row_pitch * box.extent(1).
 struct SampleLayout {
   SampleType type = SampleType::float32;
   std::int64_t row_pitch = 0, slice_pitch = 0;
 };
 
-/// Where the samples of a volume come from: memory, a mapped file, a brick file. One number a sample; which component
-/// or magnitude of a vector it is was chosen where the source was made.
+/// The source of a volume's samples: memory, a mapped file, a brick file. One number per sample; the component or
+/// magnitude of a vector was chosen when the source was made.
 ///
 /// All functions are const and may be called from several threads at once. A source never holds more memory than it was
-/// made with: what read() gives is the caller's to keep. A caller's own derives from this: samples that are computed,
-/// or fetched where they are needed.
+/// made with: the caller owns what read() returns. Callers may derive their own sources from this class: samples that
+/// are computed, or fetched where they are needed.
 class TESSERA_EXPORT SampleSource {
  public:
   virtual ~SampleSource();
@@ -47,43 +47,43 @@ class TESSERA_EXPORT SampleSource {
   [[nodiscard]] const GridGeometry& geometry() const { return grid_.geometry; }
 
   /// Writes the samples of `box` (scale and shift not applied) to `destination`, as stored or converted to float32
-  /// (rounded to nearest; beyond its range infinite, hence blank) or float64 (exact). The box lies inside the volume;
-  /// elements between rows and slices are left as they are. Throws Error(bad_input) for another type, a box not inside
-  /// or a destination too small; Error(system_failure) if the file can no longer be read.
+  /// (rounded to nearest; infinite beyond its range, hence blank) or float64 (exact). The box is inside the volume;
+  /// elements between rows and slices are not changed. Throws Error(bad_input) for another type, a box not inside or a
+  /// destination too small; Error(system_failure) if the file can no longer be read.
   void read(const SampleBox& box, const SampleLayout& layout, std::span<std::byte> destination) const;
 
-  /// The same, close together, for T the stored type, float or double.
+  /// The same, contiguous, for T the stored type, float or double.
   template <class T>
   void read(const SampleBox& box, std::span<T> destination) const;
 
-  /// Bounds of the values in a box and the most blanks it may hold, if they are known without reading samples (a brick
-  /// file keeps them): never less than the truth, perhaps more. Of all samples of the volume: the truth.
+  /// Bounds of the values in a box and of the number of blanks, if they are known without reading samples (a brick file
+  /// stores them): never too narrow, perhaps too wide. For the box of all samples they are exact.
   [[nodiscard]] virtual std::optional<ValueRange> known_range(const SampleBox& /*box*/) const { return std::nullopt; }
 
-  /// Boxes of this size, aligned to multiples of it, are the cheapest to read: a brick file's bricks, whole slices of
-  /// a file in slice order.
+  /// Boxes of this size, aligned to multiples of it, are the cheapest to read: a brick file's bricks, or whole slices
+  /// of a file in slice order.
   [[nodiscard]] virtual GridIndex storage_block() const {
     const GridIndex n = geometry().samples();
     return {n[0], n[1], 1};
   }
 
-  /// Bytes of samples that have been read from the file so far; 0 for memory.
+  /// Bytes of samples read from the file so far; 0 for memory.
   [[nodiscard]] virtual std::uint64_t bytes_read() const { return 0; }
 
  protected:
-  /// Throws what validate() throws; `source` is the file's name for messages.
+  /// Throws what validate() throws; `source` is the file's name in messages.
   SampleSource(Grid grid, std::string source);
   [[nodiscard]] const std::string& source_name() const { return source_; }
 
  private:
-  /// What read() has checked; pitches are not zero any more.
+  /// Arguments that read() has checked; pitches are no longer zero.
   virtual void read_samples(const SampleBox& box, const SampleLayout& layout, std::byte* destination) const = 0;
 
   Grid grid_;
   std::string source_;
 };
 
-/// The type that a C++ number is stored as.
+/// The type in which a C++ number is stored.
 template <class T>
 constexpr SampleType sample_type_of();
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// All of the public API but tessera/mpi.hpp, which needs MPI.
+// The whole public API except tessera/mpi.hpp, which needs MPI.
 #include "tessera/annotation.hpp"
 #include "tessera/array.hpp"
 #include "tessera/camera.hpp"

@@ -16,74 +16,75 @@ class TraceTile;
 namespace tessera {
 inline namespace v0_1 {
 
-/// For whom a process worked. A rank may project and composite at once, and a projector composites its own runs, so
-/// that the stage alone does not say it.
+/// The role for which a process worked. A rank may project and composite at once, and a projector composites its own
+/// runs, so the stage alone does not determine it.
 enum class TraceRole : std::uint8_t {
   both,       ///< one process that does everything
-  projector,  ///< from the mesh to fragments that have left
-  compositor  ///< from fragments that arrive to the finished picture
+  projector,  ///< from the mesh to fragments that were sent
+  compositor  ///< from received fragments to the finished image
 };
 
-/// One timed stretch of work. Times in microseconds; `start_us` counts from the recording's beginning.
+/// One timed interval of work. Times in microseconds; `start_us` counts from the beginning of the recording.
 ///
-/// Stages, one word for a thing in every process:
-///   read, partition                       once a mesh: from files, between processes
-///   prepare, transform, cull, bin         once a mesh or frame, before projection
+/// Stages, the same names in every process:
+///   read, partition                       once per mesh: from files, between processes
+///   prepare, transform, cull, bin         once per mesh or frame, before projection
 ///   project, sort, integrate, composite   the pipeline, tile by tile
-///   pack, send, receive                   exchange that moves: records written, bytes handed over and taken
-///   wait                                  exchange that waits: for credit, for fragments, for a frame to leave
-///   assemble, write, verify               the finished picture
-///   frame                                 one frame of one role of one process, from its first work to its last; the
-///                                         stages above lie inside it, but for what is done once a mesh
+///   pack, send, receive                   exchange, active: writing records, passing bytes on and taking them
+///   wait                                  exchange, waiting: for credit, for fragments, for a frame to leave
+///   assemble, write, verify               the finished image
+///   frame                                 one frame of one role of one process, from the beginning to the end of its
+///                                         work; it contains the stages above except those done once per mesh
 ///
-/// Spans of one thread nest (`integrate` inside `composite`): a span's own time is what no span inside it takes. Spans
-/// of `frame` stand beside the threads, and those of several frames in flight may overlap. The time that a thread
-/// sleeps for others belongs into `wait`, and nothing else does: not into `receive`, `send` or the work it waits for.
-/// Where several threads share a loop, each records its part, inside the span of the thread that began the loop.
+/// Spans of one thread nest (`integrate` inside `composite`): a span's own time excludes the spans inside it. Spans of
+/// `frame` do not belong to a thread, and those of several frames in flight may overlap. All time that a thread sleeps
+/// waiting for others belongs to `wait`, and nothing else does; it is not part of `receive`, `send` or the work it
+/// waits for. If several threads share a loop, each records its part, inside the span of the thread that started the
+/// loop.
 struct TraceSpan {
   const char* stage;     ///< string literal
-  std::uint32_t thread;  ///< number of the thread, dense in a process
+  std::uint32_t thread;  ///< number of the thread, consecutive in a process
   double start_us, wall_us;
-  double cpu_us;               ///< of this thread alone, even where other threads helped; to 1 us
-  std::int32_t frame = -1;     ///< number in the run, -1 for work of no frame
+  double cpu_us;               ///< of this thread alone, even if other threads helped; to 1 us
+  std::int32_t frame = -1;     ///< number in the run, -1 for work that belongs to no frame
   std::uint64_t bytes = 0;     ///< moved (pack, send, receive, assemble, read, write)
   std::uint32_t messages = 0;  ///< moved (send, receive, assemble)
   TraceRole role = TraceRole::both;
-  std::int32_t tile = -1;  ///< that the work was for, -1: for no single one
-  std::int32_t peer = -1;  ///< rank that a message went to or came from (send, receive, assemble), -1: none
+  std::int32_t tile = -1;  ///< for which the work was done, -1: no single one
+  std::int32_t peer = -1;  ///< rank that sent or received the message (send, receive, assemble), -1: none
 };
 
-/// Collects spans of all threads of a process. Give work a null pointer instead and timing costs nothing. Settings and
+/// Collects spans of all threads of a process. With a null pointer instead, timing costs nothing. Settings and
 /// ReadOptions take one; tessera/trace_file.hpp writes it.
 ///
-/// A recording may have several faces, one a role: `Trace projecting(TraceRole::projector)`,
-/// `Trace compositing(projecting, TraceRole::compositor)`. Work that is handed one face need not know for whom it
-/// works. They share clock, thread numbers and spans; the recording lives as long as its last face.
+/// A recording may have several Trace objects, one per role: `Trace projecting(TraceRole::projector)`, `Trace
+/// compositing(projecting, TraceRole::compositor)`. Work that is given one of them need not know its role. They share
+/// clock, thread numbers and spans; the recording lives as long as the last of them.
 ///
-/// All member functions may be called from any thread. Each thread writes to a buffer of its own; a span costs about a
-/// microsecond, most of it the system call for its CPU time, so time tiles and batches, not cells.
+/// All member functions may be called from any thread. Each thread writes to its own buffer; a span costs about a
+/// microsecond, mostly for the system call that reads its CPU time, so time tiles and batches, not cells.
 class TESSERA_EXPORT Trace {
  public:
   explicit Trace(TraceRole role = TraceRole::both);
-  /// Another face of `other`'s recording.
+  /// Another role of `other`'s recording.
   Trace(const Trace& other, TraceRole role);
 
   [[nodiscard]] TraceRole role() const { return role_; }
-  /// The frame of this face's spans that name none, from now on; -1 for none.
+  /// Sets the frame of this object's later spans that do not name one; -1 for none.
   void set_frame(std::int32_t frame) { frame_.store(frame, std::memory_order_relaxed); }
   [[nodiscard]] std::int32_t frame() const { return frame_.load(std::memory_order_relaxed); }
 
-  /// Adds a span as it stands, with its own role and frame.
+  /// Adds a span unchanged, with its own role and frame.
   void add(const TraceSpan& span);
-  /// Adds this face's `frame` span from `start_us` (of now_us()) to now: where no scope spans a frame.
+  /// Adds a `frame` span with this role from `start_us` (as now_us()) to now: for a frame that no scope covers.
   void add_frame(std::int32_t frame, double start_us);
 
-  /// All spans of the recording, through whichever face they came; each thread's in the order of their ends.
+  /// All spans of the recording, of all roles; those of each thread in the order of their ends.
   [[nodiscard]] std::vector<TraceSpan> spans() const;
-  /// The same, which are gone from the recording then: for who looks at each frame of a run without end.
+  /// The same, but removes them from the recording: for programs that consume each frame of an endless run.
   std::vector<TraceSpan> take_spans();
   [[nodiscard]] double now_us() const;
-  /// Small dense number of the calling thread, 0 for the first that asks.
+  /// Small consecutive number of the calling thread, 0 for the first that calls this.
   std::uint32_t thread_number();
 
  private:
@@ -105,7 +106,7 @@ class TESSERA_EXPORT TraceScope {
   TraceScope(Trace* trace, const char* stage, std::int32_t frame = -1) : trace_(trace) {
     if (trace_ != nullptr) begin(stage, frame);
   }
-  /// With what it moves known beforehand.
+  /// With the amount of data known in advance.
   TraceScope(Trace* trace, const char* stage, std::int32_t frame, std::uint64_t bytes, std::uint32_t messages,
              std::int32_t peer = -1)
       : TraceScope(trace, stage, frame) {

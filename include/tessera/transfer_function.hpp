@@ -24,14 +24,15 @@ struct Knot {
 /// Linear RGB colour c(s) and extinction kappa(s) of a scalar s: piecewise linear between knots, clamped outside their
 /// range.
 ///
-/// Steps: two knots at one value make a step; there the function is right-continuous, its value is the upper (later)
-/// knot's. Holds: at least one knot, values finite and not decreasing, at most two knots at one value (more are merged
-/// to first and last; values less than 2.2e-308 apart are one), colours 0 to 1e30, extinctions 0 to 1e100. A single
-/// knot is a constant function.
+/// Steps  two knots at one value make a step; the function is right-continuous there: its value is that of the upper
+///        (later) knot.
+/// Holds  at least one knot, values finite and not decreasing, at most two knots at one value (more are merged to first
+///        and last; values less than 2.2e-308 apart are one), colours 0 to 1e30, extinctions 0 to 1e100. A single knot
+///        is a constant function.
 class TESSERA_EXPORT TransferFunction {
  public:
   TransferFunction() = default;
-  /// Throws Error(bad_input) naming the knot (from 1) and the number at fault.
+  /// Throws Error(bad_input) naming the wrong knot (from 1) and number.
   explicit TransferFunction(std::vector<Knot> knots);
 
   [[nodiscard]] std::span<const Knot> knots() const { return knots_; }
@@ -50,29 +51,29 @@ class TESSERA_EXPORT TransferFunction {
   std::vector<std::size_t> visible_knots_before_, emitting_knots_before_;  ///< prefix counts, size knots + 1
 };
 
-/// The function as JSON: {"knots": [[value, red, green, blue, extinction], ...]}, its knots as they stand, every double
-/// in the shortest form that reads back the same. Dataset::transfer_function() makes the same function of it, bit by
+/// The function as JSON: {"knots": [[value, red, green, blue, extinction], ...]}, its knots unchanged, every double in
+/// the shortest form that reads back the same. Dataset::transfer_function() makes the same function from it, bit by
 /// bit.
 TESSERA_EXPORT std::string transfer_function_json(const TransferFunction& function);
 
-/// The function as ParaView's colour-map JSON, a list of one map, for other programs to read: colours as sRGB, mixed in
-/// RGB, and opacities per unit distance, with the points between knots that these need. A picture of what is read back
-/// differs by less than 5e-4 in linear RGBA. Two things ParaView's form does not hold: colours above 1, which are
-/// clamped, and more opacity than 1 - 1e-6 per unit distance. `unit_distance` [world units] is shortened so far that
-/// the function stays below that. Throws Error(bad_input) for a function without knots or a length that is not
-/// positive.
+/// The function as ParaView's colour-map JSON, a list of one map, for other programs to read: colours as sRGB,
+/// interpolated in RGB, and opacities per unit distance, with additional points between knots where these require them.
+/// An image rendered with the function read back differs by less than 5e-4 in linear RGBA. ParaView's form cannot
+/// represent two things: colours above 1, which are clamped, and opacities above 1 - 1e-6 per unit distance.
+/// `unit_distance` [world units] is reduced until the function stays below that. Throws Error(bad_input) for a function
+/// without knots or a length that is not positive.
 TESSERA_EXPORT std::string paraview_json(const TransferFunction& function, double unit_distance,
                                          const std::string& name = "Tessera");
 
-/// A transfer function with where its numbers came from.
+/// A transfer function and the origin of its numbers.
 struct LoadedTransferFunction {
   TransferFunction function;
-  std::string name;                       ///< the preset's or the file's, with what was assumed in brackets
-  std::optional<double> unit_distance{};  ///< that was used; none where the file gives extinctions
-  std::string unit_distance_source;       ///< "file", "`unit_distance`", "default", or "" where they are absolute
-  std::optional<std::array<double, 2>> range{};  ///< that colours span, where it was chosen rather than the file's
-  bool shaded = false;                  ///< a picture with Shading is meant: the default function of a patient's scan
-  std::vector<std::string> warnings{};  ///< one line each: that it shows little of the field, and what mends that
+  std::string name;                              ///< of the preset or file, with assumptions in brackets
+  std::optional<double> unit_distance{};         ///< that was used; none if the file states extinctions
+  std::string unit_distance_source;              ///< "file", "`unit_distance`", "default", or "" if they are absolute
+  std::optional<std::array<double, 2>> range{};  ///< spanned by the colours, if it was chosen and not the file's
+  bool shaded = false;                           ///< Shading is intended: the default function of a patient's scan
+  std::vector<std::string> warnings{};  ///< one line each: that it shows little of the field, and how to fix that
 };
 
 }  // namespace v0_1

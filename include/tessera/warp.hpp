@@ -6,10 +6,10 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// How far the points of a mesh are moved, by a vector that its file has for each of them.
+/// How the points of a mesh are moved, by a vector that its file has for each of them.
 struct Warp {
   std::string vector{};  ///< point data of three components; empty: no point is moved
-  double factor = 1;     ///< of the vector's length; finite
+  double factor = 1;     ///< multiplies the vector; finite
 
   bool operator==(const Warp&) const = default;
 };

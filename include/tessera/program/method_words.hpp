@@ -10,13 +10,13 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// `auto`, `exact`, ...: as --integrator has it, less what stands behind a colon. `runs`: as --exchange.
+/// `auto`, `exact`, ...: as in --integrator, without the part after a colon. `runs`: as in --exchange.
 const char* method_word(IntegratorKind kind);
 const char* exchange_word(Exchange exchange);
-/// `sampled:8`, `auto to 0.0001`, ...: of meshes.
+/// `sampled:8`, `auto to 0.0001`, ...: for meshes.
 std::string method_line(const Integrator& integrator);
 
-/// Of grids: by steps of a length of their own.
+/// For grids: whether the method samples rays at its own step length.
 bool takes_steps(const Integrator& integrator);
 
 }  // namespace v0_1

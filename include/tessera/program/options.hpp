@@ -16,12 +16,13 @@
 #include "tessera/camera.hpp"
 #include "tessera/state.hpp"
 
-/// The options of the program `tessera`, each one row of one table (api/options/option_table.cpp). Command line, help,
-/// manual pages, completion, files of options, states of `tessera serve` and the names in messages are loops over it.
+/// The options of the program `tessera`, each one a row of one table (api/options/option_table.cpp). Command line,
+/// help, manual pages, completion, files of options, states of `tessera serve` and the names in messages are generated
+/// from it.
 namespace tessera {
 inline namespace v0_1 {
 
-/// What is true of an option: a set of bits.
+/// Properties of an option: a set of bits.
 enum class Trait : std::uint32_t {
   // The commands that have it.
   render = 1u << 0,
@@ -36,37 +37,37 @@ enum class Trait : std::uint32_t {
   help = 1u << 9,
   completion = 1u << 10,
   // How it is written; without these `--name VALUE`, once.
-  flag = 1u << 11,        ///< alone
-  place = 1u << 12,       ///< alone, or `--name=VALUE`
+  flag = 1u << 11,        ///< without a value
+  place = 1u << 12,       ///< without a value, or `--name=VALUE`
   list = 1u << 13,        ///< may be repeated
-  positional = 1u << 14,  ///< a word without a name before it; of a list the remaining ones
+  positional = 1u << 14,  ///< a word without a name before it; for a list, the remaining words
   required = 1u << 15,
-  basic = 1u << 16,  ///< `--help` shows it; others are in `--help-all`
-  // What it is for; without these for both.
+  basic = 1u << 16,  ///< shown by `--help`; others only by `--help-all`
+  // The data that it applies to; without these both.
   meshes = 1u << 17,
   volumes = 1u << 18,
-  // What it is in a state of `tessera serve`, which is JSON; the server's other options only its command line sets.
+  // Its form in a state of `tessera serve`, which is JSON; only the command line can set the server's other options.
   state = 1u << 19,     ///< a client may set it, as text, true or a list of texts
-  camera = 1u << 20,    ///< and it is a camera as an object
-  function = 1u << 21,  ///< and it is a transfer function as an object, or a preset's name
-  surfaces = 1u << 22,  ///< and it names no file that the server was not started with
+  camera = 1u << 20,    ///< also as an object with a camera
+  function = 1u << 21,  ///< also as an object with a transfer function, or a preset's name
+  surfaces = 1u << 22,  ///< also, if it names only files that the server was started with
   // What it changes.
   data = 1u << 23,        ///< what is read
   look = 1u << 24,        ///< the transfer function
-  knots = 1u << 25,       ///< and the knots of a function as JSON contain it
-  range = 1u << 26,       ///< and it is about the range of values
-  settings = 1u << 27,    ///< how is rendered
+  knots = 1u << 25,       ///< also contained in the knots of a transfer function as JSON
+  range = 1u << 26,       ///< also the range of values
+  settings = 1u << 27,    ///< how the data are rendered
   view = 1u << 28,        ///< the view; a camera replaces it
-  annotation = 1u << 29,  ///< what is drawn over the picture
-  machine = 1u << 30,     ///< no picture, only what rendering takes
+  annotation = 1u << 29,  ///< what is drawn over the image
+  machine = 1u << 30,     ///< not the image, only the resources of rendering
 };
 constexpr Trait operator|(Trait a, Trait b) {
   return static_cast<Trait>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
 }
 
 struct OptionRow {
-  std::string_view names;  ///< without dashes, commas between; perhaps first one letter, then the key
-  std::string_view value;  ///< what stands for its value in help, like "WxH"; "a|b|c": it is one of these words
+  std::string_view names;  ///< without dashes, separated by commas; an optional letter first, then the key
+  std::string_view value;  ///< placeholder for its value in help, like "WxH"; "a|b|c": one of these words
   Trait traits;
   std::string_view help;
 
@@ -74,13 +75,13 @@ struct OptionRow {
   [[nodiscard]] constexpr bool is(Trait trait) const {
     return (static_cast<std::uint32_t>(traits) & static_cast<std::uint32_t>(trait)) != 0;
   }
-  /// The name that states, files of options and OptionWords have.
+  /// The name in states, files of options and OptionWords.
   [[nodiscard]] constexpr std::string_view key() const {
     const std::string_view longer = names.find(',') == 1 ? names.substr(2) : names;
     return longer.substr(0, longer.find(','));
   }
   [[nodiscard]] bool has_name(std::string_view name) const;
-  /// The words between the bars of `value`; none if some stand for others, as capitals, colons and brackets do.
+  /// The words between the bars of `value`; empty if some are placeholders, with capitals, colons or brackets.
   [[nodiscard]] std::vector<std::string_view> choices() const;
 };
 
@@ -94,40 +95,40 @@ std::span<const OptionTopic> option_topics();
 /// All rows with one of these traits, in the order of the help.
 std::vector<const OptionRow*> option_rows(Trait traits);
 
-/// The option that commands have by this name; null: none.
+/// The option of this name that `commands` have; null: none.
 const OptionRow* find_option(Trait commands, std::string_view name);
 
-/// `text` with every setting that it names as an option: `tile_size`, in backquotes, becomes --tile-size. Libraries
-/// know settings, the program has options: where a message says "raise `memory`", its user reads "raise --memory". Only
-/// names of options, and only where they are words of their own, for file names may hold backquotes. (A file named
-/// `memory`, backquotes and no directory, is taken for the setting.)
+/// `text` with the name of every setting replaced by its option: `tile_size`, in backquotes, becomes --tile-size.
+/// Libraries name settings, the program has options: "raise `memory`" in a message becomes "raise --memory". Replaces
+/// only names of options that are whole words, as file names may contain backquotes. (A file named `memory`, with
+/// backquotes and without a directory, is mistaken for the setting.)
 std::string with_options(std::string_view text);
 std::vector<std::string> with_options(const std::vector<std::string>& notes);
 
-/// The words that were given for the options of a command. Names are keys of its rows.
+/// The words given for the options of a command. Names are keys of its rows.
 ///
-/// The functions that return values throw Error(bad_input) which names the option, what was given and what is allowed;
-/// nothing was given: none.
+/// The functions that return values throw Error(bad_input), which names the option, its value and the allowed values.
+/// They return none if the option is not given.
 class OptionWords {
  public:
-  OptionWords() = default;  ///< of `render`
+  OptionWords() = default;  ///< for `render`
   explicit OptionWords(Trait command) : command_(command) {}
   explicit OptionWords(const State& state) : words_(state.words()) {}
 
   [[nodiscard]] bool given(std::string_view name) const { return !words(name).empty(); }
   [[nodiscard]] bool given_one_of(std::initializer_list<std::string_view> names) const;
-  /// The last one; empty if none is given.
+  /// The last word; empty if none is given.
   [[nodiscard]] const std::string& word(std::string_view name) const;
   [[nodiscard]] const std::vector<std::string>& words(std::string_view name) const;
-  /// Without values the option is no longer given. A flag's is "true".
+  /// Without values the option is removed. The value of a flag is "true".
   void set(std::string_view name, std::vector<std::string> values);
   void set(std::string_view name, std::string value) { set(name, std::vector{std::move(value)}); }
-  /// As `set`, unless it is given.
+  /// As `set`, unless the option is already given.
   void set_default(std::string_view name, std::string value);
   void set_defaults(const State& state);
-  /// All that are given, by key in alphabetical order.
+  /// All options that are given, by key in alphabetical order.
   [[nodiscard]] const State::Words& all() const { return words_; }
-  /// Of `render`, but for --config.
+  /// For `render`; without --config.
   [[nodiscard]] State state() const;
 
   [[nodiscard]] std::optional<double> number(std::string_view name) const;
@@ -138,9 +139,9 @@ class OptionWords {
   [[nodiscard]] std::optional<ImageSize> size(std::string_view name) const;
   [[nodiscard]] std::optional<glm::dvec3> color(std::string_view name) const;
   [[nodiscard]] std::optional<glm::dvec3> vector(std::string_view name, bool positive = false) const;
-  /// Two numbers, the second of them larger, or `may_be_equal`.
+  /// Two numbers, the second larger, or equal if `may_be_equal`.
   [[nodiscard]] std::optional<std::array<double, 2>> interval(std::string_view name, bool may_be_equal = false) const;
-  /// Which of its row's choices was given, as the same one of `values`.
+  /// The element of `values` at the index of the given word in the row's choices.
   template <class T>
   [[nodiscard]] std::optional<T> choice(std::string_view name, std::initializer_list<T> values) const {
     const auto at = choice(name);
@@ -155,10 +156,10 @@ class OptionWords {
   State::Words words_;
 };
 
-/// All of `text` as a finite number, whatever the locale. Throws Error(bad_input), its subject `option`.
+/// All of `text` as a finite number, independent of the locale. Throws Error(bad_input) with `option` as its subject.
 double parse_number(const std::string& option, const std::string& text);
 
-/// `value`, if there is one, to `target`.
+/// Assigns `value`, if there is one, to `target`.
 template <class T, class U>
 void assign(T& target, const std::optional<U>& value) {
   if (value) target = static_cast<T>(*value);

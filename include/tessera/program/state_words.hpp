@@ -7,23 +7,23 @@
 
 #include "tessera/program/options.hpp"
 
-/// States of `tessera serve` as words of `tessera render`. States come from the network: only options that a state may
-/// have are taken, none that reads or writes a file; but the surface files that the server was started with may be
-/// named again.
+/// Conversion between states of `tessera serve` and words of `tessera render`. States come from the network: only
+/// options that a state may have are accepted, and none that reads or writes a file, except that the surface files with
+/// which the server was started may be named.
 namespace tessera {
 inline namespace v0_1 {
 
-/// `base`, and over it what the state gives; an option whose value is null or false is left out. Throws
-/// Error(bad_input) in one sentence for a key that a state may not have, or a value of another kind.
+/// `base`, overridden by the state; an option whose value is null or false is removed. Throws Error(bad_input) in one
+/// sentence for a key that a state may not have, or a value of the wrong type.
 OptionWords state_words(const OptionWords& base, const nlohmann::json& state);
 
-/// Of `words` those that a state may have, as one.
+/// The state with those of the `words` that a state may have.
 nlohmann::json state_of_words(const OptionWords& words);
 
-/// As arguments of render, each in one word: "--size=800x600".
+/// As arguments of render, one word each: "--size=800x600".
 std::vector<std::string> arguments_of(const OptionWords& words);
 
-/// As a shell takes them, in single quotes where needed.
+/// As shell input, in single quotes where needed.
 std::string shell_words(const std::vector<std::string>& arguments);
 
 }  // namespace v0_1

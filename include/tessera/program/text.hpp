@@ -9,7 +9,8 @@
 #include <system_error>
 #include <vector>
 
-/// Text in ASCII, whatever the locale: bytes of other alphabets are neither letters nor blanks, and stay as they are.
+/// Functions for ASCII text, independent of the locale: bytes of other alphabets are neither letters nor blanks and do
+/// not change.
 namespace tessera {
 inline namespace v0_1 {
 
@@ -48,7 +49,7 @@ inline bool equals_ignoring_case(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, [](char x, char y) { return lower_case(x) == lower_case(y); });
 }
 
-/// Without `blanks` at either end.
+/// `text` without `blanks` at either end.
 constexpr std::string_view trimmed(std::string_view text, std::string_view blanks = ascii_blanks) {
   text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
   return text.substr(0, text.find_last_not_of(blanks) + 1);
@@ -64,7 +65,7 @@ inline std::vector<std::string_view> split_words(std::string_view text, std::str
   return words;
 }
 
-/// The number that is all of a word, in the C locale whatever the user's is; a + before it is allowed.
+/// The number that is the whole word, in the C locale; a leading + is allowed.
 template <class T>
 std::optional<T> number_of(std::string_view word) {
   if (word.starts_with('+') && !word.substr(1).starts_with('-')) word.remove_prefix(1);
@@ -73,7 +74,7 @@ std::optional<T> number_of(std::string_view word) {
   return error == std::errc() && end == word.data() + word.size() ? std::optional(number) : std::nullopt;
 }
 
-/// With `?` for each byte that is not a printable character of ASCII.
+/// `text` with `?` for each byte that is not a printable ASCII character.
 inline std::string printable_ascii(std::string_view text) {
   std::string result(text);
   for (char& c : result)
@@ -81,7 +82,7 @@ inline std::string printable_ascii(std::string_view text) {
   return result;
 }
 
-/// As the value of an attribute of XML or HTML, in double quotes, or as text between tags.
+/// Escapes text for XML or HTML: for an attribute's value in double quotes, or between tags.
 inline std::string xml_escaped(std::string_view text) {
   std::string result;
   for (const char c : text) {
