@@ -11,10 +11,10 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// How a Communicator becomes messages.
+/// How a Communicator exchanges messages.
 struct TESSERA_HIDDEN Communicator::State {
   int rank = 0, size = 1;
-  /// A transport for one data set or session alone. Collective.
+  /// Returns a transport for one data set or session alone. Collective.
   std::function<std::shared_ptr<exchange::Transport>()> connect;
 };
 
@@ -22,8 +22,8 @@ struct TESSERA_HIDDEN Communicator::State {
 
 namespace api {
 
-/// Ranks of a transport that somebody else has: everything made with it shares it, one after the other. It must outlive
-/// them.
+/// A communicator over a transport that the caller owns. Everything made with it shares the transport and must be used
+/// one after the other. The transport must outlive all of it.
 Communicator communicator_over(exchange::Transport& transport);
 
 }  // namespace api

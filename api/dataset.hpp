@@ -23,50 +23,50 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// What a Dataset holds. Nothing changes once it is made; what is prepared on demand is prepared once.
+/// The contents of a Dataset. Immutable once made; what is computed on demand is computed once.
 struct TESSERA_HIDDEN Dataset::State {
   std::string source, format, field_name;
   std::vector<FieldInfo> fields;
   std::vector<std::string> notes, blocks, surfaces;
   scene::TimeStepRead time_step;
-  glm::dvec3 axis_scale{1};  ///< that the file's axes were multiplied by
-  scene::MeshFacts facts;    ///< of the whole; grids have no tets
-  /// What a selection (ReadOptions::selection) left out is in these; null: nothing was left out.
+  glm::dvec3 axis_scale{1};  ///< factors of the file's axes
+  scene::MeshFacts facts;    ///< of the whole data set; grids have no tets
+  /// Includes what a selection (ReadOptions::selection) left out; null: nothing was left out.
   std::shared_ptr<const frame::FieldOfAll> of_all;
   MeshCounts counts;
   HigherOrderCells higher_order;
-  /// Files that the whole mesh can be read from again, by one rank that verifies; none: arrays.
+  /// Files from which one rank can read the whole mesh again, to verify; empty: arrays.
   std::vector<std::filesystem::path> files;
   ReadOptions options;
 
   // Meshes.
   scene::TetMeshView mesh;                ///< this rank's part, or the whole
-  std::shared_ptr<const void> owner;      ///< of its arrays
-  int ranks = 1;                          ///< more than 1: a part, one a rank
-  std::vector<std::uint64_t> global_tet;  ///< of a part: index of each tet in the whole
-  bool shape = false;                     ///< the scalar is ReadOptions::shape's
-  std::vector<HalfSpace> clip;            ///< what `mesh` was cut by
-  std::shared_ptr<const State> uncut;     ///< before that; null: as `files` have it
+  std::shared_ptr<const void> owner;      ///< of the mesh's arrays
+  int ranks = 1;                          ///< more than 1: one part per rank
+  std::vector<std::uint64_t> global_tet;  ///< for a part: index of each tet in the whole mesh
+  bool shape = false;                     ///< the scalar is that of ReadOptions::shape
+  std::vector<HalfSpace> clip;            ///< half-spaces that cut `mesh`
+  std::shared_ptr<const State> uncut;     ///< the data before that; null: as in `files`
 
   // Grids.
   std::shared_ptr<const scene::SampleSource> samples;  ///< null: a mesh
   std::shared_ptr<const volume::CellRanges> ranges;
   BodyAxes body_axes = BodyAxes::none;
   io::VolumeTags tags;
-  /// All values of labels; empty: they are no labels, or too many; none: not looked at.
+  /// All values of labels; empty: not labels, or too many values; none: not examined.
   std::optional<std::vector<double>> labels;
 
-  /// Colours and opacities go by these, so that a selection changes none.
+  /// Colours and opacities depend on these facts, so that a selection changes none of them.
   [[nodiscard]] const scene::MeshFacts& facts_of_all() const { return of_all ? of_all->facts : facts; }
 
   /// The mesh prepared for projection, shared by sessions.
   [[nodiscard]] std::shared_ptr<const projection::PreparedMesh> prepared(int threads,
                                                                          scene::Trace* trace = nullptr) const;
 
-  /// Points of the field over the whole, what a selection left out included. Of a mesh in parts they have to be
-  /// gathered by all ranks first.
+  /// Samples of the field over the whole data set, including what a selection left out. For a mesh in parts all ranks
+  /// must gather them first.
   [[nodiscard]] const scene::FieldSamples& field_samples() const;
-  /// The whole's, of a mesh in parts. Collective.
+  /// For a mesh in parts: those of the whole mesh. Collective.
   void gather_field_samples(exchange::Transport& transport);
 
  private:
@@ -84,7 +84,7 @@ scene::MeshFacts facts_of_grid(const scene::Grid& grid, const scene::ValueRange&
 /// Facts of a grid whose samples and ranges are known.
 void complete_grid(Dataset::State& state);
 
-/// This rank's error ends the run for all, and the run's one error is thrown on each.
+/// Runs `work`. An error of this rank ends the run for all, and every rank throws the run's error.
 template <class Work>
 auto together(exchange::Transport& transport, const Work& work) {
   try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Data sets of callers' arrays and samples.
+// Data sets from callers' arrays and samples.
 #include "api/communicator.hpp"
 #include "api/dataset.hpp"
 #include "frame/mesh/array_mesh.hpp"

@@ -53,16 +53,16 @@ void check_mesh_options(const std::filesystem::path& file, const ReadOptions& op
                     file.string()));
 }
 
-/// The same note on every rank.
+/// Adds the same note on every rank.
 void note_fill_value(exchange::Transport& transport, Dataset::State& state) {
   std::optional<scene::FillValue> fill = frame::find_fill_value(transport, state.mesh, state.facts);
   if (!fill) return;
   const bool of_points = state.facts.association == Association::point;
-  if (of_points && transport.size() > 1) fill->count = 0;  // parts have the points between them in common
+  if (of_points && transport.size() > 1) fill->count = 0;  // parts share the points between them
   state.notes.push_back(scene::words_on(*fill, of_points ? "points" : "tets"));
 }
 
-/// Of a file of one step, what its field data state.
+/// For a file with one step: the time in its field data.
 void set_own_time(const io::InputFile& file, scene::TimeStepRead& read) {
   if (read.count > 1 || !read.times.empty()) return;
   if (const auto time = io::vtk_time_value(file.path, file.beginning)) read = {1, 0, {*time}};
@@ -85,7 +85,7 @@ std::shared_ptr<Dataset::State> opened_grid(const io::InputFile& input, const Re
     const scene::TraceScope timing(trace, "read");
     return frame::open_shared_volume(transport, input, options);
   }();
-  api::require_same_files(transport);  // which it names
+  api::require_same_files(transport);  // the ones that `volume` names
   state->axis_scale = cells::chosen_scale(options.axis_scale, volume.beside_degrees,
                                           scene::bounds(volume.source->geometry()), volume.notes);
   if (state->axis_scale != glm::dvec3(1))
@@ -140,7 +140,8 @@ void take_description(cells::MeshFile&& file, Dataset::State& state) {
   state.axis_scale = file.axis_scale;
 }
 
-/// Makes a mesh the state's own, its corners in the order that needs no copy unless theirs is to be kept.
+/// Moves a mesh into the state, with its corners in the order that needs no copy unless the caller's order must be
+/// kept.
 void keep(scene::TetMesh mesh, const ReadOptions& options, scene::Trace* trace, Dataset::State& state) {
   if (!options.keep_corners) frame::order_corners(mesh, options.threads, trace);
   auto kept = std::make_shared<const scene::TetMesh>(std::move(mesh));
@@ -148,7 +149,7 @@ void keep(scene::TetMesh mesh, const ReadOptions& options, scene::Trace* trace, 
   state.owner = std::move(kept);
 }
 
-/// Spans of messages go to a face of the reader's trace while this lives.
+/// While it exists, spans of messages are recorded in the reader's trace.
 class TracedMessages {
  public:
   TracedMessages(exchange::Transport& transport, Trace* trace) : transport_(transport) {
@@ -162,7 +163,7 @@ class TracedMessages {
   TracedMessages(const TracedMessages&) = delete;
   TracedMessages& operator=(const TracedMessages&) = delete;
 
-  /// The face, or `alone` of one process.
+  /// The trace for messages, or `alone` for a single process.
   [[nodiscard]] Trace* face(Trace* alone) { return face_ ? &*face_ : alone; }
 
  private:
@@ -170,7 +171,7 @@ class TracedMessages {
   std::optional<Trace> face_;
 };
 
-/// `identified`: the one file, if it has been.
+/// `identified`: the file, if there is one and it has been identified.
 Dataset open_together(std::span<const std::filesystem::path> files, std::optional<InputFile> identified,
                       const ReadOptions& options, const Communicator& communicator, const RankSettings& ranks) {
   const std::shared_ptr<exchange::Transport> transport = StateAccess::of(communicator).connect();
@@ -179,7 +180,7 @@ Dataset open_together(std::span<const std::filesystem::path> files, std::optiona
     if (files.empty()) throw scene::bad_input("input: no file is named; name one");
     check_axis_scale(options.axis_scale);
     for (const auto& file : files) system::note_read(file);
-    api::require_same_files(*transport);  // first of all: what ranks do together goes by them
+    api::require_same_files(*transport);  // first: the collective calls below depend on the files
     if (!identified) identified.emplace(files.front());
     if (!StateAccess::of(*identified).is_there) throw system::missing_file(files.front());
     const io::InputFile& first = StateAccess::of(*identified).file;
@@ -195,7 +196,7 @@ Dataset open_together(std::span<const std::filesystem::path> files, std::optiona
       const Roles roles = assign_roles(transport->size(), ranks.projectors, ranks.compositors);
       frame::DistributedMesh mesh =
           frame::read_distributed(*transport, files, first, options, ranks.partition, roles.projectors, trace);
-      api::require_same_files(*transport);  // which they name
+      api::require_same_files(*transport);  // the ones that the mesh names
       take_description(std::move(mesh.description), *state);
       set_own_time(first, state->time_step);
       state->facts = mesh.facts;
@@ -211,7 +212,7 @@ Dataset open_together(std::span<const std::filesystem::path> files, std::optiona
     state->files.assign(files.begin(), files.end());
     state->options = options;
     state->clip = options.selection.clip;
-    state->options.trace = nullptr;  // which need not live as long
+    state->options.trace = nullptr;  // it may not live as long as the state
     state->options.progress = nullptr;
     return StateAccess::make(std::move(state));
   });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A grid, by any number of ranks.
+// A grid, rendered by any number of ranks.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -54,7 +54,7 @@ const char* name_of(IntegratorKind kind) {
   }
 }
 
-/// A grid, by any number of processes.
+/// Renders a grid with any number of processes.
 class GridByRays final : public Session::State {
  public:
   GridByRays(Dataset dataset, const Settings& settings, std::shared_ptr<exchange::Transport> transport)
@@ -121,7 +121,7 @@ class GridByRays final : public Session::State {
     return {settings(), data().clip, sorts_last() ? transport_->size() : 1};
   }
 
-  /// Bricks get what the budget leaves beside a picture of this size: the renderer is made once it is known.
+  /// Bricks get the memory that remains after an image of this size, so the renderer is made once the size is known.
   void make_renderer(ImageSize size) {
     if (renderer_) return;
     const scene::TraceScope timing(trace_, "prepare");
@@ -134,19 +134,19 @@ class GridByRays final : public Session::State {
     renderer_.emplace(*data().samples, render, data().ranges);
   }
 
-  /// The others wait for a rank that has failed; throws what ends the run on all.
+  /// Ends the run on all ranks, which would otherwise wait for this one, and throws the run's error.
   void tell_others(const std::exception& fault) {
     if (transport_->size() == 1) return;
     transport_->fail(frame::run_error(*transport_, fault));
     transport_->check();
   }
 
-  /// A trace's numbers are its caller's.
+  /// The caller sets the frame numbers of a trace.
   [[nodiscard]] std::size_t traced(std::size_t number) const {
     return trace_ != nullptr ? static_cast<std::size_t>(std::max(trace_->frame(), 0)) : number;
   }
 
-  /// Pictures that overlap.
+  /// Renders frames that overlap.
   std::size_t render_list(std::span<const View> views, const TransferFunction& function, Sink& sink,
                           const std::stop_token& stop) {
     if (views.empty()) return 0;
@@ -159,7 +159,7 @@ class GridByRays final : public Session::State {
     }
     frame::VolumeCallbacks callbacks;
     callbacks.frame = [&](frame::FinishedVolumeFrame&& finished) {
-      if (finished.stopped) return;  // every rank is told below
+      if (finished.stopped) return;  // reported on every rank below
       RenderedFrame frame;
       frame.number = finished.frame;
       frame.statistics = statistics_of(finished, name_of(this->settings().integrator.kind));
@@ -183,7 +183,7 @@ class GridByRays final : public Session::State {
     return complete;
   }
 
-  /// None if it was stopped. Throws SinkFailure, on rank 0, where its sink stopped it.
+  /// None if it was stopped. Throws SinkFailure on rank 0 if its sink stopped it.
   std::optional<RenderedFrame> make(std::size_t number, const View& view, const TransferFunction& function,
                                     const FrameSettings& settings, Sink& sink, const std::stop_token& stop) {
     scene::FrameWatch watch(stop, tiles_to(sink, number));
@@ -212,7 +212,7 @@ class GridByRays final : public Session::State {
     return frame;
   }
 
-  /// The deep picture or layers, a pass of its own. False if it was stopped.
+  /// Adds the deep image or the layers, in a separate pass. False if it was stopped.
   bool add_depth(const View& view, const TransferFunction& function, const FrameSettings& settings,
                  const std::stop_token& stop, RenderedFrame& frame) {
     const auto start = std::chrono::steady_clock::now();
@@ -234,7 +234,7 @@ class GridByRays final : public Session::State {
     return true;
   }
 
-  /// Hands out a frame. False if rank 0's sink threw and this rank is another; not asked for the last frame.
+  /// Passes a frame to the sink. False if rank 0's sink threw and this is another rank; not checked for the last frame.
   bool give(RenderedFrame&& frame, bool last, Sink& sink) {
     std::exception_ptr thrown;
     try {
@@ -247,7 +247,7 @@ class GridByRays final : public Session::State {
     return !failed;
   }
 
-  /// What rank 0 says, on all.
+  /// Returns rank 0's value on all ranks.
   bool agreed(bool mine) {
     if (transport_->size() == 1) return mine;
     return exchange::broadcast_value(*transport_, 0, exchange::MessageKind::sink_failed, std::uint8_t{mine}) != 0;

@@ -19,8 +19,8 @@
 namespace tessera::api {
 namespace {
 
-/// A scanner's picture, however few values a phantom or a test image has: by its modality, or Hounsfield's units of a
-/// patient.
+/// Whether the volume is a scan, even if a phantom or a test image has few values: by its modality, or by a patient's
+/// Hounsfield units.
 bool is_scan(const io::VolumeFile& volume, const std::vector<double>& values) {
   const bool patient = volume.body_axes != BodyAxes::none || volume.axes_if_ct != BodyAxes::none;
   return !volume.tags.modality.empty() || (patient && values.front() <= -900 && values.back() >= 200);

@@ -10,19 +10,19 @@
 #include "tessera/dataset.hpp"
 #include "volume/bricks/cell_ranges.hpp"
 
-/// What a grid's values stand for besides quantities: nothing, labels, another order of bytes. All are collective where
-/// they take a transport, and add notes to the volume.
+/// Interpretation of a grid's values other than as quantities: fill values, labels, the wrong byte order. Functions
+/// that take a transport are collective; all add notes to the volume.
 namespace tessera::api {
 
-/// Values that stand for nothing would rule range, colors and what the volume is taken for: huge ones become blank, of
-/// others a note tells how to leave them out.
+/// Fill values would dominate the range and the colours, and hide what the volume is: huge ones become blank; for
+/// others a note explains how to leave them out.
 void leave_fill_values_out(io::VolumeFile& volume, const std::filesystem::path& file, const ReadOptions& options,
                            exchange::Transport& transport, std::shared_ptr<const volume::CellRanges>& ranges);
 
-/// Floats of a raw file in the other order of bytes are next to nothing, or huge.
+/// Floats of a raw file in the wrong byte order are almost zero, or huge; a note suggests the other order.
 void note_byte_order(io::VolumeFile& volume, const ReadOptions& options, const scene::ValueRange& range);
 
-/// Makes each sample fill its voxel if the values are labels, unless the caller says otherwise. Returns them.
+/// Makes each sample fill its voxel if the values are labels, unless the options state otherwise. Returns the labels.
 std::vector<double> take_labels(const std::filesystem::path& file, const ReadOptions& options,
                                 exchange::Transport& transport, io::VolumeFile& volume);
 

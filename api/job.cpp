@@ -34,7 +34,7 @@ struct Job::State {
     return alone->rank(0);
   }
 
-  /// Before ranks first wait for one another.
+  /// First contact, before ranks wait for one another.
   void meet() {
     if (std::exchange(has_met, true)) return;
     exchange::make_first_contact(transport(), exchange::first_contact_patience(), voice.arguments);
@@ -45,7 +45,7 @@ struct Job::State {
 
 Job::Job(JobVoice voice) : state_(std::make_unique<State>(State{std::move(voice), nullptr, nullptr, false})) {
   if (exchange::launched_by_mpi()) {
-    // The launcher closes its sockets when it dies: then a write fails, and no rank dies by a signal.
+    // The launcher closes its sockets when it dies: then a write fails, instead of a signal killing the rank.
     std::signal(SIGPIPE, SIG_IGN);
     state_->mpi = std::make_unique<exchange::MpiTransport>(
         exchange::MpiTransport::Hooks{state_->voice.speak, exchange::expect_end, exchange::ended_from_outside});

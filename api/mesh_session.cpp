@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mesh, by one process or by all ranks of a job.
+// A mesh, rendered by one process or by all ranks of a job.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,13 +35,14 @@ FrameStatistics statistics_of(const frame::FrameStatistics& s, double millisecon
   return statistics;
 }
 
-/// A mesh, by this process.
+/// Renders a mesh with this process.
 class MeshAlone final : public Session::State {
  public:
   MeshAlone(Dataset dataset, const Settings& settings)
       : State(std::move(dataset), settings),
         renderer_(data().prepared(settings.threads, settings.trace), data().facts, settings) {
-    frame::assign_roles(1, settings.ranks.projectors, settings.ranks.compositors);  // of one rank there are not more
+    frame::assign_roles(1, settings.ranks.projectors,
+                        settings.ranks.compositors);  // throws if more than one rank is configured
   }
 
   std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
@@ -76,7 +77,7 @@ class MeshAlone final : public Session::State {
   frame::Renderer renderer_;
 };
 
-/// A mesh, by several processes.
+/// Renders a mesh with several processes.
 class MeshOnRanks final : public Session::State {
  public:
   MeshOnRanks(Dataset dataset, const Settings& settings, std::shared_ptr<exchange::Transport> transport)
@@ -100,7 +101,7 @@ class MeshOnRanks final : public Session::State {
           fmt::format("{}: rank {} has cells and does not project; give data set and session the same `projectors` and "
                       "`compositors`",
                       state.source, transport_->rank()));
-      transport_->fail(error);  // other ranks may find nothing wrong
+      transport_->fail(error);  // other ranks may not find an error
       throw error;
     }
     renderer_.emplace(*transport_, distributed_, [this](std::size_t) { return part(); });
@@ -129,11 +130,11 @@ class MeshOnRanks final : public Session::State {
   [[nodiscard]] bool assembles() const override { return transport_->rank() == distributed_.roles.assembler(); }
 
  private:
-  /// How many frames are complete, on every rank, and whether the next one has to be made of segments.
+  /// How many frames are complete, on every rank, and whether the next one must be made from segments.
   struct Part {
     std::uint64_t complete = 0, overlapping = 0;
   };
-  /// Thrown where a frame's runs overlap: ends the frames on all ranks in order.
+  /// Thrown if a frame's runs overlap: ends the frames on all ranks in order.
   struct Overlap {};
 
   Part render_from(std::size_t first, std::span<const View> views, const TransferFunction& function,
@@ -174,7 +175,7 @@ class MeshOnRanks final : public Session::State {
     try {
       renderer_->render(jobs, function, callbacks, stop);
     } catch (const api::SinkFailure& failure) {
-      thrown = failure.cause;  // the others have ended in order too
+      thrown = failure.cause;  // the other ranks have also ended in order
     } catch (const Overlap&) {
       part.overlapping = 1;
     }
@@ -184,14 +185,14 @@ class MeshOnRanks final : public Session::State {
     return part;
   }
 
-  /// Raw segments are sent with the number of their tet, in 32 bits.
+  /// Raw segments are sent with the index of their tet, in 32 bits.
   void check_exchange(Exchange exchange) const {
     if (exchange == Exchange::segments && data().facts.tets > 0xffffffffull)
       throw scene::bad_input(
           fmt::format("`exchange` segments: {} tets are more than 2^32; use runs", data().facts.tets));
   }
 
-  /// What this rank projects: the part it was opened with, or its share of the whole that every rank has.
+  /// What this rank projects: the part with which it was opened, or its share of the mesh that is whole on every rank.
   frame::ProjectorMesh part() {
     const Dataset::State& state = data();
     frame::ProjectorMesh mesh;
@@ -241,8 +242,8 @@ class MeshOnRanks final : public Session::State {
 
   frame::DistributedSettings distributed_;
   std::shared_ptr<exchange::Transport> transport_;
-  bool overlapping_ = false;  ///< cells of several ranks overlap: from now on segments are exchanged
-  std::optional<Trace> projecting_, compositing_;  ///< faces of the caller's trace
+  bool overlapping_ = false;  ///< cells of several ranks overlap: segments are exchanged from now on
+  std::optional<Trace> projecting_, compositing_;  ///< the caller's trace, by role
   std::optional<frame::DistributedRenderer> renderer_;
 };
 

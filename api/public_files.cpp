@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The public functions that read and write files, by io/'s.
+// The public functions that read and write files, implemented with those of io/.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -171,7 +171,7 @@ void write_grid(const Dataset& grid, const std::filesystem::path& file, int bloc
   const Dataset::State& state = StateAccess::of(grid);
   if (grid.is_mesh()) throw scene::bad_input(state.source + ": is a mesh, no grid; use write_mesh");
   check_grid_name(file);
-  // Labels as they are in the file, at points.
+  // Labels are written as in the file, at points.
   const auto* const labels = dynamic_cast<const scene::LabelSource*>(state.samples.get());
   io::write_volume(labels == nullptr ? *state.samples : labels->points(), file, block, state.body_axes, state.tags);
 }

@@ -14,7 +14,7 @@ inline namespace v0_1 {
 
 struct Reference::State {
   Dataset dataset;
-  frame::UncutMesh mesh;  ///< of a grid none
+  frame::UncutMesh mesh;  ///< empty for a grid
   std::unique_ptr<const reference::RayReference> rays;
 };
 

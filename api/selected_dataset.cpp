@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A part of a data set, and the whole that it was cut from.
+// A selected part of a data set, and the whole data set from which it was cut.
 #include "api/selected_dataset.hpp"
 
 #include <fmt/format.h>
@@ -31,7 +31,7 @@ scene::TetMesh copy_of(const scene::TetMeshView& view) {
   return mesh;
 }
 
-/// One step of a selection, of a mesh that is whole: a threshold, or a clip.
+/// One step of a selection from a whole mesh: a threshold, or a clip.
 Dataset selected_part(const std::shared_ptr<const Dataset::State>& from, const Selection& selection) {
   auto state = std::make_shared<Dataset::State>();
   scene::TetMesh mesh = copy_of(from->mesh);
@@ -93,7 +93,7 @@ frame::UncutMesh uncut_mesh(const Dataset::State& data) {
 
 void clip_box(Dataset::State& grid, const Selection& selection, const std::string& source) {
   const scene::GridGeometry& g = grid.samples->geometry();
-  // The grid as six tets round its diagonal.
+  // The grid as six tets around its diagonal.
   scene::TetMesh mesh;
   for (int n = 0; n < 8; ++n) {
     glm::dvec3 local;

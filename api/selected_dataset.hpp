@@ -9,11 +9,11 @@
 
 namespace tessera::api {
 
-/// Of a data set that is whole on this rank, or was made of files, which may be read once more. Throws as
-/// Dataset::open, and Error(bad_input) if this rank has only a part. The state must outlive it.
+/// The mesh before clipping, for a data set that is whole on this rank, or was read from files, which may be read
+/// again. Throws as Dataset::open, and Error(bad_input) if this rank has only a part. `data` must outlive the result.
 frame::UncutMesh uncut_mesh(const Dataset::State& data);
 
-/// Makes a grid's box that of what half-spaces leave of it. Throws Error(bad_input) if that is nothing.
+/// Reduces a grid's box to that of its part inside the half-spaces. Throws Error(bad_input) if nothing remains.
 void clip_box(Dataset::State& grid, const Selection& selection, const std::string& source);
 
 }  // namespace tessera::api

@@ -25,8 +25,8 @@ namespace tessera {
 inline namespace v0_1 {
 namespace {
 
-/// The view with pixels no smaller than 1e-60 of what they see: far below what positions are told apart by, so that the
-/// picture is the same, and products of pixel coordinates stay in a double's range.
+/// The view with pixels no smaller than 1e-60 of what they show: far below the resolution of positions, so that the
+/// image is the same, and products of pixel coordinates stay within a double's range.
 View within_range(View view, const Box& box) {
   constexpr double least = 1e-60;
   Camera& camera = view.camera;
@@ -40,15 +40,15 @@ View within_range(View view, const Box& box) {
   return view;
 }
 
-/// Whether products of pixel coordinates of all places in a box are numbers. They are linear in the place: its corners
-/// say it.
+/// Whether products of pixel coordinates are finite everywhere in a box. The coordinates are linear in the position, so
+/// testing the corners is enough.
 bool has_coordinates(const View& view, const Box& box) {
   const scene::PixelView seen(view.camera, view.size);
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 p((corner & 1) != 0 ? box.high.x : box.low.x, (corner & 2) != 0 ? box.high.y : box.low.y,
                        (corner & 4) != 0 ? box.high.z : box.low.z);
     const scene::PixelPlace place = seen.project(p);
-    // Of three of the first, of two depths.
+    // Products have up to three of the coordinates, or two depths.
     if (!(std::max({std::abs(place.x), std::abs(place.y), std::abs(place.w)}) < 1e100)) return false;
     if (!(std::abs(place.depth) < 1e150)) return false;
   }
@@ -70,7 +70,7 @@ void check_reach(const View& view, const Box& bounds) {
         "view: data and camera are so far apart that places in the picture are no numbers; move the camera nearer");
 }
 
-/// Gives a film of one frame to whoever asked for it alone.
+/// Returns the single frame of a film of one frame.
 class OneFrame final : public Sink {
  public:
   explicit OneFrame(Sink* tiles) : tiles_(tiles) {}

@@ -17,7 +17,7 @@
 namespace tessera {
 inline namespace v0_1 {
 
-/// How a kind of data is rendered by a number of processes.
+/// Renders one kind of data with one or several processes.
 class TESSERA_HIDDEN Session::State {
  public:
   State(Dataset dataset, const Settings& settings) : dataset_(std::move(dataset)), settings_(settings) {}
@@ -31,7 +31,7 @@ class TESSERA_HIDDEN Session::State {
 
   [[nodiscard]] const Dataset& dataset() const { return dataset_; }
   [[nodiscard]] const Settings& settings() const { return settings_; }
-  /// Of grids.
+  /// For grids.
   [[nodiscard]] virtual BalancePictures balance_pictures(const RenderedFrame& frame, const View& view,
                                                          const TransferFunction& function) const;
 
@@ -47,15 +47,16 @@ class TESSERA_HIDDEN Session::State {
 
 namespace api {
 
-/// Of a mesh: by this process alone, or by all ranks.
+/// For a mesh: with this process alone, or with all ranks.
 std::unique_ptr<Session::State> mesh_alone(Dataset dataset, const Settings& settings);
 std::unique_ptr<Session::State> mesh_on_ranks(Dataset dataset, const Settings& settings,
                                               std::shared_ptr<exchange::Transport> transport);
-/// Of a grid, by any number of ranks.
+/// For a grid, with any number of ranks.
 std::unique_ptr<Session::State> grid_by_rays(Dataset dataset, const Settings& settings,
                                              std::shared_ptr<exchange::Transport> transport);
 
-/// What a caller's sink threw, told apart from errors of the run: it stops a frame and harms nothing.
+/// An exception of the caller's sink, as opposed to an error of the run: it stops a frame but leaves the session
+/// usable.
 struct SinkFailure {
   std::exception_ptr cause;
 };
@@ -69,7 +70,7 @@ void call_sink(const Call& call) {
   }
 }
 
-/// A watch that tells `sink` of frame `number`; throws SinkFailure.
+/// A callback that passes tiles of frame `number` to `sink`; throws SinkFailure.
 inline scene::FrameWatch::Finished tiles_to(Sink& sink, std::size_t number) {
   if (!sink.wants_tiles()) return {};
   return [&sink, number](const PixelRect& rect, const Image& image) {

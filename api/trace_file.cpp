@@ -18,7 +18,7 @@ using exchange::MessageKind;
 
 constexpr int pings = 8;
 
-/// The writer's clock less this rank's, in microseconds: from the quickest of a few exchanges, whose error is at most
+/// The writer's clock minus this rank's, in microseconds: from the fastest of a few exchanges, with an error of at most
 /// half its duration.
 double clock_offset(exchange::Transport& transport, int writer, const Trace& trace) {
   double offset = 0, quickest = std::numeric_limits<double>::infinity();

@@ -17,8 +17,8 @@
 namespace tessera::api {
 namespace {
 
-/// Of functions over the logarithm to base 10: straight between values this far apart, which errs by less than 2e-4 of
-/// a colour's or an extinction's change.
+/// For functions of the base-10 logarithm: linear between values this far apart, with an error below 2e-4 of a colour's
+/// or an extinction's change.
 constexpr double decades_a_knot = 1.0 / 64;
 
 LoadedTransferFunction load(const std::string& file_or_preset, const colormaps::DefaultField& field,
@@ -41,7 +41,7 @@ colormaps::TransferFunctionOptions loading_options(const Dataset::State& data, c
   return loading;
 }
 
-/// A function over log10 of the value as one over the value.
+/// Converts a function of log10 of the value to a function of the value.
 TransferFunction over_values(const TransferFunction& logarithmic) {
   std::vector<Knot> knots;
   const auto add = [&](Knot knot, double exponent) {
@@ -74,7 +74,7 @@ double smallest_positive(const Dataset::State& data) {
   const auto look_at = [&](double value) {
     if (value > 0) least = std::min(least, value);
   };
-  // Between a grid's points values go to 0 beside the first that is none.
+  // Interpolated values of a grid come arbitrarily close to 0 next to a sample <= 0, so use the stored samples.
   std::ranges::for_each(found.stored, look_at);
   if (found.stored.empty())
     for (const scene::FieldSample& s : found.samples) look_at(s.value);
@@ -115,7 +115,7 @@ LoadedTransferFunction logarithmic(const Dataset::State& data, const std::string
   return loaded;
 }
 
-/// What makes a function show something that is clear over the field's values.
+/// Advice for a function that is transparent over the field's values.
 std::string remedy_for_clear(const LoadedTransferFunction& loaded, const TransferFunctionOptions& options,
                              const std::array<double, 2>& field, bool emits) {
   if (options.opacity_scale == 0) return "`opacity_scale` is 0; give a number above 0";
@@ -132,7 +132,7 @@ std::string remedy_for_clear(const LoadedTransferFunction& loaded, const Transfe
   return "`rescale` stretches it over them, `range` over others";
 }
 
-/// The error of meaning: a picture that is right and shows nothing.
+/// Warns of an image that is correct but shows nothing.
 void warn_of_nothing(const Dataset::State& data, const std::string& file_or_preset,
                      const TransferFunctionOptions& options, LoadedTransferFunction& loaded) {
   const auto [low, high] = data.facts.scalar_range;

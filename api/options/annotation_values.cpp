@@ -21,7 +21,7 @@ std::optional<Place> place_of(std::string_view word) {
   return found == std::end(places) ? std::nullopt : std::optional(found->second);
 }
 
-/// A flag's place, or `otherwise` for the bare flag.
+/// The place that a flag states, or `otherwise` for the flag without a value.
 Place parse_place(const char* option, const std::string& word, Place otherwise) {
   if (word == "true") return otherwise;
   if (const auto place = place_of(word)) return *place;
@@ -30,7 +30,7 @@ Place parse_place(const char* option, const std::string& word, Place otherwise) 
   throw bad_input(fmt::format("{}: '{}' is no place; use {}", option, word, known));
 }
 
-/// Only a known place before the first colon is one: "Time: {time}" is text.
+/// The text before the first colon is only a place if it is the name of one: "Time: {time}" is text.
 Text parse_text(const std::string& words) {
   const std::size_t colon = words.find(':');
   const auto place = colon == std::string::npos ? std::nullopt : place_of(std::string_view(words).substr(0, colon));
@@ -44,7 +44,7 @@ ColorBar parse_color_bar(const OptionWords& words) {
   if (words.given("field-unit")) bar.title += fmt::format(" [{}]", words.word("field-unit"));
   bar.range = words.interval("color-bar-range");
   const auto scale = words.choice("color-bar-scale", off_on);
-  // By default as the function, where all values have a logarithm.
+  // By default as the transfer function, if all values have a logarithm.
   bar.logarithmic = scale.value_or(words.given("log") && (!bar.range || (*bar.range)[0] > 0));
   return bar;
 }
@@ -55,7 +55,7 @@ Axes parse_axes(const OptionWords& words) {
   return {.triad = shown != 1, .box = shown != 0};
 }
 
-/// Options that state how to draw `what`, if it is not drawn.
+/// Throws for options that state how to draw `what` if it is not drawn.
 void refuse_without(bool drawn, const char* what, const OptionWords& words,
                     std::initializer_list<const char*> options) {
   for (const char* option : options)

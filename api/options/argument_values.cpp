@@ -27,7 +27,7 @@ Error wrong(const std::string& option, const std::string& text, const std::strin
   return bad_input(fmt::format("{}: '{}' is not {}", option, text, allowed));
 }
 
-/// 0xrrggbb of sRGB in linear light (IEC 61966-2-1).
+/// 0xrrggbb in sRGB to linear light (IEC 61966-2-1).
 glm::dvec3 linear_color(std::uint32_t rgb) {
   glm::dvec3 color{};
   for (int c = 0; c < 3; ++c) {

@@ -12,8 +12,8 @@
 #include "tessera/mechanisms.hpp"
 #include "tessera/optical_model.hpp"
 
-/// Words of options to values. Every function throws Error(bad_input, "OPTION: ..."), which contains what was given and
-/// what is allowed; `option` is only for that message.
+/// Conversion of option words to values. Every function throws Error(bad_input, "OPTION: ..."), which contains the
+/// given and the allowed values; `option` is only for that message.
 namespace tessera::api {
 
 /// `WxH` in pixels, each 1 to max_image_side.
@@ -23,7 +23,7 @@ ImageSize parse_size(const std::string& option, const std::string& text);
 /// At least 1M.
 std::uint64_t parse_bytes(const std::string& option, const std::string& text);
 
-/// Which of the words it is.
+/// The index of the word in `known`.
 std::size_t parse_choice(const std::string& option, std::string_view text, std::span<const std::string_view> known);
 
 /// `exact`, `sampled:N` with N from 1 to 4096, `preintegrated` or `preintegrated:N` with N from 8 to 512, `partial`, or
@@ -35,20 +35,20 @@ struct WithoutWords {
   bool merging = true;  ///< of touching segments before they are sent
 };
 
-/// What is to be left out of culling, skipping, termination, lattice, sharing and merging, with commas between; nothing
-/// if empty.
+/// Mechanisms to switch off: culling, skipping, termination, lattice, sharing and merging, separated by commas; none if
+/// empty.
 WithoutWords parse_without(const std::string& option, const std::string& text);
 
-/// `R,G,B` as linear light, each >= 0; `#rrggbb` or `#rgb` as sRGB; or a name of CSS's (api/options/color_names.hpp).
+/// `R,G,B` as linear light, each >= 0; `#rrggbb` or `#rgb` as sRGB; or a CSS colour name (api/options/color_names.hpp).
 glm::dvec3 parse_color(const std::string& option, const std::string& text);
 
 /// `X,Y,Z`, finite; `positive`: each above zero.
 glm::dvec3 parse_vector(const std::string& option, const std::string& text, bool positive);
 
-/// What stands between commas, at least one word, perhaps empty.
+/// The words between commas, at least one; they may be empty.
 std::vector<std::string> split_at_commas(const std::string& text);
 
-/// `count` finite numbers with commas between; `form` is for the message, like "MIN,MAX, two numbers".
+/// `count` finite numbers, separated by commas; `form` is for the message, like "MIN,MAX, two numbers".
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count,
                                   const std::string& form);
 

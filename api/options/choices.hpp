@@ -34,7 +34,7 @@ inline constexpr Choices<PartitionKind> partition_kinds = {PartitionKind::curve,
                                                            PartitionKind::random};
 inline constexpr Choices<Backend> backend_kinds = {Backend::automatic, Backend::cpu, Backend::osmesa, Backend::egl};
 
-/// What `without` may name, beside merging.
+/// The names that `without` accepts, in addition to merging.
 inline constexpr std::pair<std::string_view, bool Mechanisms::*> mechanisms[] = {
     {"culling", &Mechanisms::culling},
     {"skipping", &Mechanisms::skipping},

@@ -12,7 +12,7 @@ struct NamedColor {
   std::uint32_t rgb;  ///< 0xrrggbb, sRGB
 };
 
-/// The 148 names of the web's colours (W3C, CSS Color Module Level 4, 6.1), in order of the alphabet.
+/// The 148 names of the web's colours (W3C, CSS Color Module Level 4, 6.1), in alphabetical order.
 std::span<const NamedColor> color_names();
 
 }  // namespace tessera::api

@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// The views of all frames, each once: those of a time series are of every step.
+/// The views of all frames, each once: those of a time series apply to every step.
 Json report_views(const Json& report) {
   Json views = Json::array();
   for (const Json& frame : report.at("frames"))

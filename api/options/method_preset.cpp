@@ -14,17 +14,17 @@ inline namespace v0_1 {
 
 void apply_method_preset(int ranks, OptionWords& words) {
   if (!words.given("preset")) return;
-  if (const auto colors = nearest_name(words.word("preset"), preset_names()))  // what other programs call a preset
+  if (const auto colors = nearest_name(words.word("preset"), preset_names()))  // other programs call these presets
     throw bad_input(fmt::format("`preset`: '{}' is no published method; for colours write `transfer_function` {}",
                                 words.word("preset"), *colors));
   static_cast<void>(words.choice("preset"));
   words.set_default("rasterizer", "scanline");
-  // An accuracy is of `auto`, so whoever asks for one asks for that.
+  // An accuracy only applies to `auto`, so giving one selects that method.
   if (!words.given("accuracy")) words.set_default("integrator", "sampled:4");
   words.set_default("compositor", "gl-fragment");
   if (words.word("compositor") != "cpu") words.set_default("backend", "osmesa");
   if (words.word("compositor") == "gl-fragment") words.set_default("framebuffer", "half");
-  // Sixteen tiles along the longer side of the picture.
+  // Sixteen tiles along the longer side of the image.
   const ImageSize size = words.size("size").value_or(ImageSize());
   words.set_default("tile-size", std::to_string(std::min((std::max(size.width, size.height) + 15) / 16, 1024)));
   if (ranks < 2) return;

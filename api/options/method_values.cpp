@@ -13,7 +13,7 @@
 namespace tessera::api {
 namespace {
 
-/// Those of grids have no numbers: their steps are of --step.
+/// Integrators of grids have no numbers: --step sets their step length.
 Integrator grid_integrator(const std::string& word) {
   Integrator integrator;
   for (const auto kind :
@@ -59,7 +59,7 @@ void set_mesh(const OptionWords& words, RenderOptions& options) {
   if (words.given("higher-order-tolerance")) return;
   options.higher_order_accuracy =
       words.given("accuracy") ? options.settings.integrator.accuracy : default_higher_order_accuracy;
-  // At first as coarsely as read_for_accuracy() begins.
+  // Begin as coarsely as read_for_accuracy() does.
   options.read.higher_order_tolerance = first_higher_order_tolerance(*options.higher_order_accuracy);
 }
 

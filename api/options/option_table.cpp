@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Long: the one table from which help, command line, states and messages follow.
+// Long: the one table from which help, command line, states and messages are generated.
 #include <array>
 
 #include "tessera/program/options.hpp"

@@ -28,13 +28,13 @@ bool is_setting(std::string_view name) {
   return row != nullptr && !row->is(Trait::positional);
 }
 
-/// A setting's name is a word of the sentence: not a part of a file's name, nor quoted.
+/// The name of a setting is a word of the sentence: not part of a file's name, and not quoted.
 bool may_precede(std::string_view before) { return before.empty() || before.back() == ' ' || before.back() == '('; }
 bool may_follow(std::string_view after) {
   return after.empty() || std::string_view(" ,;:)=").find(after.front()) != std::string_view::npos;
 }
 
-/// `parse` of the word, if there is one.
+/// `parse` applied to the word, if there is one.
 template <class Parse>
 auto parsed(const OptionWords& words, std::string_view name, const Parse& parse)
     -> std::optional<decltype(parse(std::string(), std::string()))> {
@@ -83,7 +83,7 @@ std::string with_options(std::string_view text) {
     if (close == std::string_view::npos) break;
     const std::string_view name = text.substr(open + 1, close - open - 1);
     if (!may_precede(text.substr(0, open)) || !may_follow(text.substr(close + 1)) || !is_setting(name)) {
-      // The second backquote may be the first of a name.
+      // The second backquote may be the opening one of a name.
       result += text.substr(done, close - done);
       done = close;
       continue;
@@ -105,7 +105,7 @@ std::vector<std::string> with_options(const std::vector<std::string>& notes) {
 
 const OptionRow& OptionWords::row(std::string_view name) const {
   const OptionRow* found = find_option(command_, name);
-  if (found == nullptr) found = find_option(any_command, name);  // a command that lacks it was not given it
+  if (found == nullptr) found = find_option(any_command, name);  // options of other commands were not given
   if (found == nullptr || found->key() != name)
     throw std::logic_error(fmt::format("'{}' is not the key of an option", name));
   return *found;
@@ -128,7 +128,7 @@ const std::string& OptionWords::word(std::string_view name) const {
 }
 
 void OptionWords::set(std::string_view name, std::vector<std::string> values) {
-  // An empty word gives nothing, but to an option that lists texts.
+  // An empty word counts as no value, except for an option that lists texts.
   if (!row(name).is(Trait::list) && values.size() == 1 && values.front().empty()) values.clear();
   if (values.empty())
     words_.erase(std::string(name));

@@ -35,7 +35,7 @@ Peel parse_peel(const std::string& word) {
   return peel;
 }
 
-/// Layers, of options whose outputs and method are set.
+/// Sets the layers; outputs and method must already be set.
 void set_peel(const OptionWords& words, RenderOptions& options) {
   options.frame.peel = parse_peel(words.word("peel"));
   if (!options.films.empty())
@@ -52,7 +52,7 @@ void set_peel(const OptionWords& words, RenderOptions& options) {
                                 method_word(kind)));
 }
 
-/// Deep pictures of volumes that cannot be made.
+/// Throws for deep images of volumes that cannot be rendered.
 void refuse_deep_volumes(const RenderOptions& options) {
   if (options.show_balance) throw bad_input("deep picture: `show` balance draws none; name an .exr, .png or .pfm");
   if (options.frame.peel) return;
@@ -64,7 +64,7 @@ void refuse_deep_volumes(const RenderOptions& options) {
   if (options.settings.grid.shading) throw bad_input("deep picture: it is not shaded; leave `shade` out");
 }
 
-/// Pictures that cannot be annotated.
+/// Throws for images that cannot be annotated.
 void refuse_unannotated(const RenderOptions& options) {
   if (options.show_balance) throw bad_input("`show` balance: its pictures are not annotated; leave one of the two out");
   if (options.annotation.layer.empty() && options.films.empty() && !options.to_standard_output &&
@@ -129,7 +129,7 @@ void set_pictures(const OptionWords& words, RenderOptions& options) {
   options.annotation = annotation_options(words, options.image);
   if (options.annotation.annotation) refuse_unannotated(options);
   assign(options.repeat, words.count("repeat", 1));
-  if (options.repeat > 0) options.settings.ranks.frames_in_flight = 1;  // a time is of one frame alone
+  if (options.repeat > 0) options.settings.ranks.frames_in_flight = 1;  // times are for one frame alone
   assign(options.verify, words.count("verify", 1));
   options.frame.keep_uncertainty = options.is_grid() && options.verify > 0;
 }

@@ -14,13 +14,13 @@ namespace tessera {
 inline namespace v0_1 {
 namespace {
 
-/// Options that are for the other kind of data. The first word that an option of meshes takes is its default.
+/// Throws for options of the other kind of data, unless a mesh option has its default, which is its first choice.
 void refuse_others(const OptionWords& words, bool is_grid) {
   for (const OptionRow* row : option_rows(is_grid ? Trait::meshes : Trait::volumes)) {
     if (!row->is(Trait::render) || !words.given(row->key())) continue;
     const auto choices = row->choices();
     if (is_grid && !choices.empty() && words.word(row->key()) == choices.front()) continue;
-    if (words.given("input")) require_input(words.word("input"));  // one that is not there is neither
+    if (words.given("input")) require_input(words.word("input"));  // a missing input is neither a mesh nor a volume
     throw bad_input(fmt::format("{}: is for {}; leave it out", api::setting_name(row->key()),
                                 is_grid ? "meshes, and the input is a volume" : "volumes, and the input is a mesh"));
   }

@@ -7,7 +7,8 @@
 
 namespace tessera::api {
 
-/// The option `tile-size` as messages of libraries name it, which with_options() turns into --tile-size: `tile_size`.
+/// The name of the option `tile-size` in messages of libraries, `tile_size` in backquotes; with_options() turns it into
+/// --tile-size.
 inline std::string setting_name(std::string_view option) {
   std::string name(option);
   std::ranges::replace(name, '-', '_');

@@ -33,7 +33,7 @@ const OptionRow& row_named(std::string_view name, const std::string& source) {
       fmt::format("{}: {} is no option of render; see tessera render --help-all", source, scene::quote(name)));
 }
 
-/// Values of a text file as the command line has them: a flag's is true, or none if it is false.
+/// Values of a text file as on the command line: a flag is "true", or absent if it is false.
 std::vector<std::string> words_of(const OptionRow& row, std::vector<std::string> values, std::string_view name,
                                   const std::string& source) {
   const bool is_flag = row.is(Trait::flag);
@@ -148,7 +148,7 @@ std::string State::toml() const {
 
 void State::set(std::string_view option, std::vector<std::string> values) {
   const OptionRow& row = api::row_named(option, "state");
-  // An empty word gives nothing, but to an option that lists texts.
+  // An empty word counts as no value, except for an option that lists texts.
   if (!row.is(Trait::list) && values.size() == 1 && values.front().empty()) values.clear();
   if (row.is(Trait::flag) && !values.empty()) values = api::words_of(row, std::move(values), option, "state");
   if (values.size() > 1 && !row.is(Trait::list))

@@ -8,14 +8,14 @@
 
 #include "tessera/program/options.hpp"
 
-/// JSON values of options to words and back. `name` is what `source`, which messages begin with, calls the option.
+/// Conversion between JSON values of options and words. Messages begin with `source` and call the option `name`.
 namespace tessera::api {
 
-/// Of null and false none. Throws Error(bad_input) for another kind of value than the option takes.
+/// None for null and false. Throws Error(bad_input) for a value of another type than the option takes.
 std::vector<std::string> json_words(const OptionRow& row, const nlohmann::json& value, std::string_view name,
                                     const std::string& source);
 
-/// Text, a list of texts or true, of words that are given.
+/// Text, a list of texts or true, for words that are given.
 nlohmann::json json_of_words(const OptionRow& row, const std::vector<std::string>& words);
 
 }  // namespace tessera::api

@@ -5,7 +5,7 @@
 
 namespace tessera::api {
 
-/// Whether a surface's name is a file's rather than a block's: by its extension, or since the file is there.
+/// Whether a surface's name is that of a file and not of a block: by its extension, or because the file exists.
 bool names_surface_file(const std::string& name);
 
 }  // namespace tessera::api

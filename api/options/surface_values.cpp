@@ -17,7 +17,7 @@ namespace tessera {
 namespace api {
 namespace {
 
-/// COLOUR, COLOUR:OPACITY or :OPACITY, as `text` has them behind a surface's name. `given`: all of it.
+/// COLOUR, COLOUR:OPACITY or :OPACITY, the text after a surface's name. `given`: the whole word, for messages.
 struct Look {
   std::optional<glm::dvec3> color{};
   double opacity = 1;
@@ -45,7 +45,7 @@ IsoSurface iso_of(const std::string& word) {
   return {value, look.color, look.opacity};
 }
 
-/// Where the name of a surface ends: of a file that is there, though its own name has colons.
+/// Where the name of a surface ends: an existing file's name may contain colons.
 std::size_t end_of_name(const std::string& word) {
   std::size_t end = word.size();
   for (int colons = 0; colons <= 2 && end != std::string::npos && end > 0; ++colons) {
@@ -65,7 +65,7 @@ BlockSurfaceWord unread_block(const std::string& word, const std::string& name) 
   }
 }
 
-/// Whether a name means one of `names`, as ReadOptions::blocks has it.
+/// Whether a name matches one of `names`, by the rules of ReadOptions::blocks.
 bool is_among(const std::string& name, std::span<const std::string> names) {
   return std::ranges::any_of(names, [&](const std::string& each) {
     return each == name || each.starts_with(name + '/') || each.ends_with('/' + name);

@@ -10,13 +10,13 @@
 
 namespace tessera::api {
 
-/// Boxes halved at the median of their centres, so that those that meet another box are found in about log n steps
-/// each. Built in n log n.
+/// A binary tree of boxes, halved at the median of their centres, that finds the boxes that meet a given box in about
+/// log n steps each. Built in n log n.
 class BoxTree {
  public:
   explicit BoxTree(std::span<const scene::Box> boxes);
 
-  /// Calls `found(i)` for each box that shares a point with `box`, in no order.
+  /// Calls `found(i)` for each box that shares a point with `box`, in unspecified order.
   void visit(const scene::Box& box, const std::function<void(std::uint32_t)>& found) const;
 
  private:

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t most_bins = 65536;
 
-/// Whether places lie in a picture.
+/// Tests whether places are visible in a view.
 class Window {
  public:
   explicit Window(const View& view) : camera_(view.camera) {
@@ -47,7 +47,7 @@ class Window {
   bool perspective_;
 };
 
-/// A value and the volume that has it.
+/// A value and the volume in which the field has it.
 struct Share {
   double value, volume;
 };
@@ -70,7 +70,7 @@ std::vector<Share> shares_of(const Dataset& dataset, const std::optional<View>& 
   std::optional<Window> window;
   if (seen) window.emplace(*seen);
   const bool clipped = !data.clip.empty();
-  const auto [low, high] = data.facts.scalar_range;  // of what a selection has left
+  const auto [low, high] = data.facts.scalar_range;  // after the selection
   std::vector<Share> shares;
   for (const scene::FieldSample& sample : data.field_samples().samples) {
     if (data.of_all && !(sample.value >= low && sample.value <= high)) continue;
@@ -118,7 +118,7 @@ Histogram histogram(const Dataset& dataset, const HistogramOptions& options) {
   if (options.logarithmic && !(found.range[0] > 0)) found.range[0] = smallest_positive(dataset, shares, found.range[1]);
 
   const auto scale = [&](double value) { return options.logarithmic ? std::log10(value) : value; };
-  // Halves do not overflow.
+  // Halved, so that they do not overflow.
   const double low = scale(found.range[0]) / 2, width = scale(found.range[1]) / 2 - low;
   found.shares.assign(options.bins, 0);
   double inside = 0, outside = 0;
@@ -145,7 +145,7 @@ std::vector<double> quantiles(const Dataset& dataset, std::span<const double> fr
   std::vector<Share> shares = shares_of(dataset, seen);
   if (shares.empty()) return std::vector<double>(fractions.size(), std::numeric_limits<double>::quiet_NaN());
   std::ranges::stable_sort(shares, {}, &Share::value);
-  std::vector<double> below;  // up to and with each
+  std::vector<double> below;  // cumulative, including each share
   below.reserve(shares.size());
   double sum = 0;
   for (const Share& share : shares) below.push_back(sum += share.volume);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a data set's samples are taken, once; of a mesh in parts by all ranks together.
+// Takes a data set's samples once; for a mesh in parts all ranks take them together.
 #include "scene/field_samples.hpp"
 
 #include "api/dataset.hpp"

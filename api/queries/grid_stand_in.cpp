@@ -11,7 +11,7 @@
 namespace tessera::api {
 namespace {
 
-/// How many samples along each axis: about in proportion, so many in all at most.
+/// The number of samples along each axis, about in proportion to `n`, so that their product is at most `samples`.
 GridIndex fewer(const GridIndex& n, std::uint64_t samples, std::int64_t least) {
   const auto counts = [&](double factor) {
     GridIndex m{};
@@ -29,14 +29,14 @@ GridIndex fewer(const GridIndex& n, std::uint64_t samples, std::int64_t least) {
   return counts(small);
 }
 
-/// The sample of fewer, m of n, that sample i counts to.
+/// The index among m coarse samples to which sample i of n contributes.
 std::int64_t nearest(std::int64_t i, std::int64_t n, std::int64_t m, bool cells) {
   if (m == n) return i;
   if (cells) return std::min(i * m / n, m - 1);
   return n > 1 ? (2 * i * (m - 1) + (n - 1)) / (2 * (n - 1)) : 0;
 }
 
-/// Where fewer lattice points lie: evenly among the lattice's numbers.
+/// The geometry with fewer lattice points, evenly spaced in lattice indices.
 GridGeometry geometry_of(const GridGeometry& g, const GridIndex& points) {
   GridGeometry coarse = g;
   coarse.points = points;
@@ -72,7 +72,7 @@ std::shared_ptr<const scene::SampleSource> coarser(const scene::SampleSource& so
     const auto slice = static_cast<std::size_t>(m[0] * m[1]);
     std::vector<double> sums(slice, 0);
     std::vector<std::uint32_t> counts(slice, 0);
-    // Samples that count to slice k lie next to each other.
+    // The samples that contribute to slice k are contiguous.
     const auto first = [&](std::int64_t slice_of) {
       std::int64_t low = 0, high = n[2];
       while (low < high) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far pixels are off because of the tets of higher-order cells, and how finely that makes them read.
+// Estimates the error of pixels that is due to the tets of higher-order cells, and how finely to divide these.
 #include "tessera/higher_order.hpp"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// A view with no more pixels than are compared, of the same shape.
+/// The same view, reduced to the number of pixels that are compared.
 View small(View view) {
   constexpr double most_pixels = 1 << 16;
   const double shrink = std::sqrt(most_pixels / (static_cast<double>(view.size.width) * view.size.height));
@@ -29,9 +29,10 @@ View small(View view) {
   return view;
 }
 
-/// p in [1/2, 1] for which errors in proportion to t^p make pictures of tolerances t0 > t1 > t2 differ by d1 and d2.
+/// The exponent p in [1/2, 1] for which errors in proportion to t^p explain the differences d1 and d2 between images of
+/// tolerances t0 > t1 > t2.
 double power_of(double t0, double t1, double t2, double d1, double d2) {
-  double low = 0.5, high = 1;  // what falls faster is taken to fall so
+  double low = 0.5, high = 1;  // faster convergence is treated as p = 1
   for (int halvings = 0; halvings < 30; ++halvings) {
     const double p = 0.5 * (low + high);
     const bool falls_faster = d1 * (std::pow(t1, p) - std::pow(t2, p)) > d2 * (std::pow(t0, p) - std::pow(t1, p));
@@ -40,19 +41,19 @@ double power_of(double t0, double t1, double t2, double d1, double d2) {
   return low;
 }
 
-/// Tets of one tolerance.
+/// The mesh and image of one tolerance.
 struct Level {
   double tolerance;
   std::uint64_t tets;
-  Image picture;  ///< on the rank that assembles it
+  Image picture;  ///< on the rank that assembles
 };
 
-/// How two pictures differ.
+/// The difference of two images.
 struct Difference {
   double largest = 0, root_mean_square = 0;
 };
 
-/// Reads, draws and compares: what read_for_accuracy() does on the way.
+/// Reads, renders and compares: the steps of read_for_accuracy().
 class HigherOrderLevels {
  public:
   HigherOrderLevels(const std::function<Dataset(const ReadOptions&)>& open,
@@ -64,12 +65,12 @@ class HigherOrderLevels {
     settings_.threads = settings.threads;
     settings_.memory_bytes = settings.memory_bytes;
     settings_.ranks = settings.ranks;
-    settings_.ranks.exchange = Exchange::segments;  // the same tolerance for any number of ranks
-    settings_.integrator.accuracy = 4e-6;           // of the least that float lanes can do
+    settings_.ranks.exchange = Exchange::segments;  // gives the same tolerance for any number of ranks
+    settings_.integrator.accuracy = 4e-6;           // about the best that float lanes reach
   }
 
-  /// Draws what was read. Of fewer than twice the tets of the last picture it takes that one's place: what they differ
-  /// by is of a few cells alone.
+  /// Renders the data. With fewer than twice the tets of the last level they replace that level, since only a few cells
+  /// would differ.
   void draw(const Dataset& data) {
     const HigherOrderCells& cells = data.higher_order_cells();
     if (!levels_.empty() && cells.tets < 2 * levels_.back().tets) levels_.pop_back();
@@ -77,7 +78,7 @@ class HigherOrderLevels {
     if (levels_.size() >= 2) fit();
   }
 
-  /// Finds the error of the one level drawn by two with larger tolerances, of a tenth of the tets.
+  /// Finds the error of the only level by two levels with larger tolerances and at most half of the tets.
   void compare_with_coarser(ReadOptions options) {
     for (const double times : {4, 16}) {
       options.higher_order_tolerance = times * levels_.back().tolerance;
@@ -90,10 +91,10 @@ class HigherOrderLevels {
   }
 
   [[nodiscard]] std::size_t pictures() const { return levels_.size(); }
-  /// Of the last picture; infinite as long as none differ.
+  /// Of the last level; infinite if no images differ.
   [[nodiscard]] double error() const { return error_; }
   [[nodiscard]] double tolerance_for(double error) const {
-    const double power = levels_.size() < 3 ? 0.75 : power_;  // half way, as long as it is not known
+    const double power = levels_.size() < 3 ? 0.75 : power_;  // midway, as long as the power is unknown
     return levels_.back().tolerance * std::pow(error / error_, 1 / power);
   }
 
@@ -104,23 +105,23 @@ class HigherOrderLevels {
     return session.render(scene_->first, scene_->second).image;
   }
 
-  /// The last level before one whose tolerance is four times its, or the first: less apart, the worst tets of the one
-  /// may be those of the other.
+  /// The last level whose tolerance is at least four times larger, or the first level. At closer tolerances the worst
+  /// tets of both levels may be the same.
   [[nodiscard]] const Level& coarser_than(const Level& level) const {
     const auto is_apart = [&](const Level& of) { return of.tolerance >= 3.99 * level.tolerance; };
     const auto found = std::find_if(levels_.rbegin(), levels_.rend(), is_apart);
     return found == levels_.rend() ? levels_.front() : *found;
   }
 
-  /// The error as a power of the tolerance, by three pictures. Of two the power is the least there is, which leaves
-  /// room enough.
+  /// Fits the error as a power of the tolerance to three images. With two images the power is its lower bound, which is
+  /// conservative.
   void fit() {
     const Level &last = levels_.back(), &middle = coarser_than(last), &first = coarser_than(middle);
     const Difference difference_of_last = difference(middle.picture, last.picture);
     power_ = 0.5;
     double by_chance = 1;
     if (first.tolerance > middle.tolerance) {
-      // The largest difference depends on a few pixels, along the surface; the mean is of all.
+      // The largest difference depends on a few pixels along the surface; the mean depends on all pixels.
       power_ =
           power_of(first.tolerance, middle.tolerance, last.tolerance,
                    difference(first.picture, middle.picture).root_mean_square, difference_of_last.root_mean_square);
@@ -130,7 +131,7 @@ class HigherOrderLevels {
     error_ = apart > 1 ? by_chance * difference_of_last.largest / (std::pow(apart, power_) - 1) : infinite;
   }
 
-  /// The same on all ranks.
+  /// The same result on all ranks.
   [[nodiscard]] Difference difference(const Image& a, const Image& b) const {
     const int assembler =
         assign_roles(communicator_.size(), settings_.ranks.projectors, settings_.ranks.compositors).assembler();
@@ -154,9 +155,9 @@ class HigherOrderLevels {
   const std::function<View(const Dataset&)>& view_;
   Settings settings_;
   const Communicator& communicator_;
-  std::optional<std::pair<View, TransferFunction>> scene_;  ///< of the first level, and all others
+  std::optional<std::pair<View, TransferFunction>> scene_;  ///< of the first level, used for all
   std::vector<Level> levels_;
-  double power_ = 0.5, error_ = infinite;  ///< the error is in proportion to tolerance^power
+  double power_ = 0.5, error_ = infinite;  ///< the error is proportional to tolerance^power
 };
 
 }  // namespace
@@ -167,7 +168,7 @@ HigherOrderRead read_for_accuracy(const ReadOptions& options, std::optional<doub
                                   const std::function<View(const Dataset&)>& view, const Settings& settings,
                                   const Communicator& communicator) {
   HigherOrderLevels levels(open, function, view, settings, communicator);
-  constexpr int most_levels = 12;  // cells may be the same tets at several
+  constexpr int most_levels = 12;  // several tolerances may give the same tets
   ReadOptions read = options;
   if (accuracy) read.higher_order_tolerance = first_higher_order_tolerance(*accuracy);
   for (int level = 1;; ++level) {
@@ -183,8 +184,8 @@ HigherOrderRead read_for_accuracy(const ReadOptions& options, std::optional<doub
       if (levels.pictures() == 1) levels.compare_with_coarser(read);
       return taken(levels.error());
     }
-    data.reset();  // its memory before the next one's
-    // A little less than what is asked for is asked for, since one more level costs as much again.
+    data.reset();  // free its memory before the next data set is read
+    // Aim a little lower than requested, since one more level costs as much again.
     const double wanted = levels.pictures() < 2 ? 0 : levels.tolerance_for(0.8 * *accuracy);
     read.higher_order_tolerance =
         std::clamp(wanted, cells.tolerance / (levels.pictures() < 2 ? 4 : 8), cells.tolerance / 2);

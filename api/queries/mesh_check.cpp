@@ -52,7 +52,7 @@ double relative_determinant(const Corners& c) {
 /// Longest edge over smallest height.
 double aspect_ratio(const Corners& c, double determinant) {
   const double length = longest_edge(c);
-  double most_area = 0;  // twice that of a face, over length^2
+  double most_area = 0;  // twice the area of a face, over length^2
   for (std::size_t i = 0; i < 4; ++i) {
     const glm::dvec3 a = (c[(i + 1) % 4] - c[i]) / length, b = (c[(i + 2) % 4] - c[i]) / length;
     most_area = std::max(most_area, glm::length(glm::cross(a, b)));
@@ -60,8 +60,8 @@ double aspect_ratio(const Corners& c, double determinant) {
   return most_area / std::abs(determinant);
 }
 
-/// Whether some axis separates them, or leaves them no more than `margin` in common (the separating axis theorem for
-/// convex bodies: normals of faces and cross products of edges).
+/// Whether two tets overlap by more than `margin` along every axis (separating axis theorem for convex bodies: normals
+/// of faces and cross products of edges).
 bool interiors_meet(const Corners& a, const Corners& b, double margin) {
   const glm::dvec3 origin = a[0];
   Corners p, q;
@@ -97,8 +97,8 @@ bool interiors_meet(const Corners& a, const Corners& b, double margin) {
   return true;
 }
 
-/// Area of the part of triangle `b` inside triangle `a`, both seen along `normal` (Sutherland, Hodgman, "Reentrant
-/// polygon clipping", CACM 1974), times two.
+/// Twice the area of the part of triangle `b` inside triangle `a`, both projected along `normal` (Sutherland, Hodgman,
+/// "Reentrant polygon clipping", CACM 1974).
 double common_area(std::span<const glm::dvec3> a, std::span<const glm::dvec3> b, const glm::dvec3& normal) {
   std::vector<glm::dvec3> polygon(b.begin(), b.end()), next;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -121,9 +121,9 @@ double common_area(std::span<const glm::dvec3> a, std::span<const glm::dvec3> b,
 }
 
 struct Face {
-  std::array<std::uint32_t, 3> points;  ///< sorted, coincident ones named once
+  std::array<std::uint32_t, 3> points;  ///< sorted; coincident points have one name
   std::uint32_t tet;
-  std::uint8_t opposite;  ///< the corner that is not in it
+  std::uint8_t opposite;  ///< the corner that is not in the face
 };
 
 class Check {
@@ -144,12 +144,12 @@ class Check {
   MeshCheck take() { return std::move(result_); }
 
  private:
-  /// Roughly the shares of the time that parts take of a mesh of 1.6 million tets.
+  /// The intervals are roughly the parts' shares of the time, measured for a mesh of 1.6 million tets.
   void begin_part(double begin, double end) {
     part_begin_ = begin, part_length_ = end - begin;
     tell(0, 1);
   }
-  /// Of the part's `count` steps `n` are done.
+  /// Reports that `n` of the part's `count` steps are done.
   void tell(std::size_t n, std::size_t count) const {
     constexpr std::size_t steps = 1 << 15;
     if (progress_ && n % steps == 0)
@@ -159,7 +159,7 @@ class Check {
     const Corners c = corners_of(mesh_, tet);
     return {mesh_.cell_of(tet), mesh_.cell_of(other), 0.25 * (c[0] + c[1] + c[2] + c[3]), 0};
   }
-  /// A cell that several tets came from has one place in the list, whatever the count counts.
+  /// A cell from which several tets were made is listed once, whatever the count.
   static void list(MeshCheck::Finding& finding, const MeshCheck::Place& place) {
     if (finding.places.size() == MeshCheck::most_places) return;
     for (const MeshCheck::Place& p : finding.places)
@@ -171,7 +171,7 @@ class Check {
     ++finding.count;
   }
 
-  /// Every point's name is the first one at its place.
+  /// Names every point by the first point at its position.
   void name_points() {
     std::vector<std::uint8_t> used(mesh_.positions.size(), 0);
     for (const scene::Tet& t : mesh_.tets)
@@ -214,7 +214,7 @@ class Check {
       result_.slivers_1e6 += aspect > 1e6 ? 1 : 0;
       worst.emplace_back(-aspect, t);
       if (worst.size() < 4096) continue;
-      // More than are listed: several may be of one cell.
+      // Keep more than are listed: several may belong to one cell.
       std::nth_element(worst.begin(), worst.begin() + 1024, worst.end());
       worst.resize(1024);
     }
@@ -230,14 +230,15 @@ class Check {
     return {mesh_.positions[f.points[0]], mesh_.positions[f.points[1]], mesh_.positions[f.points[2]]};
   }
 
-  /// On which side of a face its tet lies: -1, 1, or 0 where that cannot be told.
+  /// The side of a face on which its tet is: -1, 1, or 0 if that is undecidable.
   [[nodiscard]] int side(const Face& f) const {
     const auto [a, b, c] = triangle(f);
     const double determinant = relative_determinant({a, b, c, mesh_.positions[mesh_.tets[f.tet][f.opposite]]});
     return determinant > flat_determinant ? 1 : determinant < -flat_determinant ? -1 : 0;
   }
 
-  /// Sorts all faces; those that one tet alone has are the boundary. Pairs on one side of a face are folds.
+  /// Sorts all faces; those that belong to only one tet are the boundary. Pairs of tets on one side of a face are
+  /// folds.
   void match_faces() {
     std::vector<Face> faces;
     faces.reserve(4 * mesh_.tets.size());
@@ -304,7 +305,7 @@ class Check {
         if (here == 0 || there == 0) return;
         const double common = common_area(a, b, normal);
         if (common <= tolerance * std::min(area, glm::length(other))) return;
-        // On one side they overlap; the search for overlaps counts them.
+        // Tets on the same side overlap; the search for overlaps counts them.
         if (here == there) {
           seeds_.emplace_back(boundary_[i].tet, boundary_[k].tet);
           return;
@@ -322,7 +323,8 @@ class Check {
     return interiors_meet(p, q, tolerance * std::min(longest_edge(p), longest_edge(q)));
   }
 
-  /// Seeds: folds, and tets that a boundary face's tet meets. From a pair that overlaps to its neighbours.
+  /// Starts from folds and from tets that a boundary face's tet meets, and goes from each overlapping pair to its
+  /// neighbours.
   void find_overlaps() {
     std::vector<scene::Box> boxes;
     boxes.reserve(mesh_.tets.size());
@@ -330,12 +332,12 @@ class Check {
     const BoxTree tree(boxes);
     std::unordered_set<std::uint64_t> seen;
     std::queue<std::pair<std::uint32_t, std::uint32_t>> pending;
-    std::set<std::pair<std::uint64_t, std::uint64_t>> pairs;  // of cells
+    std::set<std::pair<std::uint64_t, std::uint64_t>> pairs;  // pairs of cells
     std::unordered_set<std::uint64_t> overlapping;
     const auto consider = [&](std::uint32_t a, std::uint32_t b) {
       if (a == b || a == none || b == none || result_.more_overlaps) return;
       if (a > b) std::swap(a, b);
-      // Who lies on two sides of a common face has nothing in common; if not, the pair is a seed.
+      // Tets on opposite sides of a common face do not overlap; on the same side the pair is already a seed.
       if (!overlap(a, b) || !seen.insert(std::uint64_t{a} << 32 | b).second) return;
       const std::uint64_t one = mesh_.cell_of(a), other = mesh_.cell_of(b);
       const std::uint64_t first = std::min(one, other), second = std::max(one, other);
@@ -366,7 +368,7 @@ class Check {
   double part_begin_ = 0, part_length_ = 0;
   MeshCheck result_;
   std::vector<std::uint32_t> name_, neighbor_;
-  std::vector<std::uint8_t> solid_;  ///< neither flat nor a sliver beyond the overlap's tolerance
+  std::vector<std::uint8_t> solid_;  ///< neither flat nor a sliver beyond the tolerance for overlaps
   std::vector<Face> boundary_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> seeds_;
 };

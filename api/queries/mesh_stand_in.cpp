@@ -13,17 +13,17 @@
 namespace tessera::api {
 namespace {
 
-constexpr double reach = 0.5;  ///< beside a tet, samples' distances
+constexpr double reach = 0.5;  ///< next to a tet, in units of the sample spacing
 
 struct Plane {
-  glm::dvec3 inward;  ///< of length one
-  double at;          ///< dot(inward, p) of the face's points
+  glm::dvec3 inward;  ///< unit length
+  double at;          ///< dot(inward, p) for the face's points
 };
 
-/// One tet among the samples, lengths in their distances.
+/// One tet in the grid of samples; lengths are in units of the sample spacing.
 class TetOfSamples {
  public:
-  /// `value`: from 0 to 1 over the range.
+  /// `value`: 0 to 1 over the range.
   TetOfSamples(const std::array<glm::dvec3, 4>& corner, const std::array<double, 4>& value) {
     const glm::dvec3 a = corner[1] - corner[0], b = corner[2] - corner[0], c = corner[3] - corner[0];
     const double volume = glm::dot(a, glm::cross(b, c));
@@ -36,14 +36,14 @@ class TetOfSamples {
     origin_ = corner[0], at_origin_ = value[0];
     std::tie(least_, most_) = std::minmax({value[0], value[1], value[2], value[3]});
     for (std::size_t i = 0; i < 4; ++i) {
-      // Towards corner i, from the face that it is not in.
+      // The direction to corner i from the opposite face.
       const glm::dvec3 up = i == 0 ? -(dual[0] + dual[1] + dual[2]) : dual[i - 1];
       planes_[i].inward = up / glm::length(up);
       planes_[i].at = glm::dot(planes_[i].inward, corner[i == 0 ? 1 : 0]);
     }
   }
   [[nodiscard]] bool flat() const { return flat_; }
-  /// How far inside of the nearest face, negative beside the tet.
+  /// Distance to the nearest face, positive inside the tet, negative outside.
   [[nodiscard]] double inside(const glm::dvec3& p) const {
     double least = HUGE_VAL;
     for (const Plane& plane : planes_) least = std::min(least, glm::dot(plane.inward, p) - plane.at);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one ray meets: by the reference, of the few cells that are near it.
+// The values along one ray: computed by the reference from the few cells near it.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -31,7 +31,7 @@ struct Depths {
   double begin = infinity, end = -infinity;
 };
 
-/// A ray through a data set: what any stretch of it shows, and the field along it.
+/// A ray through a data set: what any interval of it shows, and the field along it.
 class ProbedRay {
  public:
   ProbedRay(const View& view, PixelIndex pixel) : view_(view), pixel_(pixel), eye_(view.camera, view.size) {}
@@ -39,12 +39,12 @@ class ProbedRay {
   ProbedRay(const ProbedRay&) = delete;
   ProbedRay& operator=(const ProbedRay&) = delete;
 
-  /// From where the ray enters the data to where it leaves them; begin > end if it does not meet them.
+  /// From where the ray first enters the data to where it last leaves them; begin > end if it misses them.
   [[nodiscard]] virtual Depths depths() const = 0;
   [[nodiscard]] virtual double value(double depth) const = 0;
 
   [[nodiscard]] ReferencePixel all() const { return pixel_with(view_.camera); }
-  /// Opacity of what lies between two depths in view.
+  /// Opacity of the visible matter between two depths.
   [[nodiscard]] double opacity(double near, double far) const {
     near = std::max(near, eye_.nearest()), far = std::min(far, eye_.farthest());
     if (!(near < far)) return 0;
@@ -52,7 +52,7 @@ class ProbedRay {
     camera.clipping_range = {near, far};
     return pixel_with(camera).a;
   }
-  /// With the value there or, beyond the cells by rounding, just before or behind.
+  /// The value at `depth` or, if rounding puts that outside the cells, just in front of it or behind it.
   [[nodiscard]] RayPoint point(double depth) const {
     const reference::View::Ray ray = eye_.ray(x(), y());
     const double nudge = 1e-7 * (1 + std::abs(depths().end - depths().begin));
@@ -72,7 +72,7 @@ class ProbedRay {
   reference::View eye_;
 };
 
-/// Through a mesh, of which `near` are the tets that it may meet.
+/// A ray through a mesh; `near` contains the tets that it may meet.
 class RayInMesh final : public ProbedRay {
  public:
   RayInMesh(scene::TetMesh near, const View& view, PixelIndex pixel, const TransferFunction& function,
@@ -184,20 +184,20 @@ class RayInGrid final : public ProbedRay {
   const Settings& settings_;
 };
 
-/// A tet that a ray meets, with what it takes to meet it.
+/// A tet that a ray meets, with its geometry.
 struct RayTet {
   std::uint64_t number;  ///< in the whole mesh
   std::array<glm::dvec3, 4> positions;
-  std::array<double, 4> scalars;  ///< of its corners; cell data: the first
+  std::array<double, 4> scalars;  ///< of its corners; cell data: only the first is used
 };
 static_assert(sizeof(RayTet) == 136);
 
-/// The tets of a mesh that the ray goes through, with the whole mesh's order.
+/// The tets of a mesh that the ray passes through, in the order of the whole mesh.
 std::vector<RayTet> tets_on_ray(const Dataset::State& data, const View& view, PixelIndex pixel) {
   const std::vector<std::uint32_t> near = api::tets_near_ray(data.mesh, view, pixel);
   const scene::TetMesh subset = scene::subset(data.mesh, near);
   Camera camera = view.camera;
-  camera.clipping_range.reset();  // cells beyond it say which faces are the mesh's boundary
+  camera.clipping_range.reset();  // cells beyond it determine which faces are the mesh's boundary
   const TransferFunction any({Knot{}});
   std::vector<std::size_t> met;
   for (const auto& s : reference::Reference(subset, camera, view.size, any).segments(pixel.x + 0.5, pixel.y + 0.5))
@@ -245,7 +245,8 @@ scene::TetMesh mesh_of(std::span<const RayTet> tets, Association association) {
   return mesh;
 }
 
-/// Where the opacity from the eye reaches `wanted`, which it does between two depths. `before`: at the first of them.
+/// The depth, between two given ones, where the opacity from the eye reaches `wanted`. `before`: the opacity at
+/// `begin`.
 double depth_of(const ProbedRay& ray, double wanted, double begin, double end, double before) {
   double low = begin, high = end;
   for (int halving = 0; halving < 48; ++halving) {

@@ -26,10 +26,10 @@ namespace {
 using reference::Suspicion;
 using reference::SuspicionMap;
 
-/// Differences of half the bound are no reason for suspicion; without a bound, of half the default accuracy.
+/// Differences below half the bound are not suspicious; without a bound, those below half the default accuracy.
 double least_suspicious(const std::optional<double>& bound) { return bound.value_or(Integrator().accuracy) / 2; }
 
-/// Of a picture of which `count` pixels are to be judged.
+/// Collects suspects of an image of which `count` pixels are checked.
 class Collector {
  public:
   Collector(scene::ImageSize size, std::size_t count) : size_(size), most_(count) {}
@@ -51,8 +51,8 @@ class Collector {
   reference::Suspects found_;
 };
 
-/// Pixels with a large error bound that were not cast again are the least sure; those cast again are exact so far as is
-/// known.
+/// Pixels with a large error bound that were not cast again are the least certain; those that were cast again count as
+/// exact.
 SuspicionMap suspicion_of(std::span<const float> error_bounds, double tolerance) {
   SuspicionMap map(error_bounds.begin(), error_bounds.end());
   for (float& bound : map)
@@ -60,20 +60,20 @@ SuspicionMap suspicion_of(std::span<const float> error_bounds, double tolerance)
   return map;
 }
 
-/// Casts the likeliest suspects of a grid's picture once more, voxel by voxel in double precision. How far each comes
-/// out otherwise is the best estimate of its error there is.
+/// Casts the likeliest suspects of a grid's image again, voxel by voxel in double precision. The difference is the best
+/// available estimate of a pixel's error.
 SuspicionMap second_opinion(const scene::Image& image, const scene::SampleSource& source, const scene::Camera& camera,
                             const scene::TransferFunction& function, const volume::RenderSettings& settings,
                             const reference::Suspects& suspects, std::size_t count) {
   std::vector<std::array<int, 2>> pixels;
   for (const reference::ChosenPixel& p : reference::by_turns(suspects, count)) pixels.push_back({p.at.x, p.at.y});
-  // Neighbours share what they read.
+  // Neighbours share the samples that they read.
   std::sort(pixels.begin(), pixels.end(), [](const auto& a, const auto& b) {
     const auto place = [](const auto& p) { return std::array{p[1] / 32, p[0] / 32, p[1], p[0]}; };
     return place(a) < place(b);
   });
   scene::Image again(image.size);
-  // What is looked for is as large as the bound.
+  // The error to detect is as large as the bound.
   const double bound = promised_error(settings, DataKind::grid).value_or(Integrator().accuracy);
   const volume::GridSurfaces surfaces(settings.surfaces, function);
   const volume::VoxelCastSettings cast{{settings.emission, bound / 1000, bound / 64},
@@ -152,7 +152,7 @@ reference::Suspects suspects(const scene::Image& image, const scene::SampleSourc
   collector.add(Suspicion::tie, scene.tie);
   collector.add(Suspicion::estimate, suspicion_of(error_bounds, least));
   reference::Suspects found = collector.take();
-  // Pictures of rectilinear grids are made that very way.
+  // Images of rectilinear grids are already rendered by that method.
   if (source.geometry().rectilinear() || !promised_error(settings, DataKind::grid)) return found;
   const SuspicionMap again = second_opinion(image, source, camera, transfer_function, settings, found, count);
   found[static_cast<std::size_t>(Suspicion::estimate)] = reference::ranked(again, image.size, count);
@@ -166,7 +166,7 @@ double layer_bound(const std::optional<double>& promised) {
 
 namespace {
 
-/// Of a reference that knows layers too.
+/// Judges the image and, if there are any, its layers.
 template <class Reference>
 Verified judged(const scene::Image& image, const Layers& layers, const Reference& reference,
                 const std::optional<double>& promised, std::size_t count, const reference::Suspects& where,

@@ -17,40 +17,40 @@
 
 namespace tessera::api {
 
-/// The largest error that is promised, in linear RGBA: for exact 2e-5 of meshes and 1e-5 of grids, what was asked for
-/// automatic. None for methods that take steps or samples, with the scanline rasterizer, or composited as printed
-/// (gl-fragment): there the error is only reported.
+/// The largest error that is promised, in linear RGBA: with `exact` 2e-5 for meshes and 1e-5 for grids, with
+/// `automatic` the requested accuracy. None for methods that take steps or samples, with the scanline rasterizer, or
+/// composited as printed (gl-fragment): their error is only reported.
 std::optional<double> promised_error(const Settings& settings, DataKind data);
 
-/// Where a finished picture is to be looked at when `count` of its pixels are judged: where the picture itself, the
-/// scene and the frame's own estimates make it least sure (reference/suspicion.hpp). Depends on the arguments alone,
-/// `threads` excepted, so that a second run, on any number of ranks, looks at the same pixels.
+/// Where to check a finished image if `count` of its pixels are judged: where the image itself, the scene and the
+/// frame's own estimates make it least certain (reference/suspicion.hpp). Depends only on the arguments, except the
+/// number of threads, so that a second run, on any number of ranks, checks the same pixels.
 reference::Suspects suspects(const scene::Image& image, const scene::TetMeshView& mesh, const scene::Camera& camera,
                              const scene::TransferFunction& transfer_function, const Settings& settings,
                              std::size_t count);
 
-/// `error_bounds`: by pixel, of volume::Renderer::render; empty if there are none.
+/// `error_bounds`: by pixel, from volume::Renderer::render; may be empty.
 reference::Suspects suspects(const scene::Image& image, const scene::SampleSource& source, const scene::Camera& camera,
                              const scene::TransferFunction& transfer_function, const volume::RenderSettings& settings,
                              std::span<const float> error_bounds, std::size_t count);
 
-/// What is found of a picture, and of its layers if there are any.
+/// The results for an image, and for its layers if there are any.
 struct Verified {
   reference::Verification picture;
   reference::LayerVerification layers;
 };
 
-/// The layers of a picture, and how they were cut; none: there are none.
+/// The layers of an image, and how they were cut; none: there are no layers.
 struct Layers {
   std::span<const scene::Image> images{};
   std::optional<Peel> peel{};
 };
 
-/// The largest error of a layer, in linear RGBA: 1e-5, or the picture's promise if that is less.
+/// The largest error of a layer, in linear RGBA: 1e-5, or the promise for the image if that is less.
 double layer_bound(const std::optional<double>& promised);
 
-/// Checks `count` pixels of a finished picture against the reference: a third at random, the rest of its suspects; of
-/// its layers the same ones.
+/// Checks `count` pixels of a finished image against the reference: a third at random, the rest from its suspects; the
+/// same pixels of its layers.
 Verified verify_all(const scene::Image& image, const Layers& layers, const frame::UncutMesh& mesh,
                     const scene::Camera& camera, const scene::TransferFunction& transfer_function,
                     const Settings& settings, std::size_t count);
@@ -58,7 +58,7 @@ Verified verify_all(const scene::Image& image, const Layers& layers, const scene
                     const scene::Camera& camera, const scene::TransferFunction& transfer_function,
                     const volume::RenderSettings& settings, std::span<const float> error_bounds, std::size_t count);
 
-/// The same of pictures without layers.
+/// The same for images without layers.
 reference::Verification verify(const scene::Image& image, const frame::UncutMesh& mesh, const scene::Camera& camera,
                                const scene::TransferFunction& transfer_function, const Settings& settings,
                                std::size_t count);
