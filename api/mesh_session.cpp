@@ -41,8 +41,7 @@ class MeshAlone final : public Session::State {
   MeshAlone(Dataset dataset, const Settings& settings)
       : State(std::move(dataset), settings),
         renderer_(data().prepared(settings.threads, settings.trace), data().facts, settings) {
-    frame::assign_roles(1, settings.ranks.projectors,
-                        settings.ranks.compositors);  // throws if more than one rank is configured
+    frame::assign_roles(1, settings.ranks.projectors, settings.ranks.compositors);  // checks that both are 1 or unset
   }
 
   std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,

@@ -15,12 +15,12 @@ namespace {
 
 using Rgb = glm::dvec3;
 
-/// Linear light; neighbours in the list are far apart in hue.
+/// Linear light; neighbours in the list differ clearly in hue.
 constexpr std::array<Rgb, 8> process_colors = {Rgb{0.90, 0.10, 0.05}, Rgb{0.05, 0.55, 0.10}, Rgb{0.08, 0.20, 0.95},
                                                Rgb{0.95, 0.70, 0.02}, Rgb{0.60, 0.08, 0.70}, Rgb{0.02, 0.65, 0.70},
                                                Rgb{0.95, 0.35, 0.02}, Rgb{0.45, 0.30, 0.15}};
 
-/// Covers a pixel by `share`.
+/// Blends `color` over a pixel with weight `share`.
 void put(scene::Image& image, int x, int y, const Rgb& color, double share) {
   float* const p = &image.rgba[4 * image.index(x, y)];
   for (int c = 0; c < 3; ++c) p[c] = static_cast<float>(p[c] * (1 - share) + color[c] * share);
@@ -52,7 +52,7 @@ std::vector<std::uint8_t> owners_of(const volume::ImageSplit& split, scene::Imag
   return owners;
 }
 
-/// The part of a line, from 0 to 1, that lies inside the picture; empty if first > second.
+/// The part of a line, from 0 to 1, that is inside the image; empty if first > second.
 std::pair<double, double> inside(const glm::dvec2& a, const glm::dvec2& b, scene::ImageSize size) {
   double from = 0, to = 1;
   for (int axis = 0; axis < 2; ++axis) {
@@ -67,7 +67,7 @@ std::pair<double, double> inside(const glm::dvec2& a, const glm::dvec2& b, scene
   return {from, to};
 }
 
-/// A grid's boxes as lines over a picture. Where many lines cross, a pixel is as bright as where one does.
+/// A grid's boxes as lines over an image. A pixel where many lines cross is no brighter than one with a single line.
 class BoxLines {
  public:
   BoxLines(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry)
@@ -75,7 +75,7 @@ class BoxLines {
     colors_.resize(covered_.size());
   }
 
-  /// The edges from `low` to `high`, in index space.
+  /// Adds the edges of the box from `low` to `high`, in index space.
   void add(const glm::dvec3& low, const glm::dvec3& high, const Rgb& color) {
     for (int corner = 0; corner < 8; ++corner)
       for (int axis = 0; axis < 3; ++axis) {
@@ -89,7 +89,7 @@ class BoxLines {
       }
   }
 
-  /// Each pixel of a line in the line's colour, or in that which `color_of` gives for the pixel's number.
+  /// Paints each pixel of a line in the line's colour, or in the colour that `color_of` returns for the pixel's index.
   void paint(scene::Image& image, const std::function<Rgb(std::size_t)>& color_of = nullptr) const {
     for (int y = 0; y < size_.height; ++y)
       for (int x = 0; x < size_.width; ++x) {
@@ -100,7 +100,7 @@ class BoxLines {
 
  private:
   void add_edge(projection::PixelVertex a, projection::PixelVertex b, const Rgb& color) {
-    // Of an edge that reaches behind the eye only what lies before it.
+    // Clip an edge that reaches behind the eye to the part in front of it.
     constexpr double least = 1e-6;
     const double near = least * std::max(std::abs(a.w), std::abs(b.w));
     if (a.w <= near && b.w <= near) return;
@@ -117,7 +117,7 @@ class BoxLines {
     const int steps = static_cast<int>(std::ceil(std::max(std::abs(way.x), std::abs(way.y)) * (to - from))) + 1;
     for (int n = 0; n <= steps; ++n) {
       const glm::dvec2 r = p + way * (from + (to - from) * n / steps);
-      // Shared between the two pixels next to the line.
+      // Distributed to the two pixels next to the line.
       const double across = (flat ? r.y : r.x) - 0.5, part = across - std::floor(across);
       touch(flat ? r.x : r.x - 0.5, flat ? r.y - 0.5 : r.y, 1 - part, color);
       touch(flat ? r.x : r.x + 0.5, flat ? r.y + 0.5 : r.y, part, color);
@@ -135,7 +135,7 @@ class BoxLines {
   projection::PixelSpace space_;
   scene::ImageSize size_;
   const scene::GridGeometry& geometry_;
-  std::vector<float> covered_;  ///< how much of each pixel its line covers
+  std::vector<float> covered_;  ///< covered share of each pixel
   std::vector<Rgb> colors_;
 };
 
@@ -143,7 +143,7 @@ void dim(scene::Image& image) {
   for (std::size_t n = 0; n < image.rgba.size(); ++n) image.rgba[n] = n % 4 == 3 ? 1.0f : 0.5f * image.rgba[n];
 }
 
-/// 0 to 1: black, over blue, red and yellow, to white.
+/// Colour map from 0 to 1: black over blue, red and yellow to white.
 Rgb heat_of(double share) {
   constexpr std::array<Rgb, 6> heat = {Rgb{0, 0, 0},          Rgb{0.02, 0.03, 0.35}, Rgb{0.35, 0.02, 0.35},
                                        Rgb{0.85, 0.08, 0.05}, Rgb{0.95, 0.65, 0.05}, Rgb{1, 1, 1}};
@@ -181,7 +181,7 @@ void draw_bricks(scene::Image& image, const scene::Camera& camera, const scene::
     const auto [low, high] = corners_of(parts[process]);
     if (low == high) continue;
     for (const auto& [from, to] : bricks) {
-      // A part's planes may cut a brick.
+      // The planes of a part may cut a brick.
       const glm::dvec3 a = glm::max(low, from), b = glm::min(high, to);
       if (glm::all(glm::lessThan(a, b))) of_bricks.add(a, b, process_colors[process % process_colors.size()]);
     }
@@ -196,7 +196,7 @@ scene::Image cost_of_parts(const scene::Camera& camera, scene::ImageSize size, c
   scene::Image image(size);
   dim(image);
   const double most = seconds.empty() ? 0 : *std::ranges::max_element(seconds);
-  // The dearest last: it covers the lines that it shares with others.
+  // The most expensive last: it covers the lines that it shares with others.
   std::vector<std::size_t> order(std::min(parts.size(), seconds.size()));
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, {}, [&](std::size_t process) { return seconds[process]; });
@@ -204,7 +204,7 @@ scene::Image cost_of_parts(const scene::Camera& camera, scene::ImageSize size, c
     const auto [low, high] = corners_of(parts[process]);
     if (low == high || most <= 0) continue;
     BoxLines lines(camera, size, geometry);
-    constexpr double least = 0.2;  // what costs nothing can be seen
+    constexpr double least = 0.2;  // parts without cost remain visible
     lines.add(low, high, heat_of(least + (1 - least) * seconds[process] / most));
     lines.paint(image);
   }

@@ -10,25 +10,25 @@
 
 namespace tessera::frame {
 
-/// Bytes of memory that this process holds now, shared libraries included; 0 where the system does not tell.
+/// Resident memory of this process in bytes, including shared libraries; 0 if the system does not report it.
 std::uint64_t resident_bytes();
 
-/// What a process holds beside bricks.
+/// What a process holds in addition to bricks.
 struct BesideBricks {
-  std::uint64_t resident = 0;  ///< now: the program and what it has read, ranges of cells
-  std::uint64_t frames = 0;    ///< what frames keep of cells and bricks: bytes_of_frames()
+  std::uint64_t resident = 0;  ///< now: the program and what it has read, including ranges of cells
+  std::uint64_t frames = 0;    ///< data of frames about cells and bricks: bytes_of_frames()
   scene::ImageSize picture;
   int threads = 0;
 };
 
-/// What frames of this size keep: of which cells and bricks show, in the cache of where bricks are, and a thread of the
-/// samples of its tile and of those for rays that are cast in double precision.
+/// Bytes that frames of this size keep: flags of visible cells and bricks, the cache's table of bricks, and per thread
+/// the samples of its tile and of rays that are cast in double precision.
 std::uint64_t bytes_of_frames(const scene::GridGeometry& geometry, const volume::CellRanges& ranges,
                               const volume::RenderSettings& settings, scene::ImageSize picture);
 
-/// What of a process's `memory` is left for bricks of `brick` bytes beside the rest of it: what it holds, the picture
-/// and its copy on the way out, what each thread keeps for its tiles, what the heap and the cache add to each brick. At
-/// least 8 MiB, or all of `memory` if that is less: so small budgets are exceeded by the program itself.
+/// The part of a process's `memory` that remains for bricks of `brick` bytes: without `rest`, the image and its copy
+/// during output, each thread's data for its tiles, and what the heap and the cache add to each brick. At least 8 MiB,
+/// or all of `memory` if that is less: the program itself exceeds a small budget.
 std::uint64_t brick_memory(std::uint64_t memory, const BesideBricks& rest, std::uint64_t brick);
 
 }  // namespace tessera::frame

@@ -28,7 +28,7 @@
 namespace tessera::frame {
 namespace {
 
-/// One thread's way of making pixels.
+/// Renders pixels on one thread.
 class PixelSamples {
  public:
   virtual ~PixelSamples() = default;
@@ -88,7 +88,7 @@ class DeepPixels final : public PixelSamples, public volume::WalkSink {
       const bool surface = next != met_.cend() && next->piece == k;
       if (surface) {
         const scene::SurfaceSet::Light& light = (next++)->light;
-        // An infinite optical depth where it is opaque.
+        // The optical depth of an opaque surface is infinite.
         merger.add(
             {pieces_[k].front, pieces_[k].back, {light.red, light.green, light.blue}, -std::log1p(-light.opacity)},
             samples_, true);
@@ -111,13 +111,13 @@ class DeepPixels final : public PixelSamples, public volume::WalkSink {
   [[nodiscard]] double transmittance() const override { return transmittance_; }
 
  private:
-  /// A surface among the pieces.
+  /// A surface between the pieces.
   struct Met {
     std::size_t piece;
     scene::SurfaceSet::Light light;
   };
 
-  /// Makes the pieces, with a place for each surface between them.
+  /// Computes the pieces, with the index of each surface among them.
   void go_along(const volume::VoxelRay& ray) {
     crossings_.clear();
     met_.clear();

@@ -8,10 +8,11 @@
 
 namespace tessera::frame {
 
-/// The deep picture of a volume by all ranks of a job: each makes a band of as many rows, rank 0 puts them one below
-/// the other. The picture on rank 0, nothing elsewhere; the same bits for any number of ranks. Collective; on channel
-/// `tiles`, and begins when all ranks are done with what was on it. Throws this rank's error, which the caller gives to
-/// transport.fail(), or scene::FrameStopped on all ranks if one of them saw `stop` (which StopRelay carries to all).
+/// The deep image of a volume, rendered by all ranks of a job: each renders a band of rows of equal height, and rank 0
+/// joins the bands. Returns the image on rank 0, nothing on others; the same bits for any number of ranks. Collective.
+/// Uses channel `tiles`, after all ranks have finished their earlier messages on it. Throws this rank's error, which
+/// the caller passes to transport.fail(), or scene::FrameStopped on all ranks if `stop` reached one of them (StopRelay
+/// passes it to all).
 std::optional<scene::DeepImage> deep_rows(exchange::Transport& transport, const scene::SampleSource& source,
                                           const scene::Camera& camera, scene::ImageSize size,
                                           const scene::TransferFunction& function, const DeepSettings& settings,

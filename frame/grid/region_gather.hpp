@@ -9,16 +9,16 @@
 
 namespace tessera::frame {
 
-/// To rank 0: the pixels of the part's rectangle, and their error bounds if it has some.
+/// Sends the pixels of the part's rectangles to rank 0, with their error bounds if it has any.
 void send_region(exchange::Transport& transport, const VolumePart& part);
 
-/// On rank 0, all ranks' rectangles of one picture after the other. Those of later pictures wait until theirs is asked
-/// for.
+/// Gathers all ranks' rectangles on rank 0, one frame after the other. Rectangles of later frames are kept until their
+/// frame is gathered.
 class RegionGather {
  public:
   RegionGather(exchange::Transport& transport, scene::Trace* trace) : transport_(transport), trace_(trace) {}
 
-  /// Completes this rank's part by those of the others, whose pixels `watch` hears of.
+  /// Adds the parts of the other ranks to this rank's part, and reports their pixels to `watch`.
   FinishedVolumeFrame gather(VolumePart own, scene::FrameWatch& watch);
 
  private:
@@ -28,10 +28,10 @@ class RegionGather {
 
   exchange::Transport& transport_;
   scene::Trace* trace_;
-  std::map<std::uint64_t, std::vector<exchange::Message>> early_;  ///< by their frame
+  std::map<std::uint64_t, std::vector<exchange::Message>> early_;  ///< by frame
 };
 
-/// Tells `watch` of pixels that are final on rank 0; what it throws of a stop stops the frame.
+/// Reports pixels that are final on rank 0 to `watch`; if it throws FrameStopped, the frame stops.
 void tell(scene::FrameWatch& watch, const scene::PixelRect& rect, FinishedVolumeFrame& finished);
 
 }  // namespace tessera::frame

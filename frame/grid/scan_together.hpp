@@ -7,12 +7,12 @@
 
 namespace tessera::frame {
 
-/// The ranges of a volume's cells, scanned by all ranks together: each reads its share of the layers of cells, whole
-/// ones, in the order of ranks along k, and gives what it found to all others. On every rank the same as of one
-/// process; a rank without layers, where there are fewer than ranks, reads nothing.
+/// The ranges of a volume's cells, scanned by all ranks together: each reads its share of whole layers of cells, in the
+/// order of ranks along k, and sends the result to all others. The result is that of one process, on every rank. If
+/// there are fewer layers than ranks, some ranks read nothing.
 ///
-/// Collective: the same volume on every rank, from a source of each rank's own. Throws the run's error, or this rank's
-/// (a source that cannot be read), which the caller gives to transport.fail().
+/// Collective: the same volume on every rank, from each rank's own source. Throws the run's error, or this rank's (a
+/// source that cannot be read), which the caller passes to transport.fail().
 volume::CellRanges scan_together(exchange::Transport& transport, const scene::SampleSource& source, int threads);
 
 }  // namespace tessera::frame

@@ -6,7 +6,7 @@
 
 namespace tessera::frame {
 
-/// scene::label_values() of rank 0, on every rank. Collective. Throws what reading samples throws.
+/// scene::label_values() computed on rank 0 and sent to every rank. Collective. Throws what reading samples throws.
 scene::LabelValues shared_labels(exchange::Transport& transport, const scene::SampleSource& source, bool stated);
 
 }  // namespace tessera::frame

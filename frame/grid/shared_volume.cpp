@@ -27,7 +27,7 @@ using exchange::Bytes;
 using exchange::MessageKind;
 using exchange::MessageReader;
 
-/// By rank: the lowest rank of its machine; who does not know where it is shares with nobody.
+/// For each rank the lowest rank of its machine; a rank on an unknown machine is its own.
 std::vector<std::size_t> leaders(exchange::Transport& transport) {
   Bytes own = exchange::begin_message(MessageKind::host);
   append_text(own, exchange::machine());
@@ -42,15 +42,15 @@ std::vector<std::size_t> leaders(exchange::Transport& transport) {
   return leaders;
 }
 
-/// Where a leader has put the samples; no path: they are in the file itself.
+/// Where a leader has written the samples; an empty path: they are in the file itself.
 struct Place {
   std::string path, folder;
   std::uint64_t bytes = 0;
 };
 
 /// Text path, text folder, u64 bytes, fields, texts of notes, text format, u8 axes of a body and of one if it is CT,
-/// texts modality, unit and unit of length, u8 labels, a time step, u8 whether z is beside degrees.
-/// Nothing of a rank that has not read the file.
+/// texts modality, unit and unit of length, u8 labels, a time step, u8 whether x and y are degrees. Empty from a rank
+/// that has not read the file.
 Bytes message_of(const io::VolumeFile& volume, const Place& place) {
   Bytes message = exchange::begin_message(MessageKind::volume_facts);
   append_text(message, place.path);
@@ -78,7 +78,7 @@ Place place_in(MessageReader& reader) {
   return place;
 }
 
-/// All but the samples.
+/// Reads everything except the samples.
 io::VolumeFile description_in(MessageReader& reader) {
   io::VolumeFile volume;
   volume.fields = take_fields(reader);
@@ -96,13 +96,13 @@ io::VolumeFile description_in(MessageReader& reader) {
   return volume;
 }
 
-/// What a leader has read, and where the others of its machine find it.
+/// What a leader has read, and where the other ranks of its machine find it.
 class Leader {
  public:
   Leader(const io::InputFile& file, const ReadOptions& options, bool shares) {
     tbb::task_arena(scene::threads_for(options.threads)).execute([&] {
       volume_ = io::open_unscanned_volume(file, options, shares);
-      // Some come as a whole only.
+      // Some readers only return the whole volume.
       if (shares && volume_.in_memory) volume_.scratch = io::scratch_bricks(*volume_.source, file.name);
     });
     if (shares && volume_.in_memory) volume_.source.reset();
@@ -114,7 +114,7 @@ class Leader {
     return message_of(volume_, {written->path(), written->folder(), written->bytes()});
   }
   [[nodiscard]] bool in_memory() const { return volume_.in_memory && !volume_.scratch; }
-  /// Null once they are written.
+  /// Null once they have been written.
   std::unique_ptr<scene::SampleSource> take_samples() { return std::move(volume_.source); }
 
  private:
@@ -143,7 +143,7 @@ std::string note_on(const io::InputFile& file, const Place& place, std::size_t r
       machines > 1 ? fmt::format(" on each of {} machines", machines) : "");
 }
 
-/// By one process, which keeps in memory what may be there.
+/// Opens the file in one process, which may keep the samples in memory.
 io::VolumeFile open_alone(const io::InputFile& file, const ReadOptions& options) {
   io::VolumeFile volume;
   tbb::task_arena(scene::threads_for(options.threads)).execute([&] {
@@ -187,7 +187,7 @@ io::VolumeFile open_shared_volume(exchange::Transport& transport, const io::Inpu
     if (!volume.source) volume.source = samples_at(place, file, options, shares);
   }
   if (first) volume.notes.push_back(note_on(file, *first, sharing, machines));
-  // Until then the leader has its file open, by which the others find it.
+  // The leader keeps its file open until all others have opened it through the leader's descriptor.
   exchange::barrier(transport);
   return volume;
 }

@@ -8,15 +8,15 @@ namespace tessera::frame {
 
 /// io::open_unscanned_volume() by all ranks.
 ///
-/// Of a machine's ranks the lowest, its leader, reads the file first. Samples that have to be unpacked, or that a
-/// library reads, it writes as a brick file without a name into the folder for temporary files
-/// (system/scratch_file.hpp); all ranks of the machine read that, brick by brick. It does so as they come, where they
-/// come in parts (io::open_unscanned_volume); else it holds them once, for as long as it takes to write them. Files
-/// that are read in place every rank opens itself. A rank that is alone on its machine does as one process would.
+/// The lowest rank of each machine, its leader, reads the file first. It writes samples that must be unpacked, or that
+/// a library reads, as a nameless brick file to the directory for temporary files (system/scratch_file.hpp), from which
+/// all ranks of the machine read brick by brick. If the samples are read in parts (io::open_unscanned_volume), each
+/// part is written as it arrives; otherwise the leader holds all of them until they are written. Every rank opens files
+/// that are read in place itself. A rank that is alone on its machine behaves like a single process.
 ///
-/// Every rank has the leader's description of the file; a note says what was written where. Samples are the same bits
-/// as of one process. Collective. Throws this rank's error, which the caller gives to transport.fail(), or the run's;
-/// nothing is left in the folder. `options.threads` write bricks.
+/// Every rank has the leader's description of the file; a note reports what was written where. Samples have the same
+/// bits as in one process. Collective. Throws this rank's error, which the caller passes to transport.fail(), or the
+/// run's error; no file remains in the directory. `options.threads` threads write bricks.
 io::VolumeFile open_shared_volume(exchange::Transport& transport, const io::InputFile& file,
                                   const ReadOptions& options);
 

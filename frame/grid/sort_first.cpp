@@ -39,13 +39,13 @@ PixelRect scaled(const PixelRect& r, double resolution, scene::ImageSize map, sc
           edge(r.y1, image.height, map.height)};
 }
 
-/// Of the cost map. One ray a packet is as good as more where pilot rays say what it costs.
+/// Resolution of the cost map. With pilot rays, one ray per packet is as good as more.
 double resolution_of(const RankSettings& settings) {
   return settings.balance == Balance::learned ? std::min(settings.balance_resolution, 1.0 / volume::region_grain)
                                               : settings.balance_resolution;
 }
 
-/// Tells this process from others on any machine.
+/// Identifies this process among those of all machines.
 std::uint64_t process_token() {
   static const std::uint64_t token = [] {
     std::random_device device;
@@ -69,7 +69,7 @@ volume::CostMethod method_of(Balance balance) {
 
 }  // namespace
 
-/// One rank's part.
+/// One rank's state.
 class SortFirst::State {
  public:
   State(exchange::Transport& transport, const Settings& settings, const FrameSettings& frame)
@@ -133,14 +133,14 @@ class SortFirst::State {
  private:
   [[nodiscard]] bool weights_are_given() const { return !settings_.balance_weights.empty(); }
 
-  /// Whether tiles are timed, and splits found from that. Weights share out work, which times alone do not tell, and a
-  /// cost that is shown is to be the same in each run.
+  /// Whether tiles are timed and splits computed from the times. Not with weights, which distribute work rather than
+  /// time, nor with a cost map to show, which must be the same in each run.
   [[nodiscard]] bool goes_by_times() const {
     return settings_.balance == Balance::learned && transport_.size() > 1 && !weights_are_given() && !frame_.keep_cost;
   }
 
-  /// What rank 0 knows from the pictures before; where that is no split, maybe how much each rank should get of one.
-  /// Collective.
+  /// The split that rank 0 finds from earlier frames. If there is none, rank 0 may still set the weights of the ranks
+  /// for another split. Collective.
   std::optional<ImageSplit> known_split(const volume::Renderer& renderer, const scene::TransferFunction& function,
                                         const VolumeJob& job) {
     if (!goes_by_times()) return std::nullopt;
@@ -181,7 +181,7 @@ class SortFirst::State {
     return split;
   }
 
-  /// Tells rank 0 what the picture of `job` took. Collective.
+  /// Sends the times of the frame of `job` to rank 0. Collective.
   void learn_times(const VolumeJob& job, const scene::Box& box) {
     if (transport_.rank() != 0) {
       Bytes bytes = exchange::message_of(MessageKind::tile_times, std::uint8_t{times_here_.whole});
@@ -239,10 +239,9 @@ class SortFirst::State {
     return search.find_columns(gather_columns(volume::SplitSearch::column_sums(costs, table, search.map_rows())));
   }
 
-  /// What a pilot pass teaches of the work in the volume's cells: each rank casts every 128th ray of the rectangle it
-  /// had in the frame before, whose bricks it holds. Four times as many cost more than they gain. A cell's work
-  /// changes little from view to view: a frame whose view is near that before casts others, and learns from both.
-  /// Collective.
+  /// Learns the work in the volume's cells from a pilot pass: each rank casts every 128th ray of its rectangle in the
+  /// last frame, whose bricks it holds. Four times as many rays cost more than they gain. A cell's work changes little
+  /// between views: a frame whose view is near the last one casts other rays, and learns from both. Collective.
   void sample_work(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
                    scene::FrameWatch& watch) {
     if ((transport_.size() == 1 && !frame_.keep_cost) || settings_.balance != Balance::learned) return;
@@ -262,7 +261,7 @@ class SortFirst::State {
     try {
       renderer.sample_work(job.camera, job.size, function, *tally_, part, &watch, {pilots_, turns});
     } catch (const scene::FrameStopped&) {
-      // The others wait for what this rank has learnt; the picture is dropped all the same.
+      // The other ranks wait for this rank's result; the frame is dropped anyway.
     }
     ++pilots_;
     volume::WorkRates::add(reduce_all(transport_, tally_->take(), Reduction::sum), learned_);
@@ -305,19 +304,19 @@ class SortFirst::State {
 
   void share_times(double cpu) { times_ = exchange::gather_values(transport_, MessageKind::seconds, cpu); }
 
-  /// Weights by the CPU time that the last frame took each rank, a thread of it: who took longer than the mean gets
-  /// less of the next one. Half of the way, for costs are estimates. Collective.
+  /// Sets the weights by each rank's CPU time per thread in the last frame: a rank that took longer than the mean gets
+  /// less of the next frame. Applies only half of the correction, since costs are estimates. Collective.
   void learn_speed(double cpu_seconds, bool stopped) {
     const double own = stopped ? 0 : cpu_seconds / scene::threads_for(threads_);
     const std::vector<double> seconds = exchange::gather_values(transport_, MessageKind::seconds, own);
-    // Who had next to nothing to do says nothing of its speed.
+    // The time of a rank that had almost no work does not measure its speed.
     const double most = *std::max_element(seconds.begin(), seconds.end());
     if (!std::ranges::all_of(seconds, [&](double t) { return t > 0.01 * most; })) return;
     const double mean = std::accumulate(seconds.begin(), seconds.end(), 0.0) / static_cast<double>(seconds.size());
     for (std::size_t rank = 0; rank < seconds.size(); ++rank) weights_[rank] *= std::sqrt(mean / seconds[rank]);
   }
 
-  /// The times of the last frame, each spread over its rectangle.
+  /// The times of the last frame, each spread evenly over its rectangle.
   [[nodiscard]] CostMap map_of_times(scene::ImageSize size) const {
     CostMap map;
     map.resolution = settings_.balance_resolution;
@@ -343,17 +342,17 @@ class SortFirst::State {
   scene::Trace* const trace_;
   std::vector<double> weights_, times_;
   std::optional<volume::WorkTally> tally_;
-  std::vector<std::uint64_t> learned_;         ///< tallies of all ranks, since the view last changed much
-  std::size_t pilots_ = 0;                     ///< passes since then
-  std::vector<tessera::Knot> learned_knots_;   ///< of the frame before
-  std::optional<scene::Camera> learned_view_;  ///< the same
+  std::vector<std::uint64_t> learned_;         ///< tallies of all ranks since the last large change of view
+  std::size_t pilots_ = 0;                     ///< number of passes since then
+  std::vector<tessera::Knot> learned_knots_;   ///< of the last frame
+  std::optional<scene::Camera> learned_view_;  ///< of the last frame
   std::optional<volume::WorkRates> rates_;
   std::optional<ImageSplit> last_split_;
   scene::ImageSize last_size_{0, 0};
   SplitByTimes by_times_;                   ///< rank 0
-  std::optional<VolumeJob> timed_;          ///< the frame before, until rank 0 hears what it took
-  CastTimes times_here_;                    ///< of it, on this rank
-  std::vector<tessera::Knot> timed_knots_;  ///< of the frame before
+  std::optional<VolumeJob> timed_;          ///< the last frame, until its times reach rank 0
+  CastTimes times_here_;                    ///< the times of that frame on this rank
+  std::vector<tessera::Knot> timed_knots_;  ///< of the last frame
   CostMap cost_;
 };
 

@@ -17,18 +17,19 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using scene::PixelRect;
 
-/// A rank's band of the footprint, and what lies beside the footprint: all ranks' make up the picture.
+/// A rank's band of the footprint, extended by the pixels outside the footprint: the regions of all ranks cover the
+/// image.
 PixelRect region_of(const PixelRect& area, int number, int ranks, scene::ImageSize size) {
   const PixelRect band = exchange::band_of(area, number, ranks);
   return {0, number == 0 ? 0 : band.y0, size.width, number == ranks - 1 ? size.height : band.y1};
 }
 
-/// Pixels that each part may have.
+/// The pixels that each part may cover.
 std::vector<PixelRect> footprints(const volume::ObjectSplit& split, const VolumeJob& job,
                                   const scene::GridGeometry& geometry, const PixelRect& area) {
   std::vector<PixelRect> own;
   for (const volume::VoxelBox& part : split.boxes()) {
-    // Rounding may put a corner beside the whole's.
+    // Rounding may put a part's corner outside the footprint of the whole.
     if (part.low != part.high)
       own.push_back(scene::common(area, volume::footprint(job.camera, job.size, geometry, part)));
     else
@@ -39,7 +40,7 @@ std::vector<PixelRect> footprints(const volume::ObjectSplit& split, const Volume
 
 }  // namespace
 
-/// One rank's part.
+/// One rank's state.
 class SortLast::State {
  public:
   State(exchange::Transport& transport, const Settings& settings, const FrameSettings& frame)
@@ -89,7 +90,7 @@ class SortLast::State {
   }
 
  private:
-  /// What a rank sees of its part.
+  /// A rank's image of its part.
   struct Picture {
     scene::Image image;
     std::vector<float> error_bounds;
@@ -98,7 +99,7 @@ class SortLast::State {
     bool stopped = false;
   };
 
-  /// Every rank finds the same boxes: all know what every cell of the volume holds.
+  /// Every rank finds the same boxes, since all know the range of every cell of the volume.
   void divide(const volume::Renderer& renderer, const scene::TransferFunction& function) {
     if (split_ && std::ranges::equal(function.knots(), knots_)) return;
     const scene::TraceScope timing(trace_, "partition");
@@ -109,7 +110,7 @@ class SortLast::State {
   Picture cast(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
                const volume::VoxelBox& part, const PixelRect& region, const scene::FrameWatch& watch) const {
     Picture mine;
-    // Nobody is told of pixels that lack other parts.
+    // Pixels that lack other parts are not reported.
     scene::FrameWatch quiet(watch.stop());
     const double cpu_before = process_cpu_seconds();
     try {
@@ -132,7 +133,7 @@ class SortLast::State {
   scene::Trace* const trace_;
   exchange::DirectSender sender_;
   std::optional<volume::ObjectSplit> split_;
-  std::vector<tessera::Knot> knots_;  ///< that it is for
+  std::vector<tessera::Knot> knots_;  ///< of the current split
 };
 
 SortLast::SortLast(exchange::Transport& transport, const Settings& settings, const FrameSettings& frame)

@@ -8,15 +8,15 @@
 
 namespace tessera::frame {
 
-/// Renders pictures of volumes with all ranks of `transport` (sort last): each casts all rays through one box of the
-/// volume (volume/split/object_split.hpp), whose bricks alone it ever reads, by a renderer that knows the number of
-/// parts (volume::RenderSettings::parts); the boxes' pictures are composited front to back by direct send
-/// (exchange/direct/direct_send.hpp), each rank a band of rows, and rank 0 gathers the bands. Boxes change with the
-/// transfer function only.
+/// Renders frames of volumes with all ranks of `transport` (sort last). Each rank casts all rays through one box of the
+/// volume (volume/split/object_split.hpp) and only ever reads the bricks of this box; its renderer knows the number of
+/// parts (volume::RenderSettings::parts). The boxes' images are composited front to back by direct send
+/// (exchange/direct/direct_send.hpp), each rank a band of rows, and rank 0 gathers the bands. Boxes only change with
+/// the transfer function.
 ///
-/// A ray ends early within a box, not for what lies in front of it in another's: what that costs is
-/// docs/RESULTS.md, Figure 6.15. Pictures of other numbers of ranks, or brick sizes, differ by
-/// rounding; else the bits are always the same. FrameSettings::keep_uncertainty as SortFirst's.
+/// A ray ends early only because of its own box, not because of matter in front of it in another box;
+/// docs/RESULTS.md, Figure 6.15 shows the cost. Images of different numbers of ranks, or brick sizes, differ by
+/// rounding; otherwise the bits are always the same. FrameSettings::keep_uncertainty as for SortFirst.
 class SortLast final : public VolumeFrames {
  public:
   SortLast(exchange::Transport& transport, const Settings& settings, const FrameSettings& frame = {});

@@ -11,9 +11,9 @@ namespace tessera::frame {
 
 namespace {
 
-// At ten degrees from picture to picture their times are as good as pilot rays, and free.
+// Between frames ten degrees apart, tile times predict as well as pilot rays, and are free.
 constexpr double near_enough = 0.3;
-/// Of what one picture says of the tiles' times that were not foreseen: less would be learned late, more is noise.
+/// How much of one frame's unexpected tile time the model adopts. Lower values adapt late, higher values follow noise.
 constexpr double part_of_missed = 0.3;
 
 }  // namespace
@@ -38,14 +38,14 @@ void SplitByTimes::learn(const VolumeJob& job, const scene::Box& box, const std:
     tiles_of.push_back(own);
     tiles_ += own;
   }
-  // Of ranks in one process nobody knows who took its time.
+  // If ranks share a process, its CPU time cannot be attributed to one of them.
   for (auto rank = ranks.begin(); rank != ranks.end(); ++rank)
     if (std::any_of(ranks.begin(), rank, [&](const CastTimes& other) { return other.process == rank->process; }))
       beside.assign(ranks.size(), 0.0);
   beside_.resize(ranks.size());
   ++pictures_;
-  // The first pictures are unlike all others: of one none is gathered beside it, and memory is new. From then on little
-  // is taken of one picture: gathering one may fall into the time of another.
+  // The first frames differ from all others: no earlier frame is gathered in parallel, and memory is new. Later frames
+  // have little weight, since gathering one may coincide with another.
   const double weight = std::max(0.2, 1.0 / std::max(1, pictures_ - 2));
   for (std::size_t rank = 0; rank < beside.size(); ++rank) beside_[rank] += weight * (beside[rank] - beside_[rank]);
   if (tiles.empty()) return;

@@ -11,29 +11,29 @@
 
 namespace tessera::frame {
 
-/// What a rank says of its part of a picture.
+/// The times of a rank's part of a frame.
 struct CastTimes {
   bool whole = true;          ///< it was not stopped
-  std::uint64_t process = 0;  ///< that the rank is in
-  double cpu_seconds = 0;     ///< of the process, for the picture
+  std::uint64_t process = 0;  ///< of the rank
+  double cpu_seconds = 0;     ///< of the process, for the frame
   std::vector<volume::TileTime> tiles;
 };
 
-/// Rank 0's share in `Balance::learned`: the split of a picture by what each tile of the pictures before took, where
-/// the view is near theirs.
+/// Rank 0's part of `Balance::learned`: splits a frame by the times of the tiles in earlier frames, if its view is near
+/// theirs.
 ///
-/// A split gives each process the same time: of its tiles and of all else that it does for a picture, as it was in the
-/// pictures before. Rank 0 gathers as well, and so gets less of the tiles. While a view moves, tiles of a rank take now
-/// more, now less than is foreseen, from picture to picture alike: that is learned too.
+/// A split gives each process the same time, for its tiles and for everything else that it does for a frame, as in
+/// earlier frames. Rank 0 also gathers, and so gets fewer tiles. While a view moves, the tiles of a rank take more or
+/// less time than predicted, in a similar way from frame to frame; this deviation is learned too.
 class SplitByTimes {
  public:
-  /// What the picture of `job` took, by rank; `box` holds the volume.
+  /// Learns from the times of the frame of `job`, by rank; `box` contains the volume.
   void learn(const VolumeJob& job, const scene::Box& box, const std::vector<CastTimes>& ranks);
 
-  /// Of a picture; nothing if too little is known.
+  /// The split of a frame; none if too little is known.
   [[nodiscard]] std::optional<volume::ImageSplit> find(const VolumeJob& job, const scene::Box& box);
 
-  /// How much of the tiles each rank should get of a split that this one does not find. Empty if nothing is known.
+  /// The share of the tiles that each rank should get if find() returns none. Empty if nothing is known.
   [[nodiscard]] std::vector<double> weights() const;
 
  private:
@@ -41,15 +41,15 @@ class SplitByTimes {
   void compare_with_foreseen(const std::vector<double>& tiles_of);
 
   std::optional<volume::TileCosts> costs_;
-  int pictures_ = 0;              ///< that it has learned from
-  double tiles_ = 0;              ///< nanoseconds of the last picture
-  std::vector<double> beside_;    ///< nanoseconds of each rank, beside its tiles
-  std::vector<double> foreseen_;  ///< nanoseconds of each rank's tiles, in the split last found; empty: none was
-  std::vector<double> missed_;    ///< by how much each rank's share of all tiles' time is larger than foreseen
+  int pictures_ = 0;              ///< frames learned from
+  double tiles_ = 0;              ///< nanoseconds of the last frame
+  std::vector<double> beside_;    ///< nanoseconds of each rank, excluding its tiles
+  std::vector<double> foreseen_;  ///< predicted nanoseconds of each rank's tiles in the last split; empty: none
+  std::vector<double> missed_;    ///< how much each rank's share of the time of all tiles exceeds the prediction
 };
 
-/// Whether rays go through the box about as they do in another view of it: within `most` radians, and `most` of the
-/// distance to its middle.
+/// Whether rays go through the box in nearly the same directions as in another view of it: within `most` radians, and
+/// `most` of the distance to its centre.
 bool is_near(const scene::Camera& camera, const scene::Camera& other, const scene::Box& box, double most);
 
 }  // namespace tessera::frame

@@ -19,7 +19,7 @@ namespace tessera::frame {
 
 using exchange::MessageKind;
 
-/// The pictures of one call of render(): on rank 0 what becomes of them, elsewhere they are sent there.
+/// The frames of one call of render(): gathered and passed on by rank 0, sent there by other ranks.
 class VolumeFrames::List {
  public:
   List(exchange::Transport& transport, scene::Trace* trace, StopRelay::Run& relayed, const VolumeCallbacks& callbacks,
@@ -34,7 +34,7 @@ class VolumeFrames::List {
   List(const List&) = delete;
   List& operator=(const List&) = delete;
 
-  /// A watch that hears of a picture's pixels.
+  /// Connects a watch to the callback for the pixels of a frame.
   void listen(std::size_t frame, scene::FrameWatch& watch) {
     if (!callbacks_.tile || transport_.rank() != 0) return;
     watch.listen([this, frame](const scene::PixelRect& rect, const scene::Image& image) {
@@ -42,14 +42,14 @@ class VolumeFrames::List {
     });
   }
 
-  /// On rank 0: until fewer than `in_flight` pictures are on their way. Throws what ended the gathering.
+  /// On rank 0: waits until fewer than `in_flight` frames are in progress. Throws what ended the gathering.
   void wait_for_room(int in_flight) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return failed_ || given_ - left_ < static_cast<std::size_t>(in_flight); });
     if (failed_) std::rethrow_exception(failed_);
   }
 
-  /// What this rank has made of the next picture.
+  /// Passes on this rank's part of the next frame.
   void give(VolumePart part) {
     if (transport_.rank() != 0) return send_region(transport_, part);
     {
@@ -61,14 +61,14 @@ class VolumeFrames::List {
     if (!thread_.joinable()) complete_next();
   }
 
-  /// On rank 0: how many pictures are complete, when no more come. Throws what ended the gathering.
+  /// On rank 0: waits for the last frame and returns how many are complete. Throws what ended the gathering.
   std::size_t end() {
     close();
     if (thread_.joinable()) thread_.join();
     if (failed_) std::rethrow_exception(failed_);
     return complete_;
   }
-  /// What a callback threw.
+  /// The exception that a callback threw.
   [[nodiscard]] std::exception_ptr thrown() const { return thrown_; }
 
  private:
@@ -92,7 +92,7 @@ class VolumeFrames::List {
     changed_.notify_all();
   }
 
-  /// Waits for the next picture's own part, then for the others'. False if there is none.
+  /// Waits for the next frame's own part, then for the others'. False if there is none.
   bool complete_next() {
     VolumePart part;
     {
@@ -124,7 +124,7 @@ class VolumeFrames::List {
     if (call([&] { callbacks_.frame(std::move(finished)); }) && whole) ++complete_;
   }
 
-  /// False if this call or one before it threw.
+  /// False if this call or an earlier one threw.
   template <class Call>
   bool call(const Call& call) {
     const std::lock_guard lock(calls_);
@@ -143,14 +143,14 @@ class VolumeFrames::List {
   const VolumeCallbacks& callbacks_;
   const std::size_t first_;
   RegionGather gather_;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();  ///< when a picture was complete
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();  ///< when the last frame was complete
   std::size_t complete_ = 0;
-  bool ended_ = false;  ///< by a picture that was stopped
+  bool ended_ = false;  ///< by a stopped frame
 
   std::mutex calls_;
   std::exception_ptr thrown_;
 
-  std::mutex mutex_;  // guards what follows
+  std::mutex mutex_;  // guards the members below
   std::condition_variable changed_;
   std::deque<VolumePart> parts_;
   std::size_t given_ = 0, left_ = 0;
@@ -165,7 +165,7 @@ std::size_t VolumeFrames::render(volume::Renderer& renderer, const scene::Transf
   const bool alone = transport_.size() == 1, assembles = transport_.rank() == 0;
   StopRelay::Run relayed(relay_, stop);
   {
-    // A frame's time does not count reading.
+    // A frame's time does not include reading.
     const scene::TraceScope timing(trace_, "wait", static_cast<std::int32_t>(first));
     exchange::barrier(transport_);
   }
@@ -180,7 +180,7 @@ std::size_t VolumeFrames::render(volume::Renderer& renderer, const scene::Transf
         const scene::TraceScope timing(trace_, "wait", number);
         if (assembles) list.wait_for_room(in_flight);
         const bool stopped = relayed.token().stop_requested();
-        // The first picture is made in any case, so that all ranks hear of a stop by the same words.
+        // The first frame is always rendered, so that all ranks learn of a stop by the same message.
         if (frame > 0 && alone && stopped) break;
         if (frame > 0 && !alone &&
             exchange::broadcast_value(transport_, 0, MessageKind::next_frame, std::uint8_t{!stopped}) == 0)
@@ -195,7 +195,7 @@ std::size_t VolumeFrames::render(volume::Renderer& renderer, const scene::Transf
     if (!alone)
       complete = exchange::broadcast_value(transport_, 0, MessageKind::frames_complete, std::uint64_t{complete});
   } catch (const std::exception& fault) {
-    // The others wait for this rank, and so does the thread that gathers.
+    // The other ranks wait for this one, and so does the gathering thread.
     if (!alone) transport_.fail(run_error(transport_, fault));
     throw;
   }

@@ -23,26 +23,26 @@ struct VolumeJob {
   scene::ImageSize size;
 };
 
-/// A finished picture, on rank 0.
+/// A finished frame, on rank 0.
 struct FinishedVolumeFrame {
   std::size_t frame;  ///< in the list
   scene::Image image;
-  volume::RenderStatistics statistics;    ///< of all ranks, put together as tessera::grid_counters says
-  std::vector<scene::PixelRect> regions;  ///< of each rank: the pixels that it finished, but for steps in its edges
-  std::vector<GridCounters> ranks;        ///< what `statistics` are put together of
+  volume::RenderStatistics statistics;    ///< of all ranks, combined as tessera::grid_counters specifies
+  std::vector<scene::PixelRect> regions;  ///< of each rank: the pixels that it finished, except steps in its edges
+  std::vector<GridCounters> ranks;        ///< the counters combined in `statistics`
   std::vector<double> cpu_seconds;        ///< of each rank's rendering, all its threads
-  std::vector<double> split_cpu_seconds;  ///< sort-first: of each rank's part in finding the split
-  double frame_ms;                  ///< from the picture before, or when all ranks were ready, to this one in memory
-  std::vector<float> error_bounds;  ///< by pixel, if asked for
+  std::vector<double> split_cpu_seconds;  ///< sort-first: of each rank's share of finding the split
+  double frame_ms;                  ///< from the last frame, or from when all ranks were ready, to this one in memory
+  std::vector<float> error_bounds;  ///< by pixel, if requested
   bool stopped = false;             ///< the image lacks pixels
-  volume::ImageSplit split;         ///< sort-first: what `regions` are of
-  volume::CostMap cost;             ///< sort-first: of the whole picture, if FrameSettings::keep_cost
+  volume::ImageSplit split;         ///< sort-first: the split into `regions`
+  volume::CostMap cost;             ///< sort-first: of the whole image, if FrameSettings::keep_cost
   std::vector<volume::VoxelBox> parts;  ///< sort-last: of each rank
 };
 
-/// What a rank says of the pixels that it finished.
+/// The header of the pixels that a rank sends.
 struct RegionHeader {
-  std::uint64_t frame;      ///< its number
+  std::uint64_t frame;      ///< number of the frame
   scene::PixelRect region;  ///< without the steps of its edges (volume::ImageSplit)
   GridCounters counters;
   double cpu_seconds, split_cpu_seconds;
@@ -50,52 +50,52 @@ struct RegionHeader {
 };
 static_assert(sizeof(RegionHeader) == sizeof(GridCounters) + 6 * 8);
 
-/// What a rank has made of a picture.
+/// A rank's part of a frame.
 struct VolumePart {
   RegionHeader header;
-  std::vector<scene::PixelRect> rectangles;  ///< that it has finished
-  FinishedVolumeFrame finished;              ///< but for what the other ranks say, in `image` only these pixels
+  std::vector<scene::PixelRect> rectangles;  ///< finished by this rank
+  FinishedVolumeFrame finished;              ///< without the other ranks' parts; only these pixels of `image` are valid
 };
 
-/// On rank 0: who is told of what is made, in one call at a time, from any thread. What a call throws stops all ranks,
-/// and comes out of render().
+/// Callbacks on rank 0: one call at a time, from any thread. An exception from a call stops all ranks and propagates
+/// from render().
 struct VolumeCallbacks {
-  std::function<void(FinishedVolumeFrame&&)> frame;  ///< each as it is complete, in order
-  /// Of a picture of the list, pixels that are final; those of other ranks by whole rectangles. May be empty.
+  std::function<void(FinishedVolumeFrame&&)> frame;  ///< called with each complete frame, in order
+  /// Called with final pixels of a frame of the list; those of other ranks by whole rectangles. May be empty.
   std::function<void(std::size_t frame, const scene::PixelRect&, const scene::Image&)> tile;
 };
 
-/// Renders pictures of volumes with all ranks of a transport: sort-first (sort_first.hpp) or sort-last (sort_last.hpp).
+/// Renders frames of volumes with all ranks of a transport: sort-first (sort_first.hpp) or sort-last (sort_last.hpp).
 ///
-/// Of a list of pictures ranks cast the next one while rank 0 still gathers the one before and hands it out, by a
-/// thread of its own; how many may be on their way is up to the caller.
+/// In a list of frames, ranks cast the next one while a separate thread of rank 0 still gathers the last one and passes
+/// it on; the caller limits how many may be in progress.
 class VolumeFrames {
  public:
-  /// `transport` and `trace`, null for none, must outlive it.
+  /// `transport` and `trace`, which may be null, must outlive this object.
   VolumeFrames(exchange::Transport& transport, scene::Trace* trace)
       : transport_(transport), trace_(trace), relay_(transport) {}
   virtual ~VolumeFrames() = default;
   VolumeFrames(const VolumeFrames&) = delete;
   VolumeFrames& operator=(const VolumeFrames&) = delete;
 
-  /// How many pictures of the list are complete, on every rank: all, unless `stop` was asked for on any rank, which
-  /// ends the list on all within a tile of rays, or a callback threw. Collective: the same arguments on every rank, but
-  /// for the renderer, which is each rank's own, stop and callbacks. Pictures are numbered `first`, `first` + 1 and so
-  /// on, in traces. Throws the run's error.
+  /// Returns how many frames of the list are complete, on every rank: all, unless a callback threw or `stop` was
+  /// requested on any rank, which ends the list on all ranks within a tile of rays. Collective: the same arguments on
+  /// every rank except the renderer, which is each rank's own, `stop` and the callbacks. Traces number the frames
+  /// `first`, `first` + 1 and so on. Throws the run's error.
   std::size_t render(volume::Renderer& renderer, const scene::TransferFunction& function,
                      std::span<const VolumeJob> jobs, std::size_t first, const VolumeCallbacks& callbacks,
                      const std::stop_token& stop, int in_flight);
 
-  /// One picture: on rank 0, stopped if it was; nothing elsewhere. `watch` as above.
+  /// Renders one frame: returned on rank 0, stopped if it was; nothing on others. `watch` receives pixels as above.
   std::optional<FinishedVolumeFrame> render(volume::Renderer& renderer, const scene::TransferFunction& function,
                                             const VolumeJob& job, std::size_t number,
                                             scene::FrameWatch* watch = nullptr);
 
-  /// Carries stops between the ranks, for what follows a picture. Not while render() runs.
+  /// Passes stops between the ranks, for work that follows a frame. Not while render() runs.
   StopRelay& relay() { return relay_; }
 
  protected:
-  /// Casts this rank's part of a picture. `watch` hears of its pixels that are final. A stop is said in the header.
+  /// Casts this rank's part of a frame. `watch` receives its final pixels. The header states whether it was stopped.
   virtual VolumePart make(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
                           std::size_t number, scene::FrameWatch& watch) = 0;
 
@@ -107,7 +107,7 @@ class VolumeFrames {
   StopRelay relay_;
 };
 
-/// Processor time of all threads of this process so far.
+/// CPU time of all threads of this process so far.
 double process_cpu_seconds();
 
 }  // namespace tessera::frame

@@ -17,7 +17,7 @@
 namespace tessera::frame {
 namespace {
 
-/// Calls `use` with the numbers as they are stored.
+/// Calls `use` with the numbers in their stored type.
 template <class Use>
 auto with_numbers(const ArrayView& view, const Use& use) {
   return scene::with_number_type(view.type(), [&](auto zero) { return use(view.as<decltype(zero)>()); });
@@ -29,7 +29,7 @@ std::vector<double> doubles_of(const ArrayView& view) {
   return with_numbers(view, [](const auto& numbers) { return std::vector<double>(numbers.begin(), numbers.end()); });
 }
 
-/// Whole numbers from `least` to below `end`, or an error that names the first that is not.
+/// Integers in [least, end), or an error that names the first that is outside.
 template <class T>
 std::vector<T> whole_numbers(const ArrayView& view, const char* name, std::uint64_t end, std::int64_t least = 0) {
   if (!is_whole(view.type())) throw scene::bad_input(fmt::format("mesh: {} are no whole numbers; give integers", name));
@@ -78,7 +78,7 @@ void check_shapes(const MeshArrays& a) {
                                        of_points ? "points" : "cells"));
 }
 
-/// The arrays as they stand, if they are laid out as the renderer wants them.
+/// The arrays without a copy, if they have the layout that the renderer needs.
 std::optional<scene::TetMeshView> borrowed(const MeshArrays& a) {
   if (a.points.type() != NumberType::float64 || a.scalars.type() != NumberType::float64 ||
       a.tets.type() != NumberType::uint32 || !a.types.empty())
@@ -92,7 +92,7 @@ std::optional<scene::TetMeshView> borrowed(const MeshArrays& a) {
   mesh.original_cell = a.original_cells.as<std::uint64_t>();
   for (const scene::Tet& tet : mesh.tets)
     for (const std::uint32_t v : tet)
-      if (v >= mesh.positions.size()) return std::nullopt;  // said by the conversion
+      if (v >= mesh.positions.size()) return std::nullopt;  // reported by the conversion
   return mesh;
 }
 

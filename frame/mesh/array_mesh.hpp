@@ -11,26 +11,26 @@
 
 namespace tessera::frame {
 
-/// A caller's mesh as the renderer sees it.
+/// A caller's mesh in the renderer's form.
 struct ArrayMesh {
   scene::TetMeshView mesh;
-  std::shared_ptr<const void> owner;  ///< of the caller's arrays, or of what was made of them
+  std::shared_ptr<const void> owner;  ///< of the caller's arrays, or of the converted ones
   MeshCounts counts;
   HigherOrderCells higher_order;
   std::vector<std::string> notes;
 };
 
-/// Borrows the arrays where they are laid out as the renderer wants them and nothing is blank, else converts them as a
-/// file's. `may_be_empty`: of a part; duplicate cells are then counted with those of the other parts, not here.
-/// `planning` is called once, of no blocks where there is nothing to convert. Throws Error(bad_input) naming array and
-/// place.
+/// Borrows the arrays if they have the layout that the renderer needs and nothing is blank; otherwise converts them as
+/// those of a file. `may_be_empty`: for a part; duplicate cells are then counted together with those of the other
+/// parts, not here. `planning` is called once, without blocks if there is nothing to convert. Throws Error(bad_input)
+/// naming array and place.
 ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty,
                          const cells::HigherOrderPlanning& planning = cells::plan_higher_order);
 
-/// The same for who only writes it: borrowed whatever its numbers are.
+/// The same for callers that only write it: borrowed whatever its numbers are.
 ArrayMesh mesh_to_write(const MeshArrays& arrays);
 
-/// A mesh that is there already, as a caller has it: borrowed from `owner`.
+/// An existing mesh as a caller's arrays, borrowed from `owner`.
 MeshArrays arrays_of(const scene::TetMeshView& mesh, std::string field_name, std::shared_ptr<const void> owner);
 
 }  // namespace tessera::frame

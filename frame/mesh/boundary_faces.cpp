@@ -14,7 +14,7 @@
 namespace tessera::frame {
 namespace {
 
-/// A face as it is sent: corners by position.
+/// A face in a message: corners by position.
 struct OpenFace {
   std::array<glm::dvec3, 3> corners;
   std::array<double, 3> values;
@@ -25,7 +25,7 @@ static_assert(sizeof(OpenFace) == 104);
 
 auto place(const glm::dvec3& p) { return std::tuple(p.x, p.y, p.z); }
 
-/// Each point's number in the order of places; points at one place have one.
+/// The number of each point in the order of positions; coincident points have the same number.
 std::vector<std::uint32_t> numbers_by_place(const scene::TetMeshView& mesh) {
   std::vector<std::uint32_t> order;
   {
@@ -48,7 +48,7 @@ std::vector<std::uint32_t> numbers_by_place(const scene::TetMeshView& mesh) {
 }
 
 struct TetFace {
-  std::array<std::uint32_t, 3> points;  ///< numbers by place, ascending
+  std::array<std::uint32_t, 3> points;  ///< numbers by position, ascending
   std::uint32_t tet, opposite;
 };
 
@@ -70,8 +70,8 @@ OpenFace open_face(const scene::TetMeshView& mesh, const std::vector<std::uint32
   return open;
 }
 
-/// The faces that one tet of this part has alone, in the order of their corners' places. Those without area are left
-/// out.
+/// The faces that belong to only one tet of this part, in the order of their corners' positions. Faces without area are
+/// left out.
 std::vector<OpenFace> open_faces(const scene::TetMeshView& mesh) {
   const std::vector<std::uint32_t> numbers = numbers_by_place(mesh);
   std::vector<TetFace> faces;

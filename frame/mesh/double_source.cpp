@@ -10,10 +10,10 @@
 namespace tessera::frame {
 namespace {
 
-/// A buffer of this many segments and its companions stay in a core's second-level cache.
+/// A buffer of this many segments and the related buffers fit in a core's second-level cache.
 constexpr std::size_t comfortable_segments = 8192;
 
-/// There must be room.
+/// `to` must have enough capacity.
 template <class Segments>
 void append(const Segments& from, Segments& to) {
   const auto copy = [&](const auto& source, auto& target) {
@@ -56,8 +56,7 @@ bool DoubleSourceOf<Segments>::start(const scene::PixelRect& rect, const project
       most_ += marks_.size();
       own = marks_.own();
     }
-  // Room for at least two segments a pixel: the rasterizer wants space for one more on every pixel before it takes a
-  // cell.
+  // Space for at least two segments per pixel: the rasterizer needs one more on every pixel before it starts a cell.
   if (!reserve(own + std::max<std::size_t>(2 * most_,
                                            std::min(comfortable_segments, context_.budget_bytes / bytes_a_segment))))
     return false;
@@ -77,7 +76,7 @@ bool DoubleSourceOf<Segments>::fill(const compositor::TileSink<Encoding>& sink) 
 template <class Segments>
 double DoubleSourceOf<Segments>::final_depth() const {
   const double depth = context_.depth_origin + order_->nearest_from(next_);
-  // Scanline's depths are floats, rounded the same way and not before their cell's nearest vertex.
+  // The scanline rasterizer's depths are floats, rounded the same way and not before their cell's nearest vertex.
   return context_.rasterizer == Rasterizer::scanline ? static_cast<float>(depth) : depth;
 }
 
@@ -117,7 +116,7 @@ std::size_t DoubleSourceOf<Segments>::rasterize_at_steps(std::span<const project
   return taken;
 }
 
-/// Cell by cell, of which each is cut before the next one.
+/// Rasterizes cell by cell, and cuts each at the faces before the next one.
 template <class Segments>
 std::size_t DoubleSourceOf<Segments>::rasterize_at_faces(std::span<const projection::TileEntry> entries) {
   Segments& segments = lists_.segments;

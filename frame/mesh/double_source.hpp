@@ -9,11 +9,11 @@
 
 namespace tessera::frame {
 
-/// A tile renderer's source in double precision, for any frame: the `planes` or the `scanline` rasterizer, cells that
-/// need care at steps of the transfer function cut there, and all where rays meet surfaces of triangles, whose
-/// crossings are in the store from the start. The store is one buffer for all pixels.
+/// A tile renderer's source in double precision, for any frame: the `planes` or the `scanline` rasterizer. It cuts
+/// cells at steps of the transfer function where necessary, and all cells where rays meet triangle surfaces, whose
+/// crossings are in the store from the beginning. The store is one buffer for all pixels.
 ///
-/// With AttributeSegments the `planes` rasterizer alone, without such surfaces.
+/// AttributeSegments are only possible with the `planes` rasterizer, without such surfaces.
 template <class Segments>
 class DoubleSourceOf {
  public:
@@ -31,7 +31,7 @@ class DoubleSourceOf {
   [[nodiscard]] std::size_t capacity() const { return lists_.segments.capacity(); }
   [[nodiscard]] std::size_t alive() const { return lists_.segments.size; }
 
-  /// Bytes that one segment takes in all buffers of a renderer and its sink.
+  /// Bytes per segment in all buffers of a renderer and its sink.
   static constexpr std::size_t bytes_a_segment = Store::bytes_each + integrals::SegmentBatch::bytes_each;
 
  private:
@@ -44,8 +44,8 @@ class DoubleSourceOf {
   TileCounts* counts_;
   scene::PixelRect rect_{0, 0, 0, 0};
   const projection::DepthOrder* order_ = nullptr;
-  std::size_t next_ = 0;  ///< cell
-  std::size_t most_ = 0;  ///< segments that a cell may add
+  std::size_t next_ = 0;  ///< next cell
+  std::size_t most_ = 0;  ///< most segments that a cell may add
   projection::ScanlineBuffers scanline_;
   projection::SplitRasterizer<Segments> splitter_;
   projection::FaceMarks marks_;

@@ -23,7 +23,7 @@
 
 namespace tessera::frame {
 
-/// What culling leaves of a frame.
+/// The result of culling a frame.
 struct FrameProjector::Culled {
   std::vector<projection::Step> steps;  ///< of the transfer function and surfaces
   projection::CellsAtSteps at_steps;    ///< whose segments are cut there
@@ -40,7 +40,7 @@ std::shared_ptr<const projection::PreparedMesh> prepared(const scene::TetMeshVie
   });
 }
 
-/// Room for `size` elements of no value, in the team's memory if there is one.
+/// Resizes `array` to `size` uninitialized elements, in the team's memory if there is one.
 template <class T>
 void make_room(projection::LargeArray<T>& array, std::size_t size, scene::Team* team, scene::Team::Room room) {
   if (team == nullptr)
@@ -59,7 +59,7 @@ void check_scanline(const FrameTask& frame, const projection::ProjectedMesh& pro
         "planes");
 }
 
-/// Optical depth of a ray as long as `length` that meets all of the function's scalars equally often.
+/// Optical depth of a ray of length `length` that meets all of the function's scalars equally often.
 double usual_optical_depth(const scene::TransferFunction& function, double length) {
   const auto knots = function.knots();
   double sum = 0;
@@ -68,9 +68,9 @@ double usual_optical_depth(const scene::TransferFunction& function, double lengt
   const double span = knots.back().value - knots.front().value;
   return length * (span > 0 ? sum / span : knots.front().extinction);
 }
-constexpr double opaque_depth = 40;  // of which a ray that ends at a transmittance of 1e-3 sees a sixth
+constexpr double opaque_depth = 40;  // a ray that ends at a transmittance of 1e-3 sees a sixth of it
 
-/// One thread's part in a frame: tiles, one after the other.
+/// One thread's part of a frame: tiles, one after the other.
 class TileWorker {
  public:
   TileWorker() = default;
@@ -117,7 +117,7 @@ class Worker final : public TileWorker {
   std::unique_ptr<compositor::CellSink> cells_;  ///< null: the CPU rasterizes all
 };
 
-/// What is left of the budget for segments, shared by the threads.
+/// The remaining memory budget for segments, shared by the threads.
 std::uint64_t segment_budget(const Settings& settings, std::uint64_t held, int threads) {
   const std::uint64_t least = held + static_cast<std::uint64_t>(threads) * (1u << 20);
   if (settings.memory_bytes < least)
@@ -129,7 +129,7 @@ std::uint64_t segment_budget(const Settings& settings, std::uint64_t held, int t
 
 using Workers = tbb::enumerable_thread_specific<std::unique_ptr<TileWorker>>;
 
-/// TileSinks::prepare in parallel with other work, ended when this is.
+/// TileSinks::prepare in parallel with other work; the destructor waits for it.
 class SideTask {
  public:
   SideTask(const std::function<void()>& work, scene::Trace* trace, std::int32_t frame) {
@@ -143,12 +143,12 @@ class SideTask {
     if (waited_for_) return;
     try {
       group_.wait();
-    } catch (...) {  // the frame ends with another error
+    } catch (...) {  // the frame ends with an earlier error
     }
   }
   SideTask(const SideTask&) = delete;
   SideTask& operator=(const SideTask&) = delete;
-  /// Throws what the work threw.
+  /// Throws the exception of the work.
   void wait() {
     waited_for_ = true;
     group_.wait();
@@ -162,10 +162,10 @@ class SideTask {
 /// Which process renders a tile.
 enum class Owner : std::uint8_t { none, self, another, first_to_come };
 
-/// The owner of each tile: of a process alone, itself of those that have cells or triangles. A team's members get half
-/// of the cells beforehand, equally many each: a tile goes to the one that is preferred, unless that has a hundredth
-/// more than another, then to the one that has least. The rest, the tiles that come last, are shared out one by one, so
-/// that no member waits for a slower one at the end.
+/// The owner of each tile. A single process owns the tiles that have cells or triangles. The members of a team get half
+/// of the cells in advance, in equal numbers: a tile goes to the preferred member, unless that is ahead of another by
+/// more than a hundredth of its share, otherwise to the member that has least. The remaining tiles, which come last,
+/// are taken one by one, so that no member waits for a slower one at the end.
 std::vector<Owner> share_out(const FrameTask& frame, const TeamTask& team, const projection::TileLists& lists,
                              const projection::FrameFaces* faces) {
   std::vector<Owner> owners(frame.grid.count(), Owner::none);
@@ -203,18 +203,18 @@ void announce(const TileSinks& sinks, const std::vector<Owner>& owners) {
   sinks.announce(may_come);
 }
 
-/// The tiles that a team's members share out one by one, for the threads of one.
+/// The tiles that a team's members take one by one, for the threads of one member.
 class SharedTiles {
  public:
   SharedTiles(const TeamTask& team, const std::vector<Owner>& owners) : team_(&team) {
     for (std::size_t tile = 0; tile < owners.size(); ++tile)
       if (owners[tile] == Owner::first_to_come) tiles_.push_back(tile);
   }
-  /// Takes the next tile before `last`; `last` if there is none.
+  /// Takes the next tile before `last`; returns `last` if there is none.
   std::size_t take(std::size_t last) {
     if (tiles_.empty()) return last;
     const auto count = static_cast<std::size_t>(std::lower_bound(tiles_.begin(), tiles_.end(), last) - tiles_.begin());
-    const std::lock_guard lock(mutex_);  // what other threads of this process take is not another member's
+    const std::lock_guard lock(mutex_);  // tiles of this process's other threads are not skipped
     const std::size_t taken = team_->team->draw(static_cast<std::uint32_t>(count));
     for (; seen_ < taken; ++seen_)
       if (team_->skip) team_->skip(tiles_[seen_]);
@@ -227,7 +227,7 @@ class SharedTiles {
   const TeamTask* team_;
   std::vector<std::size_t> tiles_;
   std::mutex mutex_;
-  std::size_t seen_ = 0;  ///< that this process has taken or skipped
+  std::size_t seen_ = 0;  ///< tiles that this process has taken or skipped
 };
 
 std::uint64_t members_of(const TeamTask& team) {
@@ -238,7 +238,7 @@ std::uint64_t members_of(const TeamTask& team) {
 void render_tiles(const FrameTask& frame, const scene::Image* image, projection::TileLists& lists,
                   const std::vector<Owner>& owners, SharedTiles& shared, Workers& workers, std::size_t first,
                   std::size_t last, const std::stop_token& stop) {
-  // Threads take tiles in order: fragments then leave in the order in which all processes send them.
+  // Threads take tiles in order, so that fragments leave in the same order on all processes.
   std::atomic<std::size_t> next = first;
   tbb::parallel_for(
       0, tbb::this_task_arena::max_concurrency(),
@@ -258,7 +258,7 @@ void render_tiles(const FrameTask& frame, const scene::Image* image, projection:
       tbb::simple_partitioner());
 }
 
-/// Of this process's share and its workers.
+/// Statistics of this process's share and its workers.
 FrameStatistics count(const FrameTask& frame, const TeamTask& team, const projection::PreparedMesh& mesh,
                       const projection::TileLists& lists, const Workers& workers) {
   constexpr std::size_t block = projection::PreparedMesh::block_tets;
@@ -306,7 +306,7 @@ FrameStatistics FrameProjector::project_in_arena(const FrameTask& frame, const T
   if (frame.surfaces != nullptr && !frame.surfaces->iso_values().empty()) projected.iso = &iso;
   const float longest_edge = frame.longest_edge > 0 ? frame.longest_edge : longest_edge_;
   if (settings_.mesh.rasterizer == Rasterizer::scanline) {
-    if (team.team != nullptr) team.team->barrier();  // it looks at all vertices
+    if (team.team != nullptr) team.team->barrier();  // the check reads all vertices
     check_scanline(frame, projected, longest_edge);
   }
   if (frame.lattice != nullptr) place_on_lattice(frame, team, stop);
@@ -394,7 +394,7 @@ void FrameProjector::place_on_lattice(const FrameTask& frame, const TeamTask& te
 
 FrameProjector::Culled FrameProjector::cull(const FrameTask& frame, const projection::ProjectedMesh& projected,
                                             const TeamTask& team, const std::stop_token& stop) {
-  // Sampling promises nothing that steps could break.
+  // Steps cannot break a promise of sampling methods, which make none.
   const bool exact =
       settings_.mesh.rasterizer != Rasterizer::scanline &&
       (settings_.integrator.kind == IntegratorKind::exact || settings_.integrator.kind == IntegratorKind::automatic);
@@ -415,8 +415,8 @@ FrameProjector::Culled FrameProjector::cull(const FrameTask& frame, const projec
           .faces = frame.faces.empty() ? Faces() : Faces(std::in_place, frame.faces, *frame.space, frame.grid)};
 }
 
-/// Calls `render` for band after band of tiles, as many as a quarter of what is left of the budget holds lists for; the
-/// rest is for segments. Returns the most bytes of lists.
+/// Calls `render` for one band of tiles after another. The lists of a band take at most a quarter of the remaining
+/// budget; the rest is for segments. Returns the largest number of bytes of lists.
 std::uint64_t FrameProjector::render_bands(const FrameTask& frame, const TeamTask& team, projection::TileLists& lists,
                                            std::uint64_t held,
                                            const std::function<void(std::size_t, std::size_t)>& render) const {
@@ -434,7 +434,7 @@ std::uint64_t FrameProjector::render_bands(const FrameTask& frame, const TeamTas
     }
     if (first > 0 && team.team != nullptr) {
       if (team.before_waiting) team.before_waiting();
-      team.team->barrier();  // no member reads the last band's lists any more
+      team.team->barrier();  // no member still reads the last band's lists
     }
     {
       const scene::TraceScope timing(settings_.trace, "bin", frame.number);

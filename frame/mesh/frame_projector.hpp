@@ -22,63 +22,64 @@
 
 namespace tessera::frame {
 
-/// A frame to project. The faces and the lattice exclude each other.
+/// A frame to project. Faces and lattice exclude each other.
 struct FrameTask {
   const projection::PixelSpace* space;
   projection::TileGrid grid;
   const scene::TransferFunction* function;
-  const scene::SurfaceSet* surfaces = nullptr;        ///< in the volume; null or empty: none
-  std::span<const projection::SurfaceFaces> faces{};  ///< of those of triangles
-  const scene::Lattice* lattice = nullptr;            ///< that tiles are rendered on; null: in double precision
+  const scene::SurfaceSet* surfaces = nullptr;        ///< in the volume; may be null or empty
+  std::span<const projection::SurfaceFaces> faces{};  ///< of triangle surfaces
+  const scene::Lattice* lattice = nullptr;            ///< for rendering on the lattice; null: in double precision
   std::int32_t number = -1;                           ///< for the trace
   float longest_edge = 0;                             ///< scanline: of the whole data set, world units; 0: of this mesh
   double longest_ray = 0;                             ///< bounds a ray's length in the whole mesh; 0: diagonal()
-  scene::FrameWatch* watch = nullptr;                 ///< project() throws scene::FrameStopped once it is asked to stop
+  scene::FrameWatch* watch = nullptr;                 ///< project() throws scene::FrameStopped once it requests a stop
 };
 
-/// What becomes of a frame's segments. A sink is for one thread: tiles go to it one after the other, and each thread
-/// takes tiles in ascending order.
+/// The consumers of a frame's segments. A sink belongs to one thread: tiles go to it one after the other, and each
+/// thread takes tiles in ascending order.
 struct TileSinks {
   std::function<std::unique_ptr<compositor::TileSink<sorting::DoubleEncoding>>()> in_double;
   std::function<std::unique_ptr<compositor::TileSink<sorting::LatticeEncoding>>()> on_lattice{};
-  /// If set, sinks that take the cells of tiles which a device can rasterize; the others' segments go on to the sinks
-  /// above. There are no surfaces then.
+  /// If set, sinks for the cells of tiles that a device can rasterize; segments of other cells still go to the sinks
+  /// above. There are then no surfaces.
   std::function<std::unique_ptr<compositor::CellSink>()> of_cells{};
   std::uint64_t kept_bytes = 0;         ///< of the memory budget
-  const scene::Image* image = nullptr;  ///< that they write to, so that the watch sees its tiles; null: another place
-  /// Done once before the first tile, in parallel with the projection of vertices. May be empty.
+  const scene::Image* image = nullptr;  ///< target of the sinks, so that the watch sees finished tiles; null: elsewhere
+  /// Runs once before the first tile, in parallel with the projection of vertices. May be empty.
   std::function<void()> prepare{};
-  /// Called once before the first tile: which tiles have cells or triangles and will be given to a sink of this
-  /// process, except those that TeamTask::skip() is called for. May be empty.
+  /// Called once before the first tile with the tiles that have cells or triangles and will go to a sink of this
+  /// process, unless TeamTask::skip() is called for them. May be empty.
   std::function<void(const std::vector<bool>& has_any)> announce{};
 };
 
 /// The processes that project a frame together: they have one mesh in shared memory and do the same task, without faces
-/// and image, each its share of the passes and some of the tiles.
+/// and image. Each does its share of the passes and some of the tiles.
 struct TeamTask {
-  scene::Team* team = nullptr;  ///< null: a process alone
-  /// Which member should own tile `tile` if that is as well as any other; -1: no matter which. Empty: none.
+  scene::Team* team = nullptr;  ///< null: a single process
+  /// The preferred owner of tile `tile`, other things being equal; -1: no preference. Empty: no preferences.
   std::function<int(std::size_t tile)> preferred{};
-  /// Called for each announced tile that turns out to be another member's, before the next tile is begun.
+  /// Called for each announced tile that another member turns out to own, before the next tile begins.
   std::function<void(std::size_t tile)> skip{};
-  /// Called before this process waits for its team while parts of tiles may be on their way. May be empty.
+  /// Called before this process waits for its team while parts of tiles may be in transit. May be empty.
   std::function<void()> before_waiting{};
 };
 
-/// Projects a process's tets into the ray segments of every tile, on all its threads.
+/// Projects a process's tets to the ray segments of every tile, on all its threads.
 class FrameProjector {
  public:
-  /// The mesh must outlive this object; the settings are valid.
+  /// The mesh must outlive this object; the settings must be valid.
   FrameProjector(const scene::TetMeshView& mesh, const Settings& settings);
-  /// Of a mesh that has been prepared; `box` is its scene::bounds().
+  /// For a mesh that has already been prepared; `box` is its scene::bounds().
   FrameProjector(std::shared_ptr<const projection::PreparedMesh> mesh, const scene::Box& box, const Settings& settings);
 
-  /// Fills all of the statistics but the names. Throws Error(bad_input) for a view that the rasterizer cannot do.
+  /// Fills all of the statistics except the names. Throws Error(bad_input) for a view that the rasterizer does not
+  /// support.
   FrameStatistics project(const FrameTask& frame, const TileSinks& sinks, const TeamTask& team = {});
 
   /// The mesh's scene::bounds().
   [[nodiscard]] const scene::Box& box() const { return box_; }
-  /// Length of the diagonal of the mesh's box, world units: no ray inside is longer.
+  /// Length of the diagonal of the mesh's box, world units: an upper bound for rays inside.
   [[nodiscard]] double diagonal() const { return diagonal_; }
 
  private:
@@ -86,7 +87,7 @@ class FrameProjector {
     return frame.longest_ray > 0 ? frame.longest_ray : diagonal_;
   }
   FrameStatistics project_in_arena(const FrameTask& frame, const TileSinks& sinks, const TeamTask& team);
-  // Its steps, in order.
+  // The steps of project_in_arena(), in order.
   projection::ProjectedMesh transform(const FrameTask& frame, const TeamTask& team, const std::stop_token& stop);
   void place_on_lattice(const FrameTask& frame, const TeamTask& team, const std::stop_token& stop);
   struct Culled;

@@ -16,29 +16,30 @@ namespace {
 namespace budget = scene::error_budget;
 
 constexpr double most_optical_depth = 2000;
-/// What scalars' rounding may change a pixel by.
+/// The largest change of a pixel that the rounding of scalars may cause.
 double most_error_of(const scene::Integrator& integrator) {
   const bool automatic = integrator.kind == scene::IntegratorKind::automatic;
   return automatic ? budget::lattice_scalars(integrator.accuracy) : budget::lattice_scalars_of_exact;
 }
-/// Whether float lanes are near enough, where a ray may be as bright as that.
+/// Whether float lanes are accurate enough if a ray may have this brightness.
 bool lanes_suffice(const scene::Integrator& integrator, double brightest) {
   return integrator.kind == scene::IntegratorKind::automatic
              ? budget::mesh_on_lattice(integrator.accuracy, brightest) <= integrator.accuracy
              : budget::exact_mesh_on_lattice(brightest) <= budget::exact_mesh;
 }
-// Extinction wrong by at most D where the scalar is in a piece of the function changes light and opacity by at most
-// D int T dt over what the ray spends there, times the most that can lie behind. Transmittance T falls by exp(-sigma t)
-// at least, sigma being the piece's least extinction, so with x_i for piece i's integral sum x_i <= L and
-// sum sigma_i x_i <= 1: where D_i <= E (1 / L + sigma_i) / 2 for all pieces they change it by E together, at most.
+// Where the scalar is in a piece of the function, an error of at most D in extinction changes light and opacity by at
+// most D int T dt over the ray's path through the piece, times the largest contribution behind it. Transmittance T
+// falls at least like exp(-sigma t), where sigma is the piece's smallest extinction. So with x_i for the integral of
+// piece i, sum x_i <= L and sum sigma_i x_i <= 1: if D_i <= E (1 / L + sigma_i) / 2 for all pieces, their total error
+// is at most E.
 double seen_length(double length, double least_extinction) {
   return std::min(length, 2 / (1 / length + least_extinction));
 }
-// What is deeper than this is dark: only rays at the foot of a very steep ramp could show more.
+// Anything deeper is dark: only rays at the foot of a very steep ramp could show more.
 constexpr double most_change_of_depth = 64;
 constexpr double margin = 1.001;  // keeps rounding and the planes' error inside the lattice
 
-/// Planar depths between which the box lies, in front of the eye and inside the clipping range.
+/// The range of planar depths of the box, in front of the eye and inside the clipping range.
 std::array<double, 2> depth_range(const projection::PixelSpace& space, const scene::Box& box) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (int corner = 0; corner < 8; ++corner) {
@@ -50,7 +51,7 @@ std::array<double, 2> depth_range(const projection::PixelSpace& space, const sce
   return {std::max(low, space.near_depth()), std::min(high, space.far_depth())};
 }
 
-/// The most world length per planar depth of any ray of the picture.
+/// The largest world length per planar depth of any ray of the image.
 double most_length_per_depth(const projection::PixelSpace& space) { return space.length_per_depth(0, 0); }
 
 }  // namespace
@@ -69,8 +70,8 @@ std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, co
 
   Lattice lattice{};
   lattice.depth_origin = near + (far - near) / 2;
-  // The eye's distance rounds the lattice's origin: thin cells of a mesh that is flat beside it keep their thickness in
-  // double precision alone.
+  // The lattice's origin is rounded relative to the eye's distance: thin cells of a mesh that is flat in comparison
+  // only keep their thickness in double precision.
   const double half_depth = (far - near) / 2;
   if (half_depth < 1e-6 * std::abs(far)) return std::nullopt;
   lattice.depth_unit = Lattice::unit_for(margin * half_depth);
@@ -95,10 +96,10 @@ std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, co
     if (a.value == b.value || b.value < low || a.value > high) continue;
     const auto on_lanes = [&](double v) { return static_cast<float>(lattice.scalar_step(v)); };
     if (on_lanes(a.value) == on_lanes(b.value)) return std::nullopt;
-    // A scalar is known to 16 steps (gradients over a square) or half a float's last place.
+    // The error of a scalar is 16 steps (gradients over a square) or half of a float's last place.
     const double reached =
         std::max(std::abs(a.value - lattice.scalar_origin), std::abs(b.value - lattice.scalar_origin));
-    // Just below a step it is a whole last place: what rounds to the step goes to the next float below it.
+    // Just below a step it is a whole last place: a value that would round to the step becomes the next float below it.
     const bool step_above = i + 1 < knots.size() && knots[i + 1].value == b.value;
     const double scalar_error =
         std::max(16 * lattice.scalar_unit, std::min(reached, reach) * (step_above ? 0x1p-23 : 0x1p-24));

@@ -9,16 +9,17 @@
 namespace tessera::frame {
 namespace {
 
-constexpr std::size_t usual_capacity = 32;         // segments a pixel: half a MiB of windows
-constexpr std::size_t capacity_where_opaque = 16;  // rays end soon: the less is behind them
+constexpr std::size_t usual_capacity = 32;         // segments per pixel: half a MiB of windows
+constexpr std::size_t capacity_where_opaque = 16;  // rays end soon: fewer segments behind that point
 constexpr std::size_t cells_at_once = 16;
-// Where one list is full, lists of fewer than this part of the first capacity wait: what is sorted should be final.
+// When one list is full, lists shorter than this fraction of the first capacity wait: most of what is sorted should be
+// final.
 constexpr double fullness = 0.75;
-// Cells that lie slanting to the rays are in front long before their segments are. Where more than this part of a list
-// waits for that it is sorted again and again: there is more room then, as long as that stays in the cache.
+// Cells that are oblique to the rays are in front long before their segments are. If more than this fraction of a list
+// is not final, sorting it would be repeated; it gets more capacity instead, as long as that stays in the cache.
 constexpr double rest_worth_growing = 0.25;
 constexpr std::size_t roomy = 256;
-// Computed depths may lie this many steps before the cell's nearest vertex (planes: 16, irregular cells: rounding).
+// Computed depths may be this many steps before the cell's nearest vertex (planes: 16, irregular cells: rounding).
 constexpr std::int64_t depth_error = 64;
 
 }  // namespace
@@ -55,7 +56,7 @@ bool LatticeSource::fill(const compositor::TileSink<Encoding>& sink) {
   }
 }
 
-/// What lies before the stream's cells.
+/// The depth before which no segment of the stream's cells is.
 std::int64_t LatticeSource::final_depth() const {
   const double near_depth = context_.depth_origin + order_->nearest_from(from_);
   const double steps = (near_depth - view_.lattice.depth_origin) / view_.lattice.depth_unit;

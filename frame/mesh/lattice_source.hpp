@@ -7,10 +7,10 @@
 
 namespace tessera::frame {
 
-/// A tile renderer's source on the integer lattice, for frames that fit it (frame/mesh/lattice_frame.hpp): sixteen
-/// cells are rasterized at once, and their segments given to the pixels' windows.
+/// A tile renderer's source on the integer lattice, for frames that fit it (frame/mesh/lattice_frame.hpp): it
+/// rasterizes sixteen cells at once and moves their segments to the pixels' windows.
 ///
-/// Windows hold a few dozen segments a pixel; the store is full when one of them is.
+/// Windows hold a few dozen segments per pixel; the store is full when one of them is.
 class LatticeSource {
  public:
   using Encoding = sorting::LatticeEncoding;
@@ -33,7 +33,7 @@ class LatticeSource {
   std::size_t first_capacity_, at_least_;
   scene::PixelRect rect_{0, 0, 0, 0};
   const projection::DepthOrder* order_ = nullptr;
-  std::size_t cells_ = 0;   ///< rasterized, the stream's included
+  std::size_t cells_ = 0;   ///< rasterized, including those of the stream
   std::size_t from_ = 0;    ///< the stream's first cell
   std::size_t placed_ = 0;  ///< segments of the stream that are in the windows
   projection::LatticeScratch scratch_;

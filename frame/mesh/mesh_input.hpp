@@ -9,21 +9,21 @@
 #include "scene/mesh_facts.hpp"
 #include "tessera/dataset.hpp"
 
-/// Meshes as files have them, and what stands in for settings that were not given.
+/// Reading meshes from files, and the default for a unit distance that is not given.
 namespace tessera::frame {
 
-/// io::identify, but a time series is refused as one. Throws scene::Error.
+/// io::identify, but refuses a time series with its own message. Throws scene::Error.
 io::InputFile identify_input(const std::filesystem::path& input);
 
-/// io::read_mesh of a mesh's files, whose first has been identified.
+/// io::read_mesh for a mesh's files, whose first one has been identified.
 cells::MeshFile read_input(std::span<const std::filesystem::path> files, const io::InputFile& first,
                            const ReadOptions& options);
 
 using tessera::diagonal;
 
-/// The length over which an opacity holds where neither file nor user says it, world units: a tenth of the mesh's mean
-/// thickness, so that the presets' ramps (0.03 to 0.2) make an average ray 0.26 to 0.89 opaque, in plates and scattered
-/// parts too. A mesh of no volume: a twentieth of its diagonal; of no extent: 1.
+/// The length to which an opacity refers if neither the file nor the user states it, world units: a tenth of the mesh's
+/// mean thickness, so that the presets' ramps (0.03 to 0.2) make an average ray 0.26 to 0.89 opaque, also in plates and
+/// scattered parts. For a mesh without volume: a twentieth of its diagonal; without extent: 1.
 double default_unit_distance(const scene::MeshFacts& facts);
 
 }  // namespace tessera::frame

@@ -42,7 +42,7 @@ void make_tidy(scene::DeepImage& layers) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   for (std::size_t p = 0; p + 1 < layers.begin.size(); ++p) {
     float last = -infinity;
-    bool point = false;  // at `last`
+    bool point = false;  // the sample at `last` is a point
     for (std::uint64_t n = layers.begin[p]; n < layers.begin[p + 1]; ++n) {
       scene::DeepImageSample& s = layers.samples[n];
       s.z = std::max(s.z, last), s.z_back = std::max(s.z_back, s.z);

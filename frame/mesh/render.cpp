@@ -39,7 +39,7 @@ struct Renderer::State {
     boundary = tbb::task_arena(scene::threads_for(settings.threads)).execute([&] { return boundary_faces(mesh); });
   }
 
-  /// The integrator of this function. Its tables are kept for as long as the function stays.
+  /// The integrator of this function. Its tables are kept until the function changes.
   const integrals::SegmentIntegrator& integrator(const scene::TransferFunction& f) {
     if (!kept || !std::ranges::equal(f.knots(), function.knots())) {
       kept.emplace(f, settings.integrator, settings.emission);
@@ -53,7 +53,7 @@ struct Renderer::State {
   FrameProjector projector;
   std::array<double, 2> scalar_range;
   compositor::MeshNormals normals;
-  std::optional<BoundaryFaces> boundary;  ///< if the settings have surfaces of it
+  std::optional<BoundaryFaces> boundary;  ///< if the settings have boundary surfaces
   scene::TransferFunction function;
   std::optional<integrals::SegmentIntegrator> kept;
 };
@@ -122,7 +122,7 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
        .on_lattice = [&] { return std::make_unique<compositor::PictureSink<sorting::LatticeEncoding>>(scene, window); },
        .kept_bytes = collector ? settings.memory_bytes / 2 : 0,
        .image = &image,
-       .prepare = [&] { image = scene::Image(size); }});  // whose pages are new, so slow to fill
+       .prepare = [&] { image = scene::Image(size); }});  // new pages are slow to fill
   counted.instruction_set = projection::instruction_set();
   counted.integrator = integrator.name();
   if (collector) {

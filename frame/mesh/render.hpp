@@ -21,46 +21,47 @@ class PreparedMesh;
 
 namespace tessera::frame {
 
-/// What happened in one frame.
+/// Statistics of one frame.
 struct FrameStatistics : scene::FrameCounters {
-  bool on_lattice = false;      ///< the integer lattice held the frame; false: double precision
+  bool on_lattice = false;      ///< the integer lattice was precise enough; false: double precision
   std::string instruction_set;  ///< of the kernels that ran
-  std::string integrator;       ///< what `automatic` chose
+  std::string integrator;       ///< chosen by `automatic`
   std::string composited_on;    ///< CompositingDevice::name, of all compositors; empty in a single process
 };
 
-/// projection::order_corners() on so many threads, 0: all cores: of a mesh that has been through it a renderer keeps no
-/// copy of the tets, 16 bytes each. Pictures are the same with and without.
+/// projection::order_corners() on `threads` threads, 0: all cores. For a mesh ordered this way a renderer keeps no copy
+/// of the tets, 16 bytes each. Images are the same with and without.
 void order_corners(scene::TetMesh& mesh, int threads, scene::Trace* trace = nullptr);
 
-/// Renders one tetrahedral mesh many times in one process, by settings that are valid for meshes (tessera::validate),
-/// iso-surfaces only of point data. Only the rasterizer, integrator, emission, surfaces, shading and Settings::use
-/// change a bit of the picture. Preparation that does not depend on view or transfer function happens in the
-/// constructor; the mesh must outlive the renderer and not change.
+/// Renders one tetrahedral mesh many times in one process, with settings that are valid for meshes (tessera::validate);
+/// iso-surfaces need point data. Only the rasterizer, integrator, emission, surfaces, shading and Settings::use change
+/// any bit of the image. The constructor does the preparation that does not depend on view or transfer function; the
+/// mesh must outlive the renderer and not change.
 class Renderer {
  public:
   Renderer(const scene::TetMeshView& mesh, const Settings& settings);
-  /// Of a mesh that has been prepared, with what is known of it.
+  /// For a mesh that has already been prepared, with its facts.
   Renderer(const std::shared_ptr<const projection::PreparedMesh>& mesh, const scene::MeshFacts& facts,
            const Settings& settings);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// The composited image in memory. The same bits for any thread count, tile size and memory budget on one instruction
-  /// set. Throws Error(bad_input) for an invalid camera or size, or a view that the rasterizer cannot do;
-  /// Error(system_failure) if one pixel's segments exceed the budget.
+  /// The composited image in memory. The same bits for any number of threads, tile size and memory budget on one
+  /// instruction set. Throws Error(bad_input) for an invalid camera or size, or a view that the rasterizer does not
+  /// support; Error(system_failure) if one pixel's segments exceed the budget.
   ///
-  /// With `deep` also the deep picture of the same frame, or its layers, as set_frame() says; half the memory budget is
-  /// kept for it. Throws Error(system_failure) if its samples exceed their half.
+  /// With `deep` also returns the deep image of the same frame, or its layers, as set by set_frame(); half the memory
+  /// budget is reserved for it. Throws Error(system_failure) if its samples exceed that half.
   ///
-  /// `watch` hears of every tile as it is finished, those without cells included; once it is asked to stop, render()
-  /// throws scene::FrameStopped within a batch of cells, and can be called again.
+  /// `watch` receives every finished tile, including tiles without cells. Once it requests a stop, render() throws
+  /// scene::FrameStopped within a batch of cells, and can be called again.
   scene::Image render(const scene::Camera& camera, scene::ImageSize size,
                       const scene::TransferFunction& transfer_function, FrameStatistics* statistics = nullptr,
                       scene::DeepImage* deep = nullptr, scene::FrameWatch* watch = nullptr);
 
-  /// Of later frames; valid for the settings. With `peel` deep pictures are layers, as PeelSink gives them, not tidy.
+  /// Sets the options of later frames; they must be valid for the settings. With `peel` deep images are layers, as
+  /// PeelSink makes them, not tidy.
   void set_frame(const FrameSettings& frame);
 
  private:
@@ -68,7 +69,7 @@ class Renderer {
   std::unique_ptr<State> state_;
 };
 
-/// The setting that has surfaces, for messages: `iso` or `surface`.
+/// The name of the setting for surfaces in messages: `iso` or `surface`.
 const char* surface_word(const Surfaces& surfaces);
 
 }  // namespace tessera::frame

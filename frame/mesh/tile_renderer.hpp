@@ -16,7 +16,7 @@
 
 namespace tessera::frame {
 
-/// What a tile renderer needs to know of its frame.
+/// A tile renderer's view of its frame.
 struct TileContext {
   const projection::ProjectedMesh* projected;
   double depth_origin;         ///< of the entries' near_depth
@@ -24,35 +24,35 @@ struct TileContext {
   scene::Trace* trace;
   Rasterizer rasterizer = Rasterizer::planes;
   float longest_edge = 1;                              ///< scanline: of the whole data set
-  bool opaque = false;                                 ///< a usual ray ends in a fraction of the mesh's depth
+  bool opaque = false;                                 ///< a typical ray ends in a fraction of the mesh's depth
   std::span<const projection::Step> steps{};           ///< of the transfer function
   const projection::CellsAtSteps* at_steps = nullptr;  ///< whose segments are cut there; null: none
   const projection::FrameFaces* faces = nullptr;       ///< surfaces of triangles, in double precision; null: none
-  std::stop_token stop{};                              ///< renderers throw scene::FrameStopped once it is asked for
+  std::stop_token stop{};                              ///< renderers throw scene::FrameStopped once it is requested
 };
 
-/// Sums over the tiles that one renderer made.
+/// Sums over the tiles of one renderer.
 struct TileCounts {
   std::uint64_t max_segments_alive = 0, peak_bytes = 0, tiles_split = 0;
   projection::RasterCounts raster;
 };
 
-/// Makes tiles one after the other: rasterize, and hand the segments to a sink; one renderer a thread.
+/// Renders tiles one after the other: rasterizes cells and passes the segments to a sink; one renderer per thread.
 ///
-/// A tile's cells come by their nearest depth. When the store of segments is full, all that lie nearer than the next
-/// cell are final: the sink takes them, the rest stays. So the depth complexity costs no memory, only the number of
-/// segments that overlap in depth does. Where that outgrows the store, the store grows up to the budget; then a sink
-/// that takes segments in any order gets them all, and for one that does not the rectangle is rendered in quarters,
-/// which hold a quarter of the segments each. Nothing is ever dropped.
+/// A tile's cells come in the order of their nearest depth. When the store of segments is full, all segments nearer
+/// than the next cell are final: the sink takes them, the others stay. So memory does not depend on the depth
+/// complexity, only on the number of segments that overlap in depth. If that exceeds the store, the store grows up to
+/// the budget. After that, a sink that accepts segments in any order gets all of them; for another sink the rectangle
+/// is rendered in quarters, which hold a quarter of the segments each. No segment is ever dropped.
 ///
 /// `Source` fills a store of its encoding from cells (DoubleSource, LatticeSource):
 ///
-///   bool start(rect, order)     empties the store for these pixels; false: even that is beyond the budget
-///   bool fill(sink)             adds cells until the store is full (true), or all are in it or the sink takes none
-///                               any more (false)
-///   Depth final_depth()         after fill() was true: no segment still to come lies before
+///   bool start(rect, order)     empties the store for these pixels; false: even that exceeds the budget
+///   bool fill(sink)             adds cells until the store is full (true), or until all are in it or the sink needs no
+///                               more (false)
+///   Depth final_depth()         after fill() returned true: no later segment is before this depth
 ///   std::size_t at_least()      shorter lists may wait
-///   bool make_room()            after the sink took what is final: whether fill() can go on
+///   bool make_room()            after the sink took the final segments: whether fill() can continue
 ///   Store& store(); std::size_t capacity(); std::uint64_t alive()
 template <class Source>
 class TileRenderer {
@@ -60,15 +60,15 @@ class TileRenderer {
   using Encoding = typename Source::Encoding;
   using Sink = compositor::TileSink<Encoding>;
 
-  /// `more` is what the source needs besides.
+  /// `more`: additional arguments of the source.
   template <class... More>
   explicit TileRenderer(const TileContext& context, More&&... more)
       : trace_(context.trace), source_(context, counts_, std::forward<More>(more)...) {}
   TileRenderer(const TileRenderer&) = delete;
   TileRenderer& operator=(const TileRenderer&) = delete;
 
-  /// Gives `sink` the pixels of `rect` from `entries`, whose order is lost. Throws Error(system_failure) if one pixel
-  /// alone has more segments that overlap in depth than the budget holds.
+  /// Passes the pixels of `rect` from `entries`, which are reordered, to `sink`. Throws Error(system_failure) if one
+  /// pixel alone has more segments that overlap in depth than the budget holds.
   void render(const scene::PixelRect& rect, std::span<projection::TileEntry> entries, Sink& sink);
 
   [[nodiscard]] const TileCounts& counts() const { return counts_; }

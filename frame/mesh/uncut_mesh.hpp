@@ -9,12 +9,12 @@
 
 namespace tessera::frame {
 
-/// What a picture of a mesh is judged by: the mesh before it was clipped, and the half-spaces that rays are kept in. So
-/// nothing that cells were cut by has a part in the reference.
+/// The reference for images of a clipped mesh: the mesh before it was clipped, and the half-spaces to which rays are
+/// restricted. The reference is thus independent of how cells are cut.
 struct UncutMesh {
   scene::TetMeshView mesh;
-  std::span<const scene::HalfSpace> kept;  ///< of the data set's state; none: the mesh is what is rendered
-  scene::TetMeshView rendered;             ///< the mesh as it is rendered; `mesh` where this rank has not all of it
+  std::span<const scene::HalfSpace> kept;  ///< of the data set's state; empty: the mesh is what is rendered
+  scene::TetMeshView rendered;             ///< the mesh that is rendered; `mesh` if this rank has only a part
   std::shared_ptr<const void> owner;       ///< of `mesh`; null: the data set's state
 };
 

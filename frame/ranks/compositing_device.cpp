@@ -25,7 +25,7 @@ std::vector<std::string> gather_texts(exchange::Transport& transport, exchange::
   return texts;
 }
 
-/// How many ranks of lower number are on this machine. Collective.
+/// The number of lower ranks on this machine. Collective.
 int local_rank(exchange::Transport& transport) {
   std::array<char, 256> host{};
   gethostname(host.data(), host.size() - 1);
@@ -35,7 +35,7 @@ int local_rank(exchange::Transport& transport) {
       std::count_if(hosts.begin(), hosts.begin() + transport.rank(), [&](const auto& h) { return h == mine; }));
 }
 
-/// What went wrong, without the advice: that was taken.
+/// The problem without the advice, which was already followed.
 std::string reason(const scene::Error& error) {
   const std::string words = error.what();
   return words.substr(0, words.find(';'));

@@ -27,13 +27,13 @@ namespace {
 
 using exchange::Channel;
 
-/// Workers that feed a device wait for it with a tile each: a few more keep tiles in flight.
+/// Each worker that feeds a device waits for it with one tile: a few more workers keep tiles in flight.
 int worker_count(const DistributedRun& run) {
   constexpr int tiles_in_flight = 6;
   return scene::threads_for(run.settings.render.threads) + (run.device.device != nullptr ? tiles_in_flight : 0);
 }
 
-/// A picture of 1024 x 1024 pixels is a few milliseconds of one thread's work.
+/// An image of 1024 x 1024 pixels takes one thread a few milliseconds.
 int assembling_threads(const DistributedSettings& settings) {
   constexpr int most = 8;
   return std::min(scene::threads_for(settings.render.threads), most);
@@ -44,7 +44,7 @@ std::optional<compositor::MatterLight> light_of(const DistributedRun& run, const
   return compositor::MatterLight(*run.settings.render.mesh.shading, job.camera);
 }
 
-/// A frame at its compositor.
+/// A frame on its compositor.
 struct Frame {
   Frame(const DistributedRun& run, std::uint32_t number, int compositor)
       : number(number),
@@ -66,12 +66,12 @@ struct Frame {
   scene::SurfaceSet surfaces;
   std::optional<compositor::MatterLight> light;
   compositor::TileSender sender;
-  std::optional<integrals::LaneTable> table;  ///< of lattice segments, or for a device
-  scene::Lattice units;                       ///< on a device: the table's
+  std::optional<integrals::LaneTable> table;  ///< for lattice segments, or for a device
+  scene::Lattice units;                       ///< on a device: those of the table
   double start_us = 0;
   std::atomic<std::uint64_t> segments = 0;  ///< of cells that the device rasterized
-  std::atomic<bool> overlapping = false;    ///< cells of several projectors do
-  std::atomic<bool> stopped = false;        ///< from now on tiles lack fragments, and are not sent
+  std::atomic<bool> overlapping = false;    ///< cells of several projectors overlap
+  std::atomic<bool> stopped = false;        ///< tiles now lack fragments, and are not sent
 
   struct Merge {
     std::unique_ptr<compositor::TileMerger> merger;
@@ -80,7 +80,7 @@ struct Frame {
   std::map<std::uint32_t, Merge> merges;  ///< tiles with fragments that are not finished
 };
 
-/// Receives on the calling thread, merges on its own ones.
+/// Receives on the calling thread, merges on its own threads.
 class CompositorLoop {
  public:
   explicit CompositorLoop(const DistributedRun& run)
@@ -108,7 +108,7 @@ class CompositorLoop {
   }
 
  private:
-  /// The next message; an empty one now and then, as the last frame may finish without one.
+  /// The next message, or sometimes an empty one, as the last frame may finish without one.
   exchange::Message next() {
     auto message = run_.transport.receive(Channel::fragments, std::chrono::milliseconds(20));
     if (message) return std::move(*message);
@@ -126,11 +126,11 @@ class CompositorLoop {
     return *at;
   }
 
-  /// Parts stay in their message's memory.
+  /// Parts refer to their message's memory.
   void accept(int from, const std::shared_ptr<const exchange::Bytes>& message) {
     exchange::MessageReader reader(*message, from);
     const auto number = static_cast<std::uint32_t>(reader.take<std::uint64_t>());
-    // What a rank sends to itself does not move.
+    // Messages from a rank to itself do not move.
     const bool moved = from != run_.transport.rank();
     const scene::TraceScope timing(trace_, "receive", static_cast<std::int32_t>(number), moved ? message->size() : 0,
                                    moved ? 1 : 0, from);
@@ -179,8 +179,8 @@ class CompositorLoop {
     settle();
   }
 
-  /// Credit goes back in few messages, each of which wakes threads at both ends: when it is an eighth of what the
-  /// projector may have on its way, or nothing else comes.
+  /// Returns credit in few messages, since each wakes threads at both ends: when it reaches an eighth of what the
+  /// projector may have in transit, or when no other message arrives.
   void give_back(int projector, std::uint64_t bytes) {
     const auto p = static_cast<std::size_t>(projector);
     credit_[p] += bytes;
@@ -208,7 +208,7 @@ class CompositorLoop {
       first.sender.end(sums);
       if (trace_ != nullptr) trace_->add_frame(static_cast<std::int32_t>(first.number), first.start_us);
       frames_.erase(frames_.begin());
-      if (++frames_finished_ == run_.jobs.size())  // the loop may wait for a message that will not come
+      if (++frames_finished_ == run_.jobs.size())  // the loop may be waiting, and no other message will come
         run_.transport.send(run_.transport.rank(), Channel::fragments,
                             exchange::begin_message(exchange::MessageKind::wake));
     }
@@ -221,7 +221,7 @@ class CompositorLoop {
     workers_.run([this, &of, tile] { merge_tile(of, tile); });
   }
 
-  /// What the mergers of a frame know of it.
+  /// The context of a frame's mergers.
   compositor::MergeContext context_of(Frame& of, double longest_ray, float longest_edge, bool on_lattice) {
     const Settings& render = run_.settings.render;
     compositor::MergeContext context{
@@ -243,7 +243,7 @@ class CompositorLoop {
     return context;
   }
 
-  /// On a worker. `of` lives until all its tiles are finished.
+  /// Runs on a worker. `of` exists until all its tiles are finished.
   void merge_tile(Frame& of, std::uint32_t tile) {
     std::unique_lock lock(mutex_);
     for (bool all = false; !all;) {
@@ -270,7 +270,7 @@ class CompositorLoop {
           merge.merger = compositor::make_tile_merger(
               waiting.parts.front().kind, context_of(of, longest_ray, longest_edge, on_lattice), of.grid.rect(tile));
         if (merge.merger != nullptr) compositor::merge(*merge.merger, waiting.parts, waiting.final_depth, budget_.tile);
-        // A tile that got nothing stays as empty as the assembled picture is.
+        // A tile without fragments is not sent: the assembled image is already empty there.
         if (all && merge.merger != nullptr && !of.stopped) of.sender.send(tile, merge.merger->finish());
       }
       lock.lock();
@@ -286,7 +286,7 @@ class CompositorLoop {
   int self_;
   std::mutex mutex_;  // guards the frames, their collectors and merges, and credit
   std::map<std::uint32_t, std::unique_ptr<Frame>> frames_;
-  std::vector<std::uint64_t> credit_;  // by projector, bytes to give back
+  std::vector<std::uint64_t> credit_;  // by projector, bytes to return
   std::atomic<std::size_t> frames_finished_ = 0;
   WorkerThreads workers_;  // last: its threads use all of the above
 };
@@ -297,9 +297,9 @@ void run_compositor(const DistributedRun& run) { CompositorLoop(run).loop(); }
 
 std::exception_ptr run_assembler(const DistributedRun& run, const DistributedCallbacks& callbacks,
                                  const std::function<void()>& stop_all) {
-  // What a caller's function throws is the caller's: all ranks end their frames in order before it gets it.
+  // Exceptions of the caller's functions reach the caller after all ranks have ended their frames in order.
   std::exception_ptr thrown;
-  std::mutex calls;  // one at a time
+  std::mutex calls;  // one call at a time
   const auto guarded = [&](const auto& call) {
     const std::lock_guard lock(calls);
     if (thrown) return;
@@ -312,7 +312,7 @@ std::exception_ptr run_assembler(const DistributedRun& run, const DistributedCal
   };
   const DistributedSettings& settings = run.settings;
   const integrals::SegmentIntegrator integrator(run.function, settings.render.integrator, settings.render.emission);
-  // Before the assembly, which waits for what they do.
+  // Declared before the assembly, which waits for their work.
   std::optional<WorkerThreads> workers;
   compositor::AssemblySettings how;
   how.grid_of = [&](std::uint32_t frame) {

@@ -18,7 +18,7 @@ using exchange::MessageKind;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// What a rank knows of its part.
+/// Facts of a rank's part.
 struct Part {
   scene::Box box;  ///< io::higher_order_box()
   double low = infinite, high = -infinite;

@@ -42,7 +42,7 @@ LoadedMesh::LoadedMesh(exchange::Transport& transport, const DistributedSettings
 
 void LoadedMesh::load(std::size_t number) {
   if (number_ == number) return;
-  projector_.reset();  // the last mesh's memory before the next one's
+  projector_.reset();  // free the last mesh's memory before loading the next one
   mesh_ = {};
   boundary_.reset();
   mesh_ = mesh_of_(number);
@@ -132,7 +132,7 @@ class DistributedRenderer::State {
     const std::stop_token stop = relayed.token();
     if (!opened_) {
       const bool projects = settings_.roles.projects(transport_.rank());
-      // Triangles of surfaces are each rank's own.
+      // Each rank has its own triangles of surfaces.
       if (settings_.render.use.sharing && settings_.roles.projectors.size() > 1 &&
           !settings_.render.surfaces.has_faces())
         team_ = exchange::HostTeam::form(transport_, projects);
@@ -143,7 +143,7 @@ class DistributedRenderer::State {
       open_compositing_device(settings_, transport_, device_);
       opened_ = true;
     }
-    exchange::barrier(transport_);  // a frame's time does not count reading
+    exchange::barrier(transport_);  // a frame's time does not include reading
     const DistributedRun run{transport_, settings_,
                              jobs,       function,
                              device_,    std::chrono::steady_clock::now(),
@@ -160,7 +160,7 @@ class DistributedRenderer::State {
     if (settings_.roles.assembler() == transport_.rank())
       parts.emplace_back([&] { of_caller = run_assembler(run, callbacks, [&] { relayed.stop(); }); });
 
-    // An error of any part is the run's: the others wake up with it.
+    // An error of any part is the run's error: it wakes the other parts.
     const auto guarded = [&](const std::function<void()>& part) {
       try {
         part();
@@ -172,7 +172,7 @@ class DistributedRenderer::State {
     guarded([&] {
       for (std::size_t i = 1; i < parts.size(); ++i)
         threads.push_back(scene::start_thread([&, i] { guarded(parts[i]); }));
-      parts.front()();  // projection, where there is one, on the calling thread
+      parts.front()();  // projection, if there is any, on the calling thread
     });
     for (auto& thread : threads) thread.join();
     transport_.check();
@@ -180,7 +180,7 @@ class DistributedRenderer::State {
   }
 
  private:
-  /// Meshes are loaded by all ranks together, those that do not project included.
+  /// All ranks load meshes together, including those that do not project.
   void load(std::size_t number) {
     if (loaded_) {
       loaded_->load(number);
@@ -195,9 +195,9 @@ class DistributedRenderer::State {
   DistributedSettings settings_;
   const MeshOf mesh_of_;
   StopRelay relay_;
-  std::unique_ptr<exchange::HostTeam> team_;  ///< of a projector whose machine has others
+  std::unique_ptr<exchange::HostTeam> team_;  ///< for a projector that shares its machine with others
   std::optional<LoadedMesh> loaded_;          ///< of a projector
-  std::optional<std::size_t> number_;         ///< of the mesh that was loaded last
+  std::optional<std::size_t> number_;         ///< of the last mesh loaded
   CompositingDevice device_;
   bool opened_ = false;
 };

@@ -26,7 +26,7 @@ using exchange::MessageKind;
 using exchange::MessageReader;
 using exchange::Transport;
 
-// What ranks agree on of a mesh; exchange/message.hpp lists the messages.
+// Facts of a mesh on which ranks agree; exchange/message.hpp lists the messages.
 
 Bytes message_of(const std::vector<cells::FieldTally>& tallies, const scene::Box& box,
                  const std::vector<std::string>& block_names) {
@@ -42,7 +42,7 @@ Bytes message_of(const std::vector<cells::FieldTally>& tallies, const scene::Box
   return message;
 }
 
-/// `box` and `block_names` grow by the part's.
+/// Adds the part's box and names to `box` and `block_names`.
 std::vector<cells::FieldTally> tallies_in(MessageReader& reader, scene::Box& box,
                                           std::vector<std::string>& block_names) {
   std::vector<cells::FieldTally> tallies;
@@ -91,7 +91,7 @@ cells::MeshFile description_in(MessageReader& reader) {
   return file;
 }
 
-/// All projectors' messages, read in their order; the other ranks have nothing to say.
+/// Reads all projectors' messages in their order; the other ranks send empty ones.
 template <class Read>
 void gather(Transport& transport, MessageKind kind, Bytes own, std::span<const int> projectors, const Read& read) {
   const std::vector<Bytes> all = exchange::gather_all(transport, std::move(own));
@@ -101,7 +101,7 @@ void gather(Transport& transport, MessageKind kind, Bytes own, std::span<const i
   }
 }
 
-/// The description is the first projector's.
+/// Sends the first projector's description to all ranks.
 cells::MeshFile share_description(Transport& transport, std::span<const int> projectors, const cells::MeshFile& own) {
   const int speaker = projectors.front();
   const Bytes message = exchange::broadcast(transport, speaker, message_of(own));
@@ -109,20 +109,22 @@ cells::MeshFile share_description(Transport& transport, std::span<const int> pro
   return description_in(reader);
 }
 
-/// Leaves of every rank's part what is selected; returns what the whole was before, null if that is all. Collective.
+/// Reduces every rank's part to the selection. Returns the facts and samples of the whole before that; null if
+/// everything is selected. Collective.
 std::shared_ptr<const FieldOfAll> select_part(Transport& transport, const ReadOptions& options,
                                               const std::string& source, scene::TetMesh& part, MeshCounts& counts) {
   if (options.selection.all()) return nullptr;
   auto all = std::make_shared<FieldOfAll>();
   all->facts = agree_facts(transport, part, options.threads);
-  // Samples go by the order that renderers give to corners, so that they are those of the whole.
+  // Sampling depends on the order of corners, so use the renderers' order: the samples are then those of the whole
+  // mesh.
   std::vector<scene::Tet> as_read = part.tets;
   std::vector<double> values;
   if (const auto fill = find_fill_value(transport, part, all->facts);
       fill && fill->is_outside(options.selection.threshold)) {
     all->facts.scalar_range = {fill->others.low, fill->others.high};
     values = part.scalars;
-    for (double& value : part.scalars)  // no sample lies beside one
+    for (double& value : part.scalars)  // samples avoid fill values
       if (std::ranges::binary_search(fill->values, value)) value = std::numeric_limits<double>::quiet_NaN();
   }
   order_corners(part, options.threads);
@@ -139,7 +141,7 @@ ReadOptions with_everything(ReadOptions options) {
   return options;
 }
 
-/// The whole by the first projector.
+/// The first projector reads the whole file.
 DistributedMesh read_whole(Transport& transport, std::span<const std::filesystem::path> files,
                            const io::InputFile& first, const ReadOptions& options, std::span<const int> projectors) {
   DistributedMesh result;
@@ -154,7 +156,7 @@ DistributedMesh read_whole(Transport& transport, std::span<const std::filesystem
   return result;
 }
 
-/// A part by each projector.
+/// Each projector reads a part.
 DistributedMesh read_parts(Transport& transport, const io::InputFile& input, const ReadOptions& options,
                            std::span<const int> projectors) {
   const auto place = std::find(projectors.begin(), projectors.end(), transport.rank());
@@ -182,7 +184,7 @@ DistributedMesh read_parts(Transport& transport, const io::InputFile& input, con
   io::MeshFilePart own;
   if (reads) own = reading->finish(excess);
   reading.reset();
-  if (reads)  // nothing else is on the channel: all gather the summaries before they go on
+  if (reads)  // the channel is free: all gathered the summaries before
     own.summary.counts.cells_duplicate =
         count_shared_repetitions(transport, std::exchange(own.cell_keys, {}), projectors, options.threads);
 
@@ -249,7 +251,7 @@ DistributedMesh read_distributed(Transport& transport, std::span<const std::file
   try {
     {
       const scene::TraceScope scope(trace, "read");
-      // One rank looks, so that all do the same.
+      // One rank decides, so that all do the same.
       std::uint8_t in_parts = 0;
       if (transport.rank() == projectors.front())
         in_parts = files.size() == 1 && io::readable_in_parts(first, options) ? 1 : 0;
@@ -269,7 +271,7 @@ DistributedMesh read_distributed(Transport& transport, std::span<const std::file
     transport.check();
     throw;
   }
-  // A rank without tets knows these from the others.
+  // A rank without tets gets these from the others.
   result.part.mesh.field_name = result.description.mesh.field_name;
   result.part.mesh.association = result.description.mesh.association;
   return result;

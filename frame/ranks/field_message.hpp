@@ -8,10 +8,10 @@
 #include "io/mesh/mesh_reader.hpp"
 #include "scene/grid.hpp"
 
-/// What descriptions of data sets have in common as messages.
+/// Messages shared by the descriptions of data sets.
 namespace tessera::frame {
 
-/// u64 number, texts.
+/// u64 count, texts.
 void append_texts(exchange::Bytes& message, const std::vector<std::string>& texts);
 std::vector<std::string> take_texts(exchange::MessageReader& reader);
 
@@ -21,7 +21,7 @@ scene::Association take_association(exchange::MessageReader& reader);
 void append_field(exchange::Bytes& message, const cells::FieldSummary& field);
 cells::FieldSummary take_field(exchange::MessageReader& reader);
 
-/// u64 number, fields.
+/// u64 count, fields.
 void append_fields(exchange::Bytes& message, const std::vector<cells::FieldSummary>& fields);
 std::vector<cells::FieldSummary> take_fields(exchange::MessageReader& reader);
 

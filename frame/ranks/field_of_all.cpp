@@ -33,7 +33,7 @@ scene::FieldSamples gather_field_samples(exchange::Transport& transport, const s
     reader.take_onto(all.samples, count);
     reader.finish();
   }
-  // A tet is on one rank, with all its samples: the order of one process.
+  // A tet and all its samples are on one rank, so this is the order of a single process.
   std::ranges::stable_sort(all.samples, {}, &scene::FieldSample::tet);
   return all;
 }

@@ -12,18 +12,17 @@
 
 namespace tessera::frame {
 
-/// Facts and samples of a data set before anything was clipped or left out by a threshold. Transfer functions are
-/// chosen by these.
+/// Facts and samples of a data set before any clipping or threshold. Transfer functions are chosen from these.
 struct FieldOfAll {
   scene::MeshFacts facts;
   scene::FieldSamples samples;
 };
 
-/// The fill value of a mesh of which each rank has a part, if its range, which `facts` have, ends at one. Collective.
+/// The fill value of a mesh in parts, one per rank, if the range in `facts` ends at one. Collective.
 std::optional<scene::FillValue> find_fill_value(exchange::Transport& transport, const scene::TetMeshView& part,
                                                 const scene::MeshFacts& facts);
 
-/// Samples of a mesh of which each rank has a part, by the tets' numbers in the whole. Collective.
+/// Samples of a mesh in parts, one per rank, by the indices of the tets in the whole mesh. Collective.
 scene::FieldSamples gather_field_samples(exchange::Transport& transport, const scene::TetMeshView& part,
                                          std::span<const std::uint64_t> global_tet, const scene::MeshFacts& facts);
 

@@ -13,7 +13,7 @@ namespace {
 
 using scene::Team;
 
-/// Numbers of all members, and how many those before this one have.
+/// The sum over all members, and over those before this one.
 struct Counts {
   std::uint64_t before = 0, all = 0;
   Counts(Team& team, std::uint64_t own) {
@@ -23,8 +23,8 @@ struct Counts {
   }
 };
 
-/// Where each of this member's tets stands among all members', by their numbers, which every member has ascending, and
-/// by member where numbers are equal, as those of parts that nobody numbered are.
+/// The position of each of this member's tets among those of all members, sorted by index, which is ascending in every
+/// member. Equal indices, which occur in parts without global indices, are sorted by member.
 std::vector<std::uint64_t> places_of(Team& team, std::span<const std::uint64_t> own) {
   const std::vector<std::uint64_t> sizes = team.gather(own.size());
   std::vector<std::span<std::uint64_t>> lists;
@@ -68,7 +68,7 @@ HostMesh HostMesh::made(Team& team, const scene::TetMeshView& part, std::span<co
     numbers.resize(tets.size());
     std::iota(numbers.begin(), numbers.end(), std::uint64_t{0});
   }
-  // Are these all tets of the whole mesh? Then their numbers are their places.
+  // If these are all tets of the whole mesh, their indices are their positions.
   const bool whole = scene::largest_of(numbers.empty() ? 0 : numbers.back() + 1, &team) == cells.all;
   const std::vector<std::uint64_t> found = whole ? std::vector<std::uint64_t>() : places_of(team, numbers);
   const std::vector<std::uint64_t>& places = whole ? numbers : found;

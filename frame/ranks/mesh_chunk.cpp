@@ -35,7 +35,7 @@ ChunkSender::ChunkSender(const MeshPart& local, std::vector<std::uint32_t> part_
 }
 
 void ChunkSender::begin_part() {
-  if (turn_ >= 0)  // only what was touched, so that many small parts do not cost the whole mesh each
+  if (turn_ >= 0)  // resets only what was used, as many small parts would each cost the whole mesh
     for (std::size_t k = begin_[static_cast<std::size_t>((first_part_ + turn_) % parts_)]; k < end_; ++k)
       for (const std::uint32_t v : local_.mesh.tets[order_[k]]) number_[v] = unsent;
   ++turn_;
@@ -162,7 +162,7 @@ MeshPart ChunkReceiver::finish() {
     reorder(part_.global_tet);
     if (association_ == scene::Association::cell) reorder(mesh.scalars);
   }
-  // Vertices in the order of first use: compact in memory, and the same whatever came first.
+  // Vertices in the order of first use: compact in memory, and independent of the order of messages.
   std::vector<std::uint32_t> number(mesh.positions.size(), unsent), old;
   old.reserve(mesh.positions.size());
   for (scene::Tet& tet : mesh.tets)

@@ -9,18 +9,18 @@
 #include "exchange/message.hpp"
 #include "frame/ranks/mesh_exchange.hpp"
 
-/// The wire record of channel `mesh`, and its two ends.
+/// The wire record of channel `mesh`, its sender and its receiver.
 namespace tessera::frame {
 
-/// Begins a message `mesh_chunk`, after its MessageHeader. What follows it (v = vertices, t = tets):
+/// The header of a message `mesh_chunk`, after its MessageHeader. It is followed by (v = vertices, t = tets):
 ///
 ///     f64 xyz[3 v]
 ///     f64 scalar[v] of point data, scalar[t] of cell data
 ///     u64 global_tet[t]
 ///     u32 tets[4 t]
 ///
-/// Vertices are numbered along the stream from one rank to another: a message brings v new ones from `first_vertex`
-/// on, and its tets use those and earlier ones.
+/// Vertices are numbered along the stream from one rank to another: a message contains v new ones starting at
+/// `first_vertex`, and its tets refer to these and earlier ones.
 struct MeshChunkHeader {
   std::uint32_t association = 0;  ///< scene::Association
   std::uint32_t vertices = 0, tets = 0;
@@ -29,14 +29,14 @@ struct MeshChunkHeader {
 };
 static_assert(sizeof(MeshChunkHeader) == 24);
 
-/// Cuts a rank's tets into messages, one part after the other, beginning with part `first_part`.
+/// Cuts a rank's tets into messages, one part after the other, starting with part `first_part`.
 class ChunkSender {
  public:
   /// `part_of[t]` is the part of tet t. `local` must outlive the sender.
   ChunkSender(const MeshPart& local, std::vector<std::uint32_t> part_of, int parts, int first_part,
               std::size_t chunk_bytes);
 
-  /// The next message and the part it is for; false when all is sent.
+  /// The next message and the part to which it belongs; false when all have been sent.
   bool next(int& part, exchange::Bytes& message);
 
  private:
@@ -47,20 +47,20 @@ class ChunkSender {
   int parts_, first_part_, turn_ = -1;  ///< the `turn_`th part is being sent
   std::vector<std::uint64_t> begin_;    ///< of each part in order_; parts + 1
   std::vector<std::uint32_t> order_;    ///< tets by part, ascending in each
-  std::size_t at_ = 0, end_ = 0;        ///< what is left of the part, in order_
+  std::size_t at_ = 0, end_ = 0;        ///< the rest of the part, in order_
   std::vector<std::uint32_t> number_;   ///< of each vertex in the stream; `unsent` if it was not sent to this part
   std::uint64_t sent_vertices_ = 0;
 };
 
-/// Puts messages of all ranks together.
+/// Combines the messages of all ranks.
 class ChunkReceiver {
  public:
   ChunkReceiver(const scene::MeshFacts& facts, std::uint64_t tets, int ranks);
 
-  /// Throws Error(system_failure) if the message is not what MeshChunkHeader says.
+  /// Throws Error(system_failure) if the message does not match its MeshChunkHeader.
   void add(int from, const exchange::Bytes& message);
 
-  /// The part, in canonical order: the same whatever order the messages came in.
+  /// The part, in canonical order, independent of the order of the messages.
   MeshPart finish();
 
  private:
@@ -73,7 +73,7 @@ class ChunkReceiver {
   std::uint64_t expected_;
   MeshPart part_;
   std::vector<std::vector<Base>> bases_;   ///< of each rank's messages
-  std::vector<std::uint64_t> stream_end_;  ///< vertices that came from each rank
+  std::vector<std::uint64_t> stream_end_;  ///< vertices received from each rank
 };
 
 }  // namespace tessera::frame

@@ -21,7 +21,7 @@ using exchange::MessageKind;
 using exchange::Transport;
 using projection::PartitionKind;
 
-/// Every rank's row, rank after rank; all are as long as this one.
+/// Every rank's row, rank after rank; all have the length of this rank's row.
 std::vector<std::uint64_t> gather_rows(Transport& transport, const std::vector<std::uint64_t>& row) {
   Bytes mine = begin_message(MessageKind::tet_table);
   append_list(mine, row);
@@ -36,7 +36,7 @@ std::vector<std::uint64_t> gather_rows(Transport& transport, const std::vector<s
   return table;
 }
 
-/// As a message's values: fields one by one, since the structure has padding.
+/// The values as a message: field by field, since the structure has padding.
 Bytes message_of(const scene::MeshFacts& facts) {
   Bytes message = begin_message(MessageKind::mesh_facts);
   append(message, facts.box.low);
@@ -59,7 +59,7 @@ scene::MeshFacts facts_in(const Bytes& message, int from) {
   return facts;
 }
 
-/// As projection::parts_of_whole, of a mesh that lies on many ranks.
+/// As projection::parts_of_whole, for a mesh distributed over ranks.
 std::vector<std::uint32_t> parts_of_tets(Transport& transport, const MeshPart& local, const scene::MeshFacts& facts,
                                          const projection::Partition& how, int parts) {
   std::vector<std::uint32_t> part_of(local.mesh.tets.size());
@@ -131,12 +131,12 @@ MeshPart redistribute(Transport& transport, MeshPart local, const scene::MeshFac
 
   ChunkReceiver receiver(facts, coming, transport.size());
   const auto own = std::find(projectors.begin(), projectors.end(), self);
-  // Each rank begins elsewhere, so that not all send to the same one.
+  // Each rank begins with another part, so that not all send to the same rank.
   const int first_part = own == projectors.end() ? self % parts : static_cast<int>(own - projectors.begin());
   ChunkSender sender(local, std::move(part_of), parts, first_part, limits.chunk_bytes);
   for (bool all_sent = false; !all_sent;) {
-    // A round: some messages, then the numbers of all ranks' messages, which nobody gets past before all have taken
-    // the round before.
+    // A round: some messages, then the numbers of all ranks' messages. No rank gets past these before all have received
+    // the previous round.
     std::vector<std::uint64_t> sent(projectors.size() + 1, 0);  // messages for each part; whether more will follow
     std::size_t bytes = 0;
     int part = 0;

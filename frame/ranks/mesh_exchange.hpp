@@ -12,12 +12,12 @@
 #include "scene/tet_mesh.hpp"
 #include "scene/trace.hpp"
 
-/// A mesh in parts, one a rank: what all ranks know of it, and how its tets get to the ranks that project them.
+/// A mesh in parts, one per rank: facts known to all ranks, and the distribution of its tets to the ranks that project.
 namespace tessera::frame {
 
 /// The tets of a mesh that one rank holds.
 struct MeshPart {
-  scene::TetMesh mesh;  ///< `original_cell` is not kept over ranks
+  scene::TetMesh mesh;  ///< `original_cell` is not kept across ranks
   /// Index of each tet in the whole mesh, ascending: file order, the last part of the depth order's key. Empty if the
   /// mesh is the whole, or has no tets.
   std::vector<std::uint64_t> global_tet;
@@ -25,27 +25,27 @@ struct MeshPart {
   [[nodiscard]] std::uint64_t global_of(std::size_t tet) const { return global_tet.empty() ? tet : global_tet[tet]; }
 };
 
-/// Facts of the whole mesh, to the same bits on every rank, for any distribution, and in one process
-/// (scene::facts_of). Collective. `threads` of each rank; 0 is all cores.
+/// Facts of the whole mesh, with the same bits on every rank, for any distribution, and in one process
+/// (scene::facts_of). Collective. `threads` per rank; 0: all cores.
 scene::MeshFacts agree_facts(exchange::Transport& transport, const scene::TetMeshView& part, int threads = 1);
 
-/// Indices in the whole of this rank's tets, where the whole is all ranks' tets, rank after rank. Collective.
+/// Indices of this rank's tets in the whole mesh, which consists of all ranks' tets, rank after rank. Collective.
 std::vector<std::uint64_t> numbered_by_rank(exchange::Transport& transport, std::size_t tets);
 
 /// Memory of an exchange: a message holds about `chunk_bytes`, and a rank is at most two rounds of `round_bytes` ahead
-/// of what the slowest has taken.
+/// of the slowest receiver.
 struct ExchangeLimits {
   std::size_t chunk_bytes = std::size_t{16} << 20, round_bytes = std::size_t{64} << 20;
 };
 
-/// Gives every tet to its owner: part p of `how` to rank projectors[p]. Collective; `local` are the tets this rank has
-/// read, in any distribution (every tet of the mesh on exactly one rank), `facts` the agreed ones. Other ranks than
-/// projectors end with an empty part.
+/// Sends every tet to its owner: part p of `how` to rank projectors[p]. Collective; `local` are the tets that this rank
+/// has read, in any distribution (every tet of the mesh on exactly one rank), `facts` those of agree_facts(). Ranks
+/// other than projectors end with an empty part.
 ///
 /// Positions and scalars keep their bits. Vertices are those that the part's tets use, numbered in the order of first
-/// use, each once for every rank it came from. Where no tet has to move, nothing is copied and `local` is the answer.
-/// At its peak a rank holds what it read, what it got and the limits' bytes. Spans `partition`, with bytes sent.
-/// Throws Error(system_failure) for a part of 2^32 vertices or tets, or a malformed message.
+/// use, each once per sending rank. If no tet must move, nothing is copied and `local` is returned. At its peak a rank
+/// holds what it read, what it received and the limits' bytes. Records spans `partition`, with bytes sent. Throws
+/// Error(system_failure) for a part of 2^32 vertices or tets, or a malformed message.
 MeshPart redistribute(exchange::Transport& transport, MeshPart local, const scene::MeshFacts& facts,
                       const projection::Partition& how, std::span<const int> projectors, scene::Trace* trace = nullptr,
                       const ExchangeLimits& limits = {});

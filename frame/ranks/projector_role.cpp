@@ -19,12 +19,12 @@ namespace {
 
 using exchange::Channel;
 
-/// Waits until one frame more has left the assembling rank.
+/// Waits until one more frame has left the assembling rank.
 void await_frame(const DistributedRun& run) {
   exchange::MessageReader(run.transport.receive(Channel::frames), exchange::MessageKind::frame_left).finish();
 }
 
-/// Waits until no more than `in_flight - 1` frames before this one are on their way.
+/// Waits until at most `in_flight - 1` earlier frames are in progress.
 void wait_for_turn(const DistributedRun& run, std::size_t frame, std::size_t& left) {
   const auto in_flight = static_cast<std::size_t>(run.settings.render.ranks.frames_in_flight);
   if (frame < left + in_flight) return;
@@ -32,7 +32,7 @@ void wait_for_turn(const DistributedRun& run, std::size_t frame, std::size_t& le
   for (; frame >= left + in_flight; ++left) await_frame(run);
 }
 
-/// Which projector this rank is, 0 .. N-1.
+/// The index of this rank among the projectors, 0 .. N-1.
 int number_of(const DistributedRun& run) {
   const auto& projectors = run.settings.roles.projectors;
   return static_cast<int>(std::find(projectors.begin(), projectors.end(), run.transport.rank()) - projectors.begin());
@@ -40,10 +40,10 @@ int number_of(const DistributedRun& run) {
 
 exchange::FrameEnd counts_of(const FrameStatistics& s) { return {s, s.on_lattice ? 1u : 0u, 0, 0}; }
 
-/// What a frame's sinks refer to, and the sinks.
+/// The sinks of a frame, and what they refer to.
 class FrameSinks {
  public:
-  /// `packs(tile)`: whether its pixels leave this process.
+  /// `packs(tile)`: whether the tile's pixels leave this process.
   FrameSinks(const DistributedRun& run, const FrameJob& job, const ProjectorMesh& mesh, bool has_all_cells,
              std::function<bool(std::size_t tile)> packs, exchange::PartWriter::Deliver deliver)
       : settings_(run.settings),
@@ -89,7 +89,7 @@ class FrameSinks {
           mesh_.part.association == scene::Association::cell, mesh_.global_tet, deliver_, scene_.normals);
     return std::make_unique<compositor::RunSink<sorting::DoubleEncoding>>(scene_, cut_, deliver_);
   }
-  /// Whether devices rasterize: where light of segments is beyond them (GlMerger), the CPU does it all.
+  /// Whether devices rasterize. If they cannot integrate the light of segments (GlMerger), the CPU does all the work.
   [[nodiscard]] bool have_cells() const {
     return settings_.render.mesh.rasterizer == Rasterizer::device && (lattice_ || integrator_.samples() > 0);
   }
@@ -106,7 +106,7 @@ class FrameSinks {
 
  private:
   const DistributedSettings& settings_;
-  bool makes_pixels_;  ///< in place of runs
+  bool makes_pixels_;  ///< instead of runs
   std::function<bool(std::size_t tile)> packs_;
   const ProjectorMesh& mesh_;
   exchange::PartWriter::Deliver deliver_;
@@ -121,7 +121,7 @@ class FrameSinks {
   std::optional<integrals::LaneTable> table_;
 };
 
-/// Which member of a team is compositor c, by c; -1: none.
+/// The team member that is compositor c, by c; -1: none.
 std::vector<int> members_that_composite(const DistributedRun& run, const exchange::HostTeam& team) {
   std::vector<int> members;
   for (const int rank : run.settings.roles.compositors) {
@@ -131,7 +131,7 @@ std::vector<int> members_that_composite(const DistributedRun& run, const exchang
   return members;
 }
 
-/// Projects frame `number` and sends what its sinks make.
+/// Projects frame `number` and sends the output of its sinks.
 void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t number, LoadedMesh& loaded,
                    exchange::Outbox& outbox) {
   const DistributedSettings& settings = run.settings;
@@ -193,7 +193,7 @@ void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t 
                                     .watch = &watch},
                                    tile_sinks, team));
   } catch (const scene::FrameStopped&) {
-    // The others wait for what they were told of: it ends here, empty.
+    // The other ranks wait for the announced tiles: the frame ends here, without fragments.
     stopped = true;
     if (loaded.team() != nullptr) loaded.team()->leave();
     if (!announced) announce(std::vector<bool>(grid.count(), false));
@@ -223,7 +223,7 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
     project_frame(run, job, number, loaded, outbox);
     if (trace != nullptr) trace->add_frame(number, start_us);
   }
-  // The next list begins with none on their way.
+  // The next list begins without frames in progress.
   for (; left < run.jobs.size(); ++left) await_frame(run);
 }
 

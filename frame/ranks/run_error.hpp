@@ -7,7 +7,7 @@
 
 namespace tessera::frame {
 
-/// What an exception that ended this rank's part is to the user: itself if it is a scene::Error.
+/// The user's view of an exception that ended this rank's part: itself if it is a scene::Error.
 scene::Error run_error(const exchange::Transport& transport, const std::exception& fault);
 
 }  // namespace tessera::frame

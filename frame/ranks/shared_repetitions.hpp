@@ -9,9 +9,9 @@
 
 namespace tessera::frame {
 
-/// How many of the keys that this projector looks at are there several times: of all projectors' those that begin
-/// alike, so that each is looked at by one. Collective over the
-/// projectors; returns when all keys have come.
+/// How many keys of this projector's range occur several times on all projectors together. The leading bits of a key
+/// determine its projector, so that each key is counted by one. Collective over the projectors; returns when all keys
+/// have been received.
 std::uint64_t count_shared_repetitions(exchange::Transport& transport, std::vector<std::uint64_t> keys,
                                        std::span<const int> projectors, int threads);
 

@@ -9,7 +9,7 @@
 namespace tessera::frame {
 namespace {
 
-/// To itself: the run is over, the listener ends.
+/// Sent to this rank itself: the run is over, and the listener ends.
 constexpr std::uint64_t end_of_run = 0;
 
 exchange::Bytes number_bytes(std::uint64_t number) { return exchange::message_of(exchange::MessageKind::stop, number); }
@@ -31,7 +31,7 @@ StopRelay::Run::~Run() {
 }
 
 void StopRelay::Run::stop() {
-  if (!stop_.request_stop()) return;  // the others know
+  if (!stop_.request_stop()) return;  // the other ranks have been notified
   for (int rank = 0; rank < relay_.transport_.size(); ++rank)
     if (rank != relay_.transport_.rank())
       relay_.transport_.send(rank, exchange::Channel::stop, number_bytes(relay_.run_));
@@ -47,7 +47,7 @@ void StopRelay::Run::listen() {
       if (number == relay_.run_) stop_.request_stop();
     }
   } catch (const scene::Error&) {
-    stop_.request_stop();  // the run has failed; whoever sends or receives finds its error
+    stop_.request_stop();  // the run has failed; senders and receivers get its error
   }
 }
 

@@ -11,16 +11,16 @@
 
 namespace tessera::frame {
 
-/// Carries a stop between ranks: asked for on one, it stops all.
+/// Passes a stop between ranks: a request on one rank stops all.
 ///
-/// Its messages carry the number of the run that is to stop. Runs are numbered alike on all ranks, so that a stop which
-/// comes too late stops nothing else, and one that comes early is kept for its run.
+/// Its messages carry the number of the run to stop. All ranks number the runs the same way, so that a stop that
+/// arrives too late stops nothing else, and one that arrives early is kept for its run.
 class StopRelay {
  public:
   explicit StopRelay(exchange::Transport& transport) : transport_(transport) {}
 
-  /// While it lives, one run: stops from any rank reach token(). Collective, in the sense that all ranks make one in
-  /// the same order.
+  /// One run, for the lifetime of this object: stops from any rank reach token(). Collective: all ranks construct them
+  /// in the same order.
   class Run {
    public:
     Run(StopRelay& relay, const std::stop_token& asked);
@@ -29,7 +29,7 @@ class StopRelay {
     Run& operator=(const Run&) = delete;
 
     [[nodiscard]] std::stop_token token() const { return stop_.get_token(); }
-    /// Stops the run on all ranks. Any thread.
+    /// Stops the run on all ranks. May be called from any thread.
     void stop();
 
    private:
@@ -43,8 +43,8 @@ class StopRelay {
 
  private:
   exchange::Transport& transport_;
-  std::uint64_t run_ = 0;      ///< of the latest
-  std::uint64_t stopped_ = 0;  ///< the latest run of which a stop has come
+  std::uint64_t run_ = 0;      ///< of the latest run
+  std::uint64_t stopped_ = 0;  ///< the latest run for which a stop was received
 };
 
 }  // namespace tessera::frame

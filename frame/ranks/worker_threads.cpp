@@ -9,7 +9,7 @@ WorkerThreads::WorkerThreads(int count, std::function<void(const std::exception&
     : on_error_(std::move(on_error)) {
   try {
     for (int i = 0; i < count; ++i) threads_.push_back(scene::start_thread([this] { work(); }));
-  } catch (...) {  // no destructor will end those that have begun
+  } catch (...) {  // the destructor will not run for threads that have started
     end();
     throw;
   }

@@ -11,12 +11,12 @@
 
 namespace tessera::frame {
 
-/// A few threads that run tasks in the order given. Their own, not oneTBB's: projection on the same rank may hold all
-/// of oneTBB's workers while it waits for what these threads do.
+/// A few threads that run tasks in the given order. They are separate from oneTBB's, since projection on the same rank
+/// may occupy all of oneTBB's workers while it waits for the results of these threads.
 class WorkerThreads {
  public:
-  /// `on_error` is called from the failing thread with a task's exception; later tasks still run. Throws
-  /// Error(system_failure) if the system does not give so many threads.
+  /// `on_error` is called on the failing thread with a task's exception; later tasks still run. Throws
+  /// Error(system_failure) if the system does not provide `count` threads.
   WorkerThreads(int count, std::function<void(const std::exception&)> on_error);
   /// Drops tasks that have not begun and waits for those that have.
   ~WorkerThreads();

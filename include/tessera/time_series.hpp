@@ -13,8 +13,7 @@ inline namespace v0_1 {
 
 /// One mesh or grid of a time series.
 struct TimeStep {
-  double time =
-      0;  ///< as the .pvd, .series or file states it; otherwise the number in the name, or the index in a list
+  double time = 0;  ///< as the .pvd, .series or file states it; otherwise the number in the name, or in the list
   std::vector<std::filesystem::path> files;  ///< at least one; several are pieces of one mesh
   std::optional<std::size_t> in_file{};      ///< in a file with several steps: its index (ReadOptions::time_step)
   bool has_time = false;  ///< the .pvd, .series or file states the time; otherwise `time` is the number or place
