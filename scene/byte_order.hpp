@@ -9,10 +9,10 @@
 
 namespace tessera::scene {
 
-/// Whether numbers of that byte order are swapped: of the other order than this machine's.
+/// Whether numbers in this byte order must be swapped on this machine.
 constexpr bool is_swapped(bool big_endian) { return big_endian != (std::endian::native == std::endian::big); }
 
-/// A number of 1, 2, 4 or 8 bytes with its bytes in the other order.
+/// A number of 1, 2, 4 or 8 bytes with its bytes reversed.
 template <class T>
 T byteswapped(T number) {
   if constexpr (sizeof(T) == 8)
@@ -25,7 +25,7 @@ T byteswapped(T number) {
     return number;
 }
 
-/// The number that begins at `bytes`, of this machine's byte order or the other.
+/// The number that begins at `bytes`, in this machine's byte order or, if `swapped`, the other.
 template <class T>
 T load(const void* bytes, bool swapped) {
   T number;

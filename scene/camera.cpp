@@ -25,7 +25,8 @@ using std::numbers::pi;
 
 constexpr double least_scale = 1e-300, largest_number = 1e300;
 
-/// Whether a view's half height, in world units or as a tangent, leaves pixels sizes that a double holds in full.
+/// Whether a view's half height, in world units or as a tangent, gives pixel sizes that a double represents with full
+/// precision.
 bool has_pixels(double half_height) { return half_height >= least_scale && half_height <= largest_number; }
 
 bool in_reach(const glm::dvec3& v) { return finite(v) && largest(v) <= largest_number; }

@@ -27,14 +27,14 @@ using std::numbers::pi;
 
 constexpr double degree = pi / 180;
 
-/// Where the eye is, as seen from the centre, and what is up.
+/// The direction from the centre to the eye, and the up direction.
 struct Direction {
   glm::dvec3 to_eye, up;
 };
 
 struct Extent {
   glm::dvec3 center, half;
-  double radius;  ///< above 0
+  double radius;  ///< > 0
 };
 
 Extent extent_of(const Box& box) {
@@ -54,13 +54,13 @@ Camera framed(const Box& box, ImageSize size, const glm::dvec3& to_eye, const gl
   camera.position = center + to_eye * (3 * radius);
   camera.view_up = upward;
 
-  std::vector<glm::dvec3> outline;  // offsets from the centre that have to be in the picture
+  std::vector<glm::dvec3> outline;  // offsets from the centre that must be in the image
   outline.reserve(8);
   for (int corner = 0; corner < 8; ++corner)
     outline.emplace_back((corner & 1) ? half.x : -half.x, (corner & 2) ? half.y : -half.y,
                          (corner & 4) ? half.z : -half.z);
   if (turning) {
-    constexpr int steps = 72;  // between two of them a corner moves out by 0.1 %, well within the margin
+    constexpr int steps = 72;  // between two steps a corner moves out by 0.1 %, well within the margin
     for (int step = 1; step < steps; ++step)
       for (int corner = 0; corner < 8; ++corner)
         outline.push_back(rotated(outline[static_cast<std::size_t>(corner)], upward, step * 2 * pi / steps));
@@ -75,7 +75,7 @@ Camera framed(const Box& box, ImageSize size, const glm::dvec3& to_eye, const gl
     const double needed =
         std::max(std::abs(glm::dot(offset, basis.up)), std::abs(glm::dot(offset, basis.right)) / aspect);
     fit = std::max(fit, needed);
-    // Perspective: at distance + z the window's half height is (distance + z) tan.
+    // Perspective: at distance + z the half height of the window is (distance + z) tan.
     distance = std::max(distance, needed / slope - glm::dot(offset, basis.forward));
   }
   camera.parallel_scale = margin * (fit > 0 ? fit : radius);
@@ -92,14 +92,14 @@ void check(const ViewRequest& request) {
     throw bad_input(fmt::format("`zoom` is {}; it must be above 0", request.zoom));
 }
 
-/// Half the box's extent along a unit vector.
+/// Half of the box's extent along a unit vector.
 double extent_along(const glm::dvec3& half, const glm::dvec3& axis) {
   return half.x * std::abs(axis.x) + half.y * std::abs(axis.y) + half.z * std::abs(axis.z);
 }
 
 Direction default_direction(const Box& box, const std::optional<glm::dvec3>& asked_up, BodyAxes axes) {
   const glm::dvec3 up = asked_up ? unit(*asked_up) : glm::dvec3(0, 0, 1);
-  // The side that is looked at, level with the horizon: of what stands along y, the one at +z.
+  // The side towards the eye, level with the horizon: the one at +z if y is up.
   const glm::dvec3 face = std::abs(up.y) > 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, axes == BodyAxes::ras ? 1 : -1, 0);
   glm::dvec3 front = unit(face - up * glm::dot(face, up));
   glm::dvec3 right = glm::cross(up, front);
@@ -116,7 +116,7 @@ Direction direction_of(const ViewRequest& request, const Box& box, BodyAxes axes
     return Direction{to_eye, request.up ? unit(*request.up) : up};
   };
   const glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-  // Towards the front and the left of a patient; of anything else the file's -y and -x.
+  // Towards the front and the left of a patient; otherwise the file's -y and -x.
   const glm::dvec3 front = axes == BodyAxes::ras ? y : -y, left = axes == BodyAxes::lps ? x : -x;
   switch (request.view) {
     case StandardView::front:
@@ -149,7 +149,7 @@ Direction direction_of(const ViewRequest& request, const Box& box, BodyAxes axes
   return default_direction(box, request.up, axes);
 }
 
-/// VTK's Azimuth and then Elevation. Over a pole vtkCamera's view up would lie along the view: then it turns with it.
+/// VTK's Azimuth and then Elevation. At a pole vtkCamera's view up would be along the view: here it turns with it.
 Direction turned(Direction direction, const ViewRequest& request) {
   if (request.azimuth != 0) direction.to_eye = rotated(direction.to_eye, direction.up, request.azimuth * degree);
   if (request.elevation != 0) {
@@ -166,7 +166,7 @@ Camera zoomed(Camera camera, double zoom) {
   if (camera.projection == ProjectionKind::orthographic) {
     camera.parallel_scale /= zoom;
   } else {
-    // By the tangent, so that sizes in the picture grow by `zoom` exactly; vtkCamera divides the angle.
+    // By the tangent, so that sizes in the image grow exactly by `zoom`; vtkCamera divides the angle.
     camera.view_angle = 2 * std::atan(std::tan(camera.view_angle / 2 * degree) / zoom) / degree;
   }
   try {
@@ -205,7 +205,7 @@ Camera frame_box(const Box& box, ImageSize size, ProjectionKind projection, bool
     return camera;
   }
   // Look across the two longest sides, a little from above and from the right: the shortest side points roughly at the
-  // eye, so that plates show their face, and the longest of the other two lies along the picture's width.
+  // eye, so that plates show their face, and the longest side runs along the image's width.
   const glm::dvec3 half = extent_of(box).half;
   std::array<int, 3> axes{0, 1, 2};
   std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return half[a] > half[b]; });

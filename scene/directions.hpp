@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-/// Directions in the world, at any scale that a double holds.
+/// Directions in the world, of any length that a double represents.
 namespace tessera::scene {
 
 inline bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }

@@ -16,7 +16,7 @@ constexpr double points_in_all = 1 << 14;
 constexpr int most_points_a_tet = 4096;
 constexpr std::int64_t points_along_axis = 40;
 
-/// Number j of a sequence that fills [0, 1) evenly, if `step` is hard to come near to by fractions.
+/// Number j of a sequence that fills [0, 1) evenly, if `step` is badly approximable by fractions.
 double uniform(std::uint64_t j, double step) {
   const double u = 0.5 + step * static_cast<double>(j & 0xffffffff);
   return u - std::floor(u);
@@ -45,8 +45,9 @@ FieldSamples sample_mesh(const TetMeshView& part, std::span<const std::uint64_t>
   out.sides = extent / out.longest;
   const double face =
       std::max({out.sides.x * out.sides.y, out.sides.y * out.sides.z, out.sides.z * out.sides.x, 1e-300});
-  // Of all tets, at least: volume_sum() rounds each one down, and a box a million million times as long as it is wide
-  // rounds to nothing; too little a volume would give every tet the most points.
+  // At least as large as the volume of all tets: volume_sum() rounds each one down, and in a box a million million
+  // times as long as wide it rounds to zero. If the volume were too small, every tet would get the maximum number of
+  // points.
   const double volume = (whole.mean_thickness + std::numeric_limits<double>::denorm_min()) / out.longest * face +
                         static_cast<double>(whole.tets) * 0x1p-100;
   const std::uint64_t stride = std::max<std::uint64_t>(1, (whole.tets + tets_looked_at - 1) / tets_looked_at);
@@ -65,7 +66,8 @@ FieldSamples sample_mesh(const TetMeshView& part, std::span<const std::uint64_t>
     const int points =
         static_cast<int>(std::clamp(std::ceil(tet_volume / volume * points_in_all), 1.0, double{most_points_a_tet}));
     for (int j = 0; j < points; ++j) {
-      // Another stretch of the sequence in every tet; else all samples of a regular mesh lay at one place of its cells.
+      // Each tet uses another interval of the sequence; otherwise all samples of a regular mesh would be at one place
+      // of its cells.
       const std::array<double, 4> share = barycentric(number * 127 + static_cast<std::uint64_t>(j));
       glm::dvec3 at(0);
       double value = 0;
@@ -85,11 +87,11 @@ FieldSamples sample_mesh(const TetMeshView& part, std::span<const std::uint64_t>
 
 namespace {
 
-/// Parts of equal length, by index, of one axis of a grid.
+/// Parts of equal length of one axis of a grid, in index space.
 struct AxisParts {
   std::int64_t parts = 1;
-  double length = 0;       ///< of each, in steps of the lattice
-  std::int64_t cells = 1;  ///< that places lie in
+  double length = 0;       ///< of each part, in lattice steps
+  std::int64_t cells = 1;  ///< that contain places
 
   AxisParts(const GridGeometry& geometry, std::size_t axis) {
     const std::int64_t steps = geometry.points[axis] - 1;
@@ -98,7 +100,7 @@ struct AxisParts {
     length = static_cast<double>(steps) / static_cast<double>(parts);
     cells = steps;
   }
-  /// The cell, and how far in it, at a fraction of part `i`.
+  /// The cell, and the position in it, at a fraction of part `i`.
   [[nodiscard]] std::pair<std::int64_t, double> at(std::int64_t i, double fraction) const {
     const double x = (static_cast<double>(i) + fraction) * length;
     const std::int64_t cell = std::clamp<std::int64_t>(static_cast<std::int64_t>(x), 0, cells - 1);
@@ -106,7 +108,7 @@ struct AxisParts {
   }
 };
 
-/// Rows of samples round places of one y and z, and the field between.
+/// The rows of samples around places with one y and z, and the interpolated field.
 class SampleRows {
  public:
   explicit SampleRows(const SampleSource& source)
@@ -115,7 +117,7 @@ class SampleRows {
         cells_(source.geometry().association == Association::cell),
         values_(static_cast<std::size_t>(4 * count_[0])) {}
 
-  /// Of the cell (j, k), at fractions y and z in it.
+  /// Reads the rows of cell (j, k), at fractions y and z in it.
   void read(std::int64_t j, std::int64_t k, double y, double z) {
     const std::int64_t high_j = cells_ ? j : std::min(j + 1, count_[1] - 1);
     const std::int64_t high_k = cells_ ? k : std::min(k + 1, count_[2] - 1);
@@ -126,7 +128,7 @@ class SampleRows {
     source_.read(SampleBox{{0, j, k}, {count_[0], high_j + 1, high_k + 1}},
                  std::span<double>(values_).first(static_cast<std::size_t>(count_[0] * rows_ * slices_)));
   }
-  /// As stored, at a fraction x of cell i: not a number where a sample round it is not.
+  /// The value as stored, at a fraction x of cell i: NaN if a sample around it is NaN.
   [[nodiscard]] double at(std::int64_t i, double x) const {
     if (cells_) return value(i, 0, 0);
     const std::int64_t next = std::min(i + 1, count_[0] - 1);
@@ -167,7 +169,7 @@ FieldSamples sample_grid(const SampleSource& source) {
   if (!(out.longest > 0) || !std::isfinite(out.longest)) return {};
   out.sides = extent / out.longest;
   const std::array<AxisParts, 3> axes{AxisParts(geometry, 0), AxisParts(geometry, 1), AxisParts(geometry, 2)};
-  // World place of a fraction of a cell, and the length of the axis that a part stands for, in longest sides.
+  // The local coordinate of a fraction of a cell.
   const auto place = [&](std::size_t axis, const std::pair<std::int64_t, double>& at) {
     const std::int64_t next = std::min(at.first + 1, geometry.points[axis] - 1);
     return std::lerp(geometry.lattice(axis, at.first), geometry.lattice(axis, next), at.second);

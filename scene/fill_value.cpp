@@ -28,7 +28,8 @@ void FillTally::add(const FillTally& part) {
   others_.low = std::min(others_.low, part.others_.low), others_.high = std::max(others_.high, part.others_.high);
 }
 
-/// Far away: by half of what all others span, or of huge ones ten times that. Huge ones come before all that are not.
+/// A fill value is farther away than half of the range of all other values, a huge one more than ten times the range.
+/// Huge ones take precedence over others.
 std::optional<FillValue> FillTally::found() const {
   ValueRange others = others_;
   const auto gap_to = [&](const Usual& u) { return std::max(others.low - u.value, u.value - others.high); };
@@ -56,7 +57,7 @@ bool may_be_fill(double value) {
   constexpr std::array usual = {999.0,    9999.0,    99999.0,      999999.0,    -999.0,        -9999.0,
                                 -99999.0, -999999.0, -32767.0,     -32768.0,    -2147483647.0, -2147483648.0,
                                 32767.0,  65535.0,   2147483647.0, 4294967295.0};
-  // Some write one more digit behind the point: -9999.9, -999.25.
+  // Some programs add a digit after the decimal point: -9999.9, -999.25.
   return std::abs(value) >= huge_value ||
          std::any_of(usual.begin(), usual.end(), [&](double u) { return std::trunc(value) == u; });
 }

@@ -14,31 +14,31 @@
 
 namespace tessera::scene {
 
-/// From here on quantities are rare, and fill values of climate models common.
+/// From this magnitude on quantities are rare, and fill values of climate models common.
 inline constexpr double huge_value = 1e20;
 
-/// A value that stands for "nothing here" by the custom of many programs (-9999, 1e20, -FLT_MAX, the greatest of a type
-/// of integers, ...) and is far from all others; or several: of a field with huge ones and others only the huge ones.
+/// A value that many programs use for "no data" (-9999, 1e20, -FLT_MAX, the largest of an integer type, ...) and that
+/// is far from all others; or several: if a field has huge ones, only these.
 struct FillValue {
   double value = 0;              ///< the farthest
-  std::uint64_t count = 0;       ///< samples that have one of them
+  std::uint64_t count = 0;       ///< samples with one of these values
   ValueRange others;             ///< of all other values
   std::vector<double> values{};  ///< all, ascending
 
-  /// Whether a threshold leaves them out.
+  /// Whether a threshold excludes them.
   [[nodiscard]] bool is_outside(const std::optional<std::array<double, 2>>& threshold) const {
     return threshold && !(value >= (*threshold)[0] && value <= (*threshold)[1]);
   }
 
-  /// No quantity is likely to have it: it may be left out without asking.
+  /// No quantity is likely to have this value: it may be left out automatically.
   [[nodiscard]] bool is_huge() const { return std::abs(value) >= huge_value; }
 };
 
-/// Whether a value is one of the usual ones. Cheap: what follows reads all values once more.
+/// Whether a value is a common fill value. A cheap test before all values are read again.
 bool may_be_fill(double value);
 
-/// Of a field's values, or a part of them: how often each that may_be_fill() comes, and the range of the others. The
-/// sum of all parts' tallies is the whole's.
+/// For a field's values, or a part of them: how often each common fill value occurs, and the range of the others. The
+/// tallies of parts add up to that of the whole.
 class FillTally {
  public:
   void add(double value) { add(value, 1); }
@@ -58,12 +58,12 @@ class FillTally {
   ValueRange others_;
 };
 
-/// Of values whose range is known; nothing unless an end of it may_be_fill().
+/// For values with a known range; none unless may_be_fill() holds for one of its ends.
 std::optional<FillValue> find_fill_value(std::span<const double> values, double low, double high);
 std::optional<FillValue> find_fill_value(const SampleSource& source, const ValueRange& range);
 
-/// What a note says of it: how many `things` have it, or some if the count is 0, and the threshold that leaves them
-/// out.
+/// The text of a note: how many `things` have the fill value (some, if the count is 0), and the threshold that leaves
+/// them out.
 std::string words_on(const FillValue& fill, const char* things);
 
 }  // namespace tessera::scene

@@ -11,18 +11,18 @@
 
 namespace tessera::scene {
 
-/// Thrown through a frame that was asked to stop, to whoever began it. Not an error: nothing is wrong.
+/// Thrown through a frame that was asked to stop, to its caller. It is not an error.
 struct FrameStopped {};
 
 inline void throw_if_stopped(const std::stop_token& stop) {
   if (stop.stop_requested()) throw FrameStopped{};
 }
 
-/// Who looks on while a frame is made: is told of pixels as they get their final values, and may end it early.
+/// Observes a frame while it is rendered: receives pixels when they have their final values, and may stop it early.
 class FrameWatch {
  public:
-  /// `finished(rect, image)`: the pixels of `rect` in `image` are final; every pixel of the picture is in one such
-  /// rectangle. Called by one thread at a time; what it throws ends the frame and comes out of it.
+  /// `finished(rect, image)`: the pixels of `rect` in `image` are final; every pixel of the image is in one such
+  /// rectangle. Called by one thread at a time; an exception ends the frame and propagates from it.
   using Finished = std::function<void(const PixelRect&, const Image&)>;
 
   FrameWatch() = default;
@@ -31,18 +31,18 @@ class FrameWatch {
 
   [[nodiscard]] const std::stop_token& stop() const { return stop_; }
   [[nodiscard]] bool stopped() const { return stop_.stop_requested(); }
-  /// Throws FrameStopped once the frame is to stop.
+  /// Throws FrameStopped once the frame must stop.
   void check() const { throw_if_stopped(stop_); }
 
-  /// Before the frame begins.
+  /// Call before the frame begins.
   void listen(Finished finished) { finished_ = std::move(finished); }
   [[nodiscard]] bool wants_tiles() const { return static_cast<bool>(finished_); }
-  /// Any thread.
+  /// May be called from any thread.
   void finished(const PixelRect& rect, const Image& image) {
     if (!finished_) return;
     const std::lock_guard lock(mutex_);
     if (failed_) return;
-    failed_ = true;  // unless it returns: nobody is told anything after its exception
+    failed_ = true;  // unless it returns: no calls after an exception
     finished_(rect, image);
     failed_ = false;
   }

@@ -26,7 +26,7 @@ using tessera::validate;
 using tessera::world_of_index;
 using tessera::world_to_local;
 
-/// Sets spacing and direction from the step in the world of one index along each axis.
+/// Sets spacing and direction from the world vector of one index step along each axis.
 void set_axes(GridGeometry& geometry, const std::array<glm::dvec3, 3>& steps);
 
 }  // namespace tessera::scene

@@ -13,14 +13,14 @@ namespace {
 
 constexpr std::size_t most_label_values = 4096;
 
-/// Of one value: samples, and pairs of neighbours that have it, those of two equal ones once.
+/// Counts for one value: samples, and neighbour pairs that contain it; a pair of equal values counts once.
 struct LabelTally {
   std::uint64_t samples = 0, equal = 0, unequal = 0;
 };
 
 class LabelTallies {
  public:
-  /// Takes in a row; false: its values are no labels, whatever comes.
+  /// Adds a row; false: its values cannot be labels.
   bool add(std::span<const double> row) {
     LabelTally* before = nullptr;
     double last = 0;
@@ -42,12 +42,12 @@ class LabelTallies {
         ++unequal_;
         add_step(value, last);
       }
-      before = &here, last = value;  // pointers to a map's values stay
+      before = &here, last = value;  // pointers to a map's values stay valid
     }
     return true;
   }
 
-  /// Two rows next to each other.
+  /// Compares two adjacent rows.
   void compare(std::span<const double> row, std::span<const double> next) {
     for (std::size_t i = 0; i < row.size(); ++i)
       if (row[i] != next[i] && std::abs(row[i] - next[i]) < huge_value) add_step(row[i], next[i]);
@@ -62,7 +62,7 @@ class LabelTallies {
     if (low->first >= 0 && high->first <= 63) return equal >= 0.5;
     return median_share() >= 0.5 && steps_ >= 2 * static_cast<double>(steps_counted_);
   }
-  /// Of some slices: fewer labels than all, and shares that may be larger in others.
+  /// For some of the slices: they may have fewer labels than the whole grid, and smaller shares.
   [[nodiscard]] bool may_be_labels() const {
     if (values_.size() <= 24) return values_.size() <= 2 || equal_share() >= 0.2;
     return median_share() >= 0.4;
@@ -78,7 +78,7 @@ class LabelTallies {
 
  private:
   void add_step(double from, double to) { steps_ += std::abs(from - to), ++steps_counted_; }
-  /// Of the pairs that are not both background.
+  /// The share of equal pairs among those that are not both background.
   [[nodiscard]] double equal_share() const {
     const auto ground = std::ranges::max_element(values_, {}, [](const auto& v) { return v.second.samples; });
     std::uint64_t equal = 0;
@@ -103,7 +103,7 @@ class LabelTallies {
   std::uint64_t steps_counted_ = 0, unequal_ = 0;  ///< in the slice; along i
 };
 
-/// Of slices of samples; false: no labels.
+/// Adds a slice of samples; false: not labels.
 bool add_slice(const SampleSource& source, std::int64_t k, std::vector<double>& values, LabelTallies& tallies) {
   const GridIndex n = source.geometry().samples();
   values.resize(static_cast<std::size_t>(n[0] * n[1]));
@@ -121,7 +121,7 @@ bool add_slice(const SampleSource& source, std::int64_t k, std::vector<double>& 
   return true;
 }
 
-/// Coordinates half way between points, and as far beyond the ends.
+/// Coordinates midway between points, extended by half a spacing at the ends.
 std::vector<double> voxel_borders(const std::vector<double>& points) {
   if (points.size() < 2) return points;
   std::vector<double> borders;

@@ -12,7 +12,7 @@
 namespace tessera::scene {
 namespace {
 
-/// Longest side of the box; 0 if it has no extent, or one that a double cannot hold.
+/// Longest side of the box; 0 if it has no extent, or one that a double cannot represent.
 double longest_side(const Box& box) {
   if (box.empty()) return 0;
   const glm::dvec3 side = box.high - box.low;

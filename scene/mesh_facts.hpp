@@ -8,7 +8,7 @@
 
 namespace tessera::scene {
 
-/// What views, transfer functions and the projection have to know of the whole mesh, wherever its parts lie.
+/// Facts of the whole mesh that views, transfer functions and the projection need, however it is distributed.
 struct MeshFacts {
   Box box;                               ///< bounds()
   std::array<double, 2> scalar_range{};  ///< scalar_range()
@@ -19,21 +19,21 @@ struct MeshFacts {
   bool operator==(const MeshFacts&) const = default;
 };
 
-/// The facts of a mesh that is whole.
+/// The facts of a whole mesh.
 MeshFacts facts_of(const TetMeshView& mesh, int threads = 1);
 
-/// Of two parts of one mesh; a part without tets changes nothing. `mean_thickness` is not meant: it needs the box of
-/// the whole first, then volume_sum() of each part, and their sum.
+/// Combines the facts of two parts of one mesh; a part without tets changes nothing. Does not set `mean_thickness`,
+/// which needs the box of the whole first, then the sum of volume_sum() over the parts.
 MeshFacts joined(const MeshFacts& a, const MeshFacts& b);
 
-/// Volume in units of 2^-100 of the cube over a box's longest side. Whole numbers, so that a sum does not depend on its
+/// Volume in units of 2^-100 of the cube over a box's longest side. Integers, so that a sum does not depend on its
 /// order; not even 2^28 tets that each fill the box overflow it.
 using VolumeSum = __int128;
 
 /// Sum over the mesh's tets, each rounded down, with the box of the whole mesh. Zero if the box has no extent.
 VolumeSum volume_sum(const TetMeshView& mesh, const Box& box, int threads = 1);
 
-/// mean_thickness() from the box and the volume of the whole.
+/// mean_thickness() from the box and the volume of the whole mesh.
 double mean_thickness(const Box& box, VolumeSum volume);
 
 }  // namespace tessera::scene

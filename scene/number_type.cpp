@@ -9,7 +9,7 @@
 namespace tessera::scene {
 namespace {
 
-/// NumberType's of SampleType's.
+/// The NumberType of each SampleType.
 constexpr std::array sample_numbers = {NumberType::int8,  NumberType::uint8,  NumberType::int16,   NumberType::uint16,
                                        NumberType::int32, NumberType::uint32, NumberType::float32, NumberType::float64};
 

@@ -10,12 +10,12 @@
 #include "scene/grid.hpp"
 #include "tessera/array.hpp"
 
-/// What depends on how a number is stored.
+/// Functions that depend on how a number is stored.
 namespace tessera::scene {
 
 using tessera::NumberType;
 
-/// Calls `use` with a zero of the C++ type.
+/// Calls `use` with a zero of the corresponding C++ type.
 template <class Use>
 auto with_number_type(NumberType type, const Use& use) {
   switch (type) {
@@ -49,14 +49,14 @@ inline std::size_t size_of(NumberType type) {
 
 /// int8, uint8, ..., float32, float64.
 const char* name_of(NumberType type);
-/// As fields are listed, and NRRD has them: int8, uint8, ..., float, double.
+/// As in lists of fields and in NRRD: int8, uint8, ..., float, double.
 const char* listed_name(NumberType type);
 
-/// The same type of samples; none for 64-bit integers.
+/// The same type for samples; none for 64-bit integers.
 std::optional<SampleType> sample_type_of(NumberType type);
 NumberType number_type_of(SampleType type);
 
-/// A type and the names, with commas between them, that a format has for it.
+/// A type and a format's names for it, separated by commas.
 struct NumberTypeNames {
   NumberType type;
   std::string_view names;

@@ -9,8 +9,9 @@
 
 namespace tessera::scene {
 
-/// A point of the world as a view sees it: at (x / w, y / w), x to the right, y down, pixel (0, 0) with its centre at
-/// (0.5, 0.5). Orthographic: w = 1. Perspective: w = depth, below 0 behind the eye; nothing is divided.
+/// A world point as projected by a view: at (x / w, y / w), x to the right, y down, pixel (0, 0) with its centre at
+/// (0.5, 0.5). Orthographic: w = 1. Perspective: w = depth, negative behind the eye; the division is left to the
+/// caller.
 struct PixelPlace {
   double x, y, w;
   double depth;  ///< planar, along the view direction from the eye, world units
@@ -24,7 +25,7 @@ struct PixelView {
   bool perspective;
   double pixels_per_unit;  ///< orthographic: per world unit; perspective: per unit of tangent
 
-  /// A valid camera and size.
+  /// Requires a valid camera and size.
   PixelView(const Camera& camera, ImageSize size)
       : basis(view_basis(camera)),
         position(camera.position),
@@ -48,7 +49,7 @@ struct PixelView {
     return std::sqrt(1 + tx * tx + ty * ty);
   }
 
-  /// Of the ray through a pixel position, in the world: one unit of planar depth.
+  /// Direction of the ray through a pixel position, in the world: one unit of planar depth.
   [[nodiscard]] glm::dvec3 direction(double x, double y) const {
     if (!perspective) return basis.forward;
     return basis.forward + basis.right * ((x - half_width) / pixels_per_unit) -

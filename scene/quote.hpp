@@ -6,7 +6,7 @@
 
 namespace tessera::scene {
 
-/// Foreign text for a message: quoted, one line, at most 40 characters, unprintable bytes as `?`.
+/// Text from outside in a message: quoted, one line, at most 40 characters, unprintable bytes as `?`.
 std::string quote(std::string_view text);
 
 }  // namespace tessera::scene

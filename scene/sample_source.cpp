@@ -23,7 +23,7 @@ void convert(const std::byte* source, std::int64_t stride, bool swapped, std::in
   }
 }
 
-/// Length of a tuple of components, in double precision; hypot where squares might overflow.
+/// Length of a tuple of components, in double precision; uses hypot if squares might overflow.
 template <class T>
 double tuple_length(const std::byte* tuple, int components, bool swapped) {
   double sum = 0;
@@ -143,7 +143,7 @@ ValueRange range_by_reading(const SampleSource& source) {
 
 ValueRange value_range(const SampleSource& source) {
   if (const auto known = source.known_range(source.geometry().all_samples())) return *known;
-  // In the precision that samples are held in: magnitudes of floats are floats.
+  // In the precision of the samples: magnitudes of floats are floats.
   return fits_float(source.grid().type) ? range_by_reading<float>(source) : range_by_reading<double>(source);
 }
 

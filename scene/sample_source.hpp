@@ -20,8 +20,8 @@ using tessera::SampleLayout;
 using tessera::SampleSource;
 using tessera::ValueRange;
 
-/// Converts `count` numbers, `stride` numbers apart in the source: from any type, `swapped` if of the other byte order,
-/// to the same type, float32 or float64. Unaligned addresses are fine.
+/// Converts `count` numbers, `stride` numbers apart in the source: from any type, `swapped` if they have the other byte
+/// order, to the same type, float32 or float64. Unaligned addresses are allowed.
 void convert_samples(const std::byte* source, SampleType from, std::int64_t stride, bool swapped, std::int64_t count,
                      std::byte* destination, SampleType to);
 
@@ -29,27 +29,26 @@ void convert_samples(const std::byte* source, SampleType from, std::int64_t stri
 struct ComponentChoice {
   int components = 1;                     ///< a tuple's length
   int component = 0;                      ///< -1: the tuple's length (magnitude); Grid::type is then float32 or float64
-  SampleType type = SampleType::float32;  ///< of the tuple's numbers; Grid::type unless the magnitude is asked for
+  SampleType type = SampleType::float32;  ///< of the tuple's numbers; equals Grid::type except for the magnitude
 };
 
-/// The samples of `count` tuples, `swapped` if of the other byte order: the chosen number of each, as it is or
+/// The samples of `count` tuples, `swapped` if they have the other byte order: the chosen number of each, as stored or
 /// converted to float32 or float64.
 void convert_tuples(const std::byte* tuples, const ComponentChoice& choice, bool swapped, std::int64_t count,
                     std::byte* destination, SampleType to);
 
-/// Throws Error(bad_input) unless `bytes` are as many as the grid's samples need, each a tuple; `source` names the
-/// file.
+/// Throws Error(bad_input) unless `bytes` is the size of all of the grid's tuples; `source` is the file's name.
 void require_samples(const Grid& grid, const ComponentChoice& choice, std::uint64_t bytes, const std::string& source);
 
 /// Samples in memory, in the order of files (k slowest, i fastest, components interleaved).
 class MemorySource final : public SampleSource {
  public:
-  /// Keeps a copy of the bytes' owner, not of the bytes. Throws Error(bad_input) unless the bytes are as many as the
-  /// grid needs. `swapped`: they are of the other byte order than this machine.
+  /// Keeps a copy of the bytes' owner, not of the bytes. Throws Error(bad_input) unless the bytes have the size that
+  /// the grid needs. `swapped`: they have the other byte order than this machine.
   MemorySource(Grid grid, std::span<const std::byte> bytes, std::shared_ptr<const void> owner, std::string source,
                std::optional<ComponentChoice> choice = std::nullopt, bool swapped = false);
 
-  /// Of numbers that it then owns; grid.type becomes theirs.
+  /// Takes ownership of the numbers; grid.type becomes their type.
   template <class T>
   static std::unique_ptr<MemorySource> of(Grid grid, std::vector<T> values, std::string source = "volume");
 
@@ -62,10 +61,10 @@ class MemorySource final : public SampleSource {
   bool swapped_;
 };
 
-/// Range and blanks of a whole volume: its known_range(), or by reading all of it once, a few MiB at a time.
+/// Range and blanks of a whole volume: its known_range(), or by reading it once, a few MiB at a time.
 ValueRange value_range(const SampleSource& source);
 
-/// Calls `use` with a zero of the C++ type that `type` stores.
+/// Calls `use` with a zero of the C++ type of `type`.
 template <class Use>
 void with_sample_type(SampleType type, const Use& use) {
   switch (type) {

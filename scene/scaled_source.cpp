@@ -14,7 +14,8 @@ Grid with_axes_scaled(Grid grid, const glm::dvec3& scale) {
   return grid;
 }
 
-/// How much longer the axis becomes; its direction changes with it unless that is along an axis of the world.
+/// The factor by which the axis becomes longer. Scales its direction, which only changes if the axis is not along one
+/// of the world's.
 double stretch(glm::dvec3& direction, const glm::dvec3& scale) {
   for (int axis = 0; axis < 3; ++axis)
     if (direction[(axis + 1) % 3] == 0 && direction[(axis + 2) % 3] == 0) return scale[axis];

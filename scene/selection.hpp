@@ -12,7 +12,7 @@ namespace tessera::scene {
 using tessera::HalfSpace;
 using tessera::Selection;
 
-/// Of length 1, whatever the length that is given.
+/// The normal with unit length, whatever its stored length.
 inline glm::dvec3 unit_normal(const HalfSpace& h) {
   const glm::dvec3 size = glm::abs(h.normal);
   return glm::normalize(h.normal / std::max({size.x, size.y, size.z}));

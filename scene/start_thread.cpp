@@ -11,7 +11,7 @@
 namespace tessera::scene {
 namespace {
 
-/// Threads of this process; 0 if the system does not say.
+/// Number of threads of this process; 0 if the system does not report it.
 int threads_running() {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;)
@@ -28,7 +28,7 @@ int threads_running() {
 std::optional<Error> thread_fault(const std::exception& fault) {
   const auto* system = dynamic_cast<const std::system_error*>(&fault);
   const bool of_std = system != nullptr && system->code() == std::errc::resource_unavailable_try_again;
-  // oneTBB has no type of its own for this.
+  // oneTBB has no separate type for this error.
   const bool of_tbb = std::string_view(fault.what()).starts_with("pthread_create has failed");
   if (!of_std && !of_tbb) return std::nullopt;
   return Error(ErrorCode::system_failure,

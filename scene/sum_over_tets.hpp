@@ -11,8 +11,8 @@
 
 namespace tessera::scene {
 
-/// join() of of(first, last) over ranges that make up [0, tets), on `threads` threads (0: all cores); of one range with
-/// one thread. `join` must not depend on the order.
+/// Combines the results of of(first, last) over ranges that make up [0, tets) with join(), on `threads` threads (0: all
+/// cores); one range with one thread. `join` must not depend on the order.
 template <class T, class Of, class Join>
 T sum_over_tets(std::size_t tets, int threads, const T& nothing, const Of& of, const Join& join) {
   constexpr std::size_t tets_a_task = 16384;

@@ -9,27 +9,27 @@
 
 namespace tessera::scene {
 
-/// Processes that make one frame together in memory that they share, each its share of every pass. All of them call the
-/// same functions in the same order, with the same sizes.
+/// Processes that render one frame together in shared memory, each its share of every pass. All of them call the same
+/// functions in the same order, with the same sizes.
 class Team {
  public:
   virtual ~Team() = default;
 
-  /// Which of `size()` members this one is, 0 .. size() - 1.
+  /// The index of this member, 0 .. size() - 1.
   [[nodiscard]] virtual int rank() const = 0;
   [[nodiscard]] virtual int size() const = 0;
 
-  /// Returns when all members have come here: what they wrote to shared memory before can be read. Throws FrameStopped
-  /// once one of them has left the frame, and the run's error once there is one.
+  /// Returns when all members have called it: everything that they wrote to shared memory before is then visible.
+  /// Throws FrameStopped once one of them has left the frame, and the run's error once there is one.
   virtual void barrier() = 0;
-  /// Every member's word, in their order, on every member. A barrier too.
+  /// Every member's number, in the order of members, on every member. Also a barrier.
   virtual std::vector<std::uint64_t> gather(std::uint64_t word) = 0;
 
-  /// Draws the next of `count` numbers that the members share out in this epoch, 0, 1, ...; `count` if there is none
-  /// left, more of which may come with a larger count. Any thread.
+  /// Draws the next of the `count` numbers 0, 1, ... that the members share in this epoch; returns `count` if none
+  /// remains. A later call with a larger count may return more. Any thread.
   virtual std::uint32_t draw(std::uint32_t count) = 0;
 
-  /// What shared memory is for; each has one piece.
+  /// The purposes of shared memory; each has one block.
   enum class Room : std::uint8_t {
     positions,
     tets,
@@ -45,8 +45,9 @@ class Team {
   };
   static constexpr std::size_t room_count = 11;
 
-  /// At least `bytes` bytes that all members see. They keep what is in them until more are asked for, or less than
-  /// half; that is a barrier. Throws Error(system_failure) on all members where the machine has no such memory.
+  /// At least `bytes` bytes visible to all members. The contents are kept until a call asks for more, or for less than
+  /// half; that call is a barrier. Throws Error(system_failure) on all members if the machine does not provide the
+  /// memory.
   virtual std::byte* memory(Room room, std::size_t bytes) = 0;
   template <class T>
   T* memory_of(Room room, std::size_t count) {
@@ -54,20 +55,20 @@ class Team {
   }
 };
 
-/// The things [first, last) of many.
+/// The items [first, last) of a sequence.
 struct Share {
   std::size_t first, last;
   [[nodiscard]] std::size_t size() const { return last - first; }
 };
 
-/// A member's share of `count` things; all of them without a team.
+/// A member's share of `count` items; all of them without a team.
 inline Share share_of(std::size_t count, const Team* team) {
   if (team == nullptr) return {0, count};
   const auto rank = static_cast<std::size_t>(team->rank()), size = static_cast<std::size_t>(team->size());
   return {count * rank / size, count * (rank + 1) / size};
 }
 
-/// The least of all members' numbers; `number` itself without a team.
+/// The smallest of all members' numbers; `number` itself without a team.
 inline std::uint64_t least_of(std::uint64_t number, Team* team) {
   if (team == nullptr) return number;
   const std::vector<std::uint64_t> all = team->gather(number);

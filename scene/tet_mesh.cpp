@@ -22,7 +22,7 @@ Box bounds(const TetMeshView& mesh, int threads) {
     return box;
   };
   const Box box = sum_over_tets(mesh.tets.size(), threads, Box(), of, join);
-  // -0 becomes 0: which of the two is found depends on the order.
+  // -0 becomes 0: otherwise the result would depend on the order.
   return {box.low + 0.0, box.high + 0.0};
 }
 

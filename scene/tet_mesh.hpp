@@ -19,12 +19,12 @@ using tessera::Association;
 /// Four vertex indices of a tetrahedron, either orientation.
 using Tet = std::array<std::uint32_t, 4>;
 
-/// A tetrahedral mesh with one scalar field: what every reader makes and every renderer takes.
+/// A tetrahedral mesh with one scalar field: the result of every reader and the input of every renderer.
 ///
 /// Shape   positions[v] and, for point data, scalars[v] for each vertex v; tets[t] and, for cell data, scalars[t] for
 ///         each tet t.
-/// Order   tets of one original cell are adjacent and cells stand in the file's order, so the index t is the rank of
-///         the pair (original cell, sub-tet): the last part of the depth order's key.
+/// Order   tets of one original cell are adjacent and cells are in the file's order, so the index t is the rank of the
+///         pair (original cell, sub-tet): the last part of the depth order's key.
 /// Units   world units of the file in double precision, so metre-size cells at coordinates of 7e6 keep their shape.
 /// Holds   all indices < positions.size(); positions finite; scalars of used vertices (or of tets) finite: cells with
 ///         NaN are blanked by the reader. Flat, inverted and duplicate tets are allowed. Vertices may be unused, or
@@ -43,8 +43,8 @@ struct TetMesh {
   }
 };
 
-/// A mesh that somebody else keeps: the same arrays by reference, for all who only read. They must stay as they are for
-/// as long as the view is used.
+/// A mesh owned by another object: the same arrays by reference, for code that only reads. They must stay unchanged
+/// while the view is used.
 struct TetMeshView {
   std::span<const glm::dvec3> positions;
   std::span<const Tet> tets;
@@ -70,16 +70,16 @@ struct TetMeshView {
 /// Box of the vertices that tets use. Empty if there are no tets. `threads`, here and below: 0 is all cores.
 Box bounds(const TetMeshView& mesh, int threads = 1);
 
-/// Volume of the tets over the largest face of their box: how much matter a ray meets on average that crosses the box
-/// the short way. World units; the length that default extinctions refer to, as it sees plates, shells and scattered
-/// parts that the box's diagonal does not. Zero for an empty or flat mesh. The same bits for any order of the tets, and
-/// from mesh_facts.hpp for any division into parts.
+/// Volume of the tets over the largest face of their box: the mean length of matter on rays that cross the box along
+/// its shortest side. World units; default extinctions refer to this length, which unlike the box's diagonal accounts
+/// for plates, shells and scattered parts. Zero for an empty or flat mesh. The same bits for any order of the tets and,
+/// computed with mesh_facts.hpp, for any division into parts.
 double mean_thickness(const TetMeshView& mesh);
 
 /// Smallest and largest scalar that tets use; {0, 0} if there are no tets.
 std::array<double, 2> scalar_range(const TetMeshView& mesh, int threads = 1);
 
-/// Some tets of a mesh, in the order given, with the vertices that they use in the mesh's order.
+/// A subset of a mesh's tets, in the given order, with the vertices that they use in the mesh's order.
 TetMesh subset(const TetMeshView& mesh, std::span<const std::uint32_t> tets);
 
 /// Throws Error(bad_input, "SOURCE: ...") if an index, size or number breaks the invariants above.

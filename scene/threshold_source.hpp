@@ -9,12 +9,12 @@
 
 namespace tessera::scene {
 
-/// Another source's samples, those blank whose values are outside of a range, ends included: so whole voxels are left
-/// out, of point data all that have such a corner. As blanks need a float type, samples are float32, or float64 where
-/// floats do not hold theirs.
+/// The samples of another source; those with values outside a closed range are blank. This leaves out whole voxels, for
+/// point data all with such a corner. Since blanks need a float type, samples are float32, or float64 if floats cannot
+/// represent the source's type.
 class ThresholdSource final : public SampleSource {
  public:
-  /// `source`: the file's name for messages.
+  /// `source`: the file's name in messages.
   ThresholdSource(std::unique_ptr<SampleSource> all, const std::array<double, 2>& range, std::string source);
 
   [[nodiscard]] GridIndex storage_block() const override { return all_->storage_block(); }

@@ -18,26 +18,26 @@ namespace tessera::scene {
 
 /// Which of a file's time steps was read.
 struct TimeStepRead {
-  std::uint64_t count = 1;      ///< that the file has; 1, or 0: it does not change with time
+  std::uint64_t count = 1;      ///< in the file; 1, or 0: it does not change with time
   std::uint64_t step = 0;       ///< counted from 0
-  std::vector<double> times{};  ///< of all steps, where the file says them: `count`; else none
+  std::vector<double> times{};  ///< of all `count` steps if the file states them; otherwise empty
 };
 
-/// Of so many steps the one that is asked for, the last if none is. Throws Error(bad_input) if it is not there.
+/// The requested one of `count` steps, the last by default. Throws Error(bad_input) if it does not exist.
 inline TimeStepRead chosen_step(std::optional<std::size_t> wish, std::uint64_t count, const std::string& source) {
   if (wish && *wish >= std::max<std::uint64_t>(count, 1))
     throw bad_input(fmt::format("{}: there is no time step {}, the file has {}; count from 0", source, *wish, count));
   return {count, wish.value_or(count == 0 ? 0 : count - 1), {}};
 }
 
-/// Keeps times only if there is one for each step, all of them numbers.
+/// Keeps times only if there is one for each step and all are finite.
 inline void set_times(TimeStepRead& read, std::vector<double> times) {
   if (times.size() == read.count && std::ranges::all_of(times, [](double t) { return std::isfinite(t); }))
     read.times = std::move(times);
 }
 
-/// `count` times from `first` on, each `step` after the one before; none if they are not numbers that differ,
-/// or more than a file has that is whole.
+/// `count` times starting at `first`, `step` apart; none if they are not finite and different, or if there are more
+/// than an intact file would have.
 inline std::vector<double> even_times(double first, double step, std::uint64_t count) {
   constexpr std::uint64_t most = 1 << 20;
   std::vector<double> times;
@@ -46,7 +46,7 @@ inline std::vector<double> even_times(double first, double step, std::uint64_t c
   return times;
 }
 
-/// What a file's notes say of it; nothing if there is but one.
+/// The note about the time step; none if there is only one.
 inline std::optional<std::string> note_on(const TimeStepRead& read, std::optional<std::size_t> wish) {
   if (read.count <= 1) return std::nullopt;
   const std::string time =

@@ -15,21 +15,21 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// For so long after a look at its CPU clock a thread is taken to have run.
+/// For this long after a thread's CPU clock was read, the thread is assumed to have run all the time.
 constexpr double adjacent_us = 1;
 
 }  // namespace
 
 struct Trace::ThreadSpans {
-  /// Taken by its thread alone, but for a moment when spans() reads: less than the cost of a look at a clock.
+  /// Locked only by its own thread, except briefly when spans() reads: cheaper than reading a clock.
   std::mutex mutex;
   std::vector<TraceSpan> spans;
   std::uint32_t number = 0;
-  std::int32_t tile = -1;                     ///< that its thread works for
-  double wall_us = -adjacent_us, cpu_us = 0;  ///< when its thread last looked at its CPU clock
+  std::int32_t tile = -1;                     ///< for which its thread works
+  double wall_us = -adjacent_us, cpu_us = 0;  ///< when its thread last read its CPU clock
 
-  /// The thread's CPU time at `now_us`. That clock is a system call and dear (0.2 to 0.5 us); where one scope begins
-  /// as another ends, or is empty, one look does for both.
+  /// The thread's CPU time at `now_us`. Reading that clock is an expensive system call (0.2 to 0.5 us); if one scope
+  /// begins where another ends, or a scope is empty, one reading serves both.
   double cpu_time(double now_us) {
     if (now_us - wall_us < adjacent_us) return cpu_us + (now_us - wall_us);
     timespec t{};
@@ -52,8 +52,8 @@ Trace::Trace(TraceRole role) : recording_(std::make_shared<Recording>()), role_(
 Trace::Trace(const Trace& other, TraceRole role) : recording_(other.recording_), role_(role) {}
 
 Trace::ThreadSpans& Trace::mine() {
-  // The buffer this thread wrote to last. A later recording may lie at an earlier one's address, but not also have
-  // begun at the same instant.
+  // The last buffer of this thread. A later recording may have the address of an earlier one, but cannot have begun at
+  // the same instant.
   struct Last {
     const Recording* recording = nullptr;
     Clock::time_point origin;
@@ -120,7 +120,7 @@ void TraceScope::begin(const char* stage, std::int32_t frame) {
 void TraceScope::end() {
   const double end_us = trace_->now_us();
   Trace::ThreadSpans& mine = trace_->mine();
-  // A time carried over from an adjacent look may be a little ahead of the clock.
+  // A time extrapolated from an adjacent reading may be a little ahead of the clock.
   const double cpu_us = std::max(0.0, mine.cpu_time(end_us) - start_cpu_us_);
   const TraceSpan span{stage_, mine.number, start_us_,      end_us - start_us_, cpu_us, frame_,
                        bytes_, messages_,   trace_->role(), mine.tile,          peer_};

@@ -14,9 +14,9 @@ using tessera::TraceRole;
 using tessera::TraceScope;
 using tessera::TraceSpan;
 
-/// Stages that take turns too quickly for a scope each (sixteen cells, sixteen pixels). They are timed by the
-/// processor's own counter, some ten nanoseconds each; at the end every stage gets one span of its share of the time,
-/// one after the other. Does nothing if `trace` is null.
+/// Times stages that alternate too quickly for a scope each (sixteen cells, sixteen pixels). It reads the processor's
+/// own counter, which takes some ten nanoseconds; at the end every stage gets one span with its share of the time, one
+/// after the other. Does nothing if `trace` is null.
 class StageTimer {
  public:
   explicit StageTimer(Trace* trace) : trace_(trace) {
@@ -25,7 +25,7 @@ class StageTimer {
   ~StageTimer() {
     if (trace_ != nullptr) end();
   }
-  /// The time since the last call, or the beginning, went to `stage`, a string literal; at most six different ones.
+  /// Adds the time since the last call, or the beginning, to `stage`, a string literal; at most six different ones.
   void record(const char* stage) {
     if (trace_ != nullptr) add(stage);
   }
@@ -48,8 +48,8 @@ class StageTimer {
   double start_us_ = 0, start_cpu_us_ = 0;
 };
 
-/// While it lives, spans that its thread ends are of this tile, through whichever face of the recording. Does nothing
-/// if `trace` is null.
+/// While it exists, spans that end on its thread belong to this tile, whatever their role. Does nothing if `trace` is
+/// null.
 class TraceTile {
  public:
   TraceTile(Trace* trace, std::size_t tile) : trace_(trace) {

@@ -17,7 +17,7 @@ using scene::bad_input;
 
 bool emits(const Knot& k) { return k.color.x > 0 || k.color.y > 0 || k.color.z > 0; }
 
-/// Far beyond anything that shows: light and optical depth stay finite along rays of any length, in single precision.
+/// Far beyond any visible value: light and optical depth stay finite along rays of any length, in single precision.
 constexpr double most_color = 1e30, most_extinction = 1e100;
 
 void check(const Knot& knot, std::size_t number) {
@@ -40,7 +40,7 @@ TransferFunction::TransferFunction(std::vector<Knot> knots) {
     if (i > 0 && knots[i].value < knots[i - 1].value)
       throw bad_input(fmt::format("knot {}: value {} is below the value before it, {}; sort the knots", i + 1,
                                   knots[i].value, knots[i - 1].value));
-    // Between such neighbours a slope has no finite number.
+    // Neighbours this close have no finite slope.
     if (i > 0 && knots[i].value - knots_.back().value < std::numeric_limits<double>::min())
       knots[i].value = knots_.back().value;
     const std::size_t n = knots_.size();
@@ -73,8 +73,8 @@ Knot TransferFunction::evaluate(double s) const {
 bool TransferFunction::visible(double low, double high, bool emits_without_extinction) const {
   const auto shows = [&](const Knot& k) { return k.extinction > 0 || (emits_without_extinction && emits(k)); };
   if (shows(evaluate(low)) || shows(evaluate(high))) return true;
-  // Between them the function is positive somewhere only if it is at a knot strictly inside, a step's lower knot at
-  // `high` included (the function approaches it).
+  // Between the two ends the function is positive only if it is positive at a knot strictly inside, or at a step's
+  // lower knot at `high` (which the function approaches).
   const auto begin =
       std::upper_bound(knots_.begin(), knots_.end(), low, [](double v, const Knot& k) { return v < k.value; });
   const auto end =
