@@ -12,16 +12,16 @@ namespace tessera::apps {
 struct CommandRow {
   Trait trait;
   std::string_view name, description;
-  std::string_view examples;  ///< lines to begin with; empty for a command that needs none
+  std::string_view examples;  ///< examples for the help; empty for a command that needs none
 };
 
-/// In the order of help.
+/// All commands, in the order of the help.
 std::span<const CommandRow> command_rows();
 
-/// Null for another word.
+/// Null for any other word.
 const CommandRow* command_named(std::string_view name);
 
-/// `--help-all` has more options than `--help`.
+/// Whether `--help-all` has more options than `--help`.
 inline bool has_topics(const CommandRow& command) {
   return command.trait == Trait::render || command.trait == Trait::serve;
 }

@@ -5,12 +5,12 @@
 
 namespace tessera::apps {
 
-/// What the program reports to its caller. An error's code is one too.
+/// The exit statuses of the program, which include the codes of errors.
 enum class ExitCode : int {
-  complete = 0,  ///< the picture is complete
+  complete = 0,  ///< the image is complete
   bad_input = static_cast<int>(ErrorCode::bad_input),
   system_failure = static_cast<int>(ErrorCode::system_failure),
-  accuracy_not_met = 4,  ///< --verify found more error than was asked for
+  accuracy_not_met = 4,  ///< --verify found a larger error than requested
 };
 
 }  // namespace tessera::apps

@@ -20,14 +20,14 @@
 namespace tessera::apps {
 namespace {
 
-/// What a signal's handler may touch: the pipe on which a thread hears of it, which may then do what handlers may not.
+/// A pipe to a thread, on which a signal handler reports the signal. The thread may do what a handler may not.
 std::array<int, 2> heard{-1, -1};
-std::atomic<int> ending = 0;  ///< the signal
+std::atomic<int> ending = 0;  ///< the number of the first signal
 
 extern "C" void on_interruption(int signal) {
   const int before = errno;
   int none = 0;
-  // Whoever asks twice is in a hurry.
+  // A second signal ends the process at once.
   if (!ending.compare_exchange_strong(none, signal)) ::_exit(128 + signal);
   const auto number = static_cast<char>(signal);
   [[maybe_unused]] const ssize_t told = ::write(heard[1], &number, 1);
@@ -56,7 +56,7 @@ void await_interruption() {
 }  // namespace
 
 void answer_interruption() {
-  if (::pipe2(heard.data(), O_CLOEXEC) != 0) return;  // then the signals end it as they end any program
+  if (::pipe2(heard.data(), O_CLOEXEC) != 0) return;  // signals then end the process as usual
   try {
     std::thread(await_interruption).detach();
   } catch (const std::exception&) {

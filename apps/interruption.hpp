@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Ctrl-C and its like. A run of one process that gets SIGINT, SIGTERM or SIGHUP ends at once and leaves nothing: no
-/// half-written output, no temporary file, no program that it has started, no line of progress on the terminal. It says
-/// one line and ends by that signal, which a shell shows as 128 + its number.
+/// Handling of Ctrl-C and similar signals. A single-process run that gets SIGINT, SIGTERM or SIGHUP ends at once and
+/// cleans up: it leaves no incomplete output, temporary file, child program or progress line on the terminal. It prints
+/// one line and ends by that signal, which a shell reports as 128 + its number.
 namespace tessera::apps {
 
-/// From now on. A signal that the caller has had ignored (nohup, a background job) stays ignored. Ranks of a job have
+/// Installs the handlers. Signals that the caller ignores (nohup, a background job) stay ignored. Ranks of a job use
 /// Job::answer_termination() instead.
 void answer_interruption();
 
-/// For whoever is about to report an error: does not return once such a signal has come, since what fails then may fail
-/// because of it.
+/// Call it before an error is reported: does not return if such a signal has been received, as the signal may be the
+/// cause of the error.
 void yield_to_interruption();
 
 }  // namespace tessera::apps

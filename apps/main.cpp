@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The `tessera` program: subcommands over the libraries. Everything that goes wrong ends here, in one line on stderr
-// and an exit status (ExitCode).
+// The `tessera` program: subcommands over the libraries. Every error ends here, as one line on stderr and an exit
+// status (ExitCode).
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -42,8 +42,8 @@
 namespace tessera::apps {
 namespace {
 
-/// One line whatever the message holds: file names may contain line breaks, and libraries' messages do. Nothing if the
-/// run's line has been said. Settings are options in it.
+/// Prints an error as one line, even if file names or messages contain line breaks, with options instead of settings.
+/// Prints nothing if the run's line has already been printed.
 int fail(const Error& error) {
   yield_to_interruption();
   std::string line = "tessera: " + printable(with_stream_names(with_options(error.what())));
@@ -55,7 +55,7 @@ int fail(const Error& error) {
   return static_cast<int>(error.code());
 }
 
-/// Whether a rectilinear grid, which is a volume, is asked for as the mesh that it is too.
+/// Whether a rectilinear grid, which opens as a volume, should be converted as a mesh.
 bool to_mesh(const InputFile& input, const std::filesystem::path& output) {
   const auto extension = output.extension();
   return (extension == ".vtu" || extension == ".tets" || extension == ".pvtu") && input.opens_as_mesh();
@@ -74,7 +74,7 @@ ExitCode render_words(OptionWords& words, Job& job) {
 }
 
 ExitCode run(int argc, char** argv, Job& job) {
-  // A server ends by a signal as it is meant to.
+  // Signals are the normal end of a server.
   const bool serves = argc > 1 && std::string_view(argv[1]) == "serve";
   if (job.size() == 1 && !serves) answer_interruption();
   if (!serves) job.answer_termination();
@@ -97,7 +97,7 @@ ExitCode run(int argc, char** argv, Job& job) {
     serve(words, job);
     return ExitCode::complete;
   }
-  if (job.rank() != 0) return ExitCode::complete;  // the other commands are for one process
+  if (job.rank() != 0) return ExitCode::complete;  // the other commands use one process
   const std::string &input = words.word("input"), &output = words.word("out");
   if (command == Trait::info) {
     const InputFile first = first_input(words);
@@ -107,15 +107,15 @@ ExitCode run(int argc, char** argv, Job& job) {
       throw bad_input("--check: is for meshes, and the input is a volume; leave it out");
     }
     ReadOptions options = read_options(words, is_grid);
-    options.shape = !is_grid;  // as render without options
+    options.shape = !is_grid;  // as for render without options
     info(input, first, options, words.given("json"), words.given("check"));
   }
   if (command == Trait::convert) {
-    if (is_time_series(input)) require_input(input);  // else a list without files is refused as a list
+    if (is_time_series(input)) require_input(input);  // reports a list whose files are missing
     const InputFile file(input);
     if (is_grid_input(words, file) && !to_mesh(file, output)) {
       ReadOptions options = read_options(words, true);
-      options.blocks.clear();  // of volumes it is a side
+      options.blocks.clear();  // for volumes the option is the side of a block
       convert_grid(file, output, options, words.count("block", 8, 1024).value_or(64), words.given("quiet"));
     } else {
       convert_mesh(file, output, read_options(words, false), words.count("subdivide", 0, 8).value_or(0),
@@ -140,18 +140,18 @@ using tessera::Error;
 using tessera::ErrorCode;
 using tessera::apps::ExitCode;
 
-/// What any exception is to the user.
+/// The user's view of an exception.
 Error as_error() {
   try {
     throw;
   } catch (const tessera::OutputFault& fault) {
-    return fault.since_changed();  // every command has looked at its outputs before it began
+    return fault.since_changed();  // every command checked its outputs before it began
   } catch (...) {
     return tessera::error_of(std::current_exception());
   }
 }
 
-/// An exception that nobody caught: on a thread of oneTBB's, say, which cannot start another.
+/// Reports an uncaught exception, for example on a thread of oneTBB that cannot start another one.
 [[noreturn]] void on_terminate() {
   static std::atomic<bool> again = false;
   if (std::current_exception() == nullptr || again.exchange(true)) std::abort();
@@ -160,8 +160,8 @@ Error as_error() {
   std::_Exit(static_cast<int>(error.code()));
 }
 
-/// Opens /dev/null for each standard stream that the caller has closed. Otherwise the next file that is opened would
-/// get the stream's number, and messages would be written into it. Standard output is opened to read, so that writing a
+/// Opens /dev/null for each standard stream that the caller has closed. Otherwise the next file to be opened would get
+/// the stream's number, and messages would be written to it. Standard output is opened for reading, so that writing a
 /// result to it fails.
 void fill_standard_descriptors() {
   for (const auto& [descriptor, how] :
@@ -169,7 +169,7 @@ void fill_standard_descriptors() {
     if (::fcntl(descriptor, F_GETFD) < 0) static_cast<void>(::open("/dev/null", how));
 }
 
-/// Below this the first thread's stack may end in mid-frame, and the threads' with it.
+/// With a smaller limit, the stack of the first thread, and of the others, may overflow during a frame.
 void require_stack() {
   constexpr rlim_t least = 1 << 20;
   rlimit limit{};
@@ -180,8 +180,8 @@ void require_stack() {
                 std::to_string(limit.rlim_cur / 1024) + " KiB are all that this process may have", "ulimit -s 8192");
 }
 
-/// The first thread's stack grows as it is used. Where address space is limited there may be no room when it does, and
-/// the system ends the process without a word; so it grows now, to more than rendering takes of it.
+/// The stack of the first thread grows on demand. If the address space is limited, that may fail later, and the system
+/// then kills the process without a message. So it grows now, to more than rendering needs.
 [[gnu::noinline]] void grow_stack() {
   std::array<volatile char, 1 << 19> room;  // NOLINT(cppcoreguidelines-pro-type-member-init): touched below
   for (std::size_t byte = 0; byte < room.size(); byte += 4096) room[byte] = 0;
@@ -192,7 +192,7 @@ void require_stack() {
 int main(int argc, char** argv) {
   using tessera::apps::fail;
   fill_standard_descriptors();
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error as any other
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that becomes too large is an ordinary error
   std::optional<tessera::Job> job;
   try {
     require_stack();
@@ -207,7 +207,7 @@ int main(int argc, char** argv) {
   ExitCode code = ExitCode::complete;
   try {
     code = tessera::apps::run(argc, argv, *job);
-    // A result that did not reach its reader (a full disk behind `>`) is not a success.
+    // A result that did not reach its reader (a full disk behind `>`) is an error.
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
       throw Error(ErrorCode::system_failure, "standard output: cannot be written; make room or close the pipe later");
   } catch (...) {

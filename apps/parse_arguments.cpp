@@ -28,7 +28,7 @@ Error no_command(const std::string& word) {
   return bad_input(fmt::format("arguments: '{}' is no command; use {} or {}", word, fmt::join(names, ", "), last));
 }
 
-/// The first argument that looks like an option and is none.
+/// The first argument that looks like an option but is unknown.
 std::optional<std::string> unknown_option(const CLI::App& command) {
   for (const std::string& word : command.remaining())
     if (word.size() > 1 && word.front() == '-') return word.substr(0, word.find('='));
@@ -49,7 +49,7 @@ CLI::Option* declare(const OptionRow& row, CLI::App& command) {
   if (row.is(Trait::flag | Trait::place)) return command.add_flag(names);
   CLI::Option* const option = command.add_option(names, CLI::callback_t());
   option->type_name(std::string(row.value));
-  // One value an occurrence: `-o out.png mesh.vtu` would else take the mesh for a second picture.
+  // One value per occurrence: `-o out.png mesh.vtu` would otherwise take the mesh as a second output.
   if (row.is(Trait::list))
     option->expected(1, CLI::detail::expected_max_vector_size)->take_all()->allow_extra_args(row.is(Trait::positional));
   return option;
@@ -63,7 +63,7 @@ std::string help_of(const OptionWords& words) {
   return words.given("man") ? manual_page(command) : help_page(command, words.given("all"));
 }
 
-/// Every subcommand with its options, and the words that were given.
+/// Every subcommand with its options, and the given words.
 struct CommandLine {
   CommandLine() : app("", "tessera") {
     app.set_version_flag("--version",
@@ -81,11 +81,11 @@ struct CommandLine {
   std::vector<std::pair<const OptionRow*, CLI::Option*>> options;
 };
 
-/// A flag as `--smooth`, or `--smooth=yes`.
+/// The value of a flag: `--smooth`, or `--smooth=yes`.
 bool is_on(const OptionRow& row, const std::string& word) {
   try {
     if (const auto value = CLI::detail::to_flag_value(word); value == 1 || value == -1) return value == 1;
-  } catch (const std::logic_error&) {  // no word of a flag
+  } catch (const std::logic_error&) {  // not a value of a flag
   }
   throw bad_input(fmt::format("{}: takes no value; leave that out", shown_name(row)));
 }
@@ -112,12 +112,12 @@ std::optional<Arguments> parse_arguments(int argc, const char* const* argv, bool
     if (says) std::fputs(text.c_str(), stdout);
     return std::nullopt;
   };
-  if (first == "complete") {  // what the scripts ask: of no interest to users, and no words to be checked
+  if (first == "complete") {  // internal, for completion scripts: the words are not checked
     std::string names;
     for (const std::string& name : completions({argv + 2, argv + argc})) names += name + '\n';
     return say(names);
   }
-  // CLI11 would only say that a subcommand is missing.
+  // CLI11 would only report that a subcommand is missing.
   if (!first.empty() && first.front() != '-' && command == nullptr) throw no_command(first);
   const std::string help = command == nullptr ? "tessera --help" : fmt::format("tessera {} --help", first);
   CommandLine line;

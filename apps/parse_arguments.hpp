@@ -7,14 +7,14 @@
 
 namespace tessera::apps {
 
-/// The words of the program's arguments: of `render` with those of its --config.
+/// The words of the program's arguments; for `render` including those of its --config.
 struct Arguments {
   const CommandRow* command;  ///< never null
   OptionWords words;
 };
 
-/// Nothing if all is done: help or the version was asked for, and printed on standard output where `says`. Throws
-/// Error(bad_input) for what cannot be understood, with the nearest name.
+/// None if nothing remains to do: help or the version was requested, and is printed on standard output if `says`.
+/// Throws Error(bad_input) for invalid arguments, suggesting the nearest name.
 std::optional<Arguments> parse_arguments(int argc, const char* const* argv, bool says);
 
 }  // namespace tessera::apps

@@ -31,7 +31,7 @@ std::filesystem::path spool_standard_input() {
                 fmt::format("{} {}: {}", what, std::filesystem::temp_directory_path().string(), std::strerror(errno)),
                 "free some space there, or set TMPDIR to another folder");
   };
-  // Held open to the process's end: its name is one of this process's open files.
+  // Stays open until the process ends: its name is one of this process's open files.
   int file = ::open(std::filesystem::temp_directory_path().c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (file < 0) {
     std::string name = (std::filesystem::temp_directory_path() / "tessera-XXXXXX").string();

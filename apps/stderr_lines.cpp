@@ -16,16 +16,16 @@ namespace {
 
 constexpr std::string_view indent = "  ";
 
-/// Columns that text takes: bytes of UTF-8 that continue a character take none.
+/// Columns of a text: continuation bytes of UTF-8 take none.
 std::size_t columns(std::string_view text) {
   return static_cast<std::size_t>(
       std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }
 
-/// Fills lines one piece after the other.
+/// Fills lines with one piece after another.
 class Lines {
  public:
-  /// On the line at hand after `joint`, else on a new one; whether it fits on either.
+  /// Puts the piece on the current line after `joint`, or on a new one; false if it fits on neither.
   bool put(std::string_view piece, std::string_view joint) {
     const std::string_view between = is_fresh_ ? "" : joint;
     if (columns(line_) + columns(between) + columns(piece) > most_columns) {
@@ -38,7 +38,7 @@ class Lines {
     is_fresh_ = false;
     return true;
   }
-  /// Cut where lines end.
+  /// Puts the word, cut at the ends of lines.
   void cut(std::string_view word, std::string_view joint) {
     if (!is_fresh_) line_ += columns(line_) + columns(joint) < most_columns ? joint : "";
     for (std::size_t at = 0; at < word.size(); ++at) {

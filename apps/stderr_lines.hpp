@@ -5,26 +5,26 @@
 #include <string>
 #include <string_view>
 
-/// What is said on stderr beside errors: lines that fit a terminal, numbers that say something.
+/// Lines on stderr other than errors: they fit a terminal, and numbers have significant digits only.
 namespace tessera::apps {
 
 inline constexpr std::size_t most_columns = 160;
 
-/// A statement as lines of at most 160 columns: broken at "; ", whose parts stay whole where they can, else at blanks,
-/// and words that are longer than a line where the line ends. Later lines are indented by two blanks. No line break at
-/// the end.
+/// Breaks a statement into lines of at most 160 columns: at "; ", keeping the parts whole if possible, otherwise at
+/// blanks; words that are longer than a line are cut. Later lines are indented by two blanks. No line break at the end.
 std::string in_lines(std::string_view statement);
 
-/// Prints it so, standard input by its name, and printable() whatever the files say that are named in it.
+/// Prints it with in_lines() and printable(), since it may contain names from files; standard input has its own name.
 void say_lines(std::string_view statement);
 
-/// `1.23 s` from a second on, else `45.6 ms`.
+/// `1.23 s` for a second and more, otherwise `45.6 ms`.
 std::string time_words(double milliseconds);
 
-/// The significant digits, 6 to 17, by which numbers of `size` that differ by `extent` differ in at least four.
+/// The number of significant digits, 6 to 17, for numbers of size `size` that differ by `extent` to differ in at least
+/// four.
 int digits_for(double size, double extent);
 
-/// `LOW to HIGH`, with as many digits as tell them apart.
+/// `LOW to HIGH`, with as many digits as distinguish them.
 std::string range_words(double low, double high);
 
 }  // namespace tessera::apps

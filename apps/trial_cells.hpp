@@ -15,28 +15,27 @@
 
 namespace tessera::apps {
 
-/// What a view is tried on without rendering it: the cells of this rank's part of a mesh that a transfer function
-/// shows, or the box of a grid.
+/// Tests views without rendering: the visible cells of this rank's part of a mesh, or the box of a grid.
 class TrialCells {
  public:
-  /// The data set has to outlive it. `emits`: colour shows without extinction.
+  /// The data set must outlive it. `emits`: colour is visible without extinction.
   TrialCells(const Dataset& data, const TransferFunction& function, bool emits);
 
-  /// How many pixels are sure to show something: their centres are inside of a cell's outline. Counted up to enough().
-  /// The cells are stretched by `scale` along the axes first.
+  /// The number of pixels that certainly show something, because their centres are inside a cell's outline. Counts up
+  /// to enough(). The cells are first scaled by `scale` along the axes.
   [[nodiscard]] std::uint64_t pixels(const Camera& camera, ImageSize size,
                                      const glm::dvec3& scale = glm::dvec3(1)) const;
-  /// Whether a corner of a cell is in the picture or a cell lies across it, however thin.
+  /// Whether a corner of a cell is in the image or a cell extends across it, however thin.
   [[nodiscard]] bool is_in_view(const Camera& camera, ImageSize size) const;
 
   struct Cell {
     glm::dvec3 centre{0};
-    double radius = 0;  ///< of a ball round the centre that is inside of the cell
+    double radius = 0;  ///< of a ball around the centre, inside the cell
   };
-  /// The cell that has room for the largest ball; radius 0 if there is no cell.
+  /// The cell that contains the largest ball; radius 0 if there is no cell.
   [[nodiscard]] Cell largest() const;
 
-  /// Pixels that are no accident, of a picture of this size.
+  /// The number of pixels, for an image of this size, that is not accidental.
   static std::uint64_t enough(ImageSize size) {
     return static_cast<std::uint64_t>(std::clamp<std::int64_t>(std::int64_t{size.width} * size.height / 256, 1, 64));
   }

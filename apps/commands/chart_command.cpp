@@ -34,7 +34,7 @@ constexpr double bounds[] = {1e-2, 1e-3, 1e-4, 1e-5};
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// What makes `tessera render` do it.
+/// The options of `tessera render` for this method.
 std::string options_text(const analysis::ChartMethod& method, bool is_grid) {
   if (method.by_slices) return "--renderer slice";
   if (!method.preset.empty()) return "--preset " + method.preset;
@@ -153,7 +153,7 @@ void chart(const OptionWords& words) {
   const analysis::ChartScene scene{
       data, view, loaded.function, settings.emission, settings.threads, settings.memory_bytes};
 
-  // Reading is what any use of the data takes, and no choice of the chart's.
+  // Any use of the data needs to read them, whatever the method.
   const double reading = seconds_since(begin);
   const auto read = Clock::now();
   line.begin("rendering the reference");
@@ -174,7 +174,7 @@ void chart(const OptionWords& words) {
   for (std::size_t i = 0; i < methods.size(); ++i) {
     points[i].options = options_text(methods[i], data.is_grid());
     points[i].left_out = with_options(points[i].left_out);
-    // What needs mpirun, or leaves out what saves work, is on the chart, but no setting to recommend.
+    // Methods that need mpirun, or that switch optimizations off, are in the chart but are not recommended.
     if (methods[i].recommended()) alone.push_back(points[i]);
   }
   for (const auto& file : words.words("peer"))

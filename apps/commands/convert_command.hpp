@@ -7,7 +7,7 @@
 
 namespace tessera::apps {
 
-/// --pieces: a .pvtu of so many .vtu files, each tet in one of them.
+/// --pieces: a .pvtu with `count` .vtu files, each tet in one of them.
 struct ConvertPieces {
   int count = 1;
   Partition partition;
@@ -16,13 +16,14 @@ struct ConvertPieces {
 /// --pieces and --partition; none without pieces. Throws Error(bad_input).
 std::optional<ConvertPieces> convert_pieces(const OptionWords& words);
 
-/// `tessera convert` of a mesh: as it would be rendered (tets, one scalar), written as .tets or .vtu by the output's
-/// extension, or with `pieces` as .pvtu, every tet cut into eight `subdivide` times. One line on stderr unless `quiet`.
-/// Throws Error.
+/// `tessera convert` for a mesh: writes it as it would be rendered (tets, one scalar), as .tets or .vtu by the output's
+/// extension, or with `pieces` as .pvtu, with every tet cut into eight `subdivide` times. Prints one line on stderr
+/// unless `quiet`. Throws Error.
 void convert_mesh(const InputFile& input, const std::filesystem::path& output, ReadOptions options, int subdivide,
                   const std::optional<ConvertPieces>& pieces, bool quiet);
 
-/// Of a grid, by the output's extension: .vti .vtr .nrrd .raw .bricks. `block` is a side of a brick file's blocks.
+/// For a grid, in the format of the output's extension: .vti .vtr .nrrd .raw .bricks. `block`: samples per side of a
+/// brick file's blocks.
 void convert_grid(const InputFile& input, const std::filesystem::path& output, const ReadOptions& options, int block,
                   bool quiet);
 

@@ -3,8 +3,8 @@
 
 namespace tessera::apps {
 
-/// `tessera formats`: what is read, by which names and within which limits, and what is not, on stdout, as text or as
-/// JSON; from the table that readers go by (tessera/file_formats.hpp).
+/// `tessera formats`: prints the formats that are read, with their extensions and limits, and those that are not, as
+/// text or as JSON; from the table that the readers use (tessera/file_formats.hpp).
 void formats(bool as_json);
 
 }  // namespace tessera::apps

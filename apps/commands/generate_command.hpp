@@ -7,8 +7,8 @@
 
 namespace tessera::apps {
 
-/// `tessera generate KIND OUT [NAME=VALUE ...]`: a mesh of datasets/, written as .tets or .vtu. One line on stderr
-/// unless `quiet`. Throws Error for an unknown kind or parameter, with the list.
+/// `tessera generate KIND OUT [NAME=VALUE ...]`: writes a mesh of datasets/ as .tets or .vtu. Prints one line on stderr
+/// unless `quiet`. Throws Error for an unknown kind or parameter, listing the known ones.
 void generate(const std::string& kind, const std::filesystem::path& output, const std::vector<std::string>& parameters,
               bool quiet);
 

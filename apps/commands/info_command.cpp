@@ -23,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Falling axes may have -0.
+/// Adding 0 removes the sign of -0, which descending axes may have.
 std::string triple(const glm::dvec3& with_signs) {
   const glm::dvec3 v = with_signs + 0.0;
   return fmt::format("({:.9g} {:.9g} {:.9g})", v.x, v.y, v.z);
@@ -40,12 +40,12 @@ std::string lattice_line(const GridGeometry& g) {
   return line;
 }
 
-/// The time steps of a file or series, and which of them the rest is about.
+/// The time steps of a file or series, and the one that the other lines describe.
 struct Steps {
   std::size_t count = 1, at = 0;
-  std::vector<double> times;                     ///< or what stands for them; none: nothing does
-  bool timed = false;                            ///< they are times
-  std::optional<std::array<double, 2>> range{};  ///< that pictures of them all go by
+  std::vector<double> times;                     ///< or numbers that replace them; empty: neither
+  bool timed = false;                            ///< `times` are times
+  std::optional<std::array<double, 2>> range{};  ///< on which the images of all steps are based
 };
 
 std::string steps_line(const Steps& steps) {
@@ -132,7 +132,7 @@ void print_check(const MeshCheck& check) {
 
 namespace {
 
-/// What is opened of the input, with what pictures of it go by.
+/// The opened input, with the basis of its images.
 struct Opened {
   std::optional<Dataset> data;
   LoadedTransferFunction function;
@@ -153,7 +153,7 @@ Opened open_file(const InputFile& input, const ReadOptions& options, StatusLine&
   return opened;
 }
 
-/// The step that is asked for as `render` shows it alone, or the first as in a film of all.
+/// The requested step as `render` shows it alone, or the first step as in a film of all steps.
 Opened open_series(const std::filesystem::path& input, ReadOptions options, StatusLine& line) {
   const std::vector<TimeStep> series = read_time_series(input);
   const std::optional<std::size_t> wish = std::exchange(options.time_step, std::nullopt);

@@ -5,9 +5,9 @@
 
 namespace tessera::apps {
 
-/// `tessera info`: what a file contains and how `render` would show it by default, on stdout, as text or as JSON.
-/// `first` is first_input(). With `check`, for meshes, also what is wrong with the cells (tessera/mesh_check.hpp). A
-/// slow read is shown on stderr, if that is a terminal. Throws Error.
+/// `tessera info`: prints what a file contains and how `render` would show it by default, as text or as JSON. `first`
+/// is first_input(). With `check`, for meshes, also prints defects of the cells (tessera/mesh_check.hpp). Shows the
+/// progress of a slow read on stderr if that is a terminal. Throws Error.
 void info(const std::filesystem::path& input, const InputFile& first, const ReadOptions& options, bool as_json,
           bool check);
 

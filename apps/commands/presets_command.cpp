@@ -14,12 +14,12 @@
 namespace tessera::apps {
 namespace {
 
-/// The colours from low to high, under their name, on white.
+/// The colours from low to high, below their name, on white.
 Image drawn(const std::string& name, ImageSize size) {
   constexpr int margin = 8, top = 28;
   const TransferFunction function = preset_function(name);
   Image image(size);
-  std::ranges::fill(image.rgba, 1.0f);  // on which every map but white is seen
+  std::ranges::fill(image.rgba, 1.0f);  // makes every map except white visible
   const int width = size.width - 2 * margin;
   for (int y = top; y < size.height - margin; ++y)
     for (int x = 0; x < width; ++x) {
@@ -46,7 +46,7 @@ void presets(const std::filesystem::path& picture) {
     return;
   }
   check_image_path(picture);
-  // Two columns; a name stands over its bar.
+  // Two columns; the name of each preset is above its bar.
   constexpr ImageSize cell{400, 64};
   const int rows = (static_cast<int>(names.size()) + 1) / 2;
   Image sheet(ImageSize{2 * cell.width, rows * cell.height});

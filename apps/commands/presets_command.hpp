@@ -5,7 +5,7 @@
 
 namespace tessera::apps {
 
-/// `tessera presets`: the names of all colours, a line each; drawn into a picture instead if one is named.
+/// `tessera presets`: prints the names of all colours, one per line; draws them into an image instead if one is named.
 void presets(const std::filesystem::path& picture);
 
 }  // namespace tessera::apps

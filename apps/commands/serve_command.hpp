@@ -6,8 +6,8 @@
 
 namespace tessera::apps {
 
-/// `tessera serve INPUT`: pictures in a browser, exact and as they change, until SIGINT, SIGTERM or SIGHUP comes.
-/// Prints the address to open. Collective. Throws Error.
+/// `tessera serve INPUT`: shows images in a browser, exact ones and previews during changes, until SIGINT, SIGTERM or
+/// SIGHUP. Prints the address to open. Collective. Throws Error.
 void serve(const OptionWords& words, Job& job);
 
 }  // namespace tessera::apps

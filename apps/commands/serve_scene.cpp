@@ -22,7 +22,7 @@
 namespace tessera::apps {
 namespace {
 
-/// Options with this trait as one text. Values are quoted, so that different words never look alike.
+/// Options with this trait as one text. Values are quoted, so that different words never give the same text.
 std::string key_of(const OptionWords& words, Trait trait) {
   server::Json key = server::Json::object();
   for (const OptionRow* row : option_rows(trait))
@@ -30,13 +30,13 @@ std::string key_of(const OptionWords& words, Trait trait) {
   return key.dump(-1, ' ', false, server::Json::error_handler_t::replace);
 }
 
-/// Without the options that have this trait.
+/// The words without the options that have this trait.
 OptionWords without(OptionWords words, Trait trait) {
   for (const OptionRow* row : option_rows(trait)) words.set(row->key(), std::vector<std::string>());
   return words;
 }
 
-/// The field as `--field` takes it.
+/// The field in the form of `--field`.
 std::string field_word_of(const Dataset& data) {
   const std::string& name = data.field_name();
   const std::string bare = name.substr(0, name.rfind(':'));
@@ -52,7 +52,7 @@ bool preset_is_named(const std::string& function) {
   return std::ranges::find(names, function.substr(0, function.find(':'))) != names.end();
 }
 
-/// What options say but for camera and size, and what follows from it.
+/// The values of all options except camera and size, and what follows from them.
 struct ParsedWords {
   RenderOptions options;
   FilmFrame frame;
@@ -63,7 +63,7 @@ struct ParsedWords {
   mutable std::optional<std::pair<std::string, Surfaces>> surfaces{};  ///< with those of blocks, by field; read once
 };
 
-/// Of what is read: the field may be named or not, and of cells that are not curved the accuracy does not count.
+/// Key of the data that are read: the field may be named or not, and without curved cells the accuracy does not matter.
 std::string data_key(const ParsedWords& parsed, const std::string& field, bool shape, bool linear) {
   return fmt::format("{} {} {} {}", parsed.data,
                      server::Json(field).dump(-1, ' ', false, server::Json::error_handler_t::replace), shape,
@@ -93,7 +93,8 @@ class RenderScene final : public server::Scene {
     const char* const side = data.association() == Association::cell ? "cell:" : "point:";
     add(name, false);
     if (!name.starts_with(side)) add(side + name, false);
-    // Not named, it is what is chosen with a function or without, but for labels and constants, of which the shape is.
+    // Without a name, the choice is the same with or without a function, except for labels and constants, which give
+    // the shape.
     if (parsed_->field.empty() && parsed_->shape) add("", false);
     return keys;
   }
@@ -140,7 +141,7 @@ class RenderScene final : public server::Scene {
  private:
   [[nodiscard]] const RenderOptions& options() const { return parsed_->options; }
 
-  /// Those of the last field that they were asked for with.
+  /// The surfaces of blocks for this field; those of the last field are kept.
   [[nodiscard]] const Surfaces& block_surfaces(const Dataset& data) const {
     std::string field = field_word(data);
     if (!parsed_->surfaces || parsed_->surfaces->first != field) {
@@ -162,10 +163,10 @@ class RenderScene final : public server::Scene {
 /// What `render` would choose for all steps of a series.
 struct SeriesStart {
   std::string field;
-  std::vector<std::string> names;  ///< of that field
+  std::vector<std::string> names;  ///< names of that field
   std::array<double, 2> range{};
   std::shared_ptr<const LoadedTransferFunction> function;  ///< null: options state its values
-  std::string look;                                        ///< key of the options that it follows
+  std::string look;                                        ///< key of the options on which it is based
 };
 
 class RenderSceneReader final : public server::SceneReader {
@@ -180,8 +181,8 @@ class RenderSceneReader final : public server::SceneReader {
     base_.set_default("time-step", "0");
   }
 
-  /// Field and colors of a series as `render` chooses them for all its steps. A first step that cannot be read is left
-  /// to the scene that opens it. Collective.
+  /// Chooses field and colours of a series as `render` does for all its steps. If the first step cannot be read, the
+  /// scene that opens it reports the error. Collective.
   void choose_for_all_steps(Job& job) {
     if (!shows_all_) return;
     const auto parsed = parse(base_);
@@ -193,7 +194,7 @@ class RenderSceneReader final : public server::SceneReader {
       job.attempt([&](const Communicator& ranks) {
         std::optional<Dataset> data;
         const OpenStep open_step = [&](std::size_t step, const ReadOptions& read) -> const Dataset* {
-          data.reset();  // one step's memory at a time
+          data.reset();  // only one step in memory at a time
           line.begin("reading " + series[step].files.front().filename().string());
           ReadOptions watched = read;
           watched.progress = line.listener();
@@ -230,7 +231,7 @@ class RenderSceneReader final : public server::SceneReader {
   }
 
   std::string command(const server::Json& state) override {
-    static_cast<void>(scene(state));  // what is no picture has no command
+    static_cast<void>(scene(state));  // invalid states have no command
     OptionWords words = state_words(base_, state);
     if (const auto function = series_function(words)) {
       const bool states_shading = words.given_one_of({"shade", "no-shade"});
@@ -269,25 +270,25 @@ class RenderSceneReader final : public server::SceneReader {
     return start_ && (field.empty() || std::ranges::find(start_->names, field) != start_->names.end());
   }
 
-  /// Null where words ask for another one.
+  /// Null if the words request another function.
   [[nodiscard]] std::shared_ptr<const LoadedTransferFunction> series_function(const OptionWords& words) const {
     const bool is_its_own = shows_series_field(words) && key_of(words, Trait::look) == start_->look;
     return is_its_own ? start_->function : nullptr;
   }
 
-  /// Presets go over the range of all steps, too.
+  /// Adds the field of the series and, for presets, the range of all steps.
   [[nodiscard]] OptionWords with_series_start(OptionWords words) const {
     if (!start_) return words;
     const auto [low, high] = start_->range;
     if (shows_series_field(words) && !series_function(words) && preset_is_named(words.word("transfer-function")) &&
         !words.given_one_of({"rescale", "range", "log"}) && low < high)
       words.set("range", fmt::format("{},{}", low, high));
-    // Smoothed, a field of cells is one of points.
+    // Smoothing turns a cell field into a point field.
     words.set_default("field", words.given("smooth") ? start_->names.back() : start_->field);
     return words;
   }
 
-  /// Parsed once for all cameras and sizes, which change most.
+  /// Parsed once for all cameras and sizes, which change most often.
   std::shared_ptr<const ParsedWords> parsed_words(const OptionWords& words) {
     OptionWords rest = words;
     if (rest.given("camera")) rest.set("camera", "{}");
@@ -331,7 +332,7 @@ class RenderSceneReader final : public server::SceneReader {
   bool is_grid_;
   OptionWords base_;
   std::vector<double> times_;
-  bool shows_all_ = false;  ///< steps of a series
+  bool shows_all_ = false;  ///< all steps of a series
   std::optional<SeriesStart> start_;
   std::list<std::pair<std::string, std::shared_ptr<const ParsedWords>>> kept_;
 };

@@ -9,9 +9,8 @@
 
 namespace tessera::apps {
 
-/// What `tessera serve`, called with these words, has in common with `tessera render`: the same values and checks for
-/// states of clients, so that a state's picture is that of its command line. Reads some steps of a time series, by all
-/// ranks.
+/// The part of `tessera serve` that it shares with `tessera render`: states of clients get the same values and checks,
+/// so that a state's image is that of its command line. Reads some steps of a time series, with all ranks.
 std::unique_ptr<server::SceneReader> scene_reader(const OptionWords& words, Job& job);
 
 }  // namespace tessera::apps

@@ -6,8 +6,8 @@
 
 namespace tessera::apps {
 
-/// `tessera timing`: where the time of traced runs went (analysis/timing_breakdown.hpp), as text on stdout, and as CSV
-/// and figure (.svg, .png) where paths are given. Throws Error.
+/// `tessera timing`: prints where traced runs spent their time (analysis/timing_breakdown.hpp) as text, and writes it
+/// as CSV and as a figure (.svg, .png) if paths are given. Throws Error.
 void timing(const std::vector<std::filesystem::path>& traces, const std::filesystem::path& csv,
             const std::filesystem::path& figure);
 

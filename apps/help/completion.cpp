@@ -19,10 +19,10 @@
 namespace tessera::apps {
 namespace {
 
-/// Reading more than this to list names would be felt at the prompt.
+/// Reading a larger file to list names would cause a noticeable delay at the prompt.
 constexpr std::uintmax_t largest_read = std::uintmax_t{512} << 20;
 
-/// The option that a word like --size or -o names; null: none.
+/// The option that a word like --size or -o names; may be null.
 const OptionRow* option_named(const CommandRow& command, std::string_view word) {
   if (!word.starts_with('-')) return nullptr;
   const std::string_view name = word.substr(word.starts_with("--") ? 2 : 1);
@@ -32,7 +32,7 @@ const OptionRow* option_named(const CommandRow& command, std::string_view word) 
 
 enum class Named { fields, blocks, point_vectors };
 
-/// Names in the first of these words that is a file, if it can be read soon.
+/// Names in the first of these words that is a file, if it can be read quickly.
 std::vector<std::string> names_in_file(const std::vector<std::string>& words, Named named) {
   for (const std::string& word : words) {
     std::error_code unknown;
@@ -47,16 +47,16 @@ std::vector<std::string> names_in_file(const std::vector<std::string>& words, Na
             (named == Named::point_vectors && field.components == 3 && field.association == Association::point))
           names.push_back(field.name);
       if (named == Named::point_vectors) names.emplace_back("off");
-      std::erase_if(names, [](const std::string& name) { return printable(name) != name; });  // a line each
+      std::erase_if(names, [](const std::string& name) { return printable(name) != name; });  // one per line
       return names;
-    } catch (const std::exception&) {  // a picture's name, or a damaged file
+    } catch (const std::exception&) {  // the name of an image, or a damaged file
       continue;
     }
   }
   return {};
 }
 
-/// Colours; with an opacity each once a colon stands.
+/// Colours; once there is a colon, each with an opacity.
 std::vector<std::string> preset_words(std::string_view current) {
   std::vector<std::string> colors = preset_names();
   const std::string name(current.substr(0, current.find(':')));
@@ -66,7 +66,7 @@ std::vector<std::string> preset_words(std::string_view current) {
   return found;
 }
 
-/// What an option's value may be, whose beginning is `current`; `files` is set where it may be a file.
+/// The values of an option that begin with `current`; `files` is set if the value may be a file.
 std::vector<std::string> values_of(const OptionRow& row, const std::vector<std::string>& words,
                                    std::string_view current, bool& files) {
   const std::string_view name = row.key();

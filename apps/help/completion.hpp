@@ -6,15 +6,16 @@
 
 namespace tessera::apps {
 
-/// The first line of completions() where names of files may stand too: shells know them best.
+/// The first line of completions() if file names are also possible: the shell completes these itself.
 inline constexpr std::string_view file_completion = ":files";
 
-/// What the last of `words` may become: those after `tessera` up to the cursor, the last perhaps empty. Commands,
-/// options, the words that an option takes, presets, and fields and blocks of the file that is named before, which is
-/// read for them. Nothing for what cannot be known; throws nothing.
+/// Possible completions of the last of `words`, which are the words between `tessera` and the cursor; the last may be
+/// empty. Completes commands, options, option values, presets, and the fields and blocks of a file named earlier, which
+/// is read for that purpose. Empty if nothing is known; does not throw.
 std::vector<std::string> completions(const std::vector<std::string>& words);
 
-/// The script by which a shell asks `tessera complete`: bash, zsh or fish. Throws Error(bad_input) for another.
+/// The script with which a shell (bash, zsh or fish) calls `tessera complete`. Throws Error(bad_input) for another
+/// shell.
 std::string completion_script(const std::string& shell);
 
 }  // namespace tessera::apps

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scripts know nothing of options: they hand the words up to the cursor to the program that stands on the line.
+// The scripts contain no options: they pass the words up to the cursor to the program named on the command line.
 
 #include <fmt/format.h>
 
@@ -9,7 +9,8 @@
 namespace tessera::apps {
 namespace {
 
-// bash takes : and = for ends of words, so words are put together again, and what it has of the last is left off.
+// bash splits words at : and =, so words are joined again, and the part of the last word that bash already has is
+// removed.
 constexpr const char* bash_script = R"script(# Completion of tessera for bash.
 _tessera() {
   local word words=() found=() glued="" current given i

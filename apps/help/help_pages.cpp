@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t page_columns = 100, left_column = 30;
 
-/// Words into lines; a word that is too long stands alone.
+/// Breaks text into lines; a word that is too long has its own line.
 std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
   std::vector<std::string> lines(1);
   for (std::size_t at = 0; at < text.size();) {
@@ -27,7 +27,7 @@ std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
   return lines;
 }
 
-/// The beginning that says what it is, where the whole does not fit.
+/// The first part of a description that is too long, up to a semicolon or bracket.
 std::string_view first_words(std::string_view description, std::size_t width) {
   if (description.size() <= width) return description;
   const std::size_t cut = std::min(description.find("; "), description.find(" ("));
@@ -56,7 +56,7 @@ std::vector<HelpTopic> help_topics(const CommandRow& command, bool all) {
       if (row.is(command.trait) && !row.is(Trait::positional) && (all || row.is(Trait::basic)))
         shown.rows.push_back(&row);
     if (shown.rows.empty()) continue;
-    // Of a command with few options there is one topic.
+    // A command with few options has a single topic.
     if (has_topics(command) || result.empty())
       result.push_back(std::move(shown));
     else

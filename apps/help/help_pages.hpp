@@ -8,7 +8,8 @@
 
 namespace tessera::apps {
 
-/// A command's options by topic, without words that have no name. Of `render` only the basic ones, unless `all`.
+/// A command's options under one title, without words that have no name. For `render` only the basic ones, unless
+/// `all`.
 struct HelpTopic {
   std::string_view title;
   std::vector<const OptionRow*> rows;
@@ -21,17 +22,18 @@ std::vector<std::string> written_names(const OptionRow& row);
 /// "--output", or "INPUT".
 std::string shown_name(const OptionRow& row);
 
-/// How an option is written before its description: "-o, --output FILE", a long choice of words cut short unless `all`.
+/// The form of an option in front of its description: "-o, --output FILE"; a long list of choices is shortened unless
+/// `all`.
 std::string option_form(const OptionRow& row, bool all);
 
-/// "tessera render [OPTIONS] INPUT [MORE...]"; null: of the program.
+/// "tessera render [OPTIONS] INPUT [MORE...]"; null: for the program.
 std::string usage_of(const CommandRow* command);
 
-/// What the program is.
+/// A one-line description of the program.
 inline constexpr std::string_view program_description =
     "Tessera renders scientific volumes: unstructured meshes and regular grids, exactly, on the CPU.";
 
-/// What `--help` and `--help-all` print, at most 100 columns wide; null: of the program.
+/// The text of `--help` and `--help-all`, at most 100 columns wide; null: for the program.
 std::string help_page(const CommandRow* command, bool all);
 
 }  // namespace tessera::apps

@@ -11,7 +11,7 @@
 namespace tessera::apps {
 namespace {
 
-/// As roff prints it unchanged: a minus sign is no hyphen, and no line begins a request.
+/// Escapes text for roff: a minus sign is not a hyphen, and no line starts a request.
 std::string escaped(std::string_view text) {
   std::string result;
   bool begins = true;

@@ -18,13 +18,13 @@
 namespace tessera::apps {
 namespace {
 
-/// How much further values may reach than the colours, of their span.
+/// How far values may exceed the range of the colours, as a fraction of its width.
 constexpr double most_beyond = 0.1;
 
-/// One step, by its own field or the one that all have.
+/// One examined step, with its own field or the one chosen for all.
 struct LookedAt {
   std::size_t step = 0;
-  std::string field;  ///< empty: its shape
+  std::string field;  ///< empty: the shape
   std::array<double, 2> range{};
   std::vector<FieldInfo> fields;
   std::optional<LoadedTransferFunction> function;
@@ -44,7 +44,7 @@ class SeriesLook {
   SeriesLook(const RenderOptions& options, const ReadOptions& read, const OpenStep& open)
       : options_(options), read_(read), open_(open), keeps_values_(function_has_values(options)) {}
 
-  /// From the last to the first, which stays open.
+  /// Examines the steps from the last to the first, which stays open.
   void look_at(const std::vector<std::size_t>& steps) {
     std::for_each(steps.rbegin(), steps.rend(), [this](std::size_t step) {
       if (std::ranges::find(looked_, step, &LookedAt::step) != looked_.end()) return;
@@ -88,7 +88,7 @@ class SeriesLook {
     return data;
   }
 
-  /// As field_of_steps() has it.
+  /// The name of the field in the form of field_of_steps().
   [[nodiscard]] std::string word_of(const Dataset& data) const {
     if (!read_.field.empty()) return read_.field;
     if (data.shows_shape() || data.fields().empty()) return "";
@@ -98,7 +98,7 @@ class SeriesLook {
 
   LookedAt found_in(std::size_t step, const Dataset& data) {
     LookedAt found{step, word_of(data), data.range(), {data.fields().begin(), data.fields().end()}, {}, {}};
-    // Kept now, since only one step is held at a time.
+    // Computed now, since only one step is in memory at a time.
     try {
       if (!keeps_values_) found.function = transfer_function_of(data, options_);
     } catch (const Error&) {
@@ -113,7 +113,8 @@ class SeriesLook {
     return field_of_steps(fields, read_);
   }
 
-  /// No field of all steps varies: none may show a field that others lack, in colors of another one.
+  /// If no field varies over the steps, throws if some lack the field that others show: its colours would be those of
+  /// another field.
   void require_same_field() {
     std::ranges::sort(looked_, {}, &LookedAt::step);
     const auto with = std::ranges::find_if(looked_, [](const LookedAt& l) { return !l.field.empty(); });

@@ -12,33 +12,33 @@
 
 namespace tessera::apps {
 
-/// What the pictures of a time series go by where no option says it.
+/// Field and colours for the images of a time series that options do not state.
 ///
-/// Looked at are the first, the middle and the last of the steps that are shown and, only if nothing varies in these,
-/// the two half-way between: at most five, whatever the series' length. The field is the one that would be chosen of a
-/// file whose every array is that of the step where it spans most. Colours and opacities are those of the step where
-/// this field spans most, over the values of all that were looked at where these reach more than a tenth further.
+/// Examines the first, the middle and the last of the selected steps and, only if nothing varies in these, the two
+/// midway between: at most five, whatever the length of the series. The field is chosen as for a file whose arrays each
+/// have the values of the step with the widest range. Colours and opacities are those of the step in which this field
+/// has the widest range, or over the range of all examined steps if that is more than a tenth wider.
 struct SeriesChoice {
-  std::string field;                               ///< as ReadOptions has it; empty: each step's own choice
-  std::vector<std::size_t> steps;                  ///< that were looked at, ascending
-  std::array<double, 2> range{};                   ///< of the field's values in these
-  std::optional<LoadedTransferFunction> function;  ///< none where a file says it
+  std::string field;                               ///< in the form of ReadOptions; empty: each step's own choice
+  std::vector<std::size_t> steps;                  ///< examined, ascending
+  std::array<double, 2> range{};                   ///< of the field's values in these steps
+  std::optional<LoadedTransferFunction> function;  ///< none if a file specifies it
 };
 
-/// Opens a step; null if it cannot be read, which is said when it is shown. Never null for the first.
+/// Opens a step; null if it cannot be read, which is reported when it is shown. Never null for the first.
 using OpenStep = std::function<const Dataset*(std::size_t step, const ReadOptions& read)>;
 
-/// Whether the transfer function is of a file, or its text, with values that are not stretched.
+/// Whether the transfer function is a file, or its text, with values that are not stretched.
 bool function_has_values(const RenderOptions& options);
 
-/// Whether field or colours of so many steps are not said by the options.
+/// Whether the options leave the field or the colours of several steps open.
 bool goes_by_steps(std::size_t steps, const RenderOptions& options);
 
-/// The steps that may be looked at, ascending.
+/// The steps to examine, ascending.
 std::vector<std::size_t> steps_to_look_at(std::size_t steps);
 
-/// `steps` are those of steps_to_look_at() that are there, the first among them, which is the last that is opened, with
-/// the field chosen. The same on all ranks, where `open` is collective.
+/// `steps` are the existing ones of steps_to_look_at(). They must include the first, which is opened last, with the
+/// chosen field. The result is the same on all ranks, where `open` is collective.
 SeriesChoice choose_by_steps(std::vector<std::size_t> steps, const RenderOptions& options, const ReadOptions& read,
                              const OpenStep& open);
 

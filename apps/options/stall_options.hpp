@@ -8,8 +8,8 @@
 
 namespace tessera::apps {
 
-/// --stall-timeout and --on-stall; nothing if no rank is to be looked after. Notices go to stderr, one line each,
-/// unless `quiet`. Throws Error(bad_input).
+/// --stall-timeout and --on-stall; none if ranks are not to be watched. Notices go to stderr, one line each, unless
+/// `quiet`. Throws Error(bad_input).
 std::optional<StallSettings> stall_settings(const OptionWords& words, bool quiet);
 
 }  // namespace tessera::apps

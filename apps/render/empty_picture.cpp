@@ -19,14 +19,14 @@ constexpr const char* no_volume = "its cells have no volume that a pixel could s
 
 bool emits(const RenderOptions& options) { return options.settings.emission == Emission::independent; }
 
-/// With at most two digits, upwards.
+/// Rounded up to at most two digits.
 double rounded_up(double number) {
   if (!(number > 0) || !std::isfinite(number)) return 1;
   const double unit = std::pow(10.0, std::floor(std::log10(number)) - 1);
   return std::ceil(number / unit * (1 - 1e-9)) * unit;
 }
 
-/// A value of one rank, on all.
+/// Sends one rank's value to all ranks.
 template <class Value>
 Value of_rank(Job& job, int rank, Value value) {
   std::vector<std::byte> bytes(sizeof value);
@@ -36,7 +36,7 @@ Value of_rank(Job& job, int rank, Value value) {
   return value;
 }
 
-/// Views and sizes near a frame's, tried on all ranks in the same order.
+/// Views and sizes similar to a frame's, tried on all ranks in the same order.
 class Tries {
  public:
   Tries(const FinishedRun& run, const FilmFrame& frame)
@@ -51,7 +51,7 @@ class Tries {
     return sum(cells_.pixels(camera, frame_.size)) >= TrialCells::enough(frame_.size);
   }
 
-  /// `--size`, as large as pictures often are.
+  /// Tries larger `--size` values, up to usual image sizes.
   void try_sizes(std::vector<std::string>& remedies) {
     constexpr int largest = 8192;
     const ImageSize size = frame_.size;
@@ -75,7 +75,7 @@ class Tries {
     }
   }
 
-  /// `--scale`, where the box is thin and the view follows it.
+  /// Tries `--scale` if the box is thin and the view depends on it.
   void try_scale(std::vector<std::string>& remedies) {
     const glm::dvec3 side = run_.box.high - run_.box.low;
     const double longest = std::max({side.x, side.y, side.z});
@@ -88,7 +88,7 @@ class Tries {
     remedies.push_back(fmt::format("--scale {:.3g},{:.3g},{:.3g}", all.x, all.y, all.z));
   }
 
-  /// A camera before the largest cell, which always shows something.
+  /// Adds a camera in front of the largest cell, which always shows something.
   void add_camera(std::vector<std::string>& remedies) {
     const TrialCells::Cell cell = largest();
     if (!(cell.radius > 0)) return;
@@ -162,8 +162,7 @@ std::string advice_on_clear(const std::array<double, 2>& range, const FinishedRu
   return fmt::format("{}; --range {:.6g},{:.6g} stretches it over them", why, range[0], range[1]);
 }
 
-/// Whether a ray that met what the function shows, over a ten-thousandth of the box, would have more than nothing in
-/// floats.
+/// Whether a ray through visible values, over a ten-thousandth of the box, would give more than zero in floats.
 bool would_show(const Dataset& data, const TransferFunction& function, const RenderOptions& options) {
   const double most = emits(options) ? function.max_color() : function.max_extinction();
   return most * diagonal(data.bounds()) > 1e-2;
@@ -174,7 +173,7 @@ std::string advice_on_faint(const MostOfPixels& most_seen, const FinishedRun& ru
     return fmt::format("no pixel has more light than {:.2g}; give the transfer function brighter colours",
                        most_seen.light);
   if (most_seen.alpha == 0 && run.data.mesh_counts().cells_zero_volume > 0) return no_volume;
-  const double thickest = diagonal(run.box) * run.function.max_extinction();  // where floats had nothing left
+  const double thickest = diagonal(run.box) * run.function.max_extinction();  // in floats it would be zero
   const double most = most_seen.alpha > 0 ? most_seen.alpha : std::max(thickest, 1e-300);
   return fmt::format("no pixel is more opaque than {:.2g}; --opacity-scale {:g} shows something", most_seen.alpha,
                      rounded_up(run.options.function.opacity_scale * 0.7 / most));
@@ -201,7 +200,7 @@ EmptyReason reason_of_empty(const RenderedFrame& frame, const Dataset& data, con
   if (data.is_grid()) {
     const GridCounters& grid = frame.statistics.grid;
     if (grid.bricks_total > 0 && grid.bricks_invisible == grid.bricks_total) return EmptyReason::blank;
-    if (grid.rays == 0) return EmptyReason::outside;  // or between pixels: the box alone decides
+    if (grid.rays == 0) return EmptyReason::outside;  // or between pixels: only the box was tested
     if (grid.voxels_visited == 0) return EmptyReason::missed;
     if (has_nothing && data.blank_samples() > 0) return EmptyReason::blank;
     return has_nothing && would_show(data, function, options) ? EmptyReason::missed : EmptyReason::faint;
@@ -260,7 +259,7 @@ std::string EmptyPictures::advice(const First& first, const FinishedRun& run) {
   }
   Tries tries(run, run.frames[first.frame]);
   std::vector<std::string> remedies;
-  // A grid counts its rays alone, and what is not culled is projected wherever it is.
+  // A grid only counts its rays, and tets that are not culled are projected wherever they are.
   const bool in_view = tries.is_in_view();
   if (reason == EmptyReason::between && !in_view) reason = EmptyReason::outside;
   if (reason == EmptyReason::outside && run.data.is_grid() && in_view) reason = EmptyReason::between;

@@ -12,65 +12,65 @@
 #include "tessera/program/render_options.hpp"
 #include "tessera/sink.hpp"
 
-/// Pictures that are right and show nothing: why, and what shows something.
+/// Correct images that show nothing: the reason, and options that show something.
 namespace tessera::apps {
 
-/// The most that a pixel of an image has: of alpha, and of light.
+/// The largest alpha and light of an image's pixels.
 struct MostOfPixels {
   float alpha = 0, light = 0;
-  /// Whether no pixel is other than the background, in 8 bits a channel.
+  /// Whether no pixel differs from the background, with 8 bits per channel.
   [[nodiscard]] bool shows_nothing() const { return alpha < 0.5f / 255 && light < 0.5f / 255 / 12.92f; }
 };
-/// All of an image; of one that shows something, up to the first pixel that does.
+/// The maximum over an image; if it shows something, over the pixels up to the first that does.
 MostOfPixels most_of(const Image& image);
 
-/// Why.
+/// The reason why an image is empty.
 enum class EmptyReason : std::uint8_t {
   none,     ///< it is not empty
-  clear,    ///< the transfer function is clear over all values
+  clear,    ///< the transfer function is transparent over all values
   blank,    ///< no voxel has values at all of its corners
-  outside,  ///< nothing is in the view
-  between,  ///< what is in the view is between the centres of pixels
+  outside,  ///< the view contains no data
+  between,  ///< the data in the view are between the centres of pixels
   missed,   ///< rays meet no value that the transfer function shows
-  faint,    ///< what is met is nearly clear
+  faint,    ///< the data that rays meet are almost transparent
 };
 
-/// Why a picture is empty, by what its frame counted; none if it is not.
+/// The reason why an image is empty, from its frame's counters; none if it is not.
 EmptyReason reason_of_empty(const RenderedFrame& frame, const Dataset& data, const TransferFunction& function,
                             const RenderOptions& options);
 
 /// A run at its end, on any rank.
 struct FinishedRun {
   Job& job;
-  int writer;  ///< rank that has the pictures
+  int writer;  ///< rank that has the images
   const std::vector<FilmFrame>& frames;
-  std::size_t step;  ///< of the frames, that `data` is
+  std::size_t step;  ///< the step of `data`
   const RenderOptions& options;
   const Dataset& data;
   const TransferFunction& function;
-  Box box;        ///< that views are framed on
-  BodyAxes axes;  ///< likewise
+  Box box;        ///< for framing views
+  BodyAxes axes;  ///< for framing views
 };
 
-/// The pictures of a run that show nothing.
+/// The images of a run that show nothing.
 class EmptyPictures {
  public:
-  /// On the rank that has the pictures: each of them.
+  /// Call for each image, on the rank that has the images.
   void look_at(std::size_t frame, const RenderedFrame& rendered, const Dataset& data, const TransferFunction& function,
                const RenderOptions& options);
-  /// Which pictures are empty, why, and what shows something, tried on the views that it names; nothing if all show
-  /// something, or the transfer function's own warning says it. Collective.
+  /// Reports which images are empty, the reason, and options that show something, tried on the named views. Empty if
+  /// all images show something, or the transfer function's own warning already reports it. Collective.
   [[nodiscard]] std::string warning(const FinishedRun& run) const;
 
  private:
-  /// The first of them.
+  /// The first empty image.
   struct First {
     EmptyReason reason = EmptyReason::none;
-    bool is_clear = false;  ///< by the field's range alone
-    std::size_t frame = 0;  ///< of the run's list
-    std::size_t count = 0;  ///< of all that are empty
+    bool is_clear = false;  ///< already determined by the field's range
+    std::size_t frame = 0;  ///< index in the run's list
+    std::size_t count = 0;  ///< of all empty images
     MostOfPixels most{};
-    std::array<double, 2> range{};  ///< of the field in it
+    std::array<double, 2> range{};  ///< of the field in this image
   };
   [[nodiscard]] static std::string advice(const First& first, const FinishedRun& run);
   First first_;

@@ -25,7 +25,7 @@
 namespace tessera::apps {
 namespace {
 
-/// When the input's steps are, as one rank has found it.
+/// The times of the input's steps, as read by one rank.
 std::vector<double> times_in(const RenderOptions& options, Job& job) {
   std::vector<double> times;
   if (job.rank() == 0) times = times_of(*options.first, options.read);
@@ -36,7 +36,7 @@ std::vector<double> times_in(const RenderOptions& options, Job& job) {
   return times;
 }
 
-/// One rank's part in a run: the loop over its frames. `ShownStep` has the data, `FrameWriter` the files, `RunOutput`
+/// One rank's part of a run: the loop over its frames. `ShownStep` has the data, `FrameWriter` the files, `RunOutput`
 /// what is printed and reported.
 class Film final : public Sink {
  public:
@@ -56,10 +56,10 @@ class Film final : public Sink {
         frame_writer_(options_, frames_, traces_, writes_) {}
 
   ExitCode run() {
-    job_.require_same_files();  // which the plan goes by
+    job_.require_same_files();  // the plan depends on these files
     agree_on_finished_frames();
     for (std::size_t first = 0; first < frames_.size();) {
-      // The frames of one step together: they share what is open.
+      // The frames of one step are rendered together: they share the open data.
       std::vector<std::size_t> group;
       std::size_t last = first;
       for (; last < frames_.size() && frames_[last].step == frames_[first].step; ++last)
@@ -80,7 +80,7 @@ class Film final : public Sink {
 
   [[nodiscard]] bool wants_tiles() const override { return false; }
 
-  /// Of frames that overlap, on the writing rank: every repetition of every frame in order.
+  /// For overlapping frames, on the writing rank: every repetition of every frame in order.
   void frame(RenderedFrame&& rendered) override {
     if (!writes_) return;
     const std::size_t at = listed_[rendered.number];
@@ -94,7 +94,7 @@ class Film final : public Sink {
   Image spare_image(ImageSize size) override { return frame_writer_.spare_images().take(size); }
 
  private:
-  /// The disk as the writing rank sees it is what all ranks go by.
+  /// All ranks use the writing rank's view of the disk.
   void agree_on_finished_frames() {
     if (writes_) {
       check_annotation(options_.annotation);
@@ -118,7 +118,7 @@ class Film final : public Sink {
     return {frame, step_.camera(frame), step_.data(), step_.function(), options_};
   }
 
-  /// Of several images of a volume one is cast while the one before is gathered.
+  /// With several images of a volume, one is cast while the previous one is gathered.
   [[nodiscard]] bool grids_overlap(const std::vector<std::size_t>& group) const {
     const FrameSettings& frame = options_.frame;
     return options_.is_grid() && job_.size() > 1 && group.size() > 1 && !frame.deep && !frame.peel && !frame.keep_cost;
@@ -133,8 +133,8 @@ class Film final : public Sink {
       double began_us = 0;
       RenderedFrame rendered;
       for (int i = 0; i < std::max(options_.repeat, 1); ++i) {
-        rendered = {};  // the last one's memory before the next one's
-        // The last repetition's span holds the writing too.
+        rendered = {};  // free the last image's memory before the next one
+        // The span of the last repetition also includes writing.
         if (trace != nullptr && i > 0) trace->add_frame(frame.number, began_us);
         if (trace != nullptr) began_us = trace->now_us();
         output_.line().begin(rendering_words(frame));
@@ -150,7 +150,7 @@ class Film final : public Sink {
       if (!frame.outputs.empty()) output_.line().begin("writing " + frame.outputs.front().filename().string());
       FinishedFrame finished{std::make_shared<const RenderedFrame>(std::move(rendered)), annotated(frame),
                              frame.number};
-      // Drawn now: the session is at the next frame by the time that a thread writes this one.
+      // Drawn now: the session may be at the next frame when a thread writes this one.
       if (options_.show_balance)
         finished.balance = step_.session().balance_pictures(*finished.rendered, view, step_.function());
       if (trace != nullptr) finished.began_us = began_us;
@@ -193,7 +193,7 @@ class Film final : public Sink {
   }
 
   void write_trace() {
-    step_.close_session();  // its spans end before they are written
+    step_.close_session();  // its spans must end before they are written
     TraceRun traced;
     std::string process = fmt::format("rank {}", job_.rank());
     if (step_.is_open() || (overlaps_ && !options_.is_grid()))
@@ -212,9 +212,9 @@ class Film final : public Sink {
     tessera::write_trace(*traces_.rendering(), process, traced, options_.timing, job_.communicator(), writing_rank_);
   }
 
-  RenderOptions options_;  ///< with what is chosen once the data are known
+  RenderOptions options_;  ///< completed once the data are known
   Job& job_;
-  const Roles roles_;  ///< of a mesh
+  const Roles roles_;  ///< for a mesh
   const int writing_rank_;
   const bool writes_, overlaps_;
   std::vector<FilmFrame> frames_;
@@ -222,10 +222,10 @@ class Film final : public Sink {
   RunOutput output_;
   ShownStep step_;
   EmptyPictures empty_;
-  std::vector<double> frame_ms_;     ///< of the frame that is rendered
-  std::vector<std::size_t> listed_;  ///< frames of the list that is rendered, each once a repetition
-  std::size_t listed_before_ = 0;    ///< of earlier lists
-  FrameWriter frame_writer_;         ///< last: it refers to all above until it has written
+  std::vector<double> frame_ms_;     ///< of the current frame
+  std::vector<std::size_t> listed_;  ///< frames of the current list, each once per repetition
+  std::size_t listed_before_ = 0;    ///< number of frames in earlier lists
+  FrameWriter frame_writer_;         ///< last: it refers to the members above until it has written
 };
 
 }  // namespace

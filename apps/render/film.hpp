@@ -7,11 +7,11 @@
 
 namespace tessera::apps {
 
-/// `tessera render`, of a mesh or a grid: plan the frames, check all outputs, read, render, write, verify, report; on
-/// all ranks of the job, or in this process if it is the only one. The rank that assembles the pictures writes
-/// and speaks. Collective.
+/// `tessera render` for a mesh or a grid: plans the frames, checks all outputs, reads, renders, writes, verifies and
+/// reports; on all ranks of the job, or in this process if it is the only one. The rank that assembles the images
+/// writes files and messages. Collective.
 ///
-/// complete, or accuracy_not_met where --verify found more error than promised (the pictures are written then too).
+/// Returns complete, or accuracy_not_met if --verify found a larger error than promised (the images are still written).
 /// Throws Error.
 ExitCode render(const RenderOptions& options, Job& job);
 

@@ -5,10 +5,10 @@
 
 namespace tessera::apps {
 
-/// Where the times of one rank's run are recorded (--timing). All pointers are null unless that is asked for.
+/// Traces of one rank's run (--timing). All pointers are null unless they are requested.
 class FilmTraces {
  public:
-  /// `overlapping`: frames are rendered while others are composited and written, by roles of their own.
+  /// `overlapping`: frames are rendered while others are composited and written, by separate roles.
   FilmTraces(bool timed, bool overlapping)
       : trace_(overlapping ? TraceRole::projector : TraceRole::both),
         compositing_(trace_, TraceRole::compositor),
@@ -18,7 +18,7 @@ class FilmTraces {
   FilmTraces& operator=(const FilmTraces&) = delete;
 
   [[nodiscard]] Trace* rendering() const { return rendering_; }
-  /// Of finished frames: writing and verifying.
+  /// For finished frames: writing and verifying.
   [[nodiscard]] Trace* writing() const { return writing_; }
 
  private:

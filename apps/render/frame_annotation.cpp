@@ -15,7 +15,7 @@ Annotation filled(const Annotation& annotation, const FilmFrame& frame, const Da
 void check_annotation(const AnnotationOptions& options) {
   if (!options.annotation) return;
   Annotation annotation = filled_annotation(*options.annotation, {});
-  // The bar's range may be the transfer function's.
+  // The bar's range may depend on the transfer function.
   if (annotation.color_bar && !annotation.color_bar->range) annotation.color_bar.reset();
   validate(annotation, {});
 }
@@ -38,7 +38,7 @@ void write_annotated(const Image& image, const DeepImage& deep, const AnnotatedF
   const AnnotationOptions& asked = options.annotation;
   if (!asked.annotation) return writer.write(image, deep, frame);
   if (asked.layer.empty()) {
-    Image picture = image;  // the bare one is verified yet
+    Image picture = image;  // the image without annotation is verified later
     draw_annotation(picture, annotated);
     return writer.write(picture, deep, frame);
   }

@@ -11,15 +11,15 @@
 
 namespace tessera::apps {
 
-/// Says before anything is read what is wrong with it whatever the data is. Throws as validate(const Annotation&) and
-/// fill_in().
+/// Checks before anything is read whether the annotation is valid for any data. Throws as validate(const Annotation&)
+/// and fill_in().
 void check_annotation(const AnnotationOptions& options);
 
-/// The same before anything is rendered.
+/// The complete check, before anything is rendered.
 void check_annotation(const AnnotationOptions& options, const FilmFrame& frame, const Dataset& data,
                       const TransferFunction& function);
 
-/// A frame and what its annotation tells of.
+/// A frame and the sources of its annotation.
 struct AnnotatedFrame {
   const FilmFrame& frame;
   Camera camera;  ///< the frame's
@@ -28,11 +28,11 @@ struct AnnotatedFrame {
   const RenderOptions& options;
 };
 
-/// Draws a frame's annotation, if there is any, over its picture, of whatever size that is. Throws as annotate().
+/// Draws a frame's annotation, if there is any, over its image, whatever its size. Throws as annotate().
 void draw_annotation(Image& picture, const AnnotatedFrame& annotated);
 
-/// Writes a frame's pictures, annotated; with --annotation-layer they stay bare, and the frame's last output is the
-/// layer. Deep pictures are never annotated. Throws as PictureWriter::write().
+/// Writes a frame's images, annotated. With --annotation-layer they are not annotated, and the frame's last output is
+/// the layer. Deep images are never annotated. Throws as PictureWriter::write().
 void write_annotated(const Image& image, const DeepImage& deep, const AnnotatedFrame& annotated, PictureWriter& writer);
 
 }  // namespace tessera::apps

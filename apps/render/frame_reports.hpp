@@ -6,14 +6,14 @@
 
 namespace tessera::apps {
 
-/// What a run's report says of each frame, kept until the end as one piece of text. Trees of JSON are many small
-/// pieces: three to four times the memory, and between them a long film's heap cannot give back what a frame took.
+/// The entries of a run's report for its frames, kept until the end as one text. Trees of JSON consist of many small
+/// blocks: they would need three to four times the memory and fragment a long film's heap.
 class FrameReports {
  public:
-  /// Not `kept`: no report is asked for, and nothing is.
+  /// If not `kept`, no report is requested, and nothing is stored.
   explicit FrameReports(bool kept) : kept_(kept) {}
 
-  /// Whether add() keeps what it is given; else the caller need not make it.
+  /// Whether add() stores anything; otherwise the caller need not make it.
   [[nodiscard]] bool kept() const { return kept_; }
   void add(const nlohmann::ordered_json& frame);
 
@@ -22,7 +22,7 @@ class FrameReports {
 
  private:
   bool kept_;
-  std::string frames_;  ///< JSON, one a line
+  std::string frames_;  ///< JSON, one per line
 };
 
 }  // namespace tessera::apps

@@ -11,8 +11,8 @@
 namespace tessera::apps {
 namespace {
 
-/// Threads that write the frames of a film, but none for images so large that memory should not contain two. One
-/// thread compresses a PNG in the time in which some ten render it; films and annotations are made in order.
+/// Number of threads that write the frames of a film; zero for images so large that memory should not hold two. One
+/// thread compresses a PNG in about the time in which ten render it; films and annotations are made in order.
 int writers(const RenderOptions& options, const std::vector<FilmFrame>& frames) {
   constexpr std::int64_t most_pixels = 4096 * 4096;
   constexpr int renderers_a_writer = 8;
@@ -69,7 +69,7 @@ void FrameWriter::write(const FinishedFrame& frame) {
   if (frame.began_us) traces_.writing()->add_frame(frame.number, *frame.began_us);
 }
 
-/// The first half of the frame's outputs shows the bricks, the second what they cost. Films and standard output show
+/// The first half of the frame's outputs shows the bricks, the second half their cost. Films and standard output show
 /// the bricks.
 void FrameWriter::write_balance(const BalancePictures& shown, const DeepImage& deep, const FilmFrame& frame) {
   FilmFrame of_bricks = frame;
@@ -79,7 +79,7 @@ void FrameWriter::write_balance(const BalancePictures& shown, const DeepImage& d
     PictureWriter::write_file(shown.cost, frame.outputs[i], options_.image);
 }
 
-/// Without background.
+/// Layers are written without a background.
 void FrameWriter::write_layers(const RenderedFrame& rendered, const FilmFrame& frame) {
   if (!options_.frame.peel) return;
   ImageFileOptions transparent = options_.image;

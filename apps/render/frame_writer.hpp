@@ -17,30 +17,30 @@
 
 namespace tessera::apps {
 
-/// A rendered frame on its way to its files.
+/// A rendered frame that is to be written.
 struct FinishedFrame {
   std::shared_ptr<const RenderedFrame> rendered;
   AnnotatedFrame annotated;                  ///< a copy of what its annotation shows: the run may be at another step
   std::int32_t number = 0;                   ///< of the frame, for the trace
   std::optional<BalancePictures> balance{};  ///< with --show balance
-  std::optional<double> began_us{};          ///< the frame's span in the trace begins then and ends with the writing
+  std::optional<double> began_us{};          ///< when the frame's span in the trace begins; it ends with the writing
 };
 
-/// Writes frames to their files, annotated, on threads of its own while the next ones are rendered. Used by the one
-/// rank that writes; on other ranks it has no threads.
+/// Writes frames to their files, annotated, on its own threads while the next ones are rendered. Used by the one rank
+/// that writes; on other ranks it has no threads.
 class FrameWriter {
  public:
-  /// Of the planned `frames`. `options` and `traces` outlive it.
+  /// For the planned `frames`. `options` and `traces` must outlive it.
   FrameWriter(const RenderOptions& options, const std::vector<FilmFrame>& frames, const FilmTraces& traces,
               bool writes);
 
-  /// Throws what writing an earlier frame threw.
+  /// Throws the exception of writing an earlier frame.
   void add(FinishedFrame frame);
-  /// Takes a frame over; once it is written, a later one uses its image's memory.
+  /// Takes ownership of a frame; once it is written, a later one reuses its image's memory.
   std::shared_ptr<const RenderedFrame> reusing(RenderedFrame&& rendered);
-  /// Images of earlier frames, whose memory later ones use.
+  /// Images of earlier frames, whose memory later ones reuse.
   SpareImages& spare_images() { return spare_images_; }
-  /// After the last frame: waits until all are written, then films appear. Throws as add().
+  /// Call after the last frame: waits until all are written, then the films appear. Throws as add().
   void finish();
 
  private:
@@ -53,7 +53,7 @@ class FrameWriter {
   const bool writes_;
   PictureWriter files_;
   SpareImages spare_images_;
-  PictureQueue queue_;  ///< last: what it writes refers to all above
+  PictureQueue queue_;  ///< last: what it writes refers to the members above
 };
 
 }  // namespace tessera::apps

@@ -12,21 +12,22 @@
 
 namespace tessera::apps {
 
-/// Writes pictures on threads of its own while the next ones are made. Few wait at a time, so that memory holds no
-/// film; who comes with more waits.
+/// Writes images on its own threads while the next ones are rendered. Only a few tasks may wait, so that memory does
+/// not hold a whole film; further calls of add() block.
 class PictureQueue {
  public:
   using Write = std::function<void()>;
 
-  /// `writers` threads at most, each of which writes one picture at a time: one keeps their order, with none add()
+  /// At most `writers` threads, each of which writes one image at a time: one keeps their order; with zero, add()
   /// writes itself.
   explicit PictureQueue(int writers);
-  /// Writes what still waits: finished pictures stay, whatever ended the run. Errors end here; finish() throws them.
+  /// Writes the remaining images: finished images are kept, whatever ended the run. Errors are dropped; finish() throws
+  /// them.
   ~PictureQueue();
   PictureQueue(const PictureQueue&) = delete;
   PictureQueue& operator=(const PictureQueue&) = delete;
 
-  /// Throws what an earlier picture threw; no other is begun after that.
+  /// Throws the exception of an earlier image, after which no other is begun.
   void add(Write write);
   /// Waits until all are written. Throws as add().
   void finish();

@@ -14,21 +14,20 @@
 
 namespace tessera::apps {
 
-/// Where the pictures of a run go: files of their own, films, standard output.
+/// The destinations of a run's images: separate files, films, standard output.
 class PictureWriter {
  public:
   explicit PictureWriter(const RenderOptions& options) : options_(options) {}
 
-  /// Before any rendering: throws Error(bad_input) if a film cannot be made of these frames.
+  /// For use before rendering: throws Error(bad_input) if these frames cannot be made into a film.
   static void check(const RenderOptions& options, std::span<const FilmFrame> frames);
 
-  /// Of frames in their order, the outputs that were planned, which come first. Deep pictures are written from `deep`.
-  /// Throws Error(system_failure) if a picture cannot
-  /// be written any more, as check_film_outputs() found it could.
+  /// Writes the planned outputs of frames in their order, which come first. Deep images are written from `deep`. Throws
+  /// Error(system_failure) if an image can no longer be written, although check_film_outputs() found that it could.
   void write(const Image& image, const DeepImage& deep, const FilmFrame& frame);
-  /// One more picture into a file of its own. Throws as write().
+  /// Writes an additional image to its own file. Throws as write().
   static void write_file(const Image& image, const std::filesystem::path& file, const ImageFileOptions& options);
-  /// After the last frame: films appear.
+  /// Call after the last frame: the films appear.
   void finish();
 
  private:

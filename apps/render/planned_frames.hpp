@@ -9,18 +9,18 @@
 
 namespace tessera::apps {
 
-/// The frames of a run with all files that each writes. Of one frame the outputs are, in this order:
+/// The frames of a run with all files that each writes. The outputs of one frame are, in this order:
 ///
 ///     as named    the plan's, in all formats
-///     layers      with --peel, of each of these: `a.exr` has a.layer1.exr, a.layer2.exr ...; none of deep images,
+///     layers      with --peel, for each of these: `a.exr` has a.layer1.exr, a.layer2.exr ...; none for deep images,
 ///                 which contain them
 ///     annotation  with --annotation-layer, one file
-///     cost maps   with --show balance, of each of the above: `a.png` has a.cost.png
+///     cost maps   with --show balance, for each of the above: `a.png` has a.cost.png
 ///
 /// A frame counts as finished if all of them exist (--resume). Throws as plan_film().
 std::vector<FilmFrame> planned_frames(const RenderOptions& options);
 
-/// The outputs of the whole run: films, report, trace, saved options. Those that were not asked for are empty.
+/// The outputs of the whole run: films, report, trace, saved options. Those that were not requested are empty.
 std::vector<std::filesystem::path> other_outputs(const RenderOptions& options);
 
 }  // namespace tessera::apps

@@ -20,7 +20,7 @@ constexpr const char* erase_line = "\r\x1b[K";
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// The last line of the terminal, of which there is one. Never destroyed: a signal may come while the process ends.
+/// State of the last line of the terminal. Never destroyed: a signal may arrive while the process ends.
 struct LastLine {
   std::timed_mutex mutex;
   bool is_taken = false;
@@ -31,8 +31,8 @@ LastLine& last_line() {
   return *line;
 }
 
-/// As much as the terminal shows in a row, since what has wrapped could not be taken away. File names may hold
-/// anything.
+/// Shortens text to one row of the terminal, since a wrapped line could not be erased. File names may contain any
+/// characters.
 std::string one_row(std::string words) {
   words = printable(words);
   winsize size{};
@@ -40,11 +40,11 @@ std::string one_row(std::string words) {
   const std::size_t most = is_known ? size.ws_col - 1u : 79u;
   if (words.size() <= most) return words;
   std::size_t end = most;
-  while (end > 0 && (static_cast<unsigned char>(words[end]) & 0xc0) == 0x80) --end;  // of UTF-8, whole characters
+  while (end > 0 && (static_cast<unsigned char>(words[end]) & 0xc0) == 0x80) --end;  // keeps UTF-8 characters whole
   return words.substr(0, end);
 }
 
-/// With its lock held.
+/// The caller must hold the lock.
 void erase() {
   if (last_line().is_taken) fmt::print(stderr, "{}", erase_line);
   std::fflush(stderr);
@@ -110,9 +110,9 @@ std::unique_lock<std::timed_mutex> StatusLine::away() {
 
 void StatusLine::end_all() {
   std::unique_lock lock(last_line().mutex, std::chrono::seconds(1));
-  if (!lock.owns_lock()) return;  // a terminal that is stopped
+  if (!lock.owns_lock()) return;  // the terminal is stopped
   erase();
-  static_cast<void>(lock.release());  // nothing is drawn any more
+  static_cast<void>(lock.release());  // nothing is drawn from now on
 }
 
 void StatusLine::show_until_stopped() {
@@ -162,7 +162,7 @@ std::string reading_words(const std::string& stage, const std::optional<ReadProg
     words += progress->done < 1
                  ? fmt::format(": {:.0f} % of its points and cells copied", std::floor(100 * progress->done))
                  : std::string(": making tets of its cells");
-  else if (progress && progress->done > 0) {  // some libraries say 0 for as long as they read
+  else if (progress && progress->done > 0) {  // some libraries report 0 until they are done
     return stage_words(stage, progress->done, seconds);
   }
   return words + fmt::format(", {:.0f} s", seconds);
@@ -172,7 +172,7 @@ std::string stage_words(const std::string& stage, std::optional<double> done, do
   std::string words = stage;
   if (done && *done > 0) words += fmt::format(": {:.0f} %", std::floor(100 * std::min(*done, 1.0)));
   words += fmt::format(", {:.0f} s", seconds);
-  // What is left is said from a tenth on: before that it may be anything.
+  // The remaining time is shown from a tenth on: before that the estimate is unreliable.
   if (done && *done >= 0.1 && *done < 1) words += fmt::format(", {:.0f} s left", seconds / *done * (1 - *done));
   return words;
 }

@@ -17,9 +17,9 @@
 
 namespace tessera::apps {
 
-/// A line on stderr that says what a run is at, how far that is where it is known, and how long it will take; rewritten
-/// in place by a thread of its own, and gone at the end. It comes once a stage has taken a second, for most runs never,
-/// and of a run of many frames as soon as one is finished.
+/// A line on stderr with the current stage of a run, its progress if known, and the remaining time. A separate thread
+/// rewrites it in place; it is erased at the end. It appears once a stage has taken a second, for most runs never, and
+/// in a run of many frames as soon as one is finished.
 class StatusLine {
  public:
   /// Shows nothing unless `shown`.
@@ -30,18 +30,18 @@ class StatusLine {
 
   [[nodiscard]] bool shown() const { return thread_.joinable(); }
 
-  /// What the run is at from now on, "reading a.vtu"; empty: nothing worth a line.
+  /// Sets the current stage, "reading a.vtu"; empty: not shown.
   void begin(const std::string& stage);
-  /// Of that stage. Any thread.
+  /// Progress of that stage. May be called from any thread.
   void advance(double done);
-  /// While a file is read: for ReadOptions::progress, as long as this lives; null unless the line is shown.
+  /// For ReadOptions::progress, while a file is read, as long as this object exists; null unless the line is shown.
   [[nodiscard]] ReadProgressFunction listener();
-  /// `done` frames are finished, of which `rendered` in this run (--resume skips the others in no time).
+  /// `done` frames are finished, of which this run rendered `rendered` (--resume skips the others immediately).
   void finish_frames(std::size_t done, std::size_t rendered);
 
-  /// Takes the line away, and keeps it away for as long as what is returned is held, so that others can be printed.
+  /// Erases the line while the returned lock is held, so that other lines can be printed.
   [[nodiscard]] static std::unique_lock<std::timed_mutex> away();
-  /// Takes whatever line there is away for good. For a run that ends in its midst.
+  /// Erases any line permanently. For a run that exits early.
   static void end_all();
 
  private:
@@ -59,7 +59,7 @@ class StatusLine {
   std::thread thread_;
 };
 
-/// Tells a line of a frame's finished pixels.
+/// Reports a frame's finished pixels to a status line.
 class FrameProgress final : public Sink {
  public:
   FrameProgress(StatusLine& line, ImageSize size) : line_(line), pixels_(1.0 * size.width * size.height) {}
@@ -70,17 +70,17 @@ class FrameProgress final : public Sink {
   double pixels_, finished_ = 0;
 };
 
-/// Opens a file with such a line.
+/// Opens a file and shows such a line.
 Dataset open_watched(const InputFile& file, ReadOptions options, StatusLine& line);
 
-/// Whether a command shows the line, which says nothing else: stderr is a terminal, and not to be `quiet`.
+/// Whether a command without other progress output shows the line: stderr is a terminal, and it is not `quiet`.
 bool shows_progress(bool quiet);
 
-/// What the line says of reading a file after `seconds`; nothing is known of how far it is without `progress`.
+/// The text of the line while a file is read, after `seconds`; without `progress` nothing more is known.
 std::string reading_words(const std::string& stage, const std::optional<ReadProgress>& progress, double seconds);
 
-/// The same of any other stage, of which `done` is known or not: with what is left, at its present pace, once that
-/// means something.
+/// The same for any other stage, whose progress `done` may be unknown: includes the remaining time at the present rate
+/// once the estimate is reliable.
 std::string stage_words(const std::string& stage, std::optional<double> done, double seconds);
 
 }  // namespace tessera::apps

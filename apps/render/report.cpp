@@ -37,7 +37,7 @@ std::string method_words(const Settings& settings) {
   return words;
 }
 
-/// How the work was shared, if it was.
+/// How the work was shared between ranks, if there are several.
 std::string balance_words(const RenderOptions& options, const FrameRecord& record) {
   const auto& by_rank = record.statistics.samples;
   if (by_rank.size() < 2) return {};
@@ -221,7 +221,7 @@ std::string higher_order_note(double error, double accuracy) {
 }
 
 std::string view_line(const Camera& camera) {
-  // Far from the origin and near to each other they need more digits to tell them apart.
+  // Points that are close to each other and far from the origin need more digits to be distinguished.
   const glm::dvec3 eye = glm::abs(camera.position), centre = glm::abs(camera.focal_point);
   const int digits = digits_for(std::max({eye.x, eye.y, eye.z, centre.x, centre.y, centre.z}),
                                 glm::distance(camera.position, camera.focal_point));
@@ -289,7 +289,7 @@ std::string run_line(const RenderOptions& options, const Description& data, cons
 }
 
 std::string verification_line(const Verification& v, int frame_number) {
-  const bool met = v.met || (!v.layers_met && v.over_bound == v.excused);  // the picture alone
+  const bool met = v.met || (!v.layers_met && v.over_bound == v.excused);  // of the image alone
   const auto verdict =
       v.bound ? fmt::format("bound {:.3g} {}", *v.bound, met ? "met" : "NOT met") : std::string("no bound promised");
   std::string line =

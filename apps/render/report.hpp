@@ -13,30 +13,30 @@
 #include "tessera/transfer_function.hpp"
 #include "tessera/verification.hpp"
 
-/// What a run chose and did, as JSON (--report, info --json) and as the one line on stderr: of meshes and grids alike.
+/// What a run chose and did, as JSON (--report, info --json) and as the one line on stderr, for meshes and grids.
 namespace tessera::apps {
 
-/// What happened to one frame that was rendered, of all ranks together.
+/// Results of one rendered frame, for all ranks together.
 struct FrameRecord {
   Camera camera;
   FrameStatistics statistics;
-  std::vector<double> frame_ms;  ///< one a repetition
+  std::vector<double> frame_ms;  ///< one per repetition
   std::optional<Verification> verification;
 };
 
-/// What lines and reports say of a data set: the notes in the program's words.
+/// The description of a data set for lines and reports; its notes use option names.
 analysis::Description described(const Dataset& data);
 
-/// By how much the tets of higher-order cells change pixels, and that it is more than `accuracy` if it is.
+/// How much the tets of higher-order cells change pixels, and that it is more than `accuracy` if so.
 std::string higher_order_note(double error, double accuracy);
 
-/// What the settings and command line chose but for data, view and transfer function.
+/// The choices of settings and command line, except data, view and transfer function.
 nlohmann::ordered_json method_json(const RenderOptions& options, int ranks);
 
-/// The shape of a job that renders a mesh.
+/// The layout of a job that renders a mesh.
 nlohmann::ordered_json job_json(const RenderOptions& options, int ranks, const Roles& roles);
 
-/// A frame's number, pictures, view, times, counters, balance and verification; without a record, that it was skipped.
+/// A frame's number, images, view, times, counters, balance and verification; without a record, that it was skipped.
 nlohmann::ordered_json frame_json(const RenderOptions& options, const FilmFrame& frame, const FrameRecord* record);
 
 /// `18 of 20 cells kept as 36 tets, 1 ghost dropped, 1 tangled kept`
@@ -46,11 +46,11 @@ std::string samples_line(const analysis::Description& grid);
 std::string view_line(const Camera& camera);
 std::string transfer_function_line(const LoadedTransferFunction& loaded);
 
-/// `frame 12 of 50: mesh_0012.vtu, 842113 tets projected, 512 ms`: one a frame of a run of several.
+/// `frame 12 of 50: mesh_0012.vtu, 842113 tets projected, 512 ms`: one per frame of a run with several.
 std::string frame_line(const RenderOptions& options, const std::vector<FilmFrame>& frames, const FilmFrame& frame,
                        const FrameRecord& record);
 
-/// The one line of a run, after its first frame: what was read, chosen and culled, and how long the frame took.
+/// The one line of a run, after its first frame: what was read, chosen and culled, and the time of the frame.
 std::string run_line(const RenderOptions& options, const analysis::Description& data,
                      const LoadedTransferFunction& loaded, const std::vector<FilmFrame>& frames, const FilmFrame& first,
                      const FrameRecord& record);

@@ -75,7 +75,7 @@ void RunOutput::add(const FilmFrame& frame, const FrameRecord& record) {
     if (frames_.size() > 1 && !options_.quiet) {
       say_lines(frame_line(options_, frames_, frame, record));
     }
-    // Standard output that a picture or the report goes to holds nothing else.
+    // If standard output is an image or the report, it contains nothing else.
     std::FILE* const lines = options_.to_standard_output || options_.report_to_standard_output ? stderr : stdout;
     if (options_.repeat > 0) fmt::print(lines, "{}\n", frame_ms_line(record.frame_ms));
     if (record.verification) {

@@ -18,20 +18,20 @@ namespace tessera::apps {
 /// prints writes any of it; other ranks may call the same functions.
 class RunOutput {
  public:
-  /// Of the planned `frames`; `ranks` of the job. References outlive it; `options` may be completed meanwhile.
+  /// For the planned `frames`; `ranks` of the job. References must outlive it; `options` may be completed later.
   RunOutput(const RenderOptions& options, const std::vector<FilmFrame>& frames, int ranks, bool prints);
 
-  /// What the run line and the report state of the data; before the first add().
+  /// The data's part of the run line and the report; call it before the first add().
   void describe(analysis::Description data, LoadedTransferFunction transfer_function);
-  /// A line of its own on stderr.
+  /// Prints a separate line on stderr.
   void warn(const std::string& warning);
-  /// More for the report's head, like the job's shape.
+  /// Adds a member to the report's head, for example the job's layout.
   void note(const char* name, nlohmann::ordered_json value) { report_[name] = std::move(value); }
 
-  /// A frame that was rendered and written; those before it that were not rendered are ones that --resume leaves alone.
+  /// Adds a rendered and written frame; earlier ones that were not rendered are those that --resume skips.
   void add(const FilmFrame& frame, const FrameRecord& record);
 
-  /// Writes the report, if asked. Complete, or accuracy_not_met.
+  /// Writes the report, if requested. Returns complete, or accuracy_not_met.
   ExitCode finish();
 
   /// The line that shows the current stage, on the rank that prints.
@@ -58,7 +58,7 @@ class RunOutput {
 /// `frame_ms median X min Y`, milliseconds. The median of an even number is the mean of the middle two.
 std::string frame_ms_line(std::vector<double> times);
 
-/// Appears by rename. Text that is not UTF-8 is replaced.
+/// The file appears by rename. Text that is not UTF-8 is replaced.
 void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);
 
 /// Metadata that a trace stores about its run.

@@ -44,7 +44,7 @@ void ShownStep::open_first() {
     open(frames_.front(), read_);
   find_function();
   check_outputs_are_not_read();
-  job_.require_same_files();  // the transfer function's
+  job_.require_same_files();  // including the transfer function's
   read_within_accuracy();
   shade_by_default();
   if (job_.rank() == writing_rank_) check_annotation(options_.annotation, frames_.front(), *data_, loaded_.function);
@@ -58,7 +58,7 @@ void ShownStep::open_first() {
 
 void ShownStep::open(const FilmFrame& frame, const ReadOptions& read) {
   frame.require_still_there();
-  session_.reset();  // the last step's memory before the next one's
+  session_.reset();  // free the last step's memory before the next one
   data_.reset();
   const std::filesystem::path& file = frame.data.files.front();
   output_.line().begin("reading " + file.filename().string());
@@ -82,7 +82,7 @@ void ShownStep::open(const FilmFrame& frame, const ReadOptions& read) {
   whole_range_ = {std::min(whole_range_[0], low), std::max(whole_range_[1], high)};
 }
 
-/// With the field of this step.
+/// Reads the surfaces of blocks, with the field of this step.
 void ShownStep::read_block_surfaces(const std::vector<std::filesystem::path>& files, ReadOptions read) {
   if (options_.block_surfaces.empty() && data_->axis_scale() == glm::dvec3(1)) return;
   options_.block_surfaces = found_blocks(options_.block_surfaces, *data_);
@@ -91,12 +91,12 @@ void ShownStep::read_block_surfaces(const std::vector<std::filesystem::path>& fi
       with_block_surfaces(options_.settings.surfaces, options_.block_surfaces, *data_, files, std::move(read));
 }
 
-/// Field and colors of several steps, where options do not state them. Leaves the first step open.
+/// Chooses field and colours for several steps if options do not state them. Leaves the first step open.
 void ShownStep::choose_for_all_steps() {
   const auto frame_of = [&](std::size_t step) -> const FilmFrame& {
     return *std::ranges::find(frames_, step, &FilmFrame::step);
   };
-  // What the writing rank finds on the disk is what all go by.
+  // All ranks use the writing rank's view of the disk.
   std::vector<std::size_t> steps = steps_to_look_at(this->steps());
   std::vector<std::byte> there;
   there.reserve(steps.size());
@@ -122,7 +122,7 @@ void ShownStep::choose_for_all_steps() {
   if (series_->function) loaded_ = *series_->function;
 }
 
-/// Higher-order cells as finely as --accuracy needs; the tolerance of the first image is used for all.
+/// Divides higher-order cells as finely as --accuracy requires; the tolerance of the first image applies to all.
 void ShownStep::read_within_accuracy() {
   if (data_->higher_order_cells().divided == 0) return;
   const FilmFrame& frame = frames_.front();
@@ -160,7 +160,7 @@ void ShownStep::shade_by_default() {
 
 void ShownStep::note_method() { output_.note("method", method_json(options_, job_.size())); }
 
-/// What the input's files name is known once they are read. On every rank: each has read its own part.
+/// Files named by the input's files are only known once these are read. On every rank: each has read its own part.
 void ShownStep::check_outputs_are_not_read() const {
   for (const FilmFrame& frame : frames_)
     for (const auto& output : frame.outputs) check_not_read(output);
@@ -173,7 +173,7 @@ analysis::Description ShownStep::description() const {
   if (series_) data.notes.push_back(series_note(*series_, steps(), data_->field_name()));
   if (data_->higher_order_cells().divided == 0) return data;
   data.higher_order_pixels = higher_order_pixels_;
-  // Of cells drawn by their corners there is a warning already.
+  // There is already a warning about cells drawn by their corners.
   if (data.higher_order.by_corners > 0) return data;
   const double error = higher_order_pixels_, accuracy = options_.higher_order_accuracy.value_or(error);
   (error > accuracy ? data.warnings : data.notes).push_back(higher_order_note(error, accuracy));

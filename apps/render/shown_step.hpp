@@ -18,19 +18,18 @@
 
 namespace tessera::apps {
 
-/// The time step that a run has open, one at a time, and what the first one determines for all: view, field,
-/// transfer function, tolerance of higher-order cells. On every rank; show() is collective.
+/// The open time step of a run, one at a time, and what the first step determines for all: view, field, transfer
+/// function, tolerance of higher-order cells. On every rank; show() is collective.
 class ShownStep {
  public:
-  /// `frames` get the times that their files state. `options` are completed by what is known once data are read:
-  /// surfaces of blocks, default shading. `writing_rank` writes the files. All references outlive it.
+  /// `frames` get the times that their files state. `options` are completed with what is known once data are read:
+  /// surfaces of blocks, default shading. `writing_rank` writes the files. All references must outlive it.
   ShownStep(RenderOptions& options, std::vector<FilmFrame>& frames, RunOutput& output, Job& job, int writing_rank,
             Trace* trace);
 
-  /// Opens and prepares the frame's step, unless it is open. Throws Error, also for outputs that are among the
-  /// files read.
+  /// Opens and prepares the frame's step, unless it is open. Throws Error, also if an output is one of the files read.
   void show(const FilmFrame& frame);
-  /// Whether show() was called; what follows is valid only then.
+  /// Whether show() was called; the functions below require it.
   [[nodiscard]] bool is_open() const { return first_.has_value(); }
 
   [[nodiscard]] Camera camera(const FilmFrame& frame) const {
@@ -41,11 +40,11 @@ class ShownStep {
   [[nodiscard]] Session& session() { return *session_; }
   /// Of the first step; 0 for grids.
   [[nodiscard]] std::uint64_t tets() const { return first_ ? first_->tets : 0; }
-  /// Ends the session, and with it its spans in the trace.
+  /// Ends the session, and so its spans in the trace.
   void close_session() { session_.reset(); }
 
-  /// Prints the warnings that only a whole run allows: values outside the range that the transfer function was chosen
-  /// for, and the empty images that `empty` has collected. Collective.
+  /// Prints the warnings that need the whole run: values outside the range for which the transfer function was chosen,
+  /// and the empty images collected in `empty`. Collective.
   void warn_at_end(const EmptyPictures& empty) const;
 
  private:
@@ -83,9 +82,9 @@ class ShownStep {
   std::size_t step_ = 0;  ///< of data_
   std::optional<Session> session_;
   LoadedTransferFunction loaded_;
-  std::optional<SeriesChoice> series_;  ///< of several steps
-  std::optional<First> first_;          ///< none until something is shown
-  std::optional<Range> colored_range_;  ///< of the values that the transfer function is chosen for
+  std::optional<SeriesChoice> series_;  ///< for several steps
+  std::optional<First> first_;          ///< none until a step is shown
+  std::optional<Range> colored_range_;  ///< of the values for which the transfer function was chosen
   Range whole_range_{};                 ///< of all steps read
   double higher_order_pixels_ = 0;      ///< HigherOrderRead::pixel_error of the first step
 };

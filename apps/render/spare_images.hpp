@@ -11,15 +11,15 @@
 
 namespace tessera::apps {
 
-/// Pictures that are no longer needed, whose memory later ones have: two at most, so that memory holds no film. Any
-/// thread.
+/// Images that are no longer needed, whose memory later ones reuse: at most two, so that memory does not hold a whole
+/// film. May be used from any thread.
 class SpareImages {
  public:
   void keep(Image image) {
     const std::lock_guard lock(mutex_);
     if (images_.size() < most) images_.push_back(std::move(image));
   }
-  /// One of this size, if there is one; others go.
+  /// An image of this size, if there is one; those of other sizes are dropped.
   Image take(ImageSize size) {
     const std::lock_guard lock(mutex_);
     images_.erase(
