@@ -9,9 +9,9 @@
 
 namespace tessera::analysis {
 
-/// Time against error, both logarithmic: a point a method, its spread of times as a bar, a line through each family,
-/// the Pareto front as steps; what the front beats is pale. .svg or .png by name, appears by rename. Throws as
-/// write_figure() of timing_figure.hpp does.
+/// Time against error, both logarithmic: one point per method, the spread of its times as a bar, a line through each
+/// family, and the Pareto front as steps; methods behind the front are pale. Written as .svg or .png by the file's
+/// name; appears by rename. Throws as write_figure() of timing_figure.hpp.
 void write_chart(std::span<const ChartPoint> points, const std::string& title, const std::string& subtitle,
                  const std::filesystem::path& file);
 

@@ -11,30 +11,30 @@
 #include "tessera/image.hpp"
 #include "tessera/reference.hpp"
 
-/// Error and time of one method, and which methods no other one beats.
+/// Error and time of a method, and the methods that no other one beats.
 namespace tessera::analysis {
 
-/// Of a picture against the reference, over the pixels that were looked at.
+/// Of an image against the reference, over the compared pixels.
 struct ChartError {
   double max = 0;            ///< largest absolute difference in linear premultiplied RGBA
   double rms = 0;            ///< over pixels and channels
   double p999 = 0;           ///< the 99.9 % quantile of the pixels' largest differences
   double visible_share = 0;  ///< of pixels that differ by Delta E 2000 above 1, over black, encoded to sRGB and clamped
-  bool finite = true;        ///< no NaN or infinity; else `max` is infinite
+  bool finite = true;        ///< no NaN or infinity; otherwise `max` is infinite
 };
 
-/// `truths` in the order of `pixels`. `channels` 4, or 3 for a picture without opacity.
+/// `truths` in the order of `pixels`. `channels` is 4, or 3 for an image without opacity.
 ChartError chart_error(const Image& image, std::span<const PixelIndex> pixels, std::span<const ReferencePixel> truths,
                        int channels = 4);
 
 struct ChartPoint {
   std::string family, name;      ///< "planes, sampled"; "planes sampled:4"
-  std::string options;           ///< of `tessera render`, that make this picture
-  std::vector<double> frame_ms;  ///< one a repetition
-  double prepare_ms = 0;         ///< before the first: what depends on data and transfer function alone
+  std::string options;           ///< of `tessera render` for this image
+  std::vector<double> frame_ms;  ///< one per repetition
+  double prepare_ms = 0;         ///< preparation that depends only on data and transfer function
   ChartError error;
-  bool on_front = false;  ///< no other is both faster and nearer
-  std::string left_out;   ///< why there are no figures; empty: there are
+  bool on_front = false;  ///< no other method is both faster and more accurate
+  std::string left_out;   ///< why it was not measured; empty if it was
 
   [[nodiscard]] bool measured() const { return left_out.empty() && !frame_ms.empty(); }
   [[nodiscard]] double median_ms() const;

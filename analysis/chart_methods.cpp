@@ -8,12 +8,12 @@
 namespace tessera::analysis {
 namespace {
 
-/// Lists methods of one scene.
+/// Collects the methods of one scene.
 class MethodList {
  public:
   explicit MethodList(const ChartScene& scene) : scene_(scene) {}
 
-  /// The new one, to be completed.
+  /// Adds a method, to be completed by the caller.
   ChartMethod& add(std::string family, std::string name, double cost, const Integrator& integrator) {
     ChartMethod& method = methods_.emplace_back();
     method.family = std::move(family), method.name = std::move(name), method.cost = cost;
@@ -41,7 +41,8 @@ class MeshMethods final : public MethodList {
                           const Integrator& integrator) {
     const bool planes = rasterizer == Rasterizer::planes;
     const char* const prefix = planes ? "planes" : "scanline";
-    // What does not go by the lattice takes about three times as long (docs/ACCURACY.md), more the more it samples.
+    // Methods that cannot use the lattice take about three times as long (docs/ACCURACY.md), and longer with more
+    // samples.
     const bool fast =
         planes && (integrator.kind == IntegratorKind::automatic || integrator.kind == IntegratorKind::exact);
     const double cost = fast ? 1 : integrator.kind == IntegratorKind::sampled ? 3 + integrator.samples / 4.0 : 4;
@@ -73,7 +74,7 @@ class MeshMethods final : public MethodList {
     method.ranks = 2;
     method.settings.threads = 1;
     method.settings.ranks.exchange = exchange;
-    method.settings.ranks.partition.kind = PartitionKind::random;  // the worst there is
+    method.settings.ranks.partition.kind = PartitionKind::random;  // the worst case
   }
   void device(GlMethod gl, bool half, const Integrator& integrator) {
     const bool compute = gl == GlMethod::compute;
@@ -86,7 +87,7 @@ class MeshMethods final : public MethodList {
     method.settings.mesh.device.method = gl;
     method.settings.mesh.device.half = half;
   }
-  /// As `render --preset` does it, in one process.
+  /// As `render --preset`, in one process.
   void juliachs_2007() {
     ChartMethod& method = rasterized(Rasterizer::scanline, "juliachs-2007", "juliachs-2007",
                                      {.kind = IntegratorKind::sampled, .samples = 4});
@@ -160,7 +161,7 @@ std::vector<ChartMethod> grid_methods(const ChartScene& scene) {
 ChartRenderer::ChartRenderer(const ChartScene& scene, const ChartMethod& method) : scene_(scene), method_(method) {
   if (method.ranks > 1) return;
   session_.emplace(scene.data, method.settings);
-  // Makes the tables of the transfer function, which a mesh's session keeps.
+  // Builds the tables of the transfer function, which a mesh's session keeps.
   if (scene.data.is_mesh() && method.settings.mesh.device.backends.empty())
     session_->render({scene.view.camera, {1, 1}}, scene.function);
 }

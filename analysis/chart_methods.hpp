@@ -14,10 +14,10 @@
 #include "tessera/transfer_function.hpp"
 #include "tessera/view.hpp"
 
-/// The methods that `tessera chart` sweeps. A new one is one more entry of chart_methods.cpp's lists.
+/// The methods that `tessera chart` measures. A new one is an additional entry in the lists of chart_methods.cpp.
 namespace tessera::analysis {
 
-/// What all methods render.
+/// The scene that all methods render.
 struct ChartScene {
   Dataset data;
   View view;
@@ -31,19 +31,19 @@ struct ChartMethod {
   std::string family;  ///< one curve of the chart: "planes, sampled"
   std::string name;    ///< "planes sampled:4"
   Settings settings;
-  int ranks = 1;         ///< more than one: threads of this process that speak as processes do
-  double cost = 1;       ///< its time over the first method's, roughly: whether to try it is decided by that
-  std::string preset;    ///< of `render`, if that is all there is to say
-  std::string left_out;  ///< why it cannot be had here; empty: it can
+  int ranks = 1;         ///< more than one: threads of this process that communicate like processes
+  double cost = 1;       ///< its time relative to the first method's, roughly: decides whether it is tried
+  std::string preset;    ///< of `render`, if a preset is the whole method
+  std::string left_out;  ///< why it is not available here; empty if it is
   bool by_slices = false;
 
-  /// Whether it is one to recommend: not what needs several ranks, or leaves out what saves work.
+  /// Whether to recommend it: not if it needs several ranks, or switches optimizations off.
   [[nodiscard]] bool recommended() const {
     return ranks == 1 && settings.use == Mechanisms() && settings.integrator.terminates;
   }
 };
 
-/// One way of rendering, ready to be timed: what depends on the data or the transfer function alone is prepared.
+/// A method ready to be timed: everything that depends only on the data or the transfer function is prepared.
 class ChartRenderer {
  public:
   ChartRenderer(const ChartScene& scene, const ChartMethod& method);
@@ -53,10 +53,10 @@ class ChartRenderer {
  private:
   const ChartScene& scene_;
   const ChartMethod& method_;
-  std::optional<Session> session_;  ///< of one rank
+  std::optional<Session> session_;  ///< for one rank
 };
 
-/// The most telling first, so that a short budget leaves out refinements.
+/// The most informative methods first, so that a short budget only omits refinements.
 std::vector<ChartMethod> chart_methods(const ChartScene& scene);
 
 }  // namespace tessera::analysis

@@ -9,9 +9,9 @@
 
 namespace tessera::analysis {
 
-/// Other programs' measured pictures (ChartCommand says the file's shape), judged by colour alone on the same pixels.
-/// Pictures are .pfm (linear RGB, bottom row first), named beside the file. Throws Error(bad_input) for what is missing
-/// or of another size.
+/// Images measured by other programs (ChartCommand describes the file), compared by colour alone on the same pixels.
+/// Images are .pfm (linear RGB, bottom row first), relative to the file. Throws Error(bad_input) for missing files or
+/// other sizes.
 std::vector<ChartPoint> read_peers(const std::filesystem::path& file, ImageSize size,
                                    std::span<const PixelIndex> pixels, std::span<const ReferencePixel> truths);
 

@@ -14,7 +14,8 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// What a method takes, before it is tried: by the last of its family, else by the last of the first family.
+/// Estimates a method's time before it is tried: from the last one of its family, otherwise from the last one of the
+/// first family.
 class CostGuess {
  public:
   [[nodiscard]] double seconds(const ChartMethod& method) const {
@@ -51,7 +52,8 @@ ChartTruth chart_truth(const ChartScene& scene, double seconds, std::optional<st
   if (asked) {
     look(*asked);
   } else {
-    // Larger and larger pilots until one says what a pixel costs; passes over the mesh make few as dear as many.
+    // Larger and larger pilots until one measures the cost per pixel; passes over the mesh make a few pixels as
+    // expensive as many.
     std::size_t count = std::min<std::size_t>(total, 256);
     for (;;) {
       const double took = look(count);

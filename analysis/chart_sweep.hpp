@@ -14,7 +14,7 @@
 
 namespace tessera::analysis {
 
-/// The pixels that are looked at, and what is right there.
+/// The compared pixels, and their reference values.
 struct ChartTruth {
   std::vector<PixelIndex> pixels;
   std::vector<ReferencePixel> values;
@@ -22,25 +22,25 @@ struct ChartTruth {
   double seconds = 0;
 };
 
-/// So many random pixels; or as many as fit into that time, found by larger and larger pilots.
+/// `pixels` random pixels; or as many as fit into `seconds`, found by larger and larger pilots.
 ChartTruth chart_truth(const ChartScene& scene, double seconds, std::optional<std::size_t> pixels);
 
 struct ChartBudget {
   std::chrono::steady_clock::time_point begin;
-  double seconds;  ///< from there
-  int repeat;      ///< frames a method, if there is room
+  double seconds;  ///< counted from `begin`
+  int repeat;      ///< frames per method, if they fit
 };
 
-/// What ChartPoint::left_out says of a method that did not fit into the budget.
+/// ChartPoint::left_out of a method that did not fit into the budget.
 inline constexpr const char* no_room = "no room in the budget";
 
 struct ChartSweep {
-  std::vector<ChartPoint> points;  ///< one a method, in their order; `options` is left empty
-  double missing_seconds = 0;      ///< what one frame each of the methods without room would take
+  std::vector<ChartPoint> points;  ///< one per method, in their order; `options` is left empty
+  double missing_seconds = 0;      ///< estimated time of one frame each of the methods that did not fit
 };
 
-/// Times and judges all methods that can be had. The first is measured in any case, others if what is known of their
-/// family, or a rough guess, has room. `measured` hears of each that was. An Error of a method is why it is left out.
+/// Times and compares all available methods. The first is always measured, others if the estimate from their family, or
+/// a rough guess, fits. `measured` is called for each measured method. An Error of a method becomes its left_out.
 ChartSweep sweep(const ChartScene& scene, const std::vector<ChartMethod>& methods, const ChartTruth& truth,
                  const ChartBudget& budget, const std::function<void(const ChartPoint&)>& measured);
 

@@ -11,7 +11,7 @@ constexpr double radian = std::numbers::pi / 180;
 
 double lab_curve(double t) { return t > 216.0 / 24389 ? std::cbrt(t) : (24389.0 / 27 * t + 16) / 116; }
 
-/// In [0, 360), 0 for grey.
+/// In [0, 360); 0 for grey.
 double hue(double a, double b) {
   if (a == 0 && b == 0) return 0;
   const double h = std::atan2(b, a) / radian;

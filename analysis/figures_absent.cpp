@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Built in place of what draws with TESSERA_CAIRO=OFF.
+// Replaces the drawing sources if TESSERA_CAIRO is OFF.
 #include <fmt/format.h>
 
 #include "analysis/chart_figure.hpp"
@@ -8,7 +8,7 @@
 
 namespace tessera::analysis {
 
-/// Programs ask this before they measure, so that nobody waits for a figure that does not come.
+/// Programs call this before they measure, so that users do not wait for a figure that cannot be drawn.
 void check_figure_path(const std::filesystem::path& file) {
   throw bad_input(fmt::format(
       "{}: figures need Cairo, which this build leaves out; build with TESSERA_CAIRO=ON, or write a table with `csv`",

@@ -70,7 +70,7 @@ Json grid_counters_json(const FrameStatistics& statistics) {
   return json;
 }
 
-/// By groups, without those that have nothing to say.
+/// Adds counters by group, without empty groups.
 void add_counters_of(const MeshCounts& counts, Json& json) {
   const auto group_of = [](const MeshCounter& counter) { return counter.name.substr(0, counter.name.find('/')); };
   for (const MeshCounter& counter : mesh_counters) {
@@ -88,7 +88,7 @@ Json higher_order_json(const Description& data) {
     json[std::string(counter.name)] = data.higher_order.*counter.member;
   for (const HigherOrderBound& bound : higher_order_bounds)
     json[std::string(bound.name)] = data.higher_order.*bound.member;
-  if (data.higher_order_pixels > 0) json["pixel_error"] = data.higher_order_pixels;  // null: not bounded
+  if (data.higher_order_pixels > 0) json["pixel_error"] = data.higher_order_pixels;  // null: no bound
   return json;
 }
 

@@ -13,10 +13,10 @@
 #include "tessera/transfer_function.hpp"
 #include "tessera/verification.hpp"
 
-/// Data sets, frames and checks as JSON: what `tessera render --report` and `tessera info --json` hold.
+/// Data sets, frames and checks as JSON: the contents of `tessera render --report` and `tessera info --json`.
 namespace tessera::analysis {
 
-/// What is to be said of a data set, kept when it is gone.
+/// The description of a data set, which remains valid after the data set is gone.
 struct Description {
   explicit Description(const Dataset& data);
 
@@ -29,35 +29,35 @@ struct Description {
   std::vector<std::string> notes, warnings, blocks;
   MeshCounts counts;  ///< meshes
   HigherOrderCells higher_order;
-  double higher_order_pixels = 0;  ///< HigherOrderRead::pixel_error, where a picture is made
-  GridGeometry geometry;           ///< grids, and so on
+  double higher_order_pixels = 0;  ///< HigherOrderRead::pixel_error, if an image is rendered
+  GridGeometry geometry;           ///< grids; the following members too
   SampleType type{};
   double scale = 1, shift = 0;
   std::uint64_t blanks = 0;
 };
 
-/// Program, version, commit and build (tessera/version.hpp): how a report begins.
+/// Program, version, commit and build (tessera/version.hpp): the beginning of a report.
 nlohmann::ordered_json program_json();
 
-/// File, format, what it is made of, bounds, chosen field, all fields, notes, warnings.
+/// File, format, kind and size of the data, bounds, chosen field, all fields, notes, warnings.
 nlohmann::ordered_json data_json(const std::filesystem::path& input, const Description& data);
 
 /// Name, unit distance and its source, knots.
 nlohmann::ordered_json transfer_function_json(const LoadedTransferFunction& loaded);
 
-/// A view in the words of camera files, so that it can be cut out and used as one.
+/// A view in the form of camera files, so that it can be copied into one.
 nlohmann::ordered_json view_json(const Camera& camera, ImageSize size);
 
-/// What a frame took, counted.
+/// The counters of a frame.
 nlohmann::ordered_json counters_json(const FrameStatistics& statistics, bool is_grid);
 
-/// How ranks shared a grid's picture: of each its rectangle, samples and CPU time, and how uneven these are.
+/// How ranks shared a grid's image: the rectangle, samples and CPU time of each, and their imbalance.
 nlohmann::ordered_json balance_json(Balance balance, const FrameStatistics& statistics);
 
 nlohmann::ordered_json verification_json(const Verification& verification);
 nlohmann::ordered_json check_json(const MeshCheck& check);
 
-/// (largest - least) / mean: how unevenly work is shared; 0 if there is none.
+/// (largest - least) / mean: the imbalance of work; 0 without work.
 double deviation(const std::vector<double>& work);
 
 /// `point` or `cell`; `accurate`, `backface`, ...

@@ -61,7 +61,7 @@ std::vector<Process> processes_of(const TraceFile& trace) {
   return processes;
 }
 
-/// Mean and worst of one stage over processes.
+/// Mean and worst values of one stage over processes.
 class Merge {
  public:
   Merge(std::string stage, std::size_t processes) : processes_(static_cast<double>(processes)) {
@@ -139,18 +139,18 @@ RoleTime role_time(const TraceFile& trace, TraceRole role, std::span<const Proce
       outside.add(process.rank, process.time.outside[stage]);
     }
     if (!inside.empty()) time.stages.push_back(inside.result(time.whole.average_us));
-    // Less than a microsecond is the rounding of times in the file.
+    // Less than a microsecond is due to rounding of times in the file.
     if (!outside.empty() && outside.result().worst_us >= 1) time.outside.push_back(outside.result());
   }
   time.stages.push_back(other.result(time.whole.average_us));
   return time;
 }
 
-/// When one frame was worked on, over all processes of a role.
+/// The time interval of work on one frame, over all processes of a role.
 struct FrameExtent {
   double begin = std::numeric_limits<double>::infinity();
   double end = -std::numeric_limits<double>::infinity();
-  double last_work = -std::numeric_limits<double>::infinity();  ///< neither exchange nor waiting
+  double last_work = -std::numeric_limits<double>::infinity();  ///< other than exchange and waiting
 };
 
 Overlap overlap_of(const TraceFile& trace) {
@@ -176,7 +176,7 @@ Overlap overlap_of(const TraceFile& trace) {
     const bool received = span.stage == receive && span.role == TraceRole::compositor;
     const auto extent = projected.find(span.frame);
     if (!(sent || received) || extent == projected.end()) continue;
-    // Bytes are taken to move evenly while their span lasts.
+    // Bytes are assumed to move evenly during their span.
     const auto before = [&](double time) {
       if (time >= span.start_us + span.wall_us) return 1.0;
       return span.wall_us > 0 ? std::clamp((time - span.start_us) / span.wall_us, 0.0, 1.0) : 0.0;

@@ -7,14 +7,14 @@
 namespace tessera::analysis {
 namespace {
 
-/// A stretch of one thread's time that belongs to one span alone.
+/// An interval of one thread's time that belongs to one span only.
 struct Piece {
   double begin, end;
   std::uint16_t stage;
 };
 
-/// Cuts one thread's spans (sorted: earlier first, longer first) into pieces, each of the innermost span; `self_cpu`
-/// loses, span by span, what spans inside it have.
+/// Cuts one thread's spans (sorted: earlier first, longer first) into pieces, each belonging to the innermost span;
+/// subtracts from `self_cpu` of each span the CPU time of the spans inside it.
 void cut(std::span<const FileSpan> spans, std::vector<Piece>& pieces, std::span<double> self_cpu) {
   std::vector<std::size_t> open;
   double now = 0;
@@ -42,7 +42,7 @@ void cut(std::span<const FileSpan> spans, std::vector<Piece>& pieces, std::span<
   while (!open.empty()) close();
 }
 
-/// Walks over the instants at which something begins or ends, and gives the time between them to stages.
+/// Visits the instants at which something begins or ends, and attributes the time between them to stages.
 class Sweep {
  public:
   Sweep(ProcessTime& result, std::size_t stage_count, int wait)
@@ -99,8 +99,8 @@ class Sweep {
   }
 
   ProcessTime* result_;
-  std::vector<int> running_;         ///< threads in each stage now
-  std::vector<std::size_t> active_;  ///< stages with any
+  std::vector<int> running_;         ///< threads currently in each stage
+  std::vector<std::size_t> active_;  ///< stages with any thread
   int wait_, working_ = 0, in_frame_ = 0;
 };
 
@@ -163,7 +163,7 @@ ProcessTime share_clock(std::span<const FileSpan> spans, std::size_t stage_count
   }
   Sweep(result, stage_count, wait).run(pieces);
 
-  // What has no extent in time goes where the middle of its span lies.
+  // Quantities without extent in time are attributed at the middle of their span.
   for (std::size_t i = 0; i < work.size(); ++i) {
     const bool framed = result.frames.contains(work[i].start_us + work[i].wall_us / 2);
     ProcessStage& stage = (framed ? result.in_frames : result.outside)[work[i].stage];

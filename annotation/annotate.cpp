@@ -43,8 +43,8 @@ Sheet sketched(const Annotation& annotation, const Screen& screen, const Typefac
 
 using Pixel = TiledLayer::Pixel;
 
-/// The annotation's pixel over `picture`: what lies over it, and what lies behind it as it is seen through it. For L
-/// behind P, P + (1 - A_P) L is what "over" makes of P and the pixel ((1 - A_P) L + A_L P, A_L).
+/// The annotation's pixel over `picture`: the layer in front of the data, and the layer behind them as seen through the
+/// image. For L behind P the result P + (1 - A_P) L equals "over" of P and the pixel ((1 - A_P) L + A_L P, A_L).
 Pixel joined(const Pixel* over, const Pixel* behind, const float* picture) {
   Pixel pixel{};
   if (behind != nullptr && (*behind)[3] > 0) {
@@ -56,7 +56,7 @@ Pixel joined(const Pixel* over, const Pixel* behind, const float* picture) {
   return pixel;
 }
 
-/// Calls `pixel(index, value)` for each pixel of the picture that the annotation touches.
+/// Calls `pixel(index, value)` for each pixel of the image that the annotation touches.
 template <class Use>
 void for_each_pixel(const Image& picture, const TiledLayer& over, const TiledLayer& behind, const Use& use) {
   constexpr int side = TiledLayer::side;
@@ -139,7 +139,7 @@ void validate(const Annotation& annotation, const TransferFunction& transfer_fun
           "colour bar: its range, {} to {}, reaches 0 or less, where there are no logarithms; give `color_bar_range`",
           low, high));
   }
-  annotation::Typeface(12);  // finds a font, or says so
+  annotation::Typeface(12);  // throws if there is no font
 }
 
 }  // namespace v0_1

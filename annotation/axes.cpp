@@ -13,7 +13,7 @@ namespace {
 constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
 constexpr std::array<Pen, 3> axis_pens{Pen::x_axis, Pen::y_axis, Pen::z_axis};
 
-/// A label of this width with its middle there.
+/// A label of this text, centred at `middle`.
 Label centred(const Typeface& face, const glm::dvec2& middle, std::string text, Pen pen) {
   const double width = face.width(text);
   return {{middle.x - width / 2, middle.y + 0.36 * face.size()}, std::move(text), pen};
@@ -31,7 +31,7 @@ void add_arrow(Sketch& sketch, const glm::dvec2& from, const glm::dvec2& along, 
       Shape{{tip, tip - unit * head + across * (0.45 * head), tip - unit * head - across * (0.45 * head)}, pen});
 }
 
-/// Corners of a label's box and of the ones that are taken.
+/// Corners of a label's box, and of the boxes already placed.
 struct Box2 {
   glm::dvec2 low, high;
   [[nodiscard]] bool meets(const Box2& other) const {
@@ -39,7 +39,7 @@ struct Box2 {
   }
 };
 
-/// The data's box along one axis, drawn at one of its four edges along it.
+/// The scale along one axis of the data's box, drawn at one of its four edges in that direction.
 class EdgeAxis {
  public:
   EdgeAxis(Sketch& sketch, const Box& box, int axis, std::vector<Box2>& taken)
@@ -53,7 +53,7 @@ class EdgeAxis {
     if (!outlined) drawing.marks.emplace_back(Stroke{{line_[0], line_[1]}, sketch_.line_width(), Pen::ink});
     const double size = sketch_.typeface.size();
     const double tick = 0.4 * size;
-    // Labels that have no room beside another are left out.
+    // Labels that do not fit next to each other are left out.
     const int most = std::clamp(static_cast<int>(glm::length(line_[1] - line_[0]) / (4 * size)), 3, 10);
     std::vector<Tick> ticks = linear_ticks(box_.low[axis_], box_.high[axis_], most);
     double widest = 0;
@@ -67,14 +67,14 @@ class EdgeAxis {
     const glm::dvec2 middle = (line_[0] + line_[1]) * 0.5;
     const double beyond = tick + 0.9 * size + std::abs(outward_.x) * widest + std::abs(outward_.y) * size;
     const auto axis = static_cast<std::size_t>(axis_);
-    // A title is worth more than the label that may be in its way; it goes further out.
+    // A title takes precedence over labels in its way; it moves further out.
     for (int further = 0; further < 4; ++further)
       if (put(middle + outward_ * (beyond + further * size), sketch_.with_unit(axis_names[axis]), pen)) break;
   }
 
  private:
-  /// The edge at the border of the box's picture, low and to the left if there are several; with the eye in the box
-  /// the one that is longest on the picture. False if none is to be seen.
+  /// Chooses the edge at the silhouette of the box, low and to the left if there are several; if the eye is in the box,
+  /// the longest edge on the image. False if none is visible.
   bool choose() {
     const double margin = 0;
     double best = -std::numeric_limits<double>::infinity();
@@ -93,7 +93,7 @@ class EdgeAxis {
       if (glm::dot(outward, middle - inside) < 0) outward = -outward;
       const double side = sketch_.layout.width() + sketch_.layout.height();
       const bool at_border = faces_towards_eye(sketch_.screen, box_, edge) == 1;
-      // Low, then left; an edge at the border before any other.
+      // Low, then left; edges at the silhouette before any others.
       const double score =
           (at_border ? 10 : 0) + length / side + (outward.y - 0.7 * outward.x) + 0.1 * (middle.y - middle.x) / side;
       if (score <= best) continue;
@@ -102,7 +102,7 @@ class EdgeAxis {
     return std::isfinite(best);
   }
 
-  /// Where a value of the axis is on the edge's line; nothing if it is off the picture.
+  /// The position of a value on the edge's line; none if it is outside the image.
   [[nodiscard]] std::optional<glm::dvec2> place_of(double value) const {
     glm::dvec3 world = corner(box_, edge_.corner);
     world[axis_] = value;
@@ -112,7 +112,7 @@ class EdgeAxis {
     return at;
   }
 
-  /// A label that begins at `from` and goes outward, moved onto the picture; not where there is one already.
+  /// Puts a label that begins at `from` and extends outward, shifted into the image; false if it would overlap another.
   bool put(const glm::dvec2& from, const std::string& text, Pen pen) {
     const Typeface& face = sketch_.typeface;
     const glm::dvec2 half(face.width(text) / 2, 0.5 * face.size());
@@ -149,12 +149,12 @@ void add_triad(Sketch& sketch, Place place) {
   const ViewBasis& basis = sketch.screen.basis();
   std::array<int, 3> order{0, 1, 2};
   std::ranges::stable_sort(order, [&](int a, int b) { return basis.forward[a] > basis.forward[b]; });
-  for (const int axis : order) {  // the furthest first
+  for (const int axis : order) {  // farthest first
     const Pen pen = axis_pens[static_cast<std::size_t>(axis)];
     const glm::dvec2 along(basis.right[axis], -basis.up[axis]);
     add_arrow(sketch, middle, along * arm, pen);
     const double length = glm::length(along);
-    // Seen along its axis: the letter stands beside the middle.
+    // For an axis seen along its direction, the letter is next to the middle.
     const glm::dvec2 at =
         length > 0.15 ? along * arm + along / length * (0.7 * face.size()) : glm::dvec2(-0.6, 0.6) * face.size();
     sketch.sheet.on_top.marks.emplace_back(centred(face, middle + at, axis_names[static_cast<std::size_t>(axis)], pen));

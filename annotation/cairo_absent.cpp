@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Built in place of what draws with TESSERA_CAIRO=OFF.
+// Replaces the drawing sources if TESSERA_CAIRO is OFF.
 #include "tessera/annotation.hpp"
 #include "tessera/error.hpp"
 

@@ -17,7 +17,7 @@ struct Scale {
     if (!logarithmic) return std::lerp(low, high, t);
     return std::clamp(low * std::pow(high / low, t), low, high);
   }
-  /// In the middle if there is one value alone.
+  /// In the middle if there is only one value.
   [[nodiscard]] double place(double value) const {
     if (low == high) return 0.5;
     const double t = logarithmic ? std::log(value / low) / std::log(high / low)
@@ -29,12 +29,12 @@ struct Scale {
   }
 };
 
-/// Where the bar lies, whole pixels, and the pixel whose value is asked for: `steps` of them from the low end up.
+/// The bar's position in whole pixels, and its `steps` pixels, counted from the low end.
 struct Bar {
   int x, y, width, height;
   bool upright;
   [[nodiscard]] int steps() const { return upright ? height : width; }
-  /// Pixels along the bar where a part t of it is.
+  /// The pixel coordinate at fraction t of the bar.
   [[nodiscard]] double at(double t) const { return upright ? y + height * (1 - t) : x + width * t; }
 };
 
@@ -50,7 +50,8 @@ void add_colors(Sketch& sketch, const Bar& bar, const Scale& scale, const Transf
   sketch.sheet.on_top.swatches.push_back(std::move(swatch));
 }
 
-/// Extinction over the range, its largest there as high as `depth`: to the left of an upright bar, above a level one.
+/// Extinction over the range, scaled so that its largest value has height `depth`: to the left of an upright bar, above
+/// a horizontal one.
 void add_graph(Sketch& sketch, const Bar& bar, const Scale& scale, const TransferFunction& function, double depth) {
   std::vector<double> extinction;
   extinction.reserve(static_cast<std::size_t>(bar.steps()));
@@ -69,7 +70,7 @@ void add_graph(Sketch& sketch, const Bar& bar, const Scale& scale, const Transfe
   graph.corners.push_back(corner(bar.at(0), before));
   for (int i = 0; i < bar.steps(); ++i) {
     const double height = extinction[static_cast<std::size_t>(i)] / largest * depth;
-    // What rises by more than a pixel in one is a step, and upright.
+    // A change of more than a pixel within one pixel is a step, drawn vertically.
     if (std::abs(height - before) > 1) {
       graph.corners.push_back(corner(bar.at(i / steps), before));
       graph.corners.push_back(corner(bar.at(i / steps), height));
@@ -86,7 +87,7 @@ void add_graph(Sketch& sketch, const Bar& bar, const Scale& scale, const Transfe
   marks.emplace_back(std::move(line));
 }
 
-/// Round the bar, just outside of its colours.
+/// A frame around the bar, just outside its colours.
 void add_frame(Sketch& sketch, const Bar& bar) {
   const double w = sketch.line_width(), half = w / 2;
   const double left = bar.x - half, right = bar.x + bar.width + half;
@@ -104,11 +105,11 @@ double widest(const Typeface& face, const std::vector<Tick>& ticks) {
   return width;
 }
 
-/// Labels upright bars to their right.
+/// Labels upright bars on the right.
 void add_upright(Sketch& sketch, const ColorBar& bar, const TransferFunction& function, const Scale& scale) {
   const Typeface& face = sketch.typeface;
   const double size = face.size(), margin = sketch.layout.margin(), w = sketch.line_width();
-  // Room for a line of text in the corners, and for the title.
+  // Leaves space for a line of text in the corners, and for the title.
   const double length = std::floor(
       std::min(0.6 * sketch.layout.height(), sketch.layout.height() - 2 * (margin + 1.5 * face.line()) - face.line()));
   if (length < 2 * size) return;
@@ -138,7 +139,7 @@ void add_upright(Sketch& sketch, const ColorBar& bar, const TransferFunction& fu
   marks.emplace_back(Label{{corner->x + (right ? width - face.width(title) : 0), corner->y + face.ascent()}, title});
 }
 
-/// As many ticks as labels have room for side by side.
+/// As many ticks as have space for their labels side by side.
 std::vector<Tick> level_ticks(const Sketch& sketch, const Scale& scale, double length) {
   std::vector<Tick> ticks;
   for (int most = 10; most >= 2; --most) {
@@ -151,7 +152,7 @@ std::vector<Tick> level_ticks(const Sketch& sketch, const Scale& scale, double l
   return ticks;
 }
 
-/// Labels level bars below, their title above.
+/// Labels horizontal bars below, with their title above.
 void add_level(Sketch& sketch, const ColorBar& bar, const TransferFunction& function, const Scale& scale) {
   const Typeface& face = sketch.typeface;
   const double size = face.size(), w = sketch.line_width();
@@ -160,7 +161,7 @@ void add_level(Sketch& sketch, const ColorBar& bar, const TransferFunction& func
   const std::vector<Tick> ticks = level_ticks(sketch, scale, length);
   const double tick = std::round(0.35 * size), graph = std::round(1.2 * size), thick = std::max(4.0, std::round(size));
   const std::string title = face.fitted(clean_text(bar.title), sketch.layout.width() - 2 * sketch.layout.margin());
-  const double labels = widest(face, ticks);  // half of the outer ones' sticks out
+  const double labels = widest(face, ticks);  // half of each outer label extends beyond the bar
   const double head = title.empty() ? 0 : face.line();
   const double height = head + graph + 3 * w + thick + tick + face.line();
   const double width = std::max(length + labels, face.width(title));

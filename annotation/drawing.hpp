@@ -7,11 +7,11 @@
 #include <variant>
 #include <vector>
 
-/// What is to be drawn, as values, before any pixel is: in order, later over earlier, all halos under all ink.
-/// Lengths are pixels from the picture's top left corner, y downwards.
+/// A drawing as values, before it becomes pixels: drawn in order, later parts over earlier ones, all halos below all
+/// ink. Lengths are in pixels from the image's top left corner, y downwards.
 namespace tessera::annotation {
 
-/// Colours of lines and text; ink.hpp says which.
+/// Colours of lines and text; ink.hpp defines them.
 enum class Pen { ink, x_axis, y_axis, z_axis };
 
 /// A line through points.
@@ -21,7 +21,7 @@ struct Stroke {
   Pen pen = Pen::ink;
 };
 
-/// `at` is the left end of the base line.
+/// `at` is the left end of the baseline.
 struct Label {
   glm::dvec2 at;
   std::string text;  ///< clean UTF-8
@@ -35,7 +35,7 @@ struct Shape {
   double opacity = 1;
 };
 
-/// Whole pixels of given colours, opaque, row by row.
+/// Whole pixels in given colours, opaque, row by row.
 struct Swatch {
   int x, y, width, height;
   std::vector<glm::dvec3> colors;
@@ -43,13 +43,13 @@ struct Swatch {
 
 using Mark = std::variant<Stroke, Label, Shape>;
 
-/// One layer: swatches, and over them marks.
+/// One layer: swatches, and marks over them.
 struct Drawing {
   std::vector<Swatch> swatches;
   std::vector<Mark> marks;
 };
 
-/// All of an annotation: what lies behind the picture's data, what lies before that, and what is nowhere in the world.
+/// A whole annotation: parts behind the image's data, parts in front of them, and parts without a place in the world.
 struct Sheet {
   Drawing behind, before, on_top;
 };

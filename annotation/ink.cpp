@@ -9,7 +9,7 @@
 namespace tessera::annotation {
 namespace {
 
-/// IEC 61966-2-1, display value to linear light.
+/// IEC 61966-2-1: display value to linear light.
 double linear(double display) {
   return display <= 0.04045 ? display / 12.92 : std::pow((display + 0.055) / 1.055, 2.4);
 }
@@ -22,7 +22,7 @@ double luminance(const glm::dvec3& light) { return glm::dot(light, glm::dvec3(0.
 /// WCAG 2: 1 to 21.
 double contrast(double a, double b) { return (std::max(a, b) + 0.05) / (std::min(a, b) + 0.05); }
 
-/// Whether black is further from it than white: at either side of this the contrast is 4.58 at least.
+/// Whether black has more contrast to it than white: on either side of this value the contrast is at least 4.58.
 bool is_bright(double luminance) { return luminance > 0.1791; }
 
 }  // namespace
@@ -31,7 +31,7 @@ Ink::Ink(const AnnotationStyle& style) : display_(style.display_colors) {
   constexpr glm::dvec3 black(0), white(1);
   ink_ = style.ink ? *style.ink : !style.background || is_bright(light(*style.background)) ? black : white;
   dark_ = !is_bright(light(ink_));
-  // The background's own colour is not seen there; but it must not be that of the ink.
+  // The background's colour as halo is invisible on the background; but it must differ from the ink.
   const bool differs = style.background && is_bright(light(*style.background)) == dark_;
   halo_ = differs ? *style.background : dark_ ? white : black;
 }
@@ -45,8 +45,8 @@ glm::dvec3 Ink::color(Pen pen) const {
   static constexpr Colors bright{{{1.0, 0.45, 0.40}, {0.45, 0.90, 0.45}, {0.55, 0.70, 1.0}}};
   const glm::dvec3 shown = (dark_ ? dark : bright)[static_cast<std::size_t>(pen) - 1];
   const glm::dvec3 color = display_ ? shown : linear(shown);
-  // On a grey the axes have no colours.
-  constexpr double least = 3;  // what WCAG asks of graphics
+  // On grey the axes have no colours.
+  constexpr double least = 3;  // WCAG's minimum for graphics
   return contrast(light(color), light(halo_)) < least ? ink_ : color;
 }
 

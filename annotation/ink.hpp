@@ -8,13 +8,13 @@
 
 namespace tessera::annotation {
 
-/// Colours of a style, in the picture's own values (linear light, or display values).
+/// Colours of a style, in the image's own values (linear light, or display values).
 class Ink {
  public:
   explicit Ink(const AnnotationStyle& style);
 
   [[nodiscard]] glm::dvec3 color(Pen pen) const;
-  /// What surrounds all ink, so that it is read over anything.
+  /// The colour that surrounds all ink, so that it can be read over anything.
   [[nodiscard]] glm::dvec3 halo() const { return halo_; }
 
  private:

@@ -42,7 +42,7 @@ struct Block {
   }
 };
 
-/// How far the halo goes beyond the ink: round text as wide as a letter's stem, round lines less.
+/// How far the halo extends beyond the ink: for text the width of a letter's stem, for lines less.
 double halo_width(const Mark& mark, const Typeface& typeface) {
   if (const auto* stroke = std::get_if<Stroke>(&mark)) return std::max(1.0, 0.75 * stroke->width);
   return std::max(1.0, 0.12 * typeface.size());
@@ -54,7 +54,7 @@ Bounds bounds_of(const Mark& mark, const Typeface& typeface) {
   if (const auto* stroke = std::get_if<Stroke>(&mark)) {
     for (const glm::dvec2& p : stroke->points) bounds.add(p, stroke->width + halo);
   } else if (const auto* label = std::get_if<Label>(&mark)) {
-    // Letters may lean out of their advance.
+    // Letters may extend beyond their advance.
     const double size = typeface.size();
     bounds.add(label->at - glm::dvec2(0.5 * size, 1.2 * size), halo);
     bounds.add(label->at + glm::dvec2(typeface.width(label->text) + 0.5 * size, 0.6 * size), halo);
@@ -64,8 +64,8 @@ Bounds bounds_of(const Mark& mark, const Typeface& typeface) {
   return bounds;
 }
 
-/// One block of the picture as Cairo's mask. Marks that share a colour are drawn into it together and then taken into
-/// the layer, so that the layer's colours are as exact as floats are; Cairo has 8 bits.
+/// One block of the image as Cairo's mask. Marks that share a colour are drawn into it together and then added to the
+/// layer, so that the layer's colours have the precision of floats; Cairo has 8 bits.
 class Mask {
  public:
   Mask(const Block& block, const Typeface& typeface) : block_(block) {
@@ -76,7 +76,7 @@ class Mask {
     typeface.select(cairo_.get());
   }
 
-  /// With `widened` above 0, the mark and so much round it.
+  /// Draws the mark, extended by `widened` on all sides.
   void draw(const Mark& mark, const Bounds& bounds, double widened) {
     if (!block_.meets(bounds)) return;
     touched_.add(bounds);
@@ -90,7 +90,7 @@ class Mask {
       return;
     }
     if (const auto* label = std::get_if<Label>(&mark)) {
-      // As outlines: they lie where they should to a fraction of a pixel, and can be widened.
+      // As outlines: these are positioned to a fraction of a pixel, and can be widened.
       cairo_move_to(cairo, label->at.x, label->at.y);
       cairo_text_path(cairo, label->text.c_str());
     } else {
@@ -104,7 +104,7 @@ class Mask {
     cairo_fill(cairo);
   }
 
-  /// What has been drawn goes into the layer in one colour, and the mask is empty again.
+  /// Adds the contents of the mask to the layer in one colour, and clears the mask.
   void take(const glm::dvec3& color, double opacity, TiledLayer& layer) {
     if (touched_.right < touched_.left) return;
     const auto within = [](double v, int size) { return static_cast<int>(std::clamp(v, 0.0, double(size))); };
@@ -122,7 +122,7 @@ class Mask {
     for (int y = top; y < bottom; ++y) {
       unsigned char* row = pixels + y * stride;
       for (int x = left; x < right;) {
-        // Most is empty: eight pixels at once.
+        // Most of the mask is empty: skip eight pixels at once.
         if (std::uint64_t eight = 0; x + 8 <= right && (std::memcpy(&eight, row + x, 8), eight == 0)) {
           x += 8;
           continue;
@@ -153,8 +153,8 @@ void paint(const Swatch& swatch, TiledLayer& layer) {
       if (x >= 0 && y >= 0 && x < layer.size().width && y < layer.size().height) layer.blend(x, y, swatch.colors[i], 1);
 }
 
-/// Calls `in_block` for each block of the picture that one of the bounds meets, with a mask of it. A mask of the whole
-/// would be as large as the picture, and Cairo's images have at most 32767 pixels a side.
+/// Calls `in_block` for each block of the image that meets one of the bounds, with a mask of the block. A mask of the
+/// whole would be as large as the image, and Cairo's images have at most 32767 pixels per side.
 template <class InBlock>
 void for_each_block(std::span<const Bounds> bounds, const Typeface& typeface, ImageSize size, const InBlock& in_block) {
   constexpr int side = 1024;

@@ -8,7 +8,7 @@
 
 namespace tessera::annotation {
 
-/// Makes pixels of a drawing. What is off the picture is not drawn. Throws Error(system_failure) if Cairo fails.
+/// Renders a drawing to pixels. Parts outside the image are not drawn. Throws Error(system_failure) if Cairo fails.
 void paint(const Drawing& drawing, const Ink& ink, const Typeface& typeface, TiledLayer& layer);
 
 }  // namespace tessera::annotation

@@ -33,7 +33,7 @@ std::optional<glm::dvec2> Screen::pixel(const glm::dvec3& world) const {
 }
 
 std::optional<Segment> Screen::segment(const glm::dvec3& a, const glm::dvec3& b, double margin) const {
-  // Liang and Barsky's way, before the division by w: each bound is linear along the line.
+  // The algorithm of Liang and Barsky, before the division by w: each bound is linear along the line.
   const Homogeneous p = homogeneous(a), q = homogeneous(b);
   const double least = 1e-12 * std::max(std::abs(p.depth), std::abs(q.depth));
   double from = 0, to = 1;
@@ -51,7 +51,7 @@ std::optional<Segment> Screen::segment(const glm::dvec3& a, const glm::dvec3& b,
   if (!(from <= to)) return std::nullopt;
   const auto at = [&](double t) {
     const double w = std::lerp(p.w, q.w, t);
-    // Rounding may leave a cut end a little outside; and w at 0 where both ends are at the eye's plane.
+    // Rounding may leave a cut end slightly outside, and w at 0 if both ends are in the eye's plane.
     return glm::dvec2(std::clamp(std::lerp(p.x, q.x, t) / w, -margin, right),
                       std::clamp(std::lerp(p.y, q.y, t) / w, -margin, bottom));
   };

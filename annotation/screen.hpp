@@ -11,11 +11,11 @@
 
 namespace tessera::annotation {
 
-/// A straight line on the picture, pixels.
+/// A straight line on the image, in pixels.
 using Segment = std::array<glm::dvec2, 2>;
 
-/// Where points of the world are on a picture: pixels from its top left corner, y downwards; the centre of pixel (0,0)
-/// is at (0.5, 0.5).
+/// Projects world points to an image: pixels from its top left corner, y downwards; the centre of pixel (0,0) is at
+/// (0.5, 0.5).
 class Screen {
  public:
   /// Throws Error(bad_input) for an invalid view.
@@ -24,17 +24,17 @@ class Screen {
   [[nodiscard]] const View& view() const { return view_; }
   [[nodiscard]] const ViewBasis& basis() const { return basis_; }
 
-  /// Nothing for points that are not before the eye, in either projection. May be off the picture.
+  /// None for points that are not in front of the eye, in either projection. May be outside the image.
   [[nodiscard]] std::optional<glm::dvec2> pixel(const glm::dvec3& world) const;
 
-  /// The part of a line of the world that is before the eye and on the picture or within `margin` pixels of it; nothing
-  /// if there is none. Ends that are cut lie at the margin, so that numbers stay small.
+  /// The part of a world line that is in front of the eye and on the image or within `margin` pixels of it; none if
+  /// there is no such part. Cut ends are at the margin, so that numbers stay small.
   [[nodiscard]] std::optional<Segment> segment(const glm::dvec3& a, const glm::dvec3& b, double margin) const;
 
-  /// Pixels of a world unit across the view, at the focal point's depth; orthographic: anywhere.
+  /// Pixels per world unit across the view, at the focal point's depth; orthographic: anywhere.
   [[nodiscard]] double pixels_per_unit() const;
 
-  /// Whether a side of the box, the one at its `high` or low end of an axis, looks towards the eye.
+  /// Whether a side of the box, at the `high` or low end of an axis, faces the eye.
   [[nodiscard]] bool faces_eye(const Box& box, int axis, bool high) const;
 
  private:
@@ -46,13 +46,13 @@ class Screen {
 
   View view_;
   ViewBasis basis_;
-  double scale_;  ///< pixels of a unit across the view, perspective: at depth 1
+  double scale_;  ///< pixels per unit across the view, perspective: at depth 1
 };
 
-/// A corner of a box by three bits, of which a set one is the high end of x, y, z.
+/// A corner of a box by three bits; a set bit means the high end of x, y, z.
 glm::dvec3 corner(const Box& box, int bits);
 
-/// An edge of a box: the bits of the corner with the lower number, and the axis it runs along.
+/// An edge of a box: the bits of the corner with the lower number, and the axis of its direction.
 struct BoxEdge {
   int corner, axis;
 };
@@ -60,7 +60,7 @@ struct BoxEdge {
 /// All twelve, along x, then y, then z.
 std::array<BoxEdge, 12> box_edges();
 
-/// How many of the two faces that meet at the edge look towards the eye.
+/// How many of the two faces that meet at the edge face the eye.
 int faces_towards_eye(const Screen& screen, const Box& box, const BoxEdge& edge);
 
 }  // namespace tessera::annotation

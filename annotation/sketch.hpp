@@ -13,7 +13,7 @@
 
 namespace tessera::annotation {
 
-/// Gives each thing its room at its place.
+/// Assigns each element a rectangle at its position.
 class Layout {
  public:
   Layout(ImageSize size, double margin) : size_(size), margin_(margin) {}
@@ -21,15 +21,15 @@ class Layout {
   [[nodiscard]] double margin() const { return margin_; }
   [[nodiscard]] double width() const { return size_.width; }
   [[nodiscard]] double height() const { return size_.height; }
-  /// Top left corner of the next so large a rectangle at a place; nothing if it would not be on the picture.
+  /// Top left corner of the next rectangle of this size at a position; none if it would not be on the image.
   std::optional<glm::dvec2> take(Place place, double width, double height);
-  /// Low and high corners of all that were given.
+  /// Low and high corners of all assigned rectangles.
   [[nodiscard]] const std::vector<std::array<glm::dvec2, 2>>& taken() const { return taken_; }
 
  private:
   ImageSize size_;
   double margin_;
-  std::array<double, 8> used_{};  ///< by place: from the margin inwards
+  std::array<double, 8> used_{};  ///< by position: extent from the margin inwards
   std::vector<std::array<glm::dvec2, 2>> taken_;
 };
 
@@ -37,7 +37,7 @@ class Layout {
 int column_of(Place place);
 int row_of(Place place);
 
-/// What the parts of an annotation draw with, and on.
+/// The tools and the sheet shared by the parts of an annotation.
 struct Sketch {
   const Screen& screen;
   const Typeface& typeface;
@@ -45,9 +45,9 @@ struct Sketch {
   Layout layout;
   Sheet sheet{};
 
-  /// Of lines, pixels: whole, so that level and upright lines are sharp.
+  /// Width of lines in pixels: whole, so that horizontal and vertical lines are sharp.
   [[nodiscard]] double line_width() const;
-  /// Where a level or upright line's middle is best: the nearest place at which it covers whole pixels.
+  /// The nearest position for the middle of a horizontal or vertical line at which it covers whole pixels.
   [[nodiscard]] double crisp(double at) const;
   /// `name`, with the world's unit in brackets if it is known.
   [[nodiscard]] std::string with_unit(const std::string& name) const;
@@ -58,7 +58,7 @@ std::array<double, 2> range_of(const ColorBar& bar, const TransferFunction& func
 
 void add_color_bar(Sketch& sketch, const ColorBar& bar, const TransferFunction& function);
 void add_triad(Sketch& sketch, Place place);
-/// Last: its labels stay clear of what has been placed. `outlined`: the box's edges are drawn already.
+/// Call it last: its labels avoid what has been placed. `outlined`: the box's edges are already drawn.
 void add_box_axes(Sketch& sketch, const Box& box, bool outlined);
 void add_outline(Sketch& sketch, const Box& box);
 void add_scale_bar(Sketch& sketch, const ScaleBar& bar);

@@ -9,11 +9,11 @@
 namespace tessera::annotation {
 namespace {
 
-/// m times ten to the e, m of 1, 2, 5: a step between ticks.
+/// m times ten to the e, with m of 1, 2, 5: a step between ticks.
 struct Step {
   int mantissa, exponent;
 
-  /// The double next to k steps, but for powers of ten that are not exact.
+  /// The double nearest to k steps, except with powers of ten that are not exact.
   [[nodiscard]] double times(double k) const {
     const double multiple = k * mantissa;
     // A division by an exact power of ten is rounded once; a product with an inexact one twice.
@@ -33,7 +33,7 @@ Step step_at_most(double limit) {
   return step;
 }
 
-/// 1.50e+07 to 1.5e7; what has no exponent stays.
+/// 1.50e+07 becomes 1.5e7; text without an exponent does not change.
 std::string brief(const std::string& text) {
   const std::size_t e = text.find('e');
   if (e == std::string::npos) return text;
@@ -45,12 +45,12 @@ std::string brief(const std::string& text) {
   return fmt::format("{}e{}", mantissa, std::stoi(text.substr(e + 1)));
 }
 
-/// A power of ten: what label_of() writes, but shorter where that has five letters or more.
+/// A power of ten as in label_of(), but shorter if that has five characters or more.
 std::string power_label(int e) {
   return e < -3 || e > 4 ? fmt::format("1e{}", e) : fmt::format("{:.{}f}", std::pow(10.0, e), std::max(-e, 0));
 }
 
-/// Written to the decimal of ten to the `exponent`.
+/// A number with the decimals of ten to the `exponent`.
 std::string label_of(double value, int exponent) {
   const double size = std::abs(value);
   if (size == 0 && exponent < -4) return "0";
@@ -69,9 +69,9 @@ std::vector<Tick> linear_ticks(double low, double high, int most) {
   if (low == high) return {{low, number_words(low)}};
   most = std::max(most, 2);
   const double largest = std::max(std::abs(low), std::abs(high));
-  const double width = high / 2 - low / 2;  // halves, that 1e308 does not overflow
+  const double width = high / 2 - low / 2;  // halves, so that 1e308 does not overflow
   if (width <= largest * 1e-12) return {{low, brief(fmt::format("{}", low))}, {high, brief(fmt::format("{}", high))}};
-  // Ends that are multiples but for rounding count.
+  // Ends that are multiples up to rounding count.
   constexpr double slack = 1e-6;
   const auto first_of = [&](const Step& s) { return std::ceil(low / s.times(1) - slack) + 0.0; };  // no -0
   const auto last_of = [&](const Step& s) { return std::floor(high / s.times(1) + slack); };

@@ -11,11 +11,11 @@
 
 namespace tessera::annotation {
 
-/// A layer over a picture, most of it empty: pixels come in tiles as they are touched.
+/// A layer over an image, most of it empty: tiles of pixels are allocated when they are touched.
 class TiledLayer {
  public:
   static constexpr int side = 16;  ///< of a tile
-  /// Row-major, premultiplied, in the picture's own values.
+  /// Row-major, premultiplied, in the image's own values.
   using Pixel = std::array<float, 4>;
   using Tile = std::array<Pixel, static_cast<std::size_t>(side) * side>;
 
@@ -27,17 +27,17 @@ class TiledLayer {
   [[nodiscard]] ImageSize size() const { return size_; }
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }
-  /// Null if nothing has touched it.
+  /// Null for an untouched tile.
   [[nodiscard]] const Tile* tile(int column, int row) const { return tiles_[index(column, row)].get(); }
 
-  /// A pixel of the picture, to be written.
+  /// A pixel of the image, for writing.
   [[nodiscard]] Pixel& at(int x, int y) {
     std::unique_ptr<Tile>& tile = tiles_[index(x / side, y / side)];
     if (!tile) tile = std::make_unique<Tile>();  // of zeros
     return (*tile)[static_cast<std::size_t>(y % side) * side + static_cast<std::size_t>(x % side)];
   }
 
-  /// `color` over what is there.
+  /// Composites `color` over the pixel.
   void blend(int x, int y, const glm::dvec3& color, double alpha) {
     Pixel& pixel = at(x, y);
     const auto a = static_cast<float>(alpha);

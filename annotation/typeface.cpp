@@ -23,7 +23,7 @@ Typeface::Typeface(double size) : size_(size) {
   cairo_scaled_font_t* font = cairo_get_scaled_font(measure_.get());
   if (const cairo_status_t status = cairo_status(measure_.get()); status != CAIRO_STATUS_SUCCESS)
     throw Error(ErrorCode::system_failure, fmt::format("annotation: Cairo fails: {}", cairo_status_to_string(status)));
-  // Without a font of the machine's Cairo takes one of its own, of ASCII in strokes.
+  // If the machine has no font, Cairo uses its own, with ASCII strokes.
   if (cairo_scaled_font_get_type(font) == CAIRO_FONT_TYPE_USER)
     throw Error(ErrorCode::system_failure,
                 "annotation: no font is found; install one that fontconfig knows (Debian: fonts-dejavu-core)");
@@ -51,7 +51,7 @@ double Typeface::width(const std::string& text) const {
 }
 
 std::string Typeface::fitted(const std::string& text, double room) const {
-  constexpr std::size_t longest = 1000;  // letters that are looked at, from either end
+  constexpr std::size_t longest = 1000;  // most letters examined at either end
   const auto begins = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xC0u) != 0x80u; };
   std::vector<std::size_t> after, before;  // where the first k letters end, and the last k begin
   for (std::size_t i = 0; i < text.size() && after.size() <= longest; ++i)
@@ -63,7 +63,7 @@ std::string Typeface::fitted(const std::string& text, double room) const {
   before.push_back(text.size());
   for (std::size_t i = text.size(); i > 0 && before.size() <= longest; --i)
     if (begins(i - 1)) before.push_back(i - 1);
-  const auto with = [&](std::size_t kept) {  // more of the beginning than of the end, where a unit may be
+  const auto with = [&](std::size_t kept) {  // more of the beginning than of the end, which may be a unit
     return text.substr(0, after[kept - kept / 3]) + "…" + text.substr(before[kept / 3]);
   };
   std::size_t fits = 0, too_many = after.size() - 1;

@@ -5,33 +5,33 @@
 #include <string>
 
 extern "C" {
-typedef struct _cairo cairo_t;                      // NOLINT(bugprone-reserved-identifier, modernize-use-using): theirs
+typedef struct _cairo cairo_t;  // NOLINT(bugprone-reserved-identifier, modernize-use-using): Cairo's
 typedef struct _cairo_font_face cairo_font_face_t;  // NOLINT(bugprone-reserved-identifier, modernize-use-using)
 }
 
 namespace tessera::annotation {
 
-/// `text` as clean UTF-8 on one line: each byte that is none becomes U+FFFD, control characters become blanks.
+/// `text` as valid UTF-8 on one line: each invalid byte becomes U+FFFD, control characters become blanks.
 std::string clean_text(const std::string& text);
 
-/// The font at one size, by Cairo: DejaVu Sans, or what the machine's fontconfig gives in its place. Letters that the
-/// font lacks are boxes.
+/// The font at one size, from Cairo: DejaVu Sans, or fontconfig's replacement. Letters that the font lacks are boxes.
 class Typeface {
  public:
   /// `size` in pixels. Throws Error(system_failure) if there is no font.
   explicit Typeface(double size);
 
   [[nodiscard]] double size() const { return size_; }
-  /// From the base line up, and down, pixels.
+  /// Distance from the baseline up, and down, in pixels.
   [[nodiscard]] double ascent() const { return ascent_; }
   [[nodiscard]] double descent() const { return descent_; }
   [[nodiscard]] double line() const { return ascent_ + descent_; }
-  /// Of clean text.
+  /// `text` must be clean.
   [[nodiscard]] double width(const std::string& text) const;
-  /// Clean text that is at most so wide: its middle gives way to "…". Empty if no letter beside that has room.
+  /// Shortens clean text to at most this width, replacing its middle by "…". Empty if not even one letter fits next to
+  /// that.
   [[nodiscard]] std::string fitted(const std::string& text, double width) const;
 
-  /// Makes this the font of a context, unhinted: letters have the same form wherever they stand.
+  /// Makes this the font of a context, unhinted, so that letters have the same shape at any position.
   void select(cairo_t* cairo) const;
 
  private:
