@@ -12,7 +12,7 @@
 namespace tessera::server {
 namespace {
 
-/// In a time that does not tell how much of it is right.
+/// Compares in a time that does not depend on how many characters match.
 bool same(std::string_view given, std::string_view token) {
   if (given.size() != token.size()) return false;
   unsigned char differ = 0;
@@ -20,7 +20,7 @@ bool same(std::string_view given, std::string_view token) {
   return differ == 0;
 }
 
-/// 127.0.0.0/8 in four numbers, not a name that begins so.
+/// Whether the name is an address of 127.0.0.0/8 in four numbers, not a name that begins like one.
 bool is_loopback_v4(std::string_view name) {
   if (!name.starts_with("127.") || std::ranges::count(name, '.') != 3) return false;
   return std::ranges::all_of(name, [](char c) { return c == '.' || is_digit(c); });
@@ -28,7 +28,7 @@ bool is_loopback_v4(std::string_view name) {
 
 bool is_loopback(std::string_view name) { return name == "localhost" || name == "::1" || is_loopback_v4(name); }
 
-/// `host:port` without the port that its scheme has anyway.
+/// `host:port` without the default port of its scheme.
 std::string plain_authority(std::string_view authority, std::string_view port) {
   std::string result = lower_case(authority);
   if (result.ends_with(port)) result.resize(result.size() - port.size());
@@ -115,7 +115,7 @@ bool Access::allowed(std::string_view name) const {
 
 bool Access::has_token(const Credentials& credentials) const {
   if (const auto given = query_value(credentials.query, "token"); given && same(*given, token_)) return true;
-  constexpr std::string_view bearer = "bearer ";  // RFC 9110, 11.1: in any case
+  constexpr std::string_view bearer = "bearer ";  // RFC 9110, 11.1: case-insensitive
   if (lower_case(std::string(credentials.authorization.substr(0, bearer.size()))) == bearer &&
       same(credentials.authorization.substr(bearer.size()), token_))
     return true;

@@ -26,7 +26,7 @@ constexpr std::array routes = {
     Route{"api/verify", false, true}, Route{"api/check", true, true},      Route{"api/progress", true, false},
     Route{"picture", true, true},     Route{"film", false, true}};
 
-/// Of a GET, the body that a POST would have.
+/// The body of a request; for GET, the body of the equivalent POST.
 Json body_of(const Request& request) {
   if (request.method == "POST") return parse_body(request.body);
   Json body = Json::object();
@@ -52,7 +52,7 @@ class PlainWork final : public ApiWork {
   ApiResult answer() {
     if (!body_) body_ = body_of(request_);
     const std::string& path = request_.path;
-    if (path == "film" && !film_) film_.emplace(*body_);  // what it has wrong is said before data are waited for
+    if (path == "film" && !film_) film_.emplace(*body_);  // reports errors before data are read
     const bool is_of_base = !body_->contains("state") && (path == "api/data" || path == "api/check");
     if (is_of_base) (*body_)["state"] = context_.reader.base();
     const Json& state = state_of(*body_);
@@ -83,7 +83,7 @@ class PlainWork final : public ApiWork {
     return probe_answer(context_, open, *body_);
   }
 
-  /// Who asks what data there is hears that it is being read; others wait.
+  /// A request for the data's description is answered with the reading progress; others wait.
   ApiResult wait() {
     if (request_.path != "api/data") return {std::nullopt, true};
     Json text = {{"reading", true}, {"stage", "reading"}, {"fraction", nullptr}};

@@ -13,10 +13,10 @@
 #include "server/service.hpp"
 #include "server/stage.hpp"
 
-/// What requests are answered with, beside the frames of clients (docs/SERVER.md).
+/// Answers to requests, other than the frames of clients (docs/SERVER.md).
 namespace tessera::server {
 
-/// How far the film, or the picture, is that is being made; of all threads.
+/// Progress of the film or image that is being made; may be used from all threads.
 class LongProgress {
  public:
   void set(std::optional<double> fraction);
@@ -27,7 +27,7 @@ class LongProgress {
   std::optional<double> fraction_;
 };
 
-/// What answers are made of. `stage` and `reader` are of the thread that renders.
+/// Context of answers. `stage` and `reader` belong to the rendering thread.
 struct ApiContext {
   SceneReader& reader;
   Stage& stage;
@@ -36,32 +36,32 @@ struct ApiContext {
   Precedence& precedence;
 };
 
-/// A turn's result: the answer, or none yet.
+/// The result of a turn: the answer, or none yet.
 struct ApiResult {
   std::optional<Response> response{};
   bool waits_for_data = false;
-  bool is_long = false;  ///< what is left takes long, and needs nothing of the rendering thread if there is one rank
+  bool is_long = false;  ///< the rest takes long, and needs nothing from the rendering thread if there is one rank
 };
 
-/// A request that is being answered, in turns, on the thread that renders; long ones perhaps on another one from the
-/// turn on that said so.
+/// A request that is answered in turns on the rendering thread; long work may continue on another thread after the turn
+/// that sets is_long.
 class ApiWork {
  public:
   virtual ~ApiWork() = default;
   ApiWork() = default;
   ApiWork(const ApiWork&) = delete;
   ApiWork& operator=(const ApiWork&) = delete;
-  /// Does not throw what a request is to blame for; on several ranks what ends the run.
+  /// Does not throw errors of the request; on several ranks throws errors that end the run.
   virtual ApiResult turn() = 0;
 };
 std::unique_ptr<ApiWork> make_api_work(Request request, const ApiContext& context, std::stop_token stop);
 
-/// From any thread: what needs no data, and no waiting: progress, unknown paths and methods.
+/// Answers, from any thread, that need neither data nor waiting: progress, unknown paths and methods.
 std::optional<Response> answer_at_once(const Request& request, const ApiContext& context);
 
-// The answers, each of a body, once the data is there.
+// The answers, each for a body, once the data are available.
 
-/// A scene with its data at hand.
+/// A scene with its data.
 struct OpenScene {
   const Json& state;
   std::shared_ptr<const Scene> scene;
@@ -72,10 +72,10 @@ Json histogram_answer(const ApiContext& context, const OpenScene& open, const Js
 Json function_answer(const ApiContext& context, const OpenScene& open);
 Json camera_answer(const OpenScene& open, const Json& body);
 Json probe_answer(const ApiContext& context, const OpenScene& open, const Json& body);
-/// Whether colors go by the logarithm: as the state has it, else as the server was started.
+/// Whether colours depend on the logarithm: as in the state, otherwise as the server was started.
 bool is_logarithmic(const ApiContext& context, const OpenScene& open);
 
-// Work that takes long.
+// Long work.
 
 std::unique_ptr<ApiWork> make_picture_work(const ApiContext& context, const OpenScene& open, const Json& body,
                                            std::stop_token stop);
@@ -83,10 +83,10 @@ std::unique_ptr<ApiWork> make_verify_work(const ApiContext& context, const OpenS
                                           std::stop_token stop);
 std::unique_ptr<ApiWork> make_check_work(const OpenScene& open);
 
-/// What a body asks for of a film (api_film.cpp). Throws Error(bad_input).
+/// The film requested by a body (api_film.cpp). Throws Error(bad_input).
 struct FilmPlan {
   explicit FilmPlan(const Json& body);
-  /// Of frame `number`; `first` is the scene's.
+  /// The camera of frame `number`; `first` is the scene's.
   [[nodiscard]] Camera camera(std::int64_t number, const Camera& first) const;
 
   std::string format = "mp4";
@@ -97,17 +97,17 @@ struct FilmPlan {
 std::unique_ptr<ApiWork> make_film_work(const ApiContext& context, const OpenScene& open, FilmPlan plan,
                                         std::stop_token stop);
 
-/// What films can be made here: "formats", and the "problem" with those that are left out, or null.
+/// The films that this server can make: "formats", and the "problem" with missing ones, or null.
 Json films_json();
 
 Response json_response(const Json& json);
-/// Of work that was asked to stop.
+/// The answer for work that was stopped.
 Response stopped_response();
 
-/// What an exception is to who asked: 400 for what the request is to blame for. Throws it again if it ends the run.
+/// The answer for an exception: 400 for errors of the request. Rethrows it if it ends the run.
 Response response_to(const std::exception_ptr& thrown, const ApiContext& context);
 
-/// A camera as camera files have it.
+/// A camera in the form of camera files.
 Json json_of(const Camera& camera);
 
 }  // namespace tessera::server

@@ -83,7 +83,7 @@ std::uint64_t cells_of(const Dataset& data) {
   return cells;
 }
 
-/// The state with all that it leaves to defaults said.
+/// The state with all defaults filled in.
 Json resolved(const ApiContext& context, const OpenScene& open) {
   const Dataset& data = open.held->data;
   const LoadedTransferFunction& loaded = context.stage.function(*open.held, *open.scene);
@@ -97,12 +97,12 @@ Json resolved(const ApiContext& context, const OpenScene& open) {
   if (!data.shows_shape()) state["field"] = open.scene->field_word(data);
   const std::uint64_t steps = std::max<std::uint64_t>(data.time_steps(), context.reader.times().size());
   if (steps > 1 && !state.contains("time-step")) {
-    const Json base = context.reader.base();  // of a series, its first step
+    const Json base = context.reader.base();  // for a series, its first step
     const auto begun_with = base.find("time-step");
     state["time-step"] = begun_with != base.end() ? *begun_with : Json(fmt::format("{}", steps - 1));
   }
   if (!state.contains("transfer-function")) {
-    // The very function of the first picture, which goes by how the field's values share the volume.
+    // The exact function of the first image, which depends on how the field's values are distributed over the volume.
     for (const OptionRow* row : option_rows(Trait::knots)) {
       const std::string in_it(row->key());
       if (context.reader.fixes(in_it))

@@ -21,7 +21,7 @@ PictureFormat picture_format(const Json& body) {
   throw bad_input("format: is none of a picture; use png, exr or jpg");
 }
 
-/// A picture as `tessera render` writes it.
+/// Renders an image as `tessera render` writes it.
 class PictureWork final : public ApiWork {
  public:
   PictureWork(const ApiContext& context, const OpenScene& open, const Json& body, std::stop_token stop)

@@ -15,7 +15,7 @@ namespace {
 
 Json place_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
-/// null where it is not a number, which JSON cannot say.
+/// null if the value is not finite, which JSON cannot represent.
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 Json point_json(const std::optional<RayPoint>& point, const char* name) {

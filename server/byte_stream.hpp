@@ -28,7 +28,7 @@ namespace tessera::server {
 class Bytes {
  public:
   using Done = std::function<void(boost::system::error_code, std::size_t)>;
-  /// Up to so many pieces of memory in one operation; unused ones are empty.
+  /// Most pieces of memory in one operation; unused ones are empty.
   static constexpr std::size_t most_pieces = 8;
   using ReadPieces = std::array<boost::asio::mutable_buffer, most_pieces>;
   using WritePieces = std::array<boost::asio::const_buffer, most_pieces>;
@@ -43,7 +43,7 @@ class Bytes {
   virtual void handshake(std::function<void(boost::system::error_code)> done) = 0;
   virtual void read_some(const ReadPieces& pieces, Done done) = 0;
   virtual void write_some(const WritePieces& pieces, Done done) = 0;
-  /// Ends what this side sends, as a WebSocket does after its last frame.
+  /// Ends sending from this side, as a WebSocket does after its last frame.
   virtual void shut_down(std::function<void(boost::system::error_code)> done) = 0;
 };
 
@@ -77,7 +77,7 @@ class ByteStream {
   }
 
  private:
-  /// std::function copies what it holds; Beast's handlers can be moved only.
+  /// std::function copies its target, but Beast's handlers can only be moved.
   template <class Handler>
   static Bytes::Done held(Handler handler) {
     return [shared = std::make_shared<Handler>(std::move(handler))](boost::system::error_code error,
@@ -98,7 +98,7 @@ class ByteStream {
   std::unique_ptr<Bytes> bytes_;
 };
 
-/// What Beast's WebSocket calls to end a connection in order, and where a limit of time is over.
+/// Beast's WebSocket calls it to end a connection in order, or when a time limit is exceeded.
 template <class Handler>
 void async_teardown(boost::beast::role_type /*role*/, ByteStream& stream, Handler&& handler) {
   stream.bytes().shut_down([shared = std::make_shared<std::decay_t<Handler>>(std::forward<Handler>(handler))](

@@ -32,7 +32,7 @@ std::string_view view_of(beast::string_view text) { return {text.data(), text.si
 
 using HttpRequest = http::request<http::string_body>;
 
-/// A body that several may hold.
+/// A shared body of a response.
 struct SharedBody {
   using value_type = SharedBytes;
   static std::uint64_t size(const value_type& body) { return body->size(); }
@@ -62,14 +62,14 @@ Credentials credentials_of(const HttpRequest& request, std::string_view query) {
           view_of(request["X-Tessera-Token"])};
 }
 
-/// Path and query of a target.
+/// Splits a target into path and query.
 std::pair<std::string_view, std::string_view> split_target(std::string_view target) {
   const std::size_t mark = target.find('?');
   if (mark == std::string_view::npos) return {target, {}};
   return {target.substr(0, mark), target.substr(mark + 1)};
 }
 
-/// Who expects JSON of its path, and not a page.
+/// Whether the path is answered with JSON and not with a page.
 bool is_api(std::string_view path) {
   return path.starts_with("api/") || path == "picture" || path == "film" || path == "socket";
 }
@@ -95,7 +95,7 @@ Response page_response(int status, std::string text) {
   return {status, "text/html; charset=utf-8", std::make_shared<const std::string>(std::move(text))};
 }
 
-/// A client's WebSocket: what it says goes to the service, what the service sends waits here for its turn.
+/// A client's WebSocket: passes its messages to the service, and queues what the service sends.
 class Socket final : public std::enable_shared_from_this<Socket> {
  public:
   Socket(ByteStream stream, Network& network) : stream_(std::move(stream)), network_(network) {}
@@ -107,7 +107,7 @@ class Socket final : public std::enable_shared_from_this<Socket> {
   Socket& operator=(const Socket&) = delete;
 
   void start(HttpRequest request) {
-    stream_.next_layer().tcp().expires_never();  // from here on the WebSocket's own limits
+    stream_.next_layer().tcp().expires_never();  // the WebSocket's own limits apply from here on
     websocket::stream_base::timeout limits = websocket::stream_base::timeout::suggested(beast::role_type::server);
     limits.handshake_timeout = network_.limits.request;
     stream_.set_option(limits);
@@ -125,7 +125,7 @@ class Socket final : public std::enable_shared_from_this<Socket> {
 
   void send(std::string text, std::string head, SharedBytes image) {
     if (closed_) return;
-    // Frames wait for the client's word, so that only who does not read has so many before it.
+    // Frames wait for the client's acknowledgement, so only a client that does not read has this many messages queued.
     if (messages_.size() >= network_.limits.waiting_messages) return drop();
     messages_.push_back({std::move(text), std::move(head), std::move(image)});
     if (messages_.size() == 1) write();
@@ -142,7 +142,7 @@ class Socket final : public std::enable_shared_from_this<Socket> {
     SharedBytes image;
   };
 
-  /// What the service holds of it: no more than a weak word.
+  /// The service's handle of the socket, a weak reference.
   class ClientChannel final : public Channel {
    public:
     explicit ClientChannel(const std::shared_ptr<Socket>& socket)
@@ -179,7 +179,7 @@ class Socket final : public std::enable_shared_from_this<Socket> {
     stream_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t /*bytes*/) {
       if (error) return self->drop();
       if (!self->stream_.got_text()) return self->read_next();
-      // The next one is read when this one is handled: so a client has one at a time.
+      // The next message is read after this one is handled, so that each client has one at a time.
       boost::asio::post(self->network_.parsing, [self] {
         self->network_.service.message(*self->client_, beast::buffers_to_string(self->buffer_.data()));
         boost::asio::post(self->stream_.get_executor(), [self] { self->read_next(); });
@@ -200,7 +200,7 @@ class Socket final : public std::enable_shared_from_this<Socket> {
     const std::array<boost::asio::const_buffer, 2> buffers = {
         is_text ? boost::asio::buffer(message.text) : boost::asio::buffer(message.head),
         is_text ? boost::asio::const_buffer() : boost::asio::buffer(*message.image)};
-    // The WebSocket's idle limit counts what comes, not what is not taken.
+    // The WebSocket's idle limit counts received data, not data that the client does not accept.
     stream_.next_layer().tcp().expires_after(2 * network_.limits.write);
     stream_.async_write(buffers, [self = shared_from_this()](error_code error, std::size_t /*bytes*/) {
       --self->network_.writing;
@@ -220,7 +220,7 @@ class Socket final : public std::enable_shared_from_this<Socket> {
     stream_.async_close(websocket::close_code::normal, [self = shared_from_this()](error_code /*error*/) {});
   }
 
-  /// Without a word to the other side, which is gone or does not listen.
+  /// Closes without notice: the other side is gone or does not read.
   void drop() {
     closed_ = true;
     stream_.next_layer().tcp().close();
@@ -245,7 +245,7 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
   }
   ~Connection() override {
     forget_stranger();
-    if (is_client_ && !is_socket_) --network_.connections;  // else the socket counts as it
+    if (is_client_ && !is_socket_) --network_.connections;  // the socket counts otherwise
     gone_.request_stop();
   }
   Connection(const Connection&) = delete;
@@ -271,7 +271,7 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
     stranger_.reset();
   }
 
-  /// Of a connection that has shown the token. False: there are too many.
+  /// Counts a connection that has shown the token. False if there are too many.
   bool admit() {
     if (is_client_) return true;
     if (network_.connections >= network_.limits.connections) return false;
@@ -291,7 +291,7 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
     });
   }
 
-  /// What could not be read is answered where somebody is still there, and the connection ends.
+  /// Answers a request that could not be read if the client is still there, and ends the connection.
   void answer_broken(const error_code& error) {
     int status = 0;
     if (error == http::error::body_limit)
@@ -316,7 +316,7 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
     const auto path = decoded(raw_path.starts_with('/') ? raw_path.substr(1) : raw_path, false);
     if (!path || !raw_path.starts_with('/'))
       return send(make_response(request_, error_response(400, "The address cannot be read.")));
-    // Whoever stands between, such as a proxy, may go by the other one.
+    // A proxy might use the other Host.
     if (request_.count(http::field::host) > 1)
       return send(make_response(request_, error_response(400, "The request has more than one Host.")));
     const auto refused = [&](int status, const std::string& sentence) {
@@ -361,13 +361,13 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
                               boost::asio::post(executor, [self = std::move(self), answer = std::move(answer)] {
                                 self->waiting_ = false;
                                 error_code none;
-                                self->tcp().socket().cancel(none);  // the watch
+                                self->tcp().socket().cancel(none);  // ends the watch for a closed connection
                                 self->send(make_response(self->request_, answer));
                               });
                             });
   }
 
-  /// Who goes away while an answer is made stops what makes it.
+  /// Stops the work on an answer if the client disconnects.
   void watch_for_end() {
     tcp().socket().async_wait(tcp::socket::wait_read, [self = shared_from_this()](error_code error) {
       if (error || !self->waiting_) return;
@@ -386,7 +386,7 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
     write_some();
   }
 
-  /// Piece by piece, so that the limit is of a piece: the whole may be long and the way narrow.
+  /// Writes piece by piece, so that the time limit applies to a piece: the whole may be long and the connection slow.
   void write_some() {
     tcp().expires_after(network_.limits.write);
     http::async_write_some(stream_, *serializer_, [self = shared_from_this()](error_code error, std::size_t /*b*/) {
@@ -407,7 +407,8 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
     pass_over(0);
   }
 
-  /// What comes after the last answer: who closes with bytes unread takes the answer from whoever still sends.
+  /// Discards what arrives after the last answer: closing with unread bytes could lose the answer for a client that
+  /// still sends.
   void pass_over(std::size_t passed) {
     constexpr std::size_t most = 64u << 20;
     if (passed > most) return tcp().close();
@@ -426,7 +427,7 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
   std::optional<HttpResponse> response_;
   std::optional<http::response_serializer<SharedBody>> serializer_;
   std::stop_source gone_;
-  std::optional<std::list<Stranger*>::iterator> stranger_;  ///< its place among them
+  std::optional<std::list<Stranger*>::iterator> stranger_;  ///< its place in Network::strangers
   bool waiting_ = false, is_client_ = false, is_socket_ = false;
 };
 

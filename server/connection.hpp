@@ -25,22 +25,22 @@ class Stranger {
   Stranger(const Stranger&) = delete;
   Stranger& operator=(const Stranger&) = delete;
   virtual ~Stranger() = default;
-  /// Closes it, without an answer, and takes it out of Network::strangers.
+  /// Closes it without an answer, and removes it from Network::strangers.
   virtual void turn_away() = 0;
 };
 
-/// What all connections share. Of the network's thread alone.
+/// State shared by all connections. Used only on the network's thread.
 struct Network {
   const Access& access;
   Service& service;
   NetworkLimits limits;
-  boost::asio::thread_pool& parsing;  ///< messages of sockets are handled there, as a long one takes a while
+  boost::asio::thread_pool& parsing;  ///< handles messages of sockets, as a long one takes a while
   std::size_t connections = 0;        ///< of clients that have shown the token
   std::list<Stranger*> strangers{};   ///< the oldest first
-  std::size_t writing = 0;            ///< responses and messages that are on their way
+  std::size_t writing = 0;            ///< responses and messages in progress
 };
 
-/// Takes care of a connection until it ends: HTTP requests one after the other, or a WebSocket.
+/// Handles a connection until it ends: HTTP requests one after the other, or a WebSocket.
 void start_connection(std::unique_ptr<Bytes> bytes, Network& network);
 
 }  // namespace tessera::server

@@ -11,8 +11,7 @@ namespace tessera::server {
 
 enum class PictureFormat { png, jpeg, exr };
 
-/// A rendered picture as the bytes of a file, those that `tessera render` writes for the scene, with what explains it
-/// drawn over it.
+/// A rendered image as the bytes of the file that `tessera render` writes for the scene, including its annotation.
 SharedBytes finished_picture(Image image, PictureFormat format, const Scene& scene, const View& view,
                              const Dataset& data, const TransferFunction& function);
 

@@ -9,14 +9,14 @@
 
 namespace tessera::server {
 
-/// A binary message but for the image's bytes, which follow: the header's length, 32 bits, little endian, and the
+/// A binary message without the bytes of the image that follow it: the header's length, 32 bits, little endian, and the
 /// header.
 std::string frame_head(const Json& header);
 
-/// JSON as text; what is not UTF-8, as file names may hold, is replaced.
+/// JSON as text; invalid UTF-8, which file names may contain, is replaced.
 std::string text_of(const Json& json);
 
-/// `bytes` as they stand.
+/// `bytes` as a string.
 std::string string_of(const std::vector<std::byte>& bytes);
 
 }  // namespace tessera::server

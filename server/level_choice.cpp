@@ -7,10 +7,10 @@
 namespace tessera::server {
 namespace {
 
-/// Of a frame's time, what does not go with its pixels: between what meshes of cells that cover many pixels take, and
-/// those of cells that cover none.
+/// The part of a frame's time that does not depend on its pixels: a compromise between meshes whose cells cover many
+/// pixels and those whose cells cover none.
 constexpr double part_of_data = 0.3;
-/// Larger pictures only where there is room for them, so that sizes do not go up and down.
+/// The size only grows if the estimated time is below this fraction of the budget, so that it does not oscillate.
 constexpr double room = 0.85;
 
 double pixels(std::size_t shrink) { return 1 / (shrinks.at(shrink) * shrinks.at(shrink)); }
@@ -29,7 +29,7 @@ std::size_t LevelChoice::fitting(std::size_t from, double ms) const {
 }
 
 void LevelChoice::took(std::size_t shrink, bool stand_in, double ms) {
-  if (stand_in != stand_in_) return;  // of what is not shown any more
+  if (stand_in != stand_in_) return;  // measured before the data or the preview changed
   measured_ = true;
   if (ms > budget_ms_) {
     const std::size_t to = fitting(shrink, ms);

@@ -8,15 +8,15 @@
 
 namespace tessera::server {
 
-/// Which part of a picture's sides pictures have while something moves.
+/// Factors by which the sides of images are reduced while something moves.
 inline constexpr std::array shrinks = {1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0};
 
-/// At least one pixel a side.
+/// At least one pixel per side.
 ImageSize shrunk(ImageSize size, double shrink);
 
-/// Chooses by measured times how large a client's pictures are while it moves: the largest that keep to a budget. Of a
-/// smaller picture a part of the time, that of the data, stays; so where even the smallest takes too long, a stand-in
-/// of the data is asked for.
+/// Chooses the size of a client's images while it moves, from measured times: the largest that meets a budget. Part of
+/// a frame's time depends on the data and does not shrink with the image; so if even the smallest size takes too long,
+/// a preview of the data is used (tessera/coarse_stand_in.hpp).
 class LevelChoice {
  public:
   explicit LevelChoice(double budget_ms) : budget_ms_(budget_ms) {}
@@ -25,13 +25,15 @@ class LevelChoice {
   [[nodiscard]] bool wants_stand_in() const { return stand_in_; }
   [[nodiscard]] double budget_ms() const { return budget_ms_; }
 
-  /// A frame of a size took so long, from the event to the client's word that it is painted. `stand_in`: of one.
+  /// Records the time of a frame from the event until the client reported it as painted. `stand_in`: it showed the
+  /// preview.
   void took(std::size_t shrink, bool stand_in, double ms);
-  /// A picture in full size took so long to render: what is known before anything moves, or of data that changed.
+  /// Records the rendering time of an image in full size: the only measurement before anything moves, or after the data
+  /// changed.
   void full_took(double ms);
 
  private:
-  /// The smallest step down whose time should be within the budget; past the last none is.
+  /// The first size from `from` on whose estimated time is within the budget; one past the last if there is none.
   [[nodiscard]] std::size_t fitting(std::size_t from, double ms) const;
 
   double budget_ms_;

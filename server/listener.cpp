@@ -63,7 +63,7 @@ struct Listener::State {
   void accept() {
     acceptor.async_accept([this](error_code error, tcp::socket socket) {
       if (!acceptor.is_open()) return;
-      if (error) {  // no more files, most likely: a while later there are
+      if (error) {  // probably out of file descriptors: try again later
         pause.expires_after(std::chrono::milliseconds(100));
         pause.async_wait([this](error_code stopped) {
           if (!stopped) accept();
@@ -77,9 +77,9 @@ struct Listener::State {
     });
   }
 
-  Network network;  // outlives the connections, which end with what runs them
+  Network network;  // outlives the connections, which end when `io` does
   asio::io_context io{1};
-  asio::thread_pool parsing{1};  // ends before `io`, whose sockets its work has
+  asio::thread_pool parsing{1};  // destroyed before `io`, whose sockets its work uses
   asio::executor_work_guard<asio::io_context::executor_type> until_stopped{io.get_executor()};
   std::shared_ptr<asio::ssl::context> tls;
   tcp::acceptor acceptor{io};

@@ -12,17 +12,17 @@
 
 namespace tessera::server {
 
-/// Lets short work (clients' views) go before long work (pictures, films) that runs at the same time on other threads:
-/// the long work stands still meanwhile, from one tile of a frame to the next. Where short work never ends, long work
-/// gets a quarter of the time all the same.
+/// Gives short work (clients' views) precedence over long work (images, films) that runs at the same time on other
+/// threads: long work pauses between tiles of a frame. If short work never ends, long work still gets a quarter of the
+/// time.
 class Precedence {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Around short work, by one thread.
+  /// Call before and after short work, on one thread.
   void begin_short(Clock::time_point now);
   void end_short(Clock::time_point now);
-  /// Of long work's threads: waits while short work goes first; returns at once when `stop` is asked for.
+  /// Called by threads of long work: waits while short work has precedence; returns at once if `stop` is requested.
   void pass(const std::stop_token& stop);
   [[nodiscard]] bool is_held() const;
 
@@ -30,14 +30,14 @@ class Precedence {
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
   bool held_ = false;
-  Clock::duration credit_ = most_credit;  ///< for how long short work may hold up the long one
+  Clock::duration credit_ = most_credit;  ///< how long short work may still hold up long work
   Clock::time_point since_{};             ///< when `held_` last changed
 
   static constexpr Clock::duration most_credit = std::chrono::seconds(3);
-  static constexpr int earned = 3;  ///< by so many times as long as it did not
+  static constexpr int earned = 3;  ///< gain of credit relative to the time without a hold
 };
 
-/// Calls `on_tile` with each tile of a frame, then lets short work go first.
+/// Calls `on_tile` with each tile of a frame, then gives precedence to short work.
 class YieldingSink final : public Sink {
  public:
   YieldingSink(Precedence& precedence, std::stop_token stop, std::function<void(const Tile&)> on_tile)

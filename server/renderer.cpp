@@ -31,7 +31,8 @@ std::string reading_text(const Reading& reading) {
   return text_of(text);
 }
 
-/// Hears of a frame's tiles: tells the client of long ones, and stops one that a newer state should not wait for.
+/// Receives a frame's tiles: reports the progress of long frames to the client, and stops a frame that a newer state
+/// should not wait for.
 class FrameProgress final : public Sink {
  public:
   FrameProgress(const FrameOrder& order, WorkQueue& queue, ImageSize size)
@@ -59,10 +60,10 @@ class FrameProgress final : public Sink {
   Clock::time_point next_ = Clock::now() + std::chrono::seconds(1);
 };
 
-/// A request, until it is answered.
+/// A request until it is answered.
 class ApiTask final : public Task, public std::enable_shared_from_this<ApiTask> {
  public:
-  /// `long_queue`: where long work goes on; null: here.
+  /// `long_queue`: for long work; null: on the same queue.
   ApiTask(Request request, const std::stop_token& gone, Service::Reply reply, const ApiContext& context,
           WorkQueue* long_queue)
       : work_(make_api_work(std::move(request), context, stop_.get_token())),
@@ -75,7 +76,7 @@ class ApiTask final : public Task, public std::enable_shared_from_this<ApiTask> 
     ApiResult result = work_->turn();
     if (result.response) return answer(*result.response);
     if (result.is_long && long_queue_ != nullptr) {
-      std::exchange(long_queue_, nullptr)->add(shared_from_this());  // which may have its turn at once
+      std::exchange(long_queue_, nullptr)->add(shared_from_this());  // it may have its turn at once
       return Turn::done;
     }
     return result.waits_for_data ? Turn::waits_for_data : Turn::again;
@@ -98,7 +99,7 @@ class ApiTask final : public Task, public std::enable_shared_from_this<ApiTask> 
   std::stop_callback<std::function<void()>> on_gone_;
 };
 
-/// Does long work, on a thread of its own, until the queue ends.
+/// Does long work on its own thread until the queue ends.
 class LongThread {
  public:
   explicit LongThread(WorkQueue& queue)
@@ -121,7 +122,7 @@ class LongThread {
 
  private:
   WorkQueue& queue_;
-  // Workers that stand still in Precedence::pass() do no work of others: there are as many more for views.
+  // Workers that wait in Precedence::pass() do no other work, so there are as many additional ones for views.
   tbb::global_control more_workers_;
   std::thread thread_;
 };
@@ -159,7 +160,7 @@ void Renderer::say_reading(const Reading& reading) {
 void Renderer::answer(Request request, std::stop_token gone, Reply reply) {
   const ApiContext context{reader_, stage_, settings_.threads, film_, picture_, precedence_};
   if (auto response = answer_at_once(request, context)) return reply(std::move(*response));
-  // The other ranks work for one thread of the first.
+  // The other ranks follow one thread of the first rank.
   WorkQueue* const long_queue = stage_.ranks() == 1 ? &long_queue_ : nullptr;
   queue_.add(std::make_shared<ApiTask>(std::move(request), gone, std::move(reply), context, long_queue));
 }
@@ -192,7 +193,7 @@ void Renderer::read_first() {
   try {
     const Json base = reader_.base();
     stage_.data(base, reader_.scene(base));
-  } catch (const Error&) {  // who asks for it is told
+  } catch (const Error&) {  // reported to the first client that asks for the data
     first_came_ = true;
   }
 }
@@ -229,7 +230,7 @@ FrameOutcome Renderer::render(const FrameOrder& order) {
     return make_frame(order);
   } catch (...) {
     const Error error = error_of(std::current_exception());
-    if (stage_.ranks() > 1 && error.code() != ErrorCode::bad_input) throw;  // the run's
+    if (stage_.ranks() > 1 && error.code() != ErrorCode::bad_input) throw;  // errors of the run
     order.channel->send_text(
         text_of({{"type", "error"}, {"number", order.number}, {"error", reader_.worded(error.what())}}));
   }
@@ -262,7 +263,7 @@ FrameOutcome Renderer::make_frame(const FrameOrder& order) {
   }
   const auto rendered_at = Clock::now();
   const PictureFormat format = order.level == Level::moving ? PictureFormat::jpeg : PictureFormat::png;
-  // A smaller picture is enlarged, and its annotation would be with it: text has a least size.
+  // A smaller image is enlarged by the page, and so would be its annotation: text has a minimum size.
   const SharedBytes bytes = order.level == Level::moving ? bare_picture(rendered.image, format, *scene)
                                                          : finished_picture(std::move(rendered.image), format, *scene,
                                                                             view, held->data, loaded.function);

@@ -15,25 +15,25 @@
 
 namespace tessera::server {
 
-/// What a server's requests are answered with, beside its data.
+/// Settings for answering a server's requests, other than its data.
 struct RendererSettings {
   double latency_ms = 100;
-  std::uint64_t memory_bytes = 4ull << 30;  ///< of data sets that are kept
+  std::uint64_t memory_bytes = 4ull << 30;  ///< for the data sets that are kept
   int threads = 0;
 };
 
-/// Renders for all clients of a server, on the thread that calls run(); pictures, films and other long work, where
-/// there is one rank, on a second one, so that views have their turn at any time.
+/// Renders for all clients of a server, on the thread that calls run(). With one rank, images, films and other long
+/// work are done on a second thread, so that views can be rendered at any time.
 class Renderer final : public Service {
  public:
   Renderer(SceneReader& reader, Job& job, const RendererSettings& settings);
   ~Renderer() override;
 
-  /// Until end() is called, and on several ranks all have come to their end. Throws what ends the run of all ranks.
+  /// Runs until end() is called and, on several ranks, all have ended. Throws errors that end the run of all ranks.
   void run();
-  /// From any thread: run() returns soon.
+  /// May be called from any thread: run() returns soon.
   void end();
-  /// Tells clients why the server ends.
+  /// Sends the reason why the server ends to the clients.
   void say_end(const std::string& reason);
   [[nodiscard]] bool is_reading() { return stage_.reading().has_value(); }
 
@@ -45,7 +45,7 @@ class Renderer final : public Service {
  private:
   FrameOutcome render(const FrameOrder& order);
   FrameOutcome make_frame(const FrameOrder& order);
-  /// What the server begins with is read at once.
+  /// Reads the data that the server was started with.
   void read_first();
   void say_reading(const Reading& reading);
   void data_came();

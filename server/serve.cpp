@@ -15,18 +15,17 @@
 namespace tessera::server {
 namespace {
 
-/// A launcher gives ranks a second between SIGTERM and their end; who is well says so in half of it.
+/// A launcher gives ranks a second between SIGTERM and their end; a working rank must report within half of it.
 constexpr std::chrono::milliseconds patience(500);
 
-/// An address as it stands in one of the web: IPv6 in brackets; all of a machine's by its loopback.
+/// An address as part of a URL: IPv6 in brackets; the loopback address for all addresses of a machine.
 std::string web_host(const std::string& address) {
   if (address == "0.0.0.0" || address == "::") return "127.0.0.1";
   return address.find(':') == std::string::npos ? address : "[" + address + "]";
 }
 
-/// Calls `late` unless the run comes to its end within `patience` after hurry(): some work cannot be stopped. And a
-/// launcher sends all ranks the same signal when its user ends the job and when a rank has died, which then does not
-/// answer.
+/// Calls `late` unless the run ends within `patience` after hurry(), since some work cannot be stopped. A launcher
+/// sends all ranks the same signal when its user ends the job and when a rank has died, which then does not answer.
 class EndWatch {
  public:
   explicit EndWatch(std::function<void()> late) : late_(std::move(late)) {}

@@ -18,21 +18,21 @@ struct ServeOptions {
   RendererSettings renderer;
 };
 
-/// What the server tells its caller.
+/// Callbacks of the server.
 struct ServeEvents {
-  /// Where a browser finds it, with its token; on the first rank.
+  /// The address for a browser, with the token; called on the first rank.
   std::function<void(const std::string& url)> listening;
-  /// It ended while something is in work that cannot be stopped, such as the reading of a file: to leave the process,
-  /// or return and wait for it. From any thread.
+  /// Called when the server ended during work that cannot be stopped, for example reading a file: exit the process, or
+  /// return to wait for the work. Called from any thread.
   std::function<void()> ended_at_work;
-  /// A signal came after the one that ends it: to leave the process at once. On any rank, from any thread.
+  /// Called for a second signal: exit the process at once. On any rank, from any thread.
   std::function<void(int signal)> hurried;
-  /// Of several ranks one is gone: to say so, and to leave the process. On any rank, from any thread.
+  /// Called when one of several ranks has been lost: report it and exit the process. On any rank, from any thread.
   std::function<void()> rank_lost;
 };
 
-/// Serves pictures until SIGINT, SIGTERM or SIGHUP comes, on all ranks of the job; the first one speaks with clients.
-/// Throws Error for options that cannot be, and what ends the run of all ranks.
+/// Serves images until SIGINT, SIGTERM or SIGHUP, on all ranks of the job; the first rank communicates with clients.
+/// Throws Error for invalid options, and errors that end the run of all ranks.
 void serve(const ServeOptions& options, SceneReader& reader, Job& job, const ServeEvents& events);
 
 }  // namespace tessera::server

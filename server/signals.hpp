@@ -6,8 +6,8 @@
 
 namespace tessera::server {
 
-/// While it lives the first SIGINT, SIGTERM or SIGHUP of this process calls `heard`, any further one `again` with its
-/// number, on a thread of its own. A SIGHUP that the caller has had ignored (nohup) stays ignored.
+/// While it exists, the first SIGINT, SIGTERM or SIGHUP of this process calls `heard`, any further one `again` with its
+/// number, on its own thread. A SIGHUP that the caller ignores (nohup) stays ignored.
 class Signals {
  public:
   Signals(std::function<void()> heard, std::function<void(int signal)> again);

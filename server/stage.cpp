@@ -19,7 +19,7 @@ constexpr std::size_t most_data_sets = 8, most_sessions = 3, most_functions = 16
 std::uint64_t bytes_of(const Dataset& data) {
   if (data.is_grid()) {
     const GridIndex samples = data.grid_geometry().samples();
-    return 8 * static_cast<std::uint64_t>(samples[0] * samples[1] * samples[2]);  // at most: who is mapped takes none
+    return 8 * static_cast<std::uint64_t>(samples[0] * samples[1] * samples[2]);  // at most: mapped files take none
   }
   const MeshArrays arrays = data.mesh_arrays();
   return 8 * std::uint64_t{arrays.points.size() + arrays.scalars.size()} + 20 * data.tet_count();
@@ -36,7 +36,7 @@ const char* stage_words(ReadProgress::Stage stage) {
   }
 }
 
-/// By a session of their own.
+/// Frames of a separate session.
 class OwnFrames final : public SceneFrames {
  public:
   OwnFrames(std::shared_ptr<HeldData> held, Settings settings, LoadedTransferFunction function)
@@ -56,7 +56,7 @@ class OwnFrames final : public SceneFrames {
   std::optional<Session> session_;
 };
 
-/// By the stage, with the other ranks.
+/// Frames of the stage, with the other ranks.
 class StageFrames final : public SceneFrames {
  public:
   StageFrames(Stage& stage, Json state, std::shared_ptr<const Scene> scene, LoadedTransferFunction function)
@@ -103,7 +103,7 @@ void Stage::keep(const Scene& scene, Dataset data) {
   entry.held = std::make_shared<HeldData>(std::move(data));
   entry.held->bytes = bytes;
   entries_.push_front(std::move(entry));
-  if (job_.rank() != 0) return;  // the first rank says what goes
+  if (job_.rank() != 0) return;  // the first rank decides what is dropped
   std::uint64_t sum = 0;
   std::size_t count = 0;
   for (auto at = entries_.begin(); at != entries_.end();) {
@@ -143,7 +143,7 @@ std::shared_ptr<HeldData> Stage::data(const Json& state, const std::shared_ptr<c
   if (auto held = find(*scene)) return held;
   if (const auto failed = failed_.find(scene->data_keys().front()); failed != failed_.end()) {
     const Error error = failed->second;
-    failed_.erase(failed);  // who asks again may have mended the file
+    failed_.erase(failed);  // the file may be correct when it is requested again
     throw error;
   }
   if (ranks() > 1) {
@@ -235,7 +235,7 @@ RenderedFrame Stage::render_stand_in(const Scene& scene, HeldData& held, const V
     settings.surfaces.triangles.clear();
     settings.integrator = {};
     settings.integrator.accuracy = 1e-2;
-    // By steps it takes a third of the time; surfaces and light have none.
+    // Sampling takes a third of the time, but supports neither surfaces nor light.
     if (settings.surfaces.iso.empty() && !settings.grid.shading && !settings.mesh.shading) {
       settings.integrator.kind = IntegratorKind::sampled;
       settings.grid.step = 2;
@@ -252,13 +252,13 @@ RenderedFrame Stage::render_stand_in(const Scene& scene, HeldData& held, const V
 void Stage::make_stand_in_together(const Json& state, HeldData& held) {
   held.stand_in_tried = true;
   const bool is_first = job_.rank() == 0;
-  if (held.data.is_grid() && !is_first) return;  // of a grid every rank has all samples
+  if (held.data.is_grid() && !is_first) return;  // for a grid every rank has all samples
   tell({{"do", "stand_in"}, {"state", state}});
   try {
     std::optional<Dataset> made = coarse_stand_in(held.data, {}, {}, job_.communicator());
     if (is_first) held.stand_in = std::move(made);
   } catch (const Error& error) {
-    if (error.code() != ErrorCode::bad_input) throw;  // else there is none, as if nobody had asked
+    if (error.code() != ErrorCode::bad_input) throw;  // otherwise there is no preview
   }
 }
 
@@ -280,12 +280,12 @@ bool Stage::has_stand_in(const Json& state, const std::shared_ptr<HeldData>& hel
     making_ = held.get();
   }
   held->stand_in_tried = true;
-  if (making_thread_.joinable()) making_thread_.join();  // the last one, which is through
+  if (making_thread_.joinable()) making_thread_.join();  // the last thread, which has finished
   making_thread_ = std::thread([this, held, stop = stop_making_.get_token()] {
     std::optional<Dataset> data;
     try {
       data = coarse_stand_in(held->data, {}, stop);
-    } catch (...) {  // then there is none, as if nobody had asked
+    } catch (...) {  // in that case there is no preview
       data.reset();
     }
     const std::lock_guard lock(mutex_);
@@ -297,7 +297,7 @@ bool Stage::has_stand_in(const Json& state, const std::shared_ptr<HeldData>& hel
 
 Settings Stage::session_settings(const Scene& scene, HeldData& held) {
   Settings settings = scene.settings(held.data, function(held, scene));
-  // Of a process alone there is one more, of long work.
+  // A single process has one more session, for long work.
   const std::size_t most = ranks() > 1 ? 1 : most_sessions + 1;
   if (held.data.is_grid()) settings.memory_bytes = std::max(settings.memory_bytes / most, std::uint64_t{1} << 20);
   return settings;
@@ -337,7 +337,7 @@ std::map<std::string, double> Stage::stage_times(double frame_ms) {
 
 void Stage::check_size(ImageSize size) const {
   constexpr int longest_side = 16384;
-  constexpr std::uint64_t bytes_of_pixel = 24;  // rendered, and as it is encoded
+  constexpr std::uint64_t bytes_of_pixel = 24;  // rendered and encoded
   if (size.width > longest_side || size.height > longest_side)
     throw bad_input(
         fmt::format("--size: {}x{} has more than {} pixels a side; ask for a smaller picture, or render it "
@@ -362,10 +362,10 @@ RenderedFrame Stage::render(const Json& state, const Scene& scene, HeldData& hel
           {"uncertainty", settings.keep_uncertainty}});
   try {
     Session& used = session(state, scene, held);
-    static_cast<void>(sessions_.front().trace->take_spans());  // of frames whose times nobody asked for
+    static_cast<void>(sessions_.front().trace->take_spans());  // of frames whose times were not requested
     return used.render(view, function(held, scene).function, settings, sink, stop);
   } catch (...) {
-    if (ranks() > 1) sessions_.clear();  // which may be of no use any more
+    if (ranks() > 1) sessions_.clear();  // they may be unusable
     throw;
   }
 }
@@ -428,7 +428,7 @@ void Stage::follow() {
     try {
       obey(order);
     } catch (const Error& error) {
-      // Of opening all ranks have the same one, of bad input too: the first tells its client.
+      // All ranks get the same errors when opening data, and for bad input: the first rank reports them to its client.
       if (error.code() != ErrorCode::bad_input && order.at("do") != "open") throw;
     }
   }

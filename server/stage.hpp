@@ -21,11 +21,11 @@
 
 namespace tessera::server {
 
-/// A data set that is at hand, and what was made of it.
+/// An open data set, and what was made from it.
 struct HeldData {
   explicit HeldData(Dataset data_) : data(std::move(data_)) {}
   Dataset data;
-  std::uint64_t bytes = 0;                                  ///< about, in memory
+  std::uint64_t bytes = 0;                                  ///< approximate size in memory
   std::map<std::string, LoadedTransferFunction> functions;  ///< by Scene::look_key(), a few
   std::optional<Dataset> stand_in;                          ///< tessera/coarse_stand_in.hpp
   bool stand_in_tried = false;
@@ -33,7 +33,7 @@ struct HeldData {
   std::string stand_in_key;
 };
 
-/// Frames of one scene, for work that takes long.
+/// Frames of one scene, for long work.
 class SceneFrames {
  public:
   explicit SceneFrames(LoadedTransferFunction function) : function_(std::move(function)) {}
@@ -51,65 +51,65 @@ class SceneFrames {
   LoadedTransferFunction function_;
 };
 
-/// How far the reading of data is.
+/// Progress of reading data.
 struct Reading {
   std::string stage;  ///< "reading wake.vtu"
   std::optional<double> fraction;
 };
 
-/// Data sets and sessions of a server, made when they are asked for and kept for the next time: the last few, within a
-/// budget of memory. Used by the one thread that renders; reads on a thread of its own, where the process is alone.
+/// Data sets and sessions of a server, made on demand; the last few are kept, within a memory budget. Used by the
+/// rendering thread only; a single process reads data on a separate thread.
 ///
-/// On several ranks rank 0 calls it and the others follow(): every step that needs all of them is told to them first.
+/// On several ranks rank 0 calls it and the others follow(): rank 0 first broadcasts every step that needs all of them.
 class Stage {
  public:
-  /// `came`: reading has ended, well or not; from any thread.
+  /// `came`: reading has ended, successfully or not; called from any thread.
   Stage(SceneReader& reader, Job& job, std::uint64_t memory_bytes, std::function<void()> came,
         std::function<void(const Reading&)> progress);
   ~Stage();
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
 
-  /// The scene's data. Null: it is being read, or other data is; to be asked for again once that has come. Throws what
-  /// its reading threw.
+  /// The scene's data. Null: these or other data are being read; ask again when that has ended. Throws the error of
+  /// reading them.
   std::shared_ptr<HeldData> data(const Json& state, const std::shared_ptr<const Scene>& scene);
   const LoadedTransferFunction& function(HeldData& held, const Scene& scene);
 
-  /// A picture of the scene, in a size that may be another than the scene's. Collective.
+  /// An image of the scene, whose size may differ from the scene's. Collective.
   RenderedFrame render(const Json& state, const Scene& scene, HeldData& held, const View& view,
                        const FrameSettings& settings, Sink* sink, const std::stop_token& stop);
-  /// Frames that a process alone renders by a session of their own, on whichever thread asks for them, while the stage
-  /// does other work; on several ranks they are the stage's and of its thread. Throws Error(bad_input) for a size that
-  /// takes too much memory.
+  /// Frames for long work. A single process renders them in a separate session, on the calling thread, in parallel with
+  /// the stage; on several ranks they are rendered by the stage, on its thread. Throws Error(bad_input) for a size that
+  /// needs too much memory.
   std::unique_ptr<SceneFrames> frames(const Json& state, const std::shared_ptr<const Scene>& scene,
                                       const std::shared_ptr<HeldData>& held, ImageSize size);
-  /// Of that picture, how long each stage took: its share of the frame's time. Of several ranks of this one.
+  /// The times of that frame's stages: their shares of its time. On several ranks those of this one.
   std::map<std::string, double> stage_times(double frame_ms);
-  /// Whether there is a stand-in for the scene's data; making one begins with the first question. On several ranks all
-  /// make it before that is answered.
+  /// Whether there is a preview (tessera/coarse_stand_in.hpp) of the scene's data. The first call starts making it; on
+  /// several ranks all make it before the call returns.
   bool has_stand_in(const Json& state, const std::shared_ptr<HeldData>& held);
-  /// The picture of the stand-in, without surfaces of meshes, by this process alone.
+  /// An image of the preview, without surfaces of meshes, rendered by this process alone.
   RenderedFrame render_stand_in(const Scene& scene, HeldData& held, const View& view, Sink* sink,
                                 const std::stop_token& stop);
-  /// The session of the scene's last picture.
+  /// The session of the scene's last image.
   Session& session(const Json& state, const Scene& scene, HeldData& held);
 
-  /// As tessera::probe(), by all ranks.
+  /// As tessera::probe(), with all ranks.
   RayProbe probe(const Json& state, const Scene& scene, HeldData& held, const View& view, PixelIndex pixel,
                  std::size_t samples);
 
-  /// What is being read.
+  /// The reading in progress.
   [[nodiscard]] std::optional<Reading> reading();
 
   [[nodiscard]] int ranks() const { return job_.size(); }
-  /// Tells the other ranks that this was all. They return from follow().
+  /// Ends follow() on the other ranks.
   void end();
-  /// The part of all ranks but the first. Returns at the end.
+  /// Runs on all ranks except the first. Returns at the end.
   void follow();
 
  private:
   struct Entry {
-    std::vector<std::string> keys;  ///< the first one is the scene's that opened it
+    std::vector<std::string> keys;  ///< the first one belongs to the scene that opened it
     std::shared_ptr<HeldData> held;
   };
   struct KeptSession {
@@ -128,11 +128,11 @@ class Stage {
   [[nodiscard]] Settings session_settings(const Scene& scene, HeldData& held);
   void read_in_background(std::shared_ptr<const Scene> scene);
   void make_stand_in_together(const Json& state, HeldData& held);
-  /// Throws Error(bad_input) for what takes too much memory.
+  /// Throws Error(bad_input) for a size that needs too much memory.
   void check_size(ImageSize size) const;
   Dataset open_together(const Scene& scene);
   void read_together(const Json& state, const Scene& scene);
-  /// Returns when all ranks have come here.
+  /// Returns when all ranks have called it.
   void hear_all();
   void tell(const Json& order);
   void obey(const Json& order);
@@ -142,10 +142,10 @@ class Stage {
   const std::uint64_t memory_bytes_;
   std::function<void()> came_;
   std::function<void(const Reading&)> progress_;
-  std::list<Entry> entries_;         ///< the last used one first
+  std::list<Entry> entries_;         ///< most recently used first
   std::list<KeptSession> sessions_;  ///< likewise
 
-  std::mutex mutex_;  ///< of what follows
+  std::mutex mutex_;  ///< guards the members below
   std::thread reading_thread_;
   std::optional<Reading> reading_;
   struct Arrived {
@@ -154,11 +154,11 @@ class Stage {
     std::optional<Error> error;
   };
   std::optional<Arrived> arrived_;
-  const HeldData* making_ = nullptr;  ///< whose stand-in is being made
+  const HeldData* making_ = nullptr;  ///< the data whose preview is being made
   std::optional<Made> made_;
   std::thread making_thread_;
   std::stop_source stop_making_;
-  std::map<std::string, Error> failed_;  ///< of data that could not be read, until it has been said
+  std::map<std::string, Error> failed_;  ///< errors of data that could not be read, until reported
 };
 
 }  // namespace tessera::server

@@ -10,8 +10,8 @@
 
 namespace tessera::server {
 
-/// How the milliseconds of a frame are shared between its stages, by the time that threads spent in each and in no
-/// stage inside of it. They sum to `frame_ms`, if there are any.
+/// Divides the milliseconds of a frame among its stages, by the time that threads spent in each, excluding nested
+/// stages. The results sum to `frame_ms`, if there are any.
 std::map<std::string, double> stage_times(std::vector<TraceSpan> spans, double frame_ms);
 
 }  // namespace tessera::server

@@ -6,15 +6,15 @@
 
 namespace tessera::server {
 
-/// A file of server/web/, which is in the program.
+/// A file of server/web/, embedded in the program.
 struct WebFile {
   std::string_view name, type, text;
 };
 
-/// Null for another name. The page itself is "index.html".
+/// Null for an unknown name. The page itself is "index.html".
 const WebFile* web_file(std::string_view name);
 
-/// A page that says one sentence.
+/// A page with one sentence.
 std::string sentence_page(std::string_view sentence);
 
 }  // namespace tessera::server

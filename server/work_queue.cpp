@@ -11,7 +11,7 @@ double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// How many tasks may wait for their turn or for data; more are abandoned as they come.
+/// Most tasks that may wait for their turn or for data; further ones are abandoned on arrival.
 constexpr std::size_t most_tasks = 256;
 
 }  // namespace
@@ -39,7 +39,7 @@ void WorkQueue::set_state(ClientId client, StateMessage message) {
   const auto found = clients_.find(client);
   if (found == clients_.end()) return;
   Client& c = found->second;
-  if (c.state && message.number <= c.state->number) return;  // an older one that came late
+  if (c.state && message.number <= c.state->number) return;  // an older message that arrived late
   c.state = std::move(message);
   c.event = Clock::now();
   c.paused = c.waits = false;
@@ -156,7 +156,7 @@ void WorkQueue::finish(const FrameOrder& order, const FrameOutcome& outcome) {
   } else if (outcome.kind == Kind::failed) {
     c.failed = order.number;
   } else if (outcome.kind == Kind::waits_for_data) {
-    // A state that has come meanwhile may be of other data.
+    // A state that has arrived since then may need other data.
     c.waits = c.state && c.state->number == order.number && wakes_ == wakes_before_turn_;
   } else if (order.level == Level::moving) {
     c.levels.took(order.shrink, order.stand_in, 1.5 * ms_since(c.working_since));

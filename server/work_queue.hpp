@@ -24,20 +24,20 @@ const char* level_name(Level level);
 
 using Clock = std::chrono::steady_clock;
 
-/// A frame that is to be rendered for a client.
+/// A frame to render for a client.
 struct FrameOrder {
   ClientId client = 0;
   std::shared_ptr<Channel> channel;
   Json state;
   std::uint64_t number = 0;
   Level level = Level::moving;
-  std::size_t shrink = 0;   ///< moving: of `shrinks`
-  bool stand_in = false;    ///< moving: not in time without one
-  Clock::time_point event;  ///< when the state came
-  std::stop_source stop;    ///< asked for when the state is not the client's any more
+  std::size_t shrink = 0;   ///< moving: index into `shrinks`
+  bool stand_in = false;    ///< moving: shows the preview, as the data take too long
+  Clock::time_point event;  ///< when the state arrived
+  std::stop_source stop;    ///< requests a stop when the client has another state
 };
 
-/// Work that takes turns, for a request.
+/// Work for a request, done in turns.
 class Task {
  public:
   enum class Turn { done, again, waits_for_data };
@@ -48,24 +48,25 @@ class Task {
   virtual Turn turn() = 0;
   /// No turn follows: the server ends.
   virtual void abandon() = 0;
-  /// The turn at hand is to end soon; from any thread.
+  /// Ends the current turn soon; may be called from any thread.
   virtual void stop() {}
 };
 
-/// What became of a frame.
+/// The result of a frame.
 struct FrameOutcome {
   enum class Kind { sent, stopped, failed, waits_for_data };
   Kind kind = Kind::failed;
-  Level level = Level::moving;  ///< sent: that it has, which may be more exact than what was asked for
+  Level level = Level::moving;  ///< sent: the actual level, which may be more exact than requested
   double render_ms = 0;
 };
 
-/// What is to be done, and for whom next: clients and tasks take turns, so that nobody waits for another's second
-/// frame. Of a client only the latest state counts. A frame of an older state is asked to stop at once if it is of a
-/// state at rest; one of a state that moves is left to finish, for else who moves on and on would see none, unless it
-/// takes more than twice its budget.
+/// Schedules the work: clients and tasks take turns, so that no client waits for another's second frame. Only the
+/// latest state of a client counts. A frame of an older state is stopped at once if that state was at rest; a frame of
+/// a moving state may finish, as a client that keeps moving would otherwise see none, unless it takes more than twice
+/// its budget.
 ///
-/// One thread does the work: next(), finish() and overdue() are its own. All else may be called from any thread.
+/// One thread does the work: only it calls next(), finish() and overdue(). All other functions may be called from any
+/// thread.
 class WorkQueue {
  public:
   explicit WorkQueue(double latency_ms) : latency_ms_(latency_ms) {}
@@ -78,23 +79,23 @@ class WorkQueue {
   void add(std::shared_ptr<Task> task);
 
   using Work = std::variant<FrameOrder, std::shared_ptr<Task>>;
-  /// Waits for work. Nothing once the queue has ended.
+  /// Waits for work. None once the queue has ended.
   std::optional<Work> next();
-  /// Before a frame is sent, for the client may say at once that it is painted.
+  /// Call before a frame is sent, as the client may acknowledge it at once.
   void begin_sending(const FrameOrder& order, std::uint64_t frame);
   void finish(const FrameOrder& order, const FrameOutcome& outcome);
   void finish(std::shared_ptr<Task> task, Task::Turn turn);
   /// Whether a moving frame has taken so long that a newer state should not wait for it.
   bool overdue(const FrameOrder& order);
 
-  /// Data has come, or could not be read: who waited for it tries again.
+  /// Data have arrived, or could not be read: clients and tasks that waited for them try again.
   void wake();
   void tell(ClientId client, const std::string& text);
-  /// To all clients.
+  /// Sends to all clients.
   void tell_all(const std::string& text);
-  /// To those who wait for data.
+  /// Sends to clients that wait for data.
   void tell_waiting(const std::string& text);
-  /// From now on next() gives nothing; what is in work is asked to stop, tasks are abandoned.
+  /// After this call next() returns none; current work is asked to stop, and tasks are abandoned.
   void end();
   [[nodiscard]] bool ended();
 
@@ -130,8 +131,8 @@ class WorkQueue {
   std::map<ClientId, Client> clients_;
   ClientId last_client_ = 0, served_ = 0;
   std::deque<std::shared_ptr<Task>> tasks_, waiting_;
-  std::shared_ptr<Task> working_;                    ///< that has its turn
-  std::uint64_t wakes_ = 0, wakes_before_turn_ = 0;  ///< data may come while somebody decides to wait for it
+  std::shared_ptr<Task> working_;                    ///< the task that has its turn
+  std::uint64_t wakes_ = 0, wakes_before_turn_ = 0;  ///< data may arrive while a task is about to wait for them
   bool tasks_turn_ = false, ended_ = false;
 };
 
