@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The state in an address's fragment, which no browser sends to a server: "#1." and JSON in URL-safe base64, where 1 is
- * this form's version. Letters that neither mail nor chat programs cut off or escape.
+ * The state in an address's fragment, which browsers do not send to servers: "#1." and JSON in URL-safe base64, where 1
+ * is the version of the format. It only contains characters that mail and chat programs keep.
  *
  * @typedef {import("./types.js").State} State
  */
@@ -18,7 +18,7 @@ export function fragment_of(state) {
 }
 
 /**
- * Nothing for no fragment. Throws a sentence for one that holds no state.
+ * Undefined without a fragment. Throws an Error with a sentence for a fragment that is not a state.
  * @param {string} fragment @returns {State | undefined}
  */
 export function state_of_fragment(fragment) {

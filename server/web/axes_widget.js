@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The world's axes in the page's corner, turning with the view at once. Each end is a button that looks from there.
+ * The world's axes in the page's corner; they turn with the view immediately. Each end is a button that looks from
+ * there.
  *
  * @typedef {import("./types.js").Camera} Camera
  * @typedef {import("./types.js").Vector} Vector
@@ -46,7 +47,7 @@ export class AxesWidget {
       part.end.classList.toggle("behind", depth > 0.05);
       part.line.classList.toggle("behind", depth > 0.05);
     }
-    // The nearer end is drawn, and taken hold of, over the farther one. Not while one has the focus: moved, it loses it.
+    // The nearer end is drawn, and reacts, in front of the farther one. Not while one has the focus, which moving would remove.
     if (this.element.contains(document.activeElement)) return;
     const sorted = [...this.parts].sort((a, b) => dot(b.direction, forward) - dot(a.direction, forward));
     for (const part of sorted) this.element.append(part.end);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Camera mathematics: what gestures do to a view. Every function gives a new camera and leaves its argument alone.
+ * Camera mathematics: the effect of gestures on a view. Every function returns a new camera and does not change its
+ * argument.
  *
  * Picture coordinates are fractions of the picture's *height* from its middle, x to the right and y upwards: the top
- * edge is y = 0.5, the right edge x = 0.5 width / height. So nothing here asks for a size in pixels.
+ * edge is y = 0.5, the right edge x = 0.5 width / height. So no size in pixels is needed.
  *
  * @typedef {import("./types.js").Camera} Camera
  * @typedef {import("./types.js").Vector} Vector
@@ -11,13 +12,13 @@
 import { add, cross, dot, length, perpendicular, rotate, scale, subtract, unit } from "./vector.js";
 
 const degree = Math.PI / 180;
-/** What the angle of a new perspective view is, as the server's. */
+/** The angle of a new perspective view, equal to the server's. */
 const default_angle = 30;
 
 /** @param {Camera} camera */
 export const is_perspective = (camera) => camera.parallel_scale === undefined;
 
-/** Whether a value that came from outside is a view. @param {any} value */
+/** Whether an untrusted value is a view. @param {any} value */
 export function is_camera(value) {
   const vector = (/** @type {any} */ v) => Array.isArray(v) && v.length === 3 && v.every(Number.isFinite);
   const positive = (/** @type {any} */ v) => Number.isFinite(v) && v > 0;
@@ -40,7 +41,7 @@ export function basis_of(camera) {
 /** From the eye to the focal point. @param {Camera} camera */
 export const distance_of = (camera) => length(subtract(camera.focal_point, camera.position));
 
-/** World units that the picture is high at the focal point. @param {Camera} camera */
+/** Height of the picture at the focal point, in world units. @param {Camera} camera */
 export function height_at_focus(camera) {
   if (!is_perspective(camera)) return 2 * /** @type {number} */ (camera.parallel_scale);
   return 2 * distance_of(camera) * Math.tan(((camera.view_angle ?? default_angle) / 2) * degree);
@@ -54,7 +55,7 @@ export function point_at(camera, x, y) {
 }
 
 /**
- * Where a point is seen, and its planar depth. Nothing if it lies behind a perspective eye.
+ * Where a point is visible, and its planar depth. Undefined if it is behind a perspective eye.
  * @param {Camera} camera @param {Vector} point
  * @returns {{x: number, y: number, depth: number} | undefined}
  */
@@ -73,8 +74,8 @@ export const moved = (camera, by) => ({
 });
 
 /**
- * The view turned round the focal point, as if a ball were held and dragged by (dx, dy) of the picture's height; half
- * the height is a quarter turn. The up direction turns along, so that every view can be reached.
+ * The view turned about the focal point, as if a ball were dragged by (dx, dy) of the picture's height; half the height
+ * is a quarter turn. The up direction turns too, so that every view can be reached.
  * @param {Camera} camera @param {number} dx @param {number} dy @returns {Camera}
  */
 export function turned_as_ball(camera, dx, dy) {
@@ -88,14 +89,14 @@ export function turned_as_ball(camera, dx, dy) {
 }
 
 /**
- * The view turned as on a turntable: round `pole` by dx, over its horizon by dy, never past the pole. The pole ends
- * pointing up in the picture.
+ * The view turned as on a turntable: about `pole` by dx, over its horizon by dy, never past the pole. Afterwards the
+ * pole points up in the picture.
  * @param {Camera} camera @param {number} dx @param {number} dy @param {Vector} pole @returns {Camera}
  */
 export function turned_on_table(camera, dx, dy, pole) {
   const axis = unit(pole);
   const { right, up, forward } = basis_of(camera);
-  // From straight above, the heading is the way that the picture's top points to, or its opposite from below.
+  // Seen from straight above, the heading is the direction of the picture's top; from below, the opposite.
   let heading = subtract(forward, scale(axis, dot(forward, axis)));
   if (length(heading) < 1e-3) heading = scale(up, -Math.sign(dot(forward, axis)));
   heading = unit(subtract(heading, scale(axis, dot(heading, axis))));
@@ -108,13 +109,13 @@ export function turned_on_table(camera, dx, dy, pole) {
   return { ...camera, position: add(camera.focal_point, scale(to_eye, distance_of(camera))), view_up: axis };
 }
 
-/** What is seen turns clockwise by `angle` radians. @param {Camera} camera @param {number} angle @returns {Camera} */
+/** The scene turns clockwise by `angle` radians. @param {Camera} camera @param {number} angle @returns {Camera} */
 export function rolled(camera, angle) {
   const { up, forward } = basis_of(camera);
   return { ...camera, view_up: unit(rotate(up, forward, -angle)) };
 }
 
-/** What is seen follows a drag by (dx, dy). @param {Camera} camera @param {number} dx @param {number} dy @returns {Camera} */
+/** The scene follows a drag by (dx, dy). @param {Camera} camera @param {number} dx @param {number} dy @returns {Camera} */
 export function panned(camera, dx, dy) {
   const { right, up } = basis_of(camera);
   const height = height_at_focus(camera);
@@ -122,7 +123,7 @@ export function panned(camera, dx, dy) {
 }
 
 /**
- * Enlarged `factor` times; the point of the focal plane at (x, y) stays there. A perspective eye moves; its angle stays.
+ * Magnified by `factor`; the point of the focal plane at (x, y) stays there. A perspective eye moves; its angle stays.
  * @param {Camera} camera @param {number} factor @param {number} [x] @param {number} [y] @returns {Camera}
  */
 export function zoomed(camera, factor, x = 0, y = 0) {
@@ -135,7 +136,7 @@ export function zoomed(camera, factor, x = 0, y = 0) {
 }
 
 /**
- * Flown: the eye goes by (right, up, forward) world units and takes its focal point along.
+ * Flight: the eye moves by (right, up, forward) world units, together with its focal point.
  * @param {Camera} camera @param {Vector} by @returns {Camera}
  */
 export function flown(camera, by) {
@@ -144,7 +145,7 @@ export function flown(camera, by) {
 }
 
 /**
- * The eye stays and looks elsewhere: what is seen follows a drag by (dx, dy).
+ * The eye stays but looks in another direction: the scene follows a drag by (dx, dy).
  * @param {Camera} camera @param {number} dx @param {number} dy @returns {Camera}
  */
 export function looked(camera, dx, dy) {
@@ -157,7 +158,7 @@ export function looked(camera, dx, dy) {
 }
 
 /**
- * The other projection, with the same size of what lies in the focal plane.
+ * The other projection, with the same size of objects in the focal plane.
  * @param {Camera} camera @param {boolean} perspective @returns {Camera}
  */
 export function with_projection(camera, perspective) {
@@ -169,7 +170,7 @@ export function with_projection(camera, perspective) {
   return { ...rest, view_angle: default_angle, position: subtract(camera.focal_point, scale(forward, distance)) };
 }
 
-/** Another angle, with the same size of what lies in the focal plane. @param {Camera} camera @param {number} angle degrees @returns {Camera} */
+/** Another angle, with the same size of objects in the focal plane. @param {Camera} camera @param {number} angle degrees @returns {Camera} */
 export function with_angle(camera, angle) {
   if (!is_perspective(camera) || !(angle > 0) || !(angle < 180)) return camera;
   const distance = height_at_focus(camera) / 2 / Math.tan((angle / 2) * degree);
@@ -177,13 +178,13 @@ export function with_angle(camera, angle) {
   return { ...camera, view_angle: angle, position: subtract(camera.focal_point, scale(forward, distance)) };
 }
 
-/** `point` in the middle of the picture, and what the view turns round. @param {Camera} camera @param {Vector} point @returns {Camera} */
+/** The view with `point` in the middle of the picture and as the centre of rotation. @param {Camera} camera @param {Vector} point @returns {Camera} */
 export function centred(camera, point) {
   const { right, up } = basis_of(camera);
   const offset = subtract(point, camera.focal_point);
   const sideways = moved(camera, add(scale(right, dot(offset, right)), scale(up, dot(offset, up))));
   if (is_perspective(camera)) return moved(camera, offset);
-  // Orthographic: the eye stays at its depth, as it clips what lies behind it.
+  // Orthographic: the eye stays at its depth, since everything behind it is clipped.
   return { ...sideways, focal_point: dot(subtract(point, sideways.position), basis_of(camera).forward) > 0 ? point : sideways.focal_point };
 }
 

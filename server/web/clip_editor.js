@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * A box and planes that cut the data. The state has them as `clip` options: "box:..." and "point, normal".
+ * A box and planes that cut the data, in the state as `clip` options: "box:..." and "point, normal".
  *
  * @typedef {import("./page.js").Page} Page
  * @typedef {import("./types.js").Vector} Vector
@@ -86,7 +86,7 @@ export class ClipEditor {
     const bounds = this.#bounds(), shown = box ?? bounds;
     this.sliders.forEach((slider, i) => slider.show([bounds[i], bounds[i + 3]], [shown[i], shown[i + 3]]));
     const planes = this.#clips.filter((word) => !is_box(word));
-    // Rows are kept while one is dragged.
+    // Rows are kept while a slider is dragged.
     if (planes.length !== this.planes.children.length) this.planes.replaceChildren(...planes.map((_, i) => this.#plane_row(i)));
     planes.forEach((word, i) => this.#show_plane(i, word.split(",").map(Number)));
   }

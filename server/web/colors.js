@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** Colours of options as the browser's own controls have them. */
+/** Conversion of options' colours to the form of the browser's controls. */
 
 /** sRGB of linear light, both 0 to 1. @param {number} linear */
 const encoded = (linear) => (linear <= 0.0031308 ? 12.92 * linear : 1.055 * linear ** (1 / 2.4) - 0.055);
 
 /**
- * "#rrggbb" of an option's colour: that, a name of CSS, or R,G,B in linear light, where more than 1 is 1. Undefined for
- * another word.
+ * "#rrggbb" for an option's colour, which may be of that form, a CSS name, or R,G,B in linear light, clamped to 1.
+ * Undefined for any other word.
  * @param {string} word @param {(name: string) => string | undefined} [named]
  */
 export function hex_of(word, named = hex_of_name) {
@@ -17,7 +17,7 @@ export function hex_of(word, named = hex_of_name) {
   return /^[a-z]+$/.test(word) ? named(word) : undefined;
 }
 
-/** By the browser. @param {string} name */
+/** Converted by the browser. @param {string} name */
 function hex_of_name(name) {
   if (!CSS.supports("color", name)) return undefined;
   const context = /** @type {CanvasRenderingContext2D} */ (document.createElement("canvas").getContext("2d"));

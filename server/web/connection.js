@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The socket: opened, kept, and opened again when it is lost.
+ * The WebSocket: opens it, and opens it again when the connection is lost.
  *
  * @typedef {import("./types.js").FrameHeader} FrameHeader
  * @typedef {"connecting"|"open"|"lost"|"ended"|"refused"} Status
@@ -17,7 +17,7 @@ import { in_page_words } from "./wording.js";
 
 const no_upgrade = "The server answers, but no WebSocket to it opens. A proxy in front of it has to pass on the headers Upgrade and Connection.";
 
-/** Where the socket is, beside the page. */
+/** The address of the socket, relative to the page. */
 function socket_address() {
   const url = new URL("socket", document.baseURI);
   url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
@@ -34,14 +34,14 @@ export class Connection {
     this.timer = 0;
     /** @type {WebSocket | undefined} */
     this.socket = undefined;
-    /** What the server said before it ended. */
+    /** The reason that the server sent before it ended. */
     this.ended = "";
-    /** When the first state was sent that nothing has been heard since; 0: none. */
+    /** When the first state was sent to which nothing has been received; 0: none. */
     this.asked_at = 0;
     this.checking = false;
     /** Whether a socket has ever been open. */
     this.was_open = false;
-    /** Milliseconds of silence after a state that are looked into, and within which a server answers a request. */
+    /** Milliseconds of silence after a state that trigger a check, and for an answer to the check's request. */
     this.silence = 20000;
     this.answer_time = 10000;
     window.addEventListener("online", () => this.retry());
@@ -53,7 +53,7 @@ export class Connection {
       return;
     }
     this.listeners.status("connecting", {});
-    // A socket can send no header of its own but its protocols, and addresses are kept in logs.
+    // Protocols are the only header that a page can set for a socket, and addresses are stored in logs.
     const socket = new WebSocket(socket_address(), ["tessera", `token.${token()}`]);
     this.socket = socket;
     socket.binaryType = "arraybuffer";
@@ -74,7 +74,7 @@ export class Connection {
     };
   }
 
-  /** Tries at once. */
+  /** Tries immediately. */
   retry() {
     if (this.socket) return;
     clearTimeout(this.timer);
@@ -89,8 +89,8 @@ export class Connection {
   }
 
   /**
-   * To be called now and then. A socket over a network that is gone, after a laptop's sleep, may stay open for long:
-   * silence is looked into by a request, which a server answers however long its frame takes.
+   * Call periodically. A socket whose network is gone, after a laptop's sleep, may stay open for long: this checks
+   * silence with a request, which a server answers however long its frame takes.
    */
   async check() {
     const { socket } = this;
@@ -130,9 +130,9 @@ export class Connection {
   async #lost() {
     this.asked_at = 0;
     let answers = false;
-    // A socket does not say why it was not opened; a request does.
+    // A socket does not report why it could not be opened, but a request does.
     try {
-      // A server that was started again has another token, and says so. By POST, which names the page's own address.
+      // A restarted server has another token and refuses the request. POST, as it sends the page's origin.
       if (!this.ended || this.tries > 0) await ask_about("api/data", {}, AbortSignal.timeout(this.answer_time));
       answers = true;
     } catch (error) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * What of the data is drawn: field, which stands at the panel's top, time, blocks, cuts, surfaces.
+ * Selection of the data to draw: field (at the top of the panel), time, blocks, cuts, surfaces.
  *
  * @typedef {import("./page.js").Page} Page
  */
@@ -11,7 +11,7 @@ import { field_named, field_words, split_field } from "./fields.js";
 import { parsed_number, short_number } from "./numbers.js";
 import { SurfaceEditor } from "./surface_editor.js";
 
-/** Milliseconds that a step is shown at least while playing. */
+/** Shortest time in milliseconds for which a step is shown while playing. */
 const step_time = 100;
 
 export class DataPanel {
@@ -23,7 +23,7 @@ export class DataPanel {
     this.last_step = 0;
     this.field = choice("", (name) => this.#choose_field(name));
     this.part = choice("Component", (part) => this.#choose_part(part));
-    // At the panel's top: what is drawn comes before how.
+    // At the panel's top: the choice of data precedes their appearance.
     this.field_row = row("Field", this.field, this.part);
     this.field_row.classList.add("panel-top");
     this.smooth = checkbox("Smooth", (on) => page.set_option("smooth", on ? true : undefined), "Average cell values to the points");
@@ -46,7 +46,7 @@ export class DataPanel {
     const { data } = this.page;
     const words = field_words(data.fields);
     const fields = data.fields.map((f, i) => /** @type {[string, string]} */ ([words[i], `${f.name} (${f.association}${f.components > 1 ? `, ${f.components} components` : ""})`]));
-    // A file without a field that says something is shown as a shape, until one is chosen.
+    // A file without a meaningful field is shown as a shape, until a field is chosen.
     fill_choice(this.field, data.field === null ? [["", "none: the shape"], ...fields] : fields);
     this.field_row.hidden = data.fields.length === 0;
     this.smooth.label.hidden = !data.fields.some((f) => f.association === "cell");
@@ -109,7 +109,7 @@ export class DataPanel {
     this.surfaces.update();
   }
 
-  /** The field's name as options have it, and its component. @returns {[string, string]} */
+  /** The field's name in the form of options, and its component. @returns {[string, string]} */
   #field_words() {
     const { page } = this;
     return split_field(String(page.option("field") ?? page.data.field ?? ""), field_words(page.data.fields));
@@ -144,7 +144,7 @@ export class DataPanel {
     return true;
   }
 
-  /** By a step, round and round. @param {number} by */
+  /** Moves by a step, cyclically. @param {number} by */
   step_by(by) {
     if (this.step_count < 2) return;
     this.#set_step((this.current_step + by + this.step_count) % this.step_count, this.playing);
@@ -160,7 +160,7 @@ export class DataPanel {
     else this.page.history.settle("play");
   }
 
-  /** A frame has been painted: the next step may come. */
+  /** Call when a frame has been painted: the next step may follow. */
   painted() {
     if (!this.playing) return;
     clearTimeout(this.play_timer);
@@ -171,7 +171,7 @@ export class DataPanel {
     }, wait);
   }
 
-  /** Something went wrong: no more steps. */
+  /** Call after an error: ends playing. */
   stop() {
     if (this.playing) this.toggle_play();
   }

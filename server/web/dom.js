@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** Elements, briefly. Texts are always set as text, never as HTML. */
+/** Helpers to create elements. Texts are always set as text, never as HTML. */
 
 /** @typedef {Node | string | false | null | undefined} Child */
 
@@ -47,7 +47,7 @@ export function by_id(id) {
 let fields = 0;
 
 /**
- * A labelled row: the label's text, and a control that gets its name from it.
+ * A labelled row: the label's text, and a control that the label names.
  * @param {string} text @param {HTMLElement} control @param {...Child} more
  */
 export function row(text, control, ...more) {
@@ -81,8 +81,8 @@ export function fill_choice(select, options) {
 }
 
 /**
- * A typed value that counts when it is left or Enter is pressed; `change` says false if it is none, which
- * the event "untaken" tells.
+ * A text field whose value is used on Enter or when it loses the focus; `change` returns false for an invalid value,
+ * which the event "untaken" reports.
  * @param {string} label @param {(text: string) => boolean | void} change @param {Record<string, any>} [attributes]
  */
 export function typed(label, change, attributes = {}) {
@@ -106,10 +106,10 @@ export function typed(label, change, attributes = {}) {
   return input;
 }
 
-/** Whether a text stands in the control that has not been taken yet. @param {HTMLInputElement} input */
+/** Whether the control contains text that has not been used yet. @param {HTMLInputElement} input */
 export const being_typed = (input) => document.activeElement === input && input.type === "text" && input.value !== input.dataset.held;
 
-/** Sets what a control shows, unless it is being typed in. @param {HTMLInputElement} input @param {string} value */
+/** Sets a control's value, unless the user is typing in it. @param {HTMLInputElement} input @param {string} value */
 export function show_value(input, value) {
   if (being_typed(input)) return;
   input.value = value;
@@ -148,7 +148,7 @@ export function save_file(blob, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 60000);
 }
 
-/** A preference of this browser, or what it is without one. @param {string} name @param {string} otherwise */
+/** A preference stored in this browser, or `otherwise` without one. @param {string} name @param {string} otherwise */
 export function preference(name, otherwise) {
   try {
     return localStorage.getItem(`tessera.${name}`) ?? otherwise;
@@ -162,6 +162,6 @@ export function set_preference(name, value) {
   try {
     localStorage.setItem(`tessera.${name}`, value);
   } catch {
-    // A browser that keeps nothing: the page works, and forgets.
+    // A browser without storage: the page works, but does not remember.
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** Two handles on one axis, each a slider of the browser's own: for mouse, touch and keyboard. */
+/** Two handles on one axis, each one of the browser's sliders: for mouse, touch and keyboard. */
 import { element, show_value, typed } from "./dom.js";
 import { parsed_number, short_number } from "./numbers.js";
 
@@ -31,7 +31,7 @@ export class DoubleSlider {
     const span = limits[1] - limits[0] || 1;
     this.sliders.forEach((slider, i) => show_value(slider, String(Math.round(((ends[i] - limits[0]) / span) * 1000))));
     this.texts.forEach((text, i) => show_value(text, short_number(ends[i], 5)));
-    // Where both handles meet, the one that can still move lies on top.
+    // Where both handles meet, the one that can still move is on top.
     this.sliders[0].style.zIndex = ends[0] - limits[0] > span / 2 ? "1" : "";
     this.track.style.setProperty("--low", String((ends[0] - limits[0]) / span));
     this.track.style.setProperty("--high", String((ends[1] - limits[0]) / span));
@@ -40,7 +40,7 @@ export class DoubleSlider {
   /** @param {0|1} end @param {boolean} moving */
   #slid(end, moving) {
     const at = Number(this.sliders[end].value);
-    // A handle at its stop is the limit itself, to the last digit.
+    // A handle at its stop has exactly the limit's value.
     const value = at === 0 ? this.limits[0] : at === 1000 ? this.limits[1]
       : Number((this.limits[0] + (at / 1000) * (this.limits[1] - this.limits[0])).toPrecision(6));
     this.#set(end, value, moving);

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Fields by the words of options: a name, perhaps with "cell:" or "point:" before it and a component behind it. Names
- * may hold colons themselves.
+ * Fields in the form of options: a name, optionally with the prefix "cell:" or "point:" and a component as suffix.
+ * Names may contain colons.
  *
  * @typedef {import("./types.js").Field} Field
  */
 
-/** The words that fields are chosen by: their names, with the association where two have one name. @param {Field[]} fields */
+/** The words that select fields: their names, with the association if two have the same name. @param {Field[]} fields */
 export const field_words = (fields) => fields.map((field) => (fields.filter((other) => other.name === field.name).length > 1 ? `${field.association}:${field.name}` : field.name));
 
 /**
- * Which of `names` a word is of, and its component. Of several that it begins with it is the longest.
+ * The one of `names` that a word refers to, and its component. If it begins with several, the longest is used.
  * @param {string} word @param {string[]} names @returns {[string, string]}
  */
 export function split_field(word, names) {
@@ -20,7 +20,7 @@ export function split_field(word, names) {
     const name = begins(text);
     if (name !== undefined) return [name, text.slice(name.length + 1)];
   }
-  // A name that two fields have, without saying which.
+  // A name that two fields have, without the association.
   return [names.find((name) => name === `cell:${word}` || name === `point:${word}`) ?? word, ""];
 }
 

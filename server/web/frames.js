@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The stream of frames: their form, and which states are sent when.
+ * The stream of frames: their format, and when states are sent.
  *
  * @typedef {import("./types.js").FrameHeader} FrameHeader
  * @typedef {import("./types.js").State} State
  */
 
-/** A header longer than this is none. */
+/** A longer header is invalid. */
 const most_header = 1 << 20;
 
 /**
- * A frame's header and picture. Throws a sentence for bytes that are none.
+ * A frame's header and picture. Throws an Error with a sentence for invalid bytes.
  * @param {ArrayBuffer} bytes @returns {{header: FrameHeader, image: Uint8Array<ArrayBuffer>}}
  */
 export function decoded_frame(bytes) {
@@ -21,8 +21,8 @@ export function decoded_frame(bytes) {
 }
 
 /**
- * Which states are sent: while something moves one at a time, the latest, as soon as the one before has been painted; a
- * state at rest at once, for it cancels what is in work. An answer that does not come within `patience` is given up.
+ * Decides which states are sent: while something moves, one at a time, the latest, as soon as the previous one has been
+ * painted; a state at rest immediately, as it cancels current work. Stops waiting for an answer after `patience`.
  */
 export class StateSender {
   /**
@@ -41,7 +41,7 @@ export class StateSender {
     this.waiting = undefined;
     /** @type {{state: State, moving: boolean, time: number} | undefined} */
     this.latest = undefined;
-    /** When the event happened that made a state, by the state's number. @type {Map<number, number>} */
+    /** When the event occurred that caused a state, by the state's number. @type {Map<number, number>} */
     this.event_times = new Map();
   }
 
@@ -51,19 +51,19 @@ export class StateSender {
     this.#advance();
   }
 
-  /** The answer to state `number`, a picture that is painted or an error, is there. @param {number} number */
+  /** Call when state `number` has been answered by a painted picture or an error. @param {number} number */
   answered(number) {
     if (number < this.awaited) return;
     this.awaited = 0;
     this.#advance();
   }
 
-  /** The answer is on its way. */
+  /** Call when the server reports that the answer is in progress. */
   in_work() {
     this.sent_at = this.clock();
   }
 
-  /** There is a connection, a new one: it is told the state it left at. */
+  /** Call for a new connection: sends the latest state. */
   opened() {
     this.open = true;
     this.awaited = 0;
@@ -75,7 +75,7 @@ export class StateSender {
     this.open = false;
   }
 
-  /** To be called now and then, for answers that never came. */
+  /** Call periodically, to give up on answers that never came. */
   tick() {
     if (this.awaited && this.clock() - this.sent_at > this.patience) this.awaited = 0;
     this.#advance();
@@ -93,10 +93,10 @@ export class StateSender {
   }
 }
 
-/** Milliseconds until try number `tries` (from 0) of a connection: half a second, doubled up to 15 s, and up to a quarter more. @param {number} tries @param {number} [random] 0 to 1 */
+/** Delay in milliseconds before connection attempt `tries` (from 0): half a second, doubled up to 15 s, and up to a quarter more. @param {number} tries @param {number} [random] 0 to 1 */
 export const back_off = (tries, random = Math.random()) => Math.min(15000, 500 * 2 ** tries) * (1 + random / 4);
 
-/** The middle value and that which 95 % do not exceed. @param {number[]} values */
+/** The median and the 95 % quantile. @param {number[]} values */
 export function median_and_95(values) {
   const sorted = values.slice().sort((a, b) => a - b);
   const at = (/** @type {number} */ part) => sorted[Math.min(sorted.length - 1, Math.floor(part * sorted.length))] ?? Number.NaN;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Keeps in the picture what is in it when its shape changes, as by the panel on a phone: a camera says how much is seen
- * from top to bottom, so that a narrower picture would be cut at its sides.
+ * Keeps the visible scene in the picture when its shape changes, for example by the panel on a phone: a camera defines
+ * the visible height, so a narrower picture would be cut at its sides.
  *
  * @typedef {import("./page.js").Page} Page
  * @typedef {import("./types.js").Camera} Camera
@@ -14,9 +14,9 @@ export class Framing {
     this.page = page;
     /** Width over height of the window that the picture fills. */
     this.shape = 0;
-    /** The camera that was chosen, and the picture's shape then: back in it, the camera is the same again. @type {{ camera: Camera, shape: number } | undefined} */
+    /** The chosen camera, and the picture's shape at that time: with this shape, that camera is restored. @type {{ camera: Camera, shape: number } | undefined} */
     this.chosen = undefined;
-    /** What became of it. @type {Camera | undefined} */
+    /** The adjusted camera. @type {Camera | undefined} */
     this.made = undefined;
   }
 
@@ -25,12 +25,12 @@ export class Framing {
     return width / height;
   }
 
-  /** The data are there, and a camera that suits the picture's shape. */
+  /** Call when the data are available, with a camera for the picture's shape. */
   begin() {
     this.shape = this.#shape_now;
   }
 
-  /** The picture's shape has changed. */
+  /** Call when the picture's shape has changed. */
   follow() {
     const { page } = this;
     const before = this.shape;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The transfer function as a drawing: the curve of opacity over the histogram, points and colours to take hold of, and
- * two handles for the range. It draws what show() was given and says what is wanted; it changes nothing itself.
+ * The transfer function as a drawing: the curve of opacity over the histogram, draggable points and colours, and two
+ * handles for the range. It draws the arguments of show() and reports requested changes; it changes nothing itself.
  *
  * @typedef {import("./transfer_function.js").EditedFunction} EditedFunction
  * @typedef {import("./types.js").HistogramReply} HistogramReply
@@ -10,7 +10,7 @@
  * @typedef {object} Wishes
  * @property {(edited: EditedFunction, moving: boolean) => void} edit
  * @property {(range: [number, number], moving: boolean) => void} range
- * @property {() => void} cancel what moved goes back to where it rested
+ * @property {() => void} cancel reverts a drag
  * @property {(selection: Selection | undefined) => void} select
  */
 import { svg } from "./dom.js";
@@ -32,9 +32,9 @@ export class FunctionEditor {
     this.edited = undefined;
     /** @type {HistogramReply | undefined} */
     this.histogram = undefined;
-    /** What the drawing's width spans. @type {[number, number]} */
+    /** The range of values over the drawing's width. @type {[number, number]} */
     this.domain = [0, 1];
-    /** Whether the drawing shows the function's range alone, and not the field's. */
+    /** Whether the drawing shows only the function's range instead of the field's. */
     this.close = false;
     this.log_opacity = false;
     /** @type {Selection | undefined} */
@@ -47,12 +47,12 @@ export class FunctionEditor {
       on_dblclick: (/** @type {MouseEvent} */ e) => this.#add(e), on_keydown: (/** @type {KeyboardEvent} */ e) => this.#key(e),
       on_pointerdown: (/** @type {PointerEvent} */ e) => this.#press(e),
     });
-    // A finger on a handle moves it; next to one it scrolls the panel. `touch-action` does not hold for parts of a drawing.
+    // A finger on a handle moves it; elsewhere it scrolls the panel. `touch-action` does not work for parts of a drawing.
     this.element.addEventListener("touchstart", (event) => {
       if (event.touches.length === 1 && this.#handle_at(this.#place(event.touches[0]))) event.preventDefault();
     }, { passive: false });
     new ResizeObserver(() => {
-      // The drawing's unit is a pixel where the page's text has its usual size, and grows with that.
+      // The drawing's unit is a pixel at the page's usual text size, and grows with the text.
       const unit = Number.parseFloat(getComputedStyle(document.documentElement).fontSize) / usual_text;
       const width = Math.round(this.element.getBoundingClientRect().width / unit);
       if (width > 0 && width !== this.width) {
@@ -167,7 +167,7 @@ export class FunctionEditor {
     if (!histogram || histogram.counts.length === 0) return svg("g");
     const most = Math.max(...histogram.counts);
     const foot = margin.top + this.plot_height, count = histogram.counts.length;
-    // A share of 1 in 10 000 of the fullest bin's can still be seen.
+    // A share of 1 in 10 000 of the fullest bin remains visible.
     const tall = (/** @type {number} */ share) => (most > 0 ? Math.log1p((share / most) * 1e4) / Math.log1p(1e4) : 0) * this.plot_height;
     let path = `M${this.x_of(histogram.range[0]).toFixed(1)} ${foot}`;
     histogram.counts.forEach((share, i) => {
@@ -188,7 +188,7 @@ export class FunctionEditor {
     const [left, right] = edited.range.map((v) => this.x_of(v));
     /** @type {[number, number][]} */
     const places = [];
-    // Straight lines between opacities are bent on a logarithmic axis: drawn in pieces.
+    // Straight lines between opacities are curved on a logarithmic axis: draw them in pieces.
     edited.opacities.forEach(([t, opacity], i) => {
       const next = edited.opacities[i + 1];
       const pieces = next && this.log_opacity ? 24 : 1;
@@ -273,13 +273,13 @@ export class FunctionEditor {
     return `${kind}-handle${this.#selected(kind, index) ? " selected" : ""}`;
   }
 
-  /** A place in the drawing. @param {{clientX: number, clientY: number}} event */
+  /** A position in the drawing. @param {{clientX: number, clientY: number}} event */
   #place(event) {
     const box = this.element.getBoundingClientRect();
     return { x: ((event.clientX - box.left) / box.width) * this.width, y: ((event.clientY - box.top) / box.height) * height };
   }
 
-  /** All that can be taken hold of, where it is drawn. @returns {import("./handles.js").Handle[]} */
+  /** All handles, where they are drawn. @returns {import("./handles.js").Handle[]} */
   #handles() {
     const { edited } = this;
     if (!edited) return [];
@@ -317,14 +317,14 @@ export class FunctionEditor {
       this.draw();
       /** @type {SVGElement | null} */ (this.element.querySelector(`[data-handle="${name}"]`))?.focus({ preventScroll: true });
     };
-    // A finger's touchstart comes after this, to what was pressed, which a drawing made again does not hold any more.
+    // A finger's touchstart comes later, for the pressed element, which a redrawn drawing would no longer contain.
     if (event.pointerType !== "touch") show();
     this.#follow(event, show, (place, moving) => this.#pull(kind, index, place, moving));
   }
 
   /**
-   * Follows a pointer that was pressed, over redraws.
-   * @param {PointerEvent} pressed @param {() => void} show what is held
+   * Follows a pressed pointer across redraws.
+   * @param {PointerEvent} pressed @param {() => void} show selects the handle
    * @param {(place: {x: number, y: number}, moving: boolean) => void} follow
    */
   #follow(pressed, show, follow) {
@@ -344,7 +344,7 @@ export class FunctionEditor {
       window.removeEventListener("pointercancel", end);
       this.dragging = false;
       if (!moved && e.type === "pointerup") show();
-      // A drag that the browser took away has no place of its end.
+      // A drag cancelled by the browser has no final position.
       if (moved && e.type === "pointercancel") {
         this.edited = begun;
         this.wishes.cancel();
@@ -359,7 +359,7 @@ export class FunctionEditor {
     window.addEventListener("pointercancel", end);
   }
 
-  /** A handle to a place. @param {string} kind @param {number} index @param {{x: number, y: number}} place @param {boolean} moving */
+  /** Moves a handle to a position. @param {string} kind @param {number} index @param {{x: number, y: number}} place @param {boolean} moving */
   #pull(kind, index, { x, y }, moving) {
     if (!this.edited) return;
     if (kind === "range") return this.#move_end(index, this.value_at(this.#inside(x)), moving);
@@ -387,7 +387,7 @@ export class FunctionEditor {
     this.wishes.edit(edited, moving);
   }
 
-  /** A point at a place of the drawing, or on its strip a colour. @param {MouseEvent} event */
+  /** Adds a point at a position of the drawing, or a colour on its strip. @param {MouseEvent} event */
   #add(event) {
     const { x, y } = this.#place(event);
     if (!this.edited || this.#handle_at({ x, y })) return;
@@ -414,7 +414,7 @@ export class FunctionEditor {
     this.#edit(edited, false);
   }
 
-  /** The selected point, or a colour, between the ends. */
+  /** Removes the selected point or colour, unless it is at an end. */
   remove() {
     if (!this.edited || !this.selection) return;
     const { kind, index } = this.selection;

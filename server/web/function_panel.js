@@ -15,15 +15,15 @@ import { same } from "./state.js";
 import * as functions from "./transfer_function.js";
 import { in_page_words, sentence_of } from "./wording.js";
 
-/** What of the state a function depends on, and what its histogram does. */
+/** The options on which a function depends, and those on which its histogram depends. */
 const data_words = ["field", "time-step", "block", "smooth"];
 const function_words = [...data_words, "threshold", "clip", "transfer-function", "range", "log", "opacity", "unit-distance"];
 const histogram_words = [...data_words, "threshold", "clip", "log"];
 
-/** The colours that a function's name begins with. @param {string | undefined} name */
+/** The name of the colours at the beginning of a function's name. @param {string | undefined} name */
 const preset_of = (name) => /^[\w-]+(?=$|[ :])/.exec(name ?? "")?.[0];
 
-/** A point as it comes back from the server. @param {number[]} point */
+/** A point as the server returns it. @param {number[]} point */
 const rounded = (point) => point.map((v) => Number(v.toPrecision(6)));
 
 export class FunctionPanel {
@@ -33,14 +33,14 @@ export class FunctionPanel {
     this.function_question = new LatestQuestion();
     this.histogram_question = new LatestQuestion();
     this.function_key = "";
-    /** Of the reply that is shown. */
+    /** Key of the reply that is shown. */
     this.taken_key = "";
     this.histogram_key = "";
     /** @type {FunctionReply | undefined} */
     this.reply = undefined;
     /** @type {import("./types.js").HistogramReply | undefined} */
     this.histogram = undefined;
-    /** The shape that was chosen last, and its points: it is shown until they are edited. @type {{ name: string, opacities: number[][] } | undefined} */
+    /** The last chosen shape, and its points: its name is shown until they are edited. @type {{ name: string, opacities: number[][] } | undefined} */
     this.chosen_shape = undefined;
     this.editor = new FunctionEditor({
       edit: (edited, moving) => this.#edit(edited, moving),
@@ -117,7 +117,7 @@ export class FunctionPanel {
     this.#show_selection();
   }
 
-  /** Presets, once they are known. */
+  /** Adds the presets once they are known. */
   begin() {
     const { presets, opacities } = this.page.data;
     this.swatches.replaceChildren(...presets.map((preset) => {
@@ -129,12 +129,12 @@ export class FunctionPanel {
       }, bar, element("span", {}, preset.name));
     }));
     fill_choice(this.shape, [["", "as drawn"], ...opacities.map((name) => /** @type {[string, string]} */ ([name, name]))]);
-    // It says what is there, and is nothing to choose.
+    // It only describes the present curve and cannot be chosen.
     this.shape.options[0].disabled = true;
     this.update();
   }
 
-  /** The state has changed, or the data. */
+  /** Call when the state or the data have changed. */
   update() {
     const { page } = this;
     this.log.input.checked = page.option("log") === true;
@@ -147,7 +147,7 @@ export class FunctionPanel {
     this.refresh();
   }
 
-  /** Whether what is shown is the server's answer to the present state. */
+  /** Whether the panel shows the server's answer to the present state. */
   get is_answered() {
     return this.taken_key === this.#key(function_words) && this.histogram_key === this.#key(histogram_words) && !this.histogram_question.running;
   }
@@ -179,14 +179,14 @@ export class FunctionPanel {
           this.#hold(false);
         }));
     } else if (function_key === this.taken_key) {
-      this.#hold(false); // a choice that was undone before anything was asked
+      this.#hold(false); // the choice was undone before a request
     }
     if (work.length === 0) return;
     await Promise.all(work);
     this.editor.show(this.editor.edited, this.histogram);
   }
 
-  /** Whether the curve waits for the server; what was chosen from keeps the focus. @param {boolean} on */
+  /** Whether the curve waits for the server; the control that was used keeps the focus. @param {boolean} on */
   #hold(on) {
     this.curve.inert = on;
   }
@@ -194,7 +194,7 @@ export class FunctionPanel {
   /** @param {FunctionReply} reply */
   #take(reply) {
     this.reply = reply;
-    // What is being edited is not replaced under the hand; the reply to its last state comes too.
+    // A function is not replaced while it is edited; the reply to its last state follows.
     if (this.editor.dragging) return;
     const own = this.page.history.state["transfer-function"];
     this.editor.edited = functions.edited_function(reply, own, Number(this.page.option("opacity") ?? 1));
@@ -223,13 +223,13 @@ export class FunctionPanel {
     this.page.function_shown();
   }
 
-  /** What says the function: the state, or what the server was started with; undefined: the server chooses. @returns {any} */
+  /** The function option of the state, or that with which the server was started; undefined: the server chooses. @returns {any} */
   get #word() {
     const { history, started } = this.page;
     return history.state["transfer-function"] ?? started["transfer-function"];
   }
 
-  /** Names of colours and opacities that are a preset's. @returns {[string | undefined, string | undefined]} */
+  /** Names of the preset's colours and opacities, if any. @returns {[string | undefined, string | undefined]} */
   #words() {
     const word = this.#word;
     if (typeof word === "string") {
@@ -243,16 +243,17 @@ export class FunctionPanel {
   }
 
   /**
-   * Colours or opacities of a preset; the other stays as it is. A word where both are a preset's, else points.
+   * Sets the colours or the opacities to a preset's; the other stays. The option is a name if both are presets,
+   * otherwise points.
    * @param {string | undefined} colors @param {string | undefined} shape
    */
   async #choose(colors, shape) {
     const [name, old_shape] = this.#words();
     const word = this.#word;
-    // The server's own function keeps its range, which a word would not.
+    // The server's default function keeps its range, which a name would not.
     if (typeof word === "string" || (word !== undefined && colors === undefined && name !== undefined) || this.editor.edited === undefined) {
       const both = `${colors ?? name ?? "cool-warm"}:${shape ?? old_shape ?? "ramp"}`;
-      if (both !== word) this.#hold(true); // what is drawn is the function before, until the server has answered
+      if (both !== word) this.#hold(true); // the previous function is drawn until the server answers
       this.page.history.change({ "transfer-function": both, ...(shape ? { "opacity-points": this.page.unset("opacity-points") } : {}) });
       return;
     }
@@ -275,7 +276,7 @@ export class FunctionPanel {
     this.#show();
   }
 
-  /** A drag that was taken away. */
+  /** A cancelled drag. */
   #cancel() {
     this.page.history.cancel();
     this.#show();
@@ -310,7 +311,7 @@ export class FunctionPanel {
     else this.page.messages.complain("All of these values are the same, so they are no range.", { about: "range" });
   }
 
-  /** What says how the colour bar is drawn; without a bar these options are refused. @param {boolean} on @param {boolean} log */
+  /** The colour bar's scale option, which is refused without a bar. @param {boolean} on @param {boolean} log */
   #bar_scale(on, log) {
     return { "color-bar-scale": on && log ? "log" : this.page.unset("color-bar-scale") };
   }
@@ -326,7 +327,7 @@ export class FunctionPanel {
     const { edited } = this.editor;
     const log = on ? true : this.page.unset("log");
     if (!edited) return;
-    // A range that begins at or below zero has no logarithm: the server begins at the smallest positive value.
+    // A range that begins at or below zero has no logarithm: the server then starts at the smallest positive value.
     const range = on && !(edited.range[0] > 0) ? this.page.unset("range") : edited.range.join(",");
     const own = typeof this.page.history.state["transfer-function"] === "object";
     const points = own ? { "transfer-function": functions.state_of({ ...edited, log: on })["transfer-function"] } : {};

@@ -6,11 +6,11 @@
  * @typedef {import("./types.js").Vector} Vector
  * @typedef {"turntable"|"trackball"|"fly"} Mode
  *
- * @typedef {object} Wiring what gestures ask of the page
- * @property {() => Camera | undefined} camera the present one
+ * @typedef {object} Wiring the page's side of gestures
+ * @property {() => Camera | undefined} camera the current one
  * @property {() => Vector} pole of the turntable
  * @property {() => number} extent the data's diagonal, world units
- * @property {(camera: Camera, name: string) => void} move more is to come
+ * @property {(camera: Camera, name: string) => void} move during a gesture
  * @property {(name: string) => void} rest
  * @property {() => Mode} mode
  * @property {(x: number, y: number) => {x: number, y: number}} place_of
@@ -21,9 +21,9 @@
  */
 import { distance_of, flown, looked, panned, rolled, turned_as_ball, turned_on_table, zoomed } from "./camera.js";
 
-/** Milliseconds without an event after which wheel and keys are at rest. */
+/** Milliseconds without an event after which a wheel or key gesture ends. */
 const rest_time = 180;
-/** A press shorter than this many CSS pixels is no drag. */
+/** A press that moves by fewer CSS pixels is not a drag. */
 const slack = 4;
 const long_press = 600;
 const turn_step = 5 / 180;
@@ -39,7 +39,7 @@ export class Gestures {
     this.travelled = 0;
     this.rest_timer = 0;
     this.press_timer = 0;
-    /** Keys of flight that are held. @type {Set<string>} */
+    /** The flight keys that are pressed. @type {Set<string>} */
     this.held = new Set();
     this.flying = false;
     surface.addEventListener("pointerdown", (e) => this.#press(e));
@@ -118,7 +118,7 @@ export class Gestures {
     return mode === "trackball" ? turned_as_ball(camera, dx, dy) : turned_on_table(camera, dx, dy, this.wiring.pole());
   }
 
-  /** Two fingers: the two points held stay under them. @param {number} id @param {{x: number, y: number}} after */
+  /** Two fingers: the two touched points stay under them. @param {number} id @param {{x: number, y: number}} after */
   #pinch(id, after) {
     const [first, second] = [...this.pointers.keys()];
     const other_id = id === first ? second : first;
@@ -161,7 +161,7 @@ export class Gestures {
     this.#rest_soon("wheel");
   }
 
-  /** How far flight goes a second: with the distance to what is looked at, but never so slow as to stand. @param {Camera} camera */
+  /** Speed of flight per second: proportional to the distance of the focal point, but never close to zero. @param {Camera} camera */
   #stride(camera) {
     return Math.min(this.wiring.extent(), Math.max(0.15 * this.wiring.extent(), 0.5 * distance_of(camera)));
   }
@@ -183,7 +183,7 @@ export class Gestures {
     this.#rest_soon("keys");
   }
 
-  /** While keys are held, every frame of the screen. */
+  /** Moves in every frame of the screen while keys are pressed. */
   #fly() {
     this.flying = true;
     let last = performance.now();
@@ -208,10 +208,10 @@ export class Gestures {
   }
 }
 
-/** Whether an event is of something that lies over the picture: tools, messages. @param {Event} event */
+/** Whether an event belongs to an element over the picture: tools, messages. @param {Event} event */
 const over_the_picture = (event) => event.target instanceof Element && event.target.closest("[data-over]") !== null;
 
-/** By the key's place on the keyboard: axis (right, up, forward) and sign. @type {Map<string, [number, number]>} */
+/** By the key's position on the keyboard: axis (right, up, forward) and sign. @type {Map<string, [number, number]>} */
 const flight_keys = new Map([["KeyW", [2, 1]], ["KeyS", [2, -1]], ["KeyA", [0, -1]], ["KeyD", [0, 1]], ["KeyE", [1, 1]], ["KeyQ", [1, -1]]]);
 
 /**

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Which handle of a drawing a press takes. Their reaches overlap, and the one that was drawn last lies on top of those
- * before: so it is the nearest.
+ * Chooses the handle of a drawing that a press takes: the nearest one. Their reaches overlap, and the last drawn would
+ * otherwise cover the others.
  *
  * @typedef {object} Handle
  * @property {string} name
  * @property {number} x
  * @property {number} y
- * @property {number} [foot] of an upright line, which begins at y
- * @property {number} reach from how far it is taken
- * @property {number} [behind] added to its distance, so that others within it come first
+ * @property {number} [foot] the end of a vertical line that begins at y
+ * @property {number} reach largest distance from which it is taken
+ * @property {number} [behind] added to its distance, so that other handles within it take precedence
  */
 
 /** @param {Handle} handle @param {{x: number, y: number}} place */
@@ -20,8 +20,8 @@ function distance(handle, place) {
 
 /**
  * @param {Handle[]} handles @param {{x: number, y: number}} place
- * @param {string} [selected] is taken where another one is as near
- * @returns {Handle | undefined} undefined: none is within reach
+ * @param {string} [selected] is taken if another one is equally near
+ * @returns {Handle | undefined} undefined if none is within reach
  */
 export function nearest_handle(handles, place, selected) {
   const found = handles.map((handle) => ({ handle, at: distance(handle, place) })).filter(({ handle, at }) => at <= handle.reach)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** What mouse, fingers and keys do. */
+/** Help for mouse, touch and keyboard. */
 import { button, by_id, element } from "./dom.js";
 
 /** @type {[string, [string, string][]][]} */
@@ -15,7 +15,7 @@ const dialog = () => /** @type {HTMLDialogElement} */ (by_id("help"));
 
 export function show_help() {
   if (dialog().childElementCount === 0)
-    // The button stands first: a dialog scrolls to what has the focus.
+    // The button comes first: a dialog scrolls to the element with the focus.
     dialog().append(element("div", { class: "title" }, element("h2", { id: "help-title" }, "Mouse, fingers and keys"), button("Close", () => dialog().close(), { class: "primary", autofocus: true })),
       element("div", { class: "topics" }, ...topics.map(([title, lines]) => element("section", {}, element("h3", {}, title), element("dl", {}, ...lines.flatMap(([keys, text]) => [element("dt", {}, keys), element("dd", {}, text)]))))));
   dialog().showModal();

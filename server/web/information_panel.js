@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * What the file holds, what of it is drawn, and whether the mesh is sound.
+ * Contents of the file, the part of them that is drawn, and the check of the mesh.
  *
  * @typedef {import("./page.js").Page} Page
  * @typedef {import("./mesh_check.js").Place} Place
@@ -39,7 +39,7 @@ export class InformationPanel {
     this.tell_notes([]);
   }
 
-  /** @param {string[]} warnings of the frame that is shown */
+  /** @param {string[]} warnings of the displayed frame */
   tell_notes(warnings) {
     const { data } = this.page;
     const lines = [...new Set([...(data.warnings ?? []), ...warnings, ...(data.notes ?? [])])];
@@ -54,7 +54,7 @@ export class InformationPanel {
     this.result.replaceChildren(...(reply ? [element("p", { class: "verdict", "data-clean": String(reply.clean) }, check_sentence(reply)), this.#table(reply)] : []));
   }
 
-  /** What was found, a row each, and below it the first places. @param {Record<string, any>} reply */
+  /** The findings, one per row, each followed by its first places. @param {Record<string, any>} reply */
   #table(reply) {
     const { page } = this;
     const place = (/** @type {string} */ name, /** @type {Place} */ found) => element("tr", { class: "place" }, element("td", { colspan: 2 },

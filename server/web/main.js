@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The page of `tessera serve`: its parts made and wired to each other.
+ * The page of `tessera serve`: creates its parts and connects them.
  *
  * @typedef {import("./types.js").FrameHeader} FrameHeader
  * @typedef {import("./gestures.js").Mode} Mode
@@ -46,7 +46,7 @@ if (mode === "fly") mode = "turntable";
 function set_mode(word) {
   mode = /** @type {Mode} */ (word);
   set_preference("mode", mode);
-  // Flight through an orthographic view shows no way ahead.
+  // Flying forward has no visible effect in an orthographic view.
   if (mode === "fly" && page.ready && !is_perspective(page.camera)) history.change({ camera: with_projection(page.camera, true) });
   for (const tool of mode_tools) tool.setAttribute("aria-pressed", String(tool.dataset.mode === mode));
   view_panel.update();
@@ -84,7 +84,7 @@ const picture_tools = [icon_button("link", "Copy link (L)", () => void picture_p
 by_id("tools").append(undo, redo, ...picture_tools, icon_button("help", "Keys (?)", show_help), panel_toggle);
 for (const tool of picture_tools) tool.disabled = true;
 
-/** There is something that controls can act on. */
+/** Enables the controls once there are data. */
 function wake_controls() {
   for (const id of ["panel", "view-tools", "status"]) by_id(id).inert = false;
   by_id("axes").removeAttribute("hidden");
@@ -127,7 +127,7 @@ async function centre(place) {
 
 new Gestures(view.frame, {
   camera: () => (page.ready ? page.camera : undefined),
-  // What stands in the default view stands on the table.
+  // The up direction of the default view is that of the turntable.
   pole: () => upright(),
   extent: () => page.extent,
   move: (camera) => history.change({ camera }, { moving: true }),
@@ -145,7 +145,7 @@ new Gestures(view.frame, {
   }, 120),
 });
 
-/** The world axis that is nearest to up in the default view. */
+/** The world axis nearest to the up direction of the default view. */
 function upright() {
   const { up } = basis_of(page.data.defaults.camera);
   const axis = up.map(Math.abs).indexOf(Math.max(...up.map(Math.abs)));
@@ -245,7 +245,7 @@ function show_connection(state, detail) {
 }
 let countdown = 0;
 
-/** What a page does that the server refuses: it takes another token, where that is the reason. @param {string} reason */
+/** Controls for a page that the server refuses: a field for another token, if that is the reason. @param {string} reason */
 function refused_controls(reason) {
   const try_again = () => {
     if (address && address.value.trim() !== "" && !set_token(address.value)) {
@@ -267,7 +267,7 @@ let reading_delay = 0;
 
 /** @param {{stage?: string, fraction?: number|null}} progress */
 function show_reading({ stage, fraction }) {
-  // What is read again, another step, a cut, is often there at once: then nothing flashes up.
+  // Reading again, for another step or a cut, is often fast: delay the display, so that it does not flash.
   if (page.ready && by_id("reading").hidden) reading_delay ||= window.setTimeout(() => { by_id("reading").hidden = false; }, 400);
   else by_id("reading").hidden = false;
   by_id("reading-stage").textContent = stage ? `${stage.charAt(0).toUpperCase()}${stage.slice(1)} …` : "Reading …";
@@ -320,13 +320,13 @@ async function load_data() {
     }
   }
 }
-/** Why the file cannot be shown as the server was started; empty: it can. */
+/** The reason why the file cannot be shown with the server's start options; empty: it can. */
 let start_error = "";
 
 /** @param {import("./types.js").Data} data */
 function begin(data) {
   if (page.ready) {
-    // Back after a lost connection: what the page knows goes with its own state.
+    // Reconnected: ask again for the data of the page's own state.
     known_data = "";
     ask_anew();
     return;
@@ -350,7 +350,7 @@ function begin(data) {
   if (connection.is_open) sender.opened();
 }
 
-// What follows each change.
+// Actions after each change.
 
 const write_address = debounced(() => {
   const url = new URL(location.href);
@@ -367,7 +367,7 @@ function update_soon() {
     if (!page.ready) return;
     axes.show(page.camera);
     probe.place_marker();
-    // Panels are shown anew when what moves is theirs; a turning view is not.
+    // Panels are updated during a change of their own options, but not while the view turns.
     if (!history.moving || !turning) for (const panel of [functions, data_panel, view_panel, picture_panel]) panel.update();
     undo.disabled = !history.can_undo;
     redo.disabled = !history.can_redo;
@@ -393,17 +393,17 @@ history.listen(({ state, before, moving }) => {
   }
 });
 
-// What there is of the data goes with what is drawn of it.
+// The description of the data depends on these options.
 const data_words = ["field", "time-step", "block", "smooth", "threshold", "clip"];
 const data_key = () => JSON.stringify(data_words.map((word) => history.state[word] ?? null));
-/** The base's, which the page began with. */
+/** The key of the base state, with which the page began. */
 let known_data = "[null,null,null,null,null,null]";
 const data_question = new LatestQuestion();
 const ask_anew = debounced(async () => {
   const key = data_key();
   if (!page.ready || key === known_data) return;
   known_data = key;
-  // An error is the state's, and is told with its picture.
+  // An error belongs to the state, and is reported with its picture.
   const data = await data_question.ask("api/data", { state: page.full_state() }).catch(() => undefined);
   if (!data || data.reading) return;
   page.take_data(data);
@@ -435,7 +435,7 @@ window.addEventListener("hashchange", () => {
   }
 });
 
-// A background that nobody chose goes with the page.
+// A background that was not chosen follows the page's colours.
 dark.addEventListener("change", () => {
   offer(false);
   update_soon();
@@ -469,7 +469,7 @@ document.addEventListener("untaken", (event) => {
 document.addEventListener("keydown", (event) => {
   const target = event.target instanceof Element ? event.target : document.body;
   const typing = target.matches("input:not([type=range]):not([type=checkbox]):not([type=color]), select, textarea");
-  // The browser's own undo is of what is being typed.
+  // While the user types, the browser's own undo applies.
   const half_typed = target instanceof HTMLInputElement && being_typed(target);
   if ((event.ctrlKey || event.metaKey) && !event.altKey && !half_typed && ["z", "y"].includes(event.key.toLowerCase())) {
     event.preventDefault();
@@ -485,7 +485,7 @@ document.addEventListener("keydown", (event) => {
   act();
 });
 
-// For scripts and tests: what the page shows, and how fast.
+// For scripts and tests: what the page shows, and its latencies.
 Object.assign(window, {
   tessera: {
     state: () => history.state, full_state: () => page.full_state(), shown: () => view.shown, bytes: () => view.bytes, latencies: (/** @type {boolean | undefined} */ stand_in) => status.latencies(stand_in),

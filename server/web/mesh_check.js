@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * What the check of a mesh found, in words: api/check, as `tessera info --check` has it.
+ * The results of a mesh check as text: api/check, equal to `tessera info --check`.
  *
- * @typedef {{ id: number, other?: number, at: import("./types.js").Vector, value?: number }} Place value: of slivers, the aspect ratio
+ * @typedef {{ id: number, other?: number, at: import("./types.js").Vector, value?: number }} Place value: the aspect ratio of slivers
  * @typedef {{ name: string, title: string, text: string, places: Place[] }} Row
  */
 import { counted, short_number } from "./numbers.js";
@@ -14,7 +14,7 @@ const findings = [["overlaps", "Overlapping pairs of cells"], ["folded", "Folded
 /** @param {number} count @param {string} one @param {string} [many] */
 const some = (count, one, many = `${one}s`) => `${counted(count)} ${count === 1 ? one : many}`;
 
-/** One sentence: whether the picture is right. @param {Record<string, any>} reply */
+/** One sentence that states whether the picture is correct. @param {Record<string, any>} reply */
 export function check_sentence({ clean, overlaps, folded, non_conforming_faces: faces, flat, slivers, tets }) {
   if (clean) {
     const bad = [flat.count > 0 && some(flat.count, "flat tetrahedron", "flat tetrahedra"), slivers.count > 0 && some(slivers.count, "sliver")].filter(Boolean);
@@ -42,7 +42,7 @@ export function check_rows(reply) {
   return [...rows, { name: "orientation", title: "Orientation", text: `${counted(reply.right_handed)} right-handed, ${counted(reply.left_handed)} left-handed`, places: [] }];
 }
 
-/** What is at a place. @param {string} name of the finding @param {Place} place */
+/** The name of the elements at a place. @param {string} name of the finding @param {Place} place */
 export function place_name(name, { id, other }) {
   if (name === "duplicate_points") return other === undefined ? `point ${id}` : `points ${id} and ${other}`;
   return other === undefined ? `cell ${id}${name === "overlaps" ? " and itself" : ""}` : `cells ${id} and ${other}`;

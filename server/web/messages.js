@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** Sentences for who uses the page: read aloud by screen readers, and gone by themselves unless they are errors. */
+/** Messages for the user: read aloud by screen readers; they disappear by themselves unless they are errors. */
 import { button, by_id, element, icon_button } from "./dom.js";
 
 /** Milliseconds. */
@@ -13,14 +13,14 @@ export class Messages {
     this.shown = new Map();
   }
 
-  /** Something happened. @param {string} sentence */
+  /** Reports an event. @param {string} sentence */
   tell(sentence) {
     this.#show("note", `note:${sentence}`, sentence);
     this.spoken.textContent = sentence;
   }
 
   /**
-   * Something is wrong. `about`: what a later call, or clear(), replaces.
+   * Reports an error. `about`: key by which a later call replaces it and clear() removes it.
    * @param {string} sentence @param {{about?: string, action?: {text: string, act: () => void}}} [how]
    */
   complain(sentence, { about = sentence, action } = {}) {
@@ -37,7 +37,7 @@ export class Messages {
     for (const [about, line] of [...this.shown]) if (line.classList.contains("error")) this.clear(about);
   }
 
-  /** Says what a promise failed at. @template T @param {Promise<T>} work @param {string} [about] @returns {Promise<T | undefined>} */
+  /** Reports the error of a promise. @template T @param {Promise<T>} work @param {string} [about] @returns {Promise<T | undefined>} */
   async of(work, about) {
     try {
       const result = await work;
@@ -52,7 +52,7 @@ export class Messages {
   /** @param {"note"|"error"} kind @param {string} about @param {string} sentence @param {{text: string, act: () => void}} [action] */
   #show(kind, about, sentence, action) {
     const before = this.shown.get(about);
-    // One cause often spoils several questions: it is told once.
+    // One cause often makes several requests fail: it is reported once.
     if (!before && [...this.shown.values()].some((line) => line.firstChild?.textContent === sentence)) return;
     const line = element("div", { class: `message ${kind}`, role: kind === "error" ? "alert" : undefined },
       element("span", {}, sentence),

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** Numbers as people read and type them, and axes for them. */
+/** Formatting and parsing of numbers, and axes. */
 
 /**
- * Short, and right to `digits` significant digits: 0.82, 12 300, 1.5e-7.
+ * Short text with `digits` significant digits: 0.82, 12 300, 1.5e-7.
  * @param {number|null|undefined} value @param {number} [digits]
  */
 export function short_number(value, digits = 4) {
@@ -14,7 +14,7 @@ export function short_number(value, digits = 4) {
 }
 
 /**
- * A coordinate to a hundred-thousandth of the data's size, wherever they lie.
+ * A coordinate to a hundred-thousandth of the data's size, wherever the data are.
  * @param {number} value @param {number} extent length of the data's diagonal
  */
 export function short_place(value, extent) {
@@ -36,7 +36,7 @@ export function short_time(milliseconds) {
 export const short_bytes = (bytes) => (bytes < 1000 ? `${bytes} bytes` : bytes < 1e6 ? `${short_number(bytes / 1e3, 3)} kB` : `${short_number(bytes / 1e6, 3)} MB`);
 
 /**
- * A typed number; decimal commas are understood. NaN for anything else.
+ * A typed number; accepts decimal commas. NaN for anything else.
  * @param {string} text
  */
 export function parsed_number(text) {
@@ -45,7 +45,7 @@ export function parsed_number(text) {
 }
 
 /**
- * Numbers typed with commas or blanks between: undefined unless there are `count` of them.
+ * Numbers separated by commas or blanks: undefined unless there are `count` of them.
  * @param {string} text @param {number} count @returns {number[] | undefined}
  */
 export function parsed_numbers(text, count) {
@@ -77,7 +77,7 @@ export function log_ticks(low, high, count) {
 }
 
 /**
- * Where a value lies on an axis, 0 at its low end and 1 at its high one.
+ * The position of a value on an axis, 0 at its low end and 1 at its high end.
  * @param {number} value @param {[number, number]} ends @param {boolean} log
  */
 export function fraction_of(value, ends, log) {
@@ -91,7 +91,7 @@ export function value_of(fraction, ends, log) {
   return ends[0] * (ends[1] / ends[0]) ** fraction;
 }
 
-/** The smallest opacity on a logarithmic axis; below it is 0. */
+/** The smallest opacity on a logarithmic axis; smaller ones count as 0. */
 export const least_opacity = 1e-4;
 
 /** Height of an opacity on its axis, 0 to 1. @param {number} opacity @param {boolean} log */

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Options as they are in force: a state's, else those that the server was started with.
+ * Effective options: those of a state, otherwise those with which the server was started.
  *
  * @typedef {import("./types.js").State} State
  */
 
-/** What draws, and the options that say how, which are refused without it. @type {{ drawn: (option: (word: string) => any) => boolean, how: string[] }[]} */
+/** Drawn elements, and the options for their appearance, which are refused without them. @type {{ drawn: (option: (word: string) => any) => boolean, how: string[] }[]} */
 const dependent = [
   { drawn: (option) => Boolean(option("color-bar")), how: ["color-bar-title", "color-bar-range", "color-bar-scale", "field-unit"] },
   { drawn: (option) => ["box", "both"].includes(option("axes")) || Boolean(option("scale-bar")), how: ["length-unit"] },
@@ -15,13 +15,13 @@ const dependent = [
   },
 ];
 
-/** Of a function that is made of points: they say it themselves. */
+/** Refused with a function made of points, which already determine them. */
 const in_points = ["rescale", "opacity-points"];
 
 /**
- * A state as the server takes it: without options that nothing shows any more. null takes one away that the server was
- * started with.
- * @param {State} state @param {State} started @param {{ shaded?: boolean }} [first] whether the first picture is shaded unasked
+ * A state in the form that the server accepts: without options that have no effect. null removes an option with which
+ * the server was started.
+ * @param {State} state @param {State} started @param {{ shaded?: boolean }} [first] whether the first picture is shaded by default
  * @returns {State}
  */
 export function sent_state(state, started, { shaded = false } = {}) {
@@ -34,7 +34,7 @@ export function sent_state(state, started, { shaded = false } = {}) {
   for (const { drawn, how } of dependent) if (!drawn(option)) how.forEach(leave_out);
   if (typeof state["transfer-function"] === "object" && state["transfer-function"] !== null) {
     in_points.forEach(leave_out);
-    // The light stays when the colours are edited.
+    // Shading stays when the colours are edited.
     if (shaded && option("shade") === undefined && !option("no-shade")) sent.shade = true;
   }
   return sent;

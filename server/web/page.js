@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * What the parts of the page share: the data, the state with its history, and what of it the server is told.
+ * Shared by the parts of the page: the data, the state with its history, and the state that is sent to the server.
  *
  * @typedef {import("./types.js").Camera} Camera
  * @typedef {import("./types.js").Data} Data
@@ -24,34 +24,34 @@ export class Page {
     this.messages = messages;
     this.view = view;
     this.camera_question = new LatestQuestion();
-    /** Whether `data` is there. */
+    /** Whether `data` is available. */
     this.ready = false;
     this.data = /** @type {Data} */ (/** @type {unknown} */ (undefined));
-    /** What the server was started with; null: left out, for with it nothing can be shown. @type {State} */
+    /** The options with which the server was started; null: left out, as nothing can be shown with it. @type {State} */
     this.started = {};
-    /** All of it. @type {State} */
+    /** The same, without options left out. @type {State} */
     this.whole_start = {};
-    /** Ranges of fields without threshold and cuts, by the options that say which field. @type {Map<string, [number, number]>} */
+    /** Ranges of fields without threshold and cuts, by the options that determine the field. @type {Map<string, [number, number]>} */
     this.whole_ranges = new Map();
-    /** The box of all of the data, whatever is cut away. @type {[Vector, Vector]} */
+    /** The box of the whole data, without cuts. @type {[Vector, Vector]} */
     this.whole_bounds = [[0, 0, 0], [1, 1, 1]];
-    /** Called when a function is shown, for parts that show its colours. */
+    /** Called when a function is shown, for parts that use its colours. */
     this.function_shown = () => {};
-    /** The colours that are edited, for parts that show one of them. @type {() => import("./transfer_function.js").EditedFunction | undefined} */
+    /** The edited function, for parts that show one of its colours. @type {() => import("./transfer_function.js").EditedFunction | undefined} */
     this.edited_function = () => undefined;
   }
 
-  /** An option as it is in force: the state's, else what the server was started with, or chose. @param {string} word @returns {any} */
+  /** The effective value of an option: the state's, otherwise the one with which the server was started, or its default. @param {string} word @returns {any} */
   option(word) {
     return [this.history.state, this.started, this.data?.defaults ?? {}].find((options) => options[word] !== undefined)?.[word];
   }
 
-  /** What the state says so that an option is off: nothing, or null where the server was started with it. @param {string} word */
+  /** The state's value for an option that is off: undefined, or null if the server was started with it. @param {string} word */
   unset(word) {
     return this.started[word] ? null : undefined;
   }
 
-  /** What the state says so that an option is drawn: nothing where the server was started with it, perhaps with a place. @param {string} word */
+  /** The state's value for an option that is on: undefined if the server was started with it, which may include a place. @param {string} word */
   switched_on(word) {
     return this.started[word] ? undefined : true;
   }
@@ -61,12 +61,12 @@ export class Page {
     this.history.change({ [word]: value === undefined ? this.unset(word) : value });
   }
 
-  /** Of the server's start, as states take it away. @returns {State} */
+  /** The start options left out, in the form in which states remove them. @returns {State} */
   get #left_out() {
     return Object.fromEntries(Object.entries(this.started).filter(([, value]) => value === null));
   }
 
-  /** Whether the first picture is shaded though nothing says so. */
+  /** Whether the first picture is shaded without an option. */
   get #is_shaded_unasked() {
     return this.data?.defaults.shade === true && !this.started.shade;
   }
@@ -88,12 +88,12 @@ export class Page {
     return this.history.state.camera ?? this.data.defaults.camera;
   }
 
-  /** The picture's: the one that was chosen, or one that suits the page. @returns {string | null} */
+  /** The picture's background: the chosen one, or one that suits the page. @returns {string | null} */
   get background() {
     return this.option("background") ?? (this.history.state.background === null ? null : page_background());
   }
 
-  /** All that makes the picture. @returns {State} */
+  /** The complete state of the picture. @returns {State} */
   full_state() {
     const state = { ...this.#left_out, ...this.history.state, background: this.background, camera: this.camera, size: size_word(this.view.size()) };
     return sent_state(state, this.started, { shaded: this.#is_shaded_unasked });
@@ -109,7 +109,7 @@ export class Page {
     return JSON.stringify([this.option("field") ?? null, this.option("time-step") ?? null, this.option("smooth") ?? null]);
   }
 
-  /** What there is now. What is cut away by options goes on to be in reach, once it has been seen. @param {Data} data */
+  /** Stores the description of the data. Parts cut away by options still count for ranges and bounds once they have been seen. @param {Data} data */
   take_data(data) {
     const cut = ["threshold", "clip", "block"].some((word) => this.option(word)), is_first = !this.data;
     this.data = { ...data, defaults: this.data?.defaults ?? data.defaults };
@@ -123,20 +123,20 @@ export class Page {
     if (!cut && data.range) this.whole_ranges.set(this.#field_key, data.range);
   }
 
-  /** Offers bytes as a file, and says so. @param {Blob} blob @param {string} name @param {string} [shape] of the picture */
+  /** Offers bytes as a file, and reports it. @param {Blob} blob @param {string} name @param {string} [shape] of the picture */
   save(blob, name, shape) {
     save_file(blob, name);
     this.messages.tell(`Saved ${name}: ${shape ? `${shape}, ` : ""}${short_bytes(blob.size)}.`);
   }
 
-  /** The field's range, or 0 to 1 where it is not known. @returns {[number, number]} */
+  /** The field's range, or 0 to 1 if it is unknown. @returns {[number, number]} */
   get field_range() {
     const word = String(this.option("field") ?? this.data.field ?? "");
     const range = this.whole_ranges.get(this.#field_key) ?? field_named(word, this.data.fields)?.range ?? this.data.range;
     return range && range[0] < range[1] ? range : [0, 1];
   }
 
-  /** What there is, and what the server began with, its view framed for this window. @returns {Promise<Data>} */
+  /** The description of the data with the server's start options, with a view framed for this window. @returns {Promise<Data>} */
   ask_data() {
     return ask_about("api/data", { state: { ...this.#left_out, size: size_word(this.view.size()) } });
   }
@@ -148,8 +148,7 @@ export class Page {
   }
 
   /**
-   * Leaves out what the server was started with and a file may be without: the field, then all that says what of the
-   * data is drawn.
+   * Leaves out start options that may not fit the file: first the field, then all options that select the data to draw.
    * @returns {boolean} whether there was such an option
    */
   leave_out_of_start() {
@@ -159,7 +158,7 @@ export class Page {
     return words.length > 0;
   }
 
-  /** A named view, by the server's code; "default" is what the server began with. @param {string} view */
+  /** A named view, computed by the server; "default" is the one with which the server was started. @param {string} view */
   async look(view) {
     if (!this.ready) return;
     if (view === "default") {
@@ -173,7 +172,7 @@ export class Page {
     if (camera) this.history.change({ camera: camera.camera ?? camera });
   }
 
-  /** Another field; what was said in the values of the one before goes. @param {string | undefined} field undefined: the one that the server began with */
+  /** Selects a field, and removes options in the values of the previous one. @param {string | undefined} field undefined: the server's initial one */
   set_field(field) {
     const own = this.history.state["transfer-function"];
     const in_values = Object.fromEntries(["range", "threshold", "iso", "color-bar-range"].map((word) => [word, field === undefined ? undefined : this.unset(word)]));
@@ -181,14 +180,14 @@ export class Page {
   }
 }
 
-/** Whether the page is dark, as the browser has it. */
+/** Whether the browser asks for dark pages. */
 export const dark = window.matchMedia("(prefers-color-scheme: dark)");
-// By the event, before which `matches` may have changed already: else a state could differ from what was asked for.
+// Updated by the event, as `matches` may change earlier: otherwise a state could differ from the one requested.
 let is_dark = dark.matches;
 dark.addEventListener("change", () => { is_dark = dark.matches; });
 const page_background = () => (is_dark ? "#15171b" : "#ffffff");
 
-/** As the option has it. @param {import("./types.js").Size} size */
+/** In the form of the option. @param {import("./types.js").Size} size */
 export const size_word = ({ width, height }) => `${width}x${height}`;
 
 /** The command of a state. @param {State} state @returns {Promise<string>} */

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Pictures and films to keep, links and commands that make them again.
+ * Saving of pictures and films, links and commands that reproduce them.
  *
  * @typedef {import("./page.js").Page} Page
  * @typedef {import("./types.js").Camera} Camera
@@ -76,7 +76,7 @@ export class PicturePanel {
     }
   }
 
-  /** What is typed, if it is a size. */
+  /** The typed size, if it is valid. */
   #sides() {
     const width = parsed_number(this.width.value), height = parsed_number(this.height.value);
     const good = (/** @type {number} */ side) => Number.isInteger(side) && side >= 1 && side <= 16384;
@@ -155,7 +155,7 @@ export class PicturePanel {
       await navigator.clipboard.writeText(text);
       this.page.messages.tell(sentence);
     } catch {
-      // A page that came over plain HTTP from elsewhere may not use the clipboard.
+      // A page loaded over plain HTTP from another machine may not use the clipboard.
       this.page.messages.complain(`The browser does not let the page copy; here is the text: ${text}`, { about: "copy" });
     }
   }

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The canvas: frames painted, smaller ones scaled up smoothly, and what lies over them.
+ * The canvas: paints frames, scales smaller ones up smoothly, and positions elements over them.
  *
  * @typedef {import("./types.js").FrameHeader} FrameHeader
  * @typedef {import("./types.js").Size} Size
  */
 import { by_id } from "./dom.js";
 
-/** The largest picture that follows the window by itself, pixels; a larger one is asked for by its size. */
+/** The largest picture that follows the window automatically, in pixels; a larger one needs an explicit size. */
 const most_pixels = 8e6;
-/** While moving, what a canvas is scaled up to in software; the screen's own scaling does the rest. */
+/** While moving, the size to which a canvas is scaled up in software; the screen's scaling does the rest. */
 const most_moving_pixels = 1.5e6;
 
-/** The same shape with at most so many pixels. @param {Size} size @param {number} most @returns {Size} */
+/** The same shape with at most `most` pixels. @param {Size} size @param {number} most @returns {Size} */
 function limited({ width, height }, most) {
   const shrink = Math.min(1, Math.sqrt(most / (width * height)));
   return { width: Math.max(16, Math.floor(width * shrink)), height: Math.max(16, Math.floor(height * shrink)) };
@@ -23,12 +23,12 @@ export class PictureView {
     this.frame = by_id("picture");
     this.canvas = /** @type {HTMLCanvasElement} */ (by_id("canvas"));
     this.context = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d"));
-    /** The frame that is shown. @type {FrameHeader | undefined} */
+    /** The displayed frame. @type {FrameHeader | undefined} */
     this.shown = undefined;
-    /** Its bytes, as they came. @type {Uint8Array<ArrayBuffer> | undefined} */
+    /** Its bytes, as received. @type {Uint8Array<ArrayBuffer> | undefined} */
     this.bytes = undefined;
     this.painted = 0;
-    /** The size that states ask for, where it does not follow the window. @type {Size | undefined} */
+    /** The size that states request, if it does not follow the window. @type {Size | undefined} */
     this.fixed = undefined;
     /** @type {() => void} */
     this.resized = () => {};
@@ -45,7 +45,7 @@ export class PictureView {
     return limited({ width: Math.round(box.width * ratio), height: Math.round(box.height * ratio) }, most_pixels);
   }
 
-  /** What states ask for. @returns {Size} */
+  /** The size that states request. @returns {Size} */
   size() {
     return this.fixed ?? this.window_size();
   }
@@ -56,7 +56,7 @@ export class PictureView {
     this.#lay_out();
   }
 
-  /** A size in CSS pixels: the window filled, or of a fixed picture as much of it as its shape allows. */
+  /** A size in CSS pixels: fills the window, or for a fixed picture as much of it as its shape allows. */
   #lay_out() {
     const box = this.frame.getBoundingClientRect();
     const size = this.size();
@@ -67,7 +67,8 @@ export class PictureView {
   }
 
   /**
-   * Paints, unless a later frame has been. Resolves when it is on the screen, or would be if the page were seen.
+   * Paints a frame unless a later one has been painted. Resolves when it is on the screen, or would be if the page were
+   * visible.
    * @param {FrameHeader} header @param {Uint8Array<ArrayBuffer>} image @returns {Promise<boolean>} whether it was painted
    */
   async paint(header, image) {
@@ -95,13 +96,13 @@ export class PictureView {
     return true;
   }
 
-  /** A new connection counts its frames anew. */
+  /** A new connection numbers its frames from the beginning. */
   forget_numbers() {
     this.painted = 0;
   }
 
   /**
-   * A place of the window as picture coordinates: fractions of the picture's height from its middle, y upwards.
+   * A position in the window as picture coordinates: fractions of the picture's height from its middle, y upwards.
    * @param {number} client_x @param {number} client_y
    */
   place_of(client_x, client_y) {
@@ -115,7 +116,7 @@ export class PictureView {
     return { left: box.left - frame.left + box.width / 2 + place.x * box.height, top: box.top - frame.top + box.height / 2 - place.y * box.height };
   }
 
-  /** Picture coordinates as pixels of the picture that states ask for. @param {{x: number, y: number}} place */
+  /** Picture coordinates as pixels of the picture that states request. @param {{x: number, y: number}} place */
   pixel_of(place) {
     const { width, height } = this.size();
     const inside = (/** @type {number} */ v, /** @type {number} */ most) => Math.max(0, Math.min(most - 1, Math.floor(v)));

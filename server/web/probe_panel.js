@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * What is under the cursor: the first visible point of a ray, and the field and the opacity along it.
+ * Probing under the cursor: the first visible point of a ray, and the field and the opacity along it.
  *
  * @typedef {import("./page.js").Page} Page
  * @typedef {import("./types.js").Vector} Vector
@@ -36,7 +36,7 @@ export class ProbePanel {
 
   begin() {}
 
-  /** The data are others: what was found is of those before, and so is an answer under way. */
+  /** Call for other data: drops the result for the previous data, and any pending answer. */
   forget() {
     this.question.drop();
     this.point = undefined;
@@ -55,7 +55,7 @@ export class ProbePanel {
     if (reply) this.#show(reply, pixel);
   }
 
-  /** The point that a place shows, if there is one. @param {{x: number, y: number}} place @returns {Promise<Vector | undefined>} */
+  /** The point that is visible at a place, if there is one. @param {{x: number, y: number}} place @returns {Promise<Vector | undefined>} */
   async point_at(place) {
     const reply = await this.page.messages.of(this.question.ask("api/probe", { state: this.page.full_state(), ...this.page.view.pixel_of(place), samples: 2 }), "probe");
     return reply?.hit ? (reply.half_point ?? reply.point) : undefined;
@@ -117,7 +117,7 @@ export class ProbePanel {
       ...(depth !== undefined && depth >= from && depth <= to ? [svg("line", { class: "depth", x1: x(depth), x2: x(depth), y1: plot.top, y2: foot })] : []), ...ticks);
   }
 
-  /** Where the point is now: it stays with the data while the view turns. */
+  /** Moves the marker to the point, which stays with the data while the view turns. */
   place_marker() {
     const seen = this.point && this.page.ready ? project(this.page.camera, this.point) : undefined;
     this.marker.hidden = !seen;

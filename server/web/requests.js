@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Questions to the server. Each throws an Error whose message is a sentence.
+ * Requests to the server. Each throws an Error whose message is a sentence.
  *
  * @typedef {import("./types.js").State} State
  */
 import { token } from "./token.js";
 import { in_page_words } from "./wording.js";
 
-/** The data is still being read. */
+/** The data are still being read. */
 export class StillReading extends Error {
   /** @param {{stage?: string, fraction?: number|null}} progress */
   constructor(progress) {
@@ -16,21 +16,21 @@ export class StillReading extends Error {
   }
 }
 
-/** The server refuses the page: the token is not its own, or the page's address is not. */
+/** The server refuses the page: the token is not the server's, or the page's address is not allowed. */
 export class Refused extends Error {}
 
-/** What was asked for is not in the data, or is wrong. */
+/** The request is invalid, or does not fit the data. */
 export class Unfit extends Error {}
 
 export const unreachable = "The server cannot be reached.";
 
-/** A proxy that asks for a password of its own takes Authorization for itself. */
+/** Whether a proxy with its own password uses the Authorization header. */
 let behind_password = false;
 
 /** @param {string} path @param {RequestInit} [options] @returns {Promise<Response>} */
 async function fetched(path, options) {
   const headers = { ...(behind_password ? { "X-Tessera-Token": token() } : { Authorization: `Bearer ${token()}` }), ...options?.headers };
-  // Cookies and passwords are a proxy's, where the page came through one.
+  // Cookies and passwords belong to a proxy, if the page was loaded through one.
   return fetch(path, { credentials: "same-origin", ...options, headers });
 }
 
@@ -66,7 +66,7 @@ export const post = (path, question, signal) =>
 export const ask_about = async (path, question, signal) => (await post(path, question, signal)).json();
 
 /**
- * One question at a time: another ends the one before, whose answer then never comes.
+ * One request at a time: another one aborts the previous one, whose answer is then dropped.
  */
 export class LatestQuestion {
   constructor() {
@@ -74,12 +74,12 @@ export class LatestQuestion {
     this.running = undefined;
   }
 
-  /** The answer under way is of no use any more, and never comes. */
+  /** Drops the pending answer, which is no longer needed. */
   drop() {
     this.running?.abort();
   }
 
-  /** @param {string} path @param {Record<string, any>} question @returns {Promise<any | undefined>} undefined if another came, or it was dropped */
+  /** @param {string} path @param {Record<string, any>} question @returns {Promise<any | undefined>} undefined if there was another request, or it was dropped */
   async ask(path, question) {
     this.running?.abort();
     const mine = (this.running = new AbortController());

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The state of the page and its history. Undo and redo go from one state at rest to the next: what passes by while a
- * control is dragged, or while one control is used again and again, makes one step.
+ * The state of the page and its history. Undo and redo go from one state at rest to the next: all changes while a
+ * control is dragged, or while one control is used repeatedly, make one step.
  *
  * @typedef {import("./types.js").State} State
  * @typedef {object} Change
  * @property {State} state
  * @property {State} before
- * @property {boolean} moving more of it is to come
+ * @property {boolean} moving more changes follow
  * @property {"change"|"cancel"|"undo"|"redo"|"load"|"adjust"} cause
  */
 
-/** Steps kept. */
+/** Most steps kept. */
 const most_steps = 500;
-/** Milliseconds within which changes of one name are one step. */
+/** Milliseconds within which changes with the same name are one step. */
 const merge_time = 900;
 
 /** Whether two values are the same as JSON. @param {any} a @param {any} b */
 export const same = (a, b) => a === b || JSON.stringify(a) === JSON.stringify(b);
 
-/** Without keys that say nothing. @param {State} state @returns {State} */
+/** The state without empty keys. @param {State} state @returns {State} */
 const tidied = (state) => Object.fromEntries(Object.entries(state).filter(([, value]) => value !== undefined && !(Array.isArray(value) && value.length === 0)));
 
 export class StateHistory {
@@ -40,15 +40,15 @@ export class StateHistory {
     this.listeners = new Set();
   }
 
-  /** Calls `listener` after each change. Gives a function that ends that. @param {(change: Change) => void} listener */
+  /** Calls `listener` after each change. Returns a function that removes it. @param {(change: Change) => void} listener */
   listen(listener) {
     this.listeners.add(listener);
     return () => this.listeners.delete(listener);
   }
 
   /**
-   * Sets keys; undefined removes one. `moving`: more of it is to come, until settle(). `name`: changes of one name that
-   * follow each other at once are one step.
+   * Sets keys; undefined removes one. `moving`: more changes follow, until settle(). `name`: consecutive changes with
+   * the same name are one step.
    * @param {State} keys @param {{moving?: boolean, name?: string}} [how]
    */
   change(keys, how = {}) {
@@ -62,7 +62,7 @@ export class StateHistory {
     this.#tell({ state: after, before, moving, cause: "change" });
   }
 
-  /** What moved rests. @param {string} [name] as in change() */
+  /** Ends a movement. @param {string} [name] as in change() */
   settle(name = "") {
     if (!this.moving) return;
     this.moving = false;
@@ -70,7 +70,7 @@ export class StateHistory {
     this.#tell({ state: this.state, before: this.state, moving: false, cause: "change" });
   }
 
-  /** What moved goes back to where it rested. */
+  /** Reverts a movement to the state at rest. */
   cancel() {
     if (!this.moving) return;
     const before = this.state;
@@ -79,7 +79,7 @@ export class StateHistory {
     this.#tell({ state: this.state, before, moving: false, cause: "cancel" });
   }
 
-  /** Another state from outside, as one step. @param {State} state */
+  /** Replaces the state, as one step. @param {State} state */
   load(state) {
     const before = this.state;
     this.state = tidied(state);
@@ -89,7 +89,7 @@ export class StateHistory {
   }
 
   /**
-   * Keys that follow the window, which no step undoes: steps that hold what the state holds follow it too.
+   * Sets keys that follow the window, which undo does not revert: steps with the same values as the state change too.
    * @param {State} keys
    */
   adjust(keys) {
@@ -102,7 +102,7 @@ export class StateHistory {
     this.#tell({ state: this.state, before, moving: true, cause: "adjust" });
   }
 
-  /** The state, without a step that undoes it: how the page begins. @param {State} state */
+  /** Sets the page's initial state, which cannot be undone. @param {State} state */
   begin(state) {
     const before = this.state;
     this.state = this.at_rest = tidied(state);

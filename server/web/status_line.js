@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The line below the picture: what is shown, how long it took and where, and how right it is.
+ * The line below the picture: what is shown, how long its stages took, and its accuracy.
  *
  * @typedef {import("./types.js").FrameHeader} FrameHeader
  * @typedef {import("./page.js").Page} Page
@@ -10,7 +10,7 @@ import { median_and_95 } from "./frames.js";
 import { short_number, short_time } from "./numbers.js";
 import { ask_about } from "./requests.js";
 
-/** Latencies that are kept. */
+/** Most latencies kept. */
 const most_latencies = 2000;
 
 export class StatusLine {
@@ -26,7 +26,7 @@ export class StatusLine {
     this.verdict = element("span", { class: "verdict", role: "status" });
     this.stages = by_id("stages");
     by_id("status").append(this.level, this.size, this.time, this.error, this.latency, this.verdict, this.verify);
-    /** Of each frame while moving: milliseconds from the event that made its state to its painting. @type {{ latency: number, stand_in: boolean }[]} */
+    /** For each frame while moving: milliseconds from the event that caused its state to its painting. @type {{ latency: number, stand_in: boolean }[]} */
     this.moving_latencies = [];
     /** @type {FrameHeader | undefined} */
     this.header = undefined;
@@ -55,7 +55,7 @@ export class StatusLine {
     if (header.level === "moving") this.verdict.textContent = "";
   }
 
-  /** The state has changed: what was said is of the picture before. `sentence`: why there is no new one, if there is none to come. @param {string} [sentence] */
+  /** Call when the state has changed: the text described the previous picture. `sentence`: the reason, if no new one follows. @param {string} [sentence] */
   outdated(sentence) {
     this.verdict.textContent = "";
     if (sentence) {
@@ -64,7 +64,7 @@ export class StatusLine {
     }
   }
 
-  /** Of frames while moving; of those of stand-ins, or of the data themselves, alone. @param {boolean} [stand_in] */
+  /** Latencies of frames while moving; optionally only those of previews, or only those of the data themselves. @param {boolean} [stand_in] */
   latencies(stand_in) {
     const meant = this.moving_latencies.filter((frame) => stand_in === undefined || frame.stand_in === stand_in);
     return median_and_95(meant.map((frame) => frame.latency));

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Iso-surfaces, the boundary, blocks and named surfaces of the mesh, lit, within the volume: options "WHAT[:COLOUR[:OPACITY]]".
+ * Iso-surfaces, the boundary, blocks and named surfaces of the mesh, lit, within the volume: options
+ * "WHAT[:COLOUR[:OPACITY]]".
  *
  * @typedef {import("./page.js").Page} Page
- * @typedef {{what: string, color?: string, opacity: number}} Surface what: a value of the field, "boundary", a name of a block or of a surface
+ * @typedef {{what: string, color?: string, opacity: number}} Surface what: a value of the field, "boundary", the name of a block or of a surface
  */
 import { hex_of } from "./colors.js";
 import { button, checkbox, choice, element, icon_button, show_value, typed } from "./dom.js";
@@ -11,8 +12,8 @@ import { fraction_of, parsed_number, short_number } from "./numbers.js";
 import { color_at, hex_color } from "./transfer_function.js";
 
 /**
- * A name may hold colons, so of `names` the longest that the word begins with is its name. Of any other word a colour
- * and an opacity are known by their looks.
+ * A name may contain colons, so the longest of `names` at the beginning of the word is its name. For any other word,
+ * colour and opacity are recognised by their form.
  * @param {string} word @param {string[]} [names] @returns {Surface}
  */
 export function parsed_surface(word, names = []) {
@@ -33,12 +34,12 @@ export const surface_word = ({ what, color, opacity }) => `${what}${color !== un
 /** @param {any} value @param {string[]} names @returns {Surface[]} */
 const listed = (value, names) => (value ? [value].flat().map((word) => parsed_surface(String(word), names)) : []);
 
-/** Surfaces of one option, a row each. */
+/** The surfaces of one option, one per row. */
 class SurfaceList {
   /**
    * @param {Page} page @param {"iso"|"surface"} option @param {(index: number, change: (what: string) => void) => HTMLInputElement | HTMLSelectElement} make_what
-   * @param {(control: any, what: string) => void} show_what @param {(what: string) => string} own_color where none is said
-   * @param {() => string[]} [names] of what there is
+   * @param {(control: any, what: string) => void} show_what @param {(what: string) => string} own_color if none is given
+   * @param {() => string[]} [names] of the existing blocks and surfaces
    */
   constructor(page, option, make_what, show_what, own_color, names = () => []) {
     this.page = page;
@@ -69,7 +70,7 @@ class SurfaceList {
 
   update() {
     const { surfaces } = this;
-    // Rows are kept while one is dragged.
+    // Rows are kept while a slider is dragged.
     if (surfaces.length !== this.element.children.length) this.element.replaceChildren(...surfaces.map((_, i) => this.#row(i)));
     surfaces.forEach((surface, i) => {
       const [what, color, opacity] = this.element.children[i].querySelectorAll("input, select");
@@ -105,7 +106,7 @@ export class SurfaceEditor {
     }), (input, what) => show_value(input, short_number(Number(what), 6)), (what) => this.#function_color(Number(what)));
     this.others = new SurfaceList(page, "surface", (_, change) => choice("", change, this.#names().map((name) => [name, name])),
       (select, what) => {
-        // A file that the server was started with has no name in the data.
+        // A file with which the server was started has no name in the data.
         if (![...select.options].some((option) => option.value === what)) select.append(element("option", { value: what }, what));
         select.value = what;
       }, () => "#cccccc", () => this.#names());
@@ -117,7 +118,7 @@ export class SurfaceEditor {
   }
 
   begin() {
-    // Shade is of grids; the boundary and blocks are of meshes.
+    // Shading is for grids; the boundary and blocks are for meshes.
     const mesh = this.page.data.kind === "mesh";
     this.add_other.hidden = !mesh;
     this.shade.label.hidden = mesh;
@@ -127,13 +128,13 @@ export class SurfaceEditor {
     return [...new Set(["boundary", ...(this.page.data?.surfaces ?? []), ...(this.page.data?.blocks ?? [])])];
   }
 
-  /** A surface at a value of the field. @param {number} [value] default: the middle of the function's range */
+  /** Adds a surface at a value of the field. @param {number} [value] default: the middle of the function's range */
   add(value) {
     const range = this.page.edited_function()?.range ?? this.page.field_range;
     this.isos.set([...this.isos.surfaces, { what: String(Number((value ?? (range[0] + range[1]) / 2).toPrecision(6))), opacity: 1 }], false);
   }
 
-  /** The boundary, then the first surface or block that is not there yet. */
+  /** Adds the boundary, then the first surface or block that is not listed yet. */
   #add_other() {
     const there = this.others.surfaces;
     const what = this.#names().find((name) => !there.some((surface) => surface.what === name)) ?? "boundary";
@@ -146,13 +147,13 @@ export class SurfaceEditor {
     return edited ? hex_color(color_at(edited, Math.max(0, Math.min(1, fraction_of(value, edited.range, edited.log))))) : "#cccccc";
   }
 
-  /** Values that the field does not reach. A surface at its very smallest value is none either. */
+  /** Reports values that the field does not reach. A surface at its smallest value is not visible either. */
   #tell_unseen() {
     const { range } = this.page.data;
     const unseen = range ? this.isos.surfaces.map((surface) => Number(surface.what)).filter((value) => !(range[0] < value && value <= range[1])) : [];
     this.unseen.hidden = unseen.length === 0;
     const text = unseen.length === 0 || !range ? "" : `Nothing is seen at ${unseen.map((value) => short_number(value, 6)).join(", ")}: the field goes from ${short_number(range[0], 6)} to ${short_number(range[1], 6)}.`;
-    // Said once, and not with every update.
+    // Set only when it changes, not with every update.
     if (this.unseen.textContent !== text) this.unseen.textContent = text;
   }
 

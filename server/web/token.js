@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The token of the server's run, which every request carries. It comes with the address that the server prints and is
- * kept for this tab and the page's folder. A cookie would go to every port of the same machine.
+ * The token of the server's run, which every request contains. It is part of the address that the server prints and is
+ * stored for this tab and the page's directory. A cookie would be sent to every port of the same machine.
  */
 
 const place = () => `tessera.token ${new URL(".", document.baseURI).pathname}`;
 let current = "";
 
-/** Takes the token from the page's address, and from there into the tab's memory; else from that memory. */
+/** Moves the token from the page's address to the tab's storage, or reads it from there. */
 export function find_token() {
   const url = new URL(location.href);
   const given = token_in(url.search) ?? null;
@@ -15,7 +15,7 @@ export function find_token() {
     if (given) sessionStorage.setItem(place(), given);
     current = given ?? sessionStorage.getItem(place()) ?? "";
   } catch {
-    // A browser that keeps nothing: the address keeps the token, so that the page can be loaded again.
+    // A browser without storage: the token stays in the address, so that the page can be reloaded.
     current = given ?? "";
     return;
   }
@@ -24,7 +24,7 @@ export function find_token() {
   window.history.replaceState(null, "", url);
 }
 
-/** Another one, as typed. @param {string} text an address with a token, or a token alone @returns {boolean} whether it is one */
+/** Sets a typed token. @param {string} text an address with a token, or a token alone @returns {boolean} whether it is valid */
 export function set_token(text) {
   const found = token_in(text);
   if (!found) return false;
@@ -32,13 +32,13 @@ export function set_token(text) {
   try {
     sessionStorage.setItem(place(), found);
   } catch {
-    // Kept until the page is loaded again.
+    // Kept until the page is reloaded.
   }
   return true;
 }
 
-/** Empty: there is none. */
+/** Empty if there is none. */
 export const token = () => current;
 
-/** The token of an address, or a token alone. @param {string} text @returns {string | undefined} */
+/** The token in an address, or a token alone. @param {string} text @returns {string | undefined} */
 export const token_in = (text) => /[?&]token=([0-9a-fA-F]+)/.exec(text)?.[1] ?? /^\s*([0-9a-fA-F]{32})\s*$/.exec(text)?.[1];

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The transfer function as it is edited: points at fractions of a range, 0 at its low end and 1 at its high one, so that
- * another range or a logarithmic scale leaves them alone. Nothing here changes its arguments.
+ * The transfer function in the editor's form: points at fractions of a range, 0 at its low end and 1 at its high end,
+ * which do not change with the range or a logarithmic scale. No function changes its arguments.
  *
- * Both lists begin at 0, end at 1 and do not decrease: a file's points are stretched over the range between their own
- * ends, and so the range is the function's.
+ * Both lists begin at 0, end at 1 and do not decrease: the points of a file are converted from the interval between
+ * their own ends, which becomes the function's range.
  *
  * @typedef {import("./types.js").FunctionReply} FunctionReply
  * @typedef {[number, number]} OpacityPoint fraction, opacity per unit distance
@@ -26,8 +26,9 @@ import { fraction_of, value_of } from "./numbers.js";
 const in_groups = (list, width) => Array.from({ length: Math.floor(list.length / width) }, (_, i) => list.slice(i * width, (i + 1) * width));
 
 /**
- * The fewest of the points between which straight lines miss none by more than `tolerance`, in any number but the first.
- * Source: Douglas, Peucker, "Algorithms for the reduction of the number of points", Cartographica, 1973; by height alone.
+ * A subset of the points whose connecting lines miss no point by more than `tolerance`, in any component but the first.
+ * Source: Douglas, Peucker, "Algorithms for the reduction of the number of points", Cartographica, 1973; by height
+ * alone.
  * @param {number[][]} points @param {number} tolerance @returns {number[][]}
  */
 export function simplified(points, tolerance) {
@@ -51,8 +52,8 @@ export function simplified(points, tolerance) {
 }
 
 /**
- * With the least tolerance, doubled from `tolerance`, that gives at most `most`; or `many`, where that would miss by more
- * than `limit`.
+ * Simplified with the smallest tolerance, doubled from `tolerance`, that gives at most `most` points; or `many`, if
+ * that would need more than `limit`.
  * @param {number[][]} points @param {{tolerance: number, most: number, limit: number, many: number}} wanted
  */
 function fewer(points, { tolerance, most, limit, many }) {
@@ -61,9 +62,9 @@ function fewer(points, { tolerance, most, limit, many }) {
   return few;
 }
 
-/** Opacities: beyond `limit` the eye sees another picture. Colours: half a step of eight bits, always. */
+/** Opacities: an error above `limit` is visible. Colours: always half a step of eight bits. */
 const few_opacities = { tolerance: 1e-4, most: 10, limit: 4e-3, many: 24 }, few_colors = { tolerance: 2e-3, most: 16, limit: 2e-3, many: 48 };
-/** Colours that can be taken hold of one by one. */
+/** Most colours that have a handle each. */
 export const most_handles = 16;
 
 /**
@@ -88,8 +89,8 @@ function over_own_ends(points) {
 const scaled_opacity = (opacity, factor) => (factor === 1 ? opacity : 1 - (1 - opacity) ** factor);
 
 /**
- * What api/function says, as it is edited. `own`: the colour map of the state, whose points are kept as they are; of any
- * other function those knots that say what it is. `factor`: the state's overall opacity, which points are without.
+ * The reply of api/function in the editor's form. `own`: the colour map of the state, whose points are kept unchanged;
+ * any other function is simplified to its essential knots. `factor`: the state's overall opacity, which points exclude.
  * @param {FunctionReply} reply @param {any} [own] @param {number} [factor] @returns {EditedFunction}
  */
 export function edited_function(reply, own, factor = 1) {
@@ -108,13 +109,13 @@ export function edited_function(reply, own, factor = 1) {
 }
 
 /**
- * What of the state makes this function. Points of a logarithmic function are over the logarithm to base 10.
+ * The options of this function. Points of a logarithmic function are over the base-10 logarithm.
  * @param {EditedFunction} edited @returns {{"transfer-function": Record<string, any>, range: string}}
  */
 export function state_of(edited) {
   const [low, high] = edited.range;
   const ends = /** @type {[number, number]} */ (edited.log && low > 0 ? [Math.log10(low), Math.log10(high)] : [low, high]);
-  // The ends are the range's own digits, so that stretching over it changes no bit.
+  // The ends are exactly the range's numbers, so that stretching over it changes no bit.
   const x = (/** @type {number} */ t) => (t === 0 ? ends[0] : t === 1 ? ends[1] : Number((ends[0] + t * (ends[1] - ends[0])).toPrecision(10)));
   const round = (/** @type {number} */ v) => Number(v.toPrecision(6));
   return {
@@ -139,7 +140,7 @@ export function opacity_at(edited, t) {
   return a[1] + ((t - a[0]) / (b[0] - a[0])) * (b[1] - a[1]);
 }
 
-/** By straight lines between the stops: close to what is drawn, whatever the colour space. @param {EditedFunction} edited @param {number} t @returns {[number, number, number]} */
+/** Linear between the stops: close to the drawn colour in any colour space. @param {EditedFunction} edited @param {number} t @returns {[number, number, number]} */
 export function color_at(edited, t) {
   const list = edited.colors;
   let i = list.findIndex((p) => p[0] > t);
@@ -150,7 +151,7 @@ export function color_at(edited, t) {
 }
 
 /**
- * Point `index` of a list at another fraction, not past its neighbours; the two ends keep theirs.
+ * The fraction `t` for point `index` of a list, limited by its neighbours; the two ends keep theirs.
  * @template {number[]} T @param {T[]} list @param {number} index @param {number} t
  */
 function allowed_fraction(list, index, t) {
@@ -166,7 +167,7 @@ export function with_opacity(edited, index, t, opacity) {
   return { ...edited, opacities };
 }
 
-/** Another point; the reply says which it is. @param {EditedFunction} edited @param {number} t @param {number} [opacity] @returns {{edited: EditedFunction, index: number}} */
+/** Adds a point; also returns its index. @param {EditedFunction} edited @param {number} t @param {number} [opacity] @returns {{edited: EditedFunction, index: number}} */
 export function with_point(edited, t, opacity = opacity_at(edited, t)) {
   const at = Math.max(0, Math.min(1, t));
   const opacities = edited.opacities.slice();
@@ -207,13 +208,13 @@ export function without_color(edited, index) {
   return { ...edited, colors: edited.colors.filter((_, i) => i !== index), name: "function" };
 }
 
-/** The few colours that say most, so that each can be taken hold of. @param {EditedFunction} edited @returns {EditedFunction} */
+/** The few most significant colours, so that each has a handle. @param {EditedFunction} edited @returns {EditedFunction} */
 export function with_few_colors(edited) {
   const colors = /** @type {ColorPoint[]} */ (fewer(edited.colors, { tolerance: 4e-3, most: 9, limit: 1, many: 9 }));
   return { ...edited, colors, name: "function" };
 }
 
-/** Colours the other way round. @param {EditedFunction} edited @returns {EditedFunction} */
+/** Reverses the colours. @param {EditedFunction} edited @returns {EditedFunction} */
 export function with_colors_reversed(edited) {
   const colors = edited.colors.map(([t, ...rgb]) => /** @type {ColorPoint} */ ([1 - t, ...rgb])).reverse();
   return { ...edited, colors, name: edited.name.endsWith(" reversed") ? edited.name.slice(0, -9) : `${edited.name} reversed` };
@@ -229,7 +230,8 @@ export const hex_color = (rgb) => `#${rgb.slice(0, 3).map((v) => Math.round(Math
 export const color_of_hex = (hex) => /** @type {[number, number, number]} */ ([1, 3, 5].map((i) => Number.parseInt(hex.slice(i, i + 2), 16) / 255));
 
 /**
- * The colour map of a file that ParaView wrote: an object, or the first of a list. Throws a sentence if it is none.
+ * The colour map in a ParaView file: an object, or the first of a list. Throws an Error with a sentence for anything
+ * else.
  * @param {string} text @returns {Record<string, any>}
  */
 export function imported_function(text) {

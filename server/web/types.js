@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Values that the page's modules share. The state and the messages are the server's (docs/SERVER.md).
+ * Types shared by the page's modules. The server defines the state and the messages (docs/SERVER.md).
  *
  * @typedef {[number, number, number]} Vector
  *
- * @typedef {object} Camera a view in VTK's words; exactly one of parallel_scale and view_angle
+ * @typedef {object} Camera a view in VTK's terms; exactly one of parallel_scale and view_angle
  * @property {Vector} position
  * @property {Vector} focal_point
  * @property {Vector} view_up
@@ -31,7 +31,7 @@
  * @property {string[]} colors
  * @property {string} [family]
  *
- * @typedef {object} Data what api/data says
+ * @typedef {object} Data the reply of api/data
  * @property {string} file
  * @property {string} format
  * @property {"mesh"|"grid"} kind
@@ -39,13 +39,13 @@
  * @property {number} [tets]
  * @property {[Vector, Vector]} bounds
  * @property {Field[]} fields
- * @property {string|null} field null: the shape alone is shown
+ * @property {string|null} field null: only the shape is shown
  * @property {[number, number]} [range] of the field
- * @property {Record<string, number>} [counts] cells read, and those that are left out
+ * @property {Record<string, number>} [counts] cells read, and those that were left out
  * @property {number} [time_steps]
  * @property {number[]|null} [times]
  * @property {string[]} [blocks]
- * @property {string[]} [surfaces] beside a mesh, by their names in the file
+ * @property {string[]} [surfaces] of the mesh's file, by name
  * @property {string[]} [notes]
  * @property {string[]} [warnings]
  * @property {number} [ranks]
@@ -53,12 +53,12 @@
  * @property {string} [tessera]
  * @property {Preset[]} presets
  * @property {string[]} opacities
- * @property {{formats: string[], problem: string|null}} films that can be made, and why not all
+ * @property {{formats: string[], problem: string|null}} possible films, and why some are missing
  * @property {State} defaults
  *
- * @typedef {object} FunctionReply what api/function says; colours are sRGB, 0 to 1
+ * @typedef {object} FunctionReply the reply of api/function; colours are sRGB, 0 to 1
  * @property {[number, number]} range
- * @property {string} [name] for people; of a preset it begins with the preset's
+ * @property {string} [name] for display; begins with the preset's name, if any
  * @property {number[][]} colors [value, r, g, b]
  * @property {number[][]} opacities [value, opacity per unit distance]
  * @property {number} unit_distance

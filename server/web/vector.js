@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Vectors of three numbers. Nothing here changes its arguments.
+ * Vectors of three numbers. No function changes its arguments.
  *
  * @typedef {import("./types.js").Vector} Vector
  */
@@ -23,14 +23,14 @@ export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * 
 /** @type {(a: Vector) => number} */
 export const length = (a) => Math.hypot(a[0], a[1], a[2]);
 
-/** Of length one; (0, 0, 0) stays. @type {(a: Vector) => Vector} */
+/** The vector with unit length; (0, 0, 0) does not change. @type {(a: Vector) => Vector} */
 export const unit = (a) => (length(a) > 0 ? scale(a, 1 / length(a)) : a);
 
 /** @type {(a: Vector, b: Vector, t: number) => Vector} */
 export const mix = (a, b, t) => add(scale(a, 1 - t), scale(b, t));
 
 /**
- * `a` turned by `angle` radians round `axis`, a unit vector; counterclockwise seen from where the axis points to.
+ * `a` rotated by `angle` radians about `axis`, a unit vector; counterclockwise seen from the direction of the axis.
  * Source: Rodrigues' formula.
  * @type {(a: Vector, axis: Vector, angle: number) => Vector}
  */

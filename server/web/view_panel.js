@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Where the eye is, and what explains the picture.
+ * The view, and the annotation of the picture.
  *
  * @typedef {import("./page.js").Page} Page
  * @typedef {import("./types.js").Vector} Vector

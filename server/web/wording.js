@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** The server speaks of options of `tessera render`; who uses the page has its controls, and reads their names. */
+/** The server's messages name options of `tessera render`; the page replaces them by the names of its controls. */
 
 /** @type {Record<string, string>} */
 export const controls = {
@@ -11,12 +11,12 @@ export const controls = {
   outline: "Outline", "scale-bar": "Scale bar", accuracy: "Accuracy",
 };
 
-/** A line of the server's that begins small and has no stop. @param {string} line */
+/** Makes a sentence of a server's line, which begins in lower case and has no full stop. @param {string} line */
 export const sentence_of = (line) => `${line.charAt(0).toUpperCase()}${line.slice(1)}${/[.!?]$/.test(line) ? "" : "."}`;
 
 /**
- * A sentence of the server's with the page's names, and without the advice to read the program's help. Commands in
- * backquotes stay, and so do options without a control: they are those that the server was started with.
+ * A sentence of the server with the page's names, and without the advice to read the program's help. Commands in
+ * backquotes stay, and so do options without a control, with which only the server can be started.
  * @param {string} sentence
  */
 export const in_page_words = (sentence) => sentence.replace(/; see `tessera [^`]*--help[^`]*`/g, "").replace(/`[^`]*`|(?<![\w'-])--([a-z]+(?:-[a-z]+)*)/g,
