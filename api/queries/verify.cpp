@@ -29,7 +29,7 @@ using reference::SuspicionMap;
 /// Differences below half the bound are not suspicious; without a bound, those below half the default accuracy.
 double least_suspicious(const std::optional<double>& bound) { return bound.value_or(Integrator().accuracy) / 2; }
 
-/// Collects suspects of an image of which `count` pixels are checked.
+/// Collects suspects of an image, to check `count` of its pixels.
 class Collector {
  public:
   Collector(scene::ImageSize size, std::size_t count) : size_(size), most_(count) {}

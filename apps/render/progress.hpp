@@ -36,7 +36,7 @@ class StatusLine {
   void advance(double done);
   /// For ReadOptions::progress, while a file is read, as long as this object exists; null unless the line is shown.
   [[nodiscard]] ReadProgressFunction listener();
-  /// `done` frames are finished, of which this run rendered `rendered` (--resume skips the others immediately).
+  /// `done` frames are finished, `rendered` of them in this run (--resume skips the others immediately).
   void finish_frames(std::size_t done, std::size_t rendered);
 
   /// Erases the line while the returned lock is held, so that other lines can be printed.

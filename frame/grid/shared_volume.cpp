@@ -48,7 +48,7 @@ struct Place {
   std::uint64_t bytes = 0;
 };
 
-/// Text path, text folder, u64 bytes, fields, texts of notes, text format, u8 axes of a body and of one if it is CT,
+/// Text path, text `folder`, u64 bytes, fields, texts of notes, text format, u8 axes of a body and of one if it is CT,
 /// texts modality, unit and unit of length, u8 labels, a time step, u8 whether x and y are degrees. Empty from a rank
 /// that has not read the file.
 Bytes message_of(const io::VolumeFile& volume, const Place& place) {

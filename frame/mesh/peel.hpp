@@ -16,7 +16,7 @@ namespace tessera::frame {
 /// Throws Error(system_failure) if half the memory budget does not hold this number of images.
 void check_peel(const Peel& peel, scene::ImageSize size, std::uint64_t memory_bytes);
 
-/// The name of the requested result in messages: `peel` or a deep picture.
+/// The name of the requested result in messages: `peel` or "deep picture".
 inline const char* deep_word(bool peeled) { return peeled ? "`peel`" : "deep picture"; }
 
 /// Image n contains sample n of each pixel.

@@ -37,7 +37,7 @@ struct PixelIndex {
 class TESSERA_EXPORT Reference {
  public:
   /// Only the emission, the surfaces and a grid's shading of the settings count. Throws Error(bad_input) for an invalid
-  /// view, an empty transfer function, or a mesh of which this rank has only a part.
+  /// view, an empty transfer function, or a mesh that is not whole on this rank.
   Reference(Dataset dataset, const View& view, const TransferFunction& transfer_function,
             const Settings& settings = {});
   ~Reference();
@@ -52,8 +52,8 @@ class TESSERA_EXPORT Reference {
   std::unique_ptr<const State> state_;
 };
 
-/// `count` different pixels, row-major, where every set is equally likely; all pixels if there are no more. The same
-/// seed gives the same pixels everywhere.
+/// `count` different pixels, row-major, where every set is equally likely; all pixels if `count` is not smaller. The
+/// same seed gives the same pixels everywhere.
 TESSERA_EXPORT std::vector<PixelIndex> random_pixels(ImageSize size, std::size_t count, std::uint64_t seed);
 
 }  // namespace v0_1

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Checks that the sources and pages that README.md, docs/ and the READMEs of directories name exist.
+"""Checks that the sources and pages named in README.md, docs/ and the READMEs of directories exist.
 
-Three kinds of names: a source with its directory (`api/session.cpp`, in drawings too; tessera/NAME.hpp is in include/);
-a source without one in the README of a directory, which is in that directory or below it; and the target of a link.
+There are three kinds of names: a source with its directory (`api/session.cpp`, also in diagrams; tessera/NAME.hpp is in
+include/); a source without one in the README of a directory, which is in that directory or below it; and the target of
+a link.
 Reports file:line of each that does not exist; exit status 1 if there is one.
 
     doc_names.py SOURCE_TREE
@@ -27,7 +28,7 @@ def pages(tree):
 
 
 def is_there(tree, page, name):
-    """Whether a source `name` is in the tree, as seen from a page; names of other projects' files are not checked."""
+    """Whether a source `name` exists, relative to the tree or a page; files of other projects are not checked."""
     places = [tree, page.parent, tree / "include"]
     if name in GENERATED:
         return True

@@ -80,11 +80,12 @@ MAY_INCLUDE = {
 }
 # These may include neither scene/ nor system/, unless their row says so.
 PUBLIC_ONLY = {"include", "examples", "annotation", "analysis", "server", "apps"}
-# These may not include what is not installed (tessera/program/).
+# These may not include headers that are not installed (tessera/program/).
 INSTALLED = {"examples"}
 MOST_MODULES = 40
 
-# Foreign headers, and the directories or files that alone may include them. Tests of readers write VTK's files by VTK.
+# Headers of other libraries, and the only directories or files that may include them. Tests of readers write VTK's
+# files with VTK.
 ONLY_IN = [
     (r"mpi\.h$", ["exchange/mpi/", "include/tessera/mpi.hpp"]),
     (r"vtk", ["readers/vtk/", "tests/readers/", "tests/io/"]),
@@ -100,12 +101,12 @@ ONLY_IN = [
 ]
 
 SUFFIXES = {".cpp", ".hpp", ".h", ".in"}
-# Highway includes the file named so itself, once an instruction set.
+# Highway includes the file of this name itself, once per instruction set.
 INCLUDE = re.compile(r'^\s*#\s*(?:include|define\s+HWY_TARGET_INCLUDE)\s*[<"]([^>"]+)[>"]')
 
 
 def sources(tree):
-    """Every source in the directories of the table, as a path from the tree."""
+    """Every source in the directories of the table, as a path relative to the tree."""
     for directory in sorted({name.split("/")[0] for name in MAY_INCLUDE}):
         for file in sorted((tree / directory).rglob("*")):
             if file.suffix in SUFFIXES and file.is_file():
@@ -120,7 +121,7 @@ def includes(tree, file):
 
 
 def directory_of(path):
-    """The directory of a file or header; of a public header, tessera."""
+    """The directory of a file or header; tessera for a public header."""
     return PurePosixPath(path).parent.as_posix()
 
 
@@ -139,13 +140,13 @@ def rows_of(directory):
 
 
 def allowances(directory):
-    """All that the rows of a directory name; None: anything."""
+    """All directories in the rows of a directory; None: anything."""
     rows = [MAY_INCLUDE[name] for name in rows_of(directory)]
     return None if None in rows else set().union(*rows)
 
 
 def allowance_of(directory, of):
-    """What allows `directory` to include a header of the directory `of`: a word, or None if nothing does."""
+    """The entry that allows `directory` to include a header of the directory `of`; None if there is none."""
     others = allowances(directory)
     if others is None or (top(of) == "tessera" and (of == "tessera" or top(directory) not in INSTALLED)):
         return "tessera"
@@ -157,7 +158,7 @@ def allowance_of(directory, of):
 
 
 def cycle_in_table():
-    """A cycle of the table's rows, or nothing. Rows of one library stand for their subdirectories too."""
+    """A cycle of the table's rows, or None. Rows of a library include those of its subdirectories."""
     follows = {name: {other for other in others or () if other not in rows_of(name)} for name, others in MAY_INCLUDE.items()}
     for name in MAY_INCLUDE:
         seen, path = set(), []

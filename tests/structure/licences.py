@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Checks that every source names its licence in its first two lines (SPDX), and that the inline namespace of public
-names is the version of CMakeLists.txt. Reports each file that does not as file:line; exit status 1 if there is one.
+names is the version of CMakeLists.txt. Reports each violation as file:line; exit status 1 if there is one.
 
     licences.py SOURCE_TREE
 """
@@ -12,7 +12,7 @@ from pathlib import Path
 
 SUFFIXES = {".cpp", ".hpp", ".h", ".in", ".glsl", ".comp", ".frag", ".vert", ".js", ".mjs", ".css", ".py", ".sh", ".cmake"}
 LICENCE = "SPDX-License-Identifier: BSD-3-Clause"
-# Templates that are not sources, and what others wrote.
+# Templates that are not sources.
 EXCEPT = {"cmake/tessera.pc.in", "cmake/tesseraConfig.cmake.in"}
 BUILT = {"build", ".git", "node_modules"}
 

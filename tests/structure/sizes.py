@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sizes of the library's sources: files of more than 500 lines, functions of more than 80, that do not say why.
+"""Checks the sizes of the library's sources: files of more than 500 lines and functions of more than 80 need a reason.
 
-A file that is meant to be long says so before its first namespace, a function in its body or in the comment above it:
+A file states the reason before its first namespace, a function in its body or in the comment above it:
 
-    // Long: one table, of which no part can be read alone.
+    // Long: one table whose parts cannot be read alone.
 
-Functions are found by their braces, comments and literals left aside; a lambda, or a class inside a function, counts as
-its lines. Lines are those from the signature to the closing brace.
+Functions are found by their braces, ignoring comments and literals; a lambda, or a class inside a function, counts with
+its lines. The lines of a function are those from the signature to the closing brace.
 
     sizes.py SOURCE_TREE
 """
@@ -37,12 +37,12 @@ KEPT_OPEN = re.compile(r"^(inline\s+)?namespace\b|^extern\b|(^|[>\s])(class|stru
 
 
 def blanked(source):
-    """The same text with comments, literals and directives as spaces: every character keeps its place."""
+    """The text with comments, literals and directives replaced by spaces: offsets do not change."""
     return TOKEN.sub(lambda m: re.sub(r"[^\n]", " ", m[0]), source)
 
 
 def opens_function(head):
-    """Whether `head`, the text between the last statement's end and a brace, is a function's."""
+    """Whether `head`, the text between the end of the last statement and a brace, begins a function."""
     head = re.sub(r"HWY_\w+|TESSERA_EXPORT", "", head).strip()
     signature = re.sub(r"template\s*<[^{};]*?>\s*(?=\w)", "", head)
     if "(" not in head or KEPT_OPEN.search(signature.split("(")[0]):
@@ -51,12 +51,12 @@ def opens_function(head):
 
 
 def functions(text):
-    """(begin, end) offsets of every function with a body that lies in no other."""
+    """(begin, end) offsets of every function with a body, except those inside other functions."""
     start, i, depth_in, found = 0, 0, 0, []
     open_at = None
     for match in re.finditer(r"[{};:]", text):
         i, mark = match.start(), match[0]
-        if open_at is not None:  # inside of a function, or of a brace that is none
+        if open_at is not None:  # inside a function, or another pair of braces
             depth_in += {"{": 1, "}": -1}.get(mark, 0)
             if depth_in == 0:
                 begin, is_function = open_at
@@ -70,7 +70,7 @@ def functions(text):
                 start = i + 1
         elif mark == "{":
             head = text[start:i]
-            # A member's value in a constructor's list, or a default argument: the head goes on behind it.
+            # A member's value in a constructor's list, or a default argument: the head continues after it.
             value = re.search(r"\)\s*(noexcept\s*)?:[^:]", head) and re.search(r"[\w>]\s*$", head) and not re.search(
                 r"\b(const|noexcept|override|final)\s*$", head)
             if value or head.count("(") > head.count(")"):
@@ -94,7 +94,7 @@ def name_of(head):
 
 
 def too_long(name, source):
-    """(subject, line, lines, allowed) of the file, and of every function in it, that is too long and does not say why."""
+    """(subject, line, lines, allowed) of the file, and of its functions, that are too long without a stated reason."""
     text, lines = blanked(source), source.count("\n")
     if lines > FILE_LINES and not WHY.search(source.split("\nnamespace")[0]):
         yield name, 1, lines, FILE_LINES

@@ -26,7 +26,7 @@ struct StepRange {
 struct FilmPlan {
   std::vector<std::filesystem::path> inputs;  ///< one mesh, grid or time series; or several meshes or grids, as steps
   bool grids = false;                         ///< whether the inputs are grids
-  /// Steps of a time series or of the list of inputs; for a single file the steps in it, of which it has `file_steps`.
+  /// Steps of a time series or of the list of inputs; for a single file its own steps (`file_steps` is their number).
   /// None: all of a series; for a file the step of ReadOptions::time_step.
   std::optional<StepRange> steps{};
   std::size_t file_steps = 1;

@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Checks that comments of C++ sources avoid phrases that readers have to decode: verbs of speaking for data, pronouns
+for things, clipped clauses, idioms that are not standard English.
+
+PHRASES is the table, EXCEPTIONS lists legitimate uses. Only DIRECTORIES, which have been edited already, are checked.
+Text in backquotes or double quotes is code or a quotation, and is ignored; string literals are not checked.
+
+Reports each phrase as file:line with its replacement; exit status 1 if there is one. First checks itself: every row of
+the table must refuse its own example, and no row may refuse PLAIN.
+
+    plain_words.py SOURCE_TREE
+"""
+
+import re
+import sys
+from bisect import bisect_right
+from pathlib import Path
+
+DIRECTORIES = "include api frame scene apps server analysis annotation".split()
+SUFFIXES = {".cpp", ".hpp", ".h", ".in"}
+
+# (pattern, what to write, an example that it refuses). Case does not matter.
+PHRASES = [
+    (r"\b(says?|said)\b(?!,)", "state, specify, contain, report", "what the file says of it"),
+    (r"\b(tells?|told)\b", "report, pass to, distinguish", "rank 0 is told of it"),
+    (r"\b(hears?|heard)\b", "receive, be called with", "the watch hears of every tile"),
+    (r"\b(nobody|whoever)\b", "no caller, the caller", "null: nobody"),
+    (r"(?<!users )(?<!user )(?<!readers )\bwho\b", "that, the caller", "for who writes them again"),
+    (r"\banew\b", "again, newly", "writes it anew"),
+    (r"\bonce more\b", "again", "the file is read once more"),
+    (r"\bmend(s|ed|ing)?\b", "fix, correct", "the caller can mend it"),
+    (r"\bfore(tell|told|see|saw|seen)s?\b", "predict, estimate", "times that were not foreseen"),
+    (r"\bbeside\b", "next to, in addition to, in parallel with", "written beside the target"),
+    (r"\bany more\b|\bno more(?=[.;:)]|$)", "no longer, nothing else", "what is not shown any more"),
+    (r"\bso many\b(?! (that|as)\b)", "the number's name", "a grid of so many points"),
+    (r"\bsuch( a)? ones?\b|\bsuch(?=[.,;:)])", "like this, of this kind", "only by such a one"),
+    (r"(?<!there )\b(is|are|was|were) no\b(?! (longer|more|further|larger|smaller|less|fewer|nearer|earlier|later)\b)",
+     "is not a, does not support", "what is no array of a file"),
+    (r"(?<!there )\b(is|are) none\b", "is not one, is invalid, is empty", "a type that is none"),
+    (r"\bknows? no\b", "does not support", "the rasterizer knows no surfaces"),
+    (r"\bstands\b(?! for\b)|\bas (it|they) stand\b|\blies\b", "is, is located, is stored", "what lies before it"),
+    (r"(?<!none )(?<!one )(?<!all )(?<!some )(?<!most )(?<!each )(?<!both )(?<!many )(?<!half )\bof which\b",
+     "whose; a new sentence", "a table of which no part is read"),
+    (r"(^|[.;:] )Of (what|who|whom|those|these|several|so)\b", "a sentence with its subject first", "Of what one sees"),
+    (r"\bin place of\b", "instead of", "the fraction in place of the value"),
+    (r"\bnext to nothing\b", "almost nothing", "it shows next to nothing"),
+    (r"\b(the way of|last words)\b", "path; message", "the way of one frame"),
+    (r"\bfolders?\b", "directory", "into the folder of the target"),
+    (r"\bpictures?\b", "image, frame", "the picture's size"),
+]
+PLAIN = """None of which holds for `who tells`: there is no more memory than the users who asked for it need. A value,
+say, the list, is no longer such as the file "says"; there are none that stand for so many that it stands for another."""
+
+# (pattern, reason) of legitimate uses, removed from the text before the table is applied. Each must occur.
+EXCEPTIONS = [
+    (r"\bthe last of which\b", "a part of what precedes it, like none of which"),
+    (r"\bis no brighter than\b", "a comparison"),
+]
+
+TOKEN = re.compile(
+    r"""(?P<comment>//[^\n]*|/\*.*?\*/)
+      | R"(?P<fence>[^(\s\\]*)\(.*?\)(?P=fence)"
+      | "(?:[^"\\\n]|\\.)*"
+      | (?<![0-9A-Za-z_])'(?:[^'\\\n]|\\.)+'
+    """,
+    re.DOTALL | re.VERBOSE,
+)
+QUOTED = re.compile(r"`[^`]*`|\"[^\"]*\"|NOLINT\w*(\([^)]*\))?")
+
+
+def blanked(match):
+    return " " * len(match[0])
+
+
+def comments(source):
+    """(line, text) of each comment; consecutive lines of comments are one, as sentences continue there."""
+    block, lines, last = "", [], 0
+    for token in TOKEN.finditer(source):
+        if not token["comment"]:
+            continue
+        first = source.count("\n", 0, token.start()) + 1
+        if block and first > last + 1:
+            yield block, lines
+            block, lines = "", []
+        for number, line in enumerate(token["comment"].split("\n"), first):
+            lines.append((len(block), number))
+            block += re.sub(r"^\s*(//+<?|/?\*+)\s?|\*/$", "", line) + " "
+            last = number
+    if block:
+        yield block, lines
+
+
+def refused(text, used=None):
+    """(offset, phrase, what to write) of every phrase of the table in a text."""
+    text = QUOTED.sub(blanked, text)
+    for phrase, _ in EXCEPTIONS:
+        if used is not None and re.search(phrase, text):
+            used.add(phrase)
+        text = re.sub(phrase, blanked, text)
+    for pattern, instead, _ in PHRASES:
+        for match in re.finditer(pattern, text, re.IGNORECASE):
+            yield match.start(), match[0].strip(" .;:"), instead
+
+
+def faults_in_itself():
+    for pattern, instead, example in PHRASES:
+        if instead not in [use for _, _, use in refused(example)]:
+            yield f"plain_words.py: {pattern} does not refuse its example: {example}"
+    for _, phrase, _ in refused(PLAIN.replace("\n", " ")):
+        yield f"plain_words.py: refuses plain English: {phrase}"
+
+
+def faults_in(file, used):
+    for block, lines in comments(file.read_text(encoding="utf-8")):
+        for offset, phrase, instead in refused(block, used):
+            number = lines[bisect_right(lines, (offset, sys.maxsize)) - 1][1]
+            yield number, f"{phrase} -> {instead}"
+
+
+def main():
+    tree = Path(sys.argv[1])
+    faults, used = list(faults_in_itself()), set()
+    files = [f for d in DIRECTORIES for f in sorted((tree / d).rglob("*")) if f.suffix in SUFFIXES and f.is_file()]
+    for file in files:
+        faults += [f"{file.relative_to(tree)}:{number}: {what}" for number, what in faults_in(file, used)]
+    faults += [f"plain_words.py: nothing uses the exception {phrase}" for phrase, _ in EXCEPTIONS if phrase not in used]
+    for fault in faults:
+        print(fault)
+    print(f"{len(files)} files, {len(faults)} phrases to replace")
+    return 1 if faults or not files else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
