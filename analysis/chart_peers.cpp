@@ -24,7 +24,7 @@ Image read_pfm(const std::filesystem::path& file, ImageSize size) {
   const auto begin = static_cast<std::size_t>(head.tellg()) + 1;
   const auto values = 3 * static_cast<std::size_t>(std::max(width, 0)) * static_cast<std::size_t>(std::max(height, 0));
   if (!head || magic != "PF" || scale >= 0 || begin + 4 * values != bytes.size())
-    throw bad_input(fmt::format("{}: is no colour .pfm of little endian; write PF, size, -1.0", file.string()));
+    throw bad_input(fmt::format("{}: is not a colour .pfm of little endian; write PF, size, -1.0", file.string()));
   if (width != size.width || height != size.height)
     throw bad_input(fmt::format("{}: is {}x{}, the chart {}x{}; render both at one size", file.string(), width, height,
                                 size.width, size.height));

@@ -94,7 +94,7 @@ namespace {
 void write_tets_of(const scene::TetMeshView& mesh, const std::filesystem::path& file) {
   if (file.extension() == ".tets") return io::write_tets(mesh, file);
   if (file.extension() == ".vtu") return io::write_vtu(mesh, file);
-  throw scene::bad_input(file.string() + ": is no name of a mesh that can be written; choose .vtu or .tets");
+  throw scene::bad_input(file.string() + ": is not a name of a mesh that can be written; choose .vtu or .tets");
 }
 
 }  // namespace
@@ -137,8 +137,8 @@ void check_mesh_output(const std::filesystem::path& file, const std::filesystem:
       throw scene::bad_input(
           fmt::format("{}: one mesh in pieces is what convert `pieces` writes; choose .vtu or .tets", file.string()));
     if (extension != ".vtu" && extension != ".tets")
-      throw scene::bad_input(
-          fmt::format("{}: '{}' is no mesh format to write; choose .vtu or .tets", file.string(), extension.string()));
+      throw scene::bad_input(fmt::format("{}: '{}' is not a mesh format to write; choose .vtu or .tets", file.string(),
+                                         extension.string()));
     return check_output(file, input);
   }
   if (extension != ".pvtu") throw scene::bad_input(fmt::format("{}: `pieces` writes a .pvtu; name one", file.string()));
@@ -162,7 +162,7 @@ namespace {
 void check_grid_name(const std::filesystem::path& file) {
   if (!io::is_volume_output(file))
     throw scene::bad_input(file.string() +
-                           ": is no name of a grid that can be written; choose .vti, .vtr, .nrrd, .raw or .bricks");
+                           ": is not a name of a grid that can be written; choose .vti, .vtr, .nrrd, .raw or .bricks");
 }
 
 }  // namespace

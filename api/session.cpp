@@ -67,7 +67,7 @@ void check_view(const View& view) {
 void check_reach(const View& view, const Box& bounds) {
   if (!bounds.empty() && !has_coordinates(view, bounds))
     throw scene::bad_input(
-        "view: data and camera are so far apart that places in the picture are no numbers; move the camera nearer");
+        "view: data and camera are so far apart that places in the picture are not numbers; move the camera nearer");
 }
 
 /// Returns the single frame of a film of one frame.

@@ -40,7 +40,7 @@ void check_shading(const Shading& shading, Emission emission) {
     throw scene::bad_input("`shade`: shading needs emission in proportion to extinction; leave one of the two out");
   const double length = glm::length(shading.to_light);
   if (!(length > 0) || !std::isfinite(length))
-    throw scene::bad_input("`light`: the direction to the light has no length; say which way the light lies");
+    throw scene::bad_input("`light`: the direction to the light has no length; give the direction towards the light");
   for (const double part : {shading.ambient, shading.diffuse, shading.specular, shading.shininess})
     if (!(part >= 0) || !std::isfinite(part))
       throw scene::bad_input("`shade`: the parts of the light must be 0 or more, and finite");
@@ -75,10 +75,10 @@ void check_mesh(const Settings& settings) {
   require_range("tile_size", settings.mesh.tile_size, 1, 1024, "1 to 1024 pixels");
   check_integrator_of_mesh(settings.integrator, settings.emission);
   if (settings.mesh.rasterizer == Rasterizer::scanline && !settings.surfaces.empty())
-    throw scene::bad_input(fmt::format("{}: `rasterizer` scanline knows no surfaces; use `rasterizer` planes",
+    throw scene::bad_input(fmt::format("{}: `rasterizer` scanline does not support surfaces; use `rasterizer` planes",
                                        frame::surface_word(settings.surfaces)));
   if (settings.mesh.rasterizer == Rasterizer::scanline && settings.mesh.shading)
-    throw scene::bad_input("`shade`: `rasterizer` scanline knows no shading; use `rasterizer` planes");
+    throw scene::bad_input("`shade`: `rasterizer` scanline does not support shading; use `rasterizer` planes");
   if (settings.mesh.shading) check_shading(*settings.mesh.shading, settings.emission);
   if (settings.mesh.rasterizer == Rasterizer::device) check_device_rasterizer(settings.mesh.device);
 }

@@ -22,10 +22,10 @@ Error no_command(const std::string& word) {
   std::vector<std::string> names;
   for (const CommandRow& command : command_rows()) names.emplace_back(command.name);
   if (const auto near = nearest_name(word, names))
-    return bad_input(fmt::format("arguments: '{}' is no command; did you mean {}?", word, *near));
+    return bad_input(fmt::format("arguments: '{}' is not a command; did you mean {}?", word, *near));
   const std::string last = std::move(names.back());
   names.pop_back();
-  return bad_input(fmt::format("arguments: '{}' is no command; use {} or {}", word, fmt::join(names, ", "), last));
+  return bad_input(fmt::format("arguments: '{}' is not a command; use {} or {}", word, fmt::join(names, ", "), last));
 }
 
 /// The first argument that looks like an option but is unknown.
@@ -40,8 +40,8 @@ Error no_option(const CLI::App& command, const std::string& word, const std::str
   for (const CLI::Option* option : command.get_options())
     names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
   const auto near = nearest_name(word.substr(word.find_first_not_of('-')), names);
-  return bad_input(near ? fmt::format("{}: is no option of {}; did you mean --{}?", word, command.get_name(), *near)
-                        : fmt::format("{}: is no option of {}; see {}", word, command.get_name(), help));
+  return bad_input(near ? fmt::format("{}: is not an option of {}; did you mean --{}?", word, command.get_name(), *near)
+                        : fmt::format("{}: is not an option of {}; see {}", word, command.get_name(), help));
 }
 
 CLI::Option* declare(const OptionRow& row, CLI::App& command) {

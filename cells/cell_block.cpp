@@ -44,7 +44,7 @@ void require_faces(const CellBlock& block, const std::string& where) {
     const auto first = static_cast<std::uint64_t>(block.face_locations[c]);
     const auto refuse = [&](const std::string& what) {
       return scene::bad_input(
-          fmt::format("{}: cell {} is a polyhedron {}; the faces are damaged, write them anew", where, c, what));
+          fmt::format("{}: cell {} is a polyhedron {}; the faces are damaged, write them again", where, c, what));
     };
     if (first >= numbers)
       throw refuse(fmt::format("whose faces begin at {} of {} numbers", block.face_locations[c], numbers));

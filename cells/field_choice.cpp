@@ -205,7 +205,7 @@ FieldChoice no_array(std::span<const FieldSummary> fields, bool shape) {
     none.notes.emplace_back("the file has no field: its shape is drawn, near parts lighter");
   else
     none.notes.push_back(
-        fmt::format("of its fields none varies that is no label or index: its shape is drawn, near parts lighter; "
+        fmt::format("of its fields none varies that is not a label or index: its shape is drawn, near parts lighter; "
                     "`field` draws one of {}",
                     list(fields)));
   return none;

@@ -315,7 +315,7 @@ std::vector<std::string> notes_on_cells(const MeshCounts& n, const HigherOrderCe
         fmt::format("{}: it holds no cells, nothing is left to render; check how it was written", source));
   if (n.tets_made == 0)
     throw scene::bad_input(fmt::format(
-        "{}: nothing is left to render: of {} cells {} are no volumes, {} ghosts, {} hidden, {} hold NaN, infinite or "
+        "{}: nothing is left to render: of {} cells {} are not volumes, {} ghosts, {} hidden, {} hold NaN, infinite or "
         "missing numbers, {} are polyhedra whose faces do not close, {} are collapsed to a point or face; give a mesh "
         "of volume cells or choose another field",
         source, n.cells_read, n.cells_not_volumetric, n.cells_ghost, n.cells_hidden, n.cells_nan, n.cells_open,
@@ -359,7 +359,8 @@ std::vector<std::string> warnings_on_cells(const MeshCounts& n, const HigherOrde
                       "nodes VTK's? It is another in many programs; write them in VTK's",
                       count, kind));
   if (n.cells_open > 0)
-    warnings.push_back(fmt::format("{} polyhedra are left out: their faces are no closed surface", n.cells_open));
+    warnings.push_back(
+        fmt::format("{} polyhedra are left out: their faces do not form a closed surface", n.cells_open));
   if (n.polyhedra_tangled > 0)
     warnings.push_back(
         fmt::format("{} polyhedra are drawn by tets that overlap: their faces cross each other, or no way was found to "

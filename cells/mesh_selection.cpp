@@ -270,7 +270,7 @@ void require_selected(const MeshCounts& n, const std::string& source) {
                                      "wider range or move the plane",
                                      n.cells_out_of_range);
   throw scene::bad_input(
-      fmt::format("{}: nothing is left to render: {} (`tessera info` says bounds and ranges)", source, kept));
+      fmt::format("{}: nothing is left to render: {} (`tessera info` prints bounds and ranges)", source, kept));
 }
 
 }  // namespace tessera::cells

@@ -25,7 +25,7 @@ void check(const TransferFunctionOptions& options) {
   for (const auto& [place, opacity] : options.opacity_points) {
     if (!(place >= last) || !(place <= 1))
       throw scene::bad_input(
-          fmt::format("`opacity_points`: {} is no fraction of the range; write 0 to 1, ascending", place));
+          fmt::format("`opacity_points`: {} is not a fraction of the range; write 0 to 1, ascending", place));
     if (!(opacity >= 0) || !(opacity <= 1))
       throw scene::bad_input(fmt::format("`opacity_points`: the opacity {} is not 0 to 1", opacity));
     last = place;

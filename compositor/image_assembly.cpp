@@ -157,7 +157,7 @@ void ImageAssembly::place(Frame& frame, std::uint32_t number, const exchange::Me
   while (!reader.empty()) {
     const auto tile = reader.take<std::uint64_t>();
     if (tile >= frame.grid.count()) reader.refuse(fmt::format("brings tile {} of {}", tile, frame.grid.count()));
-    if (frame.has_come[tile].exchange(true)) reader.refuse(fmt::format("brings tile {} once more", tile));
+    if (frame.has_come[tile].exchange(true)) reader.refuse(fmt::format("sends tile {} again", tile));
     const scene::PixelRect rect = frame.grid.rect(tile);
     exchange::take_pixels(reader, frame.image, rect);
     take_deep(reader, rect, frame.deep.get());

@@ -242,7 +242,7 @@ class RunMerger final : public TileMerger {
     const std::uint32_t number = projection::crossing_of(segment.scalar_front).number;
     if (context_.surfaces == nullptr || number >= context_.surfaces->on_lattice_by_number().size())
       throw scene::Error(scene::ErrorCode::system_failure,
-                         "exchange: a surface that is none; all ranks must run the same program");
+                         "exchange: a surface that does not exist; all ranks must run the same program");
     return context_.surfaces->on_lattice_by_number()[number];
   }
 

@@ -23,7 +23,7 @@ void RecordReader::refuse(std::string_view what) const {
                                  from_ < 0 ? "" : fmt::format(" from rank {}", from_), what));
 }
 
-void RecordReader::refuse_short() const { refuse("is shorter than it says"); }
+void RecordReader::refuse_short() const { refuse("is shorter than it states"); }
 
 MessageReader::MessageReader(std::span<const std::byte> message, int from) : RecordReader(message, from) {
   const auto header = take<MessageHeader>();

@@ -202,7 +202,7 @@ class RecordReader {
   [[nodiscard]] bool empty() const { return left_.empty(); }
   /// Throws Error(system_failure) if there is more.
   void finish() const {
-    if (!empty()) refuse("is longer than it says");
+    if (!empty()) refuse("is longer than it states");
   }
   /// Throws Error(system_failure): the message `what`; all ranks must run the same program.
   [[noreturn]] void refuse(std::string_view what) const;

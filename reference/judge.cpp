@@ -76,7 +76,7 @@ std::vector<PixelJudgement> judge_each(const scene::Image& image, const RayRefer
   for (const PixelIndex& p : pixels)
     if (p.x < 0 || p.y < 0 || p.x >= size.width || p.y >= size.height)
       throw scene::bad_input(
-          fmt::format("judge: pixel ({}, {}) lies outside the {}x{} image", p.x, p.y, size.width, size.height));
+          fmt::format("judge: pixel ({}, {}) is outside the {}x{} image", p.x, p.y, size.width, size.height));
   const std::vector<Pixel> truths = reference.pixels(pixels, threads);
   std::vector<PixelJudgement> judged(pixels.size());
   std::vector<std::size_t> over_bound;

@@ -85,7 +85,7 @@ Camera framed(const Box& box, ImageSize size, const glm::dvec3& to_eye, const gl
 
 void check(const ViewRequest& request) {
   if (request.up && (!finite(*request.up) || !(largest(*request.up) > 0)))
-    throw bad_input("`up` is no direction; give three numbers that are not all zero");
+    throw bad_input("`up` is not a direction; give three numbers that are not all zero");
   if (!std::isfinite(request.azimuth)) throw bad_input("`azimuth` is not finite; give degrees");
   if (!std::isfinite(request.elevation)) throw bad_input("`elevation` is not finite; give degrees");
   if (!(request.zoom > 0) || !std::isfinite(request.zoom))
@@ -172,7 +172,7 @@ Camera zoomed(Camera camera, double zoom) {
   try {
     validate(camera);
   } catch (const Error&) {
-    throw bad_input(fmt::format("`zoom` is {}: pixels of that size are no numbers; give one nearer to 1", zoom));
+    throw bad_input(fmt::format("`zoom` is {}: pixels of that size are not numbers; give one nearer to 1", zoom));
   }
   return camera;
 }
@@ -231,7 +231,7 @@ Camera view_of_box(const Box& box, ImageSize size, const ViewRequest& request, P
   check(request);
   const Direction named = direction_of(request, box, axes);
   if (request.up && !(glm::length(glm::cross(named.to_eye, named.up)) > 1e-9))
-    throw bad_input("`up` lies along the view direction; turn it away from it");
+    throw bad_input("`up` is parallel to the view direction; turn it away from it");
   const Direction direction = turned(named, request);
   return zoomed(frame_box_along(box, size, direction.to_eye, direction.up, projection, turning), request.zoom);
 }

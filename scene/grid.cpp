@@ -93,7 +93,7 @@ double mean_thickness(const GridGeometry& geometry) {
 void validate(const Grid& grid, const std::string& source) {
   const GridGeometry& g = grid.geometry;
   const auto fail = [&](const std::string& what) {
-    throw bad_input(fmt::format("{}: {}; write the file anew", source, what));
+    throw bad_input(fmt::format("{}: {}; write the file again", source, what));
   };
   const auto finite = [](const glm::dvec3& v) { return std::isfinite(v.x + v.y + v.z); };
   std::int64_t count = 1;
@@ -120,9 +120,9 @@ void validate(const Grid& grid, const std::string& source) {
     if (!finite(d[column]) || std::abs(glm::length(d[column]) - 1) > 1e-9)
       fail(fmt::format("axis {} has the direction {} {} {}, not of length one", "xyz"[column], d[column].x, d[column].y,
                        d[column].z));
-  if (!(std::abs(glm::determinant(d)) > 1e-6)) fail("the directions of its axes lie in one plane");
+  if (!(std::abs(glm::determinant(d)) > 1e-6)) fail("the directions of its axes are in one plane");
   const Box box = bounds(g);
-  if (!finite(box.low) || !finite(box.high)) fail("its corners lie beyond the range of numbers");
+  if (!finite(box.low) || !finite(box.high)) fail("its corners are beyond the range of numbers");
   if (!std::isfinite(grid.scale) || grid.scale == 0 || !std::isfinite(grid.shift))
     fail(fmt::format("samples are scaled by {} and shifted by {}", grid.scale, grid.shift));
 }

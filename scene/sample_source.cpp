@@ -81,7 +81,7 @@ void require_samples(const Grid& grid, const ComponentChoice& choice, std::uint6
   if (bytes < needed)
     throw bad_input(
         fmt::format("{}: {} samples of {} bytes are {} bytes, {} are there; the file is truncated or its "
-                    "size is stated wrongly, write it anew",
+                    "size is stated wrongly, write it again",
                     source, samples, tuple, needed, bytes));
 }
 

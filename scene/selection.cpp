@@ -26,13 +26,13 @@ void validate(const Selection& selection) {
     if (!scene::finite(h.point) || !scene::finite(h.normal))
       throw scene::bad_input("`clip`: a plane's numbers are not all finite; give a point and a normal");
     if (h.normal == glm::dvec3(0))
-      throw scene::bad_input("`clip`: a normal of 0,0,0 points nowhere; say which side is to be kept");
+      throw scene::bad_input("`clip`: a normal of 0,0,0 points nowhere; give the side to keep");
   }
   if (!selection.threshold) return;
   const auto [low, high] = *selection.threshold;
   if (!(low <= high))
     throw scene::bad_input(
-        fmt::format("`threshold`: {:g} to {:g} is no range; give the smaller number first", low, high));
+        fmt::format("`threshold`: {:g} to {:g} is not a range; give the smaller number first", low, high));
 }
 
 }  // namespace v0_1

@@ -41,16 +41,16 @@ void check_triangles(const tessera::TriangleMesh& mesh) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
   };
   if (!std::ranges::all_of(mesh.points, finite))
-    throw bad_input("`surface`: a point of its triangles is not finite; mend it");
+    throw bad_input("`surface`: a point of its triangles is not finite; correct it");
   for (const auto& triangle : mesh.triangles)
     for (const std::uint32_t v : triangle)
       if (v >= mesh.points.size())
-        throw bad_input(fmt::format("`surface`: a triangle uses point {} of {}; mend it", v, mesh.points.size()));
+        throw bad_input(fmt::format("`surface`: a triangle uses point {} of {}; correct it", v, mesh.points.size()));
   if (!mesh.values.empty() && mesh.values.size() != mesh.points.size())
     throw bad_input(fmt::format("`surface`: has {} values for {} points; give one a point, or none", mesh.values.size(),
                                 mesh.points.size()));
   if (!std::ranges::all_of(mesh.values, [](double v) { return std::isfinite(v); }))
-    throw bad_input("`surface`: a value at its points is not finite; mend it, or leave the values out");
+    throw bad_input("`surface`: a value at its points is not finite; correct it, or leave the values out");
 }
 
 }  // namespace

@@ -110,7 +110,9 @@ Response json_response(const Json& json) {
   return {200, "application/json", std::make_shared<const std::string>(text_of(json))};
 }
 
-Response stopped_response() { return error_response(503, "It was stopped: the server ends, or nobody waits for it."); }
+Response stopped_response() {
+  return error_response(503, "It was stopped: the server ends, or no client waits for it.");
+}
 
 void LongProgress::set(std::optional<double> fraction) {
   const std::lock_guard lock(mutex_);

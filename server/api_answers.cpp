@@ -123,7 +123,7 @@ ProjectionKind projection_of(const Json& body, ProjectionKind otherwise) {
   if (found == body.end()) return otherwise;
   if (*found == "orthographic") return ProjectionKind::orthographic;
   if (*found == "perspective") return ProjectionKind::perspective;
-  throw bad_input("projection: is none; use orthographic or perspective");
+  throw bad_input("projection: is unknown; use orthographic or perspective");
 }
 
 }  // namespace
@@ -210,7 +210,7 @@ Json camera_answer(const OpenScene& open, const Json& body) {
   if (name != "default") {
     const auto named = standard_view(name);
     if (!named)
-      throw bad_input("view: is none; use front, back, left, right, top, bottom, iso, +x ... -z, default or fit");
+      throw bad_input("view: is unknown; use front, back, left, right, top, bottom, iso, +x ... -z, default or fit");
     request.view = *named;
   }
   return json_of(data.view(request, view.size, projection));

@@ -49,7 +49,7 @@ Camera between(const Camera& from, const Camera& to, double t) {
 std::vector<Camera> views_of(const Json& body) {
   const Json& listed = body.at("views");
   if (!listed.is_array() || listed.empty() || static_cast<std::int64_t>(listed.size()) > most_views)
-    throw bad_input(fmt::format("views: is no list of 1 to {} cameras; send one", most_views));
+    throw bad_input(fmt::format("views: is not a list of 1 to {} cameras; send one", most_views));
   std::vector<Camera> views;
   for (const CameraFile& view : parse_cameras(listed.dump(), "views")) views.push_back(view.camera);
   return views;
@@ -130,11 +130,11 @@ FilmPlan::FilmPlan(const Json& body) {
   if (const auto found = body.find("format"); found != body.end())
     format = found->is_string() ? found->get<std::string>() : "";
   if (std::ranges::find(film_formats, format) == film_formats.end())
-    throw bad_input("format: is none of a film; use mp4, webm or gif");
+    throw bad_input("format: is not a film format; use mp4, webm or gif");
   if (const auto found = body.find("rate"); found != body.end()) {
     rate = found->is_number() ? found->get<double>() : 0;
     if (!(rate >= least_film_rate && rate <= most_film_rate))
-      throw bad_input(fmt::format("rate: is no number of frames a second from {} to {}; send one", least_film_rate,
+      throw bad_input(fmt::format("rate: is not a number of frames a second from {} to {}; send one", least_film_rate,
                                   most_film_rate));
   }
   if (body.contains("views") == body.contains("orbit"))

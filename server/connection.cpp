@@ -307,7 +307,7 @@ class Connection final : public Stranger, public std::enable_shared_from_this<Co
     none.keep_alive(false);
     send(make_response(none, error_response(status, status == 413   ? "The message is too long."
                                                     : status == 431 ? "The header is too long."
-                                                                    : "This is no HTTP.")));
+                                                                    : "This is not HTTP.")));
   }
 
   void answer() {

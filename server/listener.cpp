@@ -45,7 +45,8 @@ struct Listener::State {
   void listen_at(const std::string& address, std::uint16_t port) {
     error_code error;
     const auto ip = asio::ip::make_address(address, error);
-    if (error) throw bad_input(fmt::format("--bind: '{}' is no address; write one like 127.0.0.1 or 0.0.0.0", address));
+    if (error)
+      throw bad_input(fmt::format("--bind: '{}' is not an address; write one like 127.0.0.1 or 0.0.0.0", address));
     const tcp::endpoint endpoint(ip, port);
     acceptor.open(endpoint.protocol(), error);
     if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);

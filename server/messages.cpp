@@ -17,14 +17,14 @@ constexpr std::size_t most_values = 100'000;
 Json parse_object(std::string_view text, const char* what) {
   check_json(text, what, most_values);
   Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object()) throw bad_input(fmt::format("{}: is no JSON object; send one", what));
+  if (!json.is_object()) throw bad_input(fmt::format("{}: is not a JSON object; send one", what));
   return json;
 }
 
 std::uint64_t number_of(const Json& message, const char* name) {
   const auto found = message.find(name);
   if (found == message.end() || !found->is_number_unsigned())
-    throw bad_input(fmt::format("message: its '{}' is no whole number from 0; send one", name));
+    throw bad_input(fmt::format("message: its '{}' is not a whole number from 0; send one", name));
   return found->get<std::uint64_t>();
 }
 
@@ -33,7 +33,7 @@ std::uint64_t number_of(const Json& message, const char* name) {
 Message parse_message(std::string_view text) {
   Json json = parse_object(text, "message");
   const auto type = json.find("type");
-  if (type == json.end() || !type->is_string()) throw bad_input("message: its 'type' is no text; send one");
+  if (type == json.end() || !type->is_string()) throw bad_input("message: its 'type' is not text; send one");
   const auto& name = type->get_ref<const std::string&>();
   if (name == "ack") return AckMessage{number_of(json, "frame")};
   if (name == "pause") return PauseMessage{};
@@ -45,7 +45,7 @@ Message parse_message(std::string_view text) {
     message.moving = moving->get<bool>();
   }
   const auto state = json.find("state");
-  if (state == json.end() || !state->is_object()) throw bad_input("message: its 'state' is no object; send one");
+  if (state == json.end() || !state->is_object()) throw bad_input("message: its 'state' is not an object; send one");
   message.state = std::move(*state);
   return message;
 }
@@ -60,13 +60,13 @@ std::int64_t whole_number(const Json& body, const char* name, std::int64_t other
   // Unsigned numbers beyond int64 are too large in any case.
   const bool fits = is_whole && (!found->is_number_unsigned() || found->get<std::uint64_t>() <= std::uint64_t(high));
   if (!fits || found->get<std::int64_t>() < low || found->get<std::int64_t>() > high)
-    throw bad_input(fmt::format("{}: is no whole number from {} to {}; send one", name, low, high));
+    throw bad_input(fmt::format("{}: is not a whole number from {} to {}; send one", name, low, high));
   return found->get<std::int64_t>();
 }
 
 const Json& state_of(const Json& body) {
   const auto state = body.find("state");
-  if (state == body.end() || !state->is_object()) throw bad_input("state: is no object; send one");
+  if (state == body.end() || !state->is_object()) throw bad_input("state: is not an object; send one");
   return *state;
 }
 

@@ -31,14 +31,14 @@ void require_possible(std::uint64_t packed, std::uint64_t count, const std::stri
   if (count / best > packed)
     throw scene::bad_input(
         fmt::format("{}: its header asks for {} bytes, {} compressed ones cannot hold them; the file is truncated or "
-                    "damaged, write it anew",
+                    "damaged, write it again",
                     source, count, packed));
 }
 
 scene::Error ends_early(std::uint64_t made, std::uint64_t count, const std::string& source) {
   return scene::bad_input(
       fmt::format("{}: its compressed samples end or break after {} of {} bytes; the file is truncated or damaged, "
-                  "write it anew",
+                  "write it again",
                   source, made, count));
 }
 
@@ -158,7 +158,7 @@ std::uint64_t inflate_to(int file, const PositionalFile& packed, const InflateLi
     if (!ended && result != Z_OK)  // Z_BUF_ERROR where the stream ends
       throw fail(scene::ErrorCode::bad_input,
                  fmt::format("its compressed bytes end or break, {} come out of them", written),
-                 "the file is truncated or damaged, write it anew");
+                 "the file is truncated or damaged, write it again");
     if (ended && inflateReset(&z) != Z_OK) return written;
   }
 }

@@ -17,7 +17,7 @@ namespace tessera::system {
 namespace {
 
 scene::Error not_regular(const std::string& name) {
-  return scene::bad_input(fmt::format("{}: it is no regular file; give one that can be read twice", name));
+  return scene::bad_input(fmt::format("{}: it is not a regular file; give one that can be read twice", name));
 }
 
 scene::Error cannot_open(const std::string& name, int error_number) {

@@ -27,7 +27,7 @@ Place parse_place(const char* option, const std::string& word, Place otherwise) 
   if (const auto place = place_of(word)) return *place;
   std::string known;
   for (const auto& [name, place] : places) known += fmt::format("{}{}", known.empty() ? "" : " or ", name);
-  throw bad_input(fmt::format("{}: '{}' is no place; use {}", option, word, known));
+  throw bad_input(fmt::format("{}: '{}' is not a place; use {}", option, word, known));
 }
 
 /// The text before the first colon is only a place if it is the name of one: "Time: {time}" is text.

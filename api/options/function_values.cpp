@@ -22,7 +22,8 @@ std::vector<std::array<double, 2>> opacity_points(const OptionWords& words) {
     const double place = parse_number("`opacity_points`", point.substr(0, colon));
     const double opacity = parse_number("`opacity_points`", point.substr(colon + 1));
     if (!(place >= (points.empty() ? 0 : points.back()[0])) || !(place <= 1))
-      throw bad_input(fmt::format("`opacity_points`: {} is no fraction of the range; write 0 to 1, ascending", place));
+      throw bad_input(
+          fmt::format("`opacity_points`: {} is not a fraction of the range; write 0 to 1, ascending", place));
     if (!(opacity >= 0) || !(opacity <= 1))
       throw bad_input(fmt::format("`opacity_points`: the opacity {} is not 0 to 1", opacity));
     points.push_back({place, opacity});

@@ -69,7 +69,7 @@ void apply_like(OptionWords& words) {
     words.set("shade", "true");
     words.set("light", api::light_words(method.at("light")));
   } catch (const Json::exception&) {
-    throw bad_input(fmt::format("{}: it is no report of a run; give a file that `report` has written", file));
+    throw bad_input(fmt::format("{}: it is not a report of a run; give a file that `report` has written", file));
   }
 }
 

@@ -47,7 +47,7 @@ std::optional<Shading> shading_of(const OptionWords& words) {
   shading.camera_light = !light.starts_with(world);
   shading.to_light = parse_vector("`light`", light.substr(shading.camera_light ? 0 : world.size()), false);
   if (shading.to_light == glm::dvec3(0))
-    throw bad_input("`light`: 0,0,0 is no direction; say which way the light lies");
+    throw bad_input("`light`: 0,0,0 is not a direction; give the direction towards the light");
   return shading;
 }
 

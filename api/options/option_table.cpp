@@ -37,7 +37,7 @@ constexpr OptionRow server_rows[] = {
     {"tls-certificate", "FILE", serve, "PEM file: speak https"},
     {"tls-key", "FILE", serve, "PEM file of its key"},
     {"allow-host", "NAME", serve | list,
-     "a name in the browser's address, beside loopback and --bind; may be repeated"},
+     "a name in the browser's address, in addition to loopback and --bind; may be repeated"},
 };
 
 constexpr OptionRow data_rows[] = {
@@ -46,7 +46,7 @@ constexpr OptionRow data_rows[] = {
     {"smooth", "", reading | flag | meshes | state | data, "average cell data to the points"},
     {"warp", "NAME[:FACTOR]|off", reading | meshes | state | data,
      "meshes: move points by FACTOR (default: 1) times this vector; off: not even Exodus' displacements"},
-    {"q", "FILE", reading | meshes | data, "PLOT3D solution file, if it is not beside the grid"},
+    {"q", "FILE", reading | meshes | data, "PLOT3D solution file, if it is not next to the grid"},
     {"max-volume", "VOLUME", reading | meshes | data, "surfaces: largest tetrahedron TetGen fills them with"},
     {"time-step", "STEP|all|FIRST:LAST[:STRIDE]", reading | basic | state | data,
      "Exodus, OpenFOAM, 4-D NIfTI, NRRD, .pvd ...: step counted from 0 (default: a file's last); of render also a film "
@@ -58,9 +58,10 @@ constexpr OptionRow data_rows[] = {
     {"drop-duplicates", "", reading | flag | meshes | state | data,
      "draw cells that have the corners of others once, where parts of the mesh are given twice"},
     {"scale", "X,Y,Z", reading | data,
-     "multiplies the axes (default: 1,1,1; degrees beside metres: z by what makes the box no thinner than 1:20)"},
+     "multiplies the axes (default: 1,1,1; if x and y are degrees and z is not: z by what makes the box no thinner "
+     "than 1:20)"},
     {"clip", "PX,PY,PZ,NX,NY,NZ|box:X0,Y0,Z0,X1,Y1,Z1", reading | basic | list | state | data,
-     "cut away what lies behind a plane: a point of it and its normal, which points to what stays; or all outside of a "
+     "cut away everything behind a plane (a point on it and its normal, which points to what is kept) or outside of a "
      "box; may be repeated"},
     {"threshold", "MIN,MAX", reading | basic | state | data, "keep whole cells whose values are all in this range"},
     {"higher-order-tolerance", "REL", reading | meshes | data,
@@ -107,7 +108,7 @@ constexpr OptionRow view_rows[] = {
     {"camera", "FILE|JSON", pictures | chart | basic | state | camera | view,
      "view or list of views: .json .pvcc text, or JSON itself (default: frames the mesh)"},
     {"view", "front|back|left|right|top|bottom|iso|+x|-x|+y|-y|+z|-z", pictures | basic | state | view,
-     "direction: front looks along +y, of a patient at the face; +x looks along +x (default: what stands, stands; a "
+     "direction: front looks along +y, of a patient at the face; +x looks along +x (default: upright, from a "
      "little from the right and above)"},
     {"up", "X,Y,Z", pictures | state | view, "world direction that points up (default: z; y in views along z)"},
     {"azimuth", "DEGREES", pictures | basic | state | view, "turns the eye round the up axis, to the right"},
@@ -142,7 +143,7 @@ constexpr OptionRow annotation_rows[] = {
     {"color-bar-range", "LOW,HIGH", pictures | state | annotation,
      "values at its ends (default: the transfer function's)"},
     {"color-bar-scale", "linear|log", pictures | state | annotation,
-     "how values lie along it (default: log with --log)"},
+     "scale of the values along it (default: log with --log)"},
     {"field-unit", "TEXT", pictures | state | annotation, "of the field's values, in the colour bar's title"},
     {"axes", "triad|box|both", pictures | basic | place | state | annotation,
      "draw the axes' directions; =box: round values along the data's box; =both"},
@@ -215,7 +216,7 @@ constexpr OptionRow accuracy_rows[] = {
     {"verify", "K", render | basic, "check K random pixels a frame against the exact reference"},
     {"preset", "juliachs-2007", render,
      "a published method as a whole: scanline, raw segments, sampled:4, gl-fragment, 16x16 tiles, processes in two "
-     "roles; options beside it win"},
+     "roles; other options override it"},
     {"budget-seconds", "S", chart, "time for all of it but reading (default 60)"},
     {"repeat", "K", chart, "frames a method, if the budget allows (default 5)"},
     {"pixels", "N", chart, "random pixels that errors are taken over (default: what fits)"},
@@ -227,7 +228,7 @@ constexpr OptionRow accuracy_rows[] = {
 
 constexpr OptionRow device_rows[] = {
     {"compositor", "cpu|gl-compute|gl-fragment", render,
-     "who sorts and composites ray segments: the CPU (default), compute shaders, or fragment shaders as in the paper"},
+     "what sorts and composites ray segments: the CPU (default), compute shaders, or fragment shaders as in the paper"},
     {"backend", "auto|cpu|osmesa|egl", render,
      "where OpenGL comes from: auto is a GPU if one answers, else the CPU; under mpirun one word, or one for each "
      "compositor: cpu,osmesa"},
@@ -257,13 +258,13 @@ constexpr OptionRow rank_rows[] = {
     {"frames-in-flight", "F", render, "under mpirun: frames on their way (default: 2)"},
     {"seed", "NUMBER", render | meshes, "under mpirun: of the tile map and of --partition random (default: 1)"},
     {"stall-timeout", "SECONDS", pictures | machine,
-     "under mpirun: a rank that has been silent for so long is said to be stopped; 0: never (default: 120)"},
+     "under mpirun: a rank that has been silent for so long is reported as stopped; 0: never (default: 120)"},
     {"on-stall", "wait|abort", pictures | machine, "under mpirun: wait for such a rank (default), or end the run"},
 };
 
 constexpr OptionRow file_rows[] = {
     {"like", "REPORT", render | basic,
-     "report of another run: its views, size, field and transfer function; options beside it win"},
+     "report of another run: its views, size, field and transfer function; other options override it"},
     {"config", "FILE", render | basic, "TOML file of options; those of the command line win"},
     {"save-config", "FILE", render | basic, "write what was given as such a file"},
 };

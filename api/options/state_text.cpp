@@ -28,9 +28,10 @@ const OptionRow& row_named(std::string_view name, const std::string& source) {
   std::vector<std::string> names;
   for (const OptionRow* each : option_rows(Trait::render)) names.emplace_back(each->key());
   if (const auto near = nearest_name(std::string(name), names))
-    throw bad_input(fmt::format("{}: {} is no option of render; did you mean {}?", source, scene::quote(name), *near));
+    throw bad_input(
+        fmt::format("{}: {} is not an option of render; did you mean {}?", source, scene::quote(name), *near));
   throw bad_input(
-      fmt::format("{}: {} is no option of render; see tessera render --help-all", source, scene::quote(name)));
+      fmt::format("{}: {} is not an option of render; see tessera render --help-all", source, scene::quote(name)));
 }
 
 /// Values of a text file as on the command line: a flag is "true", or absent if it is false.
@@ -59,12 +60,12 @@ void set_once(State& state, const OptionRow& row, std::vector<std::string> value
 }
 
 Error wrong_kind(std::string_view name, const char* kind, const std::string& source) {
-  return bad_input(fmt::format("{}: {} is no {}; give one", source, scene::quote(name), kind));
+  return bad_input(fmt::format("{}: {} is not {}; give one", source, scene::quote(name), kind));
 }
 
 std::string text_of(const Json& value, std::string_view name, const std::string& source) {
   if (value.is_number()) return value.dump();
-  if (!value.is_string()) throw wrong_kind(name, "text or number", source);
+  if (!value.is_string()) throw wrong_kind(name, "text or a number", source);
   if (value.get_ref<const std::string&>().empty())
     throw bad_input(fmt::format("{}: {} is empty; leave it out, or give a value", source, scene::quote(name)));
   return value.get<std::string>();
@@ -102,7 +103,7 @@ inline namespace v0_1 {
 State State::from_json(std::string_view text, const std::string& name) {
   const api::Json json = api::Json::parse(text, nullptr, false);
   if (!json.is_object())
-    throw bad_input(name + R"(: is no JSON object; write one, like {"field": "T", "size": "800x600"})");
+    throw bad_input(name + R"(: is not a JSON object; write one, like {"field": "T", "size": "800x600"})");
   State state;
   for (const auto& [key, value] : json.items()) {
     const OptionRow& row = api::row_named(key, name);

@@ -29,8 +29,8 @@ const OptionRow& key_named(const std::string& name) {
     names.emplace_back(row->key());
   }
   if (const auto near = nearest_name(name, names))
-    throw bad_input(fmt::format("state: {} is no key; did you mean {}?", scene::quote(name), *near));
-  throw bad_input(fmt::format("state: {} is no key; docs/SERVER.md has those there are", scene::quote(name)));
+    throw bad_input(fmt::format("state: {} is not a key; did you mean {}?", scene::quote(name), *near));
+  throw bad_input(fmt::format("state: {} is not a key; docs/SERVER.md has those there are", scene::quote(name)));
 }
 
 /// Limits the length and number of texts, which come from the network.
@@ -54,7 +54,7 @@ bool is_preset(const std::string& text) {
 /// Throws for a file name: only JSON text and presets are accepted from the network.
 void check_no_file(const OptionRow& row, const std::string& text) {
   if (is_json_text(text)) return;
-  if (row.is(Trait::camera)) throw bad_input("state: 'camera' is no camera (a JSON object); send one");
+  if (row.is(Trait::camera)) throw bad_input("state: 'camera' is not a camera (a JSON object); send one");
   if (!is_preset(text))
     throw bad_input(fmt::format("state: '{}' is neither a preset nor a JSON object; send one of them", row.key()));
 }

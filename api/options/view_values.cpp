@@ -20,7 +20,7 @@ ViewRequest view_request(const OptionWords& words) {
     request.view = *view;
   }
   request.up = words.vector("up");
-  if (request.up == glm::dvec3(0)) throw bad_input("`up`: 0,0,0 is no direction; say which way is up");
+  if (request.up == glm::dvec3(0)) throw bad_input("`up`: 0,0,0 is not a direction; give the direction that is up");
   assign(request.azimuth, words.number("azimuth"));
   assign(request.elevation, words.number("elevation"));
   assign(request.zoom, words.positive("zoom"));
@@ -34,7 +34,7 @@ void set_view(const OptionWords& words, RenderOptions& options) {
   const bool has_camera = words.given("camera");
   for (const char* option : {"view", "up", "projection"})
     if (has_camera && words.given(option))
-      throw bad_input(fmt::format("{}: has no effect with `camera`, whose file says it; leave one of the two out",
+      throw bad_input(fmt::format("{}: has no effect with `camera`, whose file states it; leave one of the two out",
                                   setting_name(option)));
   if (words.given("fit") && !has_camera)
     throw bad_input("`fit`: is for a `camera` file, other views fit anyway; name one, or leave it out");

@@ -141,7 +141,7 @@ std::vector<double> quantiles(const Dataset& dataset, std::span<const double> fr
                               const std::optional<View>& seen) {
   for (const double fraction : fractions)
     if (!(fraction >= 0 && fraction <= 1))
-      throw scene::bad_input(fmt::format("quantiles: {} is no fraction of the volume; give 0 to 1", fraction));
+      throw scene::bad_input(fmt::format("quantiles: {} is not a fraction of the volume; give 0 to 1", fraction));
   std::vector<Share> shares = shares_of(dataset, seen);
   if (shares.empty()) return std::vector<double>(fractions.size(), std::numeric_limits<double>::quiet_NaN());
   std::ranges::stable_sort(shares, {}, &Share::value);

@@ -63,7 +63,7 @@ void convert_mesh(const InputFile& input, const std::filesystem::path& output, R
 void convert_grid(const InputFile& input, const std::filesystem::path& output, const ReadOptions& options, int block,
                   bool quiet) {
   if (!is_grid_output(output))
-    throw bad_input(fmt::format("{}: '{}' is no volume format to write; choose .vti, .vtr, .nrrd, .raw or .bricks",
+    throw bad_input(fmt::format("{}: '{}' is not a volume format to write; choose .vti, .vtr, .nrrd, .raw or .bricks",
                                 output.string(), output.extension().string()));
   check_output(output, input.path());
   if (!options.selection.clip.empty())

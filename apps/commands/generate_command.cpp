@@ -49,7 +49,7 @@ void generate(const std::string& kind, const std::filesystem::path& output, cons
   for (const auto& parameter : parameters) {
     const auto equals = parameter.find('=');
     if (equals == std::string::npos || equals == 0)
-      throw bad_input(fmt::format("generate: '{}' is no parameter; write NAME=VALUE", parameter));
+      throw bad_input(fmt::format("generate: '{}' is not a parameter; write NAME=VALUE", parameter));
     const auto name = parameter.substr(0, equals);
     if (!values.emplace(name, parse_number(name, parameter.substr(equals + 1))).second)
       throw bad_input(fmt::format("generate: {} is given twice; give it once", name));

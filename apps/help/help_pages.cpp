@@ -112,7 +112,7 @@ std::string help_page(const CommandRow* command, bool all) {
     for (const CommandRow& each : command_rows()) add_entry(page, std::string(each.name), each.description);
     page += "\nOptions:\n";
     add_entry(page, "--version", "print the version, the commit and how it was built, and end");
-    return page + "\n`tessera help COMMAND` says more.\n";
+    return page + "\n`tessera help COMMAND` has more.\n";
   }
   const bool is_render = command->trait == Trait::render;
   all = all || !is_render;

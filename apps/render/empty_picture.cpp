@@ -237,7 +237,7 @@ std::string EmptyPictures::warning(const FinishedRun& run) const {
   return fmt::format("{}: {}", which,
                      frame.step == run.step || first.reason == EmptyReason::clear
                          ? advice(first, run)
-                         : "render that step alone to be told what shows something");
+                         : "render that step alone to get advice on what shows something");
 }
 
 std::string EmptyPictures::advice(const First& first, const FinishedRun& run) {

@@ -53,7 +53,7 @@ void require_block(const AmrBlock& part, const std::string& source) {
   constexpr std::array<double, 9> unturned{1, 0, 0, 0, 1, 0, 0, 0, 1};
   if (part.direction != unturned)
     throw scene::bad_input(
-        fmt::format("{}: it is turned, blocks of AMR meshes lie along the axes; turn it back", name));
+        fmt::format("{}: it is turned, blocks of AMR meshes must be aligned with the axes; turn it back", name));
   for (std::size_t a = 0; a < 3; ++a) {
     if (cells_along(part, a) < 1)
       throw scene::bad_input(fmt::format("{}: it is flat, no cells of volume; give a three-dimensional mesh", name));
@@ -123,13 +123,13 @@ void place_blocks(std::span<const AmrBlock> blocks, AmrLeaves& amr, std::span<co
       const auto axis = static_cast<int>(a);
       const double own = amr.lattice.spacing[axis] * size, at = (low_end(part, a) - anchor[axis]) / own;
       if (!(std::abs(part.spacing[a] / own - 1) <= 1e-3))
-        throw scene::bad_input(fmt::format("{}: its spacing along {} is {}, that of its level {}; write it anew",
+        throw scene::bad_input(fmt::format("{}: its spacing along {} is {}, that of its level {}; write it again",
                                            where(part, source), "xyz"[a], part.spacing[a], own));
       if (!(std::abs(at) * size < most_corners)) throw too_long(std::abs(at) * size, source);
       if (!(std::abs(at - std::round(at)) < 0.02))
         throw scene::bad_input(fmt::format(
             "{}: it begins {} cells of its level from the coarsest block along {}, which has to be a whole number; "
-            "write it anew",
+            "write it again",
             where(part, source), at, "xyz"[a]));
       low[a] = std::llround(at) * size;
       const std::int64_t high = cells_along(part, a) < most_corners ? low[a] + cells_along(part, a) * size : INT64_MAX;

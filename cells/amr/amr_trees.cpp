@@ -20,7 +20,7 @@ std::string piece_words(const AmrBlock& part, const std::string& source) {
 
 scene::Error unfit(const AmrBlock& part, const std::string& source) {
   return scene::bad_input(
-      fmt::format("{}: its trees do not fit its grid; it is damaged, write it anew", piece_words(part, source)));
+      fmt::format("{}: its trees do not fit its grid; it is damaged, write it again", piece_words(part, source)));
 }
 
 std::int64_t roots_along(const AmrBlock& part, std::size_t axis) { return part.extent[2 * axis + 1]; }

@@ -200,7 +200,7 @@ class SortFirst::State {
       times.whole = reader.take<std::uint8_t>() != 0;
       times.process = reader.take<std::uint64_t>();
       times.cpu_seconds = reader.take<double>();
-      if (!std::isfinite(times.cpu_seconds)) reader.refuse("has a time that is no number");
+      if (!std::isfinite(times.cpu_seconds)) reader.refuse("has a time that is not a number");
       times.tiles = reader.take_list<volume::TileTime>();
       reader.finish();
       for (const auto& [pixels, microseconds] : times.tiles)

@@ -32,7 +32,8 @@ std::vector<double> doubles_of(const ArrayView& view) {
 /// Integers in [least, end), or an error that names the first that is outside.
 template <class T>
 std::vector<T> whole_numbers(const ArrayView& view, const char* name, std::uint64_t end, std::int64_t least = 0) {
-  if (!is_whole(view.type())) throw scene::bad_input(fmt::format("mesh: {} are no whole numbers; give integers", name));
+  if (!is_whole(view.type()))
+    throw scene::bad_input(fmt::format("mesh: {} are not whole numbers; give integers", name));
   return with_numbers(view, [&](const auto& numbers) {
     std::vector<T> values;
     values.reserve(numbers.size());

@@ -132,7 +132,7 @@ inline constexpr std::array<GridCounter, 20> grid_counters{{
 static_assert(sizeof(FrameCounters) == frame_counters.size() * sizeof(std::uint64_t), "a counter is not in the table");
 static_assert(sizeof(GridCounters) == grid_counters.size() * sizeof(std::uint64_t), "a counter is not in the table");
 static_assert(std::is_trivially_copyable_v<FrameCounters> && std::is_trivially_copyable_v<GridCounters>,
-              "processes send them as they stand");
+              "processes send them unchanged");
 
 inline FrameCounters& FrameCounters::operator+=(const FrameCounters& other) {
   add_counters(frame_counters, other, *this);

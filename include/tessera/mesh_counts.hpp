@@ -164,7 +164,7 @@ inline HigherOrderCells& HigherOrderCells::operator+=(const HigherOrderCells& ot
   return *this;
 }
 static_assert(std::is_trivially_copyable_v<MeshCounts> && std::is_trivially_copyable_v<HigherOrderCells>,
-              "processes send them as they stand");
+              "processes send them unchanged");
 
 }  // namespace v0_1
 }  // namespace tessera

@@ -39,7 +39,7 @@ InflatedFile::InflatedFile(const InputFile& file, const system::InflateLimit& li
   if (!descriptor_.is_open()) throw std::bad_alloc();
   const system::PositionalFile packed(file.path);
   content_.size = system::inflate_to(descriptor_.get(), packed, limit, system::available_memory() / 10 * 9, file.name);
-  if (content_.size == 0) throw scene::bad_input(fmt::format("{}: it holds nothing; write it anew", file.name));
+  if (content_.size == 0) throw scene::bad_input(fmt::format("{}: it holds nothing; write it again", file.name));
   // By number, since the helper opens it too.
   content_.path = fmt::format("/proc/{}/fd/{}", ::getpid(), descriptor_.get());
   content_.is_gzip = false;

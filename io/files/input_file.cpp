@@ -35,7 +35,7 @@ system::PositionalFile open_input(const std::filesystem::path& file) {
   const std::uint64_t size = opened.size();
   // An empty .foam file only marks its folder as an OpenFOAM case.
   if (size == 0 && system::lower_extension(file) != ".foam" && system::lower_extension(file) != ".openfoam")
-    throw scene::bad_input(fmt::format("{}: it is empty; write it anew", file.string()));
+    throw scene::bad_input(fmt::format("{}: it is empty; write it again", file.string()));
   if (is_git_lfs_pointer(opened, size))
     throw scene::bad_input(fmt::format("{}: a Git LFS pointer; `git lfs pull` brings the file itself", file.string()));
   return opened;

@@ -166,8 +166,8 @@ cells::MeshBlocks read_plot3d(const InputFile& input, const MeshOptions& options
   std::vector<std::string> notes;
   if (q.empty())
     notes.emplace_back(is_inflated(file)
-                           ? "beside a gzip file no solution (Q) is looked for: it has no field; name one by `q`"
-                           : "no solution (Q) file lies beside the grid: it has no field; name one by `q`");
+                           ? "next to a gzip file no solution (Q) is looked for: it has no field; name one by `q`"
+                           : "no solution (Q) file is next to the grid: it has no field; name one by `q`");
   else if (const std::uint64_t left = check_plot3d_solution(q, layout); left > 0)
     notes.push_back(fmt::format("{} {} after the solution in {} are not used", left,
                                 layout.is_text ? "numbers" : "bytes", q.filename().string()));
@@ -206,7 +206,7 @@ cells::MeshBlocks read_plot3d_list(const InputFile& file, const MeshOptions& opt
     if (block.source.empty()) block.source = step.grid.string();
   result.time_step = std::move(chosen);
   if (step.has_functions)
-    result.notes.emplace_back("the list names a file of functions beside the solution, which is not read");
+    result.notes.emplace_back("the list names a file of functions next to the solution, which is not read");
   return result;
 }
 

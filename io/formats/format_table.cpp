@@ -17,7 +17,7 @@ constexpr std::array by_vtk = {Reader::vtk}, by_tetgen = {Reader::tetgen}, by_gm
                      by_dicom = {Reader::dicom}, by_xdmf = {Reader::xdmf}, by_med = {Reader::med};
 constexpr std::array by_vtk_and_tetgen = {Reader::vtk, Reader::tetgen};
 
-constexpr const char* filled = "closed; filled with tets, field depth beside its own";
+constexpr const char* filled = "closed; filled with tets, field depth in addition to its own";
 constexpr const char* pieces = "pieces fill the whole and have the same arrays";
 
 /// What every row has, then what only some have.
@@ -50,7 +50,7 @@ constexpr std::array rows = {
         {.read_mesh = read_hyper_trees}),
     row("AMReX plot file", "", mesh, {}, "its folder, or the Header in it; all levels, no particles", begins_as_amrex,
         {.read_mesh = read_amrex}),
-    row("Enzo", ".hierarchy .boundary", mesh, by_vtk, "HDF5 files and parameters beside it; all levels, no particles",
+    row("Enzo", ".hierarchy .boundary", mesh, by_vtk, "HDF5 files and parameters next to it; all levels, no particles",
         begins_as_enzo, {.read_mesh = read_enzo}),
     row("FLASH", "", mesh, by_vtk, "HDF5; all levels, no particles", nullptr),
     row("legacy VTK unstructured or curvilinear grid", ".vtk", mesh, by_vtk, "text or binary", begins_as_legacy_mesh,
@@ -91,7 +91,7 @@ constexpr std::array rows = {
          .time_steps = steps_by<Reader::vtk, "hdf5">,
          .holds_grid = holds_grid_by<Reader::vtk, "hdf5">,
          .share_reader = "hdf5"}),
-    row("Fluent", ".cas", mesh, by_vtk, "text or binary, no HDF5; values from the .dat beside it", begins_as_fluent,
+    row("Fluent", ".cas", mesh, by_vtk, "text or binary, no HDF5; values from the .dat next to it", begins_as_fluent,
         {.read_mesh = read_fluent, .time_steps = steps_by<Reader::vtk, "fluent">}),
     row("GAMBIT", ".neu", mesh, by_vtk, "", begins_as_gambit,
         {.read_mesh = read_gambit, .time_steps = steps_by<Reader::vtk, "gambit">}),
@@ -110,7 +110,7 @@ constexpr std::array rows = {
     row("Nastran bulk data", ".bdf .nas", mesh, {}, "solid elements, a block a property; coordinate systems; INCLUDE",
         nullptr, {.read_mesh = read_nastran_mesh}),
     row("SU2", ".su2", mesh, {}, "meshes of 3 dimensions; zones are blocks", begins_as_su2, {.read_mesh = read_su2}),
-    row("PLOT3D", ".xyz .p3d .x .bin", mesh, by_vtk, "text or binary; the solution beside it, or `q`; IBLANK 0 hides",
+    row("PLOT3D", ".xyz .p3d .x .bin", mesh, by_vtk, "text or binary; the solution next to it, or `q`; IBLANK 0 hides",
         nullptr, {.read_mesh = read_plot3d}),
     row("PLOT3D list", "", mesh, by_vtk, "ParaView's, of grids and solutions by time", begins_as_plot3d_list,
         {.read_mesh = read_plot3d_list, .time_steps = plot3d_list_time_steps}),

@@ -88,7 +88,7 @@ std::filesystem::path require_ffmpeg(const std::filesystem::path& file) {
 const FilmKind& require_kind(const std::filesystem::path& file) {
   const FilmKind* const kind = kind_of(file);
   if (kind == nullptr)
-    throw bad_input(file.string() + ": is no film by its name; end it in .mp4, .mov, .mkv, .webm or .gif");
+    throw bad_input(file.string() + ": is not a film by its name; end it in .mp4, .mov, .mkv, .webm or .gif");
   return *kind;
 }
 
@@ -212,7 +212,7 @@ std::string FilmFile::State::last_words() const {
 
 void FilmFile::State::fail(const std::string& what) const {
   throw Error(ErrorCode::system_failure, file.string(), "ffmpeg cannot make it: " + what,
-              "mend that, or write " + pictures_instead(file));
+              "correct that, or write " + pictures_instead(file));
 }
 
 void FilmFile::State::end() {

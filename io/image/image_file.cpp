@@ -30,7 +30,7 @@ ImageFormat image_format_of(const std::filesystem::path& file) {
 }
 
 scene::Error unknown_extension(const std::filesystem::path& file) {
-  return scene::bad_input(file.string() + ": is no image by its name; end it in .exr, .png, .jpg, .tif or .pfm");
+  return scene::bad_input(file.string() + ": is not an image by its name; end it in .exr, .png, .jpg, .tif or .pfm");
 }
 
 }  // namespace
@@ -52,9 +52,9 @@ void composited_row(const scene::Image& image, int y, const ImageFileOptions& op
       out[k] = in[k];
     }
     if (std::isnan(image.depth[first + x]))
-      throw scene::Error(
-          scene::ErrorCode::system_failure,
-          fmt::format("{}: the depth of pixel ({}, {}) is no number; not written, please report", file.string(), x, y));
+      throw scene::Error(scene::ErrorCode::system_failure,
+                         fmt::format("{}: the depth of pixel ({}, {}) is not a number; not written, please report",
+                                     file.string(), x, y));
     if (options.background) {
       for (int k = 0; k < 3; ++k) out[k] += (1 - in[3]) * background[k];
       out[3] = 1;

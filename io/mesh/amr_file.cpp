@@ -39,7 +39,7 @@ void add_fields_of_image(const OpenedAmrBlock& block, cells::CellBlock& fields, 
     const std::int64_t first = part.extent[2 * a], last = part.extent[2 * a + 1];
     if (first < INT32_MIN || last > INT32_MAX || last < first)
       throw scene::bad_input(
-          fmt::format("{}: its points are those from {} to {} along {}; it is damaged, write it anew", source, first,
+          fmt::format("{}: its points are those from {} to {} along {}; it is damaged, write it again", source, first,
                       last, "xyz"[a]));
     cells[a] = static_cast<std::uint64_t>(std::max<std::int64_t>(last - first, 1));
     points[a] = static_cast<std::uint64_t>(last - first + 1);

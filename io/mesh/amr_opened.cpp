@@ -49,7 +49,7 @@ OpenedAmr open_amr_list(const InputFile& input) {
   });
   if (!is_list)
     throw scene::bad_input(
-        fmt::format("{}: it is no list of AMR blocks, vtkOverlappingAMR or vtkNonOverlappingAMR; "
+        fmt::format("{}: it is not a list of AMR blocks, vtkOverlappingAMR or vtkNonOverlappingAMR; "
                     "check what it is",
                     file.string()));
   return amr;
@@ -68,7 +68,8 @@ OpenedAmr open_hyper_trees(const InputFile& input) {
     if (element.name != "Piece") return;
     const std::string* const piece = element.find("Source");
     if (piece == nullptr || piece->empty())
-      throw scene::bad_input(fmt::format("{}: piece {} has no Source; write it anew", file.string(), amr.files.size()));
+      throw scene::bad_input(
+          fmt::format("{}: piece {} has no Source; write it again", file.string(), amr.files.size()));
     require_room(amr, file);
     ForeignFile opened = open_foreign(helper, file.parent_path() / *piece, {{"reader", "hyper_trees"}});
     for (ForeignPart& part : opened.contents.parts) part.name = piece->c_str();

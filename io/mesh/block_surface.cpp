@@ -98,7 +98,7 @@ class Faces {
       for (const std::uint32_t v : triangle) {
         const glm::dvec3& p = block.positions[v];
         if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)))
-          throw scene::bad_input(fmt::format("{}: point {} of its faces is not finite; mend it", source, v));
+          throw scene::bad_input(fmt::format("{}: point {} of its faces is not finite; correct it", source, v));
         to_.mesh.points.push_back(p);
         if (choice_ == nullptr) continue;
         const double value = values_[choice_->association == scene::Association::point ? v : cell];

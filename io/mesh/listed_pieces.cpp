@@ -51,7 +51,7 @@ void add_pieces_of_whole(const std::filesystem::path& file, const std::string& b
     if (element.name != "Piece") return;
     const std::string* const name = element.find("Source");
     if (name == nullptr || name->empty())
-      throw scene::bad_input(fmt::format("{}: piece {} has no Source; write it anew", source, count));
+      throw scene::bad_input(fmt::format("{}: piece {} has no Source; write it again", source, count));
     list.pieces.push_back({file.parent_path() / *name, source, block, ""});
     ++count;
   });
@@ -103,11 +103,11 @@ void require_piece(const ListedPiece& piece) {
   if (type.empty()) {
     require_no_utf16(beginning, source);
     throw scene::bad_input(fmt::format(
-        "{}: it is a piece of {} and does not begin as a VTK XML file does; write it anew", source, piece.list));
+        "{}: it is a piece of {} and does not begin as a VTK XML file does; write it again", source, piece.list));
   }
   if (type != "UnstructuredGrid")
     throw scene::bad_input(
-        fmt::format("{}: it is a piece of {} and its type is '{}', not 'UnstructuredGrid'; write both anew", source,
+        fmt::format("{}: it is a piece of {} and its type is '{}', not 'UnstructuredGrid'; write both again", source,
                     piece.list, type));
 }
 

@@ -72,7 +72,7 @@ cells::MeshBlocks read_exodus_files(std::span<const std::filesystem::path> files
     const char* const reader = exodus_reader({read_beginning(files[k], 4096)});
     if (reader == nullptr)
       throw scene::bad_input(
-          fmt::format("{}: it is a part of a mesh in {} Exodus files, and none itself; write it anew",
+          fmt::format("{}: it is a part of a mesh in {} Exodus files, and none itself; write it again",
                       files[k].string(), files.size()));
     add_blocks(open_foreign(helper, files[k], request_for(reader, options)), result, files[k].string());
   }
@@ -95,7 +95,7 @@ std::vector<std::filesystem::path> exodus_files(const InputFile& input) {
     std::error_code unknown;
     if (!std::filesystem::is_regular_file(all.back(), unknown))
       throw scene::bad_input(
-          fmt::format("{}: it is one of {} files of a mesh, of which {} is missing; lay it beside, or "
+          fmt::format("{}: it is one of {} files of a mesh, of which {} is missing; put it next to it, or "
                       "give this one another name to see it alone",
                       file.string(), files, all.back().filename().string()));
   }

@@ -107,7 +107,7 @@ void NastranEntry::replicate(const NastranEntry& before) {
     } else {
       fields_[k] = without_brackets(std::string_view(written).substr(1));
       if (written[0] == '=' || fields_[k].empty())
-        refuse(fmt::format("{} of {} is no replication; correct it", scene::quote(written), name_));
+        refuse(fmt::format("{} of {} is not a replication; correct it", scene::quote(written), name_));
       const auto number = number_of<std::int64_t>(before.is_blank(k) ? "0" : before.fields_[k]);
       const auto more = number_of<std::int64_t>(fields_[k]);
       std::int64_t sum = 0;
@@ -267,7 +267,8 @@ class NastranDeck {
   void count_images(const std::string& images) {
     constexpr std::size_t most_images = 10'000'000;
     const auto count = number_of<std::size_t>(images.empty() ? "1" : without_brackets(images));
-    if (!count) entry_.refuse(fmt::format("{} is no number of replications; correct it", scene::quote("=" + images)));
+    if (!count)
+      entry_.refuse(fmt::format("{} is not a number of replications; correct it", scene::quote("=" + images)));
     images_ = *count;
     if (is_image_ && images_ > most_images - all_images_)
       entry_.refuse(fmt::format("it replicates more than {} entries; write them out", most_images));

@@ -21,19 +21,19 @@ std::vector<Plot3dStep> parse_plot3d_list(std::string_view text, const std::file
   for (const nlohmann::json& entry : *files) {
     const auto fail = [&](const char* what) {
       return scene::bad_input(
-          fmt::format("{}: entry {} of \"filenames\" {}; write it anew", source, steps.size(), what));
+          fmt::format("{}: entry {} of \"filenames\" {}; write it again", source, steps.size(), what));
     };
-    if (!entry.is_object()) throw fail("is no object");
+    if (!entry.is_object()) throw fail("is not an object");
     const auto file_of = [&](const char* key) -> std::filesystem::path {
       const auto name = entry.find(key);
       if (name == entry.end()) return {};
-      if (!name->is_string() || name->get<std::string>().empty()) throw fail("has a name that is none");
+      if (!name->is_string() || name->get<std::string>().empty()) throw fail("has an invalid name");
       return input.parent_path() / name->get<std::string>();
     };
     Plot3dStep step{static_cast<double>(steps.size()), file_of("xyz"), file_of("q"), !file_of("function").empty()};
     if (step.grid.empty()) throw fail("has no \"xyz\"");
     if (const auto time = entry.find("time"); time != entry.end()) {
-      if (!time->is_number()) throw fail("has a \"time\" that is no number");
+      if (!time->is_number()) throw fail("has a \"time\" that is not a number");
       step.time = time->get<double>();
     }
     steps.push_back(std::move(step));

@@ -31,7 +31,7 @@ std::uint64_t count_numbers(std::string_view text, const std::string& source) {
       refuse(words, word, "is a repeated number, which VTK's reader does not know; write each");
     if (exponent != std::string_view::npos && number_of<double>(word.substr(0, exponent)))
       refuse(words, word, "has an exponent that VTK's reader does not know; write it with E");
-    refuse(words, word, "is no number; PLOT3D in text is numbers alone");
+    refuse(words, word, "is not a number; PLOT3D in text is numbers alone");
   }
   return count;
 }
@@ -74,7 +74,7 @@ void require_whole_iblank(std::string_view text, const Plot3dLayout& layout, con
     const std::uint64_t points = points_of(grid);
     for (std::uint64_t k = 0; k < 4 * points; ++k)
       if (const std::string_view word = words.word(); k >= 3 * points && !number_of<std::int32_t>(word))
-        refuse(words, word, "stands for IBLANK and is no whole number; mend it");
+        refuse(words, word, "is an IBLANK value and is not a whole number; correct it");
   }
 }
 

@@ -56,14 +56,14 @@ class PlyParser {
     for (std::size_t f = 0; f < result_.surface.facets.size(); ++f)
       for (const std::uint32_t v : result_.surface.facets[f].polygons.front())
         if (v >= points)
-          throw scene::bad_input(fmt::format("{}: face {} uses vertex {}, the file holds {}; write it anew", source_, f,
-                                             static_cast<std::int64_t>(v), points));
+          throw scene::bad_input(fmt::format("{}: face {} uses vertex {}, the file holds {}; write it again", source_,
+                                             f, static_cast<std::int64_t>(v), points));
     return std::move(result_);
   }
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw scene::bad_input(fmt::format("{}: {}; the file is truncated or damaged, write it anew", source_, what));
+    throw scene::bad_input(fmt::format("{}: {}; the file is truncated or damaged, write it again", source_, what));
   }
 
   std::vector<std::string_view> header_words() {
@@ -168,7 +168,7 @@ class PlyParser {
     double value = 0;
     const Scanned found = scanner_.number(value);
     if (found == Scanned::nothing) fail("it ends before its last element");
-    if (found == Scanned::other_word) fail(scene::quote(scanner_.word().substr(0, 12)) + " is no number");
+    if (found == Scanned::other_word) fail(scene::quote(scanner_.word().substr(0, 12)) + " is not a number");
     return value;
   }
 

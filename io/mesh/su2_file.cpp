@@ -43,7 +43,7 @@ class Lines {
   bool next() { return scanner_.next_line(); }
 
   void need_next(const char* what, std::size_t k, std::size_t count) {
-    if (!next()) fail(fmt::format("the file ends at {} {} of {}; it is truncated, write it anew", what, k, count));
+    if (!next()) fail(fmt::format("the file ends at {} {} of {}; it is truncated, write it again", what, k, count));
   }
 
   /// The word before '=' of a line of that kind; empty of others. What follows is read by number().
@@ -53,10 +53,11 @@ class Lines {
   T number(const char* what) {
     T value{};
     const Scanned found = scanner_.number(value);
-    if (found == Scanned::nothing) fail(fmt::format("{} is missing; write it anew", what));
-    if (found == Scanned::other_word) fail(fmt::format("'{}' is no {}; mend it", scanner_.word().substr(0, 20), what));
+    if (found == Scanned::nothing) fail(fmt::format("{} is missing; write it again", what));
+    if (found == Scanned::other_word)
+      fail(fmt::format("'{}' is not a {}; correct it", scanner_.word().substr(0, 20), what));
     // 1e999 is NaN: such a cell is blanked.
-    if (found == Scanned::out_of_range && std::is_integral_v<T>) fail(fmt::format("{} is too large; mend it", what));
+    if (found == Scanned::out_of_range && std::is_integral_v<T>) fail(fmt::format("{} is too large; correct it", what));
     return value;
   }
 
@@ -64,7 +65,7 @@ class Lines {
   std::size_t count(const char* what, std::size_t least) {
     const auto n = number<std::uint64_t>(what);
     if (n > scanner_.rest().size() / least + 1)
-      fail(fmt::format("{} is {}, more than the file can hold; it is truncated, write it anew", what, n));
+      fail(fmt::format("{} is {}, more than the file can hold; it is truncated, write it again", what, n));
     return static_cast<std::size_t>(n);
   }
 
@@ -81,7 +82,7 @@ struct Zone {
 };
 
 void read_cells(Lines& lines, Zone& zone) {
-  if (zone.has_cells) lines.fail("NELEM is given twice in one zone; mend it");
+  if (zone.has_cells) lines.fail("NELEM is given twice in one zone; correct it");
   zone.has_cells = true;
   constexpr std::size_t least = 9;  // "10 0 1 2 3", a triangle "5 0 1 2" and its line's end
   const std::size_t count = lines.count("NELEM", least - 1);
@@ -95,10 +96,10 @@ void read_cells(Lines& lines, Zone& zone) {
     const std::size_t nodes = nodes_of(type);
     if (nodes == 0 && nodes_of(type % 100) > 0)
       lines.fail(fmt::format("{} is a cell of order {}, which is not read; have SU2 write .vtu", type, type / 100 + 1));
-    if (nodes == 0) lines.fail(fmt::format("{} is no cell type of SU2 (3 5 9 10 12 13 14); mend it", type));
+    if (nodes == 0) lines.fail(fmt::format("{} is not a cell type of SU2 (3 5 9 10 12 13 14); correct it", type));
     for (std::size_t k = 0; k < nodes; ++k) {
       const auto point = lines.number<std::uint64_t>("point number");
-      if (point >= std::numeric_limits<std::uint32_t>::max()) lines.fail("a point number is too large; mend it");
+      if (point >= std::numeric_limits<std::uint32_t>::max()) lines.fail("a point number is too large; correct it");
       block.connectivity.push_back(static_cast<std::uint32_t>(point));
     }
     block.types.push_back(static_cast<std::uint8_t>(type));
@@ -107,7 +108,7 @@ void read_cells(Lines& lines, Zone& zone) {
 }
 
 void read_points(Lines& lines, Zone& zone) {
-  if (zone.has_points) lines.fail("NPOIN is given twice in one zone; mend it");
+  if (zone.has_points) lines.fail("NPOIN is given twice in one zone; correct it");
   zone.has_points = true;
   constexpr std::size_t least = 6;  // "0 0 0" and its line's end
   const std::size_t count = lines.count("NPOIN", least);
@@ -125,13 +126,14 @@ void check(const Zone& zone, const std::string& source) {
   const std::string where = zone.block.name.empty() ? source : fmt::format("{}: {}", source, zone.block.name);
   if (!zone.has_cells || !zone.has_points)
     throw scene::bad_input(
-        fmt::format("{}: there is no {}; it is truncated, write it anew", where, zone.has_cells ? "NPOIN" : "NELEM"));
+        fmt::format("{}: there is no {}; it is truncated, write it again", where, zone.has_cells ? "NPOIN" : "NELEM"));
   const std::size_t points = zone.block.positions.size();
   for (std::size_t c = 0; c < zone.block.types.size(); ++c)
     for (std::uint64_t k = zone.block.offsets[c]; k < zone.block.offsets[c + 1]; ++k)
       if (zone.block.connectivity[k] >= points)
-        throw scene::bad_input(fmt::format("{}: cell {} uses point {}, the file has {}; points count from 0, mend it",
-                                           where, c, zone.block.connectivity[k], points));
+        throw scene::bad_input(
+            fmt::format("{}: cell {} uses point {}, the file has {}; points count from 0, correct it", where, c,
+                        zone.block.connectivity[k], points));
 }
 
 }  // namespace
@@ -144,7 +146,7 @@ std::vector<cells::CellBlock> parse_su2(std::string_view text, const std::string
     const std::string_view key = lines.key();
     if (key == "NDIME") {
       if (const auto dimensions = lines.number<std::uint64_t>("NDIME"); dimensions != 3)
-        lines.fail(fmt::format("NDIME is {}: the mesh is no volume; give one of 3 dimensions", dimensions));
+        lines.fail(fmt::format("NDIME is {}: the mesh is not a volume; give one of 3 dimensions", dimensions));
     } else if (key == "IZONE") {
       // The first zone's name stands before its counts.
       if (zones.back().has_cells || zones.back().has_points) zones.emplace_back();

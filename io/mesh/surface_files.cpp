@@ -35,11 +35,11 @@ cells::Surface read_poly(const std::filesystem::path& file, const std::string& s
 
 void require_sound(const cells::Surface& surface, const std::string& source) {
   if (surface.facets.empty())
-    throw scene::bad_input(fmt::format("{}: the surface has no faces; write it anew", source));
+    throw scene::bad_input(fmt::format("{}: the surface has no faces; write it again", source));
   for (std::size_t v = 0; v < surface.points.size(); ++v)
     for (int k = 0; k < 3; ++k)
       if (!std::isfinite(surface.points[v][k]))
-        throw scene::bad_input(fmt::format("{}: point {} of the surface is not finite; mend it", source, v));
+        throw scene::bad_input(fmt::format("{}: point {} of the surface is not finite; correct it", source, v));
   cells::require_closed(surface, source);
 }
 

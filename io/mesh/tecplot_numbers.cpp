@@ -143,7 +143,7 @@ void read_polyhedra(const TecplotZone& zone, NumberStream& numbers, TecplotNumbe
   for (auto* const side : {&read.left, &read.right})
     for (std::size_t f = 0; f < zone.faces; ++f) {
       // A negative number counts elements of other zones.
-      const double element = numbers.next("elements beside faces");
+      const double element = numbers.next("elements in addition to faces");
       side->push_back(element > 0 && element <= static_cast<double>(zone.elements) ? static_cast<std::size_t>(element)
                                                                                    : 0);
     }

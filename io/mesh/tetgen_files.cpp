@@ -61,7 +61,7 @@ class Numbers {
     return static_cast<std::size_t>(n);
   }
 
-  [[noreturn]] void fail(const std::string& what) const { scanner_.fail(what + "; write the file anew"); }
+  [[noreturn]] void fail(const std::string& what) const { scanner_.fail(what + "; write the file again"); }
 
  private:
   TextScanner scanner_;
@@ -93,8 +93,8 @@ Nodes parse_nodes(Numbers& in) {
     if (nodes.first_index < 0 || nodes.first_index > 1)
       in.fail(fmt::format("points are numbered from {}, not from 0 or 1", nodes.first_index));
     if (index != nodes.first_index + static_cast<std::int64_t>(v))
-      in.fail(
-          fmt::format("point {} stands where {} should be", index, nodes.first_index + static_cast<std::int64_t>(v)));
+      in.fail(fmt::format("point {} is listed where {} should be", index,
+                          nodes.first_index + static_cast<std::int64_t>(v)));
     const auto x = in.need<double>("x"), y = in.need<double>("y"), z = in.need<double>("z");
     nodes.points.emplace_back(x, y, z);
     for (std::vector<double>& values : nodes.attributes) values.push_back(in.need<double>("an attribute"));

@@ -83,14 +83,14 @@ TetsBytes::TetsBytes(const system::PositionalFile& file)
 
 TetsHeader tets_header(const TetsBytes& file, const std::string& source) {
   if (file.size < header_bytes)
-    throw scene::bad_input(fmt::format("{}: {} bytes are too few for a .tets header of {}; write the file anew", source,
-                                       file.size, header_bytes));
+    throw scene::bad_input(fmt::format("{}: {} bytes are too few for a .tets header of {}; write the file again",
+                                       source, file.size, header_bytes));
   std::array<std::int64_t, 2> counts{};
   file.copy(0, reinterpret_cast<std::byte*>(counts.data()), header_bytes);
   constexpr std::int64_t max_count = INT32_MAX;  // vertex indices are int32
   if (counts[0] < 0 || counts[1] < 0 || counts[0] > max_count || counts[1] > (INT64_MAX >> 5))
     throw scene::bad_input(
-        fmt::format("{}: the header promises {} vertices and {} tets; this is no little-endian .tets file", source,
+        fmt::format("{}: the header promises {} vertices and {} tets; this is not a little-endian .tets file", source,
                     counts[0], counts[1]));
   const TetsHeader header{static_cast<std::uint64_t>(counts[0]), static_cast<std::uint64_t>(counts[1])};
   const std::uint64_t expected = corners_begin(header) + tet_bytes * header.tets;
@@ -98,7 +98,7 @@ TetsHeader tets_header(const TetsBytes& file, const std::string& source) {
     throw scene::bad_input(fmt::format(
         "{}: {} vertices and {} tets need {} bytes, the file has {}; {}", source, header.vertices, header.tets,
         expected, file.size,
-        file.size < expected ? "it is truncated, copy it anew" : "it is another format or was written twice"));
+        file.size < expected ? "it is truncated, copy it again" : "it is another format or was written twice"));
   return header;
 }
 

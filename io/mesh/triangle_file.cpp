@@ -14,13 +14,13 @@ tessera::TriangleMesh read_triangles(const InputFile& file) {
   const std::string& source = file.name;
   if (file.format == nullptr || file.format->read_surface == nullptr)
     throw scene::bad_input(
-        fmt::format("{}: is no surface of triangles; give a .ply, .stl, .vtp, .vtk, .poly or .smesh", source));
+        fmt::format("{}: is not a surface of triangles; give a .ply, .stl, .vtp, .vtk, .poly or .smesh", source));
   SurfaceFile read = file.format->read_surface(file);
   tessera::TriangleMesh mesh;
   mesh.points = std::move(read.surface.points);
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
     if (!(std::isfinite(mesh.points[v].x) && std::isfinite(mesh.points[v].y) && std::isfinite(mesh.points[v].z)))
-      throw scene::bad_input(fmt::format("{}: point {} of the surface is not finite; mend it", source, v));
+      throw scene::bad_input(fmt::format("{}: point {} of the surface is not finite; correct it", source, v));
   cells::PolygonTriangles cutter;
   for (std::size_t f = 0; f < read.surface.facets.size(); ++f) {
     const cells::Facet& facet = read.surface.facets[f];
@@ -29,7 +29,7 @@ tessera::TriangleMesh read_triangles(const InputFile& file) {
     for (const cells::Polygon& polygon : facet.polygons) cutter.cut(polygon, mesh.points, mesh.triangles);
   }
   if (mesh.triangles.empty())
-    throw scene::bad_input(fmt::format("{}: the surface has no faces; write it anew", source));
+    throw scene::bad_input(fmt::format("{}: the surface has no faces; write it again", source));
   return mesh;
 }
 

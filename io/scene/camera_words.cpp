@@ -53,7 +53,7 @@ void CameraWords::set(std::string_view word, std::span<const double> numbers, co
     size_ = {pixel_count(numbers[0], at), pixel_count(numbers[1], at)};
   } else {
     throw scene::bad_input(
-        fmt::format("{}: {} is no word of a camera; position, focal_point, view_up, parallel_scale, view_angle, "
+        fmt::format("{}: {} is not a word of a camera; position, focal_point, view_up, parallel_scale, view_angle, "
                     "clipping_range and size are",
                     at, quote(word)));
   }

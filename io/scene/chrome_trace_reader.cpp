@@ -124,8 +124,8 @@ class EventReader final : public nlohmann::json_sax<nlohmann::json> {
   }
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw scene::bad_input(fmt::format("{}: event {} ({}): {}; mend it or trace the run again", source_, event_number_,
-                                       quote(event_.name), what));
+    throw scene::bad_input(fmt::format("{}: event {} ({}): {}; correct it or trace the run again", source_,
+                                       event_number_, quote(event_.name), what));
   }
 
   bool number(double value) {
@@ -157,7 +157,7 @@ class EventReader final : public nlohmann::json_sax<nlohmann::json> {
 
   [[nodiscard]] double run_number(double value, double most) const {
     if (value >= 0 && value <= most && value == std::floor(value)) return value;
-    throw scene::bad_input(fmt::format("{}: otherData: {} is {}, it must be a whole number from 0 to {}; mend it",
+    throw scene::bad_input(fmt::format("{}: otherData: {} is {}, it must be a whole number from 0 to {}; correct it",
                                        source_, key_, value, most));
   }
 

@@ -84,7 +84,7 @@ colormaps::LoadedTransferFunction parse_json_transfer_function(std::string_view 
   for (const auto& item : root.items())
     if (item.key() != "knots")
       throw scene::bad_input(
-          fmt::format("{}: {} is unknown beside knots; leave it out", source, scene::quote(item.key())));
+          fmt::format("{}: {} is unknown next to knots; leave it out", source, scene::quote(item.key())));
   return loaded_knots(knots_of(root["knots"], source), source, options);
 }
 

@@ -219,7 +219,7 @@ colormaps::LoadedTransferFunction color_map_of(const json& root, const std::stri
   if (off)
     warnings.push_back(fmt::format(
         "the transfer function's {:g} to {:g} would show next to nothing of the field's {:.6g} to {:.6g}: it is taken "
-        "for a preset and stretched over the field; `range` says another range",
+        "for a preset and stretched over the field; `range` sets another range",
         color_range[0], color_range[1], options.field_range[0], options.field_range[1]));
   if (stretches) {
     remarks.push_back(fmt::format("rescaled to {:.6g} to {:.6g}", spanned[0], spanned[1]));
@@ -229,7 +229,7 @@ colormaps::LoadedTransferFunction color_map_of(const json& root, const std::stri
     });
   } else if (options.field_range[1] < color_range[0] || options.field_range[0] > color_range[1]) {
     remarks.push_back(
-        fmt::format("the field's {:.6g} to {:.6g} lies outside its {:.6g} to {:.6g}: `rescale` stretches it",
+        fmt::format("the field's {:.6g} to {:.6g} is outside its {:.6g} to {:.6g}: `rescale` stretches it",
                     options.field_range[0], options.field_range[1], color_range[0], color_range[1]));
   }
   if (!has_opacities) curves.opacities = colormaps::opacity_ramp();

@@ -36,7 +36,7 @@ colormaps::LoadedTransferFunction loaded_knots(std::vector<scene::Knot> knots, c
                                                const colormaps::TransferFunctionOptions& options) {
   for (scene::Knot& knot : knots) knot.extinction *= options.opacity_scale;
   std::string name = source;
-  if (options.unit_distance) name += " (extinctions as they stand; `unit_distance` does not apply)";
+  if (options.unit_distance) name += " (extinctions as given; `unit_distance` does not apply)";
   if (!options.opacity_points.empty())
     throw scene::bad_input(source + ": holds extinctions, which `opacity_points` cannot replace; leave it out");
   if (options.rescale || options.range) name += rescale(knots, options.spanned());

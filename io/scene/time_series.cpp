@@ -109,7 +109,7 @@ std::vector<TimeStep> read_pvd(const std::filesystem::path& input) {
     }
     if (element.name != "DataSet") return;
     const auto fail = [&](const std::string& what) {
-      return scene::bad_input(fmt::format("{}: DataSet {} {}; write it anew", source, entries.size(), what));
+      return scene::bad_input(fmt::format("{}: DataSet {} {}; write it again", source, entries.size(), what));
     };
     Entry entry{0, false, 0, {}};
     if (const std::string* time = element.find("timestep")) {
@@ -120,14 +120,14 @@ std::vector<TimeStep> read_pvd(const std::filesystem::path& input) {
     if (const std::string* part = element.find("part"); part != nullptr && !part->empty()) {
       const auto [end, error] = std::from_chars(part->data(), part->data() + part->size(), entry.part);
       if (error != std::errc() || end != part->data() + part->size())
-        throw fail(fmt::format("has the part {}, which is no whole number", quote(*part)));
+        throw fail(fmt::format("has the part {}, which is not a whole number", quote(*part)));
     }
     const std::string* file = element.find("file");
     if (file == nullptr || file->empty()) throw fail("names no file");
     entry.file = input.parent_path() / *file;
     entries.push_back(std::move(entry));
   });
-  if (entries.empty()) throw scene::bad_input(fmt::format("{}: it lists no DataSet; write it anew", source));
+  if (entries.empty()) throw scene::bad_input(fmt::format("{}: it lists no DataSet; write it again", source));
   std::stable_sort(entries.begin(), entries.end(),
                    [](const Entry& a, const Entry& b) { return a.time != b.time ? a.time < b.time : a.part < b.part; });
   std::vector<TimeStep> steps;
@@ -147,17 +147,17 @@ std::vector<TimeStep> parse_file_series(std::string_view text, const std::filesy
   if (!json.is_object() || files == json.end() || !files->is_array())
     throw scene::bad_input(
         fmt::format("{}: it has no list \"files\"; check that it is a ParaView file series", source));
-  if (files->empty()) throw scene::bad_input(fmt::format("{}: it lists no file; write it anew", source));
+  if (files->empty()) throw scene::bad_input(fmt::format("{}: it lists no file; write it again", source));
   std::vector<TimeStep> steps;
   for (const nlohmann::json& entry : *files) {
     const auto fail = [&](const char* what) {
-      return scene::bad_input(fmt::format("{}: entry {} of \"files\" {}; write it anew", source, steps.size(), what));
+      return scene::bad_input(fmt::format("{}: entry {} of \"files\" {}; write it again", source, steps.size(), what));
     };
     const auto name = entry.is_object() ? entry.find("name") : entry.end();
     if (!entry.is_object() || name == entry.end() || !name->is_string() || name->get<std::string>().empty())
       throw fail("has no \"name\"");
     const auto time = entry.find("time");
-    if (time != entry.end() && !time->is_number()) throw fail("has a \"time\" that is no number");
+    if (time != entry.end() && !time->is_number()) throw fail("has a \"time\" that is not a number");
     steps.push_back({time == entry.end() ? static_cast<double>(steps.size()) : time->get<double>(),
                      {input.parent_path() / name->get<std::string>()},
                      {},
@@ -196,7 +196,7 @@ std::vector<TimeStep> steps_of_series(const std::filesystem::path& input) {
   const auto pattern = io::pattern_of(input.filename().string());
   if (!pattern)
     throw scene::bad_input(fmt::format(
-        "{}: is no time series; give a .pvd or .series, or a name with %04d for the number", input.string()));
+        "{}: is not a time series; give a .pvd or .series, or a name with %04d for the number", input.string()));
   return io::read_pattern(input, *pattern);
 }
 

@@ -33,7 +33,7 @@ auto with_clean_errors(const std::string& source, const Work& work) {
 
 /// bad_input of a damaged file.
 inline scene::Error damaged(const std::filesystem::path& file, const std::string& what) {
-  return scene::bad_input(fmt::format("{}: {}; the file is truncated or damaged, write it anew", file.string(), what));
+  return scene::bad_input(fmt::format("{}: {}; the file is truncated or damaged, write it again", file.string(), what));
 }
 
 /// Throws Error(bad_input) if a time step is asked of a file that has none.

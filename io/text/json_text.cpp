@@ -57,7 +57,7 @@ class Builder final : public nlohmann::json_sax<nlohmann::json> {
   bool key(string_t& name) override {
     const auto [member, is_new] = open_.back()->get_ref<json::object_t&>().try_emplace(name);
     if (!is_new)
-      throw scene::bad_input(fmt::format("{}: {} stands twice in one object; keep one", source_, quote(name)));
+      throw scene::bad_input(fmt::format("{}: {} is given twice in one object; keep one", source_, quote(name)));
     member_ = &member->second;
     return true;
   }
@@ -65,7 +65,7 @@ class Builder final : public nlohmann::json_sax<nlohmann::json> {
   bool parse_error(std::size_t byte, const std::string& /*token*/, const nlohmann::detail::exception& error) override {
     if (dynamic_cast<const json::parse_error*>(&error) != nullptr) throw not_json(text_, source_, byte, error.what());
     throw scene::bad_input(
-        fmt::format("{}: not valid JSON ({}); mend it or export it again", source_, reason(error.what())));
+        fmt::format("{}: not valid JSON ({}); correct it or export it again", source_, reason(error.what())));
   }
 
  private:
@@ -84,7 +84,7 @@ class Builder final : public nlohmann::json_sax<nlohmann::json> {
     constexpr std::size_t deepest = 64;
     if (open_.size() == deepest)
       throw scene::bad_input(
-          fmt::format("{}: nested more than {} levels deep; this is no file of ours", source_, deepest));
+          fmt::format("{}: nested more than {} levels deep; this is not a file of ours", source_, deepest));
     open_.push_back(&place(std::move(value)));  // stays where it is until it is closed
     return true;
   }
@@ -104,7 +104,7 @@ class Builder final : public nlohmann::json_sax<nlohmann::json> {
 }  // namespace
 
 scene::Error not_json(std::string_view text, const std::string& source, std::size_t byte, const std::string& message) {
-  return scene::bad_input(fmt::format("{}: {}: not valid JSON ({}); mend it or export it again", source,
+  return scene::bad_input(fmt::format("{}: {}: not valid JSON ({}); correct it or export it again", source,
                                       place(text, byte), reason(message)));
 }
 

@@ -89,7 +89,7 @@ void each_xml_element(std::string_view text, const std::string& source,
     const XML_Status status = XML_Parse(parser.get(), part.data(), static_cast<int>(part.size()), last);
     if (walk.fault) std::rethrow_exception(walk.fault);
     if (status != XML_STATUS_OK)
-      throw scene::bad_input(fmt::format("{}: line {}: {}; the file is truncated or damaged, write it anew", source,
+      throw scene::bad_input(fmt::format("{}: line {}: {}; the file is truncated or damaged, write it again", source,
                                          XML_GetCurrentLineNumber(parser.get()),
                                          XML_ErrorString(XML_GetErrorCode(parser.get()))));
     if (last) return;

@@ -14,7 +14,7 @@ using BrickJson = nlohmann::json;
 using scene::GridIndex;
 using scene::SampleBox;
 
-static_assert(std::endian::native == std::endian::little, "brick files are written as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "brick files are written in the byte order of memory");
 
 BrickJson json_of_vector(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 

@@ -45,7 +45,7 @@ MetaHeader parse_meta_header(std::string_view text, const std::filesystem::path&
     const std::size_t equals = line.find_first_of("=:");  // MetaIO takes both
     if (trimmed(line).empty()) continue;
     if (equals == std::string_view::npos)
-      throw damaged(file, fmt::format("{} is no line 'Key = value' of its header", quote(trimmed(line))));
+      throw damaged(file, fmt::format("{} is not a line 'Key = value' of its header", quote(trimmed(line))));
     const std::string key(trimmed(line.substr(0, equals)));
     header.values[key] = std::string(trimmed(line.substr(equals + 1)));
     if (key == "ElementDataFile") return header;
@@ -66,7 +66,7 @@ void read_samples_of(const MetaHeader& header, const std::filesystem::path& file
   const auto known = scene::number_type_named(word, element_types);
   if (!known)
     throw scene::bad_input(
-        fmt::format("{}: its ElementType {} is none that is read; write MET_UCHAR, MET_SHORT, "
+        fmt::format("{}: its ElementType {} is not supported; write MET_UCHAR, MET_SHORT, "
                     "MET_USHORT, MET_INT, MET_FLOAT or MET_DOUBLE",
                     file.string(), quote(*type)));
   volume.set_type(*known);
@@ -118,7 +118,7 @@ void read_grid(const MetaHeader& header, std::size_t axes, const std::filesystem
     volume.grid.shift = reals("ElementToIntensityFunctionOffset", *value, 1)[0];
   if (volume.grid.scale != 1 || volume.grid.shift != 0)
     volume.notes.push_back(
-        fmt::format("values are {:.9g} * sample + {:.9g}, as its header says", volume.grid.scale, volume.grid.shift));
+        fmt::format("values are {:.9g} * sample + {:.9g}, as its header states", volume.grid.scale, volume.grid.shift));
 }
 
 /// Where the samples are; `lines` follow the header.

@@ -187,7 +187,7 @@ void set_nifti_geometry(const NiftiHeader& header, const std::filesystem::path& 
 /// Sizes, steps and components.
 void set_nifti_dimensions(const NiftiHeader& header, const std::filesystem::path& file, StoredVolume& volume) {
   const std::int64_t dimensions = header.dim(0);
-  if (dimensions < 1 || dimensions > 7) throw damaged(file, fmt::format("its header says {} dimensions", dimensions));
+  if (dimensions < 1 || dimensions > 7) throw damaged(file, fmt::format("its header states {} dimensions", dimensions));
   for (std::size_t k = 1; k <= static_cast<std::size_t>(dimensions); ++k) {
     if (header.dim(k) < 1) throw damaged(file, fmt::format("dimension {} is {}", k, header.dim(k)));
     if (k > 5 && header.dim(k) > 1)
@@ -202,7 +202,7 @@ void set_nifti_dimensions(const NiftiHeader& header, const std::filesystem::path
   // Components of a sample lie further apart than its steps.
   if (volume.components > 1 || volume.steps > 1 || header.dim(5) > 64)
     throw scene::bad_input(fmt::format(
-        "{}: dimension 5 holds {} components beside {} steps; of those, write one alone, with at most 64 components",
+        "{}: dimension 5 holds {} components and {} steps; of those, write one alone, with at most 64 components",
         file.string(), header.dim(5), volume.steps));
   volume.components = static_cast<int>(header.dim(5));
   volume.planar = true;
@@ -212,9 +212,8 @@ void set_nifti_type(const NiftiHeader& header, const std::filesystem::path& file
   const auto* type = std::find_if(nifti_types.begin(), nifti_types.end(),
                                   [&](const NiftiType& known) { return known.code == header.datatype(); });
   if (type == nifti_types.end())
-    throw scene::bad_input(
-        fmt::format("{}: its data type {} is none that is read; write integers or 32 or 64-bit floats", file.string(),
-                    header.datatype()));
+    throw scene::bad_input(fmt::format("{}: its data type {} is not supported; write integers or 32 or 64-bit floats",
+                                       file.string(), header.datatype()));
   volume.set_type(type->type);
   volume.components = type->components;
   volume.swapped = header.swapped();
@@ -232,7 +231,7 @@ std::filesystem::path image_beside(const std::filesystem::path& header) {
     std::error_code unknown;
     if (std::filesystem::is_regular_file(image, unknown)) return image;
   }
-  throw scene::bad_input(fmt::format("{}: its samples are in {}, which is not there; put it beside the header",
+  throw scene::bad_input(fmt::format("{}: its samples are in {}, which is not there; put it next to the header",
                                      header.string(), stem.filename().string()));
 }
 
@@ -248,7 +247,7 @@ std::filesystem::path header_beside(const std::filesystem::path& file) {
     std::error_code unknown;
     if (std::filesystem::is_regular_file(header, unknown)) return header;
   }
-  throw scene::bad_input(fmt::format("{}: its header {} is not there; put it beside the samples", file.string(),
+  throw scene::bad_input(fmt::format("{}: its header {} is not there; put it next to the samples", file.string(),
                                      stem.filename().string()));
 }
 
@@ -279,8 +278,8 @@ StoredVolume read_nifti_header(const NiftiHeader& header, const std::filesystem:
     volume.grid.scale = header.slope();
     volume.grid.shift = header.intercept();
     if (volume.grid.scale != 1 || volume.grid.shift != 0)
-      volume.notes.push_back(
-          fmt::format("values are {:.9g} * sample + {:.9g}, as its header says", volume.grid.scale, volume.grid.shift));
+      volume.notes.push_back(fmt::format("values are {:.9g} * sample + {:.9g}, as its header states", volume.grid.scale,
+                                         volume.grid.shift));
   }
   set_nifti_geometry(header, file, volume);
   set_nifti_tags(header, volume);
@@ -305,7 +304,7 @@ StoredVolume read_analyze_header(const InputFile& input) {
     const double spacing = std::abs(header.pixdim(axis + 1));
     volume.grid.geometry.spacing[static_cast<int>(axis)] = spacing > 0 && std::isfinite(spacing) ? spacing : 1;
   }
-  volume.notes.emplace_back("Analyze 7.5 says nothing of left and right: the axes are the file's");
+  volume.notes.emplace_back("Analyze 7.5 does not define left and right: the axes are the file's");
   set_nifti_payload(header, header_file, input, volume);
   return volume;
 }

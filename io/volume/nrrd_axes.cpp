@@ -220,7 +220,7 @@ NrrdFields nrrd_fields_of(std::string_view text, const std::filesystem::path& fi
     const std::size_t colon = line.find(':');
     if (line.front() == '#') continue;
     if (colon == std::string_view::npos)
-      throw damaged(file, fmt::format("{} is no line 'field: value' of its header", quote(line)));
+      throw damaged(file, fmt::format("{} is not a line 'field: value' of its header", quote(line)));
     if (line.substr(colon).starts_with(":=")) {
       fields.keys[std::string(line.substr(0, colon))] = std::string(trimmed(line.substr(colon + 2)));
       continue;

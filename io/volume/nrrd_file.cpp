@@ -136,8 +136,8 @@ StoredVolume read_nrrd_header(const InputFile& input, const std::string& text) {
   const std::string type = lower_case(required_field(fields, "type", file));
   const auto known = scene::number_type_named(type, nrrd_types);
   if (!known)
-    throw scene::bad_input(fmt::format("{}: its type {} is none that is read; write integers, float or double",
-                                       file.string(), quote(type)));
+    throw scene::bad_input(
+        fmt::format("{}: its type {} is not supported; write integers, float or double", file.string(), quote(type)));
   volume.set_type(*known);
   const std::string encoding = lower_case(required_field(fields, "encoding", file));
   volume.compressed = encoding == "gzip" || encoding == "gz";
@@ -180,7 +180,7 @@ StoredVolume read_nrrd_header(const InputFile& input, const std::string& text) {
           static_cast<std::uint64_t>(header_count(*bytes, 0, std::int64_t{1} << 40, file, "byte skip"));
     if (volume.at_end && (volume.compressed || volume.coding != StoredVolume::Coding::binary))
       throw scene::bad_input(
-          fmt::format("{}: 'byte skip: -1' is for raw samples only; say where they begin", file.string()));
+          fmt::format("{}: 'byte skip: -1' is for raw samples only; state where they begin", file.string()));
   }
   return volume;
 }

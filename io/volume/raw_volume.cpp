@@ -49,7 +49,7 @@ StoredVolume describe_raw(const std::filesystem::path& file, const ReadOptions& 
   }
   if (!dims || !type)
     throw scene::bad_input(
-        fmt::format("{}: a raw file does not say its {}; give `dims` WxHxD `type` uint8, or name it "
+        fmt::format("{}: a raw file does not state its {}; give `dims` WxHxD `type` uint8, or name it "
                     "NAME_WxHxD_uint8.raw",
                     file.string(),
                     !dims && !type ? "dimensions and type"

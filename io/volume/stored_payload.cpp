@@ -26,7 +26,7 @@ std::uint64_t bytes_needed(const StoredVolume& volume, const std::string& source
   is_too_large = is_too_large || __builtin_mul_overflow(needed, volume.steps, &all) || all > (1ull << 62);
   if (is_too_large)
     throw scene::bad_input(fmt::format(
-        "{}: its header asks for more samples than can be addressed; it is damaged, write it anew", source));
+        "{}: its header asks for more samples than can be addressed; it is damaged, write it again", source));
   return needed;
 }
 
@@ -45,11 +45,11 @@ scene::Error too_few(const StoredVolume& volume, const Wanted& wanted, std::uint
   const std::string after = volume.offset > 0 ? fmt::format(" after its first {}", volume.offset) : "";
   if (!volume.slices.empty())
     return scene::bad_input(
-        fmt::format("{}: its part of the samples is {} bytes, the file has {}{}; the file is truncated, write it anew",
+        fmt::format("{}: its part of the samples is {} bytes, the file has {}{}; the file is truncated, write it again",
                     source, wanted.all, has, after));
   const std::uint64_t needed = wanted.first + wanted.count;
   const std::string remedy =
-      !volume.exact_size ? "the file is truncated, write it anew"
+      !volume.exact_size ? "the file is truncated, write it again"
       : has > needed     ? fmt::format("give the right dimensions and type, or `skip` {} if a header is before them",
                                        volume.offset + has - needed)
                          : "give the right dimensions and type";
@@ -122,7 +122,7 @@ VolumePayload payload_of_slices(const StoredVolume& volume, const Wanted& wanted
   const std::uint64_t files = volume.slices.size();
   if (wanted.all % files != 0)
     throw scene::bad_input(
-        fmt::format("{}: it lists {} files for {} bytes of samples, which are no equal parts; list all its slices",
+        fmt::format("{}: it lists {} files for {} bytes of samples, which are not equal parts; list all its slices",
                     source, files, wanted.all));
   const std::uint64_t part = wanted.all / files;
   auto bytes = std::make_shared<std::vector<std::byte>>();

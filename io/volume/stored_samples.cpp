@@ -23,7 +23,7 @@ constexpr std::string_view sample_blanks = " \t\r\n,";
 scene::Error too_few(const std::string& source, std::uint64_t found, std::uint64_t count, const char* what) {
   return scene::bad_input(
       fmt::format("{}: its samples end after {} of {} {}; the file is truncated or damaged, write "
-                  "it anew",
+                  "it again",
                   source, found, count, what));
 }
 
@@ -47,8 +47,8 @@ void parse_samples(std::string_view text, std::uint64_t count, std::span<std::by
              value <= static_cast<double>(std::numeric_limits<T>::max());
     if (!good)
       throw scene::bad_input(fmt::format(
-          "{}: sample {} is {}, no number of its type; the file is damaged or of another type, write it anew", source,
-          n, quote({at, std::min<std::size_t>(static_cast<std::size_t>(end - at), 20)})));
+          "{}: sample {} is {}, not a number of its type; the file is damaged or of another type, write it again",
+          source, n, quote({at, std::min<std::size_t>(static_cast<std::size_t>(end - at), 20)})));
     const T sample = static_cast<T>(value);
     std::memcpy(out.data() + n * sizeof(T), &sample, sizeof(T));
     at = stop;
@@ -75,7 +75,7 @@ std::vector<std::byte> bytes_of_hex(std::string_view text, std::uint64_t count, 
     if (at == std::string_view::npos) throw too_few(source, n / 2, count, "bytes");
     const int digit = hex_digit(text[at++]);
     if (digit < 0)
-      throw scene::bad_input(fmt::format("{}: its samples hold {}, no hexadecimal digit; write it anew", source,
+      throw scene::bad_input(fmt::format("{}: its samples hold {}, not a hexadecimal digit; write it again", source,
                                          quote(text.substr(at - 1, 10))));
     std::byte& byte = out[static_cast<std::size_t>(n / 2)];
     byte = static_cast<std::byte>((std::to_integer<int>(byte) << 4) | digit);

@@ -195,7 +195,8 @@ bool is_volume(const InputFile& file) {
 
 void require_volume(const InputFile& file) {
   if (!is_volume(file))
-    throw scene::bad_input(fmt::format("{}: it is no volume as the first step is one; give volumes only", file.name));
+    throw scene::bad_input(
+        fmt::format("{}: it is not a volume, but the first time step is; give volumes only", file.name));
 }
 
 VolumeFile open_unscanned_volume(const InputFile& file, const ReadOptions& read, bool scratch_is_needed) {
@@ -203,10 +204,10 @@ VolumeFile open_unscanned_volume(const InputFile& file, const ReadOptions& read,
   return with_clean_errors(file.name, [&] {
     const bool is_raw = !describes_itself(file) && (is_named_raw(file) || options.describes_raw());
     if (!is_raw && options.describes_raw())
-      throw scene::bad_input(
-          fmt::format("{}: `dims`, `type`, `spacing`, `origin`, `endian` and `skip` are for .raw files; this one says "
-                      "them itself",
-                      file.name));
+      throw scene::bad_input(fmt::format(
+          "{}: `dims`, `type`, `spacing`, `origin`, `endian` and `skip` are for .raw files; this one states "
+          "them itself",
+          file.name));
     if (!is_raw && (file.format == nullptr || file.format->open_volume == nullptr)) refuse_beginning(file);
     const auto open = [&](const InputFile& content) {
       return is_raw ? open_raw(content, options) : file.format->open_volume(content, options);

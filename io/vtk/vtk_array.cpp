@@ -148,7 +148,7 @@ void read_vtk_array(const std::filesystem::path& path, const VtkArrayPlace& plac
   if (!pass_on(system::PositionalFile(path, source), place, count, made, use))
     throw scene::bad_input(
         fmt::format("{}: its samples end or break after {} of {} bytes; the file is truncated or damaged, write it "
-                    "anew",
+                    "again",
                     source, made, count));
 }
 

@@ -40,7 +40,7 @@ Json open(std::span<const Reader> readers, Holdings& holdings, const Json& reque
   if (const int version = request.at("version").get<int>(); version != io::helper_version)
     throw scene::Error(scene::ErrorCode::system_failure, "the helper program",
                        fmt::format("it is of another version, {}, than the library, {}", io::helper_version, version),
-                       "install both anew");
+                       "install both again");
   const auto name = request.at("reader").get<std::string>();
   for (const Reader& reader : readers)
     if (name == reader.name) return {{"contents", Json::binary(io::bytes_of(reader.read(holdings, file, request)))}};

@@ -139,15 +139,15 @@ void set_even_places(const gdcm::DataSet& data, const FrameFacts& file, DicomSli
   slice.frames_note =
       file.slices_apart != 0
           ? fmt::format(
-                "its frames do not say where they are: one after the other, {:.4g} mm apart as its spacing "
+                "its frames do not state their positions: one after the other, {:.4g} mm apart as its spacing "
                 "between slices",
                 std::abs(apart))
       : file.thickness > 0
           ? fmt::format(
-                "its frames do not say where they are: one after the other, {:.4g} mm apart as its slice "
+                "its frames do not state their positions: one after the other, {:.4g} mm apart as its slice "
                 "thickness",
                 apart)
-          : "its frames do not say where they are nor how far apart: one after the other, 1 mm apart, "
+          : "its frames state neither their positions nor their distance: one after the other, 1 mm apart, "
             "which is wrong if they are times of one picture";
 }
 

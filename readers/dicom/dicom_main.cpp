@@ -183,9 +183,9 @@ io::ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& 
     const bool are_alike = std::all_of(volume.slices.begin(), volume.slices.end(), [&](const DicomSlice& s) {
       return s.slope == first.slope && s.intercept == first.intercept;
     });
-    contents.notes.push_back(
-        are_alike ? fmt::format("values are {:.9g} * sample + {:.9g}, as its header says", first.slope, first.intercept)
-                  : "slices have scales of their own, which apply");
+    contents.notes.push_back(are_alike ? fmt::format("values are {:.9g} * sample + {:.9g}, as its header states",
+                                                     first.slope, first.intercept)
+                                       : "slices have scales of their own, which apply");
   }
   contents.labels = !first.segments.type.empty() && first.segments.type != "FRACTIONAL";
   contents.modality = first.modality, contents.unit = first.unit;

@@ -309,12 +309,12 @@ DicomVolume volume_of(std::vector<DicomSlice> slices, const std::filesystem::pat
                     first.frames));
   if (volume.slices.size() == 1)
     throw scene::bad_input(
-        fmt::format("{}: it is a single slice, without others of its series beside it; give a "
+        fmt::format("{}: it is a single slice, without others of its series next to it; give a "
                     "folder of slices",
                     source));
   if (!first.has_position)
-    volume.notes.push_back(
-        fmt::format("its files do not say where slices are: by their numbers, {:.4g} mm apart", first.spacing.z));
+    volume.notes.push_back(fmt::format(
+        "its files do not state the positions of slices: by their numbers, {:.4g} mm apart", first.spacing.z));
   else if (volume.slices.size() > 1)
     set_places(volume);
   return volume;

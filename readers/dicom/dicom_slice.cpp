@@ -27,7 +27,7 @@
 namespace tessera::readers {
 namespace {
 
-constexpr const char* write_anew = "the file is truncated or damaged, write it anew or leave it out";
+constexpr const char* write_anew = "the file is truncated or damaged, write it again or leave it out";
 
 /// What orders slices of one place: the first of these that the file has.
 DicomTime time_of(const gdcm::DataSet& data) {
@@ -224,13 +224,13 @@ DicomSamples::DicomSamples(const DicomSlice& slice)
   const gdcm::PixelFormat& format = image.GetPixelFormat();
   const auto samples = static_cast<std::size_t>(slice.columns * slice.rows * slice.frames);
   if (image.GetBufferLength() != samples * format.GetPixelSize() || format.GetSamplesPerPixel() != 1)
-    throw refuse("its samples are not as many as its header says");
+    throw refuse("its samples are not as many as its header states");
   const std::optional<NumberType> type = number_type_of(format);
   if (!type) throw refuse_bits();
   type_ = *type, bits_ = format.GetBitsStored();
   bytes_.resize(image.GetBufferLength());
   if (!image.GetBuffer(bytes_.data())) throw refuse("GDCM cannot unpack its samples");
-  if (bytes_.size() != samples * io::size_of(type_)) throw refuse("its samples are not as many as its header says");
+  if (bytes_.size() != samples * io::size_of(type_)) throw refuse("its samples are not as many as its header states");
 }
 
 /// The first sample is the lowest bit; neither rows nor frames begin a byte (PS3.5, 8.1.1).

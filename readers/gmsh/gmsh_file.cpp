@@ -67,8 +67,8 @@ bool merge(const std::string& given, const std::string& source, bool is_last_try
   gmsh::logger::stop();
   if (gave_up_at_partitions && !is_last_try) return false;
   if (failed || !error.empty())
-    throw scene::bad_input(fmt::format("{}: {}; the file is truncated or damaged, write it anew", source,
-                                       error.empty() ? "Gmsh cannot read it" : "Gmsh says " + error));
+    throw scene::bad_input(fmt::format("{}: {}; the file is truncated or damaged, write it again", source,
+                                       error.empty() ? "Gmsh cannot read it" : "Gmsh reports " + error));
   return true;
 }
 
@@ -84,7 +84,7 @@ void require_last_section(const std::filesystem::path& file) {
   const std::string_view words = std::string_view(end).substr(line == std::string::npos ? 0 : line + 1);
   if (!words.starts_with("$End") && words != "$ENDELM" && words != "$ENDNOD")
     throw scene::bad_input(fmt::format(
-        "{}: it does not end with the end of a section, $End...; it is truncated, write it anew", file.string()));
+        "{}: it does not end with the end of a section, $End...; it is truncated, write it again", file.string()));
 }
 
 bool has_values(const std::filesystem::path& file) {
@@ -115,7 +115,7 @@ io::ForeignContents contents_of_model(Holdings& holdings, const std::string& sou
 io::ForeignContents read_gmsh(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   const std::string source = file.string(), beginning = io::read_beginning(file, 16);
   if (!beginning.starts_with("$MeshFormat") && !beginning.starts_with("$NOD") && !beginning.starts_with("$Comments"))
-    throw scene::bad_input(fmt::format("{}: it does not begin with $MeshFormat; write it anew", source));
+    throw scene::bad_input(fmt::format("{}: it does not begin with $MeshFormat; write it again", source));
   require_last_section(file);
   // By a name without an extension, since one of another format would be believed.
   system::Descriptor opened(::open(source.c_str(), O_RDONLY | O_CLOEXEC));

@@ -126,7 +126,7 @@ std::vector<GmshView> gmsh_views(std::optional<std::size_t> time_step, const std
     if (view)
       views.push_back(std::move(*view));
     else
-      notes.push_back(fmt::format("the view '{}' is no field of the mesh and is left out", each.name));
+      notes.push_back(fmt::format("the view '{}' is not a field of the mesh and is left out", each.name));
   }
   return views;
 }

@@ -118,10 +118,10 @@ MedFile::MedFile(const std::filesystem::path& file) : source_(file.string()) {
   // MED's library looks at the first bytes alone.
   if (ends_early(file) || MEDfileCompatibility(file.c_str(), &is_hdf5, &is_known) < 0 || is_hdf5 != MED_TRUE)
     throw scene::bad_input(fmt::format(
-        "{}: it cannot be opened as HDF5, which MED files are; it is truncated or damaged, write it anew", source_));
+        "{}: it cannot be opened as HDF5, which MED files are; it is truncated or damaged, write it again", source_));
   if (is_known != MED_TRUE)
     throw scene::bad_input(
-        fmt::format("{}: it is no MED file of version 2.3 or later; have Salome save it anew", source_));
+        fmt::format("{}: it is not an MED file of version 2.3 or later; have Salome save it again", source_));
   id_ = MEDfileOpen(file.c_str(), MED_ACC_RDONLY);
   require(id_ >= 0, "the file");
 }
@@ -133,7 +133,7 @@ MedFile::~MedFile() {
 void MedFile::require(bool good, const std::string& what) const {
   if (!good)
     throw scene::bad_input(
-        fmt::format("{}: {} cannot be read as MED; the file is truncated or damaged, write it anew", source_, what));
+        fmt::format("{}: {} cannot be read as MED; the file is truncated or damaged, write it again", source_, what));
 }
 
 std::vector<MedMesh> med_meshes(const MedFile& file, std::vector<std::string>& notes) {

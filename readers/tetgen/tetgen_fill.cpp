@@ -152,7 +152,7 @@ FilledSurface fill(const cells::Surface& surface, std::optional<double> max_volu
     tetrahedralize(&wishes, in, out);
   } catch (int thrown) {
     if (thrown == 1) throw std::bad_alloc();
-    throw scene::bad_input(fmt::format("{}: TetGen cannot fill the surface: {}{}; mend the surface", source,
+    throw scene::bad_input(fmt::format("{}: TetGen cannot fill the surface: {}{}; correct the surface", source,
                                        reason(thrown), thrown == 3 || thrown == 5 ? place_of_cut(surface, frame) : ""));
   }
   FilledSurface filled;

@@ -124,7 +124,7 @@ void require_grids(const std::filesystem::path& hierarchy) {
   for (std::string line; std::getline(file, line);) {
     ++number;
     const std::string key = line.substr(0, line.find(' '));
-    if (key == "Pointer:" && !is_pointer(line, grids)) throw refuse("it does not say which grid comes next");
+    if (key == "Pointer:" && !is_pointer(line, grids)) throw refuse("it does not state which grid comes next");
     const auto* const known = std::find(keys.begin(), keys.end(), key);
     if (known == keys.end()) continue;
     if (*known != keys[next]) throw refuse(fmt::format("{} where {} is wanted", key, keys[next]));
@@ -156,7 +156,7 @@ io::ForeignContents read_enzo(Holdings& holdings, const std::filesystem::path& n
   parameters.replace_extension();
   for (const std::filesystem::path& needed : {file, parameters})
     if (std::error_code unknown; !std::filesystem::is_regular_file(needed, unknown))
-      throw scene::bad_input(fmt::format("{}: {}, which belongs to it, is not there; put it beside it", named.string(),
+      throw scene::bad_input(fmt::format("{}: {}, which belongs to it, is not there; put it next to it", named.string(),
                                          needed.filename().string()));
   allow_for_folder(file.has_parent_path() ? file.parent_path() : std::filesystem::path("."), true);
   require_grids(file);

@@ -184,7 +184,8 @@ void EnsightCase::require_regular_files(const std::string& source) const {
       std::error_code unknown;
       const auto status = std::filesystem::status(folder_ / file, unknown);
       if (!file.empty() && std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-        throw scene::bad_input(fmt::format("{}: it names {}, which is no regular file; put one there", source, file));
+        throw scene::bad_input(
+            fmt::format("{}: it names {}, which is not a regular file; put one there", source, file));
     }
 }
 

@@ -93,7 +93,7 @@ class ExodusFile {
   }
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw scene::bad_input(fmt::format("{}: {}; the file is truncated or damaged, write it anew", source_, what));
+    throw scene::bad_input(fmt::format("{}: {}; the file is truncated or damaged, write it again", source_, what));
   }
 
   /// Names of the variables of nodes or elements, without blanks at their end.

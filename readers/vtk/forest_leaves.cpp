@@ -13,7 +13,7 @@ namespace {
 /// Of the deepest cells along an axis: what the library's lattice holds (cells/amr/amr_leaves.cpp).
 constexpr std::int64_t most_cells = 1 << 29;
 
-constexpr const char* remedy = "it is damaged, write it anew";
+constexpr const char* remedy = "it is damaged, write it again";
 
 /// A cell of one level, and its place in cells of that level.
 struct Node {

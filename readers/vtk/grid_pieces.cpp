@@ -119,11 +119,11 @@ WholeGrid read_whole(const std::filesystem::path& file, GridKind kind) {
 vtkSmartPointer<vtkDataSet> read_piece(const std::filesystem::path& piece, const std::filesystem::path& file,
                                        GridKind kind, std::vector<std::string>& notes) {
   if (io::vtk_xml_type(io::read_beginning(piece, 4096)) != words_of(kind).piece)
-    throw scene::bad_input(fmt::format("{}: it is a piece of {} and no {}; write them anew", piece.string(),
+    throw scene::bad_input(fmt::format("{}: it is a piece of {} and no {}; write them again", piece.string(),
                                        file.string(), words_of(kind).extension));
   std::string warning;
   vtkSmartPointer<vtkDataSet> data = vtkDataSet::SafeDownCast(read_xml_file(piece, words_of(kind).piece, warning));
-  if (!data) throw scene::bad_input(fmt::format("{}: nothing can be read; write it anew", piece.string()));
+  if (!data) throw scene::bad_input(fmt::format("{}: nothing can be read; write it again", piece.string()));
   const std::string note = "VTK warns: " + warning;
   if (!warning.empty() && std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
   return data;
@@ -224,7 +224,7 @@ class Assembly {
   void add(vtkDataSet& data, const Piece& piece) {
     const Extent held = extent_of(data);
     if (!holds(held, piece.extent))
-      throw scene::bad_input(fmt::format("{}: its points are {}, of which {} says that they are {}; write them anew",
+      throw scene::bad_input(fmt::format("{}: its points are {}, but {} states {}; write them again",
                                          piece.file.string(), fmt::join(held, " "), file_.string(),
                                          fmt::join(piece.extent, " ")));
     for (const bool points : {true, false}) {
@@ -264,7 +264,7 @@ class Assembly {
                      const Piece& piece) const {
     const std::string found = own ? words_of(*own) : "missing", wanted = words_of(first);
     if (found != wanted)
-      throw scene::bad_input(fmt::format("{}: its {} is {}, another piece of {} has it as {}; write them anew",
+      throw scene::bad_input(fmt::format("{}: its {} is {}, another piece of {} has it as {}; write them again",
                                          piece.file.string(), name, found, file_.string(), wanted));
     if (own->GetNumberOfTuples() != in_piece.total())
       throw io::damaged(piece.file, fmt::format("its {} has {} numbers for {} places", name, own->GetNumberOfTuples(),
@@ -322,7 +322,7 @@ class Assembly {
         if (!(std::abs(x - before) <= most))
           throw scene::bad_input(
               fmt::format("{}: its point {} along {} is at {:.9g}, another piece of {} has it at {:.9g}; write them "
-                          "anew",
+                          "again",
                           piece.file.string(), i, "xyz"[a], x, file_.string(), before));
       }
     }

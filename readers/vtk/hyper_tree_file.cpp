@@ -137,7 +137,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
   void read_grid(vtkXMLDataElement& grid) {
     grid.GetScalarAttribute("BranchFactor", forest.branching);
     if (forest.branching != 2 && forest.branching != 3)
-      throw scene::bad_input(fmt::format("{}: its cells are divided by {}, HyperTreeGrids' by 2 or 3; write it anew",
+      throw scene::bad_input(fmt::format("{}: its cells are divided by {}, HyperTreeGrids' by 2 or 3; write it again",
                                          source, forest.branching));
     int transposed = 0;
     grid.GetScalarAttribute("TransposedRootIndexing", transposed);

@@ -42,7 +42,7 @@ class Minc2Volume {
   void require(int status, const char* what) const {
     if (status != MI_NOERROR)
       throw scene::bad_input(fmt::format(
-          "{}: {} cannot be read as MINC 2; the file is truncated or damaged, write it anew", source_, what));
+          "{}: {} cannot be read as MINC 2; the file is truncated or damaged, write it again", source_, what));
   }
 
   /// Slowest first: time, if it has steps, z, y and x, then components, if it has some. Later reads are in this order,

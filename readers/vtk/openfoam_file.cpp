@@ -135,7 +135,7 @@ void require_regular_files(const std::filesystem::path& folder, const std::strin
     std::error_code gone;
     if (entry.depth() > 0 && entry->exists(gone) && !entry->is_regular_file(gone) && !entry->is_directory(gone))
       throw scene::bad_input(
-          fmt::format("{}: {} is no regular file; remove it", source, entry->path().lexically_normal().string()));
+          fmt::format("{}: {} is not a regular file; remove it", source, entry->path().lexically_normal().string()));
   }
 }
 
@@ -193,7 +193,7 @@ void read_processors(Holdings& holdings, ProcessorReader& reader, const std::fil
   const int processors = reader.processors(), part = request.value("part", 0), parts = request.value("parts", 1);
   if (const int folders = processor_folders(folder); processors != folders)
     throw scene::bad_input(
-        fmt::format("{}: of its {} processors' folders {} can be read; run reconstructPar, or decomposePar anew",
+        fmt::format("{}: of its {} processors' folders {} can be read; run reconstructPar, or decomposePar again",
                     source, folders, processors));
   const auto count = static_cast<std::uint64_t>(processors);
   const std::uint64_t last = cells::first_of_part(count, part + 1, parts);
@@ -225,7 +225,7 @@ io::ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::pat
                                            std::filesystem::exists(folder / "processors", unknown));
   if (!is_decomposed && !std::filesystem::is_directory(folder / "constant", unknown))
     throw scene::bad_input(fmt::format(
-        "{}: there is no mesh of OpenFOAM beside it, constant/polyMesh or processor0/constant/polyMesh; move "
+        "{}: there is no mesh of OpenFOAM next to it, constant/polyMesh or processor0/constant/polyMesh; move "
         "it into the folder of a case, or name that folder",
         source));
   require_mesh_files(folder, source);

@@ -73,7 +73,7 @@ io::ForeignContents read_by(Holdings& holdings, Reader& reader, const std::files
   });
   if (!warning.empty()) contents.notes.push_back("VTK warns: " + warning);
   vtkDataObject* const data = reader.GetOutputDataObject(0);
-  if (data == nullptr) throw scene::bad_input(fmt::format("{}: nothing can be read; write it anew", source));
+  if (data == nullptr) throw scene::bad_input(fmt::format("{}: nothing can be read; write it again", source));
   if (mend) mend(*data);
   contents.parts = parts_of(holdings, *data, source);
   if (contents.parts.empty() && request.value("parts", 1) == 1)
@@ -188,7 +188,7 @@ void require_solid_cells(const std::filesystem::path& file) {
                     file.string()));
   if (!sections.untyped.empty())
     throw scene::bad_input(fmt::format(
-        "{}: the section of cells of zone {} does not say what they are; export CGNS or EnSight, or the case again",
+        "{}: the section of cells of zone {} does not state what they are; export CGNS or EnSight, or the case again",
         file.string(), sections.untyped));
 }
 
@@ -444,7 +444,7 @@ io::ForeignContents read_fluent(Holdings& holdings, const std::filesystem::path&
   if (!errors->first.empty()) throw error_of_vtk(file.string(), errors->first, write_anew);
   std::erase_if(contents.notes,
                 [](const std::string& note) { return note.find("open dat file") != std::string::npos; });
-  if (!has_data) contents.notes.emplace_back("no .dat file lies beside the case: it has no field");
+  if (!has_data) contents.notes.emplace_back("no .dat file is next to the case: it has no field");
   return contents;
 }
 

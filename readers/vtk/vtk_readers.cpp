@@ -189,7 +189,7 @@ vtkSmartPointer<vtkDataObject> read_xml(const std::string& source, const std::st
 
 io::ForeignContents contents_of_data(Holdings& holdings, vtkDataObject* data, const std::string& source,
                                      const std::string& warning) {
-  if (data == nullptr) throw scene::bad_input(fmt::format("{}: nothing can be read; write it anew", source));
+  if (data == nullptr) throw scene::bad_input(fmt::format("{}: nothing can be read; write it again", source));
   io::ForeignContents contents;
   if (!warning.empty()) contents.notes.push_back("VTK warns: " + warning);
   contents.parts = parts_of(holdings, *data, source);
@@ -250,7 +250,7 @@ io::ForeignContents read_plot3d(Holdings& holdings, const std::filesystem::path&
   const auto q = request.at("q").get<std::string>();
   if (!q.empty()) allow_for(q);
   vtkSmartPointer<vtkDataObject> data;
-  with_quiet_vtk(source, "grid or solution file is damaged, write it anew", [&] {
+  with_quiet_vtk(source, "grid or solution file is damaged, write it again", [&] {
     vtkNew<vtkMultiBlockPLOT3DReader> reader;
     watch_progress(*reader);
     reader->SetXYZFileName(source.c_str());
@@ -275,7 +275,7 @@ io::ForeignContents read_stl(Holdings& holdings, const std::filesystem::path& fi
   allow_for(file);
   const std::string source = file.string();
   vtkSmartPointer<vtkDataObject> data;
-  with_quiet_vtk(source, "the file is truncated, damaged or of another kind, write it anew", [&] {
+  with_quiet_vtk(source, "the file is truncated, damaged or of another kind, write it again", [&] {
     vtkNew<vtkSTLReader> reader;
     reader->MergingOff();  // done by merge_coincident_points
     watch_progress(*reader);

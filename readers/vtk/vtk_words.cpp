@@ -108,7 +108,7 @@ scene::Error error_of_vtk(const std::string& source, const std::string& words, c
   for (const char* const odd : {"non-digit character n", "non-digit character i", "found nan", "found inf"})
     if (own.ends_with(odd))
       return scene::bad_input(fmt::format(
-          "{}: {}: NaN and infinite numbers in text are none to VTK's reader of OpenFOAM; write the case in "
+          "{}: {}: NaN and infinite numbers in text are not numbers to VTK's reader of OpenFOAM; write the case in "
           "binary (foamFormatConvert)",
           source, own));
   constexpr std::string_view attribute = "attribute type: ";
@@ -119,7 +119,7 @@ scene::Error error_of_vtk(const std::string& source, const std::string& words, c
         own.substr(at + attribute.size(), own.find(' ', at + attribute.size()) - at - attribute.size()), remedy));
   if (proves_damage(own)) return scene::bad_input(fmt::format("{}: {}; {}", source, own, remedy));
   return scene::bad_input(
-      fmt::format("{}: VTK's reader says: {}; see to that, or have it written in another format", source, own));
+      fmt::format("{}: VTK's reader reports: {}; see to that, or have it written in another format", source, own));
 }
 
 }  // namespace tessera::readers

@@ -9,7 +9,7 @@
 namespace tessera::readers {
 
 /// The remedy for a file whose bytes are not as its format has them.
-inline constexpr const char* write_anew = "the file is truncated or damaged, write it anew";
+inline constexpr const char* write_anew = "the file is truncated or damaged, write it again";
 
 /// What VTK says of an error or warning, in one line for users: without the place in its sources, the addresses of its
 /// objects and what it prints of their state. Empty if nothing is left.

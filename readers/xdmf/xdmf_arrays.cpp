@@ -60,7 +60,7 @@ void XdmfHeavyFiles::add(XdmfArray& array) {
                                          scene::quote(named.filename().string())));
     if (std::mismatch(folder_.begin(), folder_.end(), file.begin(), file.end()).first != folder_.end())
       throw scene::bad_input(
-          fmt::format("{}: its data are in {}, which lies neither beside it nor below; move it there, and name it so",
+          fmt::format("{}: its data are in {}, which is neither next to it nor below; move it there, and name it so",
                       source_, scene::quote(named.string())));
     const auto* const binary = dynamic_cast<const XdmfBinaryController*>(array.getHeavyDataController(k).get());
     if (binary != nullptr) require_size(*binary, file);
@@ -74,7 +74,7 @@ void XdmfHeavyFiles::require_size(const XdmfBinaryController& numbers, const std
                       least = numbers.getSeek() +
                               std::uint64_t{numbers.getDataspaceSize()} * numbers.getType()->getElementSize();
   if (size < least)
-    throw scene::bad_input(fmt::format("{}: its data in {} end at byte {}, the file has {}; write both anew", source_,
+    throw scene::bad_input(fmt::format("{}: its data in {} end at byte {}, the file has {}; write both again", source_,
                                        scene::quote(file.filename().string()), least, size));
 }
 

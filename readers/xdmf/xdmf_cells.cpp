@@ -80,7 +80,7 @@ class Numbers {
   std::int64_t next() {
     if (at_end())
       throw scene::bad_input(
-          fmt::format("{}: its topology ends within a cell; it is truncated or damaged, write it anew", where_));
+          fmt::format("{}: its topology ends within a cell; it is truncated or damaged, write it again", where_));
     return numbers_[at_++];
   }
   void add_cell(CellType type, std::int64_t nodes, XdmfCells& cells) {
@@ -127,7 +127,7 @@ XdmfCells cells_of(XdmfTopology& topology, const std::string& where) {
   const XdmfCell& cell = cell_of(topology.getType()->getID(), topology.getType()->getName(), where);
   const std::int64_t nodes = topology.getType()->getNodesPerElement();
   if (nodes <= 0 || (cell.nodes > 0 && nodes != cell.nodes))
-    throw scene::bad_input(fmt::format("{}: its cells have {} nodes each; write it anew", where, nodes));
+    throw scene::bad_input(fmt::format("{}: its cells have {} nodes each; write it again", where, nodes));
   while (!numbers.at_end()) numbers.add_cell(cell.type, nodes, cells);
   return cells;
 }

@@ -53,7 +53,7 @@ class InlineNumbers {
     if (expected != static_cast<double>(words_))
       throw scene::bad_input(
           fmt::format("{}: a <DataItem> of the dimensions {} holds {} numbers; it is truncated or damaged, write it "
-                      "anew",
+                      "again",
                       source_, scene::quote(dimensions_), words_));
     constexpr std::uint64_t most = 10'000'000;  // of libxml2, as Xdmf's library calls it
     if (bytes_ > most)
@@ -149,7 +149,7 @@ XdmfText check_xdmf_elements(const std::filesystem::path& file) {
     const std::string* const included = element.name.ends_with("include") ? element.find("href") : nullptr;
     if (included != nullptr && !included->empty() && *included != file.filename())
       throw scene::bad_input(
-          fmt::format("{}: it includes another file; have it written as one, with its numbers beside", source));
+          fmt::format("{}: it includes another file; have it written as one, with its numbers next to it", source));
     check_item(element, source);
     if (included != nullptr || is_to_be_rewritten(element)) text = XdmfText::to_be_rewritten;
     numbers.begin(element);

@@ -103,7 +103,7 @@ std::vector<XdmfArray*> referenced_arrays(XdmfArray& array, const std::string& s
                            });
     if (!are_three)
       throw scene::bad_input(fmt::format(
-          "{}: its points are given as X_Y_Z, and not by three arrays of one length; write it anew", source));
+          "{}: its points are given as X_Y_Z, and not by three arrays of one length; write it again", source));
     return axes;
   }
   throw scene::bad_input(fmt::format(

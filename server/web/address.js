@@ -32,7 +32,7 @@ export function state_of_fragment(fragment) {
     if (state.camera !== undefined && !is_camera(state.camera)) throw new Error("no camera");
     return state;
   } catch {
-    throw new Error("The link is damaged or cut short, so the view it holds cannot be shown; copy it anew.");
+    throw new Error("The link is damaged or cut short, so the view it holds cannot be shown; copy it again.");
   }
 }
 

@@ -308,7 +308,7 @@ export class FunctionPanel {
     if (!reply) return;
     const ends = kind === "whole" ? reply.range : [reply.quantiles["0.005"] ?? reply.range[0], reply.quantiles["0.995"] ?? reply.range[1]];
     if (ends[0] < ends[1]) this.#set_range(ends);
-    else this.page.messages.complain("All of these values are the same, so they are no range.", { about: "range" });
+    else this.page.messages.complain("All of these values are the same, so they are not a range.", { about: "range" });
   }
 
   /** The colour bar's scale option, which is refused without a bar. @param {boolean} on @param {boolean} log */

@@ -62,7 +62,7 @@ export class PicturePanel {
     fill_choice(this.film_format, formats.map((format) => /** @type {[string, string]} */ ([format, film_names[format] ?? format])));
     this.film_part.hidden = formats.length === 0;
     this.no_film.hidden = problem === null;
-    this.no_film.textContent = `${formats.length === 0 ? "No films" : "Not all forms of films"} are offered: ${problem}; mend that on the server's machine (Debian: apt install ffmpeg), and reload this page.`;
+    this.no_film.textContent = `${formats.length === 0 ? "No films" : "Not all forms of films"} are offered: ${problem}; correct that on the server's machine (Debian: apt install ffmpeg), and reload this page.`;
     this.update();
   }
 

@@ -239,11 +239,11 @@ export function imported_function(text) {
   try {
     value = JSON.parse(text);
   } catch {
-    throw new Error("The file is no JSON; export the colour map from ParaView's colour map editor as .json.");
+    throw new Error("The file is not JSON; export the colour map from ParaView's colour map editor as .json.");
   }
   const map = Array.isArray(value) ? value[0] : value;
   if (!Array.isArray(map?.RGBPoints) || map.RGBPoints.length < 4)
-    throw new Error("The file has no RGBPoints, so it is no colour map; export one from ParaView's colour map editor.");
+    throw new Error("The file has no RGBPoints, so it is not a colour map; export one from ParaView's colour map editor.");
   const known = ["Name", "ColorSpace", "HSVWrap", "RGBPoints", "Points", "ScalarOpacityUnitDistance", "NanColor"];
   return Object.fromEntries(known.filter((word) => map[word] !== undefined).map((word) => [word, map[word]]));
 }

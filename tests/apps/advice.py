@@ -194,7 +194,7 @@ def uncovered(source, said, is_partial):
             wrong.append(f"advice_exceptions.py: '{pattern}' excepts {len(excepted)} messages that no row makes")
     for pattern in NO_ADVICE:
         if not any(re.search(pattern, str(message)) for message in every):
-            wrong.append(f"advice_exceptions.py: '{pattern}' is no message")
+            wrong.append(f"advice_exceptions.py: '{pattern}' is not a message")
     if not is_partial:
         wrong += [f"no row and no exception: {message}" for message in rest]
     counts = f"{len(followed)} are followed, {excused} excepted"

@@ -33,7 +33,7 @@ ROWS = [
         "render folder/v.raw --dims 2x2x2 --type uint8 -o a.png",
         {"folder/v.raw": "12345678"},
     ),
-    row("info empty.vtu", "write it anew", "info m.vtu", {"empty.vtu": ""}),
+    row("info empty.vtu", "write it again", "info m.vtu", {"empty.vtu": ""}),
     # the view
     row(R + "--view sideways", "use front, back, left", R + "--view left"),
     row(R + "--up 0,0,0", "say which way is up", R + "--up 0,1,0"),
@@ -45,7 +45,7 @@ ROWS = [
     # parts of the data
     row(R + "--threshold 1,0", "write the smaller number first", R + "--threshold 0,1"),
     row(R + "--threshold 7,8", "nothing is left to render", R + "--threshold 0,1"),
-    row(R + "--clip 0,0,0,0,0,0", "say which side is to be kept", R + "--clip 0,0,0,0,0,1"),
+    row(R + "--clip 0,0,0,0,0,0", "give the side to keep", R + "--clip 0,0,0,0,0,1"),
     row(R + "--clip box:0,0,0,0,1,1", "give two opposite corners", R + "--clip box:0,0,0,1,1,1"),
     row(R + "--block wall", "leave --block out", R),
     row("info m.vtu --time-step 1:2", "give one step", "info m.vtu"),
@@ -83,7 +83,7 @@ ROWS = [
         {"s.series": '{"files": [{"name": "m.vtu", "time": 0}, {"name": "m.vtu", "time": 1}]}'},
     ),
     # words of arguments
-    row("dance m.vtu", "is no command; use render", R),
+    row("dance m.vtu", "is not a command; use render", R),
     row("info", "see tessera info --help", "info --help"),
     row("info m.vtu --zzzzzz", "see tessera info --help", "info --help"),
     row(R + "--memory 12Q", "write 1M or more, like 512M or 2G", R + "--memory 512M"),
@@ -117,7 +117,7 @@ ROWS = [
     row(R + "--without merging --exchange runs", "leave one of the two out", R + "--without merging"),
     row(R + "--higher-order-tets=-1", "a whole number from 0", R + "--higher-order-tets 1"),
     # annotation
-    row(R + "--color-bar=middle", "is no place; use top-left", R + "--color-bar=top-left"),
+    row(R + "--color-bar=middle", "is not a place; use top-left", R + "--color-bar=top-left"),
     row(R + "--color-bar --color-bar-range 1,0", "write the smaller number first", R + "--color-bar --color-bar-range 0,1"),
     row(R + "--color-bar-range 0,1", "give that too, or leave it out", R + "--color-bar --color-bar-range 0,1"),
     row(R + "--outline=2", "takes no value; leave that out", R + "--outline"),

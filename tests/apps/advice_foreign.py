@@ -32,7 +32,7 @@ R = "render m.vtu -o a.png --size 16x16 "
 
 
 def mesh(whole, advice, good=TET):
-    """A .vtu that is written anew."""
+    """A .vtu that is written again."""
     return row("info a.vtu", advice, None, {"a.vtu": whole}, {"a.vtu": good})
 
 
@@ -116,7 +116,7 @@ ROWS = [
         unstructured(cells="0 1 2 3 0 1 2 3", offsets="6 4", types="10 10"),
         "the file is damaged, export it again",
     ),
-    mesh(unstructured(cells="0 1 2 3 0 1 2 3", offsets="3 8", types="10 10"), "it has to have 4; mend the cell types"),
+    mesh(unstructured(cells="0 1 2 3 0 1 2 3", offsets="3 8", types="10 10"), "it has to have 4; correct the cell types"),
     mesh(unstructured(types="64"), "split such cells into tetrahedra first"),
     mesh(
         unstructured(types="42"),
@@ -125,7 +125,7 @@ ROWS = [
     ),
     mesh(
         unstructured(types="42", faces=POLYHEDRON.replace("3 0 2 1", "3 0 2 9")),
-        "write them anew",
+        "write them again",
         unstructured(types="42", faces=POLYHEDRON),
     ),
     mesh(unstructured(fields=FIELD.format("0 1 2")), "export it again"),
@@ -136,7 +136,7 @@ ROWS = [
     damaged("a.vtu", TET, '"UnstructuredGrid"', '"Table"', "give a mesh"),
     row("info a.vtk", "give the file that does", None, {"a.vtk": ONLY_FIELDS}, {"a.vtk": LEGACY}),
     row("info a.sos", "put it there", None, {"a.sos": SERVERS}, ENSIGHT),
-    damaged("a.sos", SERVERS, "casefile:", "file:", "write it anew", beside=ENSIGHT),
+    damaged("a.sos", SERVERS, "casefile:", "file:", "write it again", beside=ENSIGHT),
     damaged("a.vtk", LEGACY, "# vtk DataFile Version 3.0", "vtk", "check that it is a legacy VTK file"),
     damaged("a.vtk", LEGACY, "SCALARS", "SCALRS", "correct it, or have the file written again"),
     damaged("a.vtk", LEGACY, "CELL_TYPES 1\n10", "CELL_TYPES 1\n64", "(ParaView: Tetrahedralize)"),
@@ -151,13 +151,13 @@ ROWS = [
     # pieces and blocks
     row(
         "info a.pvtu",
-        "piece 0 has no Source; write it anew",
+        "piece 0 has no Source; write it again",
         None,
         {"a.pvtu": PVTU.replace("Source", "From"), "p.vtu": PIECE},
         {"a.pvtu": PVTU},
     ),
     row("info a.pvtu", "there is no such file", None, {"a.pvtu": PVTU}, {"p.vtu": PIECE}),
-    row("info a.pvtu", "is no regular file; give one that", None, {"a.pvtu": PVTU, "p.vtu": ("link", "/dev/null")}, {"p.vtu": PIECE}),
+    row("info a.pvtu", "is not a regular file; give one that", None, {"a.pvtu": PVTU, "p.vtu": ("link", "/dev/null")}, {"p.vtu": PIECE}),
     row("info a.vtu", "it is text in UTF-16; save it in UTF-8", None, {"a.vtu": PIECE.encode("utf-16")}, {"a.vtu": PIECE}),
     row(
         "info a.vtu",
@@ -168,14 +168,14 @@ ROWS = [
     ),
     row(
         "info a.pvtu",
-        "does not begin as a VTK XML file does; write it anew",
+        "does not begin as a VTK XML file does; write it again",
         None,
         {"a.pvtu": PVTU, "p.vtu": "nothing"},
         {"p.vtu": PIECE},
     ),
     row(
         "info a.pvtu",
-        "not 'UnstructuredGrid'; write both anew",
+        "not 'UnstructuredGrid'; write both again",
         None,
         {"a.pvtu": PVTU, "p.vtu": IMAGE},
         {"p.vtu": PIECE},
@@ -232,12 +232,12 @@ ROWS = [
         {"a.vti": IMAGE},
     ),
     row("info a.vti", "export it again", None, {"a.vti": image_data(values="0 1 2")}, {"a.vti": IMAGE}),
-    row("info a.vtr", "write the file anew", None, {"a.vtr": UNEVEN.replace("0 1 3", "0 1 0")}, {"a.vtr": UNEVEN}),
-    pieces("ImageData", "vti", "and no .vti; write them anew", IMAGE, RECTILINEAR, second(IMAGE)),
+    row("info a.vtr", "write the file again", None, {"a.vtr": UNEVEN.replace("0 1 3", "0 1 0")}, {"a.vtr": UNEVEN}),
+    pieces("ImageData", "vti", "and no .vti; write them again", IMAGE, RECTILINEAR, second(IMAGE)),
     pieces(
         "ImageData",
         "vti",
-        "of which a.pvti says that they are 1 2 0 1 0 1; write them anew",
+        "but a.pvti states 1 2 0 1 0 1; write them again",
         IMAGE,
         IMAGE,
         second(IMAGE),
@@ -245,7 +245,7 @@ ROWS = [
     pieces(
         "ImageData",
         "vti",
-        "another piece of a.pvti has it as double x 1; write them anew",
+        "another piece of a.pvti has it as double x 1; write them again",
         IMAGE,
         second(IMAGE).replace("Float64", "Float32"),
         second(IMAGE),
@@ -253,7 +253,7 @@ ROWS = [
     pieces(
         "RectilinearGrid",
         "vtr",
-        "another piece of a.pvtr has it at 1; write them anew",
+        "another piece of a.pvtr has it at 1; write them again",
         RECTILINEAR,
         SECOND.replace(">1 2<", ">1.5 2<"),
         SECOND,
@@ -267,14 +267,14 @@ ROWS = [
     ),
     row(
         "info a.pvti",
-        "the file is truncated or damaged, write it anew",
+        "the file is truncated or damaged, write it again",
         None,
         {"a.pvti": in_pieces("ImageData", [("p.vti", "0 1 0 1 0 1")]), "p.vti": IMAGE},
         {"a.pvti": in_pieces("ImageData", [("p.vti", "0 1 0 1 0 1")], "0 1 0 1 0 1")},
     ),
     # surfaces
-    damaged("a.vtp", VTP, "0 2 1 0", "0 2 9 0", "the file holds 4; write it anew"),
-    cut("a.stl", STL, 20, "write it anew"),
+    damaged("a.vtp", VTP, "0 2 1 0", "0 2 9 0", "the file holds 4; write it again"),
+    cut("a.stl", STL, 20, "write it again"),
     row(
         "info a.stl",
         "close its holes",
@@ -284,7 +284,7 @@ ROWS = [
     ),
     # AMR
     amr(
-        "blocks of AMR meshes lie along the axes; turn it back",
+        "blocks of AMR meshes must be aligned with the axes; turn it back",
         b1=block(spacing="0.5 0.5 0.5", more=' Direction="0 1 0 -1 0 0 0 0 1"'),
     ),
     amr(
@@ -294,8 +294,8 @@ ROWS = [
     amr("give numbers, spacings above 0", b1=block(spacing="0.5 0 0.5")),
     amr("only whole ratios, the same along all axes, are read", b1=block(spacing="0.5 0.5 0.3")),
     amr("write the levels between", b1=block(spacing="0.01 0.01 0.01")),
-    amr("that of its level 1; write it anew", b1=block(spacing="1 1 0.95")),
-    amr("which has to be a whole number; write it anew", b1=block(origin="0.2 0 0", spacing="0.5 0.5 0.5")),
+    amr("that of its level 1; write it again", b1=block(spacing="1 1 0.95")),
+    amr("which has to be a whole number; write it again", b1=block(origin="0.2 0 0", spacing="0.5 0.5 0.5")),
     amr("of the finest cells long", b1=block(origin="1000000000 0 0", spacing="0.5 0.5 0.5")),
     row(
         "info a.vth",
@@ -327,13 +327,13 @@ ROWS = [
     ),
     # trees
     trees("up to 2 is read; save it as .vtu in ParaView", hyper_trees(version="3.0")),
-    trees("HyperTreeGrids' by 2 or 3; write it anew", hyper_trees(branching=5)),
+    trees("HyperTreeGrids' by 2 or 3; write it again", hyper_trees(branching=5)),
     trees("give a grid of three", hyper_trees(("0 1", "0 1", "0"))),
-    trees("write it anew", hyper_trees(counts="1 9")),
+    trees("write it again", hyper_trees(counts="1 9")),
     trees("give coordinates that rise, or fewer levels", hyper_trees(("1 0", "0 1", "0 1"))),
     row(
         "info a.phtg",
-        "has no Source; write it anew",
+        "has no Source; write it again",
         None,
         {
             "a.phtg": '<VTKFile type="PHyperTreeGrid"><PHyperTreeGrid><Piece/></PHyperTreeGrid></VTKFile>',
@@ -379,7 +379,7 @@ ROWS = [
     # surfaces, shapes and parts
     row(
         "render a.vtm -o a.png --size 16x16 --surface two",
-        "is not finite; mend it",
+        "is not finite; correct it",
         None,
         {"a.vtm": VTM.replace("q.vtu", "q.vtp"), "p.vtu": PIECE, "q.vtp": VTP.replace("1 0 0", "1 nan 0")},
         {"q.vtp": VTP},

@@ -93,7 +93,7 @@ LFS_POINTER = f"version https://git-lfs.github.com/spec/v1\noid sha256:{'0' * 64
 
 ROWS = [
     # Gmsh
-    msh("$EndElements\n", "", "it is truncated, write it anew"),
+    msh("$EndElements\n", "", "it is truncated, write it again"),
     row(
         "info a.msh",
         "number these from 1",
@@ -101,8 +101,8 @@ ROWS = [
         {"a.msh": (GMSH + NODE_DATA).replace("\n4 0 0 1\n", "\n1000000004 0 0 1\n").replace("2 3 4\n", "2 3 1000000004\n").replace("\n4 3\n", "\n1000000004 3\n")},
         {"a.msh": GMSH + NODE_DATA},
     ),
-    msh("$MeshFormat", "$MashFormat", "it does not begin with $MeshFormat; write it anew"),
-    msh("1 4 2 1 1 1 2 3 4", "1 4 2 1 1 1 2 3 9", "write it anew"),
+    msh("$MeshFormat", "$MashFormat", "it does not begin with $MeshFormat; write it again"),
+    msh("1 4 2 1 1 1 2 3 4", "1 4 2 1 1 1 2 3 9", "write it again"),
     msh("1 4 2 1 1 1 2 3 4", "1 2 2 1 1 1 2 3", "give a mesh of tetrahedra, hexahedra, prisms or pyramids"),
     row(
         "info a.unv.gz",
@@ -121,14 +121,14 @@ ROWS = [
         {"a.unv": UNV},
     ),
     # XDMF
-    wrong_xdmf('<?xml version="1.0"?>\n<Xdmf Version="3.0"/>\n', "it has no <Domain>; write it anew"),
+    wrong_xdmf('<?xml version="1.0"?>\n<Xdmf Version="3.0"/>\n', "it has no <Domain>; write it again"),
     wrong_xdmf(xdmf(""), "it holds no grid; give a mesh or a volume"),
     wrong_xdmf(
         xdmf(xdmf_mesh(), '<!DOCTYPE Xdmf [<!ENTITY a "b">]>\n'), "it defines entities of its own; write it without"
     ),
     wrong_xdmf(
         xdmf('<xi:include href="b.xdmf" xmlns:xi="http://www.w3.org/2001/XInclude"/>'),
-        "have it written as one, with its numbers beside",
+        "have it written as one, with its numbers next to it",
     ),
     wrong_xdmf(
         xdmf(xdmf_mesh(values="1 2 3 4").replace('Name="f"', 'Name="f" Reference="XML"')),
@@ -139,8 +139,8 @@ ROWS = [
         "write its values at points or cells",
     ),
     wrong_xdmf(xdmf(xdmf_mesh(values="1 2 3 4" + 10_000_000 * " ")), "write its numbers to HDF5 or a binary file"),
-    wrong_xdmf(xdmf(xdmf_mesh(points=item("0 0 0 1 0 0 0 1 0", "4 3"))), "it is truncated or damaged, write it anew"),
-    wrong_xdmf(xdmf(xdmf_mesh(values="1 2 3")), "field 'f' has 3 values for 4 points; write it anew"),
+    wrong_xdmf(xdmf(xdmf_mesh(points=item("0 0 0 1 0 0 0 1 0", "4 3"))), "it is truncated or damaged, write it again"),
+    wrong_xdmf(xdmf(xdmf_mesh(values="1 2 3")), "field 'f' has 3 values for 4 points; write it again"),
     wrong_xdmf(
         f_of('<DataItem ItemType="HyperSlab" Dimensions="4">' + item("1 1 4", "3 1") + item("1 2 3 4") + "</DataItem>"),
         "give three rows of as many numbers, with the slowest dimension first",
@@ -154,14 +154,14 @@ ROWS = [
         "write floats of 4 or 8 bytes or integers of 1, 2, 4 or 8",
         **{"a.bin": "12345678"},
     ),
-    wrong_xdmf(xdmf(xdmf_mesh(geometry="X_Y_Z")), "not by three arrays of one length; write it anew"),
+    wrong_xdmf(xdmf(xdmf_mesh(geometry="X_Y_Z")), "not by three arrays of one length; write it again"),
     wrong_xdmf(
         xdmf(
             xdmf_mesh(values="1 2 3")
             .replace('"Node"', '"Cell"')
             .replace(item("0 1 2 3", "1 4"), item("0 1 2 3 0 1 2 3", "2 4"))
         ),
-        "field 'f' has 3 values for 2 cells; write it anew",
+        "field 'f' has 3 values for 2 cells; write it again",
     ),
     wrong_xdmf(xdmf(xdmf_mesh(cells=item("6 0 1 2", "4"), kind="Mixed")), "its topology ends within a cell"),
     wrong_xdmf(
@@ -174,8 +174,8 @@ ROWS = [
         "no volume; give one of three",
         GRID,
     ),
-    wrong_xdmf(xdmf(xdmf_grid("2 2 0")), "points along an axis; write it anew", GRID),
-    wrong_xdmf(XDMF.replace("Tetrahedron", "Nothing"), "the file or its data are damaged, write it anew"),
+    wrong_xdmf(xdmf(xdmf_grid("2 2 0")), "points along an axis; write it again", GRID),
+    wrong_xdmf(XDMF.replace("Tetrahedron", "Nothing"), "the file or its data are damaged, write it again"),
     wrong_xdmf(
         XDMF.replace(
             item("0 1 2 3", "1 4"),
@@ -188,7 +188,7 @@ ROWS = [
             item("0 1 2 3", "1 4"),
             '<DataItem Dimensions="1 4" Format="Binary" NumberType="Int" Precision="4">b.bin</DataItem>',
         ),
-        "the file has 3; write both anew",
+        "the file has 3; write both again",
         **{"b.bin": b"abc"},
     ),
     wrong_xdmf(
@@ -202,8 +202,8 @@ ROWS = [
     row("info a.xdmf --time-step 2", "the file has none; leave it out", "info a.xdmf", {"a.xdmf": XDMF}),
     # Exodus
     wrong_exodus(b"nothing like it", "check that it is an Exodus file"),
-    wrong_exodus(EXODUS[:-8], "write it anew"),
-    wrong_exodus(HDF5, "it is truncated or damaged, write it anew"),
+    wrong_exodus(EXODUS[:-8], "write it again"),
+    wrong_exodus(HDF5, "it is truncated or damaged, write it again"),
     wrong_exodus(exodus(2), "give a mesh in space"),
     wrong_exodus(exodus(kind="BLOB4"), "which is not known; write tetrahedra, wedges"),
     wrong_exodus(exodus(corners=(1, 2, 3, 9)), "write elements and nodes from one mesh"),
@@ -222,13 +222,13 @@ ROWS = [
     ),
     row(
         "info a.e.2.0",
-        "lay it beside, or give this one another name",
+        "put it next to it, or give this one another name",
         "info b.ex2",
         {"a.e.2.0": EXODUS, "b.ex2": EXODUS},
     ),
     row(
         "info a.e.2.0",
-        "and none itself; write it anew",
+        "and none itself; write it again",
         None,
         {"a.e.2.0": EXODUS, "a.e.2.1": "nothing"},
         {"a.e.2.1": EXODUS},
@@ -237,7 +237,7 @@ ROWS = [
     # NetCDF and MINC
     row(
         "info a.nc",
-        "the file is truncated or damaged, write it anew",
+        "the file is truncated or damaged, write it again",
         None,
         {"a.nc": netcdf_grid()[:-8]},
         {"a.nc": netcdf_grid()},
@@ -245,7 +245,7 @@ ROWS = [
     row(
         "info a.nc", "give a file of a grid in space", None, {"a.nc": netcdf_grid(("y", "x"))}, {"a.nc": netcdf_grid()}
     ),
-    row("info a.mnc", "its valid_range is 7 to 7; write it anew", None, {"a.mnc": minc((7.0, 7.0))}, {"a.mnc": MINC}),
+    row("info a.mnc", "its valid_range is 7 to 7; write it again", None, {"a.mnc": minc((7.0, 7.0))}, {"a.mnc": MINC}),
     row(
         "convert a.nc b.vtr",
         "how the grid is turned; write .bricks",
@@ -257,7 +257,7 @@ ROWS = [
             )
         },
     ),
-    row("info a.mnc", "the file is truncated or damaged, write it anew", None, {"a.mnc": MINC[:-30]}, {"a.mnc": MINC}),
+    row("info a.mnc", "the file is truncated or damaged, write it again", None, {"a.mnc": MINC[:-30]}, {"a.mnc": MINC}),
     # OpenFOAM
     row(
         "info case.foam",
@@ -266,11 +266,11 @@ ROWS = [
         {"case.foam": "", **FOAM, "case/case.foam": ""},
     ),
     row("info case.foam", "or name that folder", "info case", {"case.foam": "", **FOAM}),
-    row("info case", "is no regular file; remove it", None, {**FOAM, "case/0/x": ("link", "/dev/null")}, {"case/0/x": None}),
-    row("info case", "write it anew", None, {**FOAM, "case/constant/polyMesh/owner": "nothing"}, FOAM),
+    row("info case", "is not a regular file; remove it", None, {**FOAM, "case/0/x": ("link", "/dev/null")}, {"case/0/x": None}),
+    row("info case", "write it again", None, {**FOAM, "case/constant/polyMesh/owner": "nothing"}, FOAM),
     row(
         "info case",
-        "run reconstructPar, or decomposePar anew",
+        "run reconstructPar, or decomposePar again",
         "info case",
         {
             "case/processor0/constant/x": "",
@@ -282,7 +282,7 @@ ROWS = [
     ),
     # PLOT3D
     damaged("a.p3d", PLOT3D_LIST, '[{"xyz": "a.xyz"}]', '{"xyz": "a.xyz"}', "check that it is ParaView's", beside={"a.xyz": PLOT3D}),
-    damaged("a.p3d", PLOT3D_LIST, '"a.xyz"', "3", "write it anew", beside={"a.xyz": PLOT3D}),
+    damaged("a.p3d", PLOT3D_LIST, '"a.xyz"', "3", "write it again", beside={"a.xyz": PLOT3D}),
     damaged("a.xyz", PLOT3D, "2 2 2\n0", "2 2 3\n0", "is truncated or of another kind (the solution goes with --q)"),
     row(
         "info a.bin",
@@ -296,7 +296,7 @@ ROWS = [
     damaged("a.xyz", PLOT3D, "0 1 0", "0 one 0", "PLOT3D in text is numbers alone"),
     row(
         "info a.xyz",
-        "is no whole number; mend it",
+        "is not a whole number; correct it",
         None,
         {"a.xyz": PLOT3D + "1 1 1 1 1 1 1 0.5\n"},
         {"a.xyz": PLOT3D + "1 1 1 1 1 1 1 1\n"},
@@ -324,7 +324,7 @@ ROWS = [
     ),
     row("info ct", "give a folder of slices", None, {"ct/1.dcm": dicom(1)}, SLICES),
     ct("give a folder", **{str(k): bytes(128) + b"DICM" + b"?" * 40 for k in (1, 2, 3)}),
-    ct("write it anew or leave it out", **{"2": dicom(2)[:-4]}),
+    ct("write it again or leave it out", **{"2": dicom(2)[:-4]}),
     ct("may be missing", "info ct", None, {**SLICES, "ct/4.dcm": dicom(4)}, **{"4": dicom(5, position=5)}),
     ct(
         "name a file of another to show those",
@@ -371,7 +371,7 @@ ROWS = [
     row("info a.plt", "write text, CGNS or .vtu", "info m.vtu", {"a.plt": "#!TDV112"}),
     row("info a.mfem", "have MFEM write .vtu", "info m.vtu", {"a.mfem": "MFEM mesh v1.0\n\ndimension\n3\n"}),
     row("info a.inp", "`git lfs pull` brings the file itself", None, {"a.inp": LFS_POINTER}, {"a.inp": UCD}),
-    cut("a.inp", UCD, len(UCD) // 2, "write it anew"),
+    cut("a.inp", UCD, len(UCD) // 2, "write it again"),
     row("info a.inp", "it does not begin as a file of AVS UCD does; check what it is", None, {"a.inp": "SOL 101\n"}, {"a.inp": UCD}),
     row("info a.neu", "as a file of GAMBIT does; check what it is", "info m.vtu", {"a.neu": "25 0 0 1\nPATRAN\n"}),
     row("info a.cas", "export CGNS or EnSight", "info m.vtu", {"a.cas": "(2 3)\n(10 (0 1 ffffffff 0))\n"}),
@@ -395,8 +395,8 @@ ROWS = [
         ),
         "have the program that made it write them",
     ),
-    wrong_xdmf(XDMF.replace('"Tetrahedron"', '"Polyline" NodesPerElement="0"'), "nodes each; write it anew"),
-    wrong_xdmf(xdmf(xdmf_grid(origin="0 0")), "is not of three numbers; write it anew", GRID),
+    wrong_xdmf(XDMF.replace('"Tetrahedron"', '"Polyline" NodesPerElement="0"'), "nodes each; write it again"),
+    wrong_xdmf(xdmf(xdmf_grid(origin="0 0")), "is not of three numbers; write it again", GRID),
     row(
         "info a.xyz --q a.q",
         "it is truncated or of another kind (function, OVERFLOW)",
@@ -406,7 +406,7 @@ ROWS = [
     ),
     row(
         "info case",
-        "write it anew",
+        "write it again",
         None,
         {
             **FOAM,

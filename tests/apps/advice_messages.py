@@ -13,7 +13,7 @@ from pathlib import Path
 TOKEN = re.compile(
     r'//[^\n]*|/\*.*?\*/|#[^\n]*|R"\(.*?\)"|"(?:[^"\\\n]|\\.)*"|\'(?:[^\'\\\n]|\\.)+\'|\s+|\w+|::|[=!<>]=|.', re.DOTALL
 )
-VERBS = """add allow build check choose close count did end export free give have inflate install keep lay leave make mend
+VERBS = """add allow build check choose close correct count did end export free give have inflate install keep lay leave make
            move name please put raise read run save see set split start try unpack use write""".split()
 ADVICE = re.compile(r"; [a-z`(]|, (?:write|give) |(?:^|\n)(?:" + "|".join(VERBS) + r") ")
 # What takes words that nobody is told.

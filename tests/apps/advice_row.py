@@ -32,7 +32,7 @@ def row(command, advice, mended=None, before=None, after=None, **more):
 
 
 def damaged(name, whole, old, new, advice, command="info", beside=None):
-    """A file that is written anew after a change of it gave a message; `beside` are files that belong to it."""
+    """A file that is written again after a change of it gave a message; `beside` are files that belong to it."""
     assert old in whole, f"{name}: no {old!r}"
     return row(f"{command} {name}", advice, None, {**(beside or {}), name: whole.replace(old, new, 1)}, {name: whole})
 

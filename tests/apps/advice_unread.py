@@ -88,7 +88,7 @@ ROWS = [
     # missing files
     row("info m.case", "it names m.geo, and there is no such file; put it there", None, without(ENSIGHT, "m.geo"),
         ENSIGHT),
-    row("info m.case", "it names m.geo, which is no regular file; put one there", None, {**ENSIGHT, "m.geo": ("link", "/dev/null")},
+    row("info m.case", "it names m.geo, which is not a regular file; put one there", None, {**ENSIGHT, "m.geo": ("link", "/dev/null")},
         ENSIGHT),
     row("info m.case --field f", "f of that time step is in m.f, and there is no such file; put it there", None,
         without(ENSIGHT, "m.f"), ENSIGHT),
@@ -100,7 +100,7 @@ ROWS = [
     row("info a.vtm", "or one of the files itself", "info p.vtp",
         {"a.vtm": VTM.replace(".vtu", ".vtp"), "p.vtp": VTP, "q.vtp": VTP}),
     row("info a.msh", "has no volume to render; give one of 3", "info m.vtu", {"a.msh": FLUENT.format(2, 2, "")}),
-    row("info a.cas", "does not say what they are; export CGNS or EnSight", "info m.vtu",
+    row("info a.cas", "does not state what they are; export CGNS or EnSight", "info m.vtu",
         {"a.cas": FLUENT.format(3, 3, "")}),
     row("info a.vtu", "is the order of their nodes VTK's?", None,
         {"a.vtu": unstructured(points=CUBE, cells="0 1 2 3 4 5 6 7", offsets="8", types="12")},
@@ -113,7 +113,7 @@ ROWS = [
     row("info of", "write the case again with foamFormatConvert", None,
         {**CASE, "of/constant/polyMesh/faces": FOAM % ("faceCompactList", "faces")
          + "5\n(\n0\n3\n6\n9\n12\n)\n12\n(\n0\n2\n1\n0\n1\n3\n1\n2\n3\n0\n3\n2\n)\n"}, CASE),
-    cut("a.stl", STL, len(STL) - 40, "write it anew"),
+    cut("a.stl", STL, len(STL) - 40, "write it again"),
     damaged("a.vtk", LEGACY, "SCALARS f float 1", "SCALARS f quaternion 1", "correct it, or have the file written again"),
     damaged("a.inp", UCD, " tet ", " ball ", "or have it written in another format"),
 ]

@@ -49,7 +49,7 @@ ROWS = [
     # volumes
     row(V + "--smooth", "leave it out", V),
     row(V + "--light 1,1,1", "add it, or leave --light out", V + "--light 1,1,1 --shade"),
-    row(V + "--light 0,0,0 --shade", "say which way the light lies", V + "--light 1,1,1 --shade"),
+    row(V + "--light 0,0,0 --shade", "give the direction towards the light", V + "--light 1,1,1 --shade"),
     row(V + "--shade --no-shade", "leave one of the two out", V + "--shade"),
     row(V + "--cache fifo", "use lru or proximity", V + "--cache proximity"),
     row(V + "--labels maybe", "use on or off", V + "--labels off"),
@@ -90,7 +90,7 @@ ROWS = [
             b"encoding: raw\n\n" + SAMPLES * 2
         },
     ),
-    nrrd("sizes: 2", "sizes: 3", "the file is truncated, write it anew"),
+    nrrd("sizes: 2", "sizes: 3", "the file is truncated, write it again"),
     nrrd("uint8", "block", "write integers, float or double"),
     nrrd("encoding: raw", "encoding: bzip2", "write raw, gzip, ascii or hex"),
     nrrd(
@@ -111,11 +111,11 @@ ROWS = [
         {"a.nrrd": NRRD.replace(b"uint8", b"short").replace(b"endian: little\n", b"") + SAMPLES},
         {"a.nrrd": NRRD.replace(b"uint8", b"short") + SAMPLES},
     ),
-    nrrd("sizes: 2 2 2", "sizes: 2 2 x", "the file is truncated or damaged, write it anew"),
-    nrrd("sizes: 2 2 2", "sizes: 9999999999 9999999999 9999999999", "write the file anew"),
+    nrrd("sizes: 2 2 2", "sizes: 2 2 x", "the file is truncated or damaged, write it again"),
+    nrrd("sizes: 2 2 2", "sizes: 9999999999 9999999999 9999999999", "write the file again"),
     row(
         "info a.nrrd",
-        "than can be addressed; it is damaged, write it anew",
+        "than can be addressed; it is damaged, write it again",
         None,
         {"a.nrrd": b"NRRD0004\ntype: uint8\ndimension: 4\nsizes: 100000 100000 100000 99999999\nencoding: raw\n\n"},
         {"a.nrrd": NRRD},
@@ -167,7 +167,7 @@ ROWS = [
     row("info a.nhdr", "put the file it names there", None, {"a.nhdr": DETACHED, "a0.raw": SAMPLES[:4]}, PARTS),
     row(
         "info a.nhdr",
-        "its part of the samples is 4 bytes, the file has 3; the file is truncated, write it anew",
+        "its part of the samples is 4 bytes, the file has 3; the file is truncated, write it again",
         None,
         {"a.nhdr": DETACHED, **PARTS, "a1.raw": b"abc"},
         PARTS,
@@ -190,8 +190,8 @@ ROWS = [
         "compressed ones cannot hold them; the file is truncated",
     ),
     damaged("a.nrrd", TEXT, b" 8", b"", "of 8 numbers; the file is truncated or damaged"),
-    damaged("a.nrrd", TEXT, b" 8", b" 999", "the file is damaged or of another type, write it anew"),
-    damaged("a.nrrd", HEX, b"07", b"0g", "no hexadecimal digit; write it anew"),
+    damaged("a.nrrd", TEXT, b" 8", b" 999", "the file is damaged or of another type, write it again"),
+    damaged("a.nrrd", HEX, b"07", b"0g", "no hexadecimal digit; write it again"),
     row(
         "info a.nrrd.gz",
         "unpack it with gunzip",
@@ -201,7 +201,7 @@ ROWS = [
     ),
     row(
         "info a.vtu.gz",
-        "it holds nothing; write it anew",
+        "it holds nothing; write it again",
         None,
         {"a.vtu.gz": gzip.compress(b"")},
         {"a.vtu.gz": gzip.compress(TETRAHEDRON.encode())},
@@ -247,10 +247,10 @@ ROWS = [
     nii(nifti((6, 2, 2, 2, 1, 1, 2)), "a volume has three, time and components, write one alone", SAMPLES * 2),
     nii(nifti((5, 2, 2, 2, 2, 2)), "of those, write one alone, with at most 64 components", SAMPLES * 4),
     nii(nifti(datatype=32), "write integers or 32 or 64-bit floats"),
-    nii(nifti((9, 2, 2, 2)), "the file is truncated or damaged, write it anew"),
+    nii(nifti((9, 2, 2, 2)), "the file is truncated or damaged, write it again"),
     nii(nifti((4, 2, 2, 2, 3)), ", of 3 steps, are"),
-    row("info a.hdr", "put it beside the header", None, {"a.hdr": ANALYZE}, {"a.img": SAMPLES}),
-    row("info a.img", "put it beside the samples", None, {"a.img": SAMPLES}, {"a.hdr": ANALYZE}),
+    row("info a.hdr", "put it next to the header", None, {"a.hdr": ANALYZE}, {"a.img": SAMPLES}),
+    row("info a.img", "put it next to the samples", None, {"a.img": SAMPLES}, {"a.hdr": ANALYZE}),
     row(
         "info a.nrrd",
         "it does not begin as a nrrd does; check what it is",

@@ -143,7 +143,7 @@ TEST(Annotations, WhatIsWrongIsSaidInOneLineBeforeAnythingIsWritten) {
   };
   for (const Case& c : {
            Case{{"--annotate", "{tiem}"}, "--annotate: {tiem} is unknown; use {field} {time} {file}"},
-           Case{{"--color-bar=middle"}, "--color-bar: 'middle' is no place; use top-left or top"},
+           Case{{"--color-bar=middle"}, "--color-bar: 'middle' is not a place; use top-left or top"},
            Case{{"--axes=all"}, "--axes: 'all' is unknown; use triad, box or both"},
            Case{{"--outline=red"}, "--outline: takes no value"},
            Case{{"--color-bar-title", "T"}, "--color-bar-title: has no effect without --color-bar"},

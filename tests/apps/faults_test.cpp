@@ -127,7 +127,7 @@ TEST(Faults, BrokenInputsLeaveNothingBehind) {
   const Folder folder;
   const std::string whole = contents(folder.cube());
   const auto truncated = folder.file("truncated.vtu", whole.substr(0, whole.size() / 2));
-  const auto text = folder.file("text.vtu", "this is no mesh\n");
+  const auto text = folder.file("text.vtu", "this is not a mesh\n");
   const auto empty = folder.file("empty.vtu", "");
   const auto tets = folder.file("short.tets", "12345678");
   const auto strange = folder.file("mesh.xyzzy", "1 2 3");

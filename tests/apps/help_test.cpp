@@ -68,7 +68,7 @@ TEST(Help, ManualNamesTheOptionsThatThereAre) {
     }
   const std::regex option("--[a-z]+(-[a-z]+)*");
   for (std::sregex_iterator at(manual.begin(), manual.end(), option), end; at != end; ++at)
-    EXPECT_TRUE(there.contains(at->str())) << at->str() << " is no option";
+    EXPECT_TRUE(there.contains(at->str())) << at->str() << " is not an option";
 }
 
 TEST(Help, ManualHasTheKeysOfStates) {

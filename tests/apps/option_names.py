@@ -39,7 +39,7 @@ def in_literals(pattern, source):
     """(line, name) of every match of the pattern in a string literal of this C++ text."""
     for token in TOKEN.finditer(source):
         group = "raw" if token["raw"] is not None else "text"
-        text = re.sub(r"\\.", "  ", token[group] or "")  # the n of a line break is no letter before the name
+        text = re.sub(r"\\.", "  ", token[group] or "")  # the n of a line break is not a letter before the name
         for match in pattern.finditer(text):
             yield source.count("\n", 0, token.start(group) + match.start()) + 1, match[1]
 

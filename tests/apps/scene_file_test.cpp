@@ -57,7 +57,8 @@ TEST(SceneFile, NamesWhatIsNoOption) {
   const std::string scene = folder.file("s.toml", "feild = \"f\"\n");
   const Outcome run = tessera({"render", folder.cube(), "-o", folder / "a.png", "--config", scene});
   EXPECT_EQ(run.status, 2);
-  EXPECT_NE(run.err.find("s.toml: 'feild' is no option of render; did you mean field?"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("s.toml: 'feild' is not an option of render; did you mean field?"), std::string::npos)
+      << run.err;
   EXPECT_EQ(tessera({"render", "--config", folder / "none.toml"}).status, 2);
 }
 

@@ -57,9 +57,10 @@ TEST(SettingWords, ErrorLinesNameOptions) {
     all.insert(all.end(), arguments.begin(), arguments.end());
     EXPECT_EQ(said(all), "tessera: " + line);
   }
-  EXPECT_EQ(said({"info", samples}), "tessera: " + samples +
-                                         ": a raw file does not say its dimensions and type; give --dims WxHxD --type "
-                                         "uint8, or name it NAME_WxHxD_uint8.raw");
+  EXPECT_EQ(said({"info", samples}),
+            "tessera: " + samples +
+                ": a raw file does not state its dimensions and type; give --dims WxHxD --type "
+                "uint8, or name it NAME_WxHxD_uint8.raw");
   const auto trace = folder.file("t.json", "[]");
   EXPECT_EQ(said({"timing", trace}),
             "tessera: " + trace + ": no span of Tessera in it; give a file that tessera render --timing wrote");
@@ -78,11 +79,11 @@ TEST(SettingWords, RunLineReportAndNotesNameOptions) {
   holds(line_of({"--unit-distance", "2"}), ", unit distance 2 (--unit-distance)\n");
   holds(contents(report), "\"source\": \"--unit-distance\"");
   const auto plain = folder.file("t.txt", "0 1 1 1 2\n");
-  const std::string assumed = "t.txt (extinctions as they stand; --unit-distance does not apply)";
+  const std::string assumed = "t.txt (extinctions as given; --unit-distance does not apply)";
   holds(line_of({"--transfer-function", plain, "--unit-distance", "2"}), assumed);
   holds(contents(report), assumed);
   const auto map = folder.file("m.json", R"([{"RGBPoints": [200, 0, 0, 0, 400, 1, 1, 1], "Name": "m"}])");
-  holds(line_of({"--transfer-function", map}), "lies outside its 200 to 400: --rescale stretches it)");
+  holds(line_of({"--transfer-function", map}), "is outside its 200 to 400: --rescale stretches it)");
 
   const std::vector<std::string> raw = {"--dims", "2x2x2", "--type", "uint8"};
   std::vector<std::string> volume = {"render", folder.file("v.raw", std::string(8, '\1')), "-o", folder / "v.png"};

@@ -189,19 +189,20 @@ std::string fault_of(const Function& function) {
 
 TEST(State, NamesWhatIsWrong) {
   const auto json = [](const char* text) { return fault_of([&] { State::from_json(text, "s.json"); }); };
-  EXPECT_EQ(json(R"({"feild":"p"})"), "s.json: 'feild' is no option of render; did you mean field?");
-  EXPECT_EQ(json(R"({"zoom":[1,2]})"), "s.json: 'zoom' is no text or number; give one");
-  EXPECT_EQ(json(R"({"log":1})"), "s.json: 'log' is no true or false; give one");
+  EXPECT_EQ(json(R"({"feild":"p"})"), "s.json: 'feild' is not an option of render; did you mean field?");
+  EXPECT_EQ(json(R"({"zoom":[1,2]})"), "s.json: 'zoom' is not text or a number; give one");
+  EXPECT_EQ(json(R"({"log":1})"), "s.json: 'log' is not true or false; give one");
   EXPECT_EQ(json(R"({"opacity":1,"opacity-scale":1})"),
             "s.json: 'opacity-scale' is given twice, by two names; keep one");
   EXPECT_EQ(json(R"({"config":"a"})"), "s.json: 'config' names another such file; leave it out");
-  EXPECT_EQ(json("[]"), R"(s.json: is no JSON object; write one, like {"field": "T", "size": "800x600"})");
+  EXPECT_EQ(json("[]"), R"(s.json: is not a JSON object; write one, like {"field": "T", "size": "800x600"})");
   EXPECT_EQ(json("{"), json("[]"));
   const auto toml = [](const char* text) { return fault_of([&] { State::from_toml(text, "s.toml"); }); };
   EXPECT_EQ(toml("size = [1, 2]"), "s.toml: 'size' takes one value; give one");
   EXPECT_EQ(toml("log = 1"), "s.toml: 'log' is true or false, not '1'");
   State state;
-  EXPECT_EQ(fault_of([&] { state.set("sise", "8x8"); }), "state: 'sise' is no option of render; did you mean size?");
+  EXPECT_EQ(fault_of([&] { state.set("sise", "8x8"); }),
+            "state: 'sise' is not an option of render; did you mean size?");
   EXPECT_EQ(fault_of([&] {
               state.set("size", std::vector<std::string>{"8x8", "9x9"});
             }),

@@ -346,11 +346,11 @@ TEST(CallersJob, OneProcessIsAJobToo) {
   EXPECT_EQ(job.size(), 1);
   EXPECT_EQ(job.communicator().size(), 1);
   EXPECT_EQ(job.broadcast(0, {std::byte{5}}), std::vector{std::byte{5}});
-  job.fail(bad_input("thing: is wrong; mend it"));
+  job.fail(bad_input("thing: is wrong; correct it"));
   job.fail(bad_input("thing: is wrong again"));
   const auto error = job.finish();
   ASSERT_TRUE(error);
-  EXPECT_STREQ(error->what(), "thing: is wrong; mend it");
+  EXPECT_STREQ(error->what(), "thing: is wrong; correct it");
   EXPECT_EQ(spoken, 1);
 }
 

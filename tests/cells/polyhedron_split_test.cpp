@@ -147,7 +147,7 @@ TEST(PolyhedronSplit, LeavesOutWithAWarningWhatIsNotClosed) {
     EXPECT_DOUBLE_EQ(testing::volume(file.mesh), 2);
     ASSERT_EQ(cells::warnings_on_cells(file.counts, {}).size(), 1u);
     EXPECT_EQ(cells::warnings_on_cells(file.counts, {})[0],
-              "2 polyhedra are left out: their faces are no closed surface");
+              "2 polyhedra are left out: their faces do not form a closed surface");
   }
   test::expect_bad_input([&] { assembled(polyhedra_of(p, {open}, random)); }, {"2 are polyhedra whose faces do not"});
 }

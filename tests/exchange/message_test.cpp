@@ -112,10 +112,11 @@ TEST(Message, CutAnywhereOrTooLongIsRefused) {
   for (int i = 0; i < 50; ++i) {
     Bytes message = written(random_contents(random));
     for (std::size_t size = 0; size < message.size(); ++size)
-      EXPECT_EQ(refusal([&] { read(std::span(message).first(size)); }), "a message from rank 3 is shorter than it says")
+      EXPECT_EQ(refusal([&] { read(std::span(message).first(size)); }),
+                "a message from rank 3 is shorter than it states")
           << size << " of " << message.size();
     message.push_back(std::byte{0});
-    EXPECT_EQ(refusal([&] { read(message); }), "a message from rank 3 is longer than it says");
+    EXPECT_EQ(refusal([&] { read(message); }), "a message from rank 3 is longer than it states");
   }
 }
 
@@ -133,7 +134,7 @@ TEST(Message, OfAnotherVersionKindOrOriginIsRefusedInWords) {
                             ", this rank's are of version " + std::to_string(wire_version));
   EXPECT_EQ(changed(6), "a message from rank 2 is of kind 5, kind 4 was awaited");
   EXPECT_EQ(refusal([&] { value_of<std::uint32_t>(message, 2, MessageKind::credit); }),
-            "a message from rank 2 is longer than it says");
+            "a message from rank 2 is longer than it states");
 }
 
 TEST(Message, HostileLengthsAreRefusedBeforeAnythingIsAllocated) {
@@ -150,7 +151,7 @@ TEST(Message, HostileLengthsAreRefusedBeforeAnythingIsAllocated) {
         take(reader);
       });
     };
-    const std::string words = "a message from rank 1 is shorter than it says";
+    const std::string words = "a message from rank 1 is shorter than it states";
     EXPECT_EQ(refused([](auto& reader) { reader.template take_list<std::uint64_t>(); }), words) << length;
     if (length > 16) {
       EXPECT_EQ(refused([](auto& reader) { reader.take_text(); }), words) << length;

@@ -635,7 +635,7 @@ def add_vtk(t):
     t.refuse("pvti_itself.pvti", t.path("pvti_2.pvti").read_text().replace("pvti_2_1.vti", "pvti_itself.pvti"))
 
 
-# -- raw files, and what is no volume at all
+# -- raw files, and what is not a volume at all
 
 def add_others(t):
     for code, name in {"i1": "int8", "u1": "uint8", "i2": "int16", "u2": "uint16", "i4": "int32", "u4": "uint32", "f4": "float32",

@@ -18,7 +18,7 @@ template <class Action>
 void expect_subject(const std::filesystem::path& subject, const Action& action) {
   try {
     action();
-    ADD_FAILURE() << subject << " is no error";
+    ADD_FAILURE() << subject << " is not an error";
   } catch (const scene::Error& error) {
     EXPECT_EQ(error.subject(), subject.string()) << error.what();
     EXPECT_FALSE(error.problem().empty()) << error.what();

@@ -82,7 +82,7 @@ TEST_F(Hdf5References, BesideTheFileAreFollowed) {
 TEST_F(Hdf5References, ToOtherFoldersAreRefused) {
   const std::string outside = (folder / "outside.vtkhdf").string();
   for (const std::string& to : {outside, std::string("../outside.vtkhdf")}) {
-    expect_refused(linked("a.vtkhdf", to), "leads to 'outside.vtkhdf', which lies neither beside it nor below");
+    expect_refused(linked("a.vtkhdf", to), "leads to 'outside.vtkhdf', which is neither next to it nor below");
     expect_refused(with_virtual_field("v.vtkhdf", to.c_str(), "/VTKHDF/PointData/f"), "neither beside it nor below");
   }
   expect_refused(with_external_field("e.vtkhdf", outside.c_str()), "neither beside it nor below");
@@ -95,7 +95,7 @@ TEST_F(Hdf5References, ToOtherFoldersAreRefused) {
 TEST_F(Hdf5References, ToPipesAreRefused) {
   ASSERT_EQ(::mkfifo((in / "pipe").c_str(), 0600), 0);
   const std::string pipe = (in / "pipe").string();
-  expect_refused(linked("a.vtkhdf", "pipe"), "leads to 'pipe', which is no regular file");
+  expect_refused(linked("a.vtkhdf", "pipe"), "leads to 'pipe', which is not a regular file");
   expect_refused(with_virtual_field("v.vtkhdf", "pipe", "/f"), "no regular file");
   expect_refused(with_external_field("e.vtkhdf", pipe.c_str()), "no regular file");
 }

@@ -276,10 +276,10 @@ TEST(Plot3d, ListsOfFilesAreReadOneTimeEach) {
   test::expect_bad_input([&] { read_mesh(list, first); }, {"a.p3d: there is no time step 2, the file has 2"});
   for (const auto& [entries, words] : std::vector<std::pair<std::string, std::string>>{
            {"[{\"xyz\": \"no.bin\"}]", "no.bin"},
-           {"[{\"xyz\": 3}]", "b.p3d: entry 0 of \"filenames\" has a name that is none"},
-           {"[{\"xyz\": \"small.bin\", \"time\": \"x\"}]", "has a \"time\" that is no number"},
+           {"[{\"xyz\": 3}]", "b.p3d: entry 0 of \"filenames\" has an invalid name"},
+           {"[{\"xyz\": \"small.bin\", \"time\": \"x\"}]", "has a \"time\" that is not a number"},
            {"[{\"xyz\": \"small.bin\"}, {\"q\": \"small_9.bin\"}]", "entry 1 of \"filenames\" has no \"xyz\""},
-           {"[7]", "entry 0 of \"filenames\" is no object"}})
+           {"[7]", "entry 0 of \"filenames\" is not an object"}})
     test::expect_bad_input(
         [&, entries = entries] {
           read_mesh(folder.write("b.p3d", "{\"filenames\": " + entries + ", \"of\": {\"xyz\": 1}}"));

@@ -158,7 +158,7 @@ TEST(SolverFiles, AFluentCaseIsAMeshWithTheValuesBesideItIfAny) {
   const cells::MeshFile alone = read_mesh(file);
   EXPECT_NEAR(testing::volume(alone.mesh), 27, 1e-5);
   EXPECT_EQ(alone.counts.cells_read, 27u);
-  EXPECT_NE(std::find(alone.notes.begin(), alone.notes.end(), "no .dat file lies beside the case: it has no field"),
+  EXPECT_NE(std::find(alone.notes.begin(), alone.notes.end(), "no .dat file is next to the case: it has no field"),
             alone.notes.end());
   // Temperature, a value a cell.
   std::string data = fmt::format("(0 \"values\")\n(300 (3 2 1 0 0 1 {})\n(", cubes.cells.size());

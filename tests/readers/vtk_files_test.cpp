@@ -193,7 +193,7 @@ TEST_F(VtkFiles, AFlatGridHasNothingToRender) {
   const std::string message = error("f.vtk",
                                     "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_GRID\nDIMENSIONS 2 2 1\n"
                                     "POINTS 4 float\n0 0 0 1 0 0 0 1 0 1 1 0\n");
-  EXPECT_NE(message.find("of 1 cells 1 are no volumes"), std::string::npos) << message;
+  EXPECT_NE(message.find("of 1 cells 1 are not volumes"), std::string::npos) << message;
 }
 
 TEST_F(VtkFiles, RegularGridsAreRefusedByName) {
@@ -269,7 +269,7 @@ TEST_F(VtkFiles, MissingEmptyAndDirectoryAreTold) {
 TEST_F(VtkFiles, TextNamedAsMeshIsTold) {
   for (const char* name :
        {"t.vtu", "t.pvtu", "t.vts", "t.vtk", "t.ex2", "t.tets", "t.bin", "t.stl", "t.ply", "t.poly", "t.smesh"})
-    error(name, "Dear reader,\nthis is no mesh at all, only some words.\n");
+    error(name, "Dear reader,\nthis is not a mesh at all, only some words.\n");
   folder.write("u.node", "Dear reader,\n");
   EXPECT_NE(message_of([&] { read_mesh(folder.write("u.ele", "no tets\n")); }).find("u.node: line 1: 'Dear' is not"),
             std::string::npos);

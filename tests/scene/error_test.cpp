@@ -26,8 +26,8 @@ Parts split(const std::string& line) {
 }
 
 TEST(Error, SplitsALineIntoItsParts) {
-  EXPECT_EQ(split("mesh.vtu: cell 3 has no volume; write it anew"),
-            (Parts{"mesh.vtu", "cell 3 has no volume", "write it anew"}));
+  EXPECT_EQ(split("mesh.vtu: cell 3 has no volume; write it again"),
+            (Parts{"mesh.vtu", "cell 3 has no volume", "write it again"}));
   EXPECT_EQ(split("rank 3 of 8: tile 17: 12 bytes; please report"),
             (Parts{"rank 3 of 8", "tile 17: 12 bytes", "please report"}));
   EXPECT_EQ(split("`deep_accuracy` 0.5: it must be 1e-6 to 1"),
@@ -61,10 +61,10 @@ TEST(Error, IsAboutTheSettingThatItsLineBeginsWith) {
 }
 
 TEST(Error, JoinsPartsWhateverTheyHold) {
-  const Error error(ErrorCode::system_failure, "odd: name; 1.vtu", "is cut: short", "copy it; or write it anew");
+  const Error error(ErrorCode::system_failure, "odd: name; 1.vtu", "is cut: short", "copy it; or write it again");
   EXPECT_EQ(error.code(), ErrorCode::system_failure);
-  EXPECT_STREQ(error.what(), "odd: name; 1.vtu: is cut: short; copy it; or write it anew");
-  EXPECT_EQ(parts(error), (Parts{"odd: name; 1.vtu", "is cut: short", "copy it; or write it anew"}));
+  EXPECT_STREQ(error.what(), "odd: name; 1.vtu: is cut: short; copy it; or write it again");
+  EXPECT_EQ(parts(error), (Parts{"odd: name; 1.vtu", "is cut: short", "copy it; or write it again"}));
 }
 
 TEST(Error, LeavesTheMarksOfEmptyPartsOut) {
@@ -75,7 +75,7 @@ TEST(Error, LeavesTheMarksOfEmptyPartsOut) {
   };
   EXPECT_EQ(line("", ""), "is wrong");
   EXPECT_EQ(line("a", ""), "a: is wrong");
-  EXPECT_EQ(line("", "mend it"), "is wrong; mend it");
+  EXPECT_EQ(line("", "correct it"), "is wrong; correct it");
 }
 
 TEST(Error, EndsAtANullCharacterAsWhatDoes) {
@@ -89,25 +89,25 @@ TEST(Error, CopiesKeepTheParts) {
   static_assert(std::is_nothrow_copy_constructible_v<Error>);
   std::optional<Error> copy;
   {
-    const Error error(ErrorCode::system_failure, "odd: name", "is wrong", "mend it");
+    const Error error(ErrorCode::system_failure, "odd: name", "is wrong", "correct it");
     copy = error;
   }
   EXPECT_EQ(copy->code(), ErrorCode::system_failure);
-  EXPECT_EQ(parts(*copy), (Parts{"odd: name", "is wrong", "mend it"}));
+  EXPECT_EQ(parts(*copy), (Parts{"odd: name", "is wrong", "correct it"}));
   try {
     throw Error(*copy);
   } catch (const std::runtime_error& caught) {
-    EXPECT_STREQ(caught.what(), "odd: name: is wrong; mend it");
+    EXPECT_STREQ(caught.what(), "odd: name: is wrong; correct it");
   }
 }
 
 TEST(Error, SubjectsThatAreKnownAreKeptWhole) {
-  const Error error = bad_input("odd: name; 1.vtu: line 3: is cut short; write it anew");
+  const Error error = bad_input("odd: name; 1.vtu: line 3: is cut short; write it again");
   EXPECT_EQ(error.subject(), "odd");
   const Error known = with_subject(error, "odd: name; 1.vtu");
   EXPECT_STREQ(known.what(), error.what());
   EXPECT_EQ(known.code(), error.code());
-  EXPECT_EQ(parts(known), (Parts{"odd: name; 1.vtu", "line 3: is cut short", "write it anew"}));
+  EXPECT_EQ(parts(known), (Parts{"odd: name; 1.vtu", "line 3: is cut short", "write it again"}));
   EXPECT_EQ(parts(with_subject(bad_input("a; b: is empty"), "a; b")), (Parts{"a; b", "is empty", ""}));
   // Another one's error stays as it is.
   for (const char* other : {"", "od", "name", "odd: name", "another.vtu"})

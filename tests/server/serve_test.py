@@ -104,7 +104,7 @@ def pictures_of(file, launcher=()):
             check(status == 200 and picture == image, "picture is not the frame")
             check("attachment" in headers["Content-Disposition"], headers)
             query = urllib.parse.urlencode({"state": json.dumps(exact), "format": "exr"})
-            if len(query) < 15000:  # else it is no address any more
+            if len(query) < 15000:  # else it is not an address any more
                 status, _, picture = server.ask("GET", "/picture?" + query)
             else:
                 status, _, picture = server.ask("POST", "/picture", {"state": exact, "format": "exr"})
@@ -225,7 +225,7 @@ def stand_in_of(file, launcher=()):
             check(number > 1 or not header["stand_in"], f"{file.name}: a stand-in where nothing was measured yet")
             time.sleep(0.01)  # with what it takes a client to paint it, no frame is there in a millisecond
             client.send({"type": "ack", "frame": header["frame"]})
-        check(image.startswith(b"\xff\xd8"), "a stand-in that is no JPEG")
+        check(image.startswith(b"\xff\xd8"), "a stand-in that is not a JPEG")
         number += 1
         client.state(number, state)
         header, _ = client.last_frame(number)
@@ -275,7 +275,7 @@ def series_starts_as_a_film(launcher=()):
 
 
 def accuracies_of_curved_cells():
-    """A curved cell is read anew for another accuracy, as `render` reads it."""
+    """A curved cell is read again for another accuracy, as `render` reads it."""
     points = "0 0 0 1 0 0.04 0.03 1 0 0.2 0.22 1 0.5 0 0.01 0.51 0.5 0.01 0.01 0.5 0 0.1 0.105 0.5 0.6 0.105 0.51 0.11 0.605 0.5"
     (folder / "curved.vtu").write_text(
         '<VTKFile type="UnstructuredGrid" version="2.2" byte_order="LittleEndian"><UnstructuredGrid>'
@@ -499,7 +499,7 @@ def send_mutated(server, state, count):
                 client.send_bytes(mutated(rng, rng.choice(originals)), rng.choice([1, 1, 1, 1, 2]))
                 sent += 1
         except OSError:
-            pass  # closed for a frame that is no UTF-8, or because it did not read
+            pass  # closed for a frame that is not a UTF-8, or because it did not read
         stop.set()
         try:
             client.stream.shutdown(socket.SHUT_RDWR)

@@ -81,13 +81,13 @@ void check_cells(cells::CellBlock& block, const std::string& where) {
   if (offsets.size() != cells + 1 || offsets[0] != 0 || offsets[cells] > block.connectivity.size())
     throw scene::bad_input(
         fmt::format("{}: cell offsets do not fit the {} cells and {} connectivity entries; the file "
-                    "is damaged, write it anew",
+                    "is damaged, write it again",
                     where, cells, block.connectivity.size()));
   for (std::size_t c = 0; c < cells; ++c)
     if (static_cast<std::int64_t>(offsets[c + 1]) < static_cast<std::int64_t>(offsets[c]))
       throw scene::bad_input(
           fmt::format("{}: the offset of cell {} is {}, less than the one before, {}; the file is "
-                      "damaged, write it anew",
+                      "damaged, write it again",
                       where, c, static_cast<std::int64_t>(offsets[c + 1]), static_cast<std::int64_t>(offsets[c])));
   block.connectivity.resize(offsets[cells]);
   const std::size_t points = block.positions.size();
@@ -126,7 +126,7 @@ void copy_offsets(const ForeignFile& file, const ForeignArray& offsets, cells::C
     case NumberType::int32:
       return copy_numbers<std::int32_t>(file, offsets, block.offsets, where);
     default:
-      throw scene::bad_input(fmt::format("{}: its cells are lists of no known width; write it anew", where));
+      throw scene::bad_input(fmt::format("{}: its cells are lists of no known width; write it again", where));
   }
 }
 
@@ -134,14 +134,14 @@ void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, ce
                             const std::string& where) {
   if (!part.connectivity) return;
   if (part.connectivity->type != NumberType::uint32)
-    throw scene::bad_input(fmt::format("{}: its cells are lists of no known width; write it anew", where));
+    throw scene::bad_input(fmt::format("{}: its cells are lists of no known width; write it again", where));
   if (!part.types && part.connectivity->components == 4) {
     copy_numbers<scene::Tet>(file, *part.connectivity, block.tets, where);
     return check_tets(block.tets, block.positions.size(), where);
   }
   if (!part.types || !part.offsets || part.types->type != NumberType::uint8 ||
       part.types->tuples + 1 != part.offsets->tuples)
-    throw scene::bad_input(fmt::format("{}: {} cell types for {} cells; the file is damaged, write it anew", where,
+    throw scene::bad_input(fmt::format("{}: {} cell types for {} cells; the file is damaged, write it again", where,
                                        part.types ? part.types->tuples : 0,
                                        part.offsets && part.offsets->tuples > 0 ? part.offsets->tuples - 1 : 0));
   copy_numbers<std::uint8_t>(file, *part.types, block.types, where);
@@ -150,7 +150,7 @@ void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, ce
   check_cells(block, where);
   if (part.faces && part.face_locations) {
     if (part.faces->type != NumberType::uint32 || part.face_locations->type != NumberType::int64)
-      throw scene::bad_input(fmt::format("{}: its faces are lists of no known width; write it anew", where));
+      throw scene::bad_input(fmt::format("{}: its faces are lists of no known width; write it again", where));
     copy_numbers<std::uint32_t>(file, *part.faces, block.faces, where);
     copy_numbers<std::int64_t>(file, *part.face_locations, block.face_locations, where);
     cells::require_faces(block, where);
@@ -243,7 +243,7 @@ void add_polygons(const ForeignFile& file, const ForeignPart& part, cells::CellB
   if (part.points) copy_points(file, *part.points, block, where);
   if (!part.offsets || !part.connectivity || part.offsets->tuples == 0) return;
   if (part.connectivity->type != NumberType::uint32)
-    throw scene::bad_input(fmt::format("{}: its cells are lists of no known width; write it anew", where));
+    throw scene::bad_input(fmt::format("{}: its cells are lists of no known width; write it again", where));
   block.types.assign(part.offsets->tuples - 1, vtk_number(CellType::polygon));
   copy_offsets(file, *part.offsets, block, where);
   copy_numbers<std::uint32_t>(file, *part.connectivity, block.connectivity, where);
@@ -315,7 +315,7 @@ void add_foreign_fields(const ForeignFile& file, const ForeignPart& part, Associ
   const bool point = association == Association::point;
   for (const ForeignArray& array : point ? part.point_fields : part.cell_fields) {
     if (array.tuples != expected)
-      throw scene::bad_input(fmt::format("{}: field '{}' has {} values for {} {}s; write it anew", where, array.name,
+      throw scene::bad_input(fmt::format("{}: field '{}' has {} values for {} {}s; write it again", where, array.name,
                                          array.tuples, expected, point ? "point" : "cell"));
     block.fields.push_back(foreign_field(file, array, association));
   }

@@ -23,8 +23,8 @@ ForeignFile open_foreign(std::shared_ptr<HelperProcess> helper, const std::files
   try {
     opened.contents = contents_of(reply.at("contents").get_binary());
   } catch (const std::exception&) {
-    throw scene::bad_input(fmt::format(
-        "{}: its reader says nothing sensible of it; have it written again, or in another format", opened.source));
+    throw scene::bad_input(
+        fmt::format("{}: its contents are inconsistent; write it again, or in another format", opened.source));
   }
   ForeignContents& contents = opened.contents;
   if (!opened.with_surfaces && contents.parts.size() > 1)

@@ -49,7 +49,7 @@ cells::Surface surface_of(const ForeignFile& file, const ForeignPart& part) {
     cells::Polygon polygon;
     for (auto k = static_cast<std::size_t>(offsets[c]); k < static_cast<std::size_t>(offsets[c + 1]); ++k) {
       if (corners[k] >= surface.points.size())
-        throw scene::bad_input(fmt::format("{}: face {} uses point {}, the file holds {}; write it anew", file.source,
+        throw scene::bad_input(fmt::format("{}: face {} uses point {}, the file holds {}; write it again", file.source,
                                            c, corners[k], surface.points.size()));
       polygon.push_back(corners[k]);
     }

@@ -67,7 +67,7 @@ cells::Surface surface_of(const Json& json) {
       cells::Polygon polygon;
       for (std::uint32_t n = next(counts, count); n > 0; --n) {
         polygon.push_back(next(corners, corner));
-        if (polygon.back() >= surface.points.size()) throw std::invalid_argument("a corner that is no point");
+        if (polygon.back() >= surface.points.size()) throw std::invalid_argument("a corner that is not a point");
       }
       facet.polygons.push_back(std::move(polygon));
     }

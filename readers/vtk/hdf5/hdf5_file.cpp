@@ -183,7 +183,7 @@ GridNumbers Hdf5File::read(const Hdf5Array& array, std::span<const std::size_t> 
       H5Tget_size(as) != io::size_of(array.type) ||
       H5Dread(opened.get(), as, in_memory.get(), in_file.get(), H5P_DEFAULT, numbers.bytes.data()) < 0)
     throw scene::bad_input(
-        fmt::format("{}: {} cannot be read; the file is truncated or damaged, write it anew", source_, name));
+        fmt::format("{}: {} cannot be read; the file is truncated or damaged, write it again", source_, name));
   return numbers;
 }
 

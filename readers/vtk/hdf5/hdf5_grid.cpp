@@ -168,7 +168,7 @@ std::optional<GridArray> image_array(const Hdf5Array& array, const std::array<st
 }
 
 scene::Error wrong_image(const std::string& source, const char* what) {
-  return scene::bad_input(fmt::format("{}: VTKHDF: {}; the file is damaged, write it anew", source, what));
+  return scene::bad_input(fmt::format("{}: VTKHDF: {}; the file is damaged, write it again", source, what));
 }
 
 /// Extent, origin, spacing and direction.
@@ -239,8 +239,7 @@ io::ForeignContents read_vtk_hdf_image(Holdings& holdings, const Hdf5File& file,
       }
       const std::size_t step =
           offset_of(file, "VTKHDF/Steps/" + kind + "Offsets", name, static_cast<std::size_t>(contents.time_step.step));
-      if (as->first > 0 && step >= array.lengths[0])
-        throw wrong_image(source, "a time step lies beyond its array's end");
+      if (as->first > 0 && step >= array.lengths[0]) throw wrong_image(source, "a time step is beyond its array's end");
       io::ForeignArray field = hold_step(holdings, file, *as, step, name);
       field.active = name == active;
       (of_points ? part.point_fields : part.cell_fields).push_back(std::move(field));

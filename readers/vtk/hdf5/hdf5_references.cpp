@@ -64,7 +64,7 @@ class References {
         if (is_virtual_in(in_file, dataset)) leads_[file].insert(in_file);
     for (const auto& [file, next] : leads_)
       if (leads_back(file))
-        throw refuse(file, "its virtual datasets lead back to themselves; the file is damaged, write it anew");
+        throw refuse(file, "its virtual datasets lead back to themselves; the file is damaged, write it again");
   }
 
  private:
@@ -135,12 +135,12 @@ class References {
     if (unknown) return named;
     const std::string name = scene::quote(named.filename().string());
     if (!std::filesystem::is_regular_file(file, unknown))
-      throw refuse(from, fmt::format("it leads to {}, which is no regular file; put one there", name));
+      throw refuse(from, fmt::format("it leads to {}, which is not a regular file; put one there", name));
     if (may_ == ReferencesMay::lie_below &&
         std::mismatch(folder_.begin(), folder_.end(), file.begin(), file.end()).first != folder_.end())
       throw refuse(
           from,
-          fmt::format("it leads to {}, which lies neither beside it nor below; move it there, and name it so", name));
+          fmt::format("it leads to {}, which is neither next to it nor below; move it there, and name it so", name));
     return file;
   }
 

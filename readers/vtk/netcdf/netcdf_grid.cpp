@@ -305,7 +305,7 @@ io::ForeignContents read_netcdf(Holdings& holdings, const std::filesystem::path&
   const std::vector<GridOfVariables> grids = grids_of(opened);
   if (grids.empty())
     throw scene::bad_input(
-        fmt::format("{}: none of its variables has three dimensions (beside time); give a file of a grid in space",
+        fmt::format("{}: none of its variables has three dimensions (besides time); give a file of a grid in space",
                     opened.source()));
   const GridOfVariables& grid = choose_grid(grids, request.value("field", ""), contents.notes);
   if (request.value("look", false)) {
@@ -336,8 +336,7 @@ io::ForeignContents read_netcdf(Holdings& holdings, const std::filesystem::path&
   }
   contents.beside_degrees = is_in_degrees(opened, grid);
   if (contents.beside_degrees)
-    contents.notes.emplace_back(
-        "longitude and latitude, in degrees, are x and y as they stand, not places on a sphere");
+    contents.notes.emplace_back("longitude and latitude, in degrees, are used as x and y, not as places on a sphere");
   contents.parts.push_back(std::move(placed.part));
   return contents;
 }

@@ -187,7 +187,7 @@ scene::Error unreadable(const NetcdfFile& file, const NetcdfVariable& variable, 
         "{}: {} is compressed by a filter that is not installed here; unpack it with h5repack -f NONE, or install the "
         "filter and set HDF5_PLUGIN_PATH",
         file.source(), name));
-  return scene::bad_input(fmt::format("{}: {} cannot be read ({}); the file is truncated or damaged, write it anew",
+  return scene::bad_input(fmt::format("{}: {} cannot be read ({}); the file is truncated or damaged, write it again",
                                       file.source(), name, nc_strerror(status)));
 }
 

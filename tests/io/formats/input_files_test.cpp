@@ -104,7 +104,7 @@ TEST(InputFiles, PipesAreRefusedWhereReaderProgramsFindThem) {
   EXPECT_EQ(read_mesh(cube).counts.cells_read, 1u);
   std::filesystem::remove(cube / "constant/polyMesh/points");
   make_pipe(cube / "constant/polyMesh/points");
-  expect_bad_input([&] { read_mesh(cube); }, {"points is no regular file"});
+  expect_bad_input([&] { read_mesh(cube); }, {"points is not a regular file"});
 }
 
 TEST(InputFiles, OtherFilesThatAreNoneAreRefused) {

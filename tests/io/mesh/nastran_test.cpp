@@ -297,8 +297,8 @@ TEST_F(Nastran, FaultsAreNamed) {
   refuse(grids + "GRID,1,,5.,0.,1.\n" + tet, {"GRID 1 is given twice"});
   refuse(grids + "CTETRA,9,1,1,2,,4\n", {"line 7", "number 3 is blank"});
   refuse(grids + "GRID,4,,0.,0.,1.\n=,*x,==\n" + tet, {"line 8", "'x' of GRID is not a number"});
-  refuse(grids + "GRID,4,,0.,0.,1.\n=,=3,==\n" + tet, {"line 8", "'=3' of GRID is no replication"});
-  refuse(grids + "GRID,4,,0.,0.,1.\n=(many)\n" + tet, {"line 8", "'=(MANY)' is no number of replications"});
+  refuse(grids + "GRID,4,,0.,0.,1.\n=,=3,==\n" + tet, {"line 8", "'=3' of GRID is not a replication"});
+  refuse(grids + "GRID,4,,0.,0.,1.\n=(many)\n" + tet, {"line 8", "'=(MANY)' is not a number of replications"});
   refuse(grids + "GRID,4,,0.,0.,1.\n=,*1,==\n=(4000000000)\n" + tet, {"line 9", "replicates more than 10000000"});
   refuse(grids + "GRID,9223372036854775807,,0.,0.,1.\n=,*1,==\n" + tet, {"line 8", "'*1' of GRID", "2^63"});
   refuse(grids + "CTETRA,=,1,1,2,3,4\n", {"line 7", "'=' of CTETRA has no CTETRA before it"});

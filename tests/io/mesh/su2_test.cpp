@@ -50,7 +50,7 @@ TEST(Su2, FaultsAreToldWithTheirLine) {
   };
   refuse("NDIME= 2\n", {"a.su2", "line 1", "NDIME is 2"});
   refuse("NDIME= 3\nNELEM= 99999999999\n10 0 1 2 3\n" + points, {"line 2", "99999999999"});
-  refuse("NDIME= 3\nNELEM= 1\n11 0 1 2 3\n" + points, {"line 3", "11 is no cell type"});
+  refuse("NDIME= 3\nNELEM= 1\n11 0 1 2 3\n" + points, {"line 3", "11 is not a cell type"});
   refuse("NDIME= 3\nNELEM= 1\n212 0 1 2 3\n" + points, {"line 3", "212 is a cell of order 3"});
   refuse("NDIME= 3\nNELEM= 1\n10 0 1 2\n" + points, {"line 3", "point number is missing"});
   refuse("NDIME= 3\nNELEM= 1\n10 0 1 2 4\n" + points, {"cell 0 uses point 4"});

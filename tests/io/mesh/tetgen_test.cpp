@@ -309,8 +309,9 @@ TEST_F(Filled, WhatNoFewFacetsNeedIsRefusedWithARemedy) {
   EXPECT_NEAR(testing::volume(read_mesh(folder.write("thick.poly", box_poly(1, 1, 0.005))).mesh), 0.005, 1e-9);
   rusage before{}, after{};
   ::getrusage(RUSAGE_CHILDREN, &before);
-  expect_bad_input([&] { read_mesh(folder.write("plate.poly", box_poly(1, 1, 1e-6))); },
-                   {"plate.poly: filling it by TetGen takes ", " can explain; mend the surface, or set `max_volume`"});
+  expect_bad_input(
+      [&] { read_mesh(folder.write("plate.poly", box_poly(1, 1, 1e-6))); },
+      {"plate.poly: filling it by TetGen takes ", " can explain; correct the surface, or set `max_volume`"});
   ::getrusage(RUSAGE_CHILDREN, &after);
   EXPECT_LT(after.ru_maxrss, (256 + 60) << 10) << "KiB, 60 MiB of them the program itself";
   EXPECT_LT(after.ru_utime.tv_sec - before.ru_utime.tv_sec, 20);

@@ -114,7 +114,7 @@ TEST(CameraFile, RefusesTextThatMakesNoViewNamingTheLine) {
       {good, {"neither parallel_scale nor view_angle"}},
       {good + "parallel_scale 1\nview_angle 30\n", {"both given"}},
       {good + "view_angle 30\nview_angle 30\n", {"line 4: view_angle is given twice"}},
-      {good + "zoom 3\n", {"line 3: 'zoom' is no word of a camera", "parallel_scale"}},
+      {good + "zoom 3\n", {"line 3: 'zoom' is not a word of a camera", "parallel_scale"}},
       {good + "Position 1 1 1\n", {"line 3: 'Position'"}},
       {good + "view_angle\n", {"line 3: view_angle has 0 numbers; it takes 1"}},
       {good + "view_up 0 1\n", {"line 3: view_up has 2 numbers; it takes 3"}},
@@ -123,7 +123,7 @@ TEST(CameraFile, RefusesTextThatMakesNoViewNamingTheLine) {
       {good + "view_angle 30\nposition inf 0 0\n", {"line 4: 'inf'"}},
       {good + "view_angle 180\n", {"view_angle is 180"}},
       {good + "parallel_scale 0\n", {"parallel_scale is 0"}},
-      {good + "parallel_scale 1\nview_up 0 0 2\n", {"view_up lies along the view direction"}},
+      {good + "parallel_scale 1\nview_up 0 0 2\n", {"view_up is parallel to the view direction"}},
       {good + "parallel_scale 1\nview_up 0 0 0\n", {"view_up is zero"}},
       {"position 1 1 1\nfocal_point 1 1 1\nview_angle 30\n", {"the camera has no direction"}},
       {good + "parallel_scale 1\nclipping_range 5 5\n", {"clipping_range is 5 to 5"}},
@@ -148,7 +148,7 @@ TEST(CameraFile, RefusesBrokenJson) {
     std::vector<std::string> parts;
   } cases[] = {
       {"{\"position\": [0,0", {"not valid JSON", "line 1"}},
-      {"{" + good + ", \"fov\": 3}", {"'fov' is no word"}},
+      {"{" + good + ", \"fov\": 3}", {"'fov' is not a word"}},
       {"{" + good + ", \"view_angle\": 3}", {"'view_angle' stands twice"}},
       {"{" + good + ", \"parallel_scale\": 3}", {"both given"}},
       {"{" + good + ", \"view_up\": [0,1]}", {"view_up has 2 numbers"}},

@@ -59,7 +59,7 @@ TEST(JsonTransferFunction, RefusesWhatIsNoFunctionNamingTheKnot) {
       {R"({"knots": [[0, 1, "x", 1, 1]]})", {"f: knot 1: its green is not a finite number"}},
       {R"({"knots": [[0, 1, 1, -1, 1]]})", {"f: knot 1: its blue is -1; it must not be negative"}},
       {R"({"knots": [[2, 1, 1, 1, 1], [1, 1, 1, 1, 1]]})", {"f: knot 2: its value 1 is below the one before it, 2"}},
-      {R"({"knots": [[0, 1, 1, 1, 1]], "range": [0, 1]})", {"f: 'range' is unknown beside knots"}},
+      {R"({"knots": [[0, 1, 1, 1, 1]], "range": [0, 1]})", {"f: 'range' is unknown next to knots"}},
       {R"({"knots": [[0, 1, 1, 1, 1])", {"f: line 1, column", "not valid JSON"}},
       {R"({"colors": []})", {"f: has no RGBPoints"}},
   };

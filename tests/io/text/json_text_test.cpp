@@ -24,7 +24,7 @@ TEST(JsonText, IsRefusedWithItsPlace) {
   expect_bad_input([] { parse_json("{\"a\": 1,\n \"b\" 2}", "f"); }, {"f: line 2, column 6: not valid JSON"});
   expect_bad_input([] { parse_json("[1] 2", "f"); }, {"f: line 1, column 5: not valid JSON"});
   expect_bad_input([] { parse_json("[1e999]", "f"); }, {"f: not valid JSON", "number overflow"});
-  expect_bad_input([] { parse_json(R"({"a": {"b": 1}, "c": 2, "a": 3})", "f"); }, {"'a' stands twice in one object"});
+  expect_bad_input([] { parse_json(R"({"a": {"b": 1}, "c": 2, "a": 3})", "f"); }, {"'a' is given twice in one object"});
   EXPECT_NO_THROW(parse_json(R"({"a": {"a": 1}, "b": [{"a": 1}, {"a": 2}]})", "f"));
 }
 

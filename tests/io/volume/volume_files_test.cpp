@@ -492,7 +492,7 @@ TEST_F(VolumeFiles, ABrickFileWhoseCountsAreNoWholeNumbersIsRefused) {
     out.close();
     EXPECT_EQ(io::testing::message_of([&] { open_volume(folder / "b.bricks"); }),
               (folder / "b.bricks").string() +
-                  ": its header lacks a word or a number; the file is truncated or damaged, write it anew")
+                  ": its header lacks a word or a number; the file is truncated or damaged, write it again")
         << word;
   }
 }
