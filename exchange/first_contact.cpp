@@ -60,8 +60,8 @@ class Contact {
       } else if (patience_.count() > 0 && Clock::now() > end_) {
         throw scene::Error(
             scene::ErrorCode::system_failure,
-            fmt::format("MPI: rank {} of {} heard nothing of {} in {} seconds after the start; {}", transport_.rank(),
-                        transport_.size(), transport_.rank() == 0 ? "another rank" : "the first",
+            fmt::format("MPI: rank {} of {} received nothing from {} in {} seconds after the start; {}",
+                        transport_.rank(), transport_.size(), transport_.rank() == 0 ? "another rank" : "the first",
                         std::chrono::ceil<std::chrono::seconds>(patience_).count(), memory_remedy()));
       }
   }

@@ -232,11 +232,11 @@ std::vector<DicomSlice> slices_of_segments(std::vector<DicomSlice> frames, std::
   const std::size_t step = chosen_step(wish, are_fractions ? numbers.size() : 1, source);
   if (are_fractions) volume.time_step = {numbers.size(), step};
   if (numbers.back() > 0)
-    volume.notes.push_back(are_fractions
-                               ? fmt::format("values are the fractions of segment {}; time steps are its "
-                                             "segments, from 0 on: {}",
-                                             names_of(segments, {numbers[step]}), names_of(segments, numbers))
-                               : fmt::format("values are segment numbers, 0 is none: {}", names_of(segments, numbers)));
+    volume.notes.push_back(are_fractions ? fmt::format("values are the fractions of segment {}; time steps are its "
+                                                       "segments, from 0 on: {}",
+                                                       names_of(segments, {numbers[step]}), names_of(segments, numbers))
+                                         : fmt::format("values are segment numbers, 0 outside all segments: {}",
+                                                       names_of(segments, numbers)));
   std::vector<DicomSlice> slices;
   for (std::vector<DicomSlice>& at : by_place(std::move(frames))) {
     DicomSlice slice = at.front();

@@ -139,7 +139,7 @@ TEST(FirstContact, EndsTheRunWhicheverMessageIsLost) {
         ADD_FAILURE() << "rank " << mute << ", message " << first << ": nobody noticed";
       } catch (const scene::Error& error) {
         EXPECT_EQ(error.code(), scene::ErrorCode::system_failure);
-        EXPECT_NE(std::string(error.what()).find("heard nothing of"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("received nothing from"), std::string::npos) << error.what();
       }
     }
 }

@@ -103,7 +103,7 @@ TEST_F(DicomSegments, OfOneBitAreLabelsOfOneVolumeWhateverTheirOrder) {
     EXPECT_EQ(all_samples(*volume.source), wanted(frames, 3));
     EXPECT_TRUE(volume.tags.labels);
     EXPECT_LE(volume.time_step.count, 1u);
-    EXPECT_TRUE(has_note(volume, "0 is none: 1 liver, 2 spleen"));
+    EXPECT_TRUE(has_note(volume, "0 outside all segments: 1 liver, 2 spleen"));
   }
 }
 

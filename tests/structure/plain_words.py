@@ -4,7 +4,8 @@
 for things, clipped clauses, idioms that are not standard English.
 
 PHRASES is the table, EXCEPTIONS lists legitimate uses. Only DIRECTORIES, which have been edited already, are checked.
-Text in backquotes or double quotes is code or a quotation, and is ignored; string literals are not checked.
+Text in backquotes or double quotes is code or a quotation, and is ignored. String literals of several words, in all
+directories but tests/ and bench/, are checked for the phrases of IN_MESSAGES.
 
 Reports each phrase as file:line with its replacement; exit status 1 if there is one. First checks itself: every row of
 the table must refuse its own example, and no row may refuse PLAIN.
@@ -52,6 +53,12 @@ PHRASES = [
 PLAIN = """None of which holds for `who tells`: there is no more memory than the users who asked for it need. A value,
 say, the list, is no longer such as the file "says"; there are none that stand for so many that it stands for another."""
 
+# What to write instead of phrases that messages and help texts avoid too.
+IN_MESSAGES = """receive, be called with|no caller, the caller|again, newly|again|fix, correct|does not support|
+next to, in addition to, in parallel with|is not a, does not support|is not one, is invalid, is empty""".replace(
+    "\n", ""
+).split("|")
+
 # (pattern, reason) of legitimate uses, removed from the text before the table is applied. Each must occur.
 EXCEPTIONS = [
     (r"\bthe last of which\b", "a part of what precedes it, like none of which"),
@@ -91,6 +98,13 @@ def comments(source):
         yield block, lines
 
 
+def messages(source):
+    """(line, text) of each string literal of several words."""
+    for token in TOKEN.finditer(source):
+        if token[0].startswith(('"', 'R"')) and " " in token[0]:
+            yield source.count("\n", 0, token.start()) + 1, token[0].strip('R"')
+
+
 def refused(text, used=None):
     """(offset, phrase, what to write) of every phrase of the table in a text."""
     text = QUOTED.sub(blanked, text)
@@ -103,10 +117,16 @@ def refused(text, used=None):
             yield match.start(), match[0].strip(" .;:"), instead
 
 
+def faults_of_example():
+    return [use for _, text in messages('fail("the file is damaged, write it anew");') for use in refused(text)]
+
+
 def faults_in_itself():
     for pattern, instead, example in PHRASES:
         if instead not in [use for _, _, use in refused(example)]:
             yield f"plain_words.py: {pattern} does not refuse its example: {example}"
+    if [use for _, _, use in faults_of_example()] != ["again, newly"]:
+        yield "plain_words.py: does not find the phrase of its example of a message"
     for _, phrase, _ in refused(PLAIN.replace("\n", " ")):
         yield f"plain_words.py: refuses plain English: {phrase}"
 
@@ -118,12 +138,23 @@ def faults_in(file, used):
             yield number, f"{phrase} -> {instead}"
 
 
+def faults_in_messages(file):
+    for number, text in messages(file.read_text(encoding="utf-8")):
+        for _, phrase, instead in refused(text):
+            if instead in IN_MESSAGES:
+                yield number, f"message: {phrase} -> {instead}"
+
+
 def main():
     tree = Path(sys.argv[1])
     faults, used = list(faults_in_itself()), set()
     files = [f for d in DIRECTORIES for f in sorted((tree / d).rglob("*")) if f.suffix in SUFFIXES and f.is_file()]
     for file in files:
         faults += [f"{file.relative_to(tree)}:{number}: {what}" for number, what in faults_in(file, used)]
+    sources = [f for f in sorted(tree.glob("*/**/*")) if f.suffix in SUFFIXES and f.is_file()]
+    skipped = {"tests", "bench", "build", "examples"}
+    for file in [f for f in sources if f.relative_to(tree).parts[0] not in skipped]:
+        faults += [f"{file.relative_to(tree)}:{number}: {what}" for number, what in faults_in_messages(file)]
     faults += [f"plain_words.py: nothing uses the exception {phrase}" for phrase, _ in EXCEPTIONS if phrase not in used]
     for fault in faults:
         print(fault)
