@@ -29,8 +29,8 @@ const OptionRow& key_named(const std::string& name) {
     names.emplace_back(row->key());
   }
   if (const auto near = nearest_name(name, names))
-    throw bad_input(fmt::format("state: {} is not a key; did you mean {}?", scene::quote(name), *near));
-  throw bad_input(fmt::format("state: {} is not a key; docs/SERVER.md has those there are", scene::quote(name)));
+    throw bad_input(fmt::format("state: {} is not a setting; did you mean {}?", scene::quote(name), *near));
+  throw bad_input(fmt::format("state: {} is not a setting; docs/SERVER.md lists them", scene::quote(name)));
 }
 
 /// Limits the length and number of texts, which come from the network.

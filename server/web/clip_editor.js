@@ -12,7 +12,7 @@ import { parsed_number, short_number } from "./numbers.js";
 import { dot, scale, unit } from "./vector.js";
 
 /** @type {[string, Vector][]} */
-const normals = [["keeps +x", [1, 0, 0]], ["keeps -x", [-1, 0, 0]], ["keeps +y", [0, 1, 0]], ["keeps -y", [0, -1, 0]], ["keeps +z", [0, 0, 1]], ["keeps -z", [0, 0, -1]]];
+const normals = [["keep the +x side", [1, 0, 0]], ["keep the -x side", [-1, 0, 0]], ["keep the +y side", [0, 1, 0]], ["keep the -y side", [0, -1, 0]], ["keep the +z side", [0, 0, 1]], ["keep the -z side", [0, 0, -1]]];
 
 /** The options of one kind. @param {any} value @returns {string[]} */
 const listed = (value) => (value ? [value].flat().map(String) : []);
@@ -118,7 +118,7 @@ export class ClipEditor {
       const { point } = read();
       const normal = word === "eye" ? scale(basis_of(this.page.camera).forward, -1) : normals[Number(word)]?.[1];
       if (normal) write(normal, dot(point, normal), false);
-    }, [...normals.map(([text], i) => /** @type {[string, string]} */ ([String(i), text])), ["eye", "towards the eye"], ["own", "its own"]]);
+    }, [...normals.map(([text], i) => /** @type {[string, string]} */ ([String(i), text])), ["eye", "facing the camera"], ["own", "custom"]]);
     return element("div", { class: "row plane" }, direction, slider, typed_place, icon_button("trash", `Remove clip plane ${index + 1}`, () => this.#set_plane(index, undefined, false)));
   }
 

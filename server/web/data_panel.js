@@ -47,7 +47,7 @@ export class DataPanel {
     const words = field_words(data.fields);
     const fields = data.fields.map((f, i) => /** @type {[string, string]} */ ([words[i], `${f.name} (${f.association}${f.components > 1 ? `, ${f.components} components` : ""})`]));
     // A file without a meaningful field is shown as a shape, until a field is chosen.
-    fill_choice(this.field, data.field === null ? [["", "none: the shape"], ...fields] : fields);
+    fill_choice(this.field, data.field === null ? [["", "none (draw the shape)"], ...fields] : fields);
     this.field_row.hidden = data.fields.length === 0;
     this.smooth.label.hidden = !data.fields.some((f) => f.association === "cell");
     this.#begin_blocks();

@@ -84,9 +84,9 @@ export class FunctionPanel {
     this.low = typed("Low end of the range", (text) => this.#type_range(text, undefined));
     this.high = typed("High end of the range", (text) => this.#type_range(undefined, text));
     const ranges = element("div", { class: "buttons" },
-      button("Whole", () => this.#range_of("whole"), { title: "Range: all of the field's values" }),
-      button("99 %", () => this.#range_of("most"), { title: "Range: the values of 99 % of the volume" }),
-      button("Visible", () => this.#range_of("visible"), { title: "Range: the values of 99 % of what this view shows" }),
+      button("Full range", () => this.#range_of("whole"), { title: "Range: all of the field's values" }),
+      button("Middle 99 %", () => this.#range_of("most"), { title: "Range: the values of 99 % of the volume" }),
+      button("In view", () => this.#range_of("visible"), { title: "Range: the values of 99 % of what this view shows" }),
       button("Reset", () => this.page.history.change({ range: undefined, "transfer-function": undefined, log: undefined, opacity: undefined, "unit-distance": undefined, "color-bar-scale": undefined }),
         { title: "The function that the server chooses" }));
 
@@ -109,7 +109,7 @@ export class FunctionPanel {
       this.curve,
       element("div", { class: "checks" }, log_axis.label, this.log.label, close.label, this.few), this.warning,
       element("div", { class: "row" }, element("span", { class: "label" }, "Range"), this.low, this.high), ranges,
-      row("Opacity ×", this.strength, this.strength_text), row("Distance", this.distance),
+      row("Opacity scale", this.strength, this.strength_text), row("Unit distance", this.distance),
       element("div", { class: "checks" }, this.bar.label), this.bar_row,
       element("div", { class: "buttons" }, button("Import…", () => file.click(), { title: "A colour map of ParaView's, .json" }),
         button("Export", () => this.#export(), { title: "As ParaView's colour map, .json" })), file);
@@ -128,7 +128,7 @@ export class FunctionPanel {
         on_click: () => void this.#choose(preset.name, undefined),
       }, bar, element("span", {}, preset.name));
     }));
-    fill_choice(this.shape, [["", "as drawn"], ...opacities.map((name) => /** @type {[string, string]} */ ([name, name]))]);
+    fill_choice(this.shape, [["", "custom"], ...opacities.map((name) => /** @type {[string, string]} */ ([name, name]))]);
     // It only describes the present curve and cannot be chosen.
     this.shape.options[0].disabled = true;
     this.update();

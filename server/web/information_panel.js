@@ -31,7 +31,7 @@ export class InformationPanel {
       ["File", data.file], ["Format", data.format], [data.kind === "mesh" ? "Cells" : "Samples", counted(data.cells ?? 0)],
       data.tets && data.tets !== data.cells ? ["Tetrahedra", counted(data.tets)] : null,
       ...left_out.map(([name, count]) => [data.kind === "mesh" ? (name === "cut" ? "Cut by a clip" : `Left out, ${name.replaceAll("_", " ")}`) : "Blank samples", counted(count)]),
-      ["Low corner", vector(data.bounds[0])], ["High corner", vector(data.bounds[1])],
+      ["Bounds from", vector(data.bounds[0])], ["Bounds to", vector(data.bounds[1])],
       ["Processes", `${data.ranks ?? 1}, threads ${data.threads ?? "all"}`], ["Tessera", data.tessera ?? ""],
     ];
     this.facts.replaceChildren(...lines.filter((line) => line !== null).flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]));

@@ -81,7 +81,7 @@ const redo = icon_button("redo", "Redo (Ctrl Shift Z)", () => history.redo(), { 
 const panel_toggle = icon_button("panel", "Settings", () => show_panel(document.body.classList.contains("panel-closed")), { id: "panel-toggle", "aria-controls": "panel" });
 const picture_tools = [icon_button("link", "Copy link (L)", () => void picture_panel.copy_link()), icon_button("command", "Copy command (C)", () => void picture_panel.copy_command()),
   icon_button("save", "Save the picture", () => void picture_panel.save())];
-by_id("tools").append(undo, redo, ...picture_tools, icon_button("help", "Keys (?)", show_help), panel_toggle);
+by_id("tools").append(undo, redo, ...picture_tools, icon_button("help", "Keyboard shortcuts (?)", show_help), panel_toggle);
 for (const tool of picture_tools) tool.disabled = true;
 
 /** Enables the controls once there are data. */
@@ -102,7 +102,7 @@ const mode_names = { turntable: "Turntable", trackball: "Trackball", fly: "Fly (
 const mode_tools = modes.map((word) => icon_button(word, `${mode_names[word]} (T)`, () => set_mode(word), { "data-mode": word, "aria-pressed": String(word === mode) }));
 const probe_tool = icon_button("probe", "Probe with a click (P)", () => set_probing(!probe.on), { "aria-pressed": "false" });
 by_id("view-tools").append(
-  element("div", { role: "group", "aria-label": "Turning" }, ...mode_tools), icon_button("fit", "Fit the data (F)", () => void page.look("fit")),
+  element("div", { role: "group", "aria-label": "Rotation" }, ...mode_tools), icon_button("fit", "Fit the data (F)", () => void page.look("fit")),
   icon_button("home", "Default view (R)", () => void page.look("default")), icon_button("projection", "Orthographic or perspective (O)", toggle_projection), probe_tool);
 
 function toggle_projection() {
@@ -463,7 +463,7 @@ const keys = {
 
 document.addEventListener("untaken", (event) => {
   const { label, text, held } = /** @type {CustomEvent} */ (event).detail;
-  messages.tell(`${label || "This value"}: "${text}" cannot be used here${held ? `; ${held} stays in force` : ""}.`);
+  messages.tell(`${label || "This value"}: "${text}" cannot be used here${held ? `; ${held} is kept` : ""}.`);
 });
 
 document.addEventListener("keydown", (event) => {

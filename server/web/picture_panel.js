@@ -35,10 +35,10 @@ export class PicturePanel {
       page.history.change({ accuracy: bound > 0 ? String(bound) : page.unset("accuracy") });
       return true;
     }, { placeholder: "1e-4", title: "Largest error of the linear RGBA of a pixel" });
-    this.kind = choice("", () => this.#show_film(), [["orbit", "once round the data"], ["views", "along key views"]]);
+    this.kind = choice("", () => this.#show_film(), [["orbit", "full orbit"], ["views", "along key views"]]);
     this.frames = typed("", (text) => parsed_number(text) >= 2, { value: "120", class: "short", inputmode: "numeric" });
     this.rate = typed("Frames a second", (text) => parsed_number(text) > 0, { value: "25", class: "short" });
-    this.film_format = choice("Form of the film", () => {});
+    this.film_format = choice("Video format", () => {});
     this.view_list = element("ol", { class: "key-views" });
     this.view_part = element("div", { class: "group", hidden: true }, this.view_list, element("div", { class: "buttons" }, button("Add this view", () => this.#add_view())));
     this.film_button = button("Make film", () => void this.#film(), { class: "primary" });
@@ -62,7 +62,7 @@ export class PicturePanel {
     fill_choice(this.film_format, formats.map((format) => /** @type {[string, string]} */ ([format, film_names[format] ?? format])));
     this.film_part.hidden = formats.length === 0;
     this.no_film.hidden = problem === null;
-    this.no_film.textContent = `${formats.length === 0 ? "No films" : "Not all forms of films"} are offered: ${problem}; correct that on the server's machine (Debian: apt install ffmpeg), and reload this page.`;
+    this.no_film.textContent = `${formats.length === 0 ? "No films" : "Not all forms of films"} are offered: ${problem}; install ffmpeg on the server (Debian: apt install ffmpeg), and reload this page.`;
     this.update();
   }
 

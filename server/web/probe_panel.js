@@ -13,7 +13,7 @@ import { LatestQuestion } from "./requests.js";
 const plot = { width: 320, height: 150, left: 40, right: 30, top: 8, bottom: 24 };
 
 /** @type {Record<string, string>} */
-const meanings = { Value: "at the first visible point of the ray", "Half-way value": "where the ray's opacity is half of what it comes to" };
+const meanings = { Value: "at the first visible point of the ray", "Value at half opacity": "where the ray's opacity is half of what it comes to" };
 
 export class ProbePanel {
   /** @param {Page} page @param {(value: number) => void} add_surface */
@@ -29,7 +29,7 @@ export class ProbePanel {
     this.hint = element("p", { class: "hint" }, "Press P or the crosshair, and click on the picture; on a touch screen hold a finger on it. Without a mouse: the button below probes the picture's middle.");
     this.actions = element("div", { class: "buttons", hidden: true },
       button("Centre the view here", () => this.point && page.history.change({ camera: centred(page.camera, this.point) })),
-      button("Iso-surface of this value", () => this.value !== undefined && add_surface(this.value)));
+      button("Add an iso-surface at this value", () => this.value !== undefined && add_surface(this.value)));
     this.element = element("div", { class: "panel-body" }, this.hint, element("div", { class: "buttons" }, button("Probe the middle", () => void this.probe({ x: 0, y: 0 }))), this.facts, this.plot, this.actions);
     this.plot.setAttribute("hidden", "");
   }
@@ -68,7 +68,7 @@ export class ProbePanel {
     const vector = (/** @type {Vector} */ v) => v.map((n) => short_place(n, this.page.extent)).join(", ");
     const lines = reply.hit
       ? [["Value", short_number(reply.value, 6)], ["Point", vector(reply.point)], ["Depth", short_number(reply.depth, 5)],
-        reply.half_value !== undefined && reply.half_value !== null && ["Half-way value", short_number(reply.half_value, 6)],
+        reply.half_value !== undefined && reply.half_value !== null && ["Value at half opacity", short_number(reply.half_value, 6)],
         reply.rgba && ["Colour", reply.rgba.map((/** @type {number} */ v) => short_number(v, 3)).join(", ")]]
       : [["Nothing", "no visible point on this ray"]];
     this.facts.replaceChildren(element("dt", {}, "Pixel"), element("dd", {}, `${pixel.x}, ${pixel.y}`),

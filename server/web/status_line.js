@@ -107,7 +107,7 @@ export class StatusLine {
       return;
     }
     const good = reply.promised === null || reply.promised === undefined || reply.largest_error <= reply.promised;
-    this.verdict.textContent = `${good ? "✓" : "✗"} largest error ${short_number(reply.largest_error, 2)} of ${reply.pixels} pixels${reply.excused ? `, ${reply.excused} excused` : ""}`;
+    this.verdict.textContent = `${good ? "✓" : "✗"} largest error in ${reply.pixels} pixels: ${short_number(reply.largest_error, 2)}${reply.excused ? `, ${reply.excused} excused` : ""}`;
     this.verdict.dataset.good = String(good);
   }
 }

@@ -5,8 +5,8 @@
 export const controls = {
   size: "Size", camera: "View", view: "View", up: "View", azimuth: "View", elevation: "View", zoom: "View", fit: "Fit", projection: "Projection",
   field: "Field", "time-step": "Time step", block: "Blocks", smooth: "Smooth", threshold: "Threshold", clip: "Clip", iso: "Iso-surface", surface: "Surface",
-  shade: "Shade the volume", "no-shade": "Shade the volume", "transfer-function": "Colour and opacity", rescale: "Whole", range: "Range", log: "Log values",
-  opacity: "Opacity ×", "opacity-scale": "Opacity ×", "opacity-points": "Shape", "unit-distance": "Distance", "color-bar": "Colour bar",
+  shade: "Shade the volume", "no-shade": "Shade the volume", "transfer-function": "Colour and opacity", rescale: "Full range", range: "Range", log: "Log values",
+  opacity: "Opacity scale", "opacity-scale": "Opacity scale", "opacity-points": "Shape", "unit-distance": "Unit distance", "color-bar": "Colour bar",
   "color-bar-title": "Bar's title", "color-bar-range": "Colour bar", "color-bar-scale": "Colour bar", background: "Background", axes: "Axes",
   outline: "Outline", "scale-bar": "Scale bar", accuracy: "Accuracy",
 };

@@ -66,11 +66,11 @@ test("the opacity's curve is drawn through its points", async () => {
   assert.ok(curve[0].width > 0.9 * (last.x - first.x), `${curve[0].width} pixels wide between ${first.x} and ${last.x}`);
 });
 
-test("the shape as drawn is said and cannot be chosen", async () => {
+test("the custom shape is stated and cannot be chosen", async () => {
   assert.deepEqual(await page.evaluate(() => {
     const shape = document.querySelector("#shape");
     return [shape.value, shape.selectedOptions[0].textContent, shape.selectedOptions[0].disabled];
-  }), ["", "as drawn", true]);
+  }), ["", "custom", true]);
   await change({ "transfer-function": undefined, range: undefined });
   await at_rest(page);
 });
@@ -162,7 +162,7 @@ test("a background that nobody chose goes with the page's theme", async () => {
 test("on a phone the list of keys begins at its top, and what is seen stays in the picture without the panel", async () => {
   await page.setViewportSize({ width: 400, height: 800 });
   await at_rest(page);
-  await page.getByRole("button", { name: "Keys (?)" }).click();
+  await page.getByRole("button", { name: "Keyboard shortcuts (?)" }).click();
   assert.equal(await page.locator("#help").evaluate((dialog) => dialog.scrollTop), 0);
   assert.ok(await page.locator("#help").evaluate((dialog) => dialog.scrollHeight > dialog.clientHeight), "there is something to scroll");
   await page.getByRole("dialog").getByRole("button", { name: "Close" }).click();

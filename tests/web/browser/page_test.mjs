@@ -270,7 +270,7 @@ test("presets, logarithm and range", async () => {
   assert.match((await state()).range, /^0\.25,/);
   await low.fill("0.25");
   await low.press("Enter");
-  await page.getByRole("button", { name: "Visible", exact: true }).click();
+  await page.getByRole("button", { name: "In view", exact: true }).click();
   await page.waitForFunction(() => !window.tessera.state().range.startsWith("0.25,"));
   await at_rest(page);
   await page.getByLabel("Log values").check();
@@ -378,7 +378,7 @@ test("the picture is saved, and is what the copied command makes", async () => {
   assert.equal(readFileSync(await exr.path()).readUInt32LE(0), 20000630);
 });
 
-test("films go once round the data, and along key views", async () => {
+test("films are full orbits, or go along key views", async () => {
   const box = await opened_section("Picture and film");
   await box.getByLabel("Width, pixels").fill("48");
   await box.getByLabel("Height, pixels").fill("32");
@@ -459,7 +459,7 @@ test("what was found goes when the data change, and what cannot be used is said"
   const held = await low.inputValue();
   await low.fill("abc");
   await low.press("Enter");
-  await page.getByText(`"abc" cannot be used here; ${held} stays in force`).first().waitFor();
+  await page.getByText(`"abc" cannot be used here; ${held} is kept`).first().waitFor();
   await page.evaluate(() => document.activeElement.blur());
   for (const name of ["rise", "ramp"]) {
     await panel.locator("#shape").selectOption(name);

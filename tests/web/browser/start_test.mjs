@@ -67,10 +67,10 @@ const every_option = ["--field", "pressure", "--time-step", "1", "--smooth", "--
 
 test("each option that the server was started with is in the panel", async () => {
   await begin([series, ...every_option]);
-  assert.deepEqual(await texts(["Field", "Low end of the range", "High end of the range", "Overall opacity, a factor", "Distance", "Shape", "Bar's title", "Values, low end", "Values, high end", "x, high end",
+  assert.deepEqual(await texts(["Field", "Low end of the range", "High end of the range", "Overall opacity, a factor", "Unit distance", "Shape", "Bar's title", "Values, low end", "Values, high end", "x, high end",
     "Place of clip plane 1 along its direction", "Direction of clip plane 1", "Value of iso-surface 1", "Colour of iso-surface 1", "What surface 1 is", "Colour of surface 1", "What surface 2 is", "Colour of surface 2",
     "Axes", "Background", "Projection", "Accuracy"]), {
-    Field: "pressure", "Low end of the range": "0.1", "High end of the range": "0.8", "Overall opacity, a factor": "2.5", Distance: "0.3", Shape: "rise", "Bar's title": "p of {file}",
+    Field: "pressure", "Low end of the range": "0.1", "High end of the range": "0.8", "Overall opacity, a factor": "2.5", "Unit distance": "0.3", Shape: "rise", "Bar's title": "p of {file}",
     "Values, low end": "-0.9", "Values, high end": "0.9", "x, high end": "1.5", "Place of clip plane 1 along its direction": "0.5", "Direction of clip plane 1": "2", "Value of iso-surface 1": "0.25",
     "Colour of iso-surface 1": "#ff0000", "What surface 1 is": "boundary", "Colour of surface 1": "#7c7cff", "What surface 2 is": join(folder, "flag.stl"), "Colour of surface 2": "#ff6347",
     Axes: "both", Background: "#000080", Projection: "perspective", Accuracy: "1e-3",
@@ -136,10 +136,10 @@ test("cuts and surfaces are removed, and the colours are edited", async () => {
   await control("Overall opacity, a factor", "input[type=text]").press("Enter");
   await at_rest(page);
   assert.equal((await state()).opacity, null);
-  await control("Distance", "input[type=text]").fill("0.7");
-  await control("Distance", "input[type=text]").press("Enter");
+  await control("Unit distance", "input[type=text]").fill("0.7");
+  await control("Unit distance", "input[type=text]").press("Enter");
   await answered(page);
-  assert.equal((await texts(["Distance"])).Distance, "0.7");
+  assert.equal((await texts(["Unit distance"])).Distance, "0.7");
 });
 
 test("another field goes without the values of the one that the server was started with", async () => {
