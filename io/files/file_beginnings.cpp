@@ -26,7 +26,8 @@ std::string_view without_blanks(std::string_view text) {
 
 bool is_text(std::string_view text) { return text.find('\0') == std::string_view::npos; }
 
-/// The first `count` lines that are neither blank nor begin with `comment`; the last of what is cut off may be short.
+/// The first `count` lines that are neither blank nor begin with `comment`; the last line of a truncated text may be
+/// incomplete.
 std::vector<std::string_view> first_lines(std::string_view text, char comment, std::size_t count) {
   std::vector<std::string_view> lines;
   while (!text.empty() && lines.size() < count) {
@@ -52,7 +53,7 @@ bool is_count(std::string_view word) {
   return !word.empty() && word.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-/// Whether a line is KEY and then `after`, blanks between, upper or lower case.
+/// Whether a line is KEY followed by `after`, with blanks between, in upper or lower case.
 bool is_key(std::string_view line, std::string_view key, char after) {
   if (line.size() < key.size() ||
       !std::equal(key.begin(), key.end(), line.begin(), [](char a, char b) { return a == (b & ~0x20); }))
@@ -61,8 +62,8 @@ bool is_key(std::string_view line, std::string_view key, char after) {
   return rest.starts_with(after);
 }
 
-/// What a NIfTI or Analyze header gives as its own size, in either byte order: 348 or 540, and at least as many bytes
-/// follow; else 0.
+/// The header size stored in a NIfTI or Analyze header, in either byte order, if it is 348 or 540 and at least as many
+/// bytes are available; else 0.
 std::size_t nifti_header_size(std::string_view text) {
   for (const std::size_t size : {348U, 540U}) {
     const char low = static_cast<char>(size & 255), high = static_cast<char>(size >> 8);
@@ -107,7 +108,7 @@ bool looks_like_amrex(std::string_view beginning) {
   if (error != std::errc() || end != count.data() + count.size() || fields < 1 || fields > most_fields) return false;
   for (std::int64_t f = 0; f < fields; ++f) {
     if (next().empty()) return false;
-    if (beginning.empty()) return version.ends_with("-V1.1");  // many fields: what follows is not among the first bytes
+    if (beginning.empty()) return version.ends_with("-V1.1");  // the rest follows many fields
   }
   const std::string_view dimensions = next();
   return dimensions == "1" || dimensions == "2" || dimensions == "3";
@@ -125,7 +126,7 @@ bool begins_as_medit_binary(std::string_view beginning) {
     return at + 4 <= beginning.size() &&
            std::memcmp(beginning.data() + at, is_big ? big.data() : little.data(), 4) == 0;
   };
-  // Other files begin with a 1 and a small number too, so the first keyword counts, which is the dimension.
+  // Other files also begin with a 1 and a small number, so the first keyword, the dimension, decides.
   for (const bool is_big : {false, true})
     for (const char version : {'\1', '\2', '\3', '\4'}) {
       const std::size_t dimension_at = version >= 3 ? 20 : 16;
@@ -204,7 +205,7 @@ bool begins_as_legacy_grid(const FileBeginning& file) {
   return is_legacy_of(file, {"STRUCTURED_POINTS", "RECTILINEAR_GRID"});
 }
 
-/// Classic NetCDF lists its dimensions first.
+/// Classic NetCDF files list their dimensions first.
 bool begins_as_exodus(const FileBeginning& file) {
   return file.text.starts_with("CDF") &&
          (file.text.find("num_nodes") != std::string_view::npos || file.text.find("num_dim") != std::string_view::npos);
@@ -218,7 +219,7 @@ bool begins_as_netcdf(const FileBeginning& file) {
          !begins_as_exodus(file) && !begins_as_minc(file);
 }
 bool begins_as_hdf5(const FileBeginning& file) { return file.text.starts_with(hdf5_signature); }
-/// Four bytes before it are "@(#)" with the highest bit of some set.
+/// The four bytes before it are "@(#)" with the highest bit of some set.
 bool begins_as_adf(const FileBeginning& file) {
   return file.text.size() > 4 && file.text.substr(4).starts_with("ADF Database Version");
 }
@@ -256,7 +257,7 @@ bool begins_as_fluent(const FileBeginning& file) {
   const std::string_view text = without_blanks(file.text);
   if (!text.starts_with('(')) return false;
   const auto words = words_of(text.substr(1, 40));
-  // Sections: a comment, whose quotes some leave out, a header, dimensions, the machine that wrote it.
+  // Sections: a comment, whose quotes some writers omit, a header, dimensions, the machine that wrote the file.
   return words.size() > 1 && is_count(words[0]) && words[0].size() <= 2 &&
          (words[0] == "0" || words[1].front() == '"' || words[1].front() == '(' ||
           (words[0] == "2" && (words[1].front() == '3' || words[1].front() == '2')));
@@ -305,7 +306,7 @@ bool begins_as_meta_image(const FileBeginning& file) {
          (file.text.starts_with("Comment") && file.text.find("NDims") != std::string_view::npos);
 }
 
-/// A header's size, in either byte order, and NIfTI's magic word.
+/// A header size in either byte order, and NIfTI's magic word.
 bool begins_as_nifti(const FileBeginning& file) {
   const auto has_magic = [&](std::size_t at, std::string_view first, std::string_view second) {
     const std::string_view magic = file.text.substr(at, 4);
@@ -316,7 +317,7 @@ bool begins_as_nifti(const FileBeginning& file) {
          (size == 540 && has_magic(4, {"n+2\0", 4}, {"ni2\0", 4}));
 }
 bool begins_as_dicom(const FileBeginning& file) { return looks_like_dicom(file.text); }
-/// Without a magic word.
+/// Like NIfTI without the magic word.
 bool begins_as_analyze(const FileBeginning& file) {
   if (begins_as_nifti(file) || nifti_header_size(file.text) != 348) return false;
   const auto dimensions = [&](std::size_t low) { return file.text[low] >= 1 && file.text[low] <= 7; };
@@ -340,7 +341,7 @@ bool begins_as_abaqus(const FileBeginning& file) {
 }
 
 bool begins_as_medit(const FileBeginning& file) { return begins_as_medit_text(file.text); }
-/// It begins with a number 1 alone, as binary Medit does.
+/// It begins with the single number 1, like binary Medit.
 bool begins_as_freesurfer(const FileBeginning& file) { return file.text.starts_with(std::string_view("\0\0\0\1", 4)); }
 bool begins_as_meshb(const FileBeginning& file) { return begins_as_medit_binary(file.text); }
 bool begins_as_mfem(const FileBeginning& file) {

@@ -6,32 +6,33 @@
 
 #include "io/files/format.hpp"
 
-/// Whether a file begins as one of a format does. None says yes to a file of another format of the table.
+/// Recognize formats by the first bytes of a file. No function returns true for a file of another format of the table.
 namespace tessera::io {
 
 inline constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
 
-/// The `type` of <VTKFile type="...">, or else empty.
+/// The `type` of <VTKFile type="...">; otherwise empty.
 std::string vtk_xml_type(std::string_view beginning);
 
-/// Whether text begins as the Header of an AMReX plot file: a line without blanks, the number of fields, their names,
-/// and the dimensions.
+/// Whether a text begins like the Header of an AMReX plot file: a line without blanks, the number of fields, their
+/// names, and the dimensions.
 bool looks_like_amrex(std::string_view beginning);
 
-/// Whether a file begins as DICOM files do, with DICM after 128 bytes of anything.
+/// Whether a file begins like a DICOM file: any 128 bytes, then DICM.
 bool looks_like_dicom(std::string_view beginning);
 
-/// Whether a file begins as a binary Medit mesh (.meshb): a 1 of 32 bits in either byte order, a version of 1 to 4, and
-/// a dimension of 2 or 3.
+/// Whether a file begins like a binary Medit mesh (.meshb): a 32-bit 1 in either byte order, a version of 1 to 4, and a
+/// dimension of 2 or 3.
 bool begins_as_medit_binary(std::string_view beginning);
 
-/// Whether a file begins as a Medit mesh in text (.mesh).
+/// Whether a file begins like a Medit mesh in text form (.mesh).
 bool begins_as_medit_text(std::string_view beginning);
 
-/// For VTK XML: throws Error(bad_input) for a file in UTF-16, whose words are not those that are looked for.
+/// For VTK XML: throws Error(bad_input) for a file in UTF-16, in which the other functions would not find their
+/// keywords.
 void require_no_utf16(std::string_view beginning, const std::string& source);
 
-/// The word after DATASET of legacy VTK, or else empty.
+/// The word after DATASET of a legacy VTK file; otherwise empty.
 std::string vtk_legacy_type(std::string_view beginning);
 
 bool begins_as_vtu(const FileBeginning& file);
@@ -76,7 +77,7 @@ bool begins_as_dicom(const FileBeginning& file);
 bool begins_as_analyze(const FileBeginning& file);
 bool begins_as_xdmf(const FileBeginning& file);
 
-// Not read.
+// Recognized in order to refuse it: binary Tecplot files are not read.
 bool begins_as_binary_tecplot(const FileBeginning& file);
 bool begins_as_abaqus(const FileBeginning& file);
 bool begins_as_mfem(const FileBeginning& file);

@@ -12,20 +12,20 @@
 
 namespace tessera::io {
 
-/// What a gzip file holds, inflated once into a file without a name, in memory, which goes with this object. Throws
-/// Error(bad_input, "FILE: ...") for a damaged stream, one that holds nothing and one that holds out of proportion to
-/// its size, Error(system_failure) for more than the machine has free.
+/// The content of a gzip file, inflated once into an unnamed file in memory, which is released with this object. Throws
+/// Error(bad_input, "FILE: ...") for a damaged stream, an empty one, and one that is far larger than its compressed
+/// size explains, Error(system_failure) if it needs more memory than the machine has free.
 class InflatedFile {
  public:
-  /// How many times the gzip file's size it may hold, beside 64 MiB. Meshes and surfaces take 3 to 30; grids of a few
-  /// values, such as masks, hundreds.
+  /// Largest allowed ratio of content to gzip file, in addition to 64 MiB. Meshes and surfaces reach 3 to 30; grids
+  /// with few distinct values, such as masks, reach hundreds.
   enum class Holds : std::uint16_t { mesh = 128, grid = 512 };
   InflatedFile(const InputFile& file, Holds holds);
-  /// Its first bytes alone: no more are inflated.
+  /// Inflates only the first `first` bytes.
   InflatedFile(const InputFile& file, std::uint64_t first);
 
-  /// Calls `work` with the content, under a path that this process and its helper can open while this lives, and
-  /// returns what it returns. In the lines of its errors that path is replaced by the gzip file's. It has no extension.
+  /// Calls `work` with the content, under a path that this process and its helper can open during the lifetime of this
+  /// object, and returns its result. In error messages that path is replaced by the gzip file's. It has no extension.
   template <class Work>
   auto read(const Work& work) const {
     try {
@@ -35,7 +35,7 @@ class InflatedFile {
     }
   }
 
-  /// The line with the gzip file's name in place of the content's path, for notes.
+  /// The line with the path of the content replaced by the gzip file's name, for notes.
   [[nodiscard]] std::string renamed(std::string line) const;
 
  private:
@@ -47,16 +47,17 @@ class InflatedFile {
   system::Descriptor descriptor_;
 };
 
-/// Whether a name is one that InflatedFile gave, beside which nothing lies.
+/// Whether InflatedFile created this name. Such a file has no neighbours in a directory.
 bool is_inflated(const std::filesystem::path& file);
 
-/// Bytes of the gzip file that such a name is for.
+/// Size in bytes of the gzip file behind such a name.
 std::uint64_t packed_size(const std::filesystem::path& inflated);
 
-/// For HDF5, whose library opens files by real names only: throws Error(bad_input) for one that was in a gzip file.
+/// For HDF5, whose library opens files only by their real names: throws Error(bad_input) for a file that was in a gzip
+/// file.
 void require_real_name(const std::filesystem::path& file);
 
-/// For files that others lie beside: throws Error(bad_input) for one that was in a gzip file.
+/// For files that refer to other files in their directory: throws Error(bad_input) for one that was in a gzip file.
 void require_beside_others(const std::filesystem::path& file);
 
 }  // namespace tessera::io

@@ -13,7 +13,7 @@
 namespace tessera::io {
 namespace {
 
-/// Whether a file of `size` bytes is the text that Git LFS keeps in the place of a large file.
+/// Whether a file of `size` bytes is the pointer text that Git LFS stores instead of a large file.
 bool is_git_lfs_pointer(const system::PositionalFile& file, std::uint64_t size) {
   constexpr std::string_view first_line = "version https://git-lfs.github.com/spec/v1";
   constexpr std::uint64_t longest = 1024;  // by the specification of Git LFS
@@ -33,7 +33,7 @@ system::PositionalFile open_input(const std::filesystem::path& file) {
         file.string()));
   system::PositionalFile opened(file);
   const std::uint64_t size = opened.size();
-  // An empty .foam file only marks its folder as an OpenFOAM case.
+  // An empty .foam file only marks its directory as an OpenFOAM case.
   if (size == 0 && system::lower_extension(file) != ".foam" && system::lower_extension(file) != ".openfoam")
     throw scene::bad_input(fmt::format("{}: it is empty; write it again", file.string()));
   if (is_git_lfs_pointer(opened, size))
@@ -51,7 +51,7 @@ std::string read_beginning(const std::filesystem::path& file, std::size_t limit)
 
 namespace {
 
-/// The first bytes of a file; none of one that cannot be read.
+/// The first bytes of a file; empty if it cannot be read.
 std::string beginning_if_any(const std::filesystem::path& file, std::uint64_t count) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(file, unknown)) return {};
@@ -80,7 +80,7 @@ bool is_input_folder(const std::filesystem::path& folder) {
   std::error_code error;
   if (!std::filesystem::is_directory(folder, error)) return false;
   if (is_case_folder(folder) || is_amrex_folder(folder)) return true;
-  // In many folders the slices lie one or two levels below, and other files beside them.
+  // Slices are often one or two levels below, with other files next to them.
   constexpr int most = 1000;
   constexpr int deepest = 4;
   std::filesystem::recursive_directory_iterator entry(folder, error);

@@ -12,19 +12,19 @@
 
 namespace tessera::io {
 
-/// A file or folder that was opened once and identified (io/formats/identify.hpp). Readers take this, and open the file
-/// again only for its data.
+/// A file or directory that was opened once and identified (io/formats/identify.hpp). Readers take this and open the
+/// file again only for its data.
 struct InputFile {
   static constexpr std::size_t longest_beginning = 1 << 16;
 
   std::filesystem::path path{};
-  std::string name{};       ///< for messages: the path that the user gave, also for content of a gzip file
-  std::string beginning{};  ///< its first bytes, unpacked if gzip, at most longest_beginning; empty for a folder
-  std::uint64_t size = 0;   ///< as it is stored; of a folder 0
+  std::string name{};       ///< for messages: the path given by the user, also for the content of a gzip file
+  std::string beginning{};  ///< first bytes, inflated if gzip, at most longest_beginning; empty for a directory
+  std::uint64_t size = 0;   ///< as stored; 0 for a directory
   bool is_folder = false;
   bool is_gzip = false;
   const Format* format = nullptr;  ///< null: unknown
-  bool is_recognized = false;      ///< the format, by what it begins with; else by its name alone
+  bool is_recognized = false;      ///< true: the first bytes identified the format; false: only the name did
 
   [[nodiscard]] FileBeginning start() const {
     constexpr std::size_t longest = 4096;
@@ -32,23 +32,25 @@ struct InputFile {
   }
 };
 
-/// Whether a folder is an OpenFOAM case: system/controlDict or constant/polyMesh in it, or the latter in processor0.
+/// Whether a directory is an OpenFOAM case: it contains system/controlDict or constant/polyMesh, or processor0 contains
+/// the latter.
 bool is_case_folder(const std::filesystem::path& folder);
 
-/// Whether a folder is an AMReX plot file: it has a Header that begins as theirs do.
+/// Whether a directory is an AMReX plot file: it contains a Header that begins like theirs.
 bool is_amrex_folder(const std::filesystem::path& folder);
 
-/// Whether a folder stands for a file: an OpenFOAM case, an AMReX plot file, or one with a DICOM file among its first
-/// thousand, at most four levels below.
+/// Whether a directory can be given as an input file: an OpenFOAM case, an AMReX plot file, or a directory with a DICOM
+/// file among its first thousand files, at most four levels below.
 bool is_input_folder(const std::filesystem::path& folder);
 
-/// Throws Error(bad_input) unless `file` is a readable regular file that is neither empty nor a pointer of Git LFS.
+/// Throws Error(bad_input) unless `file` is a readable regular file that is neither empty nor a Git LFS pointer.
 system::PositionalFile open_input(const std::filesystem::path& file);
 
-/// As open_input, or a folder that stands for a file; returns its bytes' number, of a folder 0.
+/// Like open_input, but also accepts a directory that can be given as an input file. Returns the size in bytes, 0 for a
+/// directory.
 std::uint64_t require_file(const std::filesystem::path& file);
 
-/// The first bytes of a file, at most `limit`. Throws as require_file.
+/// The first bytes of a file, at most `limit`. Throws like require_file.
 std::string read_beginning(const std::filesystem::path& file, std::size_t limit);
 
 }  // namespace tessera::io

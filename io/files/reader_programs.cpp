@@ -27,20 +27,20 @@ constexpr std::array programs = {
     ReaderProgram{Reader::med, "tessera-read-med", "read"},
 };
 
-/// The file that this code was loaded from: the library, or the program that has it linked in.
+/// The file from which this code was loaded: the library, or the program that links it.
 std::filesystem::path own_file() {
   Dl_info info{};
   std::error_code unknown;
   if (::dladdr(reinterpret_cast<const void*>(&own_file), &info) != 0 && info.dli_fname != nullptr) {
     std::filesystem::path file = std::filesystem::canonical(info.dli_fname, unknown);
-    if (!unknown) return file;  // a program's name need not be one that leads to it
+    if (!unknown) return file;  // a program's name need not lead to its file
   }
   return std::filesystem::read_symlink("/proc/self/exe", unknown);
 }
 
 bool is_program(const std::filesystem::path& file) { return ::access(file.c_str(), X_OK) == 0; }
 
-/// Who owns a file, and whether everybody may change it.
+/// Owner of a file, and whether all users may modify it.
 struct Ownership {
   uid_t owner;
   bool is_open_to_all;
@@ -51,8 +51,8 @@ std::optional<Ownership> ownership_of(const std::filesystem::path& file) {
   return Ownership{facts.st_uid, (facts.st_mode & S_IWOTH) != 0};
 }
 
-/// Whether a reader has not been put there by another user, as anybody can put /tmp/libexec: it and the folders in
-/// which it was found are root's, this user's, or those of who installed `own`, and no more open than that.
+/// Whether no other user can have installed the reader, as anybody can create /tmp/libexec: root, this user or the
+/// owner of `own` owns it and the directories that contain it, and they are not more writable than `own`.
 bool is_trusted(const std::filesystem::path& program, const std::filesystem::path& own) {
   const auto self = ownership_of(own);
   const std::filesystem::path folder = program.parent_path();
@@ -64,7 +64,7 @@ bool is_trusted(const std::filesystem::path& program, const std::filesystem::pat
   return true;
 }
 
-/// What a user can do without the reader.
+/// An alternative for users without the reader.
 std::string other_remedy(Reader reader, const Format* format) {
   if (reader == Reader::tetgen) return "give a mesh of tetrahedra";
   if (reader == Reader::dicom) return "convert them to .nii.gz with dcm2niix";
@@ -107,7 +107,7 @@ bool has_reader(Reader reader) { return !find_reader(reader).empty(); }
 
 scene::Error missing_reader(Reader reader, const std::string& source, const Format* format) {
   const ReaderProgram& program = reader_program(reader);
-  // Formats that this library reads itself need a reader for what is rare in them.
+  // Formats that this library reads itself need a reader only for their rare features.
   const char* const words = format != nullptr && !needs_reader(*format, reader)
                                 ? "{}: this {} file has parts that are {} by {} alone"
                                 : "{}: {} files are {} by {}";

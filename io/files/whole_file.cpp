@@ -15,13 +15,13 @@ namespace tessera::io {
 WholeFile::WholeFile(const std::filesystem::path& file) {
   const system::PositionalFile opened = open_input(file);
   size_ = opened.size();
-  // What this process inflated itself lies in memory already, and nobody shortens it.
+  // A file inflated by this process is in memory already, and no other process shortens it.
   const bool is_mapped = is_inflated(file);
   start_ = is_mapped ? ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, opened.descriptor(), 0)
                      : ::mmap(nullptr, size_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (start_ == MAP_FAILED) throw std::bad_alloc();
   if (is_mapped) return;
-  ::madvise(start_, size_, MADV_HUGEPAGE);  // most of the time would go into page faults
+  ::madvise(start_, size_, MADV_HUGEPAGE);  // otherwise page faults would take most of the time
   try {
     opened.read(0, static_cast<std::byte*>(start_), size_);
   } catch (...) {

@@ -8,10 +8,11 @@
 
 namespace tessera::io {
 
-/// A whole file in memory, for text and other files of which all is looked at. Throws as open_input
-/// (input_file.hpp), or Error(system_failure) if the file is shortened while it is read.
+/// A whole file in memory, for text files and others that are read completely. Throws like open_input (input_file.hpp),
+/// or Error(system_failure) if the file is shortened while it is read.
 ///
-/// Read, and not mapped: a file that another program shortens would end the process with SIGBUS at any later time.
+/// The file is read, not mapped: if another program shortened a mapped file, this process would end with SIGBUS at any
+/// later time.
 class WholeFile {
  public:
   explicit WholeFile(const std::filesystem::path& file);

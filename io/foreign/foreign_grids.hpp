@@ -7,8 +7,8 @@
 
 namespace tessera::io {
 
-/// The one part of a file, an image or a rectilinear grid, as a volume in memory; rectilinear ones that are even but
-/// for their rounding become regular. Throws Error(bad_input) for other parts and for fields that do not fit.
+/// The only part of a file, an image or a rectilinear grid, as a volume in memory; rectilinear grids that are uniform
+/// up to rounding become regular. Throws Error(bad_input) for other parts and for fields that do not fit.
 VolumeFile grid_of(const ForeignFile& opened, const VolumeOptions& options);
 
 }  // namespace tessera::io

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Meshes in other programs' formats, read by the helper.
+// Meshes in formats of other programs, read by the helper.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -45,7 +45,7 @@ cells::MeshBlocks named_format(const XmlKind& kind, const std::string& extension
   return result;
 }
 
-/// One data set in this process, or by VTK's reader if it has what this one does not know.
+/// Reads one data set in this process, or by VTK's reader if it uses features not supported here.
 cells::MeshBlocks read_data_set(const InputFile& file, const std::string& type, const MeshOptions& options) {
   std::optional<ForeignFile> opened = type.starts_with('P') ? std::nullopt : open_vtk_xml(file.path, options.progress);
   if (!opened) opened = open_foreign(file, {{"reader", "vtk_xml"}, {"type", type}}, options.progress);
@@ -56,7 +56,7 @@ ForeignFile open_exodus(const InputFile& file, const char* reader, const MeshOpt
   nlohmann::json request{{"reader", reader}, {"blocks", options.blocks}};
   if (options.surfaces) request["surfaces"] = true;
   if (options.time_step) request["time_step"] = *options.time_step;
-  if (!options.field.empty()) request["field"] = options.field;  // of what HDF5 may hold instead
+  if (!options.field.empty()) request["field"] = options.field;  // for other kinds of HDF5
   return open_foreign(file, std::move(request), options.progress);
 }
 
@@ -90,7 +90,7 @@ cells::MeshBlocks read_vtk_xml(const InputFile& file, const MeshOptions& options
     throw scene::bad_input(
         fmt::format("{}: it is a regular grid (image data), no mesh; give it alone or among volumes", source));
   if (lists_pieces(file)) {
-    // Pieces one by one, so that the whole reads as its parts do, and faults name the piece.
+    // Reads pieces one by one, so that the whole gives the same result as its parts, and errors name the piece.
     const PieceList list = piece_list(file, options.blocks, options.surfaces);
     return read_pieces(list, 0, list.pieces.size(), options.progress);
   }
@@ -122,7 +122,7 @@ cells::MeshBlocks read_exodus(const InputFile& file, const MeshOptions& options)
 
 scene::TimeStepRead exodus_time_steps(const InputFile& file, const MeshOptions& options) {
   if (const auto files = exodus_files(file); !files.empty())
-    return read_share(file, options, 0, static_cast<int>(files.size())).time_step;  // of the first
+    return read_share(file, options, 0, static_cast<int>(files.size())).time_step;  // of the first file
   return open_exodus(file, "exodus", options).contents.time_step;
 }
 
@@ -143,7 +143,7 @@ cells::MeshBlocks read_ensight(const InputFile& file, const MeshOptions& options
 }
 
 cells::MeshBlocks read_fluent(const InputFile& file, const MeshOptions& options) {
-  // Good ones make it crash.
+  // Valid files make VTK's reader crash.
   constexpr const char* remedy = "VTK's reader does not know all kinds of it: export CGNS or EnSight";
   return read_foreign_mesh(file, {Reader::vtk, "fluent", remedy}, options);
 }

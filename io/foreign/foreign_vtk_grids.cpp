@@ -18,9 +18,9 @@
 namespace tessera::io {
 namespace {
 
-/// All of it in memory.
+/// Reads the whole grid into memory.
 VolumeFile read_vtk_grid(const InputFile& file, const VolumeOptions& options) {
-  const std::string type = vtk_xml_type(file.beginning);  // empty of a legacy one
+  const std::string type = vtk_xml_type(file.beginning);  // empty for a legacy file
   if (type.starts_with('P')) require_beside_others(file.path);
   std::optional<ForeignFile> opened;
   if (type == "ImageData" || type == "RectilinearGrid") opened = open_vtk_xml(file.path, options.progress);

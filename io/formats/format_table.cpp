@@ -20,7 +20,7 @@ constexpr std::array by_vtk_and_tetgen = {Reader::vtk, Reader::tetgen};
 constexpr const char* filled = "closed; filled with tets, field depth in addition to its own";
 constexpr const char* pieces = "pieces fill the whole and have the same arrays";
 
-/// What every row has, then what only some have.
+/// First the members of every row, then optional ones.
 constexpr Format row(const char* name, const char* extensions, FileHolds holds, std::span<const Reader> needs,
                      const char* remark, decltype(Format::recognizes) recognizes, Format format = {}) {
   format.name = name, format.extensions = extensions, format.holds = holds;
@@ -28,13 +28,13 @@ constexpr Format row(const char* name, const char* extensions, FileHolds holds, 
   return format;
 }
 
-/// Known, so that it can be refused by its name.
+/// A known format that is refused by its name.
 constexpr Format unread(const char* name, const char* extensions, const char* remark,
                         decltype(Format::recognizes) recognizes = nullptr, Format format = {}) {
   return row(name, extensions, not_read, {}, remark, recognizes, format);
 }
 
-/// Rows of one beginning are in the order in which they are asked.
+/// Rows that share a beginning are tried in this order.
 constexpr std::array rows = {
     row("VTK XML unstructured grid", ".vtu .pvtu", mesh, {}, "pieces appended, ghost cells dropped; ranks read pieces",
         begins_as_vtu, {.container = Container::vtk_xml, .read_mesh = read_vtk_xml}),
@@ -206,7 +206,7 @@ constexpr std::array rows = {
     unread("NumPy array", ".npy .npz", "write it as .raw by tofile, or .nrrd by pynrrd", begins_as_numpy),
     unread("MATLAB data", ".mat", "write it as .raw by fwrite, or .nrrd by nrrdWriter"),
     unread("Zarr", ".zarr", "write it as .nrrd by pynrrd, or NetCDF by xarray"),
-    // VTK XML of a kind that no other row has: damaged, or its reader says what it holds.
+    // VTK XML of a kind that no other row has: damaged, or its reader determines the content.
     row("VTK XML", "", mesh, by_vtk, "", begins_as_vtk_xml,
         {.container = Container::vtk_xml, .is_listed = false, .read_mesh = read_vtk_xml}),
 };

@@ -9,15 +9,15 @@
 
 namespace tessera::io {
 
-/// The one table of formats. A file is of the first that recognizes it.
+/// The table of formats. A file has the format of the first row that recognizes it.
 std::span<const Format> formats();
 
-/// Opens a file once and finds what it is: by what it begins with; files of a container (Container) by their name;
-/// where neither tells anything, by its name. A folder is an OpenFOAM case, an AMReX plot file, or of DICOM files.
-/// Throws as require_file.
+/// Opens a file once and identifies its format: by its first bytes; for a container (Container) by its name; if neither
+/// decides, by its name alone. A directory is an OpenFOAM case, an AMReX plot file or a set of DICOM files. Throws like
+/// require_file.
 InputFile identify(const std::filesystem::path& file);
 
-/// By its name alone, a file that is not there.
+/// Identifies a file that does not exist, by its name alone.
 InputFile identify_by_name(const std::filesystem::path& file);
 
 }  // namespace tessera::io

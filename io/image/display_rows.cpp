@@ -13,10 +13,10 @@
 namespace tessera::io {
 namespace {
 
-/// Where each code begins, and for each of so many equal parts of 0..1 the code that its lower end has.
+/// The first linear value of each code, and a table of equal parts of 0..1 with the code at the lower end of each.
 struct Codes {
   static constexpr int parts = 4096;
-  std::array<double, 257> begin{};  ///< smallest linear value of each code; of 256 beyond all
+  std::array<double, 257> begin{};  ///< smallest linear value of each code; entry 256 is above all values
   std::array<std::uint8_t, parts + 1> code{};
 };
 
@@ -24,7 +24,7 @@ std::uint8_t by_formula(double linear) {
   return static_cast<std::uint8_t>(std::lround(colormaps::encode_srgb(linear) * 255));
 }
 
-/// By bisection over the doubles themselves, whose order is that of their bits: the formula's own answer, to the bit.
+/// Bisects over the doubles themselves, which are ordered like their bit patterns: exactly the result of the formula.
 Codes make_codes() {
   Codes codes;
   for (int code = 1; code < 256; ++code) {
@@ -46,7 +46,7 @@ std::uint8_t srgb_code(double linear) {
   static const Codes codes = make_codes();
   linear = std::clamp(linear, 0.0, 1.0);
   std::size_t code = codes.code[static_cast<std::size_t>(linear * Codes::parts)];
-  while (linear >= codes.begin[code + 1]) ++code;  // never twice: a part is less wide than the first code
+  while (linear >= codes.begin[code + 1]) ++code;  // at most once: a part is narrower than the first code
   return static_cast<std::uint8_t>(code);
 }
 
@@ -63,7 +63,7 @@ DisplayRows::DisplayRows(const scene::Image& image, const std::filesystem::path&
 template <class Put>
 void DisplayRows::encode(const std::vector<float>& rgba, const Put& put) const {
   for (std::size_t i = 0; i < rgba.size(); i += 4) {
-    // Straight alpha: colours are what an opaque pixel would show. Without alpha what is there stands on black.
+    // Straight alpha: colours are those of an opaque pixel. Without alpha the image is composited over black.
     const double alpha = rgba[i + 3], scale = channels_ == 3 ? 1 : alpha > 0 ? 1 / alpha : 0;
     for (std::size_t k = 0; k < 3; ++k) put(std::clamp(rgba[i + k] * scale, 0.0, 1.0), true);
     if (channels_ == 4) put(std::clamp(alpha, 0.0, 1.0), false);

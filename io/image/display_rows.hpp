@@ -10,20 +10,20 @@
 
 namespace tessera::io {
 
-/// Rows of a picture as whole numbers of display values, as .png, .jpg, .tif and films hold them: straight alpha, sRGB
-/// by `options`, the background behind it. From any thread.
+/// Rows of an image as integers of display values, as in .png, .jpg, .tif and films: straight alpha, sRGB if `options`
+/// selects it, composited over the background. Callable from any thread.
 class DisplayRows {
  public:
-  enum class Order : std::uint8_t { little, big };  ///< of the bytes of 16 bits
+  enum class Order : std::uint8_t { little, big };  ///< byte order of 16-bit values
 
-  /// With four channels the last is alpha; with three there should be a background, or the picture's light stands on
-  /// black, as in .pfm. Keeps references to all three. Errors name `file`.
+  /// With four channels the last is alpha; with three there should be a background, otherwise the image is composited
+  /// over black, as in .pfm. Keeps references to all three. Errors name `file`.
   DisplayRows(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options,
               int channels, Order order = Order::big);
 
   [[nodiscard]] std::size_t row_bytes() const { return row_bytes_; }
 
-  /// Writes row `y` to row_bytes() bytes; `rgba` is room that is used again. Throws as composited_row().
+  /// Writes row `y` to row_bytes() bytes; `rgba` is scratch memory that is reused. Throws like composited_row().
   void row(int y, std::vector<float>& rgba, std::uint8_t* out) const;
 
  private:
@@ -38,8 +38,8 @@ class DisplayRows {
   std::size_t row_bytes_;
 };
 
-/// The whole number of 0..255 that stands for this display value of linear light, which is clamped to 0..1:
-/// lround(255 encode_srgb(linear)), without its power.
+/// The integer 0..255 for the display value of linear light, clamped to 0..1: lround(255 encode_srgb(linear)), computed
+/// without a power function.
 std::uint8_t srgb_code(double linear);
 
 }  // namespace tessera::io

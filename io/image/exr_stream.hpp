@@ -22,7 +22,8 @@ class ExrStream : public Imf::OStream {
   void seekp(std::uint64_t position) override {
     keep([&] { file_.seek(position); });
   }
-  /// Throws again what a write threw: OpenEXR writes its table of lines in a destructor, which swallows.
+  /// Throws the error of a failed write again: OpenEXR writes its table of lines in a destructor, which swallows
+  /// exceptions.
   void rethrow() const {
     if (failure_) std::rethrow_exception(failure_);
   }

@@ -34,14 +34,14 @@ namespace tessera {
 inline namespace v0_1 {
 namespace {
 
-/// What ffmpeg is told of a kind of file: its format, and how pictures become it.
+/// ffmpeg's options for a kind of file: its format and its encoder.
 struct FilmKind {
   std::string_view extension, format;
-  bool is_video = true;           ///< else its pictures have colours of a palette
-  std::string_view quality = "";  ///< words for its encoder; without them it is made for small files
+  bool is_video = true;           ///< else its frames use a colour palette
+  std::string_view quality = "";  ///< quality options of its encoder; without them it optimizes for small files
 };
 
-// Without a bit rate of 0, VP9 keeps to one that is low whatever the pictures' size.
+// Without a bit rate of 0, VP9 limits itself to a low rate whatever the frame size.
 constexpr std::string_view h264 = "-crf 18", vp9 = "-crf 24 -b:v 0";
 constexpr std::array kinds = {
     FilmKind{".mp4", "mp4", true, h264},  FilmKind{".mov", "mov", true, h264}, FilmKind{".mkv", "matroska", true, h264},
@@ -54,7 +54,7 @@ const FilmKind* kind_of(const std::filesystem::path& file) {
   return kind == kinds.end() ? nullptr : kind;
 }
 
-/// Where PATH has the program; empty if nowhere.
+/// The program's path according to PATH; empty if not found.
 std::filesystem::path find_ffmpeg() {
   const char* const value = ::getenv("PATH");
   std::string_view path = value == nullptr ? "" : value;
@@ -69,7 +69,7 @@ std::filesystem::path find_ffmpeg() {
   return {};
 }
 
-/// Pictures to write in its place. A name that is numbered already has its number.
+/// Suggests a name for an image sequence instead of a film. A name that is already numbered keeps its number.
 std::string pictures_instead(const std::filesystem::path& file) {
   const std::string stem = (file.parent_path() / file.stem()).string();
   return stem + (stem.find('%') == std::string::npos ? "_%04d.png" : ".png");
@@ -92,7 +92,7 @@ const FilmKind& require_kind(const std::filesystem::path& file) {
   return *kind;
 }
 
-/// The display values that stand behind pictures, as ffmpeg writes a colour.
+/// The display values of the background, in ffmpeg's notation for a colour.
 std::string ground_color(const ImageFileOptions& options) {
   std::string color = "0x";
   for (int k = 0; k < 3; ++k) {
@@ -113,8 +113,8 @@ std::vector<std::string> ffmpeg_words(const FilmKind& kind, ImageSize size, cons
                                     "-framerate", fmt::format("{:g}", options.frames_per_second),
                                     "-i",         "pipe:0"};
   if (kind.is_video) {
-    // Chroma in pairs of pixels is what players understand. They take large pictures for those of BT.709, small ones
-    // for BT.601's, unless they are told, and ffmpeg makes BT.601 of all and says nothing.
+    // Players expect chroma for pairs of pixels. Untagged, they interpret large frames as BT.709 and small ones as
+    // BT.601, while ffmpeg converts all to BT.601 without a tag.
     words.insert(words.end(), {"-vf", fmt::format("pad=ceil(iw/2)*2:ceil(ih/2)*2:color={},scale=out_color_matrix=bt709:"
                                                   "out_range=tv,format=yuv420p",
                                                   ground_color(options.image))});
@@ -129,7 +129,7 @@ std::vector<std::string> ffmpeg_words(const FilmKind& kind, ImageSize size, cons
     words.emplace_back(left.substr(0, end));
     left.remove_prefix(std::min(end + 1, left.size()));
   }
-  // By descriptor: the nameless file that it is leaves nothing behind if this process is killed.
+  // By descriptor: the unnamed file leaves nothing behind if this process is killed.
   words.insert(words.end(), {"-f", std::string(kind.format), fmt::format("/proc/self/fd/{}", output)});
   return words;
 }
@@ -152,15 +152,15 @@ struct FilmFile::State {
   State& operator=(const State&) = delete;
 
   void start(const std::filesystem::path& program);
-  /// Before its end is waited for, after which its number may be another's.
+  /// To be called before waiting for its end; afterwards its process id may belong to another process.
   void forget_process() const {
     const auto lock = system::naming_outputs();
     system::remove_unfinished(process);
   }
-  /// No more pictures; waits for its end. Throws if that is not a good one.
+  /// Closes the stream of frames and waits for ffmpeg to end. Throws if it fails.
   void end();
   [[noreturn]] void fail(const std::string& what) const;
-  /// The last line that ffmpeg has said.
+  /// The last line that ffmpeg printed.
   [[nodiscard]] std::string last_words() const;
 
   std::filesystem::path file;
@@ -174,7 +174,7 @@ struct FilmFile::State {
 
 void FilmFile::State::start(const std::filesystem::path& program) {
   std::array<int, 2> ends{};
-  // A socket, whose writer is told that nobody reads and is not killed for it.
+  // A socket: writing after the reader has closed it returns an error instead of killing this process.
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) fail(std::strerror(errno));
   pictures = system::Descriptor(ends[0]);
   const system::Descriptor theirs(ends[1]);
@@ -182,7 +182,7 @@ void FilmFile::State::start(const std::filesystem::path& program) {
   if (!complaints.is_open()) fail(std::strerror(errno));
 
   constexpr int output = 3;
-  // Copies first, above all numbers that are given out below: what is copied from may be one of those.
+  // Duplicates first, above all descriptors assigned below: the originals may have one of those numbers.
   const system::Descriptor in(::fcntl(theirs.get(), F_DUPFD_CLOEXEC, 10)),
       err(::fcntl(complaints.get(), F_DUPFD_CLOEXEC, 10)), out(::fcntl(target.descriptor(), F_DUPFD_CLOEXEC, 10));
   if (!in.is_open() || !err.is_open() || !out.is_open()) fail(std::strerror(errno));
@@ -191,8 +191,8 @@ void FilmFile::State::start(const std::filesystem::path& program) {
   ::posix_spawn_file_actions_adddup2(&plan.files, err.get(), STDERR_FILENO);
   ::posix_spawn_file_actions_addopen(&plan.files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   ::posix_spawn_file_actions_adddup2(&plan.files, out.get(), output);
-  ::posix_spawn_file_actions_addclosefrom_np(&plan.files, output + 1);  // sockets of a server, say
-  plan.set_own_group();  // Ctrl-C is for this program, whose end it hears of
+  ::posix_spawn_file_actions_addclosefrom_np(&plan.files, output + 1);  // for example sockets of a server
+  plan.set_own_group();  // Ctrl-C is handled by this program, whose end closes ffmpeg's input
   const int failed = plan.start(program, ffmpeg_words(*kind_of(file), size, options, output), environ, process);
   if (failed != 0) {
     process = -1;
@@ -218,7 +218,7 @@ void FilmFile::State::fail(const std::string& what) const {
 void FilmFile::State::end() {
   pictures = system::Descriptor();
   int status = 0;
-  // Looked at first, and taken away once it is no longer to be ended by abandon_outputs().
+  // Waits first and reaps only after abandon_outputs() can no longer kill it.
   siginfo_t ended{};
   while (::waitid(P_PID, static_cast<id_t>(process), &ended, WEXITED | WNOWAIT) < 0 && errno == EINTR) {
   }

@@ -33,7 +33,7 @@ constexpr std::array<std::pair<const char*, float Sample::*>, 6> channels{{{"R",
                                                                            {"Z", &Sample::z},
                                                                            {"ZBack", &Sample::z_back}}};
 
-/// What a reader relies on; a picture that breaks it must not be written silently.
+/// Checks invariants on which readers rely, so that no invalid image is written silently.
 void check_tidy(const scene::DeepImage& image, const std::filesystem::path& file) {
   const auto width = static_cast<std::size_t>(image.size.width);
   for (std::size_t p = 0; p + 1 < image.begin.size(); ++p) {
@@ -57,8 +57,8 @@ void write_lines(Imf::DeepScanLineOutputFile& output, const scene::DeepImage& im
   std::vector<unsigned int> counts(width);
   std::array<std::vector<const char*>, channels.size()> pointers;
   for (auto& row : pointers) row.resize(width);
-  // One line at a time: a deep file compresses line by line. A stride of zero between lines makes any line the
-  // buffer's.
+  // One line at a time: deep files compress line by line. With a stride of zero between lines, any line uses the same
+  // buffer.
   Imf::DeepFrameBuffer frame;
   frame.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts.data()), sizeof(unsigned int), 0));
   for (std::size_t c = 0; c < channels.size(); ++c)

@@ -31,8 +31,8 @@ namespace {
 
 constexpr std::array<const char*, 4> channel_names{"R", "G", "B", "A"};
 
-/// OpenEXR compresses on threads of one pool of the process, which has none until somebody asks. It only grows here: a
-/// caller's own setting stays. 0: this thread alone.
+/// OpenEXR compresses on a process-wide thread pool, which is empty until it is resized. It only grows here: a caller's
+/// own setting is kept. 0: only this thread.
 int compressing_threads(const ImageFileOptions& options) {
   const int threads = scene::threads_for(options.threads);
   if (threads < 2) return 0;
@@ -47,7 +47,7 @@ void write_rows(Imf::OutputFile& output, const scene::Image& image, const std::f
                 const ImageFileOptions& options, int threads) {
   constexpr bool is_half = std::is_same_v<Number, half>;
   const auto width = static_cast<std::size_t>(image.size.width);
-  const int rows_at_once = 16 * std::clamp(threads, 1, 64);  // ZIP compresses 16 together, each thread its own
+  const int rows_at_once = 16 * std::clamp(threads, 1, 64);  // each thread compresses groups of 16 rows
   std::vector<float> row(4 * width);
   std::vector<Number> rows(4 * width * static_cast<std::size_t>(std::min(rows_at_once, image.size.height)));
   for (int begin = 0; begin < image.size.height; begin += rows_at_once) {
@@ -63,8 +63,8 @@ void write_rows(Imf::OutputFile& output, const scene::Image& image, const std::f
         out[i] = Number(row[i]);
       }
     }
-    // A slice's base is where pixel (0, 0) would be, before the buffer: computed as an integer, since a pointer may not
-    // point there, and never used.
+    // The base of a slice is the address of pixel (0, 0), before the buffer. It is computed as an integer, because a
+    // pointer there would be invalid, and never dereferenced.
     const auto base = [&](const void* first, std::size_t row_bytes) {
       // NOLINTNEXTLINE(performance-no-int-to-ptr)
       return reinterpret_cast<char*>(reinterpret_cast<std::uintptr_t>(first) -
@@ -82,7 +82,7 @@ void write_rows(Imf::OutputFile& output, const scene::Image& image, const std::f
   }
 }
 
-/// All of the file, into a stream named after it. Throws what OpenEXR throws, too.
+/// Writes the whole file to a stream named after it. Also throws OpenEXR's exceptions.
 void encode(Imf::OStream& stream, const scene::Image& image, const std::filesystem::path& file,
             const ImageFileOptions& options) {
   Imf::Header header(image.size.width, image.size.height);
@@ -98,7 +98,7 @@ void encode(Imf::OStream& stream, const scene::Image& image, const std::filesyst
     write_rows<float>(output, image, file, options, threads);
 }
 
-/// What `work` throws, as the project's error.
+/// Converts exceptions of `work` to Error.
 template <class Work>
 void writing(const std::filesystem::path& file, const Work& work) {
   try {

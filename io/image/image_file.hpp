@@ -25,8 +25,8 @@ std::vector<std::byte> checked_jpeg_bytes(const scene::Image& image, const Image
 /// tessera::read_image().
 scene::Image read_image(const std::filesystem::path& file);
 
-/// Throws Error(bad_input) unless write_image knows the extension and could create this file now: its folder exists and
-/// lets us write, and the name is not that of a folder or device. To be called before any rendering.
+/// Throws Error(bad_input) unless write_image supports the extension and could create this file now: its directory
+/// exists and is writable, and the name is not that of a directory or device. To be called before any rendering.
 void check_image_path(const std::filesystem::path& file);
 
 }  // namespace tessera::io

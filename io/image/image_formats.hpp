@@ -9,8 +9,8 @@
 
 namespace tessera::io {
 
-// One function a format; image_file.cpp chooses by extension and has checked the image's sizes. `row` below is the
-// picture's row with the background composited, as every writer takes it.
+// One function per format; image_file.cpp chooses by extension and has checked the image's sizes. `row` below is a row
+// of the image composited over the background, as every writer takes it.
 
 void write_exr(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options);
 void write_png(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options);
@@ -20,14 +20,14 @@ void write_pfm(const scene::Image& image, const std::filesystem::path& file, con
 std::vector<std::byte> png_bytes(const scene::Image& image, const ImageFileOptions& options);
 std::vector<std::byte> exr_bytes(const scene::Image& image, const ImageFileOptions& options);
 std::vector<std::byte> jpeg_bytes(const scene::Image& image, const ImageFileOptions& options);
-/// Whether write_jpeg() can.
+/// Whether write_jpeg() is available.
 bool has_jpeg();
-/// Whether write_tiff() can.
+/// Whether write_tiff() is available.
 bool has_tiff();
 scene::Image read_exr(const std::filesystem::path& file);
 scene::Image read_pfm(const std::filesystem::path& file);
 
-/// Row `y` as the file is to show it: 4 floats a pixel, premultiplied, the background behind it. Throws
+/// Row `y` as the file stores it: 4 floats a pixel, premultiplied, composited over the background. Throws
 /// Error(system_failure) for a NaN or infinite component or a NaN depth, naming file and pixel.
 void composited_row(const scene::Image& image, int y, const ImageFileOptions& options,
                     const std::filesystem::path& file, float* rgba);

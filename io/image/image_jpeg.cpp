@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include <cstddef>
-#include <cstdio>  // jpeglib.h uses FILE and does not say so
-// after it
+#include <cstdio>  // jpeglib.h uses FILE without including its header
+// must follow <cstdio>
 #include <jpeglib.h>
 
 #include <csetjmp>
@@ -18,7 +18,7 @@
 namespace tessera::io {
 namespace {
 
-/// libjpeg leaves by longjmp, which must not pass C++ destructors: functions that call it own nothing.
+/// libjpeg reports errors by longjmp, which must not skip C++ destructors: functions that call it own nothing.
 struct Jpeg {
   jpeg_compress_struct compress{};
   jpeg_error_mgr errors{};
@@ -58,7 +58,7 @@ bool begin(Jpeg& jpeg, int width, int height, int quality) {
   jpeg.compress.in_color_space = JCS_RGB;
   jpeg_set_defaults(&jpeg.compress);
   jpeg_set_quality(&jpeg.compress, quality, TRUE);
-  // Colours in full: thin coloured lines are what pictures of volumes have.
+  // No chroma subsampling: volume renderings have thin coloured lines.
   jpeg.compress.comp_info[0].h_samp_factor = jpeg.compress.comp_info[0].v_samp_factor = 1;
   jpeg_start_compress(&jpeg.compress, TRUE);
   return true;
@@ -76,7 +76,7 @@ bool finish(Jpeg& jpeg) {
   return true;
 }
 
-/// All of the file, in `jpeg`.
+/// Encodes the whole file with `jpeg`.
 void encode(Jpeg& jpeg, const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
   if (image.size.width > JPEG_MAX_DIMENSION || image.size.height > JPEG_MAX_DIMENSION)
     throw scene::bad_input(fmt::format("{}: is {}x{} pixels, a .jpg has at most {} a side; write .png", file.string(),

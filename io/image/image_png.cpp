@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// PNG (ISO/IEC 15948): a zlib stream of filtered rows between chunks. Written here and not by libpng, whose one stream
-// is compressed on one thread: strips of rows are compressed apart, each a run of whole deflate blocks that ends on a
-// byte, as pigz does it (Adler, zlib.net/pigz). Strips do not depend on the number of threads, so neither do the bytes.
+// PNG (ISO/IEC 15948): a zlib stream of filtered rows in chunks. Written here and not by libpng, which compresses on
+// one thread: strips of rows are compressed separately, each a run of whole deflate blocks that ends at a byte
+// boundary, as in pigz (Adler, zlib.net/pigz). Strips do not depend on the number of threads, so neither do the bytes.
 #include <fmt/format.h>
 #include <zlib.h>
 
@@ -25,7 +25,7 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 using Write = std::function<void(const void*, std::size_t)>;
 
-// Trying filters for every row took as long as compression and saved 2 %.
+// Trying all filters for every row took as long as compression and saved 2 %.
 constexpr std::uint8_t filter_up = 2;
 
 struct Strip {
@@ -43,7 +43,7 @@ void write_chunk(const Write& write, std::string_view name, const Bytes& content
   append_be32(head, static_cast<std::uint32_t>(content.size()));
   head.insert(head.end(), name.begin(), name.end());
   uLong crc = crc32(0, head.data() + 4, 4);
-  // Of no bytes zlib would take it for a beginning.
+  // Without bytes zlib would return the initial value.
   if (!content.empty()) crc = crc32(crc, content.data(), static_cast<uInt>(content.size()));
   Bytes tail;
   append_be32(tail, static_cast<std::uint32_t>(crc));
@@ -52,7 +52,7 @@ void write_chunk(const Write& write, std::string_view name, const Bytes& content
   write(tail.data(), tail.size());
 }
 
-/// Raw deflate blocks; all but the last strip's end with an empty block, which fills up a byte.
+/// Raw deflate blocks; those of all strips but the last end with an empty block that pads to a byte.
 Bytes deflated(const Bytes& rows, bool is_last) {
   z_stream stream{};
   constexpr int raw_32k = -15, memory_level = 8;
@@ -62,18 +62,18 @@ Bytes deflated(const Bytes& rows, bool is_last) {
     z_stream& stream;
     ~End() { deflateEnd(&stream); }
   } const end{stream};
-  Bytes out(deflateBound(&stream, static_cast<uLong>(rows.size())) + 16);  // and the empty block
-  stream.next_in = const_cast<Bytef*>(rows.data());                        // zlib reads it only
+  Bytes out(deflateBound(&stream, static_cast<uLong>(rows.size())) + 16);  // plus the empty block
+  stream.next_in = const_cast<Bytef*>(rows.data());                        // zlib only reads it
   stream.avail_in = static_cast<uInt>(rows.size());
   stream.next_out = out.data();
   stream.avail_out = static_cast<uInt>(out.size());
-  deflate(&stream, is_last ? Z_FINISH : Z_SYNC_FLUSH);  // with room for all it cannot fail
+  deflate(&stream, is_last ? Z_FINISH : Z_SYNC_FLUSH);  // cannot fail: the buffer is large enough
   out.resize(stream.total_out);
   out.shrink_to_fit();
   return out;
 }
 
-/// Rows [begin, end), each with its filter before it.
+/// Rows [begin, end), each preceded by its filter type.
 Bytes filtered_rows(const DisplayRows& display, int begin, int end) {
   const std::size_t row_bytes = display.row_bytes();
   Bytes rows(static_cast<std::size_t>(end - begin) * (row_bytes + 1));
@@ -113,7 +113,7 @@ void write_head(const Write& write, const scene::Image& image, int bits, int cha
   header.insert(header.end(), {static_cast<std::uint8_t>(bits), channels == 4 ? rgb_alpha : rgb, 0, 0, 0});
   write_chunk(write, "IHDR", header);
   write_chunk(write, "sRGB", {0});  // perceptual
-  Bytes gamma, primaries;           // for readers that do not know sRGB; the standard gives the numbers
+  Bytes gamma, primaries;           // for readers without sRGB support; the numbers are from the standard
   append_be32(gamma, 45455);
   for (const std::uint32_t place : {31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000})
     append_be32(primaries, place);
@@ -133,7 +133,7 @@ void encode(const scene::Image& image, const std::filesystem::path& file, const 
   for (std::size_t i = 0; i < strips.size(); ++i) {
     Strip& strip = strips[i];
     adler = adler32_combine(adler, strip.adler, static_cast<z_off_t>(strip.length));
-    if (i == 0) strip.deflated.insert(strip.deflated.begin(), {0x78, 0x5e});  // zlib's head: 32 KiB window, fast
+    if (i == 0) strip.deflated.insert(strip.deflated.begin(), {0x78, 0x5e});  // zlib header: 32 KiB window, fast
     if (i + 1 == strips.size()) append_be32(strip.deflated, static_cast<std::uint32_t>(adler));
     write_chunk(write, "IDAT", strip.deflated);
     strip.deflated = {};

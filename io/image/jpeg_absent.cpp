@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Built in place of image_jpeg.cpp with TESSERA_JPEG=OFF.
+// Built instead of image_jpeg.cpp if TESSERA_JPEG=OFF.
 #include "io/image/image_formats.hpp"
 #include "scene/error.hpp"
 

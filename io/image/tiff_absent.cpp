@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Built in place of image_tiff.cpp with TESSERA_TIFF=OFF.
+// Built instead of image_tiff.cpp if TESSERA_TIFF=OFF.
 #include "io/image/image_formats.hpp"
 #include "scene/error.hpp"
 

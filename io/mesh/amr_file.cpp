@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Meshes with levels of refinement: what is read of them, and what it becomes.
+// Reads meshes with refinement levels and converts them to cells.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ void add_fields_of_image(const OpenedAmrBlock& block, cells::CellBlock& fields, 
   add_foreign_fields(*block.file, part, Association::cell, product(cells), fields, source);
 }
 
-/// Fields, whose counts are compared with the block's extent, or its trees' leaves.
+/// The fields, whose sizes are compared with the block's extent or the number of leaves.
 cells::CellBlock fields_of(const OpenedAmrBlock& block, const std::string& source) {
   const ForeignPart& part = *block.part;
   cells::CellBlock fields;
@@ -57,12 +57,12 @@ cells::CellBlock fields_of(const OpenedAmrBlock& block, const std::string& sourc
     add_foreign_fields(*block.file, part, Association::cell, part.types ? part.types->tuples : 0, fields, source);
   else
     add_fields_of_image(block, fields, source);
-  if (fields.fields.empty())  // so that no extent is larger than the file explains
+  if (fields.fields.empty())  // bounds the extent by the file
     throw scene::bad_input(fmt::format("{}: it has no field; write all blocks with one", source));
   return fields;
 }
 
-/// The numbers of an array of T; none if it is another, or missing.
+/// The numbers of an array of T; empty if it has another type or is missing.
 template <class T>
 std::optional<std::vector<T>> numbers_as(const OpenedAmrBlock& block, const std::optional<ForeignArray>& array,
                                          NumberType type, int components, const std::string& source) {
@@ -99,7 +99,7 @@ cells::AmrBlock described(const OpenedAmrBlock& block, const std::string& source
   return amr;
 }
 
-/// The chosen field's numbers of one block; none if it has not got it.
+/// The chosen field's numbers of one block; empty if the block does not have it.
 std::vector<double> numbers_in(const cells::CellBlock& block, const cells::FieldChoice& choice) {
   std::vector<double> numbers;
   if (const cells::BlockField* const field = cells::find_field(block, choice.name, choice.association)) {
@@ -109,13 +109,13 @@ std::vector<double> numbers_in(const cells::CellBlock& block, const cells::Field
   return numbers;
 }
 
-/// Cell data of the leaves. Blocks without the field have none.
+/// Cell data of the leaves. Blocks without the field have no values.
 std::vector<double> values_of_leaves(std::span<const cells::CellBlock> fields, const cells::AmrLeaves& amr,
                                      const cells::FieldChoice& choice) {
   std::vector<double> values(amr.leaves.size(), no_value);
   std::vector<double> numbers;
   std::size_t of = fields.size();
-  for (std::size_t l = 0; l < values.size(); ++l) {  // leaves of a block follow each other
+  for (std::size_t l = 0; l < values.size(); ++l) {  // the leaves of a block are consecutive
     const cells::AmrLeaf& leaf = amr.leaves[l];
     if (leaf.part != of) of = leaf.part, numbers = numbers_in(fields[of], choice);
     if (!numbers.empty()) values[l] = numbers[leaf.cell];
@@ -123,7 +123,7 @@ std::vector<double> values_of_leaves(std::span<const cells::CellBlock> fields, c
   return values;
 }
 
-/// Leaves without a number are taken away: those beside them are then at a boundary.
+/// Removes leaves without a value; their neighbours become boundary cells.
 std::uint64_t drop_blank(cells::AmrLeaves& amr, std::vector<double>& values) {
   std::size_t kept = 0;
   for (std::size_t l = 0; l < values.size(); ++l)
@@ -219,7 +219,8 @@ cells::MeshBlocks read_amrex(const InputFile& file, const MeshOptions& options) 
 }
 
 cells::MeshBlocks read_amr_list(const InputFile& file, const MeshOptions& options) {
-  if (!has_reader(Reader::vtk)) throw missing_reader(Reader::vtk, file.name, file.format);  // else it names a block
+  if (!has_reader(Reader::vtk))
+    throw missing_reader(Reader::vtk, file.name, file.format);  // otherwise an error names a block
   return mesh_of(open_amr_list(file), options, file.name);
 }
 

@@ -9,30 +9,30 @@
 
 namespace tessera::io {
 
-/// An image (kind image of io/foreign/messages/foreign_data.hpp) of cells, or trees of them.
+/// An image (kind image of io/foreign/messages/foreign_data.hpp) of cells, or trees of cells.
 struct OpenedAmrBlock {
   const ForeignFile* file;  ///< null if no reader program holds it; then it has no ghosts
   const ForeignPart* part;
 };
 
-/// Everything of a file with levels of refinement but its numbers, which are with the helper, or mapped.
+/// A file with refinement levels, without its numbers, which stay in the helper or are mapped.
 struct OpenedAmr {
-  std::deque<ForeignFile> files;       ///< that the helper holds; stay where they are
-  std::deque<ForeignPart> parts;       ///< of a parser of ours; stay too
-  std::vector<OpenedAmrBlock> blocks;  ///< images, or trees, of one of these
+  std::deque<ForeignFile> files;       ///< held by the helper; addresses stay valid
+  std::deque<ForeignPart> parts;       ///< of our own parser; addresses stay valid
+  std::vector<OpenedAmrBlock> blocks;  ///< images or trees, each in one of `files` or `parts`
   std::vector<cells::CellBlock>
-      fields;  ///< of each block, and its name; no cells. Of the helper's empty: not asked for yet
+      fields;  ///< per block, with its name; no cells. Empty for the helper's: not requested yet
   std::string format;
   std::vector<std::string> notes;
 
   void add(ForeignFile opened);
 };
 
-/// VTK's list of blocks, each read by itself, so that faults name the file. What level a block has is seen from its
-/// spacing.
+/// Opens VTK's list of blocks. Each block is read by itself, so that errors name its file. The spacing determines the
+/// level of a block.
 OpenedAmr open_amr_list(const InputFile& file);
 
-/// VTK's trees, whole or in pieces, each of which is read by itself.
+/// Opens VTK's trees, whole or in pieces, each read by itself.
 OpenedAmr open_hyper_trees(const InputFile& file);
 
 }  // namespace tessera::io

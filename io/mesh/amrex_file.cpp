@@ -20,7 +20,7 @@
 namespace tessera::io {
 namespace {
 
-/// How numbers are stored, as the line before them says it.
+/// Storage format of numbers, as declared in the line before them.
 struct NumberFormat {
   std::string_view words;
   std::size_t bytes;
@@ -33,8 +33,8 @@ constexpr std::array formats = {
     NumberFormat{"((8, (32 8 23 0 1 9 0 127)),(4, (1 2 3 4)))", 4, true},
 };
 
-/// The numbers of one field of one box, in a file that is opened for each reading: there may be more files than a
-/// process may have open.
+/// The numbers of one field of one box, in a file that is opened for each read: there may be more files than the
+/// process may open at once.
 struct FabNumbers {
   std::filesystem::path file;
   std::uint64_t offset = 0;
@@ -42,7 +42,7 @@ struct FabNumbers {
   bool swap = false;
   AmrexBox box, stored;
 
-  /// The numbers of the box's cells, x first, of which there may be more around.
+  /// Reads the numbers of the box's cells, x fastest; the stored array may cover cells around them.
   void read(std::size_t first, std::span<double> out) const {
     const auto nx = static_cast<std::size_t>(box.cells(0)), ny = static_cast<std::size_t>(box.cells(1)),
                row = static_cast<std::size_t>(stored.cells(0)), slice = row * static_cast<std::size_t>(stored.cells(1));
@@ -55,7 +55,7 @@ struct FabNumbers {
     const system::PositionalFile opened(file);
     std::vector<std::byte> stored_bytes;
     for (std::size_t n = 0; n < out.size();) {
-      // As far as what lies between the rows is not most of it.
+      // Extends the read over rows while the gaps between them are not most of it.
       std::size_t end = n + std::min(nx - (first + n) % nx, out.size() - n);
       const std::size_t begin = place_of(first + n);
       while (end < out.size()) {
@@ -136,7 +136,7 @@ class PlotFile {
     return block;
   }
 
-  /// FAB, the format of numbers, the box and how many fields there are; then the numbers.
+  /// Parses FAB, the format of numbers, the box and the number of fields; the numbers follow.
   FabNumbers numbers_of(AmrexFab& fab, const std::filesystem::path& file) {
     const system::PositionalFile opened(file);
     const auto [known_file, is_new] = files_.try_emplace(file.string(), opened.size());
@@ -177,7 +177,7 @@ class PlotFile {
       throw refuse(fmt::format("{} bytes of values begin there, the file has {} bytes; it is truncated, write it again",
                                bytes, size));
     bytes_used_ += bytes;
-    if (bytes_used_ > bytes_there_)  // so that what is kept of each box is in proportion to the files
+    if (bytes_used_ > bytes_there_)  // so that the memory per box is proportional to the files
       throw refuse("boxes share their values; it is damaged, write it again");
     return {file, begin, format->bytes, scene::is_swapped(format->big_endian), fab.box, fab.stored};
   }

@@ -19,7 +19,7 @@
 namespace tessera::io {
 namespace {
 
-/// The corners of a two-dimensional cell one after the other round it; none of other cells.
+/// The corners of a two-dimensional cell in order around it; empty for other cells.
 std::vector<std::uint32_t> rim_of(std::uint8_t type, std::span<const std::uint32_t> points) {
   std::size_t corners = 0;
   switch (CellType{type}) {
@@ -42,7 +42,7 @@ std::vector<std::uint32_t> rim_of(std::uint8_t type, std::span<const std::uint32
     case CellType::polygon:
       corners = points.size();
       break;
-    case CellType::quadratic_polygon:  // corners, then as many nodes between them
+    case CellType::quadratic_polygon:  // corners, then as many mid-edge nodes
       corners = points.size() / 2;
       break;
     default:
@@ -88,7 +88,7 @@ class Faces {
       has_values_ = false;
   }
 
-  /// Each face has points of its own, for those of cell data have several values.
+  /// Adds a face with points of its own, because a shared point would have several values of cell data.
   void add_face(const cells::CellBlock& block, std::size_t cell, std::span<const std::uint32_t> rim,
                 const std::string& source) {
     triangles_.clear();
@@ -118,7 +118,7 @@ class Faces {
   cells::PolygonTriangles cutter_;
 };
 
-/// The field that is asked for, if the blocks have it.
+/// The requested field, if the blocks have it.
 std::optional<cells::FieldChoice> field_of(std::span<const cells::CellBlock> blocks, const std::string& wish,
                                            const std::string& source) {
   if (wish.empty()) return std::nullopt;

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::int32_t code_dimension = 3, code_vertices = 4, code_end = 54, last_known_code = 250;
 
-/// A keyword of cells and the type of them.
+/// A keyword of cells and their type.
 struct MeditCells {
   std::int32_t code;
   std::string_view word;
@@ -36,7 +36,7 @@ constexpr std::array<MeditCells, 5> medit_cells = {{{8, "Tetrahedra", CellType::
                                                     {49, "Pyramids", CellType::pyramid, 5},
                                                     {30, "TetrahedraP2", CellType::quadratic_tetra, 10}}};
 
-/// Volumes that are not read, and another order of nodes.
+/// Volume cells and node orders that are not supported.
 constexpr std::array<std::pair<std::int32_t, std::string_view>, 14> unread_cells = {{{33, "hexahedra of order 2"},
                                                                                      {46, "polyhedra"},
                                                                                      {86, "prisms of order 2"},
@@ -52,7 +52,7 @@ constexpr std::array<std::pair<std::int32_t, std::string_view>, 14> unread_cells
                                                                                      {133, "an order of nodes"},
                                                                                      {207, "polyhedra"}}};
 
-/// In blocks, once their points are known to be there.
+/// Divides the cells into blocks after checking that their points exist.
 std::vector<cells::CellBlock> checked_blocks(const cells::CellBlock& block, const std::vector<std::int64_t>& references,
                                              const std::string& source) {
   if (block.types.empty())
@@ -163,10 +163,10 @@ class MeditBinary {
   std::int32_t version_ = 0;
   std::size_t at_ = 0;
   cells::CellBlock block_;
-  std::vector<std::int64_t> references_;  ///< of the cells
+  std::vector<std::int64_t> references_;  ///< per cell
 };
 
-/// Words apart by any blanks, so that lines mean nothing but the end of a comment.
+/// Words separated by any blanks; line ends matter only as the end of a comment.
 class MeditText {
  public:
   MeditText(std::string_view text, const std::string& source)
@@ -175,7 +175,7 @@ class MeditText {
   }
 
   std::vector<cells::CellBlock> blocks() {
-    std::string_view list;  // that has just been read
+    std::string_view list;  // the list just read
     for (std::string_view word = scanner_.word(); !word.empty() && word != "End"; word = scanner_.word()) {
       if (!list.empty() && std::string_view("+-.0123456789").find(word[0]) != std::string_view::npos)
         fail(fmt::format("the number '{}' follows the last of the {}: each has more numbers than this keyword allows",
@@ -187,13 +187,13 @@ class MeditText {
         if (word == cells.word) read_cells(cells), list = word;
       if (is_unread(word) && whole("a count") > 0)
         scanner_.fail(fmt::format("its {} are not read; export first-order cells", word));
-      // The numbers of other keywords are passed over one by one.
+      // The numbers of other keywords are skipped one by one.
     }
     return checked_blocks(block_, references_, source_);
   }
 
  private:
-  /// Volumes of higher order (TetrahedraP3, HexahedraQ2, Prisms9), another order of their nodes, and polyhedra.
+  /// Volume cells of higher order (TetrahedraP3, HexahedraQ2, Prisms9), other node orders, and polyhedra.
   static bool is_unread(std::string_view word) {
     constexpr std::array<std::string_view, 4> families = {"Tetrahedra", "Prisms", "Hexahedra", "Pyramids"};
     const auto is_curved = [&](std::string_view family) {
@@ -205,7 +205,7 @@ class MeditText {
   }
 
   void read_points() {
-    const std::size_t count = read_count(8, "points");  // four numbers and what parts them
+    const std::size_t count = read_count(8, "points");  // four numbers and their separators
     block_.positions.reserve(count);
     for (std::size_t v = 0; v < count; ++v) {
       glm::dvec3 p;
@@ -256,7 +256,7 @@ class MeditText {
   TextScanner scanner_;
   const std::string& source_;
   cells::CellBlock block_;
-  std::vector<std::int64_t> references_;  ///< of the cells
+  std::vector<std::int64_t> references_;  ///< per cell
 };
 
 }  // namespace

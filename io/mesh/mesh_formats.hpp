@@ -6,8 +6,8 @@
 #include "io/mesh/mesh_options.hpp"
 #include "io/mesh/triangle_file.hpp"
 
-/// What the rows of the table of formats (io/formats/format_table.cpp) name of this directory: readers of mesh files.
-/// Those that need a reader program throw missing_reader() where it is not installed.
+/// Readers of mesh files that the rows of the table of formats (io/formats/format_table.cpp) name. Those that need a
+/// reader program throw missing_reader() if it is not installed.
 namespace tessera::io {
 
 struct ForeignFile;
@@ -24,27 +24,28 @@ scene::TimeStepRead tecplot_time_steps(const InputFile& file, const MeshOptions&
 cells::MeshBlocks read_tets(const InputFile& file, const MeshOptions& options);
 cells::MeshBlocks blocks_of_tets(scene::TetMesh mesh);
 
-/// TetGen's mesh; either file's name finds the other.
+/// TetGen's mesh; the name of either file finds the other.
 cells::MeshBlocks read_node_ele(const InputFile& file, const MeshOptions& options);
 
-/// Meshes with levels of refinement. Cells that finer ones cover are left out; the chosen field alone is read. Cell
-/// data are voxels; point data and `smooth` are cells that meet across levels (cells/amr/amr_cells.hpp).
+/// Meshes with refinement levels. Cells covered by finer ones are left out; only the chosen field is read. Cell data
+/// become voxels; point data, and cell data with `smooth`, become cells that connect across levels
+/// (cells/amr/amr_cells.hpp).
 cells::MeshBlocks read_amr_list(const InputFile& file, const MeshOptions& options);
 cells::MeshBlocks read_hyper_trees(const InputFile& file, const MeshOptions& options);
 cells::MeshBlocks read_amrex(const InputFile& file, const MeshOptions& options);
 cells::MeshBlocks read_enzo(const InputFile& file, const MeshOptions& options);
 
-/// The same of a file that the helper found to be one (ForeignContents::has_levels).
+/// Like read_amr_list(), for a file whose reader reported refinement levels (ForeignContents::has_levels).
 cells::MeshBlocks read_amr(ForeignFile blocks, const MeshOptions& options);
 
-/// Surfaces as their files have them. Triangles of STL have points of their own.
+/// Surfaces as stored in their files. Each triangle of an STL file has its own points.
 SurfaceFile read_stl_surface(const InputFile& file);
 SurfaceFile read_vtk_surface_file(const InputFile& file);
 SurfaceFile read_ply_surface(const InputFile& file);
 SurfaceFile read_tetgen_surface(const InputFile& file);
 
-/// A surface filled by TetGen with tets of at most `max_volume`, or of a 30,000th of what it encloses. Point fields:
-/// "depth", the distance to the surface in world units, after the file's own attributes.
+/// A surface filled by TetGen with tets of at most `max_volume`, by default 1/30,000 of the enclosed volume. Point
+/// fields: the file's own attributes, then "depth", the distance to the surface in world units.
 cells::MeshBlocks fill_surface_file(const InputFile& file, const MeshOptions& options);
 
 }  // namespace tessera::io

@@ -5,9 +5,9 @@
 
 namespace tessera::io {
 
-/// What is read of a mesh file.
+/// Options for reading a mesh file.
 struct MeshOptions : ReadOptions {
-  bool surfaces = false;  ///< blocks of faces, patches and side sets are read and named too
+  bool surfaces = false;  ///< also read and name blocks of faces, patches and side sets
 };
 
 }  // namespace tessera::io

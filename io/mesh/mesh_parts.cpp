@@ -43,14 +43,14 @@ struct MeshPartReading::State {
   ReadOptions options;
   cells::MeshBlocks blocks;
   std::vector<cells::FieldTally> tallies;
-  scene::Box box;  ///< of the part, then of all
+  scene::Box box;  ///< of the part, later of all parts
   std::vector<cells::FieldSummary> fields;
   cells::FieldChoice choice;
   cells::CurvedSettings asked;
-  // Of a .tets file:
+  // For a .tets file:
   std::vector<std::uint32_t> file_vertex;
   std::uint64_t file_vertices = 0;
-  bool counts_points = true;  ///< the first part, which counts the points of all
+  bool counts_points = true;  ///< true in the first part, which counts the points for all
 
   void read_tets(int part, int parts) {
     const std::string& source = file.name;
@@ -62,7 +62,7 @@ struct MeshPartReading::State {
     file_vertex = std::move(range.file_vertex);
     file_vertices = header.vertices;
     counts_points = part == 0;
-    // The tally is of all vertices, used or not: each part looks at its share.
+    // The tally covers all vertices, used or not: each part tallies its share.
     const std::uint64_t first = cells::first_of_part(header.vertices, part, parts);
     cells::BlockField share;
     share.name = "scalar";
@@ -80,7 +80,7 @@ struct MeshPartReading::State {
     blocks = read_pieces(list, cells::first_of_part(list.pieces.size(), part, parts),
                          cells::first_of_part(list.pieces.size(), part + 1, parts), options.progress);
     blocks.block_names = cells::distinct_names(std::move(blocks.block_names));
-    if (list.pieces.size() == 1 && blocks.block_names.size() <= 1)  // as read_mesh calls it
+    if (list.pieces.size() == 1 && blocks.block_names.size() <= 1)  // as in read_mesh
       for (cells::CellBlock& block : blocks.blocks) block.name.clear();
     if (part > 0) blocks.block_names.clear();
     tallies = cells::tally_fields(blocks.blocks);
@@ -188,7 +188,7 @@ cells::MeshFile joined(const MeshFilePart& own, std::span<const PartSummary> sum
   whole.mesh.field_name = own.mesh.field_name;
   whole.mesh.association = own.mesh.association;
   std::vector<std::uint64_t> used;
-  // What every part finds in the file that all read, one says.
+  // Notes that every part makes about a shared file are listed once.
   const auto add = [&](const std::vector<std::string>& notes) { cells::add_notes(notes, whole.notes); };
   for (const PartSummary& part : summaries) {
     whole.counts += part.counts;

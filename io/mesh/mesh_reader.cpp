@@ -17,7 +17,7 @@
 namespace tessera::io {
 namespace {
 
-/// Leaves the chosen blocks, if they were not all that was read, and the names of all.
+/// Keeps only the chosen blocks, if more were read, and the names of all.
 cells::MeshBlocks chosen_blocks(cells::MeshBlocks read, const cells::BlockChoice& choice) {
   if (read.block_names.empty())
     for (const cells::CellBlock& block : read.blocks) read.block_names.push_back(block.name);
@@ -25,7 +25,7 @@ cells::MeshBlocks chosen_blocks(cells::MeshBlocks read, const cells::BlockChoice
   if (!choice.empty())
     std::erase_if(read.blocks, [&](const cells::CellBlock& block) {
       return !block.name.empty() &&
-             !cells::is_chosen(choice, block.name);  // those of no name were chosen by their reader
+             !cells::is_chosen(choice, block.name);  // a reader that returns unnamed blocks has chosen them itself
     });
   if (read.block_names.size() <= 1)
     for (cells::CellBlock& block : read.blocks) block.name.clear();
@@ -37,7 +37,7 @@ cells::MeshBlocks warped(cells::MeshBlocks read, const ReadOptions& options, con
   return read;
 }
 
-/// Calls a function of the file's format, with what it holds if it is a gzip file.
+/// Calls a function of the file's format, with the content if it is a gzip file.
 template <class Read>
 auto read_content(const InputFile& file, const Read& read) {
   if (!file.is_gzip) return read(file);
@@ -69,7 +69,7 @@ cells::MeshBlocks read_blocks(const InputFile& file, const MeshOptions& options)
   return read;
 }
 
-/// What is left to be chosen of blocks.
+/// The options that still apply after the blocks were read.
 ReadOptions options_after(const cells::MeshBlocks& read, ReadOptions options) {
   if (read.fields.empty()) return options;
   options.smooth = false;

@@ -12,36 +12,36 @@
 namespace tessera::io {
 
 /// Reads a mesh of any format of the table (io/formats/format_table.cpp), or a gzip file of one, inflated into memory.
-/// Surfaces are filled by TetGen. Cells other than tets are split so that neighbours agree on every shared face by
-/// position, whatever piece they come from. Throws Error(bad_input) in one line for a missing, truncated, malformed or
-/// empty file, an unknown format or field, or if no cell is left; Error(system_failure) if memory runs out. Never
-/// leaves VTK's own messages on stderr.
+/// TetGen fills surfaces. Cells other than tets are split so that neighbours agree on every shared face by position,
+/// even if they come from different pieces. Throws Error(bad_input) in one line for a missing, truncated, malformed or
+/// empty file, an unknown format or field, or if no cell remains; Error(system_failure) if memory runs out. VTK's own
+/// messages never reach stderr.
 cells::MeshFile read_mesh(const InputFile& file, const ReadOptions& options = {});
 
-/// Reads several files as the pieces of one mesh, their points not merged. Each has to have the chosen field. Throws as
-/// read_mesh.
+/// Reads several files as the pieces of one mesh; their points are not merged. Each must have the chosen field. Throws
+/// like read_mesh.
 cells::MeshFile read_mesh(std::span<const InputFile> files, const ReadOptions& options = {});
 
-/// The cells of a file's chosen blocks as they are before they are split, and the names of all its blocks. Throws as
-/// read_mesh, but not if there are none.
+/// The cells of a file's chosen blocks before they are split, and the names of all its blocks. Throws like read_mesh,
+/// but not if there are no cells.
 cells::MeshBlocks read_mesh_blocks(const InputFile& file, const MeshOptions& options);
 
-/// The time steps that a mesh file has, and when they are, without its numbers where its format has them apart. Throws
-/// as read_mesh.
+/// The time steps of a mesh file and their times; skips its numbers if the format stores them separately. Throws like
+/// read_mesh.
 scene::TimeStepRead time_steps_of_mesh(const InputFile& file, const ReadOptions& options = {});
 
-/// Whether read_mesh knows the format. Rectilinear grids are volumes too.
+/// Whether read_mesh supports the format. Rectilinear grids are volumes too.
 bool is_mesh(const InputFile& file);
 
-/// Throws Error(bad_input) of a file that is none: its format is not known, or known and not read, or is a grid's.
+/// Throws Error(bad_input) for a file that is not a mesh: its format is unknown, not supported, or that of a grid.
 void require_mesh(const InputFile& file);
 
 /// Writes a .tets file: float32 coordinates and point scalars, so doubles are rounded. Appears by rename. Throws
 /// Error(bad_input) for cell data, more than 2^31 - 1 points or values beyond float's range, Error(system_failure) if
-/// it cannot be written.
+/// writing fails.
 void write_tets(const scene::TetMeshView& mesh, const std::filesystem::path& file);
 
-/// Writes a VTK XML unstructured grid, appended raw data with zlib, double coordinates and scalars; a cell array
+/// Writes a VTK XML unstructured grid, appended raw data with zlib, double coordinates and scalars; adds a cell array
 /// "OriginalCellId" if tets were split from other cells. Appears by rename. Throws Error(system_failure).
 void write_vtu(const scene::TetMeshView& mesh, const std::filesystem::path& file);
 

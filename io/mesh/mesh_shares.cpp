@@ -19,7 +19,7 @@
 namespace tessera::io {
 namespace {
 
-/// The digits that a name ends in after a point, which are cut off.
+/// Removes and returns the digits after the last point of a name.
 std::optional<std::string> last_number(std::string& name) {
   const std::size_t point = name.rfind('.');
   if (point == std::string::npos || point == 0) return std::nullopt;
@@ -37,7 +37,7 @@ int number_in(const std::string& digits) {
   return number;
 }
 
-/// The helper's reader of a file that may be Exodus, by what it begins with; null: it is not.
+/// The helper's reader of a file that may be Exodus, chosen by its first bytes; null: not Exodus.
 const char* exodus_reader(const FileBeginning& start) {
   return begins_as_exodus(start) ? "exodus" : begins_as_hdf5(start) ? "hdf5" : nullptr;
 }
@@ -105,7 +105,7 @@ std::vector<std::filesystem::path> exodus_files(const InputFile& input) {
 bool has_shares(const InputFile& file) {
   if (file.format == nullptr) return false;
   if (file.format->share_reader == nullptr) return !exodus_files(file).empty();
-  // Of HDF5 the name tells CGNS.
+  // Among HDF5 files, the name identifies CGNS.
   return file.format->container != Container::hdf5 || system::lower_extension(file.path) == ".cgns" ||
          !exodus_files(file).empty();
 }

@@ -6,20 +6,20 @@
 
 #include "io/mesh/mesh_formats.hpp"
 
-/// Meshes of other programs' formats that are in pieces, of which several processes read a share each: an OpenFOAM case
-/// as its processors left it (a folder each), the zones of a CGNS file, and a mesh in several Exodus files
-/// (NAME.ex2.4.0 to NAME.ex2.4.3).
+/// Meshes of other programs in pieces, of which several processes read a share each: a decomposed OpenFOAM case (one
+/// directory per processor), the zones of a CGNS file, and a mesh in several Exodus files (NAME.ex2.4.0 to
+/// NAME.ex2.4.3).
 namespace tessera::io {
 
-/// Whether the file is one, by its name and what it begins with.
+/// Whether the file is one of these, by its name and first bytes.
 bool has_shares(const InputFile& file);
 
-/// The files of a mesh in several Exodus files, by the name of one: NAME.N.0 to NAME.N.(N - 1), their last numbers with
-/// as many digits as the named one's. Empty for other files. Throws Error(bad_input) if one is not there.
+/// The files of a mesh in several Exodus files, given the name of one: NAME.N.0 to NAME.N.(N - 1), with as many digits
+/// in the last number as in the given name. Empty for other files. Throws Error(bad_input) if one is missing.
 std::vector<std::filesystem::path> exodus_files(const InputFile& file);
 
-/// Share `part` of `parts`, which may be empty: pieces in their order, each a block or more; all in one share are the
-/// whole. Throws Error(bad_input).
+/// Reads share `part` of `parts`, which may be empty: consecutive pieces, each one or more blocks. A single share is
+/// the whole mesh. Throws Error(bad_input).
 cells::MeshBlocks read_share(const InputFile& file, const ReadOptions& options, int part, int parts);
 
 }  // namespace tessera::io

@@ -14,7 +14,7 @@
 namespace tessera::io {
 namespace {
 
-/// A double as the format's float32. Values that a reader blanks (NaN, infinite) keep doing so.
+/// Converts a double to the format's float32. Values that readers blank (NaN, infinite) stay blank.
 float to_float(double value, const std::string& file) {
   if (std::isfinite(value) && std::abs(value) > std::numeric_limits<float>::max())
     throw scene::bad_input(
@@ -22,7 +22,7 @@ float to_float(double value, const std::string& file) {
   return static_cast<float>(value);
 }
 
-/// Collects small pieces so that the file sees few writes.
+/// Buffers small pieces so that the file receives few writes.
 class Chunks {
  public:
   explicit Chunks(system::AtomicFile& file) : file_(file) {}

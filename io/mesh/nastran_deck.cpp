@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t small_field = 8, large_field = 16, fields_a_line = 8;
 
-/// A line's fields, the first of them the name or the mark of a continuation.
+/// A line's fields; the first is the name or a continuation mark.
 std::vector<std::string> deck_fields(std::string_view line) {
   std::vector<std::string> fields;
   if (line.find(',') != std::string_view::npos) {
@@ -31,7 +31,7 @@ std::vector<std::string> deck_fields(std::string_view line) {
       line.remove_prefix(comma + 1);
     }
   } else {
-    std::string columns;  // a tab leads to the next field
+    std::string columns;  // a tab advances to the next field
     for (const char c : line)
       if (c == '\t')
         columns.append(small_field - columns.size() % small_field, ' ');
@@ -44,7 +44,7 @@ std::vector<std::string> deck_fields(std::string_view line) {
       fields.emplace_back(trimmed(all.substr(at, width)));
   }
   const std::size_t most = fields[0].find('*') != std::string::npos ? fields_a_line / 2 : fields_a_line;
-  // The last field of a line is a mark. Some writers go on behind it.
+  // The last field of a line is a continuation mark. Some writers continue after it.
   if (const std::size_t mark = most + 1; fields.size() > mark + 1) {
     if (fields[mark].empty() || fields[mark][0] == '+' || fields[mark][0] == '*')
       fields.erase(fields.begin() + static_cast<std::ptrdiff_t>(mark));
@@ -100,7 +100,7 @@ void NastranEntry::replicate(const NastranEntry& before) {
                          name_));
     if (written == "=") {
       fields_[k] = copy(k);
-    } else if (written == "==") {  // to the end of its line, of the last one to the entry's
+    } else if (written == "==") {  // to the end of this line; on the last line, to the end of the entry
       std::size_t end = (k / fields_a_line + 1) * fields_a_line;
       if (end >= fields_.size()) fields_.resize(end = std::max(end, before.fields_.size()));
       for (; k < end; ++k) fields_[k] = copy(k);
@@ -118,7 +118,7 @@ void NastranEntry::replicate(const NastranEntry& before) {
   }
 }
 
-/// Puts lines together to entries.
+/// Joins lines into entries.
 class NastranDeck {
  public:
   NastranDeck(const std::function<bool(std::string_view)>& is_used, const std::function<void(const NastranEntry&)>& use)
@@ -126,7 +126,7 @@ class NastranDeck {
 
   void read(const std::filesystem::path& file) {
     constexpr std::size_t most_deep = 64;
-    std::error_code has_no_path;  // as what was in a gzip file
+    std::error_code has_no_path;  // for example the content of a gzip file
     const std::filesystem::path path = std::filesystem::canonical(file, has_no_path);
     if (!seen_.insert(has_no_path ? file.string() : path.string()).second) return;
     if (++depth_ > most_deep)
@@ -201,7 +201,7 @@ class NastranDeck {
     return false;
   }
 
-  /// A name without quotes ends with its line.
+  /// A file name without quotes ends with its line.
   static bool has_both_quotes(std::string_view line) {
     const std::size_t quote = line.find_first_of("'\"");
     return quote == std::string_view::npos || line.find(line[quote], quote + 1) != std::string_view::npos;
@@ -218,7 +218,7 @@ class NastranDeck {
     std::error_code unknown;
     const std::filesystem::path file = from.parent_path() / std::filesystem::path(name);
     const bool is_there = !name.empty() && std::filesystem::is_regular_file(file, unknown);
-    if (!is_there && !is_bulk_) return;  // of the executive or case control, which hold no mesh
+    if (!is_there && !is_bulk_) return;  // in the executive or case control section, which has no mesh
     if (!is_there)
       throw scene::bad_input(fmt::format("{}: line {}: it includes {}, and there is no such file; put it there",
                                          from.string(), number, scene::quote(name)));
@@ -263,7 +263,7 @@ class NastranDeck {
                           std::make_move_iterator(fields.end()));
   }
 
-  /// Of "(3)", "3" or "": how often the entry is replicated.
+  /// Parses "(3)", "3" or "": the number of replications.
   void count_images(const std::string& images) {
     constexpr std::size_t most_images = 10'000'000;
     const auto count = number_of<std::size_t>(images.empty() ? "1" : without_brackets(images));
@@ -278,7 +278,7 @@ class NastranDeck {
   const std::function<bool(std::string_view)>& is_used_;
   const std::function<void(const NastranEntry&)>& use_;
   NastranEntry entry_, before_;
-  std::vector<std::string> pattern_;  ///< the last replication as it was written
+  std::vector<std::string> pattern_;  ///< the last replication as written
   std::size_t images_ = 1, all_images_ = 0;
   bool is_image_ = false;  ///< entry_ begins with '='
   std::set<std::string> seen_;

@@ -11,8 +11,8 @@
 
 namespace tessera::io {
 
-/// An entry of a Nastran deck's bulk data: its name in capitals without the asterisk, and its fields after that, 8 or
-/// 16 letters each or between commas, continuations included, replications carried out. Fields that are not there are
+/// An entry of a Nastran deck's bulk data: its name in capitals without the asterisk, and the fields after it, each 8
+/// or 16 characters or delimited by commas. Continuations are joined and replications expanded. Missing fields are
 /// blank.
 class NastranEntry {
  public:
@@ -20,9 +20,9 @@ class NastranEntry {
   [[nodiscard]] std::size_t size() const { return fields_.size(); }
   [[nodiscard]] bool is_blank(std::size_t field) const { return field >= fields_.size() || fields_[field].empty(); }
 
-  /// Nothing for a blank field. Throws Error(bad_input) with file and line for what is no whole number.
+  /// No value for a blank field. Throws Error(bad_input) with file and line for anything but an integer.
   [[nodiscard]] std::optional<std::int64_t> whole_number(std::size_t field) const;
-  /// A real number as Nastran has them ("1.5", "1.5E-3", "1.5-3", "1.5D-3"); 0 for a blank field.
+  /// A real number in Nastran's notations ("1.5", "1.5E-3", "1.5-3", "1.5D-3"); 0 for a blank field.
   [[nodiscard]] double real(std::size_t field) const;
 
   [[noreturn]] void refuse(const std::string& what) const;
@@ -31,7 +31,7 @@ class NastranEntry {
   friend class NastranDeck;
 
   [[nodiscard]] bool has_replications() const;
-  /// Replaces "=", "==" and "*(x)" by what they make of the entry before.
+  /// Replaces "=", "==" and "*(x)" by the values derived from the previous entry.
   void replicate(const NastranEntry& before);
 
   std::string name_, source_;
@@ -39,9 +39,9 @@ class NastranEntry {
   std::vector<std::string> fields_;
 };
 
-/// Calls `use` with the entries of a deck's bulk data whose names `is_used` knows, in their order, those of files that
-/// it includes in their places; a file that is included again is passed over. Without BEGIN BULK all of it is bulk
-/// data. Throws Error(bad_input) of what is not text, and of an included file that is not there or no regular file.
+/// Calls `use` with the entries of a deck's bulk data whose names `is_used` accepts, in order, including those of
+/// included files; a file that is included again is skipped. Without BEGIN BULK the whole deck is bulk data. Throws
+/// Error(bad_input) for anything but text, and for an included file that is missing or not a regular file.
 void read_nastran_deck(const std::filesystem::path& file, const std::function<bool(std::string_view)>& is_used,
                        const std::function<void(const NastranEntry&)>& use);
 

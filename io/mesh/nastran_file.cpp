@@ -21,7 +21,7 @@
 namespace tessera::io {
 namespace {
 
-/// An edge with a node in its middle, and which of Nastran's nodes that is.
+/// An edge with a mid-edge node, and the position of that node in Nastran's order.
 struct NastranEdge {
   std::size_t from, to, node;
 };
@@ -62,7 +62,7 @@ const SolidElement* solid_element(std::string_view name) {
   return found == elements.end() ? nullptr : found;
 }
 
-/// Elements as the deck has them: their nodes are numbers of GRIDs, 0 where there is none.
+/// Elements as listed in the deck: their nodes are GRID ids, 0 if omitted.
 struct DeckElements {
   std::vector<const SolidElement*> kinds;
   std::vector<std::int64_t> ids, properties, nodes;
@@ -83,7 +83,7 @@ struct DeckElements {
   }
 };
 
-/// Makes cells of elements.
+/// Converts elements to cells.
 class NastranCells {
  public:
   NastranCells(const NastranSystems& systems, std::string source) : systems_(systems), source_(std::move(source)) {

@@ -9,10 +9,10 @@
 
 namespace tessera::io {
 
-/// Reads the solid elements of a Nastran deck (CTETRA, CPYRAM, CPENTA and CHEXA of order 1 and 2): a block a property,
-/// points in the basic coordinate system (nastran_systems.hpp). An element with nodes in the middle of some edges has
-/// the middle itself where the field of a node is blank. Where there are several blocks the cell field PropertyId tells
-/// them apart. Throws Error(bad_input) with file, line and remedy.
+/// Reads the solid elements of a Nastran deck (CTETRA, CPYRAM, CPENTA and CHEXA of order 1 and 2): one block per
+/// property, points in the basic coordinate system (nastran_systems.hpp). If an element has mid-edge nodes on only some
+/// edges, the others get their midpoints. If there are several blocks, the cell field PropertyId distinguishes them.
+/// Throws Error(bad_input) with file, line and remedy.
 ///
 /// Source  MSC Nastran, "Quick Reference Guide", bulk data entries CHEXA, CPENTA, CPYRAM and CTETRA.
 std::vector<cells::CellBlock> read_nastran(const std::filesystem::path& file);

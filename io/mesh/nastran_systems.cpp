@@ -17,7 +17,7 @@ namespace tessera::io {
 namespace {
 
 constexpr std::size_t no_point = std::numeric_limits<std::size_t>::max();
-/// Cosine and sine of an angle in degrees, exact for quarters of a turn.
+/// Cosine and sine of an angle in degrees, exact for multiples of 90 degrees.
 glm::dvec2 direction(double degrees) {
   const double within = std::remainder(degrees, 360), angle = within * std::numbers::pi / 180;
   if (within == 90 || within == -90) return {0, within / 90};
@@ -25,7 +25,7 @@ glm::dvec2 direction(double degrees) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-constexpr std::size_t most_systems_deep = 1000;  // of systems in systems, so that damage does not end the stack
+constexpr std::size_t most_systems_deep = 1000;  // nesting limit, so that a damaged file cannot overflow the stack
 
 }  // namespace
 
@@ -57,7 +57,7 @@ void NastranSystems::add(const NastranEntry& entry) {
     return;
   }
   system.of_points = true;
-  for (std::size_t first = 0; first < 8 && !entry.is_blank(first); first += 4) {  // one or two in an entry
+  for (std::size_t first = 0; first < 8 && !entry.is_blank(first); first += 4) {  // an entry defines one or two systems
     for (std::size_t k = 0; k < 3; ++k) system.points[k] = entry.whole_number(first + 1 + k).value_or(0);
     systems_[entry.whole_number(first).value_or(0)] = system;
   }

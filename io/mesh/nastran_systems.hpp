@@ -14,21 +14,21 @@
 
 namespace tessera::io {
 
-/// The points (GRID) of a Nastran deck and the coordinate systems (CORD1R, 1C, 1S, 2R, 2C, 2S) that they are given in.
+/// The points (GRID) of a Nastran deck and the coordinate systems (CORD1R, 1C, 1S, 2R, 2C, 2S) in which they are given.
 ///
 /// Source  MSC Nastran, "Quick Reference Guide", bulk data entries CORDij, GRDSET and GRID.
 class NastranSystems {
  public:
   static bool is_used(std::string_view entry);
 
-  /// Of an entry that is_used() knows.
+  /// Adds an entry that is_used() accepts.
   void add(const NastranEntry& entry);
 
-  /// After all entries: computes where the points are. Throws Error(bad_input) of `source` for a system that is not
-  /// there, of a kind that is not read, that has no axes, or that leads back to itself.
+  /// Call after all entries: computes the positions of the points. Throws Error(bad_input) naming `source` for a system
+  /// that is missing, unsupported, degenerate, or defined by itself.
   void place_points(const std::string& source);
 
-  /// Where a point is in positions(); nothing if the deck does not have it.
+  /// The index of a point in positions(); no value if the deck does not contain it.
   [[nodiscard]] std::optional<std::uint32_t> point(std::int64_t id) const;
   [[nodiscard]] const std::vector<glm::dvec3>& positions() const { return positions_; }
 
@@ -43,9 +43,9 @@ class NastranSystems {
   };
   struct System {
     Kind kind = Kind::rectangular;
-    bool of_points = false;  ///< by three points, whose names are in `points`
+    bool of_points = false;  ///< defined by three points, whose ids are in `points`
     std::array<std::int64_t, 3> points{};
-    std::int64_t reference = 0;           ///< the system of the three corners
+    std::int64_t reference = 0;           ///< the system in which the three corners are given
     std::array<glm::dvec3, 3> corners{};  ///< origin, on the z axis, in the xz plane
     glm::dvec3 origin{};
     glm::dmat3 axes{1};
@@ -58,9 +58,9 @@ class NastranSystems {
   const glm::dvec3& place(std::size_t point);
   glm::dvec3 in_basic(std::int64_t system, const glm::dvec3& p, const std::string& user);
 
-  std::vector<Point> points_;  ///< by their names, once all are there
+  std::vector<Point> points_;  ///< sorted by id once all are added
   std::map<std::int64_t, System> systems_;
-  std::map<std::int64_t, std::string> unread_;  ///< systems of other kinds, by their entries
+  std::map<std::int64_t, std::string> unread_;  ///< unsupported systems, with their entry names
   std::int64_t default_system_ = 0;
   std::vector<glm::dvec3> positions_;
   std::string source_;

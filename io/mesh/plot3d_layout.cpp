@@ -17,7 +17,7 @@
 namespace tessera::io {
 namespace {
 
-/// Walks through a file's records as a layout would have them; `good` turns false where they do not fit.
+/// Walks through a file's records under an assumed layout; `good` becomes false if they do not match it.
 class Walk {
  public:
   Walk(std::ifstream& in, std::uint64_t size, const Plot3dLayout& layout) : in_(in), size_(size), layout_(layout) {}
@@ -39,7 +39,7 @@ class Walk {
     if (fits(bytes)) at_ += bytes;
   }
 
-  /// A record mark, which has to hold the record's length.
+  /// A record mark, which must equal the record's length.
   void mark(std::uint64_t bytes) {
     if (!layout_.record_marks) return;
     if (static_cast<std::uint32_t>(number()) != bytes) good = false;
@@ -62,7 +62,7 @@ class Walk {
       grids = number();
       mark(4);
     }
-    // Each grid has at least its dimensions' 12 bytes: a bound on what is allocated.
+    // Each grid has at least the 12 bytes of its dimensions, which bounds the allocation.
     if (!good || grids < 1 || static_cast<std::uint64_t>(grids) > size_ / 12) {
       good = false;
       return {};
@@ -79,11 +79,11 @@ class Walk {
     return result;
   }
 
-  /// Points of a grid, 0 if there cannot be so many.
+  /// Number of points of a grid; 0 if the file is too small for them.
   std::uint64_t points(const std::array<std::int32_t, 3>& n) {
     std::uint64_t product = 1;
     for (const std::int32_t side : n) {
-      product *= static_cast<std::uint64_t>(side);  // both factors below 2^32: size_ bounds the product each time
+      product *= static_cast<std::uint64_t>(side);  // both factors are below 2^32: size_ bounds each product
       if (product > size_ || product > UINT32_MAX) {
         good = false;
         return 0;
@@ -103,7 +103,7 @@ class Walk {
   const Plot3dLayout& layout_;
 };
 
-/// With `by_planes` each plane of a grid has a record.
+/// With `by_planes` each plane of a grid is a record.
 bool grid_fits(std::ifstream& in, std::uint64_t size, Plot3dLayout& layout, bool by_planes = false) {
   Walk walk(in, size, layout);
   layout.grids = walk.dimensions();

@@ -7,16 +7,16 @@
 
 namespace tessera::io {
 
-/// One time of a list of PLOT3D files.
+/// One time step of a list of PLOT3D files.
 struct Plot3dStep {
-  double time = 0;                       ///< its place in the list where none is given
-  std::filesystem::path grid, solution;  ///< solution: empty if none is named
-  bool has_functions = false;            ///< a file of functions, which is not read
+  double time = 0;                       ///< its index in the list if no time is given
+  std::filesystem::path grid, solution;  ///< solution: empty if not named
+  bool has_functions = false;            ///< it also names a file of functions, which is not read
 };
 
-/// The text of ParaView's list of PLOT3D files (.p3d), {"filenames": [{"time", "xyz", "q", "function"}, ...]}, in the
-/// order of time; names are against the folder of `input`. What it says of the files' layout is left aside: that is
-/// found from the files. Throws Error(bad_input).
+/// Parses ParaView's list of PLOT3D files (.p3d), {"filenames": [{"time", "xyz", "q", "function"}, ...]}, and sorts it
+/// by time; names are relative to the directory of `input`. Ignores its statements about the files' layout, which is
+/// deduced from the files. Throws Error(bad_input).
 std::vector<Plot3dStep> parse_plot3d_list(std::string_view text, const std::filesystem::path& input);
 
 }  // namespace tessera::io

@@ -18,7 +18,7 @@ TextScanner words_of(std::string_view text, const std::string& source) { return 
   words.fail(fmt::format("{} {}", scene::quote(word), what));
 }
 
-/// How many numbers there are.
+/// Counts the numbers of a text.
 std::uint64_t count_numbers(std::string_view text, const std::string& source) {
   TextScanner words = words_of(text, source);
   std::uint64_t count = 0;
@@ -36,7 +36,7 @@ std::uint64_t count_numbers(std::string_view text, const std::string& source) {
   return count;
 }
 
-/// The grids that a file begins with, of at most `most` points in all; none if it does not.
+/// The grids at the beginning of a file, with at most `most` points in total; no value if it does not begin with grids.
 std::optional<std::vector<std::array<std::int32_t, 3>>> grids_of(TextScanner& words, bool multi_grid,
                                                                  std::uint64_t most) {
   std::int32_t count = 1;
@@ -66,7 +66,7 @@ std::uint64_t header_numbers(const Plot3dLayout& layout) {
   return (layout.multi_grid ? 1 : 0) + 3 * std::uint64_t{layout.grids.size()};
 }
 
-/// IBLANK has to be whole numbers: the reader would stop within others.
+/// IBLANK must be integers: the reader would stop inside other numbers.
 void require_whole_iblank(std::string_view text, const Plot3dLayout& layout, const std::string& source) {
   TextScanner words = words_of(text, source);
   for (std::uint64_t k = header_numbers(layout); k > 0; --k) words.word();

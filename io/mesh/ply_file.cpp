@@ -37,7 +37,7 @@ struct Element {
   std::vector<Property> properties;
 };
 
-/// Colours, normals and texture coordinates describe the surface's looks, not a quantity in it.
+/// Colours, normals and texture coordinates describe the appearance of the surface, not a quantity on it.
 bool is_decoration(const std::string& name) {
   static constexpr std::array names = {
       "nx",           "ny", "nz", "red", "green", "blue",      "alpha",    "diffuse_red", "diffuse_green",
@@ -127,7 +127,7 @@ class PlyParser {
       }
     }
     if (vertex && (xyz[0] < 0 || xyz[1] < 0 || xyz[2] < 0)) fail("its vertices have no x, y and z");
-    // A second list of vertices would leave the first list's attributes shorter than the points.
+    // A second vertex list would leave the attributes of the first shorter than the points.
     if (vertex && !result_.surface.points.empty()) fail("it holds two lists of vertices");
     if (face && corners < 0) fail("its faces have no vertex_indices");
     for (std::uint64_t n = 0; n < element.count; ++n) {

@@ -9,9 +9,9 @@
 
 namespace tessera::io {
 
-/// Parses an SU2 mesh: a block for each zone, of its NELEM volume cells (cell types are VTK's) and NPOIN points;
-/// markers and free-form boxes are passed over. Nothing is allocated before the text is long enough to hold it; all
-/// indices are checked. Throws Error(bad_input) with file, line and remedy, for two-dimensional meshes too.
+/// Parses an SU2 mesh: one block per zone, with its NELEM volume cells (VTK's cell types) and NPOIN points; markers and
+/// free-form boxes are skipped. Allocates nothing before the text is known to be long enough; checks all indices.
+/// Throws Error(bad_input) with file, line and remedy, also for two-dimensional meshes.
 ///
 /// Source  SU2's documentation, "Mesh File" (su2code.github.io/docs_v7/Mesh-File).
 std::vector<cells::CellBlock> parse_su2(std::string_view text, const std::string& source);

@@ -21,7 +21,7 @@
 namespace tessera::io {
 namespace {
 
-/// The letter of a coordinate that a name begins with: "X", "x [m]", "CoordinateX"; none of others.
+/// The coordinate letter with which a name begins: "X", "x [m]", "CoordinateX"; 0 for others.
 char tecplot_axis(std::string_view name) {
   constexpr std::string_view words = "Coordinate";
   if (name.starts_with(words)) name.remove_prefix(words.size());
@@ -54,10 +54,10 @@ bool has_tecplot_cells(const TecplotZone& zone) {
                                                : zone.type != TecplotZoneType::lines_or_faces;
 }
 
-/// The time of a zone that is of one step alone.
+/// The time of a zone that belongs to a single step.
 std::optional<double> time_of(const TecplotZone& zone) { return zone.strand == 0 ? std::nullopt : zone.time; }
 
-/// Solution times of zones with cells, in their order.
+/// Solution times of zones with cells, sorted.
 std::vector<double> times_of(const TecplotHeader& header) {
   std::set<double> times;
   for (const TecplotZone& zone : header.zones)
@@ -72,10 +72,10 @@ scene::TimeStepRead steps_in(const TecplotHeader& header, std::optional<std::siz
   return read;
 }
 
-/// The zones of a step. A strand without a zone at its time has its last one before.
+/// The zones of a step. A strand without a zone at this time uses its last one before it.
 std::vector<std::size_t> zones_at(const TecplotHeader& header, bool has_steps, double time) {
   std::vector<std::size_t> zones;
-  std::map<std::int64_t, double> latest;  // by strand
+  std::map<std::int64_t, double> latest;  // per strand
   for (const TecplotZone& zone : header.zones)
     if (const double own = time_of(zone).value_or(time); time_of(zone) && zone.strand && own <= time) {
       const auto at = latest.try_emplace(*zone.strand, own).first;
@@ -91,7 +91,7 @@ std::vector<std::size_t> zones_at(const TecplotHeader& header, bool has_steps, d
   return zones;
 }
 
-/// Reads zones when they are needed, and keeps them for those that share with them.
+/// Reads zones on demand, and keeps them for the zones that share their values.
 class TecplotZones {
  public:
   TecplotZones(std::string_view text, const TecplotHeader& header, const std::string& source)
@@ -103,7 +103,7 @@ class TecplotZones {
     return *read;
   }
 
-  /// The zone that has the values of a variable of `zone`: itself, or one before it.
+  /// The zone that stores the values of a variable of `zone`: itself, or an earlier one.
   [[nodiscard]] std::size_t owner_of(std::size_t zone, std::size_t variable) const {
     for (;;) {
       const auto& shared = header_.zones[zone].shared_from;
@@ -118,7 +118,7 @@ class TecplotZones {
     return zone;
   }
 
-  /// Of each node or element. Empty where the zone has none.
+  /// Per node or element. Empty if the zone has no values.
   const std::vector<double>& values(std::size_t zone, std::size_t variable) {
     const TecplotZone& own = header_.zones[zone];
     const std::size_t owner = owner_of(zone, variable);
@@ -147,7 +147,7 @@ void add_tecplot_cell(cells::CellBlock& block, CellType type, std::initializer_l
   block.offsets.push_back(block.connectivity.size());
 }
 
-/// Bricks with repeated nodes are wedges, pyramids and tetrahedra, as the guide has them.
+/// Bricks with repeated nodes are wedges, pyramids and tetrahedra, as defined in the guide.
 void add_brick(cells::CellBlock& block, const std::array<std::size_t, 8>& n) {
   const bool is_top_point = n[4] == n[5] && n[5] == n[6] && n[6] == n[7];
   if (n[2] == n[3] && is_top_point)
@@ -172,7 +172,7 @@ void add_ordered(const TecplotZone& zone, cells::CellBlock& block) {
       }
 }
 
-/// Each polyhedron's faces are those that have it on their left or right.
+/// The faces of a polyhedron are those that have it on their left or right.
 void add_polyhedra(const TecplotZone& zone, const TecplotNumbers& numbers, cells::CellBlock& block) {
   std::vector<std::vector<std::size_t>> faces_of(zone.elements);
   std::vector<std::size_t> starts{0};

@@ -22,14 +22,14 @@ bool is_tecplot_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c =
 
 bool begins_number(char c) { return is_digit(c) || c == '+' || c == '-' || c == '.'; }
 
-/// A key's value: quoted words without their quotes, lists without the outer parentheses.
+/// A key's value: quoted words without quotes, lists without the outer parentheses.
 struct TecplotValue {
   std::string text;
   bool is_list = false;
   std::size_t at = 0;
 };
 
-/// Walks through what is not numbers.
+/// Parses everything except numbers.
 class TecplotWords {
  public:
   TecplotWords(std::string_view text, const std::string& source) : text_(text), source_(source) {}
@@ -39,7 +39,7 @@ class TecplotWords {
   [[nodiscard]] char here() const { return text_[at_]; }
   void go_to(std::size_t at) { at_ = at; }
 
-  /// Passes over blanks, commas and comments; true if a line ended.
+  /// Skips blanks, commas and comments; true if a line ended.
   bool skip_blanks() {
     bool has_ended = false;
     while (!at_end() && (is_tecplot_blank(here()) || here() == '#')) {
@@ -110,7 +110,7 @@ class TecplotWords {
   std::size_t at_ = 0;
 };
 
-/// Numbers of a set as "[1-3,5]" or "5", from 0.
+/// The numbers of a set, "[1-3,5]" or "5", counted from 0.
 std::vector<std::size_t> numbers_of(std::string_view set, std::size_t count, const std::function<void()>& fail) {
   std::vector<std::size_t> numbers;
   const char *at = set.data(), *const end = at + set.size();
@@ -134,7 +134,7 @@ std::vector<std::size_t> numbers_of(std::string_view set, std::size_t count, con
   return numbers;
 }
 
-/// Entries of a list, which commas or blanks part outside of brackets: "[4-5]=CELLCENTERED".
+/// Entries of a list, separated by commas or blanks outside of brackets: "[4-5]=CELLCENTERED".
 std::vector<std::pair<std::string, std::string>> entries_of(std::string_view list) {
   std::vector<std::pair<std::string, std::string>> entries;
   int depth = 0;
@@ -172,7 +172,7 @@ class HeaderParser {
       if (key == "ZONE") {
         add_zone(at);
       } else if (key == "VARIABLES" && words_.skip_equals()) {
-        // Parts that were put together repeat the record.
+        // Concatenated files repeat the record.
         const std::vector<std::string> earlier = std::exchange(header_.variables, {});
         read_variables();
         if (!header_.zones.empty() && header_.variables != earlier)
@@ -193,7 +193,7 @@ class HeaderParser {
       "ZONE", "TITLE", "VARIABLES", "FILETYPE", "TEXT", "GEOMETRY", "CUSTOMLABELS", "DATASETAUXDATA", "VARAUXDATA"};
 
   [[nodiscard]] bool begins_record(std::size_t at) const {
-    if (begins_number(text_[at])) return false;  // as most lines do
+    if (begins_number(text_[at])) return false;  // true for most lines
     return std::ranges::any_of(records, [&](std::string_view record) {
       if (upper_case(text_.substr(at, record.size())) != record) return false;
       const std::size_t end = at + record.size();
@@ -201,7 +201,7 @@ class HeaderParser {
     });
   }
 
-  /// The first line from `at` on, or after it, that begins another record.
+  /// The first line at or after `at` that begins another record.
   [[nodiscard]] std::size_t next_record(std::size_t at) const {
     while (at < text_.size()) {
       const std::size_t line_end = text_.find('\n', at);
@@ -350,7 +350,7 @@ class HeaderParser {
     }
   }
 
-  /// "[1-3]=2", or a set alone of the zone before.
+  /// "[1-3]=2", or a set alone, which refers to the previous zone.
   void set_shares(TecplotZone& zone, const TecplotValue& value) {
     for (const auto& [set, from] : entries_of(value.text)) {
       const std::size_t other = zone_number("VARSHARELIST", {.text = from, .is_list = false, .at = value.at});
@@ -358,7 +358,7 @@ class HeaderParser {
     }
   }
 
-  /// The older list of what the zone before has: "(1,2,FECONNECT)".
+  /// The older list of what is shared with the previous zone: "(1,2,FECONNECT)".
   void set_duplicates(TecplotZone& zone, const TecplotValue& value) {
     const std::size_t other = zone_number("D", {.text = {}, .is_list = false, .at = value.at});
     for (const auto& [set, from] : entries_of(value.text)) {
@@ -372,7 +372,7 @@ class HeaderParser {
   void finish(TecplotZone& zone) const {
     const bool is_ordered = zone.type == TecplotZoneType::ordered && !packing_.starts_with("FE");
     if (zone.type == TecplotZoneType::ordered && !is_ordered) zone.type = TecplotZoneType::lines_or_faces;
-    // Some writers give the counts of finite elements as I and J.
+    // Some writers store the counts of finite elements as I and J.
     if (!is_ordered && zone.nodes == 0 && zone.elements == 0) zone.nodes = zone.i, zone.elements = zone.j;
     const double most = static_cast<double>(text_.size());
     const auto require = [&](double number, const char* what) {

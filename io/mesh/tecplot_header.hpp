@@ -11,21 +11,21 @@
 
 namespace tessera::io {
 
-/// What a Tecplot zone's cells are.
+/// Cell type of a Tecplot zone.
 enum class TecplotZoneType : std::uint8_t { ordered, lines_or_faces, tetrahedra, bricks, polyhedra };
 
-/// A zone's record of a Tecplot text file, without its numbers, which begin at `numbers_at`. Zones and variables count
-/// from 0.
+/// The record of a zone in a Tecplot text file, without its numbers, which begin at `numbers_at`. Zones and variables
+/// count from 0.
 struct TecplotZone {
   std::string name;
   std::size_t record_at = 0, numbers_at = 0, end = 0;
   TecplotZoneType type = TecplotZoneType::ordered;
   std::size_t i = 1, j = 1, k = 1;                                 ///< of ordered zones
-  std::size_t nodes = 0, elements = 0, faces = 0, face_nodes = 0;  ///< nodes and elements of ordered zones too
-  std::optional<bool> by_point;                                    ///< the packing, where the record states it
-  std::vector<bool> of_cells, is_passive;                          ///< by variable
-  std::map<std::size_t, std::size_t> shared_from;                  ///< variable: the zone whose values it has
-  std::optional<std::size_t> connectivity_from;                    ///< the zone whose elements it has
+  std::size_t nodes = 0, elements = 0, faces = 0, face_nodes = 0;  ///< nodes and elements also for ordered zones
+  std::optional<bool> by_point;                                    ///< the packing, if the record states it
+  std::vector<bool> of_cells, is_passive;                          ///< per variable
+  std::map<std::size_t, std::size_t> shared_from;                  ///< variable -> the zone whose values it shares
+  std::optional<std::size_t> connectivity_from;                    ///< the zone whose elements it shares
   std::optional<std::int64_t> strand;
   std::optional<double> time;
 };
@@ -35,14 +35,14 @@ struct TecplotHeader {
   std::vector<TecplotZone> zones;
 };
 
-/// Finds the variables and zones of a Tecplot text file; texts, geometries and auxiliary data are passed over. Throws
-/// Error(bad_input) with file, line and remedy, for what is not read too. The counts of points and elements are such as
-/// the text is long enough for.
+/// Parses the variables and zones of a Tecplot text file; texts, geometries and auxiliary data are skipped. Throws
+/// Error(bad_input) with file, line and remedy, also for unsupported records. The text is long enough for the returned
+/// numbers of points and elements.
 ///
 /// Source  Tecplot, Inc., "Data Format Guide", chapter "ASCII Data".
 TecplotHeader parse_tecplot_header(std::string_view text, const std::string& source);
 
-/// Throws Error(bad_input) that names the line of a place in the text.
+/// Throws Error(bad_input) that names the line of a position in the text.
 [[noreturn]] void refuse_tecplot(std::string_view text, std::size_t at, const std::string& source,
                                  const std::string& what);
 

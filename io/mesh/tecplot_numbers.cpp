@@ -16,10 +16,10 @@ namespace {
 
 constexpr std::string_view tecplot_blanks = " \t\r\n,";
 
-/// A value of so many variables by the file's length: of those that a few letters repeat.
+/// Limit of values per byte of the file, for values stored as repetitions in a few characters.
 constexpr double most_values_a_byte = 16;
 
-/// The numbers of a zone one after the other. "3*1.5" is one three times.
+/// Reads the numbers of a zone sequentially. "3*1.5" is the number 1.5 three times.
 class NumberStream {
  public:
   NumberStream(std::string_view text, const TecplotZone& zone, const std::string& source)
@@ -55,21 +55,21 @@ class NumberStream {
     return static_cast<std::size_t>(value);
   }
 
-  /// Of a count that the text is too short for.
+  /// Refuses a count that exceeds the length of the text.
   [[noreturn]] void refuse_count(std::size_t count, const char* what) const {
     words_.fail_at(zone_.record_at, fmt::format("the zone has {} {}, more than the file can hold; it is truncated, "
                                                 "export it again",
                                                 count, what));
   }
 
-  /// How many numbers the first line with some has.
+  /// Count of numbers on the first line that has any.
   [[nodiscard]] std::size_t on_first_line() const {
     const std::string_view rest = words_.rest();
     return split_words(rest.substr(0, rest.find('\n')), tecplot_blanks).size();
   }
 
  private:
-  /// In Fortran's notation too ("1.5D+00", "+1"). What is no number, as "1.#QNAN", is one, and so are those too large.
+  /// Also accepts Fortran's notation ("1.5D+00", "+1"). Words such as "1.#QNAN", and numbers out of range, become NaN.
   double number(std::string_view word, const char* what) const {
     std::string plain(word.substr(word.starts_with('+') ? 1 : 0));
     std::ranges::replace_if(
@@ -90,14 +90,14 @@ class NumberStream {
   TextScanner words_;
   const TecplotZone& zone_;
   double repeated_ = 0;
-  std::size_t left_ = 0;  ///< of what is repeated
+  std::size_t left_ = 0;  ///< repetitions left
 };
 
 std::size_t nodes_an_element(TecplotZoneType type) {
   return type == TecplotZoneType::bricks ? 8 : type == TecplotZoneType::tetrahedra ? 4 : 0;
 }
 
-/// Without a word on it, a zone whose first line has a number for each variable is by points.
+/// A zone without a packing keyword is by points if its first line has a number for each variable.
 bool is_by_point(const TecplotZone& zone, const NumberStream& numbers, std::size_t variables) {
   if (zone.by_point) return *zone.by_point;
   return variables != zone.nodes && numbers.on_first_line() == variables &&
@@ -142,7 +142,7 @@ void read_polyhedra(const TecplotZone& zone, NumberStream& numbers, TecplotNumbe
   for (std::size_t n = 0; n < nodes; ++n) read.face_nodes.push_back(numbers.next_index("nodes of faces"));
   for (auto* const side : {&read.left, &read.right})
     for (std::size_t f = 0; f < zone.faces; ++f) {
-      // A negative number counts elements of other zones.
+      // A negative number refers to elements of other zones.
       const double element = numbers.next("elements in addition to faces");
       side->push_back(element > 0 && element <= static_cast<double>(zone.elements) ? static_cast<std::size_t>(element)
                                                                                    : 0);

@@ -11,11 +11,11 @@
 
 namespace tessera::io {
 
-/// A zone's own numbers, those that it shares left empty.
+/// The numbers stored in a zone itself; those shared from other zones are empty.
 struct TecplotNumbers {
-  std::vector<std::vector<double>> values;                       ///< by variable; of each node or element
-  std::vector<std::size_t> connectivity;                         ///< nodes from 1, 4 or 8 an element
-  std::vector<std::size_t> face_sizes, face_nodes, left, right;  ///< of polyhedra, nodes and elements from 1, 0 is none
+  std::vector<std::vector<double>> values;                       ///< per variable, for each node or element
+  std::vector<std::size_t> connectivity;                         ///< nodes from 1, 4 or 8 per element
+  std::vector<std::size_t> face_sizes, face_nodes, left, right;  ///< of polyhedra; from 1, 0 is none
 };
 
 /// Reads a zone's numbers. Throws Error(bad_input) with file, line and remedy.

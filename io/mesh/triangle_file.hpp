@@ -10,14 +10,14 @@
 
 namespace tessera::io {
 
-/// A surface as its file has it, points at one place made one where the format cannot say it.
+/// A surface as stored in its file. Points at the same position are merged if the format cannot share points.
 struct SurfaceFile {
   cells::Surface surface{};
   std::vector<std::string> attribute_names{}, notes{};
-  const char* words = "";  ///< of its format
+  const char* words = "";  ///< description of its format
 };
 
-/// As tessera::read_triangles().
+/// Implements tessera::read_triangles().
 tessera::TriangleMesh read_triangles(const InputFile& file);
 
 }  // namespace tessera::io

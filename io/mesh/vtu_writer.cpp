@@ -19,7 +19,7 @@
 namespace tessera::io {
 namespace {
 
-/// One array in words and how many numbers it has; `fill` gives those from `first` on as bytes.
+/// The declaration of one array and its number of values; `fill` supplies those from `first` on as bytes.
 struct WrittenArray {
   std::string attributes;  ///< of its <DataArray>
   std::size_t numbers, number_size;
@@ -36,7 +36,7 @@ WrittenArray array_of(std::string attributes, std::size_t numbers, const Of& of)
           }};
 }
 
-/// VTK's compressed form (its "VTK XML Formats" wiki page): number of blocks, their size, the size of a last one that
+/// VTK's compressed form (its "VTK XML Formats" wiki page): number of blocks, their size, the size of a last block that
 /// is not full or 0, the compressed size of each, all uint64; then the blocks, zlib.
 void write_compressed(const WrittenArray& array, system::AtomicFile& out) {
   constexpr std::size_t block_bytes = 1 << 18;
@@ -55,7 +55,7 @@ void write_compressed(const WrittenArray& array, system::AtomicFile& out) {
     uLongf size = packed.size();
     if (::compress2(packed.data(), &size, reinterpret_cast<const Bytef*>(plain.data()), count * array.number_size,
                     Z_DEFAULT_COMPRESSION) != Z_OK)
-      throw std::bad_alloc();  // all that can fail
+      throw std::bad_alloc();  // the only possible failure
     head[3 + b] = size;
     out.write(packed.data(), size);
   }
@@ -65,11 +65,11 @@ void write_compressed(const WrittenArray& array, system::AtomicFile& out) {
   out.seek(end);
 }
 
-/// A file's text with its arrays' places left open.
+/// The text of a file with placeholders for the positions of its arrays.
 class VtuText {
  public:
   void add(std::string_view text) { text_ += text; }
-  /// `section` holds the arrays from `first` to `last`.
+  /// `section` contains the arrays from `first` to `last`.
   void add_section(const char* opening, const char* closing, std::span<const WrittenArray> arrays) {
     text_ += fmt::format("      <{}>\n", opening);
     for (const WrittenArray& array : arrays) {
@@ -81,7 +81,7 @@ class VtuText {
     text_ += fmt::format("      </{}>\n", closing);
   }
   void write(system::AtomicFile& out) const { out.write(text_); }
-  /// Enters where the next array begins.
+  /// Fills in the position of an array.
   void enter(std::size_t array, std::uint64_t offset, system::AtomicFile& out) const {
     const std::uint64_t end = out.position();
     out.seek(places_[array]);

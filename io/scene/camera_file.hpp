@@ -14,24 +14,24 @@ namespace tessera::io {
 
 using tessera::CameraFile;
 
-/// tessera::read_cameras(): the format is seen from the first character: `{` or `[` is JSON, `<` ParaView's .pvcc,
+/// tessera::read_cameras(): the first character determines the format: `{` or `[` is JSON, `<` ParaView's .pvcc,
 /// anything else plain text. Words: `position x y z`, `focal_point x y z`, either `parallel_scale s` or `view_angle
-/// degrees`; and, if wanted, `view_up x y z` (0 1 0 without it, as in VTK), `clipping_range near far`, `size W H`.
-/// Throws Error(bad_input) in one line naming file and line for unknown, repeated or missing words and for what
+/// degrees`; and optionally `view_up x y z` (default 0 1 0, as in VTK), `clipping_range near far`, `size W H`. Throws
+/// Error(bad_input) in one line naming file and line for unknown, repeated or missing words and for values that
 /// scene::validate refuses.
 std::vector<CameraFile> read_cameras(const std::filesystem::path& file);
 
 /// tessera::write_camera().
 void write_camera(const CameraFile& camera, const std::filesystem::path& file);
 
-/// The three formats by themselves; `source` is the name in messages. JSON may be one object or a list.
+/// The parsers of the three formats; `source` is the name in messages. JSON may be one object or a list.
 std::vector<CameraFile> parse_json_cameras(std::string_view text, const std::string& source);
 CameraFile parse_text_camera(std::string_view text, const std::string& source);
 /// ParaView's PVCameraConfiguration: CameraPosition, CameraFocalPoint, CameraViewUp, CameraParallelProjection (absent:
-/// perspective), and CameraParallelScale or CameraViewAngle by that. Other properties (CenterOfRotation, ...) do not
-/// change the picture and are passed over.
+/// perspective), which selects CameraParallelScale or CameraViewAngle. Other properties (CenterOfRotation, ...) do not
+/// affect the image and are skipped.
 CameraFile parse_pvcc_camera(std::string_view text, const std::string& source);
-/// Any of the three, told apart as read_cameras does.
+/// Any of the three, distinguished like read_cameras.
 std::vector<CameraFile> parse_cameras(std::string_view text, const std::string& source);
 
 /// The JSON text that write_camera writes.

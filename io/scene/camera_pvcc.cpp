@@ -17,13 +17,13 @@ namespace {
 
 using namespace std::string_view_literals;
 
-/// What the callbacks gather. They are called from C: nothing may be thrown through it, so the first fault is kept and
-/// the parser stopped.
+/// State of the callbacks. They are called from C, so nothing may be thrown: the first error is stored and the parser
+/// stopped.
 struct Pvcc {
   XML_Parser parser = nullptr;
   bool root_seen = false;
   std::string property;                                                ///< open <Property name="...">
-  std::map<std::string, std::array<std::optional<double>, 3>> values;  ///< of the properties that matter
+  std::map<std::string, std::array<std::optional<double>, 3>> values;  ///< of the properties used here
   std::string fault;
 
   void stop(std::string what) {
@@ -82,7 +82,7 @@ void XMLCALL on_end(void* user, const XML_Char* element) {
 }
 
 void XMLCALL on_doctype(void* user, const XML_Char*, const XML_Char*, const XML_Char*, int) {
-  // Entities can grow a small file without bound, and no camera has them.
+  // Entities can expand a small file without bound, and no camera has them.
   static_cast<Pvcc*>(user)->stop("has a DOCTYPE; a ParaView camera has none, save it again");
 }
 

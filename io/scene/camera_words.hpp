@@ -10,17 +10,17 @@
 
 namespace tessera::io {
 
-/// Collects the words of one view, whatever the format, and checks that they make one.
+/// Collects the words of one view, independently of the format, and checks that they define one.
 class CameraWords {
  public:
-  /// `place` begins every message: the file, and where in it the view stands.
+  /// `place` begins every message: the file and the position of the view in it.
   explicit CameraWords(std::string place) : place_(std::move(place)) {}
 
   /// Throws Error(bad_input, "AT: ...") for an unknown or repeated word, or a wrong count of numbers.
   void set(std::string_view word, std::span<const double> numbers, const std::string& at);
 
-  /// The view. Throws Error(bad_input) if a word is missing, both or neither of parallel_scale and view_angle are
-  /// there, or scene::validate refuses it.
+  /// The view. Throws Error(bad_input) if a word is missing, if both or neither of parallel_scale and view_angle are
+  /// given, or if scene::validate refuses it.
   [[nodiscard]] CameraFile finish() const;
 
  private:

@@ -19,7 +19,7 @@ namespace {
 using scene::TraceRole;
 using scene::TraceSpan;
 
-/// Frames stand on tracks of their own, above the threads: they would not nest with spans of a thread.
+/// Frames have tracks of their own, above the threads: they would not nest with the spans of a thread.
 constexpr std::uint32_t frame_track = 1'000'000;
 
 const char* word(TraceRole role) {
@@ -27,17 +27,17 @@ const char* word(TraceRole role) {
 }
 
 std::string quoted(const std::string& text) {
-  // `replace`: a name that is not UTF-8 must not cost the trace.
+  // `replace`: a name that is not UTF-8 must not invalidate the trace.
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// Text of an array's elements, one a line. A run has many of them and the time to write them is time of the run: so
-/// numbers are put together by hand, in a third of the time that format strings take.
+/// Text of an array's elements, one per line. A run has many, and the time to write them is part of the run: so numbers
+/// are formatted by hand, in a third of the time that format strings take.
 class EventText {
  public:
   EventText(int rank, std::size_t spans) : rank_(std::to_string(rank)) { text_.reserve(1000 + 140 * spans); }
 
-  /// `value` is JSON.
+  /// `value` must be JSON.
   void add_metadata(const char* name, std::uint32_t track, const char* argument, const std::string& value) {
     next();
     text_ += fmt::format(R"({{"name":"{}","ph":"M","pid":{},"tid":{},"args":{{"{}":{}}}}})", name, rank_, track,
@@ -81,7 +81,7 @@ class EventText {
     text_.append(digits.data(), digits.size());
   }
 
-  /// Microseconds to a nanosecond: three digits after the point.
+  /// Microseconds with nanosecond resolution: three digits after the point.
   void time(std::string_view before, double us) {
     const auto ns = static_cast<std::int64_t>(std::llround(us * 1000));
     text_ += before;
@@ -97,11 +97,11 @@ class EventText {
   std::string rank_, text_;
 };
 
-/// Frames that overlap, several in flight, get tracks beside each other: as few as will do for each role.
+/// Frames that overlap, because several are in flight, get parallel tracks: as few as possible for each role.
 void add_frames(std::vector<TraceSpan> frames, double offset_us, EventText& events) {
   std::stable_sort(frames.begin(), frames.end(),
                    [](const TraceSpan& a, const TraceSpan& b) { return a.start_us < b.start_us; });
-  std::array<std::vector<double>, 3> ends;  // of the last span on each track of each role
+  std::array<std::vector<double>, 3> ends;  // end of the last span, per role and track
   for (const TraceSpan& frame : frames) {
     const auto role = static_cast<std::uint32_t>(frame.role);
     std::vector<double>& tracks = ends[role];
@@ -189,7 +189,7 @@ void write_chrome_trace(std::span<const std::string> events_of_ranks, const Trac
   output.write(",\n\"traceEvents\":[");
   const char* separator = "\n";
   for (const std::string& events : events_of_ranks) {
-    if (events.size() <= 2) continue;  // none, or []
+    if (events.size() <= 2) continue;  // empty, or []
     output.write(separator);
     output.write(std::string_view(events).substr(1, events.size() - 2));
     separator = ",\n";

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double absent = std::numeric_limits<double>::quiet_NaN();
 
-/// One event while its fields come by.
+/// One event while its fields are parsed.
 struct Event {
   std::string name, category, phase, role;
   double pid, tid, start_us, wall_us, cpu_us, frame, bytes, messages, tile, peer;
@@ -32,7 +32,7 @@ struct Event {
   }
 };
 
-/// Takes the parser's events and makes spans of them.
+/// Receives the parser's events and builds spans from them.
 class EventReader final : public nlohmann::json_sax<nlohmann::json> {
  public:
   EventReader(std::string_view text, const std::string& source) : text_(text), source_(source) {}
@@ -52,7 +52,7 @@ class EventReader final : public nlohmann::json_sax<nlohmann::json> {
   bool binary(nlohmann::json::binary_t&) override { return true; }
 
   bool string(std::string& value) override {
-    value = printable(value);  // `tessera timing` shows names
+    value = printable(value);  // `tessera timing` prints names
     if (here() == Place::event) {
       if (key_ == "name") event_.name = value;
       if (key_ == "cat") event_.category = value;
@@ -161,7 +161,7 @@ class EventReader final : public nlohmann::json_sax<nlohmann::json> {
                                        source_, key_, value, most));
   }
 
-  /// `value` if it is a number within [least, most], whole if asked for.
+  /// Returns `value` if it is a number within [least, most], and an integer if `whole`.
   [[nodiscard]] double checked(const char* name, double value, double least, double most, bool whole) const {
     if (std::isnan(value)) fail(fmt::format("{} is missing or no number", name));
     if (value >= least && value <= most && !(whole && value != std::floor(value))) return value;
@@ -171,7 +171,7 @@ class EventReader final : public nlohmann::json_sax<nlohmann::json> {
 
   void finish_event() {
     if (event_.category != "tessera" || event_.phase != "X") return;
-    constexpr double most_us = 1e14, most_count = 9e15;  // three years; what a double counts by ones
+    constexpr double most_us = 1e14, most_count = 9e15;  // three years; exact as a double
     FileSpan span;
     span.start_us = checked("ts", event_.start_us, -most_us, most_us, false);
     span.wall_us = checked("dur", event_.wall_us, 0, most_us, false);
@@ -207,7 +207,7 @@ class EventReader final : public nlohmann::json_sax<nlohmann::json> {
   std::string_view text_;
   const std::string& source_;
   std::vector<Place> places_;
-  std::string key_;  ///< the last one seen
+  std::string key_;  ///< the most recent key
   Event event_;
   std::size_t event_number_ = 0;
   std::unordered_map<std::string, std::uint16_t> stages_;

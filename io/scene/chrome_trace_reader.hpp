@@ -12,11 +12,12 @@ namespace tessera::io {
 using tessera::FileSpan;
 using tessera::TraceFile;
 
-/// Reads what write_chrome_trace wrote, also when edited: other programs' events and fields are passed over, a bare
-/// array of events will do. Takes the file as it streams by: 64 bytes a span, half of its text, and no tree.
+/// Reads the output of write_chrome_trace, also if it was edited: skips events and fields of other programs and accepts
+/// a bare array of events. Parses the file as a stream, without a tree: takes 64 bytes per span, half the size of its
+/// text.
 ///
-/// Throws Error(bad_input): not JSON, or cut off; an event of ours without time or with a time that is none; not one
-/// span of ours in it.
+/// Throws Error(bad_input) if the text is truncated or not JSON, if an event of ours has no valid time, or if it has no
+/// span of ours.
 TraceFile parse_chrome_trace(std::string_view text, const std::string& source);
 TraceFile read_chrome_trace(const std::filesystem::path& file);
 

@@ -53,7 +53,7 @@ std::vector<scene::Knot> knots_of(const json& list, const std::string& source) {
   return knots;
 }
 
-/// Parts of a stretch between two knots within which what `error` says of [t0, t1] is at most 1: cut in halves.
+/// Bisects [t0, t1] until `error` of each part is at most 1; appends the ends of the parts to `at`.
 template <class Error>
 void cut(double t0, double t1, int depth, const Error& error, std::vector<double>& at) {
   constexpr int most_halvings = 12;
@@ -68,7 +68,7 @@ void cut(double t0, double t1, int depth, const Error& error, std::vector<double
 
 glm::dvec3 display(const glm::dvec3& linear) { return colormaps::encode_srgb(glm::clamp(linear, 0.0, 1.0)); }
 
-/// Most that three places between two ends of a stretch are off, of the smooth curves here near enough to all.
+/// Largest error at three positions inside a part, which is enough for the smooth curves here.
 template <class Off>
 double worst(const Off& off) {
   return std::max({off(0.25), off(0.5), off(0.75)});
@@ -103,10 +103,10 @@ std::string color_map_json(const scene::TransferFunction& function, double unit_
   if (knots.empty()) throw scene::bad_input("transfer function: it has no knot; give one or more");
   if (!(unit_distance > 0) || !std::isfinite(unit_distance))
     throw scene::bad_input(fmt::format("`unit_distance` {}: it must be a length above 0", unit_distance));
-  // With half of the largest optical depth that an opacity can say.
+  // Half of the largest optical depth that an opacity can represent.
   constexpr double most_depth = 6;
   if (function.max_extinction() * unit_distance > most_depth) unit_distance = most_depth / function.max_extinction();
-  // What reading it back may add is as much again.
+  // Reading the map back may add the same error again.
   constexpr double color_tolerance = 1e-4, depth_tolerance = 1e-4;
   const auto opacity = [&](double extinction) { return -std::expm1(-extinction * unit_distance); };
   const auto depth = [](double a) { return -std::log1p(-a); };

@@ -8,9 +8,9 @@
 
 namespace tessera::io {
 
-/// A transfer function as JSON: an object with `knots`, a list of [value, red, green, blue, extinction], values not
-/// decreasing, colours linear and extinctions per world unit as they stand, two of one value a step; or ParaView's
-/// colour map (paraview_color_map.hpp). Throws Error(bad_input, "SOURCE: ...") in one line.
+/// A transfer function as JSON: an object with `knots`, a list of [value, red, green, blue, extinction], with
+/// non-decreasing values, linear colours, and extinctions per world unit; two knots of one value form a step. Or
+/// ParaView's colour map (paraview_color_map.hpp). Throws Error(bad_input, "SOURCE: ...") in one line.
 colormaps::LoadedTransferFunction parse_json_transfer_function(std::string_view text, const std::string& source,
                                                                const colormaps::TransferFunctionOptions& options);
 

@@ -28,7 +28,7 @@ class MapReader {
 
   [[nodiscard]] scene::Error fault(const std::string& what) const { return scene::bad_input(source_ + ": " + what); }
 
-  /// The value of a key, or null if there is none; JSON's null counts as none.
+  /// The value of a key; null if it is absent or JSON's null.
   [[nodiscard]] const json* find(const char* key) const {
     const auto found = map_.find(key);
     return found == map_.end() || found->is_null() ? nullptr : &*found;
@@ -41,7 +41,7 @@ class MapReader {
     return value->get<std::string>();
   }
 
-  /// A flat list of numbers, `arity` to a point; empty if the key is not there.
+  /// A flat list of numbers, `arity` per point; empty if the key is absent.
   [[nodiscard]] std::vector<double> numbers(const char* key, std::size_t arity) const {
     const json* list = find(key);
     if (list == nullptr) return {};
@@ -66,7 +66,8 @@ class MapReader {
     std::vector<colormaps::ColorPoint> points;
     for (std::size_t i = 0; i + 3 < flat.size(); i += 4) {
       const glm::dvec3 color{flat[i + 1], flat[i + 2], flat[i + 3]};
-      // Rounding beyond 0 and 1 is common in exported maps and is clamped; bytes are another convention.
+      // Rounding slightly below 0 or above 1 is common in exported maps and is clamped; larger values are bytes,
+      // another convention.
       if (std::max({color.x, color.y, color.z}) > 2)
         throw fault(fmt::format("RGBPoints: point {} has the colour {} {} {}; components are 0 to 1, not bytes",
                                 i / 4 + 1, color.x, color.y, color.z));
@@ -94,7 +95,7 @@ class MapReader {
   const std::string& source_;
 };
 
-/// VTK sorts points as they are added; points of one value keep the file's order, which makes steps.
+/// VTK sorts points as they are added; points of equal value keep the file's order, which makes steps.
 template <class Point>
 void sort_points(std::vector<Point>& points) {
   std::ranges::stable_sort(points, {}, &Point::value);
@@ -105,8 +106,8 @@ std::array<double, 2> range_of(const std::vector<Point>& points) {
   return {points.front().value, points.back().value};
 }
 
-/// Moves points that span `from` so that they span `to`. One value takes the colour or opacity of the middle, since it
-/// cannot hold the whole map.
+/// Maps the range `from` of the points to the range `to`. A range of one value gets the colour or opacity of the
+/// middle, because it cannot hold the whole map.
 template <class Point>
 void stretch(std::vector<Point>& points, const std::array<double, 2>& from, const std::array<double, 2>& to,
              auto&& at_middle) {
@@ -119,7 +120,7 @@ void stretch(std::vector<Point>& points, const std::array<double, 2>& from, cons
   for (Point& point : points) point.value = std::lerp(to[0], to[1], (point.value - from[0]) / (from[1] - from[0]));
 }
 
-/// The two points round the middle of [range], and how far between them it lies.
+/// The two points around the middle of [range], and its relative position between them.
 template <class Point>
 auto round_middle(const std::vector<Point>& points) {
   const double middle = 0.5 * (points.front().value + points.back().value);
@@ -139,7 +140,7 @@ std::string set_color_space(const std::string& name, const MapReader& reader, co
     curves.hue_wraps = wrap->is_boolean() ? wrap->get<bool>() : wrap->is_number() && wrap->get<double>() != 0;
   if (name == "RGB") {
     curves.space = colormaps::ColorSpace::rgb;
-  } else if (name == "HSV" || name == "Wrapped") {  // ParaView's older name for HSV that wraps
+  } else if (name == "HSV" || name == "Wrapped") {  // ParaView's older name for HSV with wrapping
     curves.space = colormaps::ColorSpace::hsv;
     curves.hue_wraps = curves.hue_wraps || name == "Wrapped";
   } else if (name == "Lab" || name == "CIELAB" || name == "CIELab" || name == "LAB") {
@@ -158,7 +159,7 @@ std::string set_color_space(const std::string& name, const MapReader& reader, co
   return "";
 }
 
-/// The length over which opacities hold, and where it comes from.
+/// The length for which opacities are given, and where it comes from.
 double unit_distance(const MapReader& reader, const colormaps::TransferFunctionOptions& options, std::string& source) {
   source = "default";
   double distance = options.default_unit_distance;

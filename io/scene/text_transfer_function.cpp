@@ -16,8 +16,7 @@ namespace tessera::io {
 
 namespace {
 
-/// Stretches sorted knots over the field's range; a constant field takes the knot nearest to the middle. Returns a
-/// remark.
+/// Maps sorted knots to the field's range; a constant field gets the knot nearest to the middle. Returns a remark.
 std::string rescale(std::vector<scene::Knot>& knots, const std::array<double, 2>& to) {
   const double low = knots.front().value, high = knots.back().value;
   if (to[0] == to[1]) {

@@ -13,13 +13,13 @@ using tessera::is_time_series;
 using tessera::read_time_series;
 using tessera::TimeStep;
 
-/// Throws Error(bad_input) unless the input is there: a file, or of a time series at least one step. For what must not
-/// be said of a file that is not there, such as that it is a mesh.
+/// Throws Error(bad_input) unless the input exists: a file, or at least one step of a time series. Called before errors
+/// that would be misleading for a missing file, such as that it is a mesh.
 void require_input(const std::filesystem::path& input);
 
-/// The text of a ParaView file series, {"file-series-version", "files": [{"name", "time"}, ...]}, in the order of time;
-/// names are against the folder of `input`. Entries without a time have their place in the list. Each is a step of its
-/// own, whatever others have its time. Throws Error(bad_input).
+/// Parses a ParaView file series, {"file-series-version", "files": [{"name", "time"}, ...]}, and sorts it by time;
+/// names are relative to the directory of `input`. The time of an entry without one is its index. Entries with equal
+/// times remain separate steps. Throws Error(bad_input).
 std::vector<TimeStep> parse_file_series(std::string_view text, const std::filesystem::path& input);
 
 }  // namespace tessera::io

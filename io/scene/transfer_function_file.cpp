@@ -37,7 +37,7 @@ colormaps::LoadedTransferFunction load_file(const std::string& file,
   }
 }
 
-/// With what was probably meant.
+/// An error that suggests what was probably meant.
 scene::Error neither(const std::string& name) {
   const std::vector<std::string> presets = colormaps::preset_names();
   const std::size_t colon = std::min(name.find(':'), name.size());
@@ -55,7 +55,7 @@ colormaps::LoadedTransferFunction load_transfer_function(const std::string& file
   if (is_json_text(file_or_preset)) {
     const std::string source = "`transfer_function`";
     colormaps::LoadedTransferFunction loaded = parse_json_transfer_function(file_or_preset, source, options);
-    loaded.name.replace(0, source.size(), "JSON");  // which no file is
+    loaded.name.replace(0, source.size(), "JSON");  // for a JSON text, which has no file name
     return loaded;
   }
   if (colormaps::is_preset(file_or_preset)) return colormaps::preset(file_or_preset, options);

@@ -15,8 +15,8 @@ constexpr std::uint32_t not_base64 = 0xff000000;
 constexpr std::uint64_t window = 256 << 10;
 constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/// For each of a group's four places, a character's bits where the three bytes have them, the first byte lowest; or
-/// not_base64. A group is the bitwise or of four look-ups: 3 GB/s of text.
+/// For each of a group's four positions, the bits of a character at their place in the three bytes, the first byte
+/// lowest; or not_base64. A group is the bitwise or of four look-ups: 3 GB/s of text.
 using Places = std::array<std::array<std::uint32_t, 256>, 4>;
 
 constexpr Places places = [] {
@@ -90,7 +90,7 @@ bool PackedBytes::read(std::byte* to, std::uint64_t count) {
   return true;
 }
 
-/// The next four characters to the last places of group_.
+/// Decodes the next four characters to the end of group_.
 bool PackedBytes::decode_group() {
   std::array<unsigned char, 4> group{};
   std::size_t padding = 0;

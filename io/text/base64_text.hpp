@@ -13,22 +13,22 @@ class PositionalFile;
 
 namespace tessera::io {
 
-/// Decodes groups of four characters (RFC 4648) from the front of `text`, up to the first that has another character
-/// (padding, white space) or for whose three bytes `to` has no room. Returns the number of groups.
+/// Decodes groups of four characters (RFC 4648) from the front of `text`, up to the first group that contains another
+/// character (padding, white space) or whose three bytes do not fit into `to`. Returns the number of groups.
 std::size_t decode_base64(std::string_view text, std::span<std::byte> to);
 
-/// Bytes of a file from one place to another, in their order, out of their base64 text if they are one. White space in
-/// the text is skipped. Padding may end a group anywhere: texts that were encoded one by one follow each other.
+/// Reads a range of a file's bytes sequentially and decodes them if they are base64 text. White space in the text is
+/// skipped. Padding may end a group anywhere: texts that were encoded separately may follow each other.
 class PackedBytes {
  public:
   PackedBytes(const system::PositionalFile& file, bool base64, std::uint64_t first, std::uint64_t end);
 
-  /// false: the bytes end before, or the text is not base64.
+  /// False if the bytes end early or the text is not base64.
   [[nodiscard]] bool read(std::byte* to, std::uint64_t count);
 
-  /// Behind what has been read, in the file.
+  /// Position in the file after the bytes read so far.
   [[nodiscard]] std::uint64_t position() const { return base64_ ? at_ - (text_.size() - used_) : at_; }
-  /// At most so many bytes follow.
+  /// Upper bound of the bytes that follow.
   [[nodiscard]] std::uint64_t left() const;
 
  private:
@@ -40,8 +40,8 @@ class PackedBytes {
   std::uint64_t at_, end_;
   std::string text_;
   std::size_t used_ = 0;      ///< of text_
-  std::byte group_[3] = {};   ///< the bytes of a group that was read in part
-  std::size_t group_at_ = 3;  ///< those from here on are left
+  std::byte group_[3] = {};   ///< the decoded bytes of a group that was only partly returned
+  std::size_t group_at_ = 3;  ///< bytes from here on are not returned yet
 };
 
 }  // namespace tessera::io

@@ -16,14 +16,14 @@ namespace tessera::io {
 
 using tessera::printable;
 
-/// Runs one reading of a file: its errors come out in one line whatever they quote, with `source` as their subject
-/// where they begin with it, and memory that runs out as Error(system_failure).
+/// Runs `work`, which reads a file: its errors come out as one line whatever they quote, with `source` as their subject
+/// if they begin with it; running out of memory becomes Error(system_failure).
 template <class Work>
 auto with_clean_errors(const std::string& source, const Work& work) {
   try {
     return work();
   } catch (const scene::Error& e) {
-    // May quote what a file holds, which may be anything.
+    // The message may quote arbitrary bytes of a file.
     throw scene::with_subject(scene::Error(e.code(), printable(e.what())), printable(source));
   } catch (const std::bad_alloc&) {
     throw scene::Error(scene::ErrorCode::system_failure, source, "memory ran out",
@@ -31,12 +31,12 @@ auto with_clean_errors(const std::string& source, const Work& work) {
   }
 }
 
-/// bad_input of a damaged file.
+/// The error bad_input for a damaged file.
 inline scene::Error damaged(const std::filesystem::path& file, const std::string& what) {
   return scene::bad_input(fmt::format("{}: {}; the file is truncated or damaged, write it again", file.string(), what));
 }
 
-/// Throws Error(bad_input) if a time step is asked of a file that has none.
+/// Throws Error(bad_input) if a time step is requested from a file without time steps.
 inline void require_no_time_step(std::optional<std::size_t> time_step, const std::string& source) {
   if (time_step.value_or(0) > 0)
     throw scene::bad_input(

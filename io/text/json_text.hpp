@@ -10,12 +10,12 @@
 
 namespace tessera::io {
 
-/// Many more than a useful file has; with them a file of a few MiB takes no more than a few GiB of memory.
+/// Far more than useful files contain; limits the memory for a file of a few MiB to a few GiB.
 constexpr std::size_t most_json_values = 20'000'000;
 
-/// Parses JSON in linear time, or throws Error(bad_input, "SOURCE: line L, column C: not valid JSON ..."). Refuses what
-/// would be read otherwise than meant or could not be held: a key twice in one object, numbers beyond double's range,
-/// more than 64 levels of nesting, more than `most_values` values (objects and lists count too).
+/// Parses JSON in linear time, or throws Error(bad_input, "SOURCE: line L, column C: not valid JSON ..."). Refuses
+/// texts that would be misread or exceed a limit: a duplicate key in an object, numbers beyond double's range, more
+/// than 64 levels of nesting, more than `most_values` values (objects and lists count too).
 nlohmann::json parse_json(std::string_view text, const std::string& source, std::size_t most_values = most_json_values);
 
 /// tessera::is_json_text().
@@ -23,7 +23,7 @@ inline bool is_json_text(std::string_view file_or_json) {
   return file_or_json.starts_with('{') || file_or_json.starts_with('[');
 }
 
-/// That error, for who parses as a stream: `byte` of the text, counted from 1, and the parser's own words.
+/// The same error for stream parsers: `byte` of the text, counted from 1, and the parser's message.
 scene::Error not_json(std::string_view text, const std::string& source, std::size_t byte, const std::string& message);
 
 }  // namespace tessera::io

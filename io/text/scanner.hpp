@@ -15,10 +15,10 @@
 
 namespace tessera::io {
 
-/// The number of the line that holds the byte `at` of a text, from 1.
+/// The number of the line that contains the byte `at` of a text, from 1.
 std::size_t line_number(std::string_view text, std::size_t at);
 
-/// Throws Error(bad_input, "SOURCE: line N: WHAT"), of the line that holds the byte `at` of a text. Bytes of `what`
+/// Throws Error(bad_input, "SOURCE: line N: WHAT") for the line that contains the byte `at` of a text. Bytes of `what`
 /// that are not printable are shown as '?'.
 [[noreturn]] void fail_at(std::string_view text, std::size_t at, const std::string& source, const std::string& what);
 
@@ -37,7 +37,7 @@ class TextScanner {
     if (text.starts_with(byte_order_mark)) at_ = next_line_ = byte_order_mark.size();
   }
 
-  /// Goes to the next line that holds more than blanks and a comment, to which words and numbers are then limited.
+  /// Goes to the next line that contains more than blanks and a comment; words and numbers are then limited to it.
   /// False at the end of the text.
   bool next_line() {
     while (next_line_ < text_.size()) {
@@ -50,7 +50,7 @@ class TextScanner {
     return false;
   }
 
-  /// Skips blanks and comments; true if the line or text has nothing else.
+  /// Skips blanks and comments; true if nothing else follows in the line or text.
   bool at_end() {
     for (; at_ < end_; ++at_) {
       if (is_blank(text_[at_])) continue;
@@ -68,7 +68,7 @@ class TextScanner {
     return text_.substr(first, at_ - first);
   }
 
-  /// Takes the next word if it is a number; a + before it is allowed. One out of a floating-point type's range is NaN.
+  /// Takes the next word if it is a number; a leading + is allowed. One outside a floating-point type's range is NaN.
   template <class T>
   Scanned number(T& value) {
     if (at_end()) return Scanned::nothing;
@@ -81,14 +81,14 @@ class TextScanner {
     return Scanned::out_of_range;
   }
 
-  /// The rest of this line, of a text that next_line() does not limit to its lines; goes on to the next.
+  /// The rest of this line, for a text that next_line() does not limit to lines; goes on to the next line.
   std::string_view rest_of_line() {
     const std::size_t first = at_, end = std::min(text_.find('\n', at_), end_);
     at_ = std::min(end + 1, end_);
     return text_.substr(first, end - first);
   }
 
-  /// What stands before `mark` on this line, without blanks around it; passes over both. Empty if the line has no mark.
+  /// The text before `mark` on this line, without surrounding blanks; skips both. Empty if the line has no mark.
   std::string_view word_before(char mark) {
     const std::string_view rest = line();
     const std::size_t found = rest.find(mark);
@@ -101,10 +101,10 @@ class TextScanner {
   void go_to(std::size_t at) { at_ = at; }
   /// The unread rest of the line that next_line() went to, or of the text.
   [[nodiscard]] std::string_view line() const { return text_.substr(at_, end_ - at_); }
-  /// All that follows, the lines after this one too.
+  /// All that follows, including the following lines.
   [[nodiscard]] std::string_view rest() const { return text_.substr(at_); }
 
-  /// io::fail_at() the place reached, or another.
+  /// Calls io::fail_at() for the current position, or another.
   [[noreturn]] void fail(const std::string& what) const { fail_at(at_, what); }
   [[noreturn]] void fail_at(std::size_t at, const std::string& what) const { io::fail_at(text_, at, source_, what); }
   [[nodiscard]] std::size_t line_number() const { return io::line_number(text_, at_); }

@@ -27,7 +27,7 @@ std::string read_text_file(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw scene::bad_input(file.string() + ": cannot be opened; check that you may read it");
   system::note_read(file);
-  // Read by pieces rather than by the size: a pipe has none.
+  // Read in pieces, not by size: a pipe has no size.
   std::string text;
   std::vector<char> piece(1u << 16);
   while (stream) {
@@ -38,7 +38,7 @@ std::string read_text_file(const std::filesystem::path& file) {
           fmt::format("{}: is larger than {} MiB, which no such text is; check that it is the right file",
                       file.string(), largest_file >> 20));
   }
-  // Files of the system's own, which have no size, refuse to be read; others fail with their disk.
+  // System files without a size refuse to be read; for others reading is an I/O error.
   if (stream.bad() && std::filesystem::file_size(file, error) == 0)
     throw scene::bad_input(file.string() + ": it cannot be read as text; check that it is the right file");
   if (stream.bad())

@@ -14,8 +14,7 @@
 namespace tessera::io {
 namespace {
 
-/// The callbacks are called from C: nothing may be thrown through it, so the first fault is kept and the parser
-/// stopped.
+/// The callbacks are called from C, so nothing may be thrown: the first error is stored and the parser stopped.
 struct Walk {
   XML_Parser parser;
   const std::string& source;
@@ -44,7 +43,7 @@ void XMLCALL on_start(void* user, const XML_Char* name, const XML_Char** attribu
 
 void XMLCALL on_end(void* user, const XML_Char* /*name*/) {
   Walk& walk = *static_cast<Walk*>(user);
-  // Of an empty element's two events expat still sends the second after it was stopped at the first.
+  // After it is stopped at the start event of an empty element, expat still sends the end event.
   if (!walk.fault) walk.parents.pop_back();
 }
 

@@ -12,25 +12,26 @@
 
 namespace tessera::io {
 
-/// How deep elements may be nested. Files of data are 5 deep; parsers that call themselves end where their stack does.
+/// Maximum nesting depth of elements. Data files are 5 deep; a limit is needed because recursive parsers overflow the
+/// stack.
 inline constexpr std::size_t most_nested = 256;
 scene::Error nested_too_deep(const std::string& source);
 
-/// One opening tag: its name, its parents' names from the root on, its attributes with entities resolved, and where in
-/// the text what is behind it begins.
+/// An opening tag: its name, its parents' names from the root on, its attributes with entities resolved, and the
+/// position in the text after it.
 struct XmlElement {
   std::string_view name;
   const std::vector<std::string>& parents;
   std::map<std::string, std::string> attributes;
   std::size_t text_at = 0;
 
-  /// An attribute; null if it is not there.
+  /// The value of an attribute; null if it is absent.
   [[nodiscard]] const std::string* find(const std::string& attribute) const;
 };
 
-/// Calls `visit` for each element of a small XML text (a list of files, not a mesh), in its order. Errors that `visit`
-/// throws come out of here. Throws Error(bad_input, "SOURCE: line N: ...") if the text is not well formed. What stands
-/// between tags goes to `visit_text`, if it is given, in pieces that may be cut anywhere.
+/// Calls `visit` for each element of a small XML text (a list of files, not a mesh), in order. Errors thrown by `visit`
+/// propagate. Throws Error(bad_input, "SOURCE: line N: ...") if the text is not well formed. Text between tags is
+/// passed to `visit_text`, if given, in pieces that may be cut anywhere.
 void each_xml_element(std::string_view text, const std::string& source,
                       const std::function<void(const XmlElement&)>& visit,
                       const std::function<void(std::string_view)>& visit_text = nullptr);

@@ -14,36 +14,37 @@
 
 namespace tessera::io {
 
-/// A brick file (.bricks): a volume cut into blocks that lie together, each with its range, so that a volume larger
-/// than memory is read by need and invisible blocks are never read.
+/// A brick file (.bricks): a volume cut into contiguous blocks, each with its range, so that a volume larger than
+/// memory is read on demand and invisible blocks are never read.
 ///
 ///   bytes 0..7     "TESSBRK1"
 ///   bytes 8..15    uint64 length H of the header
-///   bytes 16..     H bytes of JSON, blanks at its end: points [3], association, origin [3], direction [9, column by
-///   column], spacing [3],
-///                  coordinates [3 lists, empty where regular], type, scale, shift, field, block (a side, in samples),
-///                  low, high, blanks (of all values); where they are stated, by tag_words()
+///   bytes 16..     H bytes of JSON, padded with blanks: points [3], association, origin [3], direction [9, column by
+///                  column], spacing [3], coordinates [3 lists, empty where regular], type, scale, shift, field, block
+///                  (a
+///                  side, in samples), low, high, blanks (of all values); if stated, the entries of tag_words()
 ///                  (volume_tags.hpp): space, modality, unit, length unit, intent
 ///   then           for each block, i fastest: float64 low, float64 high, uint64 blanks (24 bytes)
 ///   then           the samples of each block in the same order, i fastest in it, without padding; blocks at the upper
 ///                  boundary are smaller
-/// Everything little endian. No sample is stored twice: a brick with a border reads from up to 27 blocks.
+/// Everything is little endian. No sample is stored twice: a brick with a border reads from up to 27 blocks.
 ///
-/// `name`: in the messages of later reads; empty: the file's.
+/// `name` is used in the messages of later reads; empty: the file's name.
 VolumeFile open_bricks(const std::filesystem::path& file, const ReadOptions& options, const std::string& name = {});
 
-/// Writes one with blocks of `side` samples (8 to 1024). Reads `source` once, one row of blocks at a time, on the
-/// threads of the caller's arena. Appears by rename. Throws Error(bad_input) for a side out of range,
-/// Error(system_failure) if it cannot be written.
+/// Writes a brick file with blocks of `side` samples (8 to 1024). Reads `source` once, one row of blocks at a time, on
+/// the threads of the caller's arena. Appears by rename. Throws Error(bad_input) for a side out of range,
+/// Error(system_failure) if writing fails.
 void write_bricks(const scene::SampleSource& source, const std::filesystem::path& file, int side = 64,
                   BodyAxes axes = BodyAxes::none, const VolumeTags& tags = {});
 
-/// The same as a file of this process's that others can open (system/scratch_file.hpp), for open_bricks(). Throws
-/// Error(bad_input) of `subject` if there is no room for it.
+/// Writes the same as a scratch file of this process that others can open (system/scratch_file.hpp), for open_bricks().
+/// Throws Error(bad_input) naming `subject` if there is no space for it.
 std::unique_ptr<system::ScratchFile> scratch_bricks(const scene::SampleSource& source, const std::string& subject);
 
-/// Unpacks samples into such a file, a part at a time, and opens it: the volume's source and scratch. false, and
-/// nothing done, if they may stay in memory by VolumeOptions or, if no room is no error, where there is none.
+/// Unpacks samples into such a file, a part at a time, and opens it: sets the volume's source and scratch. Returns
+/// false without doing anything if the samples may stay in memory according to VolumeOptions, or if there is no space
+/// and this is not an error.
 bool unpacked_to_scratch(const StreamedSamples& samples, const VolumeOptions& options, const std::string& source,
                          VolumeFile& volume);
 

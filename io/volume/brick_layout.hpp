@@ -11,23 +11,23 @@
 
 #include "scene/sample_source.hpp"
 
-/// How a brick file (brick_file.hpp) is laid out, for those who read and write it.
+/// The layout of a brick file (brick_file.hpp), for its readers and writers.
 namespace tessera::io {
 
 inline constexpr std::string_view brick_magic = "TESSBRK1";
 inline constexpr int least_side = 8, most_side = 1024;
 
-/// Of a block's values, as it is stored.
+/// Range of a block's values, as stored.
 struct BlockRange {
   double low = 1e300, high = -1e300;
   std::uint64_t blanks = 0;
 
-  /// Takes in samples as the grid stores them.
+  /// Adds samples in the grid's storage format.
   void add(const scene::Grid& grid, std::span<const std::byte> samples);
 };
 static_assert(sizeof(BlockRange) == 24);
 
-/// The blocks of a volume and where their samples begin, in samples.
+/// The blocks of a volume and the positions of their samples, in samples.
 class Blocks {
  public:
   Blocks(const scene::GridIndex& samples, std::int64_t side);
@@ -38,7 +38,8 @@ class Blocks {
     return (b[2] * count_[1] + b[1]) * count_[0] + b[0];
   }
   [[nodiscard]] scene::SampleBox box(const scene::GridIndex& b) const;
-  /// Samples of all blocks before this one: whole layers, whole rows of blocks in its layer, blocks in its row.
+  /// Number of samples in all blocks before this one: whole layers, whole rows of blocks in its layer, blocks in its
+  /// row.
   [[nodiscard]] std::int64_t first_sample(const scene::GridIndex& b) const;
 
  private:
@@ -46,20 +47,20 @@ class Blocks {
   std::int64_t side_;
 };
 
-/// More words of the header by name (volume_tags.hpp).
+/// Additional header entries by name (volume_tags.hpp).
 using BrickWords = std::vector<std::pair<std::string, std::string>>;
 
-/// Where what of a file to be written is. Keeps a reference to the grid.
+/// Byte positions in a file to be written. Keeps a reference to the grid.
 class BrickLayout {
  public:
   BrickLayout(const scene::Grid& grid, int side, BrickWords words = {});
 
   [[nodiscard]] const Blocks& blocks() const { return blocks_; }
   [[nodiscard]] std::int64_t side() const { return side_; }
-  /// Of the first block's samples.
+  /// Position of the first block's samples.
   [[nodiscard]] std::uint64_t first_byte() const;
   [[nodiscard]] std::uint64_t bytes() const;
-  /// All that stands before the samples, once the ranges of all blocks are known.
+  /// Everything before the samples, once the ranges of all blocks are known.
   [[nodiscard]] std::string beginning(std::span<const BlockRange> ranges) const;
 
  private:

@@ -11,14 +11,14 @@
 
 namespace tessera::io {
 
-/// Samples that wait in a file, in its order (k slowest, i fastest, components interleaved).
+/// Reads samples from a file, stored in file order (k slowest, i fastest, components interleaved).
 ///
-/// Read by position, not by a mapping: pages of mapped files count as this process's memory as long as they are mapped,
-/// and where the system keeps a file in pages of 2 MiB a row of 33 bytes in each of 33 slices maps 66 MiB.
+/// Uses positional reads, not a mapping: pages of mapped files count as this process's memory while they are mapped,
+/// and where the system caches a file in pages of 2 MiB, a row of 33 bytes in each of 33 slices maps 66 MiB.
 class FileSource final : public scene::SampleSource {
  public:
-  /// `first_byte`: of the samples in the file; `source` names it in messages. Throws Error(bad_input) unless the file
-  /// has as many bytes as the grid needs, Error(system_failure) if it cannot be opened.
+  /// `first_byte`: position of the samples in the file; `source` is its name in messages. Throws Error(bad_input)
+  /// unless the file has as many bytes as the grid needs, Error(system_failure) if it cannot be opened.
   FileSource(scene::Grid grid, const std::filesystem::path& file, std::uint64_t first_byte, const std::string& source,
              const scene::ComponentChoice& choice, bool swapped);
 

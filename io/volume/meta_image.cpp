@@ -16,7 +16,7 @@
 namespace tessera::io {
 namespace {
 
-// MET_LONG is of four bytes or of eight, as its writer's machine had it.
+// MET_LONG has four bytes or eight, depending on the machine that wrote it.
 constexpr scene::NumberTypeNames element_types[] = {
     {scene::NumberType::int8, "MET_CHAR"},       {scene::NumberType::uint8, "MET_UCHAR"},
     {scene::NumberType::int16, "MET_SHORT"},     {scene::NumberType::uint16, "MET_USHORT"},
@@ -24,7 +24,7 @@ constexpr scene::NumberTypeNames element_types[] = {
     {scene::NumberType::float32, "MET_FLOAT"},   {scene::NumberType::float64, "MET_DOUBLE"},
     {scene::NumberType::int64, "MET_LONG_LONG"}, {scene::NumberType::uint64, "MET_ULONG_LONG"}};
 
-/// Keys in the file's order end with ElementDataFile; after its line a local payload begins.
+/// Keys in file order; the last is ElementDataFile, and a local payload begins after its line.
 struct MetaHeader {
   std::map<std::string, std::string> values;
   std::size_t end = 0;
@@ -42,7 +42,7 @@ MetaHeader parse_meta_header(std::string_view text, const std::filesystem::path&
     const std::size_t stop = std::min(text.find('\n', header.end), text.size());
     const std::string_view line = text.substr(header.end, stop - header.end);
     header.end = std::min(stop + 1, text.size());
-    const std::size_t equals = line.find_first_of("=:");  // MetaIO takes both
+    const std::size_t equals = line.find_first_of("=:");  // MetaIO accepts both
     if (trimmed(line).empty()) continue;
     if (equals == std::string_view::npos)
       throw damaged(file, fmt::format("{} is not a line 'Key = value' of its header", quote(trimmed(line))));
@@ -57,7 +57,7 @@ bool meta_is_true(const std::string* value) {
   return value && !value->empty() && (lower_case(value->front()) == 't' || *value == "1");
 }
 
-/// Numbers and their coding.
+/// Number type and encoding.
 void read_samples_of(const MetaHeader& header, const std::filesystem::path& file, StoredVolume& volume) {
   const auto* type = header.find({"ElementType"});
   if (!type) throw damaged(file, "its header has no ElementType");
@@ -81,7 +81,7 @@ void read_samples_of(const MetaHeader& header, const std::filesystem::path& file
     throw scene::bad_input(fmt::format("{}: its samples are compressed text; write them binary", file.string()));
 }
 
-/// Axes, origin, and what a sample stands for.
+/// Axes, origin, and the meaning of samples.
 void read_grid(const MetaHeader& header, std::size_t axes, const std::filesystem::path& file, StoredVolume& volume) {
   const auto reals = [&](const char* what, const std::string& value, std::size_t count) {
     return header_numbers(value, count, file, what);
@@ -103,7 +103,7 @@ void read_grid(const MetaHeader& header, std::size_t axes, const std::filesystem
           glm::dvec3(m[axes * axis], m[axes * axis + 1], m[axes * axis + 2]) * spacing[static_cast<int>(axis)];
   }
   scene::set_axes(g, steps);
-  // ITK writes it of every image, in a world of left, posterior and superior.
+  // ITK writes it for every image, in a world of left, posterior and superior.
   if (const auto* value = header.find({"AnatomicalOrientation"}); value && value->find('?') == std::string::npos)
     volume.body_axes = BodyAxes::lps;
   if (const auto* value = header.find({"Offset", "Position", "Origin"})) {
@@ -121,7 +121,7 @@ void read_grid(const MetaHeader& header, std::size_t axes, const std::filesystem
         fmt::format("values are {:.9g} * sample + {:.9g}, as its header states", volume.grid.scale, volume.grid.shift));
 }
 
-/// Where the samples are; `lines` follow the header.
+/// Location of the samples; `lines` follow the header.
 void read_payload(const MetaHeader& header, std::string_view lines, const InputFile& input, StoredVolume& volume) {
   const std::filesystem::path& file = input.path;
   const std::string& payload = *header.find({"ElementDataFile"});

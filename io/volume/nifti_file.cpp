@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // NIfTI-1 and NIfTI-2. Source: Cox et al., "A (sort of) new image data format standard: NIfTI-1", 2004, and the headers
-// nifti1.h and nifti2.h of the NIfTI Data Format Working Group. VTK's reader leaves slope, intercept and the
-// orientation to its caller and keeps all samples in memory, so the header is read here.
+// nifti1.h and nifti2.h of the NIfTI Data Format Working Group. VTK's reader leaves slope, intercept and orientation to
+// its caller and keeps all samples in memory, so the header is read here.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,9 +26,9 @@ std::vector<std::byte> first_bytes(std::string_view beginning) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// Up to 540 bytes, out of a gzip stream if it is one.
+/// Up to 540 bytes, inflated if the file is gzip.
 std::vector<std::byte> header_bytes(const std::filesystem::path& file) {
-  constexpr std::size_t enough = 1 << 16;  // of a stream too: it names its file, and deflate expands nothing by much
+  constexpr std::size_t enough = 1 << 16;  // also if gzip: it has a file name and deflate expands little
   const std::string beginning = read_beginning(file, enough);
   return system::looks_like_gzip(beginning)
              ? system::inflate_beginning(std::as_bytes(std::span(beginning)), header_size_2)
@@ -52,9 +52,9 @@ class NiftiHeader {
     }
   }
 
-  /// 0: none of NIfTI.
+  /// 0: not NIfTI.
   [[nodiscard]] int version() const { return version_; }
-  /// Analyze 7.5: the same size, dimensions, types and spacing, and no magic word.
+  /// Analyze 7.5: the same size, dimensions, types and spacing, but no magic word.
   [[nodiscard]] bool is_analyze() {
     if (version_ != 0 || bytes_.size() < header_size_1) return false;
     for (const bool swapped : {false, true}) {
@@ -84,9 +84,9 @@ class NiftiHeader {
   /// quatern_b, c, d, qoffset_x, y, z.
   [[nodiscard]] double quaternion(std::size_t k) const { return real(256 + 4 * k, 352 + 8 * k); }
   [[nodiscard]] int intent() const { return version_ == 1 ? get<std::int16_t>(68) : get<std::int32_t>(504); }
-  /// xyzt_units without the bits of time: 1 m, 2 mm, 3 um; 0: not stated.
+  /// xyzt_units without the time bits: 1 m, 2 mm, 3 um; 0: not stated.
   [[nodiscard]] int length_unit() const { return (version_ == 1 ? get<std::int8_t>(123) : get<std::int32_t>(500)) & 7; }
-  /// Of xyzt_units, in seconds; 0 where it is not one of time, or not stated.
+  /// Time unit of xyzt_units, in seconds; 0 if it is not a time or not stated.
   [[nodiscard]] double time_unit() const {
     const int code = (version_ == 1 ? get<std::int8_t>(123) : get<std::int32_t>(500)) & 0x38;
     return code == 8 ? 1 : code == 16 ? 1e-3 : code == 24 ? 1e-6 : 0;
@@ -126,11 +126,11 @@ constexpr std::array nifti_types = {
     NiftiType{768, scene::NumberType::uint32, 1}, NiftiType{2304, scene::NumberType::uint8, 4},
     NiftiType{1024, scene::NumberType::int64, 1}, NiftiType{1280, scene::NumberType::uint64, 1}};
 
-/// nifti1.h, "METHOD 2": the rotation of a unit quaternion with a >= 0, the third axis mirrored where qfac is -1.
+/// nifti1.h, "METHOD 2": the rotation of a unit quaternion with a >= 0, the third axis mirrored if qfac is -1.
 std::array<glm::dvec3, 3> quaternion_steps(const NiftiHeader& header, const glm::dvec3& spacing) {
   double b = header.quaternion(0), c = header.quaternion(1), d = header.quaternion(2);
   double a = 1 - (b * b + c * c + d * d);
-  if (a < 1e-7) {  // a half turn: rounding may leave it below 0
+  if (a < 1e-7) {  // a half turn: rounding may make a^2 slightly negative
     const double length = std::sqrt(b * b + c * c + d * d);
     b /= length, c /= length, d /= length, a = 0;
   } else {
@@ -142,14 +142,14 @@ std::array<glm::dvec3, 3> quaternion_steps(const NiftiHeader& header, const glm:
           glm::dvec3(2 * (b * d + a * c), 2 * (c * d - a * b), a * a + d * d - c * c - b * b) * spacing.z * mirror};
 }
 
-/// A patient by the header: coordinates of a scanner or an atlas (codes 1, 3, 4), or aligned ones (2, and 5 of other
-/// templates), which libraries write of anything, in millimetres. Otherwise values have to be those of CT.
+/// Anatomical axes apply if coordinates are those of a scanner or an atlas (codes 1, 3, 4) or in millimetres: libraries
+/// write the other codes for any data. Otherwise the values must look like CT.
 void set_nifti_axes(const NiftiHeader& header, int code, StoredVolume& volume) {
   const bool is_body = code == 1 || code == 3 || code == 4 || header.length_unit() == 2;
   (is_body ? volume.body_axes : volume.axes_if_ct) = BodyAxes::ras;
 }
 
-/// What values are, and the unit of lengths.
+/// The meaning of the values, and the unit of length.
 void set_nifti_tags(const NiftiHeader& header, StoredVolume& volume) {
   constexpr int label_intent = 1002, neuro_name_intent = 1005;  // nifti1.h
   volume.tags.labels = header.intent() == label_intent || header.intent() == neuro_name_intent;
@@ -172,7 +172,7 @@ void set_nifti_geometry(const NiftiHeader& header, const std::filesystem::path& 
     volume.notes.emplace_back("placed by its sform");
   } else if (header.qform_code() > 0) {
     scene::set_axes(g, quaternion_steps(header, spacing));
-    g.spacing = spacing;  // as it stands, without the quaternion's rounding
+    g.spacing = spacing;  // exact, without the quaternion's rounding
     g.origin = {header.quaternion(3), header.quaternion(4), header.quaternion(5)};
     set_nifti_axes(header, header.qform_code(), volume);
     volume.notes.emplace_back("placed by its qform");
@@ -199,7 +199,7 @@ void set_nifti_dimensions(const NiftiHeader& header, const std::filesystem::path
     volume.grid.geometry.points[axis] = static_cast<std::int64_t>(axis) < dimensions ? header.dim(axis + 1) : 1;
   if (dimensions >= 4) volume.steps = static_cast<std::uint64_t>(header.dim(4));
   if (dimensions < 5 || header.dim(5) == 1) return;
-  // Components of a sample lie further apart than its steps.
+  // Components of a sample are further apart than its steps.
   if (volume.components > 1 || volume.steps > 1 || header.dim(5) > 64)
     throw scene::bad_input(fmt::format(
         "{}: dimension 5 holds {} components and {} steps; of those, write one alone, with at most 64 components",
@@ -219,7 +219,7 @@ void set_nifti_type(const NiftiHeader& header, const std::filesystem::path& file
   volume.swapped = header.swapped();
 }
 
-/// The file of samples of a header of its own: x.img of x.hdr, packed or not.
+/// The samples' file for a separate header: x.img for x.hdr, packed or not.
 std::filesystem::path image_beside(const std::filesystem::path& header) {
   std::filesystem::path stem = header;
   if (system::lower_extension(stem) == ".gz") stem.replace_extension();
@@ -235,7 +235,7 @@ std::filesystem::path image_beside(const std::filesystem::path& header) {
                                      header.string(), stem.filename().string()));
 }
 
-/// x.hdr of x.img; any other name is the header's.
+/// x.hdr for x.img; any other name is the header itself.
 std::filesystem::path header_beside(const std::filesystem::path& file) {
   std::filesystem::path stem = file;
   if (system::lower_extension(stem) == ".gz") stem.replace_extension();
@@ -251,12 +251,12 @@ std::filesystem::path header_beside(const std::filesystem::path& file) {
                                      stem.filename().string()));
 }
 
-/// `file` is the header's, `input` that or the samples'.
+/// `file` is the header's path; `input` is the header or the samples.
 void set_nifti_payload(const NiftiHeader& header, const std::filesystem::path& file, const InputFile& input,
                        StoredVolume& volume) {
   const double offset = header.vox_offset();
   if (!(offset >= 0 && offset < 1e9)) throw damaged(file, fmt::format("its samples begin at byte {}", offset));
-  // A single file never has them inside its header; old writers left 0.
+  // In a single file the samples cannot be inside the header; old writers stored 0.
   const double least =
       header.separate() ? 0 : static_cast<double>(header.version() == 1 ? header_size_1 : header_size_2) + 4;
   volume.offset = static_cast<std::uint64_t>(std::max(offset, least));
@@ -300,7 +300,7 @@ StoredVolume read_analyze_header(const InputFile& input) {
   set_nifti_type(header, header_file, volume);
   set_nifti_dimensions(header, header_file, volume);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    // Many writers leave spacings out, and some say them with a sign.
+    // Many writers omit spacings, and some store them with a sign.
     const double spacing = std::abs(header.pixdim(axis + 1));
     volume.grid.geometry.spacing[static_cast<int>(axis)] = spacing > 0 && std::isfinite(spacing) ? spacing : 1;
   }

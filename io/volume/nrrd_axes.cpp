@@ -19,14 +19,14 @@
 namespace tessera::io {
 namespace {
 
-/// Words between blanks; quotes stay.
+/// Words separated by blanks; keeps quotes.
 std::vector<std::string> nrrd_words(std::string_view text) {
   std::vector<std::string> words;
   for (const std::string_view word : split_words(text)) words.push_back(lower_case(word));
   return words;
 }
 
-/// One vector an axis of three numbers or four, "none" and (nan, nan, nan) as nothing: `(1,0,0) none (0,0.5,0)`.
+/// One vector per axis, of three or four numbers; "none" and (nan, nan, nan) have no value: `(1,0,0) none (0,0.5,0)`.
 std::vector<std::optional<glm::dvec4>> space_vectors_of(std::string_view text, const std::filesystem::path& file) {
   std::vector<std::optional<glm::dvec4>> vectors;
   text = trimmed(text);
@@ -64,7 +64,7 @@ using Uses = std::vector<NrrdAxes::Use>;
 
 bool has_three(const Uses& uses) { return std::ranges::count(uses, NrrdAxes::Use::space) == 3; }
 
-/// Of axes with a direction in space; none unless three have one.
+/// The uses of axes if exactly three have a direction in space; else no value.
 std::optional<Uses> uses_by_directions(const NrrdFields& fields, std::size_t axes, const std::filesystem::path& file) {
   const auto* directions = fields.find("spacedirections");
   if (directions == nullptr) return std::nullopt;
@@ -79,7 +79,7 @@ std::optional<Uses> uses_by_directions(const NrrdFields& fields, std::size_t axe
   return has_three(uses) ? std::optional(uses) : std::nullopt;
 }
 
-/// What a word of `kinds` says; `nothing`: not known.
+/// The use that a word of `kinds` names; `nothing`: unknown.
 NrrdAxes::Use use_of_kind(const std::string& kind) {
   if (kind == "domain" || kind == "space") return NrrdAxes::Use::space;
   if (kind == "time" || kind == "list" || kind == "point") return NrrdAxes::Use::steps;
@@ -87,7 +87,7 @@ NrrdAxes::Use use_of_kind(const std::string& kind) {
   return NrrdAxes::Use::components;
 }
 
-/// Before the axes of space are components, behind them time steps.
+/// Axes before the spatial ones are components, those after them time steps.
 void fill_unknown_uses(Uses& uses, const std::vector<std::int64_t>& sizes, const Uses& by_kinds) {
   const auto first = std::ranges::find(uses, NrrdAxes::Use::space) - uses.begin();
   for (std::size_t a = 0; a < uses.size(); ++a) {
@@ -101,8 +101,8 @@ void fill_unknown_uses(Uses& uses, const std::vector<std::int64_t>& sizes, const
   }
 }
 
-/// Letters or words of a body's axes, or nothing: what one step along each axis of the file is in
-/// right-anterior-superior.
+/// For the letters or words of anatomical axes: the direction of each axis of the file in right-anterior-superior. No
+/// value for other texts.
 std::optional<glm::dmat3> to_ras(std::string_view space) {
   struct BodyWord {
     std::string_view word;
@@ -134,7 +134,7 @@ struct NrrdSpace {
   std::string note{};
 };
 
-/// Of the field `space`.
+/// Interprets the field `space`.
 NrrdSpace space_of(const std::string& field) {
   std::string word = lower_case(field);
   std::erase_if(word, [](char c) { return !is_letter(c) && !is_digit(c); });
@@ -153,7 +153,7 @@ NrrdSpace space_of(const std::string& field) {
           .note = fmt::format("its space, {}, is turned to right-anterior-superior", field)};
 }
 
-/// Places along one axis, from the fields of axes: half a step further in where samples are centres of cells.
+/// Positions along one axis, from the per-axis fields: half a step further in if samples are cell centers.
 struct AxisPlaces {
   double spacing = 1, first = 0;
 };
@@ -186,12 +186,12 @@ AxisPlaces axis_places(const NrrdFields& fields, std::size_t axis, const std::ve
   return places;
 }
 
-/// The numbers of `space origin`, of time too if there are four.
+/// The numbers of `space origin`, including time if there are four.
 std::vector<double> space_origin_of(const std::string& field, const std::filesystem::path& file) {
   return header_numbers(field, std::ranges::count(field, ',') == 3 ? 4 : 3, file, "space origin");
 }
 
-/// Of an axis whose direction in a space of four dimensions leads along the fourth alone.
+/// For an axis whose direction in a four-dimensional space is along the fourth dimension only.
 std::optional<AxisPlaces> places_in_time(const NrrdFields& fields, std::size_t axis,
                                          const std::filesystem::path& file) {
   const auto *directions = fields.find("spacedirections"), *place = fields.find("spaceorigin");
@@ -228,9 +228,9 @@ NrrdFields nrrd_fields_of(std::string_view text, const std::filesystem::path& fi
     std::string name = lower_case(line.substr(0, colon));
     std::erase(name, ' ');
     fields.values[name] = std::string(trimmed(line.substr(colon + 1)));
-    if (name == "datafile" && fields.values[name].starts_with("LIST")) return fields;  // names follow
+    if (name == "datafile" && fields.values[name].starts_with("LIST")) return fields;  // file names follow
   }
-  return fields;  // .nhdr may end without a blank line
+  return fields;  // a .nhdr may end without a blank line
 }
 
 NrrdAxes nrrd_axes_of(const NrrdFields& fields, const std::vector<std::int64_t>& sizes,
@@ -253,7 +253,7 @@ NrrdAxes nrrd_axes_of(const NrrdFields& fields, const std::vector<std::int64_t>&
   } else if (has_three(by_kinds)) {
     axes.uses = by_kinds;
   } else {
-    // Of more axes of a domain than three the last is none of space, as ITK writes images of four dimensions.
+    // If more than three axes are domains, the last is not spatial: ITK writes four-dimensional images like this.
     const bool are_domains = std::ranges::count(by_kinds, NrrdAxes::Use::space) > 3;
     const bool skips = are_domains ? by_kinds.front() != NrrdAxes::Use::space : count == 5 || sizes[0] <= 16;
     const std::size_t skip = skips ? 1 : 0;

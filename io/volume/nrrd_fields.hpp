@@ -10,9 +10,9 @@ namespace tessera::io {
 
 /// The fields and key/value pairs of an NRRD header.
 struct NrrdFields {
-  std::map<std::string, std::string> values;  ///< by name without blanks: "space origin" and "spaceorigin" are one
-  std::map<std::string, std::string> keys;    ///< pairs `KEY:=VALUE`, which the format gives no meaning
-  std::size_t end = 0;                        ///< where an attached payload begins
+  std::map<std::string, std::string> values;  ///< by name without blanks: "spaceorigin"
+  std::map<std::string, std::string> keys;    ///< pairs `KEY:=VALUE`, whose meaning the format does not define
+  std::size_t end = 0;                        ///< position of an attached payload
 
   [[nodiscard]] const std::string* find(const char* name) const {
     const auto v = values.find(name);
@@ -20,7 +20,7 @@ struct NrrdFields {
   }
 };
 
-/// Of a header's text, its first line included. Throws Error(bad_input).
+/// Parses a header's text, including its first line. Throws Error(bad_input).
 NrrdFields nrrd_fields_of(std::string_view text, const std::filesystem::path& file);
 
 }  // namespace tessera::io

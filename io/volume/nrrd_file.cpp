@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// NRRD. Source: Kindlmann, "Definition of NRRD File Format", teem.sourceforge.net/nrrd/format.html. VTK's reader gives
-// up on files with space directions, so the header is read here.
+// NRRD. Source: Kindlmann, "Definition of NRRD File Format", teem.sourceforge.net/nrrd/format.html. VTK's reader
+// refuses files with space directions, so the header is read here.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ const std::string& required_field(const NrrdFields& fields, const char* name, co
   return *value;
 }
 
-/// Where the line after `lines` more of them begins.
+/// Position after skipping `lines` lines from `offset`.
 std::uint64_t after_lines(const std::filesystem::path& payload, std::uint64_t offset, std::int64_t lines) {
   if (lines == 0) return offset;
   const std::uint64_t size = require_file(payload);
@@ -91,7 +91,7 @@ void set_other_axes(const NrrdAxes& axes, const std::vector<std::int64_t>& sizes
         file.string()));
 }
 
-/// Fields and the keys that other programs and write_volume() use.
+/// Metadata from the fields and the keys that other programs and write_volume() use.
 void set_nrrd_tags(const NrrdFields& fields, StoredVolume& volume) {
   const auto first_quoted = [](std::string_view text) {
     const std::size_t open = text.find('"');
@@ -105,11 +105,11 @@ void set_nrrd_tags(const NrrdFields& fields, StoredVolume& volume) {
     return found == fields.keys.end() ? std::string() : found->second;
   };
   volume.tags.modality = key("modality");
-  // A segmentation of 3D Slicer lists its labels by number.
+  // 3D Slicer's segmentations list their labels by number.
   volume.tags.labels = key("intent") == "label" || fields.keys.contains("Segment0_LabelValue");
 }
 
-/// More than the file's beginning only if the header is longer, or lists files.
+/// Reads more than the file's first bytes only if the header is longer or lists files.
 std::string header_of(const InputFile& file) {
   constexpr std::size_t longest_nrrd_header = 1 << 20;
   const std::string& text = file.beginning;
@@ -172,7 +172,7 @@ StoredVolume read_nrrd_header(const InputFile& input, const std::string& text) {
   if (lines)
     volume.offset = after_lines(volume.payload, volume.offset, header_count(*lines, 0, 1 << 20, file, "line skip"));
   if (const auto* bytes = fields.find("byteskip")) {
-    // Lines are skipped before a gzip stream begins, bytes after it is inflated.
+    // Lines are skipped before a gzip stream begins, bytes after inflating it.
     if (*bytes == "-1")
       volume.at_end = true;
     else

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Regular and rectilinear grids whose one array is read in place. open_vtk_xml() and VTK's reader, by which all others
-// are read (io/foreign/foreign_vtk_grids.cpp), hold all samples in memory.
+// Regular and rectilinear grids with a single array, read in place. open_vtk_xml() and VTK's reader, which read all
+// others (io/foreign/foreign_vtk_grids.cpp), hold all samples in memory.
 #include "io/volume/plain_vtk_grid.hpp"
 
 #include <algorithm>
@@ -29,13 +29,13 @@ namespace {
 
 constexpr std::size_t longest_beginning = 1 << 20, longest_number = 32;
 
-/// The words of a file: its beginning or, if its samples stand among them, what is before these and what is behind.
+/// The text of a file: its beginning or, if the samples are within the text, the parts before and after them.
 struct GridWords {
   std::string text;
-  std::size_t cut = std::string::npos;  ///< where samples are left out
+  std::size_t cut = std::string::npos;  ///< where samples are omitted
   std::uint64_t left_out = 0;           ///< bytes
 
-  /// In the file.
+  /// Position in the file.
   [[nodiscard]] std::uint64_t place(std::size_t at) const { return at < cut ? at : at + left_out; }
 };
 
@@ -52,7 +52,7 @@ struct GridElements {
   std::vector<ElementFound> axes;
   int pieces = 0, arrays = 0, coordinates = 0;
   bool of_cells = false, active = false;
-  bool whole = false;  ///< nothing follows but appended arrays
+  bool whole = false;  ///< only appended arrays follow
 };
 
 struct WordsEnd {};
@@ -62,7 +62,7 @@ std::string word(const Attributes& attributes, const std::string& name, const st
   return found == attributes.end() ? otherwise : found->second;
 }
 
-/// Elements up to where appended arrays come, or the words end.
+/// Elements up to the appended arrays or the end of the text.
 GridElements elements_of(std::string_view words, const std::string& source) {
   GridElements found;
   std::string scalars;
@@ -89,7 +89,7 @@ GridElements elements_of(std::string_view words, const std::string& source) {
     found.whole = true;
   } catch (const WordsEnd&) {
     found.whole = true;
-  } catch (const scene::Error&) {  // it goes on behind these words; what was found has to be all that is needed
+  } catch (const scene::Error&) {  // the XML continues after this text; the elements found must be sufficient
   }
   return found;
 }
@@ -103,7 +103,7 @@ bool read_numbers(const std::string& text, std::array<T, n>& numbers) {
   return (in >> std::ws).eof();
 }
 
-/// false: anything is odd.
+/// False if anything is unusual.
 bool set_extent(const GridElements& found, ForeignPart& part, scene::GridGeometry& g) {
   std::array<std::int64_t, 6> piece{};
   if (!read_numbers(word(found.grid, "WholeExtent"), part.extent) ||
@@ -129,14 +129,14 @@ bool set_image(const GridElements& found, ForeignPart& image, scene::GridGeometr
   return true;
 }
 
-/// What all arrays of a file have in common.
+/// Encoding shared by all arrays of a file.
 VtkArrayPlace packing_of(const GridElements& found) {
   return {.codec = vtk_codec_named(word(found.file, "compressor")).value_or(VtkCodec::none),
           .swapped = word(found.file, "byte_order") == "BigEndian",
           .number_bytes = word(found.file, "header_type") == "UInt64" ? 8u : 4u};
 }
 
-/// Where a binary array begins; none: not within the words.
+/// Where a binary array begins; no value if it is outside the text.
 std::optional<VtkArrayPlace> place_of(const ElementFound& array, const GridElements& found, const GridWords& words) {
   VtkArrayPlace place = packing_of(found);
   const std::string format = word(array.attributes, "format");
@@ -157,7 +157,7 @@ std::optional<VtkArrayPlace> place_of(const ElementFound& array, const GridEleme
   return place;
 }
 
-/// As many numbers as the text has to have, each as its type rounds it; false: other words.
+/// Parses exactly as many numbers as expected, each rounded to its type; false for any other text.
 bool read_text(std::string_view text, NumberType type, std::span<double> numbers) {
   return with_number_type(type, [&](auto value) {
     const std::string unnamed;
@@ -170,7 +170,7 @@ bool read_text(std::string_view text, NumberType type, std::span<double> numbers
   });
 }
 
-/// None if anything is odd.
+/// No value if anything is unusual.
 std::optional<AxisCoordinates> axis_of(const system::PositionalFile& file, const ElementFound& array,
                                        const GridElements& found, const GridWords& words, std::int64_t points) {
   const auto type = vtk_xml_number_type(word(array.attributes, "type"));
@@ -202,7 +202,7 @@ bool set_axes_of(const system::PositionalFile& file, const GridElements& found, 
   return true;
 }
 
-/// Leaves out the samples, which end at `end`; false: too much is behind them for words.
+/// Omits the samples, which end at `end`; false if the text after them is too long.
 bool leave_out(const system::PositionalFile& file, std::size_t samples, std::uint64_t end, const scene::GridGeometry& g,
                GridWords& words) {
   std::uint64_t most = longest_beginning;
@@ -216,7 +216,7 @@ bool leave_out(const system::PositionalFile& file, std::size_t samples, std::uin
   return true;
 }
 
-/// Whether this program knows what stands before the samples.
+/// Whether this reader supports everything before the samples.
 bool is_plain(const GridElements& found, const std::string& kind) {
   const std::string order = word(found.file, "byte_order"), number = word(found.file, "header_type", "UInt32");
   const std::string compressor = word(found.file, "compressor"), name = word(found.samples.attributes, "Name");

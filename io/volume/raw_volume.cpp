@@ -9,7 +9,7 @@
 namespace tessera::io {
 namespace {
 
-/// WxHxD of a word; none if it is anything else.
+/// Parses WxHxD; no value for anything else.
 std::optional<scene::GridIndex> raw_dims_of(std::string_view word) {
   scene::GridIndex dims{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -62,7 +62,7 @@ StoredVolume describe_raw(const std::filesystem::path& file, const ReadOptions& 
   volume.number = *type;
   volume.swapped = scene::is_swapped(options.big_endian);
   volume.offset = options.skip;
-  volume.exact_size = true;  // else wrong dimensions would give a skewed picture without a word
+  volume.exact_size = true;  // otherwise wrong dimensions would give a skewed image without an error
   return volume;
 }
 

@@ -14,37 +14,37 @@
 
 namespace tessera::io {
 
-/// The samples of a volume, where they lie in the file or, if they had to be unpacked or put together, in memory.
+/// The samples of a volume, at their position in the file or, if they had to be unpacked or combined, in memory.
 struct VolumePayload {
   struct Place {
     std::filesystem::path file;
     std::uint64_t first_byte;
   };
-  std::span<const std::byte> bytes;  ///< empty where they lie in a file
+  std::span<const std::byte> bytes;  ///< empty if the samples are in a file
   std::shared_ptr<const void> owner;
   std::optional<Place> in_file{};
-  std::uint64_t count = 0;  ///< of the bytes
+  std::uint64_t count = 0;  ///< number of bytes
 };
 
-/// The same in memory. Throws Error(system_failure) if the file has been shortened meanwhile.
+/// The same payload in memory. Throws Error(system_failure) if the file was shortened since it was opened.
 VolumePayload in_memory(VolumePayload payload, const std::string& source);
 
-/// The samples of one step of a volume; with interleaved steps, of all. They are as many as the header says. Throws
-/// Error(bad_input) for files that hold fewer, before memory is asked for that they could not fill.
+/// The samples of one step of a volume; with interleaved steps, of all. Their number matches the header. Throws
+/// Error(bad_input) for files that contain fewer, before it allocates memory that they could not fill.
 VolumePayload payload_of(const StoredVolume& volume, std::size_t step, const std::string& source);
 
-/// Bytes of all steps. Throws Error(bad_input) for more than can be addressed.
+/// Size in bytes of all steps. Throws Error(bad_input) if it is not addressable.
 std::uint64_t payload_bytes(const StoredVolume& volume, const std::string& source);
 
-/// Whether what payload_of() gives comes out of one stream that can be unpacked a part at a time: gzip, zlib, a packed
-/// array of VTK's.
+/// Whether the result of payload_of() comes from one stream that can be unpacked a part at a time: gzip, zlib, a packed
+/// VTK array.
 bool comes_in_parts(const StoredVolume& volume);
 
-/// Gives `use` those bytes, in parts. Throws as payload_of(), or when the stream turns out to be damaged.
+/// Passes those bytes to `use`, in parts. Throws like payload_of(), or when the stream turns out to be damaged.
 void unpack_payload(const StoredVolume& volume, std::size_t step, const std::string& source,
                     const system::ByteSink& use);
 
-/// The tuples of a volume whose components lie one after the other, in memory, each tuple together.
+/// Interleaves the components of a volume that are stored one after the other; the result is in memory.
 VolumePayload interleaved(const StoredVolume& volume, const VolumePayload& planar);
 
 }  // namespace tessera::io

@@ -35,11 +35,11 @@ void parse_samples(std::string_view text, std::uint64_t count, std::span<std::by
     while (at != end && sample_blanks.find(*at) != std::string_view::npos) ++at;
     if (at == end) throw too_few(source, n, count, "numbers");
     if (*at == '+') ++at;
-    // As a double, so that writers may say 12.0 of an integer; 32 bits are exact.
+    // Parsed as double, so that integers may be written as 12.0; exact for 32 bits.
     double value = 0;
     const auto [stop, error] = std::from_chars(at, end, value);
     bool good = error == std::errc() && (stop == end || sample_blanks.find(*stop) != std::string_view::npos);
-    if constexpr (std::is_same_v<T, float>)  // beyond a float's range it is infinite, and so blank
+    if constexpr (std::is_same_v<T, float>)  // beyond a float's range it becomes infinite, and so blank
       if (std::isfinite(value) && std::abs(value) > std::numeric_limits<float>::max())
         value = std::copysign(std::numeric_limits<double>::infinity(), value);
     if constexpr (std::is_integral_v<T>)
@@ -59,7 +59,7 @@ void parse_samples(std::string_view text, std::uint64_t count, std::span<std::by
 
 std::vector<std::byte> samples_of_text(std::string_view text, std::uint64_t count, scene::SampleType type,
                                        const std::string& source) {
-  // A digit and a blank each.
+  // Each number takes at least a digit and a blank.
   if (count > text.size() / 2 + 1) throw too_few(source, text.size() / 2, count, "numbers");
   std::vector<std::byte> out(count * scene::size_of(type));
   scene::with_sample_type(type, [&](auto sample) { parse_samples<decltype(sample)>(text, count, out, source); });

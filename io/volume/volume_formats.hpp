@@ -14,30 +14,34 @@
 
 namespace tessera::io {
 
-/// What a header says of one array of samples and of where its bytes are.
+/// Header of one array of samples: its type and the location of its bytes.
 struct StoredVolume {
-  scene::Grid grid;  ///< geometry, scale, shift; type and name follow from the choice of a component
-  scene::SampleType number = scene::SampleType::uint8;  ///< of each component
+  scene::Grid grid;  ///< geometry, scale, shift; the choice of a component determines type and name
+  scene::SampleType number = scene::SampleType::uint8;  ///< type of each component
   int components = 1;
-  bool planar = false;                        ///< all samples of a component together, not all components of a sample
-  std::uint64_t steps = 1;                    ///< volumes in the payload, one after the other
-  std::vector<double> times{};                ///< of all steps, where the header states them; else none
-  bool interleaved_steps = false;             ///< instead, a sample of each step together; one component
-  bool swapped = false;                       ///< bytes are of the other order than this machine's
+  bool planar = false;                        ///< stores each component contiguously instead of interleaving them
+  std::uint64_t steps = 1;                    ///< number of volumes in the payload, one after the other
+  std::vector<double> times{};                ///< of all steps, if the header states them; else empty
+  bool interleaved_steps = false;             ///< instead, the steps of each sample are contiguous; one component
+  bool swapped = false;                       ///< the byte order is not native
   std::filesystem::path payload;              ///< the file itself, or another
-  std::uint64_t payload_size = 0;             ///< of the file itself; of another 0
-  std::vector<std::filesystem::path> slices;  ///< instead of one payload: files of equal parts of it, in order
-  std::uint64_t offset = 0;                   ///< of the payload in it, or of its part in each of them
-  bool at_end = false;                        ///< instead of an offset: the payload ends with the file
+  std::uint64_t payload_size = 0;             ///< of the file itself; 0 for another file
+  std::vector<std::filesystem::path> slices;  ///< instead of one payload: files with equal shares of it, in order
+  std::uint64_t offset = 0;                   ///< position of the payload, or of its share in each slice file
+  bool at_end = false;                        ///< instead of an offset: the payload is at the end of the file
   bool exact_size = false;                    ///< the file must end with the payload
-  bool compressed = false;  ///< gzip or zlib from `offset` on; with `compressed_whole` from the beginning
+  bool compressed = false;  ///< gzip or zlib from `offset` on; with `compressed_whole` from the start of the file
   bool compressed_whole = false;
   std::optional<VtkArrayPlace> vtk_array{};  ///< instead of an offset: a packed array of a VTK XML file
-  std::uint64_t skip_inflated = 0;           ///< compressed: bytes before the samples in what comes out
+  std::uint64_t skip_inflated = 0;           ///< compressed: number of inflated bytes before the samples
   enum class Coding { binary, text, hex } coding = Coding::binary;
-  enum class Wide { no, int64, uint64 } wide = Wide::no;  ///< 64-bit integers; `number` is float64, which they become
+  enum class Wide {
+    no,
+    int64,
+    uint64
+  } wide = Wide::no;  ///< 64-bit integers; `number` is float64, to which they are converted
 
-  /// Of each component, `number` and `wide`.
+  /// Sets `number` and `wide`.
   void set_type(scene::NumberType type) {
     number = scene::sample_type_of(type).value_or(scene::SampleType::float64);
     wide = type == scene::NumberType::int64 ? Wide::int64 : type == scene::NumberType::uint64 ? Wide::uint64 : Wide::no;
@@ -45,31 +49,31 @@ struct StoredVolume {
 
   std::string field = "samples";
   bool active = false;               ///< the file marks it as its scalars
-  std::optional<bool> has_colors{};  ///< what the file says of its components; else look_like_colors() decides
+  std::optional<bool> has_colors{};  ///< as stated in the file; else look_like_colors() decides
   std::string format;
   std::vector<std::string> notes;
   BodyAxes body_axes = BodyAxes::none;
-  BodyAxes axes_if_ct = BodyAxes::none;  ///< as VolumeFile::axes_if_ct
+  BodyAxes axes_if_ct = BodyAxes::none;  ///< see VolumeFile::axes_if_ct
   VolumeTags tags{};
 };
 
 /// Fields, choice and source of one array of samples.
 VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const std::string& source);
 
-/// Throws Error(bad_input) of a file that is of its format by its name alone.
+/// Throws Error(bad_input) for a file that has its format only by its name.
 void require_recognized(const InputFile& file);
 
 VolumeFile with_tag_note(VolumeFile volume);
 
-/// Where a gzip file's samples end by its header; no value if that does not tell.
+/// Where a gzip file's samples end according to its header; no value if the header does not determine it.
 std::optional<std::uint64_t> end_in_gzip(const StoredVolume& volume, const InputFile& file);
 
-/// A .raw file by the options or by its name; the payload is left to be set.
+/// Describes a .raw file by the options or by its name; the caller sets the payload.
 StoredVolume describe_raw(const std::filesystem::path& file, const ReadOptions& options);
 
-// What the rows of the table of formats (io/formats/format_table.cpp) name of this directory.
+// Readers of volume files that the rows of the table of formats (io/formats/format_table.cpp) name.
 VolumeFile open_nifti(const InputFile& file, const VolumeOptions& options);
-/// An Analyze 7.5 header, or the .img beside one.
+/// An Analyze 7.5 header, or the .img that belongs to one.
 VolumeFile open_analyze(const InputFile& file, const VolumeOptions& options);
 VolumeFile open_nrrd(const InputFile& file, const VolumeOptions& options);
 std::optional<std::uint64_t> end_of_nrrd(const InputFile& file);

@@ -8,12 +8,11 @@
 
 namespace tessera::io {
 
-/// How a volume file is read.
+/// Options for reading a volume file.
 struct VolumeOptions : ReadOptions {
-  bool scratch_is_needed = false;  ///< by other processes
+  bool scratch_is_needed = false;  ///< other processes read it
 
-  /// Samples that are unpacked and take more bytes go into a scratch file. Bricks are copies, for which as much is
-  /// left.
+  /// Unpacked samples of more bytes go into a scratch file. Bricks are copies, and the same amount remains for them.
   [[nodiscard]] std::uint64_t most_in_memory() const {
     if (scratch_is_needed) return 0;
     return memory_bytes > 0 ? memory_bytes / 2 : std::numeric_limits<std::uint64_t>::max();

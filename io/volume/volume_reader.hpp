@@ -19,68 +19,67 @@
 
 namespace tessera::io {
 
-/// A volume whose samples wait in the file or, where they had to be decompressed, in memory or a scratch file.
+/// A volume whose samples stay in the file or, if they had to be decompressed, in memory or a scratch file.
 struct VolumeFile {
   std::unique_ptr<scene::SampleSource> source;
   std::shared_ptr<const system::ScratchFile>
-      scratch;                              ///< where the source reads what was unpacked, for others too; else null
-  bool in_memory = true;                    ///< all samples are, so that they could be unpacked or put together
-  scene::ValueRange range;                  ///< of the chosen field, and its blanks; empty until set_range()
-  std::vector<cells::FieldSummary> fields;  ///< low > high: not known until set_range()
-  std::vector<std::string> notes;           ///< one line each: what was chosen or applied, or odd about the file
+      scratch;                              ///< unpacked samples, which other processes can read too; else null
+  bool in_memory = true;                    ///< all samples are in memory because they were unpacked or combined
+  scene::ValueRange range;                  ///< of the chosen field, with its blanks; empty until set_range()
+  std::vector<cells::FieldSummary> fields;  ///< low > high: unknown until set_range()
+  std::vector<std::string> notes;           ///< one line each: what was chosen or applied, or unusual about the file
   std::string format;
   BodyAxes body_axes = BodyAxes::none;
-  BodyAxes axes_if_ct = BodyAxes::none;  ///< set_range() makes them body_axes if the values are those of CT
+  BodyAxes axes_if_ct = BodyAxes::none;  ///< set_range() makes them body_axes if the values look like those of CT
   VolumeTags tags{};
   scene::TimeStepRead time_step{};
   bool beside_degrees = false;  ///< x and y are degrees, z is a length
 };
 
-/// Whether the file is a regular or rectilinear grid, or .raw. Of NetCDF, HDF5 and XDMF a helper looks, which takes
-/// some hundredths of a second.
+/// Whether the file is a regular or rectilinear grid, or .raw. A helper inspects NetCDF, HDF5 and XDMF files, which
+/// takes some hundredths of a second.
 bool is_volume(const InputFile& file);
 
-/// Throws Error(bad_input) of a mesh. Does not read samples.
+/// Throws Error(bad_input) for a mesh. Does not read samples.
 void require_volume(const InputFile& file);
 
 /// Opens a volume.
 ///
 ///   .vti .pvti .vtr .pvtr, .vtk of structured points or a rectilinear grid: by VTK, all of it in memory (a large .vti
-///       or .vtr of one array: plain_vtk_grid.hpp). Extent, origin, spacing and direction apply; pieces have to fill
-///       the whole and to agree on its coordinates. A curvilinear .vtk is a mesh. 64-bit integers become doubles.
+///       or .vtr of one array: plain_vtk_grid.hpp). Extent, origin, spacing and direction apply; pieces must fill the
+///       whole extent and agree on its coordinates. A curvilinear .vtk is a mesh. 64-bit integers become doubles.
 ///       Hidden samples are blank.
 ///   .mhd .mha: origin, spacing, orientation, slope and offset apply; raw (in place), compressed or text.
 ///   .nrrd .nhdr: space origin and directions, else axis minimums and spacings; raw (in place), gzip, ascii or hex. A
-///       first axis of components is allowed; content "old min" and the measurement frame mean nothing here. Slices in
-///       several files (LIST, NAME%03d), here and of MetaImage, are put together in memory.
-///   .nii .nii.gz (NIfTI-1 and 2), or in two files .hdr and .img: sform, else qform, else the spacing alone; slope and
-///       intercept apply. Analyze 7.5 (.hdr and .img): spacing alone, for it says nothing else reliably.
-///   DICOM, a folder, one of its files or frames in one: by GDCM, all of it in memory. Position, orientation, spacing,
-///       rescale; the slices of one series by their places. Uneven ones are a rectilinear grid.
+///       first axis of components is allowed; "old min" and the measurement frame are ignored. Slices in several files
+///       (LIST, NAME%03d), here and for MetaImage, are combined in memory.
+///   .nii .nii.gz (NIfTI-1 and 2), or in two files .hdr and .img: sform, else qform, else only the spacing; slope and
+///       intercept apply. Analyze 7.5 (.hdr and .img): only the spacing, because nothing else in it is reliable.
+///   DICOM, a directory, one of its files or frames in one: by GDCM, all of it in memory. Position, orientation,
+///       spacing and rescale apply; the slices of one series are sorted by position. Non-uniform slices become a
+///       rectilinear grid.
 ///   NetCDF and HDF5 of three dimensions in space, VTKHDF images, MINC 1 and 2, XDMF of one regular or rectilinear
-///   grid:
-///       by their libraries, all of it in memory. Whether NetCDF, HDF5 and XDMF files are volumes, they tell.
-///   .raw: described by the options or by its name, in place. .bricks: what write_bricks made, read brick by brick.
+///       grid: by their libraries, all of it in memory. The libraries determine whether a file is a volume.
+///   .raw: described by the options or by its name, in place. .bricks: files of write_bricks, read brick by brick.
 ///   A gzip file of any of these is inflated into memory first, whatever its name.
 ///
-/// In memory: samples that have to be unpacked and take more than half of ReadOptions::memory_bytes go into a file of
-/// bricks without a name (system/scratch_file.hpp) as they come, where the format lets them come in parts: gzip, an
-/// array of .vti or .vtr, what a helper holds. Without room for that they stay in memory.
-/// World coordinates are the file's own (NIfTI's point right, anterior, up, DICOM's left,
-/// back, up; MetaImage's and NRRD's whatever they say).
-/// Headers are compared with the file's size before memory is asked for. Throws Error(bad_input) in one line for a
-/// missing, truncated, malformed or flat file, for more dimensions than three, time and components, for an encoding or
-/// type not known, for an unknown field or time step, or if no sample is finite.
+/// In memory: samples that must be unpacked and take more than half of ReadOptions::memory_bytes go into a brick file
+/// without a name (system/scratch_file.hpp) as they are read, if the format provides them in parts: gzip, an array of
+/// .vti or .vtr, arrays held by a helper. Without space for that they stay in memory.
+/// World coordinates are the file's own (NIfTI's axes point right, anterior, up, DICOM's left, back, up; MetaImage's
+/// and NRRD's as stated in the file).
+/// Headers are compared with the file's size before memory is allocated. Throws Error(bad_input) in one line for a
+/// missing, truncated, malformed or flat file, for dimensions beyond three in space, time and components, for an
+/// unknown encoding, type, field or time step, or if no sample is finite.
 VolumeFile open_volume(const InputFile& file, const ReadOptions& options = {});
 
-/// The same without its range and what follows from that, for those who scan the samples themselves and then call
-/// set_range(). Vectors of which a component is chosen are read nevertheless: they are listed by their lengths.
-/// `scratch_is_needed`: other processes read what is unpacked, so that it goes into a file whatever it takes.
+/// The same without the range and what follows from it, for callers that scan the samples themselves and then call
+/// set_range(). Vectors are read nevertheless when one component is chosen: they are listed by their lengths.
+/// `scratch_is_needed`: other processes read the unpacked samples, so these go into a file whatever their size.
 VolumeFile open_unscanned_volume(const InputFile& file, const ReadOptions& options = {},
                                  bool scratch_is_needed = false);
 
-/// Enters the range of all samples, and what follows from it into fields and notes. Throws Error(bad_input) if none is
-/// finite.
+/// Sets the range of all samples, and derives fields and notes from it. Throws Error(bad_input) if no sample is finite.
 void set_range(VolumeFile& volume, const std::filesystem::path& file, const scene::ValueRange& range);
 
 /// Name of a type on the command line and in .raw names: uint8, int16, float32, ... (float and double too).

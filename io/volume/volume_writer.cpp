@@ -47,7 +47,7 @@ void write_values(const scene::SampleSource& source, system::AtomicFile& out) {
 
 using TagWords = std::vector<std::pair<std::string, std::string>>;
 
-/// Strings of a VTK data set: the codes of their letters, ended by 0.
+/// Strings of a VTK data set: character codes, ended by 0.
 std::string field_data_of(const TagWords& words) {
   if (words.empty()) return {};
   std::string text = "\n    <FieldData>\n";
@@ -60,7 +60,7 @@ std::string field_data_of(const TagWords& words) {
   return text + "    </FieldData>";
 }
 
-/// VTK XML with one appended raw array; of a rectilinear grid with its coordinates inline.
+/// VTK XML with one appended raw array; a rectilinear grid has its coordinates inline.
 void write_vtk_volume(const scene::SampleSource& source, system::AtomicFile& out, bool rectilinear,
                       const TagWords& words) {
   const scene::Grid& grid = source.grid();
@@ -132,7 +132,7 @@ void write_nrrd(const scene::SampleSource& source, system::AtomicFile& out, cons
   write_values(source, out);
 }
 
-/// What a format has no words for; null: it has for all.
+/// A property that the format cannot represent; null if it can represent everything.
 const char* unsaid(const scene::GridGeometry& g, std::string_view extension) {
   const bool xml = extension == ".vti" || extension == ".vtr";
   if (extension == ".bricks") return nullptr;
@@ -142,7 +142,7 @@ const char* unsaid(const scene::GridGeometry& g, std::string_view extension) {
   return (extension == ".raw" || extension == ".vtr") && is_turned ? "how the grid is turned" : nullptr;
 }
 
-/// Throws for what the format has no words for.
+/// Throws if the format cannot represent the grid.
 void check_format(const scene::Grid& grid, const std::string& extension, const std::string& target) {
   const char* const what = unsaid(grid.geometry, extension);
   if (what == nullptr) return;

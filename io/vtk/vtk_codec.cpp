@@ -40,7 +40,7 @@ std::optional<VtkCodec> vtk_codec_named(std::string_view compressor) {
 }
 
 bool can_unpack_to(VtkCodec codec, std::uint64_t packed, std::uint64_t unpacked) {
-  // The best ratios: 1032 of deflate, 255 of LZ4. Of xz, 64 MiB of zeros have 7,000 at the highest preset.
+  // The best ratios: 1032 for deflate, 255 for LZ4. For xz, 64 MiB of zeros reach 7,000 at the highest preset.
   const std::uint64_t best = codec == VtkCodec::zlib ? 1040 : codec == VtkCodec::lz4 ? 256 : 16384;
   return codec == VtkCodec::none ? unpacked <= packed : unpacked / best <= packed;
 }

@@ -13,22 +13,21 @@ class PositionalFile;
 
 namespace tessera::io {
 
-/// The numbers of an ascii array of a VTK XML file, in their order, each in a spelling that C++ streams read, or nan or
-/// inf. Numbers of 8 bits are numbers too, not characters. What follows the last number that is asked for is not
-/// looked at.
+/// Reads the numbers of an ascii array of a VTK XML file sequentially, each in a notation that C++ streams accept, or
+/// nan or inf. 8-bit values are numbers too, not characters. Text after the last requested number is not examined.
 class VtkTextNumbers {
  public:
-  /// Of the text from one place of the file to another.
+  /// Reads the text between two positions of the file.
   VtkTextNumbers(const system::PositionalFile& file, std::uint64_t first, std::uint64_t end);
 
-  /// At most so many numbers follow.
+  /// Upper bound of the numbers that follow.
   [[nodiscard]] std::uint64_t left() const { return (end_ - at_ + (text_.size() - used_)) / 2 + 1; }
 
-  /// The next `count` numbers, as numbers of `type` in memory; false: the text ends before, or has another word or a
-  /// number that the type cannot hold.
+  /// The next `count` numbers, stored as `type`; false if the text ends early, or contains another word or a number
+  /// outside the type's range.
   [[nodiscard]] bool read(NumberType type, std::byte* to, std::uint64_t count);
 
-  /// What read() could not, or its beginning; empty at the text's end.
+  /// The word that read() refused, or its beginning; empty at the text's end.
   [[nodiscard]] std::string next_word() const;
 
  private:

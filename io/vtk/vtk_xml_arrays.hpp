@@ -18,18 +18,19 @@
 
 namespace tessera::io {
 
-/// The arrays of a file that this process reads itself: each from the file whenever it is asked for, or from memory.
+/// The arrays of a file that this process reads itself: each is read from the file when it is requested, or from
+/// memory.
 class VtkXmlArrays final : public ArraySource {
  public:
   using Stream = std::function<void(const system::ByteSink& use)>;
 
-  /// `progress` is called with how much of what was expected has been copied; may be null.
+  /// `progress` is called with the copied share of the expected bytes; may be null.
   explicit VtkXmlArrays(ReadProgressFunction progress = {}) : progress_(std::move(progress)) {}
 
-  /// Numbers the array and keeps what passes on its bytes, whole tuples at a time.
+  /// Numbers the array and stores the function that passes on its bytes, in whole tuples.
   ForeignArray hold(ForeignArray array, Stream stream);
 
-  /// Of numbers in memory, which determine how many tuples there are.
+  /// Holds numbers in memory, which determine the number of tuples.
   template <class T>
   ForeignArray hold_vector(ForeignArray array, std::vector<T> numbers) {
     array.tuples = numbers.size() / static_cast<std::size_t>(array.components);
@@ -47,7 +48,7 @@ class VtkXmlArrays final : public ArraySource {
   std::map<std::uint64_t, std::shared_ptr<const Stream>> held_;
   std::uint64_t next_ = 0;
   ReadProgressFunction progress_;
-  std::atomic<std::uint64_t> expected_ = 0, came_ = 0;  ///< bytes of stream(), but for fields that are read later
+  std::atomic<std::uint64_t> expected_ = 0, came_ = 0;  ///< bytes of stream(), without fields that are read later
 };
 
 }  // namespace tessera::io

@@ -17,10 +17,10 @@
 namespace tessera::io {
 namespace {
 
-/// Passes a file to the parser tag by tag, so that it is known where each ends.
+/// Passes a file to the parser tag by tag, so that the end of each is known.
 class ElementWalk {
  public:
-  /// Elements that are not kept are forgotten as the next one begins.
+  /// Unless `keeps`, an element is discarded when the next one begins.
   ElementWalk(const system::PositionalFile& file, const std::string& source, bool keeps)
       : file_(file),
         source_(source),
@@ -31,7 +31,7 @@ class ElementWalk {
     XML_SetUserData(parser_.get(), this);
     XML_SetElementHandler(parser_.get(), on_start, on_end);
 #if XML_MAJOR_VERSION > 2 || (XML_MAJOR_VERSION == 2 && XML_MINOR_VERSION >= 6)
-    XML_SetReparseDeferralEnabled(parser_.get(), XML_FALSE);  // tags are to be reported as soon as they end
+    XML_SetReparseDeferralEnabled(parser_.get(), XML_FALSE);  // report tags as soon as they end
 #endif
   }
 
@@ -95,14 +95,14 @@ class ElementWalk {
                                          source_, at_, XML_ErrorString(XML_GetErrorCode(parser_.get()))));
   }
 
-  /// Whether a tag at at_ goes on so.
+  /// Whether a tag at at_ continues with `c`.
   [[nodiscard]] bool next_is(char c) const {
     char next = '\0';
     if (size_ - at_ > 1) file_.read(at_ + 1, reinterpret_cast<std::byte*>(&next), 1);
     return next == c;
   }
 
-  /// Of the file from at_ on; empty at its end.
+  /// The file from at_ on; empty at its end.
   std::string_view window() {
     constexpr std::uint64_t most = 256 << 10;
     if (at_ >= window_at_ + text_.size()) {
@@ -122,10 +122,10 @@ class ElementWalk {
   std::uint64_t window_at_ = 0, at_ = 0;
   std::vector<VtkXmlElement> elements_;
   std::size_t depth_ = 0;
-  bool is_open_ = false;   ///< the last element, whose end has not come
-  bool is_new_ = false;    ///< it began in what was parsed last
-  bool in_array_ = false;  ///< numbers are passed over up to a tag
-  bool is_blank_ = false;  ///< none has come yet
+  bool is_open_ = false;   ///< the last element's end tag has not been parsed
+  bool is_new_ = false;    ///< it began in the text parsed last
+  bool in_array_ = false;  ///< numbers are being skipped up to the next tag
+  bool is_blank_ = false;  ///< no number has been found yet
   std::exception_ptr fault_;
 };
 

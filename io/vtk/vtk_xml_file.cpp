@@ -18,7 +18,7 @@
 namespace tessera::io {
 namespace {
 
-/// The points' array of a piece. Throws Error(bad_input) unless there is one.
+/// The points array of a piece. Throws Error(bad_input) if it is missing.
 const VtkXmlArray& points_of(const VtkXmlOpened& of, std::size_t piece) {
   const auto& arrays = of.grid.pieces[piece].coordinates;
   if (arrays.size() != 1 || !arrays[0].type)
@@ -29,8 +29,8 @@ const VtkXmlArray& points_of(const VtkXmlOpened& of, std::size_t piece) {
   return arrays[0];
 }
 
-/// Coordinates and corners of meshes are packed 2 to 50 times: throws if so many bytes of them cannot come from a file
-/// of this size, before memory is taken for them.
+/// Coordinates and corners of meshes compress by 2 to 50 times: throws if `bytes` of them cannot come from a file of
+/// this size, before memory is allocated.
 void require_proportion(const VtkXmlOpened& of, std::uint64_t bytes, const char* what) {
   constexpr std::uint64_t always = 64 << 20, times = 128;
   if (const std::uint64_t size = of.file->size(); bytes > always && (bytes - always) / times > size)
@@ -39,7 +39,7 @@ void require_proportion(const VtkXmlOpened& of, std::uint64_t bytes, const char*
         of.source, what, bytes >> 20, size));
 }
 
-/// Of all pieces; without any, or if they are of different types, nothing.
+/// Points of all pieces; no value if there are none or their types differ.
 std::optional<ForeignArray> hold_points(const VtkXmlOpened& of, bool& agree) {
   VtkXmlWhole whole;
   for (std::size_t p = 0; p < of.grid.pieces.size(); ++p) {
@@ -59,7 +59,7 @@ std::optional<ForeignArray> hold_points(const VtkXmlOpened& of, bool& agree) {
   return hold_whole(of, std::move(whole), {.type = type});
 }
 
-/// The points of cells; of tets a tuple each.
+/// The points of cells; for tets one tuple each.
 ForeignArray hold_connectivity(const VtkXmlOpened& of, VtuCells& cells) {
   ForeignArray as{.type = NumberType::uint32, .components = cells.are_tets ? 4 : 1};
   if (!cells.connectivity.empty()) return of.arrays->hold_vector(std::move(as), std::move(cells.connectivity));
@@ -100,7 +100,7 @@ void hold_cells(const VtkXmlOpened& of, ForeignPart& part) {
   part.face_locations = of.arrays->hold_vector({.type = NumberType::int64}, std::move(cells.face_locations));
 }
 
-/// As many numbers as there are places, among blanks; false: other words.
+/// Parses exactly as many numbers as there are places, separated by blanks; false for other words.
 template <class Numbers>
 bool read_numbers(const std::string& text, Numbers& numbers) {
   const char *at = text.data(), *const end = at + text.size();
@@ -117,7 +117,7 @@ bool read_numbers(const std::string& text, Numbers& numbers) {
   return at == end;
 }
 
-/// What a grid of cells between its points has by its attributes; false: this reader does not know it.
+/// Sets the attributes of a grid of cells; false if this reader does not support it.
 bool set_grid(VtkXmlGrid& grid, ForeignPart& part) {
   constexpr std::int64_t most = 1 << 20;  // so that points can be counted
   std::array<std::int64_t, 6> extent{};
@@ -132,7 +132,7 @@ bool set_grid(VtkXmlGrid& grid, ForeignPart& part) {
     piece.points *= static_cast<std::uint64_t>(high - low + 1);
     piece.cells *= static_cast<std::uint64_t>(high - low);
   }
-  // A grid without them is a few bytes, whatever its size.
+  // A grid without fields takes a few bytes, whatever its size.
   if (piece.point_fields.arrays.empty() && piece.cell_fields.arrays.empty()) return false;
   if (grid.element.name != "ImageData") return true;
   part.kind = ForeignPart::Kind::image;
@@ -153,7 +153,7 @@ bool hold_axes(const VtkXmlOpened& of, ForeignPart& part) {
   return true;
 }
 
-/// The data set's own points and cells; false: this reader does not know it.
+/// Sets the points and cells of the data set; false if this reader does not support it.
 bool set_part(const VtkXmlOpened& of, ForeignPart& part) {
   const std::string& kind = of.grid.element.name;
   bool agree = true;

@@ -22,13 +22,13 @@ constexpr int newest_major = 2;
 constexpr std::int64_t most_components = 1 << 20;
 constexpr std::uint64_t most_tuples = 1ull << 40;  // so that bytes can be counted
 
-/// What this reader does not know.
+/// Thrown for features that this reader does not support.
 struct Unknown {};
 
-/// What all arrays of a file have in common.
+/// Encoding shared by all arrays of a file.
 struct Packing {
-  VtkArrayPlace place;                         ///< of an array, but where it begins
-  std::optional<std::uint64_t> appended_at{};  ///< behind the underscore
+  VtkArrayPlace place;                         ///< of an array, except its position
+  std::optional<std::uint64_t> appended_at{};  ///< after the underscore
   bool appended_base64 = false;
 };
 
@@ -90,13 +90,13 @@ VtkXmlArray array_of(const VtkXmlElement& element, const Packing& packing) {
   std::int64_t offset = 0;
   if (!read_whole_number(element.word("offset"), offset) || !packing.appended_at) throw Unknown();
   array.place.base64 = packing.appended_base64;
-  // One before the file's beginning is far behind its end.
+  // A position before the file's beginning wraps to one far behind its end.
   if (__builtin_add_overflow(*packing.appended_at, static_cast<std::uint64_t>(offset), &array.place.first_byte))
     array.place.first_byte = array.place.end;
   return array;
 }
 
-/// Reads the elements in their order. A second element of a kind within a piece takes the place of the first.
+/// Interprets the elements in order. A second element of a kind within a piece replaces the first.
 class GridElements {
  public:
   GridElements(const std::vector<VtkXmlElement>& elements, const system::PositionalFile& file,
@@ -128,7 +128,7 @@ class GridElements {
   }
 
  private:
-  /// "MAJOR.MINOR"; none is an old one.
+  /// "MAJOR.MINOR"; absent in old files.
   void read_version(const std::string& version) {
     const char *at = version.data(), *const end = at + version.size();
     const auto major = std::from_chars(at, end, grid_.major);
@@ -162,7 +162,7 @@ class GridElements {
     if (list_ != nullptr) list_->clear();
   }
 
-  /// VTK's reader ends at arrays without a name.
+  /// VTK's reader stops at arrays without a name.
   static void name_all(VtkXmlFields& fields) {
     std::set<std::string> names;
     std::size_t number = 0;
@@ -177,7 +177,7 @@ class GridElements {
   Packing packing_;
   const std::string& source_;
   VtkXmlGrid grid_;
-  std::vector<VtkXmlArray>* list_ = nullptr;  ///< that the piece's arrays go to
+  std::vector<VtkXmlArray>* list_ = nullptr;  ///< receives the arrays of the piece
   bool in_piece_ = false;
 };
 

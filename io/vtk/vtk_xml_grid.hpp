@@ -14,14 +14,14 @@ namespace tessera::io {
 
 /// An array as a VTK XML file declares it.
 struct VtkXmlArray {
-  std::string name;                ///< `array NUMBER`, from 1, where the file has none
-  std::optional<NumberType> type;  ///< none: text, or tuples of no numbers
+  std::string name;                ///< `array NUMBER`, from 1, if the file has no name
+  std::optional<NumberType> type;  ///< no value: text, or tuples without numbers
   int components = 1;
-  bool are_bits = false;  ///< eight in a byte, the first highest, but in text; to others they are of uint8
+  bool are_bits = false;  ///< packed eight to a byte, the first highest, except in text; other code sees uint8
   bool ascii = false;
-  VtkArrayPlace place{};  ///< of ascii numbers the first byte and the end alone
+  VtkArrayPlace place{};  ///< for ascii numbers only the first byte and the end are set
 
-  /// Whether numbers of both are read alike, and have one meaning.
+  /// Whether both arrays have the same meaning and are read the same way.
   [[nodiscard]] bool is_like(const VtkXmlArray& other) const {
     return name == other.name && type == other.type && components == other.components;
   }
@@ -34,10 +34,10 @@ struct VtkXmlFields {
   std::string global_ids, pedigree_ids;
 };
 
-/// One <Piece>: what it has of each kind, numbers not read yet.
+/// One <Piece>: its arrays of each kind, without their numbers.
 struct VtkXmlPiece {
-  std::uint64_t points = 0, cells = 0;   ///< of unstructured grids
-  std::string extent;                    ///< of the others
+  std::uint64_t points = 0, cells = 0;   ///< for unstructured grids
+  std::string extent;                    ///< for the other grids
   std::vector<VtkXmlArray> coordinates;  ///< in <Points> or <Coordinates>
   std::vector<VtkXmlArray> topology;     ///< in <Cells>
   VtkXmlFields point_fields, cell_fields;
@@ -49,19 +49,19 @@ struct VtkXmlPiece {
 /// A VTK XML file of one data set, without its numbers.
 struct VtkXmlGrid {
   int major = 0, minor = 0;  ///< version of the format; 0 if the file does not state it
-  VtkXmlElement element;     ///< that of the data set
+  VtkXmlElement element;     ///< the element of the data set
   std::vector<VtkXmlPiece> pieces;
 };
 
-/// Nothing if the file has what this reader does not know: time steps, two arrays of one name, numbers between
-/// comments, a version or type to come. Throws Error(bad_input) of `source` if it is another kind of file, or damaged.
+/// No value if the file has unsupported features: time steps, two arrays of one name, comments between numbers, a later
+/// version or type. Throws Error(bad_input) naming `source` if it is another kind of file, or damaged.
 std::optional<VtkXmlGrid> read_vtk_xml_grid(const system::PositionalFile& file, const std::string& source);
 
-/// A type of numbers as VTK XML files name it, and the type that is named so.
+/// The name of a number type in VTK XML files, and the inverse.
 const char* vtk_xml_type_name(NumberType type);
 std::optional<NumberType> vtk_xml_number_type(const std::string& name);
 
-/// The one whole number that a text is, among blanks; false: it is something else.
+/// Parses a text that is one integer, surrounded by blanks; false if it is anything else.
 bool read_whole_number(const std::string& text, std::int64_t& number);
 
 }  // namespace tessera::io

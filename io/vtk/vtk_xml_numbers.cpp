@@ -15,14 +15,14 @@
 namespace tessera::io {
 namespace {
 
-/// Read at once: many of VTK's blocks (32 KiB), in the cache; of larger ones several, for as many threads, up to a
+/// Bytes read at once: many of VTK's blocks (32 KiB), within the cache; several larger blocks, one per thread, up to a
 /// limit.
 constexpr std::size_t bytes_at_once = 1 << 20, most_at_once = 16 << 20, blocks_at_once = 4;
 
-/// The numbers of an array in their order, of either coding.
+/// Reads the numbers of an array sequentially, in either encoding.
 class Numbers {
  public:
-  /// Nothing if it is damaged.
+  /// No value if it is damaged.
   static std::optional<Numbers> open(const system::PositionalFile& file, const VtkXmlArray& array) {
     if (!array.type) return std::nullopt;
     const VtkArrayPlace& place = array.place;
@@ -31,7 +31,7 @@ class Numbers {
     return bytes ? std::optional(Numbers(array, *std::move(bytes))) : std::nullopt;
   }
 
-  /// There are no more.
+  /// Upper bound of the numbers available.
   [[nodiscard]] std::uint64_t most() const {
     const auto* const text = std::get_if<VtkTextNumbers>(&from_);
     if (text != nullptr) return text->left();
@@ -46,7 +46,7 @@ class Numbers {
                                  : bytes_at_once;
   }
 
-  /// The word that is not a number of the array's type, where read() failed on text; else empty.
+  /// The word that is not a number of the array's type, if read() failed on text; else empty.
   [[nodiscard]] std::string wrong_word() const {
     const auto* const text = std::get_if<VtkTextNumbers>(&from_);
     return text != nullptr ? text->next_word() : std::string();
@@ -81,7 +81,7 @@ class Numbers {
   bool are_bits_, swapped_;
   From from_;
   std::byte byte_{};
-  int bits_left_ = 0;  ///< of the byte
+  int bits_left_ = 0;  ///< left in the current byte
 };
 
 Numbers numbers_in(const system::PositionalFile& file, const VtkXmlSegment& segment, const std::string& source) {

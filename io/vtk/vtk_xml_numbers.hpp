@@ -16,26 +16,26 @@
 
 namespace tessera::io {
 
-/// The first numbers of an array, as a piece of a file has them. Longer arrays are cut, as VTK does.
+/// The first numbers of an array, as used by a piece of a file. Longer arrays are cut, as VTK does.
 struct VtkXmlSegment {
   VtkXmlArray array;
   std::uint64_t numbers = 0;
 };
 
-/// Throws Error(bad_input) of `source` if an array has fewer numbers than its segment, as far as that can be seen
-/// without unpacking it. To be called before memory is taken for them.
+/// Throws Error(bad_input) naming `source` if an array has fewer numbers than its segment, as far as this is known
+/// without unpacking. To be called before memory is allocated for them.
 void require_numbers(const system::PositionalFile& file, const VtkXmlSegment& segment, const std::string& source);
 
-/// Passes a segment's numbers to `use` in their order, in this machine's byte order, in multiples of `together`.
-/// Throws Error(bad_input) of `source` if they are damaged or too few.
+/// Passes a segment's numbers to `use` in order, in native byte order, in multiples of `together`. Throws
+/// Error(bad_input) naming `source` if they are damaged or too few.
 void stream_numbers(const system::PositionalFile& file, const VtkXmlSegment& segment, std::size_t together,
                     const std::string& source, const system::ByteSink& use);
 
-/// The same of integers of any type; unsigned ones past int64's range are negative.
+/// The same for integers of any type; unsigned ones beyond int64's range become negative.
 void stream_whole_numbers(const system::PositionalFile& file, const VtkXmlSegment& segment, std::size_t together,
                           const std::string& source, const std::function<void(std::span<const std::int64_t>)>& use);
 
-/// All of them.
+/// All integers of a segment.
 std::vector<std::int64_t> whole_numbers(const system::PositionalFile& file, const VtkXmlSegment& segment,
                                         const std::string& source);
 

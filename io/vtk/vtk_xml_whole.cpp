@@ -25,14 +25,14 @@ void stream_whole(const system::PositionalFile& file, const VtkXmlWhole& whole, 
                    });
 }
 
-/// Of the first piece that is not empty.
+/// The fields of the first non-empty piece.
 const VtkXmlFields& first_fields(const VtkXmlGrid& grid, const VtkXmlFieldsOf& kind) {
   const auto first = std::ranges::find_if(grid.pieces, [&](const VtkXmlPiece& piece) { return piece.*kind.count > 0; });
   return (first != grid.pieces.end() ? *first : grid.pieces.front()).*kind.fields;
 }
 
-/// Fields of points, or of cells, that have no more bytes in all are kept when they are tallied, so that they are
-/// decoded once.
+/// Point fields, or cell fields, of at most this total size are kept when they are tallied, so that they are decoded
+/// once.
 constexpr std::uint64_t most_decoded = 16 << 20;
 
 void tally(const VtkXmlOpened& of, const VtkXmlWhole& whole, ForeignArray& field, VtkXmlDecoded* decoded) {
@@ -92,7 +92,7 @@ std::vector<ForeignArray> hold_fields(const VtkXmlOpened& of, const VtkXmlFields
         whole.segments.push_back(
             {(piece.*kind.fields).arrays[k], tuples * static_cast<std::uint64_t>(like.components)});
     ForeignArray as{.name = like.name, .type = *like.type};
-    // Active vectors have three components to VTK.
+    // VTK's active vectors must have three components.
     as.active = like.name == first.scalars || (like.name == first.vectors && like.components == 3);
     as.ids = like.name == first.global_ids || like.name == first.pedigree_ids;
     if (of.grid.major < 2 && like.name == "vtkGhostLevels" && like.type == NumberType::uint8 && like.components == 1)

@@ -14,14 +14,14 @@
 
 namespace tessera::io {
 
-/// An array of all pieces, one after the other.
+/// The same array of all pieces, concatenated.
 struct VtkXmlWhole {
   std::vector<VtkXmlSegment> segments;
   int components = 1;
-  bool has_ghost_levels = false;  ///< of old files, which become bits of vtkGhostType
+  bool has_ghost_levels = false;  ///< in old files; they become bits of vtkGhostType
 };
 
-/// What of an open file its arrays need.
+/// What the arrays of an open file need to be read.
 struct VtkXmlOpened {
   std::shared_ptr<const system::PositionalFile> file;
   const VtkXmlGrid& grid;
@@ -29,15 +29,15 @@ struct VtkXmlOpened {
   std::shared_ptr<VtkXmlArrays> arrays;
 };
 
-/// Bytes of an array, decoded; empty until they have been read.
+/// Decoded bytes of an array; empty until they have been read.
 using VtkXmlDecoded = std::vector<std::byte>;
 
-/// Makes a whole array readable, of the type, name and mark of `as`: from `decoded`, if that has been filled by the
-/// time, else from the file. Throws Error(bad_input) if the file cannot have so many numbers.
+/// Makes a whole array readable, with the type, name and marks of `as`: from `decoded` if that is filled by then, else
+/// from the file. Throws Error(bad_input) if the file is too small for its numbers.
 ForeignArray hold_whole(const VtkXmlOpened& of, VtkXmlWhole whole, ForeignArray as,
                         std::shared_ptr<const VtkXmlDecoded> decoded = {});
 
-/// The fields of points or of cells.
+/// The arrays of points or of cells.
 struct VtkXmlFieldsOf {
   VtkXmlFields VtkXmlPiece::*fields;
   std::uint64_t VtkXmlPiece::*count;
@@ -45,11 +45,11 @@ struct VtkXmlFieldsOf {
 inline constexpr VtkXmlFieldsOf fields_of_points{&VtkXmlPiece::point_fields, &VtkXmlPiece::points};
 inline constexpr VtkXmlFieldsOf fields_of_cells{&VtkXmlPiece::cell_fields, &VtkXmlPiece::cells};
 
-/// Whether all pieces that are not empty have the same fields. VTK's reader takes those of the first piece, and leaves
-/// what others lack as memory happened to be.
+/// Whether all non-empty pieces have the same fields. VTK's reader uses those of the first piece and leaves values that
+/// other pieces lack uninitialized.
 bool fields_agree(const VtkXmlGrid& grid, const VtkXmlFieldsOf& kind);
 
-/// The fields but for those of text, each read once for its tally, on several threads. Throws Error(bad_input) for a
+/// The fields except text arrays, each read once for its tally, on several threads. Throws Error(bad_input) for a
 /// damaged one.
 std::vector<ForeignArray> hold_fields(const VtkXmlOpened& of, const VtkXmlFieldsOf& kind);
 

@@ -19,7 +19,7 @@ namespace {
 
 using scene::Association;
 
-/// A field's numbers: with their source until they are read, here from then on.
+/// A field's numbers: held by their source until first read, and here afterwards.
 class FetchedArray {
  public:
   FetchedArray(const ForeignFile& file, ForeignArray array)
@@ -74,7 +74,7 @@ void copy_points(const ForeignFile& file, const ForeignArray& points, cells::Cel
                   corner == UINT32_MAX ? "a point of no possible number" : fmt::format("point {}", corner), points));
 }
 
-/// Offsets and corners as they came, checked.
+/// Checks offsets and corners received from a reader.
 void check_cells(cells::CellBlock& block, const std::string& where) {
   const std::size_t cells = block.types.size();
   const auto& offsets = block.offsets;
@@ -106,7 +106,7 @@ void check_tets(std::span<const scene::Tet> tets, std::size_t points, const std:
       if (corner >= points) refuse_corner(t, corner, points, where);
 }
 
-/// All of an array whose tuples are `Stored`, as what they are in memory.
+/// All values of an array stored as `Stored`, converted to T.
 template <class Stored, class T>
 void copy_numbers(const ForeignFile& file, const ForeignArray& array, std::vector<T>& to, const std::string& where) {
   system::reserve_large(to, array.bytes() / sizeof(Stored));
@@ -155,7 +155,7 @@ void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, ce
     copy_numbers<std::int64_t>(file, *part.face_locations, block.face_locations, where);
     cells::require_faces(block, where);
   }
-  // Tets in a file of mixed cells were looked for there; Exodus blocks come as they are.
+  // Files of mixed cells were checked for this by their reader; Exodus blocks are passed unchanged.
   const bool all_tets = std::all_of(block.types.begin(), block.types.end(),
                                     [](std::uint8_t t) { return t == vtk_number(CellType::tetra); });
   for (std::size_t c = 0; all_tets && c < block.types.size(); ++c)
@@ -166,7 +166,7 @@ void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, ce
   block.types = {}, block.offsets = {}, block.connectivity = {};
 }
 
-/// The hexahedra between n[0] x n[1] x n[2] points; a flat grid gives faces or lines, which are counted and skipped.
+/// The hexahedra between n[0] x n[1] x n[2] points; a flat grid has only faces or lines, which are counted and skipped.
 void add_grid_cells(const std::array<std::int64_t, 3>& n, cells::CellBlock& block, const std::string& where) {
   std::uint64_t points = 1;
   for (const std::int64_t side : n)
@@ -286,7 +286,7 @@ cells::CellBlock block_of(const ForeignFile& file, const ForeignPart& part, Grid
   block.point_ghost = ghost_bits(file, part.point_fields, block.positions.size());
   block.cell_ghost = ghost_bits(file, part.cell_fields, block.cell_count());
   add_foreign_fields(file, part, Association::point, block.positions.size(), block, where);
-  // VTK's cell arrays of a surface have its points and lines before its polygons.
+  // A surface's cell data in VTK list its points and lines before its polygons.
   if (part.kind != ForeignPart::Kind::surface ||
       std::ranges::all_of(part.cell_fields, [&](const ForeignArray& a) { return a.tuples == block.cell_count(); }))
     add_foreign_fields(file, part, Association::cell, block.cell_count(), block, where);

@@ -7,9 +7,10 @@
 
 namespace tessera::io {
 
-/// By tessera-read-tetgen, which links TetGen; nothing else does. Throws Error(bad_input, "FILE: ...") if the surface
-/// is not closed, cuts itself, TetGen gives up or takes more memory or time than the facets and tets explain
-/// (readers/common/limits.cpp), or missing_reader().
+/// Fills a surface with tets by tessera-read-tetgen, the only program that links TetGen. Throws Error(bad_input, "FILE:
+/// ...") if the surface is not closed or intersects itself, or if TetGen gives up or needs more memory or time than the
+/// number of facets and tets explains (readers/common/limits.cpp). Throws missing_reader() if the program is not
+/// installed.
 FilledMesh fill_surface(const cells::Surface& surface, const FillSize& size, const InputFile& file);
 
 }  // namespace tessera::io

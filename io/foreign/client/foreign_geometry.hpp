@@ -12,15 +12,15 @@ namespace tessera::io {
 /// Origin, spacing and direction of an image.
 void set_image_geometry(const ForeignPart& image, scene::GridGeometry& geometry);
 
-/// Along one axis of a rectilinear grid.
+/// The coordinates along one axis of a rectilinear grid.
 struct AxisCoordinates {
-  NumberType type = NumberType::float64;  ///< as they were stored
+  NumberType type = NumberType::float64;  ///< type in the file
   std::vector<double> values{};
 };
 
-/// Coordinates of a grid, whose direction is that of its axes. Falling ones are turned over by a mirrored direction.
-/// Those of all axes that are even but for their rounding make a regular grid: many writers know no other kind, and
-/// regular grids are cast much faster.
+/// Sets the coordinates of a grid whose axes are its directions. Decreasing coordinates are reversed, and the direction
+/// is mirrored. If every axis is uniformly spaced up to rounding, the grid becomes regular: many writers only produce
+/// rectilinear grids, and regular ones are rendered much faster.
 void set_rectilinear_geometry(std::array<AxisCoordinates, 3> axes, scene::GridGeometry& geometry);
 
 }  // namespace tessera::io

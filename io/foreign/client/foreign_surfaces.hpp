@@ -9,10 +9,10 @@
 
 namespace tessera::io {
 
-/// An STL surface by VTK, each face with points of its own. Throws Error(bad_input, "FILE: ...").
+/// Reads an STL surface by VTK; each face has its own points. Throws Error(bad_input, "FILE: ...").
 cells::Surface read_stl(const InputFile& file);
 
-/// A VTK surface, XML (.vtp) or legacy: its polygons and strips; point arrays of one component are its attributes.
+/// A VTK surface, XML (.vtp) or legacy: its polygons and strips; point arrays with one component become its attributes.
 struct VtkSurface {
   cells::Surface surface;
   std::vector<std::string> attribute_names, notes;

@@ -35,7 +35,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Of the window. One slot is used while the other is filled; both stay in the processor's cache.
+/// Slots of the window. One is read while the other is filled; both stay in the processor's cache.
 constexpr std::size_t slots = 2, slot_bytes = 2 << 20;
 
 bool is_picture(const std::filesystem::path& file) {
@@ -43,9 +43,10 @@ bool is_picture(const std::filesystem::path& file) {
   return std::ranges::find(extensions, system::lower_extension(file)) != extensions.end();
 }
 
-/// The caller's environment without what would have the helper take itself for a rank.
+/// The caller's environment without variables that would make the helper start as an MPI rank.
 std::vector<char*> helper_environment() {
-  // Large pages for malloc (glibc 2.35): readers fill hundreds of megabytes once, and most of that is page faults.
+  // Large pages for malloc (glibc 2.35): readers fill hundreds of megabytes once, and page faults are most of that
+  // time.
   static char tunables[] = "GLIBC_TUNABLES=glibc.malloc.hugetlb=1";
   std::vector<char*> kept;
   if (::getenv("GLIBC_TUNABLES") == nullptr) kept.push_back(tunables);
@@ -64,13 +65,13 @@ std::vector<char*> helper_environment() {
                      "it reads files of other programs' formats; install it with the library");
 }
 
-/// Whether this process may have less memory than there is, and its children no more.
+/// Whether the memory of this process is limited below the machine's; its children inherit the limit.
 bool is_limited() {
   rlimit limit{};
   return ::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
 }
 
-/// What became of a process. `status` is waitpid's, if it is `known`.
+/// How a process ended. `status` is waitpid's if `known`.
 HelperDeath death_of(int status, bool known, bool has_begun, const HelperTask& task) {
   using enum scene::ErrorCode;
   if (!has_begun)
@@ -102,13 +103,13 @@ HelperDeath waiting_death(const HelperTask& task) {
                       task.words)};
 }
 
-/// What the helper says of its course before it replies: how far it is, or which file it is at.
+/// A progress message that the helper sends before its reply: its progress, or the file that it is reading.
 struct Course {
   std::optional<double> done;
   std::string reading;
 };
 
-/// Nothing if the message is a reply.
+/// No value if the message is a reply.
 std::optional<Course> course_of(std::span<const std::uint8_t> message) {
   constexpr std::size_t longest = 8192;  // a name has at most 4096 bytes
   if (message.size() > longest) return std::nullopt;
@@ -116,7 +117,7 @@ std::optional<Course> course_of(std::span<const std::uint8_t> message) {
   if (!json.is_object()) return std::nullopt;
   if (const auto done = json.find("progress"); done != json.end() && done->is_number()) {
     const auto number = done->get<double>();
-    return Course{number >= 0 ? std::min(number, 1.0) : 0, ""};  // 0 of a NaN, too
+    return Course{number >= 0 ? std::min(number, 1.0) : 0, ""};  // a NaN becomes 0
   }
   if (const auto file = json.find("reading"); file != json.end() && file->is_binary()) {
     const auto& name = file->get_binary();
@@ -174,14 +175,15 @@ HelperProcess::HelperProcess(HelperTask task) : task_(std::move(task)) {
   const system::Descriptor theirs(ends[1]);
 
   constexpr int helper_end = 3;  // readers/common/serve.cpp
-  // What a terminal sends to caller and helper alike is the caller's to answer, with whose end the helper ends.
+  // The caller handles signals that a terminal sends to both processes; the helper ends when the caller ends.
   system::SpawnPlan plan({SIGINT, SIGTERM, SIGHUP, SIGQUIT});
-  // First of all: it may be one of those that follow, where the caller has closed them.
+  // Must be the first action: if the caller has closed its standard descriptors, `theirs` may be one of those opened
+  // next.
   ::posix_spawn_file_actions_adddup2(&plan.files, theirs.get(), helper_end);
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     ::posix_spawn_file_actions_addopen(&plan.files, standard, "/dev/null", O_RDWR, 0);
   ::posix_spawn_file_actions_addclosefrom_np(&plan.files, helper_end + 1);
-  // It ends with its caller, but not before its own libraries are loaded: a caller that ends at once ends it too.
+  // The helper ends with its caller, if necessary as soon as its own libraries are loaded.
   pid_t process = -1;
   if (const int error = plan.start(program, {program.string()}, helper_environment().data(), process); error != 0)
     fail_to_start(task_.reader, fmt::format("{} cannot be started: {}", program.string(), std::strerror(error)));
@@ -189,7 +191,7 @@ HelperProcess::HelperProcess(HelperTask task) : task_(std::move(task)) {
 }
 
 HelperProcess::~HelperProcess() {
-  socket_ = system::Descriptor();  // which is how it knows that it may end
+  socket_ = system::Descriptor();  // signals the helper to end
   forget();
   while (process_ >= 0 && ::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
   }
@@ -261,7 +263,7 @@ HelperMessage HelperProcess::receive(const std::string& subject) {
 
 namespace {
 
-/// What a reply says. Throws what went wrong, in its line.
+/// The contents of a reply. Throws the error that it reports.
 Json content_of(const HelperMessage& reply, const std::string& subject) {
   Json json;
   std::string line;
@@ -271,7 +273,7 @@ Json content_of(const HelperMessage& reply, const std::string& subject) {
     if (const auto opened = json.find("opened"); opened != json.end())
       for (const Json& name : *opened) {
         const std::filesystem::path file(std::string(name.get_binary().begin(), name.get_binary().end()));
-        // Some look into every file of a folder: pictures of earlier runs are none of theirs.
+        // Some readers open every file of a directory; images of earlier runs there are not inputs.
         if (!is_picture(file)) system::note_read(file);
       }
     if (const auto error = json.find("error"); error != json.end()) {
@@ -364,7 +366,7 @@ void HelperProcess::drop(std::span<const std::uint64_t> arrays) noexcept {
       static_cast<void>(send_message(
           socket_.get(),
           Json::to_cbor({{"do", "drop"}, {"arrays", std::vector<std::uint64_t>(arrays.begin(), arrays.end())}})));
-  } catch (const std::exception&) {  // then it keeps them a little longer
+  } catch (const std::exception&) {  // the helper then keeps them until it ends
   }
 }
 

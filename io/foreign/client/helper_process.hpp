@@ -22,20 +22,21 @@
 
 namespace tessera::io {
 
-/// Memory that the helper has filled: mapped from a file without a name, the same bytes for as long as this lives.
+/// Memory filled by the helper: mapped from an unnamed file, with contents that do not change during the lifetime of
+/// this object.
 class SharedBytes {
  public:
   SharedBytes() = default;
   /// Throws std::bad_alloc if it cannot be mapped, std::invalid_argument unless it holds `count` bytes.
   SharedBytes(const system::Descriptor& file, std::uint64_t count);
-  /// Memory that another process may fill and change, and not shrink, by `file`.
+  /// Memory that another process can fill and modify, but not shrink, through `file`.
   static SharedBytes made(std::size_t count, system::Descriptor& file);
   ~SharedBytes();
   SharedBytes(SharedBytes&& other) noexcept;
   SharedBytes& operator=(SharedBytes&& other) noexcept;
 
   [[nodiscard]] std::span<const std::byte> bytes() const { return {static_cast<const std::byte*>(start_), size_}; }
-  /// As numbers, of which there are as many as fit.
+  /// The bytes as numbers, as many as fit.
   template <class T>
   [[nodiscard]] std::span<const T> as() const {
     return {static_cast<const T*>(start_), size_ / sizeof(T)};
@@ -46,50 +47,51 @@ class SharedBytes {
   std::size_t size_ = 0;
 };
 
-/// What a helper is for, in the words of the error that its death becomes: "FILE: WORDS crashed (...); REMEDY". And
+/// The purpose of a helper, in the words of the error that its death causes ("FILE: WORDS crashed (...); REMEDY"), and
 /// which of the programs it is.
 struct HelperTask {
   std::string words = "reading it", remedy = "have it written again, or in another format";
   Reader reader = Reader::vtk;
-  const Format* format = nullptr;   ///< of the files, to be named if the program is not installed
-  ReadProgressFunction progress{};  ///< hears how far it is; null: nobody
-  std::string limit_remedy{};       ///< where it takes too long; empty: as ever
-  /// For how long it may wait for something else than the caller, without any processor time: for a pipe, say.
+  const Format* format = nullptr;   ///< format of the files, named in the error if the program is not installed
+  ReadProgressFunction progress{};  ///< called with the progress; may be null
+  std::string limit_remedy{};       ///< remedy if the helper takes too long; empty: the usual one
+  /// How long it may wait for anything but the caller, for example a pipe, without using processor time.
   std::chrono::milliseconds patience = std::chrono::minutes(2);
 };
 
-/// What a helper died of, without the subject.
+/// Why a helper died, without the subject.
 struct HelperDeath {
   scene::ErrorCode code;
   std::string words;
 };
 
-/// A running helper program (readers/README.md): a process of its own in which other people's readers, and TetGen, may
-/// crash, print and ask for memory. It ends with this object.
+/// A running helper program (readers/README.md): a separate process in which third-party readers, and TetGen, may
+/// crash, print and allocate memory. It ends with this object.
 ///
-/// Found    by find_reader(). The first call() throws missing_reader() of its subject if it is not installed.
-/// Started  by posix_spawn: nothing of the caller's process is copied. It inherits no file and, of the environment,
-///          nothing that MPI launchers set; what it prints goes nowhere.
-/// Limits   of memory and processor time, by the sizes of the files it opens or the surface it fills, which it sets
-///          itself, as it gives up the right to change anything (readers/common/sandbox.hpp). One that waits for longer
-///          than HelperTask::patience is ended.
+/// Found    by find_reader(). The first call() throws missing_reader() with its subject if it is not installed.
+/// Started  by posix_spawn: nothing of the caller's process is copied. It inherits no file and no variable that MPI
+///          launchers set; its output is discarded.
+/// Limits   on memory and processor time, from the sizes of the files it opens or the surface it fills. It sets them
+///          itself when it gives up the right to change anything (readers/common/sandbox.hpp). A helper that waits
+///          longer than HelperTask::patience is killed.
 /// Threads  calls wait for each other.
 class HelperProcess final : public ArraySource {
  public:
-  /// Throws Error(system_failure) if it is installed and cannot be started.
+  /// Throws Error(system_failure) if the program is installed but cannot be started.
   explicit HelperProcess(HelperTask task = {});
   ~HelperProcess() override;
   HelperProcess(const HelperProcess&) = delete;
   HelperProcess& operator=(const HelperProcess&) = delete;
 
-  /// Sends a request and waits. Throws the helper's own error, or Error(bad_input, "SUBJECT: ...") if it died of it;
-  /// then every later call throws that too.
+  /// Sends a request and waits for the reply. Throws the helper's own error, or Error(bad_input, "SUBJECT: ...") if the
+  /// helper died; then every later call throws that too.
   nlohmann::json call(const nlohmann::json& request, const std::string& subject);
 
-  /// The helper's array, which it then has no more, unless it is to `keep` it. Throws as call().
+  /// Returns an array of the helper, which then discards it unless `keep` is set. Throws like call().
   SharedBytes take(const ForeignArray& array, const std::string& subject, bool keep = false);
 
-  /// ArraySource's, while the helper prepares the next tuples. Faster than take(), which makes a file of small pages.
+  /// ArraySource::stream(); the helper prepares the next tuples in parallel. Faster than take(), which creates a file
+  /// of small pages.
   using ArraySource::stream;
   void stream(const ForeignArray& array, const std::string& subject,
               const std::function<void(std::span<const std::byte> tuples)>& use, Then then) override;
@@ -97,17 +99,17 @@ class HelperProcess final : public ArraySource {
   void expect(std::uint64_t bytes) override { expected_ = bytes, came_ = 0; }
   void drop(std::span<const std::uint64_t> arrays) noexcept override;
 
-  /// Its process, for tests; -1 once it has died.
+  /// Its process id, for tests; -1 once it has died.
   [[nodiscard]] int process() const { return process_; }
 
  private:
   HelperMessage exchange(const nlohmann::json& request, const std::string& subject);
   void send(const nlohmann::json& request, const std::string& subject, int file = -1);
   HelperMessage receive(const std::string& subject);
-  /// Nothing if it is gone, or is ended for waiting too long.
+  /// The next message; no value if the helper has ended or was killed because it waited too long.
   std::optional<HelperMessage> await();
   void open_window(const std::string& subject);
-  /// Before its end is waited for, after which its number may be another's.
+  /// To be called before waiting for its end; afterwards its process id may belong to another process.
   void forget() const;
   [[noreturn]] void report_death(const std::string& subject);
 
@@ -115,12 +117,12 @@ class HelperProcess final : public ArraySource {
   std::mutex mutex_;
   int process_ = -1;
   system::Descriptor socket_;
-  SharedBytes window_;                     ///< of slots for stream(); empty until it is needed
+  SharedBytes window_;                     ///< slots for stream(); empty until first used
   std::uint64_t expected_ = 0, came_ = 0;  ///< bytes of stream()
-  bool has_begun_ = false;                 ///< it has said that it is there
-  bool waits_ = false;                     ///< it was ended for that
-  std::string reading_;                    ///< the file that it is at, of several; empty: it has not said
-  std::optional<HelperDeath> death_;       ///< once it is dead
+  bool has_begun_ = false;                 ///< its first message has arrived
+  bool waits_ = false;                     ///< it was killed because it waited too long
+  std::string reading_;                    ///< the file that it is reading, of several; empty: not reported yet
+  std::optional<HelperDeath> death_;       ///< set once it is dead
 };
 
 }  // namespace tessera::io

@@ -12,7 +12,7 @@
 
 namespace tessera::io {
 
-/// Supplies the arrays of an opened file (ForeignContents), each by its number: the reader program that holds them
+/// Supplies the arrays of an opened file (ForeignContents), identified by number: the reader program that holds them
 /// (HelperProcess), or this process, which reads them from the file (VtkXmlArrays).
 class ArraySource {
  public:
@@ -23,9 +23,9 @@ class ArraySource {
 
   enum class Then : std::uint8_t { dropped, kept };
 
-  /// Passes all tuples of an array to `use`, in their order, whole tuples at a time. `use` has to copy the bytes before
-  /// it looks at them: another process may change them. Afterwards the array can be read again only with
-  /// Then::kept. Throws Error(bad_input) whose line begins with `subject`.
+  /// Passes all tuples of an array to `use`, in order, in runs of whole tuples. `use` must copy the bytes before it
+  /// examines them: another process may change them. The array can be read again later only with Then::kept. Throws
+  /// Error(bad_input) with a message that begins with `subject`.
   virtual void stream(const ForeignArray& array, const std::string& subject,
                       const std::function<void(std::span<const std::byte> tuples)>& use, Then then) = 0;
   void stream(const ForeignArray& array, const std::string& subject,
@@ -36,7 +36,7 @@ class ArraySource {
   /// All bytes of an array, by stream().
   std::vector<std::byte> copy(const ForeignArray& array, const std::string& subject, Then then = Then::dropped);
 
-  /// Announces the number of bytes that stream() will pass, for reports of progress.
+  /// Announces the number of bytes that stream() will pass, for progress reports.
   virtual void expect(std::uint64_t /*bytes*/) {}
 
   /// Discards arrays that will not be read.

@@ -35,7 +35,7 @@ ForeignArray array_of(const Json& json) {
              json.at(9).get<bool>(),          json.at(11).get<bool>(),  json.at(12).get<std::uint64_t>(),
              json.at(13).get<std::uint64_t>()};
   a.ids = json.at(10).get<bool>();
-  // So that bytes() does not overflow.
+  // Limits that keep bytes() from overflowing.
   if (a.components < 1 || a.components > 1 << 20 || a.tuples > 1ull << 40)
     throw std::invalid_argument("size of an array");
   return a;

@@ -12,7 +12,7 @@
 namespace tessera::io {
 namespace {
 
-/// More would be no description of a file.
+/// Longer than any valid description of a file.
 constexpr std::uint64_t longest_message = 1ull << 31;
 
 bool receive_all(int socket, std::uint8_t* bytes, std::size_t count) {
@@ -77,7 +77,7 @@ std::optional<HelperMessage> receive_message(int socket) {
     message.file = system::Descriptor(file);
   }
   if (got != static_cast<ssize_t>(sizeof count) || count > longest_message) return std::nullopt;
-  // Bytes are made room for as they come: the count alone is only somebody's word.
+  // Memory grows as bytes arrive: the count alone is not trusted.
   constexpr std::size_t step = 1 << 20;
   while (message.bytes.size() < count) {
     const std::size_t before = message.bytes.size(), more = std::min<std::size_t>(step, count - before);

@@ -12,14 +12,14 @@
 
 namespace tessera::io {
 
-/// What goes over the socket between a process and its helper program: a count of bytes (uint64, this machine's order),
-/// the bytes, and at most one file descriptor beside them.
+/// A message on the socket between a process and its helper program: a byte count (uint64, native byte order), the
+/// bytes, and at most one file descriptor attached to them.
 ///
 /// Bytes   CBOR. Requests and replies are in io/foreign/client/helper_process.cpp and readers/common/serve.cpp.
-/// Arrays  are files without a name (memfd_create), sealed by who receives them, so that they cannot shrink while they
-///         are mapped; or go in parts through a window, which is such a file too, and stays.
+/// Arrays  unnamed files (memfd_create). The receiver seals them, so that they cannot shrink while they are mapped. Or
+///         they are sent in parts through a window, which is such a file too and is reused.
 
-/// Of the protocol. The helper says it first; another one's is refused.
+/// Protocol version. The helper sends it first; any other version is refused.
 inline constexpr int helper_version = 6;
 
 struct HelperMessage {
@@ -27,10 +27,10 @@ struct HelperMessage {
   system::Descriptor file;
 };
 
-/// False if the other side is gone.
+/// False if the other side has closed.
 bool send_message(int socket, std::span<const std::uint8_t> bytes, int file = -1);
 
-/// Nothing if the other side is gone, or sends what is no message.
+/// No value if the other side has closed or sends an invalid message.
 std::optional<HelperMessage> receive_message(int socket);
 
 }  // namespace tessera::io

@@ -36,7 +36,7 @@ T next(const std::vector<T>& values, std::size_t& at) {
 }  // namespace
 
 Json json_of(const cells::Surface& surface) {
-  std::vector<std::uint32_t> counts, corners;  // of each facet: its polygons, their lengths, its holes
+  std::vector<std::uint32_t> counts, corners;  // per facet: number of polygons, their lengths, its holes
   std::vector<glm::dvec3> holes;
   for (const cells::Facet& facet : surface.facets) {
     counts.push_back(static_cast<std::uint32_t>(facet.polygons.size()));

@@ -11,23 +11,22 @@
 namespace tessera::io {
 
 /// A surface filled by TetGen (Si, "TetGen, a Delaunay-Based Quality Tetrahedral Mesh Generator", ACM TOMS 2015) with
-/// tets of at most `max_volume` and radius-edge ratio 2, and the fields that go with it.
+/// tets of at most `max_volume` and radius-edge ratio 2, and its fields.
 struct FilledMesh {
   std::vector<glm::dvec3> points;
-  std::vector<std::uint32_t> tets;              ///< four a tet
-  std::vector<double> depth;                    ///< at the points: distance to the surface, world units
-  std::vector<std::vector<double>> attributes;  ///< the surface's, at the points
+  std::vector<std::uint32_t> tets;              ///< four indices per tet
+  std::vector<double> depth;                    ///< per point: distance to the surface, world units
+  std::vector<std::vector<double>> attributes;  ///< of the surface, per point
 };
 
 /// How finely a surface is filled.
 struct FillSize {
-  double max_volume;  ///< of a tet, world units cubed
-  double tets;        ///< about how many these are: the volume inside in units of `max_volume`
-  bool is_chosen =
-      false;  ///< by the user, who may know that it takes long: then 40 times as long, and 8 times the memory
+  double max_volume;       ///< largest volume of a tet, world units cubed
+  double tets;             ///< estimated number of tets: the enclosed volume divided by `max_volume`
+  bool is_chosen = false;  ///< set by the user, who expects a long run: allows 40 times the time and 8 times the memory
 };
 
-/// A surface as JSON for the reader program, and back. surface_of() throws std::exception for other JSON.
+/// A surface as JSON for the reader program. surface_of() is the inverse and throws std::exception for other JSON.
 nlohmann::json json_of(const cells::Surface& surface);
 cells::Surface surface_of(const nlohmann::json& json);
 
