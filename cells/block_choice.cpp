@@ -14,7 +14,7 @@ namespace tessera::cells {
 namespace {
 
 std::string list(std::span<const std::string> blocks, bool with_surfaces) {
-  const std::size_t most = with_surfaces ? blocks.size() : 12;  // of a line that is to be read
+  const std::size_t most = with_surfaces ? blocks.size() : 12;  // limit for a readable line
   std::string text;
   for (const std::string& block : blocks.first(std::min(blocks.size(), most)))
     text += (text.empty() ? "" : ", ") + scene::quote(block);

@@ -18,7 +18,7 @@ BlockField field_of_numbers(const std::string& name, std::span<const std::int64_
                          std::vector<double>(numbers.begin(), numbers.end()));
 }
 
-/// The cells of a number, or all, with the points that they use. `local` has no point's number before and after.
+/// The cells with a number, or all, with the points that they use. All entries of `local` are unset before and after.
 CellBlock group_of(const CellBlock& all, std::span<const std::int64_t> numbers, std::optional<std::int64_t> number,
                    std::vector<std::uint32_t>& local) {
   constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();

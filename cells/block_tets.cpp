@@ -20,10 +20,10 @@ namespace {
 
 using scene::Tet;
 
-/// Tets that each higher-order cell may become beside CurvedSettings::all of them together.
+/// Number of tets allowed for each higher-order cell, in addition to CurvedSettings::all for all of them.
 constexpr std::uint64_t each_curved_cell = 64;
 
-/// Where cells of a kind are counted, and those of them that are tangled; null: nowhere.
+/// Counters for cells of a kind and for the tangled ones among them; null: not counted.
 std::array<std::uint64_t MeshCounts::*, 2> counters_of(CellKind kind) {
   switch (kind) {
     case CellKind::hexahedron:
@@ -118,7 +118,7 @@ void BlockCells::split_cell(std::size_t c, Workplace& work, BlockTets& out) cons
     const std::size_t tets = out.tets.size();
     const std::uint64_t collapsed = out.counts.tets_collapsed;
     if (!keep_tets(c, work.tets, place_of, out) || shape.kind == CellKind::tet) return;
-    // Its tets overlap: one of them is no way to split it, but there may be another.
+    // If the tets overlap, another method may still split the cell.
     out.tets.resize(tets), out.cells.resize(tets);
     out.counts.tets_collapsed = collapsed;
     --out.counts.cells_tangled;
@@ -129,7 +129,7 @@ void BlockCells::split_cell(std::size_t c, Workplace& work, BlockTets& out) cons
     keep_filled(c, work.polyhedra, out);
     return;
   }
-  // Corners given twice may leave a surface that is not closed.
+  // Repeated corners may make the surface open.
   work.tets.clear();
   cells::split_cell(shape.kind, corner, points_, work.tets);
   keep_tets(
@@ -146,7 +146,8 @@ void BlockCells::split_curved(std::size_t c, Workplace& work, BlockTets& out) co
                     source_, place(c), curved_.settings().limit));
   }
   const CurvedSplitter& split = work.curved.splitter;
-  // Whether it is an error follows from all cells together, whichever thread was faster; at which of them, does not.
+  // Whether the limit is exceeded depends on all cells, whichever thread is faster; only the cell at which it is
+  // detected depends on timing.
   const std::uint64_t so_far = curved_tets_.fetch_add(split.tets().size()) + split.tets().size();
   if (so_far > most_curved_tets_)
     throw scene::bad_input(
@@ -202,7 +203,7 @@ void BlockCells::split_polyhedron(std::size_t c, CellKind kind, Workplace& work,
   if (keep_filled(c, work.polyhedra, out)) ++out.counts.polyhedra_tangled;
 }
 
-/// The faces of a polyhedron, without their number.
+/// The faces of a polyhedron, without the number of faces.
 std::span<const std::uint32_t> BlockCells::faces_of(std::size_t c) const {
   const auto first = static_cast<std::size_t>(block_.face_locations[c]);
   std::size_t end = first + 1;
@@ -210,7 +211,7 @@ std::span<const std::uint32_t> BlockCells::faces_of(std::size_t c) const {
   return std::span(block_.faces).subspan(first + 1, end - first - 1);
 }
 
-/// What the splitter has made of a cell. Returns whether its tets overlap.
+/// Takes over the splitter's result for a cell. Returns whether its tets overlap.
 bool BlockCells::keep_filled(std::size_t c, PolyhedronSplitter& filled, BlockTets& out) const {
   const auto own = static_cast<std::uint32_t>(points_.size());
   const auto before = static_cast<std::uint32_t>(out.added.size());
@@ -225,7 +226,7 @@ bool BlockCells::keep_filled(std::size_t c, PolyhedronSplitter& filled, BlockTet
   return overlap;
 }
 
-/// Whether a cell is a ghost, hidden or not finite, which is counted.
+/// Whether a cell is a ghost, hidden or not finite; counts it if so.
 bool BlockCells::is_left_out(std::size_t c, std::span<const std::uint32_t> corner, BlockTets& out) const {
   const std::uint8_t ghost = block_.cell_ghost.empty() ? 0 : block_.cell_ghost[c];
   if (ghost & duplicate_cell)
@@ -246,8 +247,8 @@ bool BlockCells::keep_tets(std::size_t c, std::span<const Tet> cell_tets, const 
   double positive = 0, negative = 0;
   for (const Tet& tet : cell_tets) {
     const glm::dvec3 a = place_of(tet[0]), b = place_of(tet[1]), p = place_of(tet[2]), q = place_of(tet[3]);
-    // A tet with two corners at one place is flat, two of its faces are the same triangle and the other two have no
-    // area: leaving it out puts its two neighbours face to face.
+    // A tet with two coincident corners is flat: two of its faces are the same triangle and the other two have no area.
+    // Without it, its two neighbours are face to face.
     if (a == b || a == p || a == q || b == p || b == q || p == q) {
       ++out.counts.tets_collapsed;
       continue;

@@ -18,37 +18,37 @@
 
 namespace tessera::cells {
 
-/// What some of a block's cells become.
+/// The tets of some of a block's cells.
 struct BlockTets {
-  std::vector<scene::Tet> tets;      ///< corners in the block's points, and from their number on in `added`
-  std::vector<std::uint64_t> cells;  ///< of each tet, counted in the block
-  std::vector<glm::dvec3> added;     ///< points that cells are split at beside their own
-  std::vector<double> added_values;  ///< of each of them; empty for cell data
-  std::vector<std::uint32_t> nodes;  ///< of the higher-order cells that were divided; few are corners of tets
+  std::vector<scene::Tet> tets;      ///< corners are indices of the block's points, followed by those of `added`
+  std::vector<std::uint64_t> cells;  ///< index in the block of each tet's cell
+  std::vector<glm::dvec3> added;     ///< additional points at which cells are split
+  std::vector<double> added_values;  ///< one per added point; empty for cell data
+  std::vector<std::uint32_t> nodes;  ///< nodes of the divided higher-order cells; few are corners of tets
   HigherOrderCells curved;
-  MeshCounts counts;  ///< but of points, and of tets made
+  MeshCounts counts;  ///< without points and tets
   std::exception_ptr error;
 };
 
-/// The cells of a block: which are kept, and what tets they are split into. Threads may ask for different ones at once.
+/// The cells of a block: which are kept, and the tets into which they are split. Threads may split different cells in
+/// parallel.
 class BlockCells {
  public:
   /// `points` and `values` are those of the block, the latter of its points or cells by `association`; `source` is for
-  /// messages. All outlive this. `before` is what cells of other blocks have become.
+  /// messages. All outlive this. `before` counts the tets of other blocks' cells.
   BlockCells(const CellBlock& block, std::span<const glm::dvec3> points, std::span<const double> values,
              scene::Association association, const std::string& source, const CurvedSettings& curved = {},
              const HigherOrderCells& before = {});
 
   [[nodiscard]] std::size_t count() const { return block_.cell_count(); }
-  /// Whether some are divided into many tets each.
+  /// Whether any cells are divided into many tets each.
   [[nodiscard]] bool divides() const { return curved_.any(); }
 
-  /// Splits the cells [first, last); what was in `out` is gone. Throws Error(bad_input) for a cell that cannot be
-  /// split.
+  /// Splits the cells [first, last); overwrites `out`. Throws Error(bad_input) for a cell that cannot be split.
   void split(std::size_t first, std::size_t last, BlockTets& out) const;
 
  private:
-  /// What splitting one cell after the other uses again.
+  /// Scratch memory that is reused from cell to cell.
   struct Workplace {
     std::vector<scene::Tet> tets;
     std::vector<std::uint32_t> faces, corners;

@@ -15,7 +15,7 @@
 
 namespace tessera::cells {
 
-/// Asks a field for the length of its tuples instead of one component.
+/// Selects the length of a field's tuples instead of one component.
 inline constexpr int magnitude = -1;
 
 /// One array of a block, read on demand so that only the chosen field is ever converted.
@@ -27,29 +27,31 @@ struct BlockField {
   std::size_t tuples = 0;
   bool active = false;                 ///< the file marks it as its scalars or vectors
   bool ids = false;                    ///< the file marks it as ids
-  std::optional<NumberTally> tally{};  ///< where it is known without reading
+  std::optional<NumberTally> tally{};  ///< set if known without reading
   /// Writes tuples [first, first + out.size()) of one component, or their magnitude, as doubles.
   std::function<void(int component, std::size_t first, std::span<double> out)> read;
 };
 
-/// A field that owns its values, `components` a tuple.
+/// A field that owns its values, `components` per tuple.
 BlockField field_of_values(std::string name, std::string type, scene::Association association, int components,
                            std::vector<double> values);
 
-/// Part of a mesh as a file gives it, before splitting: one block of an Exodus or PLOT3D file, or all of the others.
+/// Part of a mesh as stored in a file, before splitting: one block of an Exodus or PLOT3D file; other files may have a
+/// single one.
 ///
 /// Shape   cell c has type types[c] (VTK's cell type number) and points connectivity[offsets[c]] up to
-///         connectivity[offsets[c + 1]]. Where all cells are tetrahedra they may be `tets`, and the other three empty.
-///         A polyhedron's points are those of its faces: at face_locations[c] `faces` has their number, then of each
-///         the number of its points and these. Of other cells it is no_faces; without polyhedra both are empty. Ghost
-///         arrays hold vtkGhostType bits for each point or cell, or are empty.
+///         connectivity[offsets[c + 1]]. If all cells are tetrahedra they may be in `tets`, with the other three empty.
+///         The points of a polyhedron are those of its faces: at face_locations[c], `faces` contains the number of
+///         faces
+///         and, for each face, its number of points and these points. For other cells it is no_faces; without polyhedra
+///         both are empty. Ghost arrays hold vtkGhostType bits for each point or cell, or are empty.
 /// Holds   the reader has checked that offsets do not decrease and end at connectivity.size(), and that every index is
-///         < positions.size(), as require_faces() does for faces. Positions and fields may hold NaN.
+///         < positions.size(); require_faces() checks faces. Positions and fields may hold NaN.
 struct CellBlock {
   static constexpr std::int64_t no_faces = -1;
 
   std::string name;    ///< for messages; empty if it is the only one
-  std::string source;  ///< for messages: the file it comes from, if that is a piece of the file asked for
+  std::string source;  ///< for messages: the file that contains it, if that is a piece of the requested file
   std::vector<glm::dvec3> positions;
   std::vector<std::uint8_t> types;
   std::vector<std::uint64_t> offsets;
@@ -63,9 +65,9 @@ struct CellBlock {
   [[nodiscard]] std::size_t cell_count() const { return types.empty() ? tets.size() : types.size(); }
 };
 
-/// Checks the faces of a block's polyhedra, whose types, offsets and positions are there. Throws Error(bad_input) that
-/// begins with `where` and names the cell: for a location for all cells, counts and points in range, faces that are one
-/// cell's.
+/// Checks the faces of a block's polyhedra; types, offsets and positions must be set. Throws Error(bad_input) that
+/// begins with `where` and names the cell, unless every cell has a location, counts and points are in range, and faces
+/// belong to one cell only.
 void require_faces(const CellBlock& block, const std::string& where);
 
 }  // namespace tessera::cells

@@ -12,7 +12,8 @@
 namespace tessera::cells {
 namespace {
 
-// VTK's corner numbering (vtkHexahedron.h, vtkWedge.h, ...). The wedge's base looks outward there; the others' inward.
+// VTK's corner numbering (vtkHexahedron.h, vtkWedge.h, ...). The wedge's base is oriented outward there; the others'
+// inward.
 constexpr CellFace tet_faces[] = {{3, {0, 2, 1}}, {3, {0, 1, 3}}, {3, {1, 2, 3}}, {3, {0, 3, 2}}};
 constexpr CellFace hexahedron_faces[] = {{4, {0, 3, 2, 1}}, {4, {4, 5, 6, 7}}, {4, {0, 1, 5, 4}},
                                          {4, {1, 2, 6, 5}}, {4, {2, 3, 7, 6}}, {4, {0, 4, 7, 3}}};
@@ -27,10 +28,10 @@ constexpr CellFace hexagonal_prism_faces[] = {{6, {0, 5, 4, 3, 2, 1}}, {6, {6, 7
                                               {4, {1, 2, 8, 7}},       {4, {2, 3, 9, 8}},         {4, {3, 4, 10, 9}},
                                               {4, {4, 5, 11, 10}},     {4, {5, 0, 6, 11}}};
 
-// A voxel counts its corners x first, then y, then z.
+// A voxel numbers its corners x first, then y, then z.
 constexpr std::array<std::uint8_t, 8> voxel_order = {0, 1, 3, 2, 4, 5, 7, 6};
 
-/// Corners of one cell in a total order: by position, coincident ones by their place in the cell.
+/// Total order of a cell's corners: by position, coincident ones by their index in the cell.
 struct CornerOrder {
   std::array<glm::dvec3, 12> p;
 
@@ -39,14 +40,14 @@ struct CornerOrder {
 
 using Triangle = std::array<std::uint8_t, 3>;
 
-/// Up to 12 tets of one cell in its corner numbers.
+/// Up to 12 tets of one cell, in its corner numbers.
 struct LocalTets {
   std::array<std::array<std::uint8_t, 4>, 12> tet;
   int count = 0;
   void push_back(const std::array<std::uint8_t, 4>& t) { tet[count++] = t; }
 };
 
-/// The triangles, turning outward, of all faces that do not touch `apex`.
+/// The triangles, oriented outward, of all faces that do not contain `apex`.
 int far_triangles(std::span<const CellFace> faces, std::uint8_t apex, const CornerOrder& less,
                   std::array<Triangle, 12>& triangles) {
   int count = 0;
@@ -64,7 +65,7 @@ int far_triangles(std::span<const CellFace> faces, std::uint8_t apex, const Corn
 /// The corner that shares no face with corner `apex` of a hexahedron.
 constexpr std::array<std::uint8_t, 8> opposite_in_hexahedron = {6, 7, 4, 5, 2, 3, 0, 1};
 
-/// Where no cut meets `far`, the three triangles round it are a cap that one tet cuts off: 5 tets in all.
+/// If no cut meets `far`, the three triangles around it are a cap that one tet cuts off: 5 tets in total.
 bool split_off_far_corner(std::uint8_t apex, std::span<const Triangle> triangles, LocalTets& local) {
   const std::uint8_t far = opposite_in_hexahedron[apex];
   std::array<Triangle, 3> cap;
@@ -81,7 +82,7 @@ bool split_off_far_corner(std::uint8_t apex, std::span<const Triangle> triangles
   std::rotate(cap[0].begin(), std::find(cap[0].begin(), cap[0].end(), far), cap[0].end());
   const std::uint8_t p = cap[0][1], q = cap[0][2];
   const std::uint8_t r = *std::find_if(cap[1].begin(), cap[1].end(), [&](std::uint8_t c) {
-    return c != far && c != p && c != q;  // cap[1] shares `far` and one of p, q
+    return c != far && c != p && c != q;  // cap[1] has `far` and one of p, q in common
   });
   local.push_back({far, p, q, r});
   local.push_back({p, q, r, apex});

@@ -26,43 +26,43 @@ enum class CellKind : std::uint8_t {
   polyhedron
 };
 
-/// What is known of one of VTK's cell types.
+/// Properties of one of VTK's cell types.
 struct CellShape {
   CellKind kind = CellKind::unsupported;
-  int corners = 0;            ///< nodes used; they come first in the cell's list
-  int nodes = 0;              ///< nodes the cell must have; 0: at least `corners` (Lagrange and Bezier cells)
+  int corners = 0;            ///< number of nodes used; they come first in the cell's list
+  int nodes = 0;              ///< required number of nodes; 0: at least `corners` (Lagrange and Bezier cells)
   bool higher_order = false;  ///< more nodes than corners
 };
 
-/// The corners and nodes of convex point sets and polyhedra are as many as a cell has.
+/// For convex point sets and polyhedra, the numbers of corners and nodes are those of each cell.
 CellShape cell_shape(std::uint8_t vtk_type);
 
 /// VTK's name of a type, for messages: "polyhedron"; "type 99" if it has none.
 std::string cell_type_name(std::uint8_t vtk_type);
 
-/// Splits one cell into tets and appends them to `tets`, in `corner` indices as given (corners in VTK's order).
+/// Splits one cell into tets and appends them to `tets`, as indices taken from `corner` (corners in VTK's order).
 ///
 /// Neighbours agree on every shared face by position: each face is cut from its lexicographically smallest corner
 /// (Dompierre, Labbe, Vallet, Camarero, "How to Subdivide Pyramids, Prisms, and Hexahedra into Tetrahedra", 8th
-/// International Meshing Roundtable 1999, with position order in place of index order), and the cell is the cone over
-/// those triangles from its own smallest corner. A warped face is simply its two triangles. Corners that coincide give
-/// flat triangles only, so whichever of them counts as smallest, the triangles that have an area are the same from both
-/// sides. A hexahedron gives 5 tets where no face's cut meets the corner opposite to the smallest, else 6; a wedge
-/// 3, a pyramid 2, a pentagonal prism 9, a hexagonal prism 12. All tets of a convex cell have one orientation.
+/// International Meshing Roundtable 1999, with position order instead of index order), and the cell is the cone over
+/// those triangles from its own smallest corner. A warped face is simply its two triangles. Coincident corners give
+/// only flat triangles, so whichever of them counts as smallest, the triangles with an area are the same from both
+/// sides. A hexahedron gives 5 tets if no face's cut meets the corner opposite to the smallest, else 6; a wedge 3, a
+/// pyramid 2, a pentagonal prism 9, a hexagonal prism 12. All tets of a convex cell have the same orientation.
 void split_cell(CellKind kind, std::span<const std::uint32_t> corner, std::span<const glm::dvec3> positions,
                 std::vector<scene::Tet>& tets);
 
-/// A face of a cell: its corners, one after the other round it, turning outward.
+/// A face of a cell: its corners in order, oriented outward.
 struct CellFace {
   int size;
   std::array<std::uint8_t, 6> corner;
 };
-/// Those of a tet, hexahedron, wedge, pyramid or prism, in VTK's numbers of corners, of a voxel in a hexahedron's; none
-/// of other kinds.
+/// The faces of a tet, hexahedron, wedge, pyramid or prism, in VTK's corner numbers; for a voxel in those of a
+/// hexahedron. Empty for other kinds.
 std::span<const CellFace> faces_of(CellKind kind);
 
-/// Appends a cell's faces: of each the number of its corners, then these, from those given. None of a tet, a polyhedron
-/// and what is no volume.
+/// Appends a cell's faces: for each the number of its corners, then these, taken from `corner`. Appends nothing for a
+/// tet, a polyhedron and cells without volume.
 void append_faces(CellKind kind, std::span<const std::uint32_t> corner, std::vector<std::uint32_t>& faces);
 
 }  // namespace tessera::cells

@@ -9,7 +9,7 @@
 namespace tessera::cells {
 namespace {
 
-/// Calls `use` for each run of edges between the same corners.
+/// Calls `use` for each run of edges with the same corners.
 template <class Edges, class Use>
 void for_each_edge(const Edges& edges, const Use& use) {
   for (auto first = edges.begin(); first != edges.end();) {
@@ -73,7 +73,7 @@ void ClosedSurface::number_faces(std::span<const std::uint32_t> faces) {
       if (face_corners_.size() == start || face_corners_.back() != number) face_corners_.push_back(number);
     }
     while (face_corners_.size() > start + 1 && face_corners_.back() == face_corners_[start]) face_corners_.pop_back();
-    // What is collapsed to an edge or a point closes nothing.
+    // Faces collapsed to an edge or a point are ignored.
     if (face_corners_.size() < start + 3)
       face_corners_.resize(start);
     else
@@ -104,12 +104,12 @@ bool ClosedSurface::is_balanced() const {
   return balanced;
 }
 
-/// The face at the root of the tree that a face is in, and whether it turns against it.
+/// The root of the tree that contains a face, and whether their orientations are opposite.
 std::uint32_t ClosedSurface::group_of(std::uint32_t face, bool& turned) {
   std::uint32_t root = face;
   turned = false;
   for (; parent_[root] != root; root = parent_[root]) turned ^= against_[root] != 0;
-  // All on the way point to the root from now on.
+  // Path compression: all faces on the path now point to the root.
   for (bool left = turned; parent_[face] != root && face != root;) {
     const std::uint32_t next = parent_[face];
     const bool own = against_[face] != 0;
@@ -120,8 +120,8 @@ std::uint32_t ClosedSurface::group_of(std::uint32_t face, bool& turned) {
   return root;
 }
 
-/// Turns faces so that two that meet alone on an edge go along it in opposite ways, and those that hang together have a
-/// volume that is not negative. False if nothing of the kind makes them close.
+/// Flips faces so that two faces that alone share an edge use it in opposite directions, and each connected group has a
+/// volume that is not negative. False if the surface is still not closed.
 bool ClosedSurface::turn_faces() {
   parent_.resize(face_count());
   for (std::size_t f = 0; f < face_count(); ++f) parent_[f] = static_cast<std::uint32_t>(f);
@@ -146,7 +146,7 @@ bool ClosedSurface::turn_faces() {
     groups[f] = group_of(static_cast<std::uint32_t>(f), turned);
     turned_[f] = turned ? 1 : 0;
     const auto corners = face(f);
-    fan.assign(1, {0, 0, 0});  // the origin that all are measured from
+    fan.assign(1, {0, 0, 0});  // the common origin of the cones
     for (std::size_t k = 1; k + 1 < corners.size(); ++k) fan.push_back({corners[0], corners[k], corners[k + 1]});
     volumes[groups[f]] += (turned ? -1 : 1) * volume6_of(fan, points_);
   }
@@ -163,7 +163,7 @@ void ClosedSurface::cut_faces() {
     for (std::size_t t = first; t < triangles_.size() && turned_[f] != 0; ++t)
       std::swap(triangles_[t][1], triangles_[t][2]);
   }
-  // A face that touches itself has triangles with two corners at one place.
+  // A face that touches itself has triangles with two coincident corners.
   std::erase_if(triangles_, [](const CornerTriangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
   if (triangles_.empty()) return;
   volume6_ = volume6_of(triangles_, points_);
@@ -193,7 +193,7 @@ std::optional<std::array<std::uint32_t, 8>> ClosedSurface::as_hexahedron() const
   auto distinct = corner;
   std::sort(distinct.begin(), distinct.end());
   if (ups != 4 || std::adjacent_find(distinct.begin(), distinct.end()) != distinct.end()) return std::nullopt;
-  // The other five faces have to be those that its corners make.
+  // The other five faces must be those defined by its corners.
   static constexpr std::array<std::array<std::uint8_t, 4>, 5> sides = {
       {{4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}};
   const auto has_face = [&](const std::array<std::uint8_t, 4>& side) {

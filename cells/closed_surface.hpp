@@ -13,28 +13,28 @@
 
 namespace tessera::cells {
 
-/// The faces of one polyhedron, cut into triangles that turn outward.
+/// The faces of one polyhedron, cut into triangles that are oriented outward.
 ///
-/// Corners      numbered in the order of their positions, those at one place as one.
-/// Orientation  that of the faces if they agree with each other, whichever side they call the outer one; else they are
-///              turned to agree with their neighbours.
-/// Closed       on every edge there are as many faces going one way as the other. More than two may meet on one.
+/// Corners      numbered in the order of their positions; coincident ones are merged.
+/// Orientation  that of the faces if they are consistent, whether they point outward or inward; otherwise faces are
+///              flipped to agree with their neighbours.
+/// Closed       every edge is used equally often in both directions. More than two faces may share an edge.
 class ClosedSurface {
  public:
-  /// `faces`: of each the number of its corners, then these, as indices into `positions`, which are finite. False if
-  /// they are no closed surface. Costs n log n.
+  /// `faces`: for each the number of its corners, then these, as indices into `positions`, which are finite. False if
+  /// they do not form a closed surface. Costs n log n.
   bool set(std::span<const std::uint32_t> faces, std::span<const glm::dvec3> positions);
 
   [[nodiscard]] const std::vector<glm::dvec3>& points() const { return points_; }
-  /// Of each corner its index in `positions`, the smallest of those at its place.
+  /// For each corner its index in `positions`, the smallest of the coincident ones.
   [[nodiscard]] const std::vector<std::uint32_t>& indices() const { return indices_; }
-  /// Those with two corners at one place left out.
+  /// Without triangles that have two coincident corners.
   [[nodiscard]] const std::vector<CornerTriangle>& triangles() const { return triangles_; }
-  /// Six times the volume within; of negative ones only what rounding leaves of flat cells.
+  /// Six times the enclosed volume; it is negative only by rounding, for flat cells.
   [[nodiscard]] double volume6() const { return volume6_; }
   /// Whether every face is a fan from its smallest corner.
   [[nodiscard]] bool are_fans() const { return all_fans_; }
-  /// The corners in the order of a hexahedron (VTK's), if they are one's and its faces are all fans.
+  /// The corners in the order of a hexahedron (VTK's), if they form one and its faces are all fans.
   [[nodiscard]] std::optional<std::array<std::uint32_t, 8>> as_hexahedron() const;
 
  private:
@@ -60,13 +60,13 @@ class ClosedSurface {
   std::vector<CornerTriangle> triangles_;
   double volume6_ = 0;
   bool all_fans_ = false;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> numbers_;  ///< of each index in `positions`, in order
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> numbers_;  ///< per index in `positions`, in order
   std::vector<std::uint32_t> by_place_, face_corners_;
   std::vector<std::size_t> face_starts_;
   std::vector<Edge> edges_;            ///< sorted by their corners
-  std::vector<std::uint8_t> turned_;   ///< of each face, against its list
-  std::vector<std::uint32_t> parent_;  ///< of each face in the tree of those that it is turned with
-  std::vector<std::uint8_t> against_;  ///< whether it turns the other way than its parent
+  std::vector<std::uint8_t> turned_;   ///< per face, relative to its list
+  std::vector<std::uint32_t> parent_;  ///< per face, in the tree of faces that are oriented together
+  std::vector<std::uint8_t> against_;  ///< whether its orientation is opposite to its parent's
   FaceCutter cutter_;
 };
 

@@ -10,7 +10,7 @@
 namespace tessera::cells {
 namespace {
 
-/// Which of the points lie on a plane that has all others on its inner side.
+/// Position of a plane relative to the points: whether all others are on its inner side.
 enum class Side { supporting, cutting, holding_all };
 
 class Hull {
@@ -24,7 +24,7 @@ class Hull {
     }
   }
 
-  /// Every plane through three points is tried.
+  /// Tries every plane through three points.
   bool find(std::vector<std::uint32_t>& faces) {
     const std::size_t n = points_.size();
     if (n < 4 || n > most_hull_points) return false;
@@ -38,7 +38,7 @@ class Hull {
           if (side == Side::supporting && std::none_of(found_.begin(), found_.end(), is_same))
             found_.push_back({on_, normal_});
         }
-    // Points close to each other make planes that lean, and have less of a face on them than it has.
+    // Planes through close points are inaccurate, and contain fewer points of their face.
     std::stable_sort(found_.begin(), found_.end(),
                      [](const Plane& a, const Plane& b) { return a.points.size() > b.points.size(); });
     std::vector<Plane> kept;
@@ -51,7 +51,7 @@ class Hull {
   }
 
  private:
-  /// False if the three are nearly on one line.
+  /// False if the three points are almost collinear.
   bool set_plane(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     std::array<double, 3> edges = {glm::length(b - a), glm::length(c - b), glm::length(a - c)};
     std::sort(edges.begin(), edges.end());
@@ -86,7 +86,7 @@ class Hull {
     glm::dvec3 normal;
   };
 
-  /// Whether both are one face: nearly parallel, with three points in common.
+  /// Whether both planes are the same face: nearly parallel, with three points in common.
   [[nodiscard]] bool is_part(const Plane& plane, const Plane& of) const {
     if (glm::dot(plane.normal, of.normal) < 0.999) return false;
     return std::count_if(plane.points.begin(), plane.points.end(), [&](std::uint32_t v) {
@@ -94,7 +94,7 @@ class Hull {
            }) > 2;
   }
 
-  /// The outline of the points on the plane, by Andrew's monotone chain (1979), which keeps those on its edges.
+  /// The outline of the points on the plane, by Andrew's monotone chain (1979), which keeps points on its edges.
   void add_outline(const Plane& plane, std::vector<std::uint32_t>& faces) {
     const glm::dvec3 normal = plane.normal, origin = p_[plane.points[0]];
     const glm::dvec3 other = std::abs(normal.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
@@ -113,7 +113,7 @@ class Hull {
           ring_.pop_back();
         ring_.push_back(*first);
       }
-      ring_.pop_back();  // it begins the other chain
+      ring_.pop_back();  // it is also the first of the other chain
     };
     add_chain(flat_.begin(), flat_.end());
     add_chain(flat_.rbegin(), flat_.rend());

@@ -38,7 +38,7 @@ struct Freed {
   void operator()(T* memory) const { std::free(memory); }
 };
 
-/// A number that depends on a place alone; -0 and 0 differ.
+/// A hash of a position; -0 and 0 differ.
 std::uint64_t key_of_place(const glm::dvec3& p) {
   const auto word = [](double x, std::uint64_t odd, int turn) {
     return std::rotl(std::bit_cast<std::uint64_t>(x) * odd, turn);
@@ -48,7 +48,7 @@ std::uint64_t key_of_place(const glm::dvec3& p) {
   return mix((sum ^ sum >> 32) * 0xff51afd7ed558ccd);
 }
 
-/// A number for each cell that depends on its tets' corners' positions alone, in whatever order they are.
+/// A key for each cell that depends only on its tets' corner positions, in any order.
 class CellKeys {
  public:
   explicit CellKeys(const TetMeshView& mesh)
@@ -58,8 +58,8 @@ class CellKeys {
     });
   }
 
-  /// Calls `begin()` for each range of cells, from several threads, and then of its result
-  /// `(first tet, tet after the last, key)` for each cell of the range.
+  /// Calls `begin()` for each range of cells, from several threads, and its result with `(first tet, tet after the
+  /// last, key)` for each cell of the range.
   template <class Begin>
   void each(const Begin& begin) const {
     const std::size_t tets = mesh_.tets.size();
@@ -87,8 +87,8 @@ class CellKeys {
   std::unique_ptr<std::uint64_t[]> of_vertex_;
 };
 
-/// A set of keys, of which it keeps a place and 32 bits: of 10 million different ones it takes two for the same once in
-/// some hundred meshes, and they are then compared.
+/// A set of keys that stores only a slot and 32 bits of each: for 10 million different keys it reports a false match
+/// once in some hundred meshes; matches are then compared.
 class KeySet {
  public:
   explicit KeySet(std::size_t keys)
@@ -99,7 +99,7 @@ class KeySet {
 
   void prefetch(std::uint64_t key) const { __builtin_prefetch(words_.get() + place_of(key), 1); }
 
-  /// Whether it seems to have been there already.
+  /// Whether the key seems to have been inserted before.
   bool insert(std::uint64_t key) {
     const std::uint32_t word = std::max<std::uint32_t>(static_cast<std::uint32_t>(key), 1);
     std::size_t place = place_of(key);
@@ -122,7 +122,7 @@ class KeySet {
   std::unique_ptr<std::uint32_t, Freed<std::uint32_t>> words_;
 };
 
-/// Inserts keys some time after their places were asked for, which hides most of what the memory takes.
+/// Inserts keys some time after prefetching their slots, which hides most of the memory latency.
 class DelayedInsertion {
  public:
   DelayedInsertion(KeySet& set, std::vector<std::uint64_t>& seen_again) : set_(set), seen_again_(seen_again) {}
@@ -164,7 +164,7 @@ std::vector<T> sorted_lists(tbb::enumerable_thread_specific<std::vector<T>>& lis
   return all;
 }
 
-/// Some cell's tets, [first, last).
+/// The tets [first, last) of a cell.
 struct KeyedCell {
   std::uint64_t key = 0;
   std::size_t first = 0, last = 0;
@@ -173,7 +173,7 @@ struct KeyedCell {
 
 using Corners = std::array<glm::dvec3, 4>;
 
-/// The tets' corners, in an order that depends on positions alone.
+/// The tets' corners, in an order that depends only on positions.
 void sorted_corners(const TetMeshView& mesh, const KeyedCell& cell, std::vector<Corners>& corners) {
   corners.clear();
   for (std::size_t t = cell.first; t < cell.last; ++t) {
@@ -187,7 +187,7 @@ void sorted_corners(const TetMeshView& mesh, const KeyedCell& cell, std::vector<
   });
 }
 
-/// The keys that seem to be there several times, each once, of `each(begin)` as CellKeys has it.
+/// The keys that seem to occur several times, each once, among those of `each(begin)` as in CellKeys.
 template <class Each>
 std::vector<std::uint64_t> repeated_keys(std::size_t count, const Each& each) {
   KeySet seen(count);
@@ -203,7 +203,7 @@ std::size_t cells_of(const TetMeshView& mesh) {
                                     : std::min<std::size_t>(mesh.tets.size(), mesh.original_cell.back() + 1);
 }
 
-/// Cells that an earlier one has the corners of, in their order.
+/// Cells with the same corners as an earlier one, in order.
 std::vector<KeyedCell> duplicates_of(const TetMeshView& mesh) {
   const CellKeys keys(mesh);
   const std::vector<std::uint64_t> repeated =
@@ -236,7 +236,7 @@ std::vector<KeyedCell> duplicates_of(const TetMeshView& mesh) {
   return duplicates;
 }
 
-/// Tets and what goes with them but those of these cells.
+/// Removes these cells' tets and their attributes.
 void remove(const std::vector<KeyedCell>& cells, TetMesh& mesh) {
   if (mesh.original_cell.empty()) {
     mesh.original_cell.resize(mesh.tets.size());

@@ -8,10 +8,10 @@
 namespace tessera::cells {
 namespace {
 
-// Of a face's area: how far triangles may turn the wrong way, or corners lie out of an ear, by rounding alone.
+// Relative to a face's area: how far rounding may invert triangles, or move corners out of an ear.
 constexpr double turned_by_rounding = 1e-9, outside_by_rounding = 1e-12;
 
-/// Turns a ring so that it is the least of its rotations. One corner may be in it several times.
+/// Rotates a ring to its smallest rotation. A corner may occur in it several times.
 void start_at_least(std::vector<std::uint32_t>& ring) {
   const std::size_t n = ring.size();
   std::size_t i = 0, j = 1, same = 0;
@@ -33,7 +33,7 @@ void start_at_least(std::vector<std::uint32_t>& ring) {
 bool FaceCutter::cut(std::span<const std::uint32_t> corners, std::span<const glm::dvec3> p,
                      std::vector<CornerTriangle>& triangles) {
   if (corners.size() < 3) return true;
-  // All that is rounded is computed along this ring, and so the same for every list of the same corners.
+  // All rounded values are computed along this ring, so they are the same for every list of the same corners.
   ring_.assign(corners.begin(), corners.end());
   other_way_.assign(corners.rbegin(), corners.rend());
   start_at_least(ring_);
@@ -89,7 +89,7 @@ void FaceCutter::cut_ears(std::span<const glm::dvec3> p) {
   while (ring_.size() > 3) {
     std::size_t best = 0;
     for (std::size_t k = 1; k < ears_.size(); ++k) {
-      // Where there is no ear, as in faces that cross themselves: the corner that turns most.
+      // If there is no ear, as in faces that intersect themselves: the corner with the largest turn.
       const bool better =
           ears_[k].cut != ears_[best].cut
               ? ears_[k].cut < ears_[best].cut

@@ -11,27 +11,28 @@ namespace tessera::cells {
 
 using CornerTriangle = std::array<std::uint32_t, 3>;
 
-/// Cuts polygonal faces into triangles that depend on the positions of the corners alone: not on where the list of
-/// corners starts nor on which way round it goes, so that both cells of a face have the same ones.
+/// Cuts polygonal faces into triangles that depend only on the positions of the corners, not on the first corner of the
+/// list or its direction, so that both cells of a face get the same triangles.
 ///
-/// Convex       planar or warped: the fan from the lexicographically smallest corner, as cell_split.hpp cuts faces. So
-///              are faces that can be seen whole from there.
+/// Convex       planar or warped: the fan from the lexicographically smallest corner, like the faces in cell_split.hpp.
+///              The same applies to other faces that are completely visible from there.
 /// Not convex   ears are cut off, the one with the shortest cut first, as seen along the face's area vector.
-/// Degenerate   collinear corners stay, in triangles without an area if need be, so that no edge is lost.
-/// Cost         corners squared where ears are cut; faces of more than `most_ears` corners are fans whatever their
+/// Degenerate   collinear corners are kept, if necessary in triangles without an area, so that no edge is lost.
+/// Cost         quadratic in the corners if ears are cut; faces of more than `most_ears` corners are fans whatever
+/// their
 ///              shape.
 class FaceCutter {
  public:
   static constexpr std::size_t most_ears = 512;
 
-  /// Appends the triangles of a face, turning as its corners do. Corners are numbers in the order of their positions
-  /// `p`; none is the same as the next. Returns whether the triangles are a fan from the smallest.
+  /// Appends the triangles of a face, with its orientation. Corners are numbers in the order of their positions `p`; no
+  /// two consecutive ones are equal. Returns whether the triangles are a fan from the smallest corner.
   bool cut(std::span<const std::uint32_t> corners, std::span<const glm::dvec3> p,
            std::vector<CornerTriangle>& triangles);
 
  private:
   struct Ear {
-    double cut = 0;  ///< length squared of what cuts it off; infinity if nothing may
+    double cut = 0;  ///< squared length of the edge that cuts it off; infinity if it must not be cut
     double turn = 0;
   };
   [[nodiscard]] Ear ear_at(std::size_t k, std::span<const glm::dvec3> p) const;
@@ -39,9 +40,9 @@ class FaceCutter {
   void cut_ears(std::span<const glm::dvec3> p);
   void add(std::uint32_t a, std::uint32_t b, std::uint32_t c);
 
-  std::vector<std::uint32_t> ring_, other_way_;  ///< the corners from the smallest on, the smaller neighbour next
+  std::vector<std::uint32_t> ring_, other_way_;  ///< the corners from the smallest on, its smaller neighbour next
   std::vector<Ear> ears_;
-  bool backwards_ = false;  ///< `ring_` goes round against the given list
+  bool backwards_ = false;  ///< `ring_` has the opposite direction to the given list
   glm::dvec3 area_{0};      ///< twice the area vector of `ring_`
   double area_squared_ = 0;
   std::vector<CornerTriangle>* triangles_ = nullptr;

@@ -25,17 +25,17 @@ const char* word(Association a) { return a == Association::point ? "point" : "ce
 
 bool is_floating(const FieldSummary& f) { return f.type == "float" || f.type == "double"; }
 
-/// Of floats from 0 or 1 on only: pressures may well be 300 to 307.
+/// For floats only if they start at 0 or 1: pressures may well be 300 to 307.
 bool counts_up(const NumberTally& numbers, const FieldSummary& f) {
   return f.components == 1 && (!is_floating(f) || numbers.low == 0 || numbers.low == 1) && numbers.counts_up();
 }
 
 void include_numbers(const BlockField& field, FieldTally& tally) {
-  constexpr std::uint64_t least_of_block = 16;  // one cell a block counts up whatever its value
+  constexpr std::uint64_t least_of_block = 16;  // a single cell per block counts up whatever its value
   NumberTally numbers;
   if (field.tally) {
     numbers = *field.tally;
-    // Some readers tally the least and the greatest of what they hold.
+    // Some readers tally only the smallest and largest value.
     numbers.whole = numbers.whole && numbers.finite + numbers.not_finite == field.tuples;
   } else {
     std::array<double, 4096> chunk;
@@ -53,7 +53,7 @@ void include_numbers(const BlockField& field, FieldTally& tally) {
 }
 
 bool varies(const FieldSummary& f) {
-  // A constant that went through float arithmetic still is one.
+  // A constant stays a constant after float arithmetic.
   return f.high - f.low > 1e-6 * std::max(std::abs(f.low), std::abs(f.high));
 }
 
@@ -88,7 +88,7 @@ const FieldSummary* find(std::span<const FieldSummary> fields, const std::string
   return nullptr;
 }
 
-/// Component of a word after the colon, in any array; -2 if it is none.
+/// The component named after the colon, for any array; -2 if it is not one.
 int parse_component(const std::string& text) {
   if (text == "mag" || text == "magnitude") return magnitude;
   if (text == "x" || text == "y" || text == "z") return text[0] - 'x';
@@ -114,14 +114,14 @@ std::optional<FieldChoice> resolve(const std::string& wish, std::optional<Associ
   return choice_of(*field, component);
 }
 
-/// Of labels those that number cells and points, parts and materials: shown last of all.
+/// Labels that number cells and points, parts and materials: the last choice.
 bool is_id_name(const std::string& name) {
   const std::string lower = lower_case(name);
   static constexpr std::array exact = {"id",   "ids",     "iblank", "rank",     "partition",  "processid",  "procid",
                                        "part", "blockid", "region", "material", "material #", "materialid", "block"};
   if (std::find(exact.begin(), exact.end(), lower) != exact.end() || lower.starts_with("vtk")) return true;
-  // A word of the name, as in "GLOBAL_IDS_POINTS" and "GlobalNodeId", but not in "Fluid" or "Solid"; or two, as in
-  // "NodeNumber", but not in "Mach number".
+  // A word of the name, as in "GLOBAL_IDS_POINTS" and "GlobalNodeId", but not in "Fluid" or "Solid"; or two words, as
+  // in "NodeNumber", but not in "Mach number".
   constexpr std::array<std::string_view, 4> ids = {"id", "ids", "gid", "gids"};
   constexpr std::array<std::string_view, 7> counted = {"node", "element", "elem", "cell", "point", "vertex", "face"};
   constexpr std::array<std::string_view, 6> numbers = {"number", "numbers", "num", "no", "nr", "index"};
@@ -143,7 +143,7 @@ bool is_id_name(const std::string& name) {
 
 bool is_id(const FieldSummary& f) { return f.ids || (!f.fractions && is_id_name(f.name)); }
 
-/// Of so few values 0, 1, 2 ... may be a test's quantity, where nothing else varies.
+/// With so few values, 0, 1, 2 ... may be a test's quantity if nothing else varies.
 bool may_count_by_chance(const FieldSummary& f) {
   return f.ids && is_floating(f) && f.high - f.low < 64 && !is_label_name(f.name);
 }
@@ -153,7 +153,7 @@ const FieldSummary* first_of(std::span<const FieldSummary> fields, const auto& w
   return f == fields.end() ? nullptr : &*f;
 }
 
-/// The first that varies and may be shown.
+/// The first field that varies and is accepted.
 const FieldSummary* first_quantity(std::span<const FieldSummary> fields, const auto& may_be) {
   const auto quantity = [&](const FieldSummary& f) { return varies(f) && may_be(f); };
   for (const Association a : {Association::point, Association::cell})
@@ -251,7 +251,9 @@ std::vector<FieldSummary> summarize_fields(std::span<const std::vector<FieldTall
       }
       whole->summary.active = whole->summary.active || more.summary.active;
       whole->summary.ids = whole->summary.ids || more.summary.ids;
-      if (whole->summary.components != more.summary.components) continue;  // counts as missing where it is so
+      if (whole->summary.components != more.summary.components)
+        continue;  // a block with another number of components
+                   // counts as missing the field
       whole->numbers.add(more.numbers);
       whole->blocks_count_up = whole->blocks_count_up && more.blocks_count_up;
     }
@@ -268,7 +270,7 @@ std::vector<FieldSummary> summarize_fields(std::span<const std::vector<FieldTall
 }
 
 bool looks_like_noise(const FieldSummary& field) {
-  const double low = field.components == 1 ? field.low : -field.high;  // of vectors it is the length's range
+  const double low = field.components == 1 ? field.low : -field.high;  // for vectors, the range of the length
   return low < 0 && field.high > 0 && std::max(-low, field.high) <= 1e-12;
 }
 
@@ -319,7 +321,7 @@ bool is_label_name(const std::string& name) {
 
 namespace {
 
-/// "did you mean 'NAME'? ", or nothing.
+/// "did you mean 'NAME'? ", or empty.
 std::string meant_field(const std::string& wish, std::span<const FieldSummary> fields) {
   std::vector<std::string> names;
   for (const FieldSummary& field : fields) names.push_back(field.name);

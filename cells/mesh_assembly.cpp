@@ -29,7 +29,7 @@ namespace {
 using scene::Association;
 using scene::Tet;
 
-/// Turns blocks into one mesh, a block at a time.
+/// Merges blocks into one mesh, a block at a time.
 class Assembly {
  public:
   Assembly(AssembledBlocks& result, std::span<const FieldSummary> fields, const FieldChoice& choice,
@@ -60,7 +60,7 @@ class Assembly {
       block.positions = {};
     }
     for (std::size_t v = first_point; v < mesh_.positions.size(); ++v)
-      mesh_.positions[v] += 0.0;  // -0 becomes 0: coincident points get the same bits
+      mesh_.positions[v] += 0.0;  // -0 becomes 0: coincident points then have the same bits
     counts_.points_read += mesh_.positions.size() - first_point;
     points_ = std::span(mesh_.positions).subspan(first_point);
     first_point_ = static_cast<std::uint32_t>(first_point);
@@ -80,7 +80,7 @@ class Assembly {
   void finish(Duplicates duplicates) {
     mesh_.association = choice_.association;
     counts_.points_unused = unused_points();
-    // Cells without a value are gone by now, so that a blank copy of another is none.
+    // Cells without a value have been removed, so a blank copy of another does not count as a duplicate.
     if (duplicates == Duplicates::keys) {
       cell_keys_ = duplicate_keys(mesh_, threads_);
     } else {
@@ -104,7 +104,7 @@ class Assembly {
                       source_, points));
   }
 
-  /// Scalars of the block's points (appended to those before) or cells; NaN where the block lacks the field.
+  /// Reads scalars of the block's points (appended to the previous ones) or cells; NaN if the block lacks the field.
   void read_values(const CellBlock& block) {
     const bool point = choice_.association == Association::point;
     const std::size_t n = point ? points_.size() : block.cell_count();
@@ -140,12 +140,12 @@ class Assembly {
     }
     const auto values = std::span(values_).subspan(first, n);
     field->read(choice_.component, 0, values);
-    // Between subnormal numbers there are too few to interpolate.
+    // Subnormal numbers are too coarse to interpolate between.
     for (double& value : values)
       if (std::abs(value) < std::numeric_limits<double>::min()) value = 0;
   }
 
-  /// Appends, in the order of the cells, what threads make of some of them at a time.
+  /// Appends, in the order of the cells, the results of threads that split some cells at a time.
   void add_cells(const BlockCells& cells) {
     const std::size_t cells_a_task = cells.divides() ? 16 : 16384, count = cells.count();
     if (count <= cells_a_task) {
@@ -158,7 +158,7 @@ class Assembly {
     const auto in_flight = 2 * static_cast<std::size_t>(at_once);
     std::vector<BlockTets> results(in_flight);
     std::size_t next = 0;
-    // A result is used again when as many as there are have begun since: it has been appended by then.
+    // A result is reused after all others have begun since: by then it has been appended.
     const auto begin = [&](tbb::flow_control& flow) {
       if (next * cells_a_task >= count) flow.stop();
       return next++;
@@ -169,7 +169,7 @@ class Assembly {
         const std::size_t first = task * cells_a_task;
         cells.split(first, std::min(count, first + cells_a_task), tets);
       } catch (...) {
-        tets.error = std::current_exception();  // of several the first cell's is told, whichever thread was faster
+        tets.error = std::current_exception();  // the first cell's error is reported, whichever thread was faster
       }
       return task;
     };
@@ -191,7 +191,7 @@ class Assembly {
     counts_ += made.counts;
     higher_order_ += made.curved;
     if (block_tets_ != nullptr) {
-      // Mostly all tets of a block stay, and then they need not be copied.
+      // Usually every tet of a block is kept; then it is not copied.
       if (made.tets.size() == made.counts.cells_read && !block_tets_->empty()) {
         as_given_ += made.tets.size();
         return;
@@ -206,7 +206,7 @@ class Assembly {
     added_values_.insert(added_values_.end(), made.added_values.begin(), made.added_values.end());
   }
 
-  /// The points that the block's cells were split at follow its own, which threads have looked at until now.
+  /// Appends the points at which the block's cells were split to its own, which threads have read until now.
   void take_added_points() {
     mesh_.positions.insert(mesh_.positions.end(), added_points_.begin(), added_points_.end());
     if (choice_.association == Association::point)
@@ -214,14 +214,14 @@ class Assembly {
     added_points_.clear(), added_values_.clear();
   }
 
-  /// The block's tets so far, all of which have stayed.
+  /// Appends the block's tets so far, all of which were kept.
   void append_given() {
     mesh_.tets.reserve(mesh_.tets.size() + block_tets_->size());
     append(std::span(*block_tets_).first(as_given_), [](std::size_t t) { return t; });
     block_tets_ = nullptr;
   }
 
-  /// All of a block's tets.
+  /// Takes over all of a block's tets.
   void take_tets() {
     if (!mesh_.tets.empty() || first_point_ > 0 || cells_before_ > 0) return append_given();
     mesh_.tets = std::move(*block_tets_);
@@ -250,7 +250,7 @@ class Assembly {
     numbered_ = true;
   }
 
-  /// Points that no tet uses.
+  /// Number of points that no tet uses.
   std::uint64_t unused_points() {
     std::vector<std::uint8_t> is_used(mesh_.positions.size());
     tbb::task_arena(scene::threads_for(threads_)).execute([&] {
@@ -277,15 +277,15 @@ class Assembly {
   const std::string& source_;
   const HigherOrderPlan& plan_;
   int threads_;
-  std::span<const glm::dvec3> points_;  ///< of the block at hand
+  std::span<const glm::dvec3> points_;  ///< of the current block
   std::uint32_t first_point_ = 0;
-  std::uint64_t cells_before_ = 0;          ///< of the blocks before
-  std::vector<Tet>* block_tets_ = nullptr;  ///< of the block at hand, while those looked at are all to stay
-  std::size_t as_given_ = 0;                ///< how many those are; they are not in the mesh yet
+  std::uint64_t cells_before_ = 0;          ///< of the previous blocks
+  std::vector<Tet>* block_tets_ = nullptr;  ///< of the current block, while all tets processed so far are kept
+  std::size_t as_given_ = 0;                ///< the number of these; they are not in the mesh yet
   std::vector<double> values_;              ///< of all points so far, or of the block's cells
-  std::vector<glm::dvec3> added_points_;    ///< of the block at hand
+  std::vector<glm::dvec3> added_points_;    ///< of the current block
   std::vector<double> added_values_;
-  std::vector<std::uint32_t> higher_order_nodes_;  ///< of all cells that were divided
+  std::vector<std::uint32_t> higher_order_nodes_;  ///< of all divided cells
   bool numbered_ = false;
 };
 

@@ -28,10 +28,10 @@ using scene::Tet;
 
 bool comes_first(const glm::dvec3& p, const glm::dvec3& q) { return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z); }
 
-/// Some of a mesh's tets, or what they were cut into.
+/// Some of a mesh's tets, or the tets into which they were cut.
 struct KeptTets {
   std::vector<Tet> tets;
-  std::vector<double> scalars;  ///< of cell data
+  std::vector<double> scalars;  ///< for cell data
   std::vector<std::uint64_t> cells;
 
   void add(const Tet& tet, const scene::TetMesh& mesh, std::size_t of) {
@@ -46,7 +46,7 @@ struct KeptTets {
   }
 };
 
-/// Cells that have tets; those of one are next to each other.
+/// Number of cells that have tets; the tets of one are consecutive.
 std::uint64_t cells_with_tets(const scene::TetMesh& mesh) {
   std::uint64_t cells = 0;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
@@ -71,7 +71,7 @@ void apply_threshold(scene::TetMesh& mesh, const std::array<double, 2>& range) {
   kept.move_to(mesh);
 }
 
-/// A mesh and a half-space, of which it keeps what is inside.
+/// Cuts a mesh by a half-space and keeps the part inside.
 class HalfSpaceCut {
  public:
   HalfSpaceCut(scene::TetMesh& mesh, const scene::HalfSpace& kept, std::span<const double> levels,
@@ -85,7 +85,7 @@ class HalfSpaceCut {
     return std::none_of(sides_.begin(), sides_.end(), [](std::int8_t side) { return side < 0; });
   }
 
-  /// Makes corners on the plane true to the levels.
+  /// Sets corners on the plane to exact levels.
   void level_corners() {
     if (levels_.empty() || mesh_.association != Association::point) return;
     for (const Tet& tet : mesh_.tets) {
@@ -96,11 +96,11 @@ class HalfSpaceCut {
     }
   }
 
-  /// Adds cells of which something is removed, each once.
+  /// Cuts the mesh; appends each cell of which something is removed, once.
   void apply(std::vector<std::uint64_t>& changed) {
     KeptTets kept;
     for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
-      std::array<int, 3> count{};  // of corners outside, on the plane and inside
+      std::array<int, 3> count{};  // number of corners outside, on the plane and inside
       for (const std::uint32_t v : mesh_.tets[t]) ++count[static_cast<std::size_t>(sides_[v] + 1)];
       if (count[0] == 0 && count[2] > 0) {
         kept.add(mesh_.tets[t], mesh_, t);
@@ -119,16 +119,16 @@ class HalfSpaceCut {
  private:
   [[nodiscard]] double distance(const glm::dvec3& p) const { return glm::dot(normal_, p - point_); }
 
-  /// The level that a scalar has but for rounding, next to scalars of that size.
+  /// The level that a scalar equals up to rounding, for scalars of this size.
   [[nodiscard]] double at_level(double scalar, double size) const {
-    constexpr double rounding = 1e-12;  // some thousand last places: edges are shorter than the coordinates' size
+    constexpr double rounding = 1e-12;  // some thousand units in the last place of the coordinates
     for (const double level : levels_)
       if (std::abs(scalar - level) <= rounding * size) return level;
     return scalar;
   }
 
-  /// -1 outside, 1 inside, 0 on the plane: within the rounding of the distance, which is a corner's own, so that all
-  /// who share it agree.
+  /// -1 outside, 1 inside, 0 on the plane: within the rounding of the distance, which depends only on the corner, so
+  /// that all tets that share it agree.
   [[nodiscard]] std::int8_t side_of(const glm::dvec3& p) const {
     constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
     const double d = distance(p);
@@ -136,9 +136,9 @@ class HalfSpaceCut {
     return d < 0 ? -1 : 1;
   }
 
-  /// What is inside of a tet that has corners inside, as tets.
+  /// Splits the part inside of a tet that has corners inside into tets.
   void split(const Tet& tet, const std::array<int, 3>& count) {
-    std::array<std::uint32_t, 4> order = tet;  // inside, on the plane, outside
+    std::array<std::uint32_t, 4> order = tet;  // sorted: inside, on the plane, outside
     std::stable_sort(order.begin(), order.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return sides_[a] > sides_[b]; });
     const auto [p, q, r, s] = order;
@@ -160,12 +160,12 @@ class HalfSpaceCut {
     split_cell(kind, corner, mesh_.positions, pieces_);
   }
 
-  /// Where the plane is on the way from a corner inside to one that is not.
+  /// The intersection of the plane with the edge from a corner inside to another.
   std::uint32_t at_plane(std::uint32_t inside, std::uint32_t other) {
     return sides_[other] == 0 ? other : cut(inside, other);
   }
 
-  /// The new vertex of an edge that the plane divides.
+  /// The new vertex on an edge that the plane cuts.
   std::uint32_t cut(std::uint32_t a, std::uint32_t b) {
     if (comes_first(mesh_.positions[b], mesh_.positions[a])) std::swap(a, b);
     const std::uint64_t edge = std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
@@ -177,7 +177,7 @@ class HalfSpaceCut {
     const double from = distance(mesh_.positions[a]), to = distance(mesh_.positions[b]), share = from / (from - to);
     const glm::dvec3 p = mesh_.positions[a], q = mesh_.positions[b];
     glm::dvec3 place(std::lerp(p.x, q.x, share), std::lerp(p.y, q.y, share), std::lerp(p.z, q.z, share));
-    // On a plane across an axis it is to the bit.
+    // On an axis-aligned plane the coordinate is exact.
     for (int axis = 0; axis < 3; ++axis)
       if (std::abs(normal_[axis]) == 1) place[axis] = point_[axis];
     mesh_.positions.push_back(place + 0.0);  // -0 becomes 0
@@ -191,7 +191,7 @@ class HalfSpaceCut {
     return vertex;
   }
 
-  /// A cut next to a corner may be at the corner but for rounding.
+  /// A cut next to a corner may coincide with the corner up to rounding.
   [[nodiscard]] bool has_extent(const Tet& tet) const {
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t j = 0; j < i; ++j)
@@ -203,12 +203,12 @@ class HalfSpaceCut {
   glm::dvec3 point_, normal_;
   std::span<const double> levels_;
   const std::string& source_;
-  std::vector<std::int8_t> sides_;  ///< of each vertex
+  std::vector<std::int8_t> sides_;  ///< per vertex
   std::unordered_map<std::uint64_t, std::uint32_t> vertices_;
   std::vector<Tet> pieces_;
 };
 
-/// Vertices that are used, in their order.
+/// Keeps the used vertices, in order.
 void drop_unused(scene::TetMesh& mesh) {
   std::vector<std::uint32_t> number(mesh.positions.size(), 0);
   for (const Tet& tet : mesh.tets)
@@ -227,7 +227,7 @@ void drop_unused(scene::TetMesh& mesh) {
     for (std::uint32_t& v : tet) v = number[v];
 }
 
-/// Of those that lost something, the cells that have something left.
+/// The number of changed cells that still have tets.
 std::uint64_t cells_left_of(std::vector<std::uint64_t> changed, const scene::TetMesh& mesh) {
   std::sort(changed.begin(), changed.end());
   std::uint64_t left = 0;

@@ -9,14 +9,14 @@
 
 namespace tessera::cells {
 
-/// Leaves of a mesh what is selected (tessera/selection.hpp): threshold, then one half-space after the other. Tets stay
-/// in their order, those of one cell next to each other; vertices that are not used any more are dropped. `counts` gets
-/// cells_out_of_range, cells_clipped, cells_cut and the new number of tets. The mesh may be a part of one: what comes
-/// of a tet depends on its corners' positions and values alone. Throws Error(bad_input) for a mesh that would have 2^32
-/// vertices, and as validate() does.
+/// Reduces a mesh to the selection (tessera/selection.hpp): threshold, then one half-space after the other. Tets stay
+/// in order, those of one cell next to each other; unused vertices are dropped. Sets cells_out_of_range, cells_clipped,
+/// cells_cut and the new number of tets in `counts`. The mesh may be part of another: the result for a tet depends only
+/// on its corners' positions and values. Throws Error(bad_input) for a mesh that would have 2^32 vertices, and like
+/// validate().
 void select(scene::TetMesh& mesh, const scene::Selection& selection, MeshCounts& counts, const std::string& source);
 
-/// Throws Error(bad_input) if a selection has left nothing of a whole mesh.
+/// Throws Error(bad_input) if the selection of a whole mesh is empty.
 void require_selected(const MeshCounts& counts, const std::string& source);
 
 }  // namespace tessera::cells

@@ -8,8 +8,8 @@
 
 namespace tessera::cells {
 
-/// The bits of a number, mixed (the finalizer of MurmurHash3 after a step of the golden ratio; Steele, Lea, Flood,
-/// "Fast Splittable Pseudorandom Number Generators", 2014).
+/// The bits of a number, mixed (the finalizer of MurmurHash3 after a golden-ratio step; Steele, Lea, Flood, "Fast
+/// Splittable Pseudorandom Number Generators", 2014).
 inline std::uint64_t mixed_bits(std::int64_t number) {
   std::uint64_t bits = static_cast<std::uint64_t>(number) + 0x9e3779b97f4a7c15u;
   bits = (bits ^ bits >> 30) * 0xbf58476d1ce4e5b9u;
@@ -17,14 +17,14 @@ inline std::uint64_t mixed_bits(std::int64_t number) {
   return bits ^ bits >> 31;
 }
 
-/// Range of an array's finite values; of vectors, of their lengths.
+/// Range of an array's finite values; for vectors, of their lengths.
 struct NumberTally {
   double low = 0, high = 0;
   std::uint64_t not_finite = 0;
-  bool any_finite = false;        ///< else low and high mean nothing
-  bool whole = true;              ///< all finite values are whole numbers below 2^53
-  std::uint64_t finite = 0;       ///< how many are
-  std::uint64_t fingerprint = 0;  ///< sum of mixed_bits(), while whole: the same for the same numbers in any order
+  bool any_finite = false;        ///< otherwise low and high are meaningless
+  bool whole = true;              ///< all finite values are integers below 2^53
+  std::uint64_t finite = 0;       ///< number of finite values
+  std::uint64_t fingerprint = 0;  ///< sum of mixed_bits(), while whole: independent of the order of the numbers
 
   void add(std::span<const double> values) {
     for (const double value : values) {
@@ -42,7 +42,7 @@ struct NumberTally {
     }
   }
 
-  /// Those of another part of the array.
+  /// Adds the tally of another part of the array.
   void add(const NumberTally& more) {
     not_finite += more.not_finite;
     if (!more.any_finite) return;
@@ -54,8 +54,8 @@ struct NumberTally {
     fingerprint += more.fingerprint;
   }
 
-  /// Whether the values are low, low + 1, ... high, each once, in any order. Fewer than
-  /// four never do; others with a chance of 2^-64.
+  /// Whether the values are low, low + 1, ... high, each once, in any order. Always false for fewer than four values;
+  /// wrong for others with probability 2^-64.
   [[nodiscard]] bool counts_up() const {
     if (!whole || finite < 4 || not_finite > 0 || high - low != static_cast<double>(finite - 1)) return false;
     std::uint64_t expected = 0;

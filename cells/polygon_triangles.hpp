@@ -11,10 +11,11 @@
 
 namespace tessera::cells {
 
-/// Cuts polygons given by numbers of points into triangles, by the points' positions alone (face_triangles.hpp).
+/// Cuts polygons, given by point indices, into triangles that depend only on the points' positions
+/// (face_triangles.hpp).
 class PolygonTriangles {
  public:
-  /// Appends a polygon's triangles; of one whose corners are at fewer than three places none.
+  /// Appends a polygon's triangles; nothing if its corners have fewer than three distinct positions.
   void cut(std::span<const std::uint32_t> polygon, std::span<const glm::dvec3> points,
            std::vector<std::array<std::uint32_t, 3>>& triangles);
 

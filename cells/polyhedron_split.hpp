@@ -13,32 +13,33 @@
 
 namespace tessera::cells {
 
-/// Splits polyhedra into tets that fit those of their neighbours, one cell after the other.
+/// Splits polyhedra, one after the other, into tets that conform to those of their neighbours.
 ///
-/// Faces     are cut by face_triangles.hpp, from the positions of their corners alone, and never get points of their
-///           own: neighbours agree on them whatever index, order or orientation they have, and whatever kind of cell
-///           (cell_split.hpp, cells/amr/amr_cells.hpp) the other side is.
-/// Corners   at one place are one.
-/// Cells     are cones from their smallest corner, which for tets, pyramids, wedges and hexahedra gives what
-///           split_cell() gives; where that does not see all of the cell, from another corner, or a point inside; where
-///           none does, they are cut up (surface_tets.hpp).
+/// Faces     are cut by face_triangles.hpp, using only the positions of their corners, and never get points of their
+///           own: neighbours agree on them whatever their indices, order and orientation, and whatever kind of cell
+///           (cell_split.hpp, cells/amr/amr_cells.hpp) is on the other side.
+/// Corners   that coincide are merged.
+/// Cells     are cones from their smallest corner, which for tets, pyramids, wedges and hexahedra gives the result of
+///           split_cell(); if not all of the cell is visible from there, cones from another corner or an inner point;
+///           otherwise they are cut up (surface_tets.hpp).
 class PolyhedronSplitter {
  public:
-  /// `faces`: of each the number of its corners, then these, as indices into `positions`, which are finite. Nothing if
-  /// they are no closed surface.
+  /// `faces`: for each the number of its corners, then these, as indices into `positions`, which are finite. No value
+  /// if they do not form a closed surface.
   std::optional<SurfaceFill> split(std::span<const std::uint32_t> faces, std::span<const glm::dvec3> positions);
 
-  /// The convex hull of points. Nothing if they are more than most_hull_points; no tets if they lie in a plane.
+  /// Splits the convex hull of points. No value if there are more than most_hull_points; no tets if they are in one
+  /// plane.
   std::optional<SurfaceFill> split_hull(std::span<const std::uint32_t> points, std::span<const glm::dvec3> positions);
 
-  /// Indices into `positions`; from their number on into added().
+  /// Indices into `positions`, followed by those of added().
   [[nodiscard]] const std::vector<scene::Tet>& tets() const { return tets_; }
   [[nodiscard]] const std::vector<glm::dvec3>& added() const { return added_; }
-  /// Of each added point, of a field with these values at `positions`: exact where it is linear in space, and never
-  /// beyond the values of the cell's corners.
+  /// Appends the value at each added point of a field with these values at `positions`: exact for linear fields, and
+  /// never outside the range of the cell's corners.
   void add_values(std::span<const double> values, std::vector<double>& out);
 
-  /// Whether all faces are cut from their smallest corners, as those of split_cell() are.
+  /// Whether all faces are cut from their smallest corners, like those of split_cell().
   bool are_fans(std::span<const std::uint32_t> faces, std::span<const glm::dvec3> positions);
 
  private:

@@ -58,7 +58,7 @@ void smooth_to_points(scene::TetMesh& mesh) {
   for (const scene::Tet& tet : mesh.tets)
     for (const std::uint32_t v : tet) {
       const Mean& mean = means[first[v]];
-      const double weighted = mean.weighted / mean.volume;  // not finite if volumes are 0 or under- or overflow
+      const double weighted = mean.weighted / mean.volume;  // not finite if volumes are 0, underflow or overflow
       scalars[v] = std::isfinite(weighted) ? weighted : mean.plain / mean.count;
     }
   mesh.scalars = std::move(scalars);

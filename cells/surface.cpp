@@ -24,7 +24,7 @@ struct PositionHash {
   }
 };
 
-/// Whether corners lie on a plane but for a part in 10^8 of their distance, which is TetGen's own tolerance.
+/// Whether corners are in one plane within 10^-8 of their distance, which is TetGen's own tolerance.
 bool is_flat(const Polygon& polygon, const std::vector<glm::dvec3>& points) {
   const glm::dvec3 first = points[polygon.front()];
   glm::dvec3 area(0);

@@ -11,7 +11,7 @@ namespace {
 
 using Tet = std::array<std::uint32_t, 4>;
 
-// Corners, edges and triangles that ears of one surface are held against, in all attempts: some 20 ms.
+// Limit of comparisons of ears with corners, edges and triangles of one surface in all attempts: some 20 ms.
 constexpr std::size_t most_work = 6'000'000;
 
 std::uint64_t edge_of(std::uint64_t a, std::uint64_t b) { return a < b ? a << 32 | b : b << 32 | a; }
@@ -20,7 +20,7 @@ double volume6(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, co
   return glm::dot(glm::cross(b - a, c - a), d - a);
 }
 
-/// Whether `x` lies in the closed tet, or out of it by no more than rounding.
+/// Whether `x` is in the closed tet, up to rounding.
 bool holds(const std::array<glm::dvec3, 4>& t, const glm::dvec3& x) {
   const double whole = volume6(t[0], t[1], t[2], t[3]);
   for (std::size_t k = 0; k < 4; ++k) {
@@ -31,7 +31,7 @@ bool holds(const std::array<glm::dvec3, 4>& t, const glm::dvec3& x) {
   return true;
 }
 
-/// Whether the segment crosses the triangle or touches it, but for one that lies in its plane.
+/// Whether the segment crosses or touches the triangle, unless it is in its plane.
 bool crosses(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& a, const glm::dvec3& b,
              const glm::dvec3& c) {
   const glm::dvec3 normal = glm::cross(b - a, c - a);
@@ -98,7 +98,7 @@ bool SurfaceEars::cut(Tet& tet) {
   if (cuts_left_ == 0) return false;
   --cuts_left_;
   list();
-  work_left_ -= std::min(80 * triangles_.size(), work_left_);  // what listing and looking at what is left takes
+  work_left_ -= std::min(80 * triangles_.size(), work_left_);  // cost of listing the remaining triangles
   for (const Ear& ear : ears_) {
     if (work_left_ == 0) return false;
     if (!is_free(ear)) continue;
@@ -109,7 +109,7 @@ bool SurfaceEars::cut(Tet& tet) {
   return false;
 }
 
-/// The edges as they are now, and of those that stand out the ears, the best first.
+/// Lists the current edges and, for convex ones, the ears, sorted with the best first.
 void SurfaceEars::list() {
   edges_.clear(), ears_.clear(), corners_.clear();
   for (const CornerTriangle& t : triangles_) corners_.insert(corners_.end(), t.begin(), t.end());
@@ -135,7 +135,7 @@ void SurfaceEars::list() {
         const glm::dvec3 p = p_[first[0]], q = p_[first[1]], r = p_[first[2]], s = p_[d];
         double edges = 0;
         for (const glm::dvec3& e : {q - p, r - p, s - p, r - q, s - q, s - r}) edges += glm::dot(e, e);
-        // Triangles turn outward: what lies inside of one is on its negative side.
+        // Triangles are oriented outward: the inside is on their negative side.
         const double quality = -volume6(p, q, r, s) / (edges * std::sqrt(edges));
         const bool ends_a_corner =
             has_edge(first[2], d) && (find({first[0], first[2], d}) >= 0 || find({first[2], first[1], d}) >= 0);
@@ -149,7 +149,7 @@ void SurfaceEars::list() {
             [](const Ear& a, const Ear& b) { return a.rank != b.rank ? a.rank > b.rank : a.corner < b.corner; });
 }
 
-/// What is taken first. Ears that take a corner with them leave fewer triangles.
+/// Priority of an ear. Ears that remove a corner leave fewer triangles.
 double SurfaceEars::rank_of(double quality, double edges, bool ends_a_corner) {
   const double more = ends_a_corner ? 1 : 0;
   switch (attempt_) {
@@ -171,7 +171,7 @@ bool SurfaceEars::has_edge(std::uint32_t a, std::uint32_t b) const {
   return at != edges_.end() && at->corners == corners;
 }
 
-/// A triangle that turns the same way, or -1.
+/// The index of a triangle with the same orientation, or -1.
 std::ptrdiff_t SurfaceEars::find(const CornerTriangle& wanted) const {
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     const CornerTriangle& x = triangles_[t];
@@ -182,7 +182,7 @@ std::ptrdiff_t SurfaceEars::find(const CornerTriangle& wanted) const {
   return -1;
 }
 
-/// Whether the ear has nothing of the surface inside, or on the faces that would be new.
+/// Whether nothing of the surface is inside the ear, or on its new faces.
 bool SurfaceEars::is_free(const Ear& ear) {
   const auto [a, b, c, d] = ear.corner;
   const std::size_t work = corners_.size() + edges_.size() + triangles_.size();
@@ -192,7 +192,7 @@ bool SurfaceEars::is_free(const Ear& ear) {
   const bool is_old_edge = has_edge(c, d);
   for (std::size_t side = 0; side < 2 && is_old_edge; ++side) {
     is_there[side] = find(sides[side]) >= 0;
-    // It would lie on a triangle of the surface.
+    // It would coincide with a triangle of the surface.
     if (find({sides[side][0], sides[side][2], sides[side][1]}) >= 0) return false;
   }
   if (is_old_edge && !is_there[0] && !is_there[1]) return false;
@@ -225,7 +225,7 @@ bool SurfaceEars::is_free(const Ear& ear) {
   return true;
 }
 
-/// Each of its four faces goes if the surface has it; else its other side is of the surface from now on.
+/// Each of the ear's four faces is removed if the surface has it; otherwise its other side is added to the surface.
 void SurfaceEars::take_off(const Ear& ear) {
   const auto [a, b, c, d] = ear.corner;
   for (const CornerTriangle& face : {CornerTriangle{a, b, c}, {b, a, d}, {a, c, d}, {c, b, d}}) {

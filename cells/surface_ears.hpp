@@ -13,26 +13,27 @@
 
 namespace tessera::cells {
 
-/// The triangles in groups that hang together on edges which just two of them have.
+/// The triangles, grouped into parts connected by edges that exactly two triangles share.
 std::vector<std::vector<CornerTriangle>> parts_on_edges(std::span<const CornerTriangle> triangles);
 
-/// Cuts tets off a closed surface one by one, as ears are cut off a polygon: each lies inside, has two triangles or
-/// more of the surface, and holds nothing else of it.
+/// Cuts tets off a closed surface one by one, like ears of a polygon: each is inside, has at least two triangles of the
+/// surface, and contains nothing else of it.
 ///
-/// Limits   not every surface has an ear (Schoenhardt's polyhedron has none), and cutting may end at one that has none.
-///          The work on one surface, all attempts together, is bounded; after it there are no more ears.
+/// Limits   not every surface has an ear (Schoenhardt's polyhedron has none), and cutting may end with a surface that
+/// has
+///          none. The total work on one surface over all attempts is bounded; after that no more ears are found.
 class SurfaceEars {
  public:
   static constexpr std::size_t most_triangles = 200;
 
-  /// `triangles` turn outward over corners `p`, which outlives this. Ears are taken in another order with every
-  /// `attempt`, those of the best shape first with 0. False if they are more than `most_triangles`.
+  /// `triangles` are oriented outward, with corners `p`, which outlives this. Each `attempt` uses another order of
+  /// ears; 0 takes those of the best shape first. False if there are more than `most_triangles`.
   bool set(std::span<const glm::dvec3> p, std::span<const CornerTriangle> triangles, std::uint32_t attempt);
 
   /// Cuts off the first ear. False if there is none.
   bool cut(std::array<std::uint32_t, 4>& tet);
 
-  /// What is left, turning outward.
+  /// The remaining triangles, oriented outward.
   [[nodiscard]] const std::vector<CornerTriangle>& left() const { return triangles_; }
 
  private:

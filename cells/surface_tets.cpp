@@ -10,21 +10,23 @@
 namespace tessera::cells {
 namespace {
 
-// Of a cell's volume: what tets may have on the wrong side by rounding (block_tets.cpp counts no less as tangled).
+// Fraction of a cell's volume that tets may have on the wrong side by rounding (block_tets.cpp counts larger ones as
+// tangled).
 constexpr double by_rounding = 1e-10;
-// Triangles times apexes that are tried.
+// Limit of triangles times apexes tried.
 constexpr std::size_t most_tries = 4'000'000;
-// Orders in which ears are cut.
+// Number of different orders in which ears are cut.
 constexpr std::uint32_t most_attempts = 12;
 
-/// Six times the volume of the tet between a triangle that turns outward and a point, positive if that lies inside.
+/// Six times the volume of the tet between a triangle that is oriented outward and a point, positive if the point is
+/// inside.
 double depth6(const CornerTriangle& t, const glm::dvec3& apex, std::span<const glm::dvec3> p) {
   return glm::dot(glm::cross(p[t[0]] - apex, p[t[1]] - apex), p[t[2]] - apex);
 }
 
 bool has(const CornerTriangle& t, std::uint32_t v) { return t[0] == v || t[1] == v || t[2] == v; }
 
-/// Solves m x = b for a symmetric matrix; of what is singular, nothing along what it does not reach.
+/// Solves m x = b for a symmetric matrix; if it is singular, x has no component in its null space.
 glm::dvec3 solve(std::array<std::array<double, 3>, 3> m, glm::dvec3 b) {
   std::array<int, 3> order{0, 1, 2};
   double largest = 0;
@@ -109,8 +111,7 @@ void SurfaceTets::take_measures(const Triangles& part) {
   }
 }
 
-/// What the cone from `apex` has on the wrong side, six times a volume; any larger number once it is more than
-/// `enough`.
+/// Six times the volume that the cone from `apex` has on the wrong side; any larger number once it exceeds `enough`.
 double SurfaceTets::wrong_side(const Triangles& part, const glm::dvec3& apex, double enough) const {
   double wrong = 0;
   for (const CornerTriangle& t : part) {
@@ -134,7 +135,7 @@ void SurfaceTets::add_cone_inside(const Triangles& part, const glm::dvec3& apex)
   fill_ = std::max(fill_, SurfaceFill::from_inside);
 }
 
-/// Whether the cone from a corner has a flat tet, over a triangle that is not itself without an area.
+/// Whether the cone from a corner has a flat tet over a triangle that has an area.
 bool SurfaceTets::has_flat_tets(const Triangles& part, std::uint32_t apex) const {
   const double flat = by_rounding * volume6_;
   return std::any_of(part.begin(), part.end(), [&](const CornerTriangle& t) {
@@ -143,8 +144,8 @@ bool SurfaceTets::has_flat_tets(const Triangles& part, std::uint32_t apex) const
   });
 }
 
-/// By a cone, if there is a point that sees all triangles; best one that lies in the plane of none but its own, if
-/// `strictly` only by such a one.
+/// Fills by a cone from one point that sees all triangles. Prefers a corner in no triangle's plane but its own, then an
+/// inner point; without `strictly`, accepts any such corner.
 bool SurfaceTets::fill_star(const Triangles& part, bool strictly) {
   take_measures(part);
   const double rounding = by_rounding * volume6_;
@@ -170,9 +171,9 @@ bool SurfaceTets::fill_star(const Triangles& part, bool strictly) {
   return true;
 }
 
-/// Moves `x` to a point on the inner side of all triangles' planes, if it comes to one: again and again by what it lies
-/// too far out of the worst of them (Agmon, "The relaxation method for linear inequalities", Canadian Journal of
-/// Mathematics, 1954). `soon`: or not for long.
+/// Moves `x` to a point on the inner side of all triangles' planes, if it finds one: repeatedly by the distance to the
+/// most violated plane (Agmon, "The relaxation method for linear inequalities", Canadian Journal of Mathematics, 1954).
+/// `soon`: gives up early.
 bool SurfaceTets::find_kernel_point(const Triangles& part, bool soon, glm::dvec3& x) {
   planes_.clear();
   for (const CornerTriangle& t : part) {
@@ -193,7 +194,7 @@ bool SurfaceTets::find_kernel_point(const Triangles& part, bool soon, glm::dvec3
         if (depth < least) least = depth, worst = &plane;
       }
       if (worst == nullptr || least >= margin * size_) return true;
-      // A little farther than that plane asks for: it ends in finitely many steps where there is room.
+      // Moves a little farther than the plane requires: this ends in finitely many steps if the region has an interior.
       x -= worst->normal * (1.2 * (1.1 * margin * size_ - least));
     }
   }
@@ -214,7 +215,7 @@ void SurfaceTets::fill_part(const Triangles& part) {
   fill_overlapping(part);
 }
 
-/// Parts that hang together on edges of two triangles, one by one, if there are several, each with a volume.
+/// Fills parts connected by edges of two triangles one by one, if there are several, each with a volume.
 bool SurfaceTets::split_apart(const Triangles& part) {
   const std::vector<Triangles> parts = parts_on_edges(part);
   if (parts.size() < 2) return false;
@@ -242,7 +243,7 @@ bool SurfaceTets::fill_by_ears(const Triangles& part, std::uint32_t attempt) {
   return fill_star(ears_.left(), false);
 }
 
-/// From the corner, or the mean of them, that has the least on the wrong side.
+/// A cone from the corner, or their mean, with the least volume on the wrong side.
 void SurfaceTets::fill_overlapping(const Triangles& part) {
   fill_ = SurfaceFill::overlapping;
   take_measures(part);

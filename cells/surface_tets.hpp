@@ -12,30 +12,30 @@
 
 namespace tessera::cells {
 
-/// How a closed surface was filled with tets, the best way first.
+/// How a closed surface was filled with tets, the best method first.
 enum class SurfaceFill : std::uint8_t {
   from_corner,  ///< a cone over its triangles from one of its corners
-  from_inside,  ///< from a point inside that sees all of them
-  in_pieces,    ///< tets cut off until what is left is one of the above
-  overlapping   ///< a cone some of whose tets turn the other way: no way was found
+  from_inside,  ///< a cone from an inner point that sees all of them
+  in_pieces,    ///< tets cut off until one of the above applies
+  overlapping   ///< a cone with some inverted tets: no other method worked
 };
 
-/// Fills closed surfaces with tets that have the surface's triangles as their outer faces.
+/// Fills closed surfaces with tets whose outer faces are the surface's triangles.
 class SurfaceTets {
  public:
   using LocalTet = std::array<std::uint32_t, 4>;
 
-  /// A point that tets have inside the surface.
+  /// A point of the tets inside the surface.
   struct Inside {
     glm::dvec3 place;
-    std::vector<std::uint32_t> seen;  ///< corners that it is a combination of
+    std::vector<std::uint32_t> seen;  ///< the corners of which it is a combination
   };
 
-  /// `triangles` turn outward over corners `p`, on every edge as many one way as the other. Costs about triangles times
-  /// corners where it is hard, and no more than some milliseconds.
+  /// `triangles` are oriented outward, with corners `p`; every edge is used equally often in both directions. Costs
+  /// about triangles times corners in difficult cases, and no more than some milliseconds.
   SurfaceFill fill(std::span<const glm::dvec3> p, std::span<const CornerTriangle> triangles);
 
-  /// Corners; from p.size() on `inside()`.
+  /// Corners, followed by the indices of `inside()`.
   [[nodiscard]] const std::vector<LocalTet>& tets() const { return tets_; }
   [[nodiscard]] const std::vector<Inside>& inside() const { return inside_; }
 
@@ -59,7 +59,7 @@ class SurfaceTets {
   SurfaceFill fill_ = SurfaceFill::from_corner;
   SurfaceEars ears_;
 
-  // Of the part at hand.
+  // Of the current part.
   std::vector<std::uint32_t> corners_;
   glm::dvec3 mean_{0};
   double volume6_ = 0, noise6_ = 0, size_ = 0;
@@ -70,8 +70,8 @@ class SurfaceTets {
   std::vector<Plane> planes_;
 };
 
-/// The value at `x` of the linear function that fits values at points best, kept between their smallest and largest:
-/// exact for values that are linear in space, whatever `x`; their mean at the points' mean.
+/// The value at `x` of the least-squares linear fit of values at points, clamped to their range: exact for linear
+/// values, whatever `x`; their mean at the mean of the points.
 double fitted_value(std::span<const glm::dvec3> points, std::span<const double> values, const glm::dvec3& x);
 
 }  // namespace tessera::cells

@@ -8,14 +8,14 @@
 
 namespace tessera::cells {
 
-/// Whether a vector by its name says how far nodes have moved, whatever the letters' case: "dis", "disp", "displ",
-/// "displacement", with or without an "s" or a "_" at the end. VTK's reader takes any name that begins with "dis", so
-/// "dissipation" and "distance" too.
+/// Whether the name of a vector denotes a displacement, in upper or lower case: "dis", "disp", "displ", "displacement",
+/// optionally with "s" or "_" at the end. VTK's reader accepts any name that begins with "dis", and so "dissipation"
+/// and "distance" too.
 bool is_displacement_name(const std::string& name);
 
-/// Moves the points of the blocks as the options say, without a wish those of Exodus files by the first vector with the
-/// name of a displacement, and notes it. Blocks without the vector stay. Throws Error(bad_input) that lists the vectors
-/// if no block has the one that is asked for.
+/// Moves the points of the blocks as the options request. Without a request, points of Exodus files move by the first
+/// vector with a displacement name, with a note. Blocks without the vector do not move. Throws Error(bad_input) that
+/// lists the vectors if no block has the requested one.
 void warp(MeshBlocks& read, const ReadOptions& options, const std::string& source);
 
 }  // namespace tessera::cells

@@ -16,7 +16,7 @@ AmrIndex moved(AmrIndex p, std::size_t axis, std::int32_t by) {
   return p;
 }
 
-/// Corner k of a cube, x first.
+/// Corner k of a cube, x fastest.
 AmrIndex corner_of(const AmrCube& cube, unsigned k) {
   return {cube.low[0] + ((k & 1) != 0 ? cube.size : 0), cube.low[1] + ((k & 2) != 0 ? cube.size : 0),
           cube.low[2] + ((k & 4) != 0 ? cube.size : 0)};
@@ -58,14 +58,14 @@ class Divider {
   }
 
  private:
-  /// What an edge or face of this length is divided into, if it is; 0: nothing.
+  /// The size of the parts of a divided edge or face of this length; 0 if it is not divided.
   [[nodiscard]] std::int32_t finer_than(std::int32_t size) const {
     for (const auto& [from, to] : cubes_.finer)
       if (from == size) return to;
     return 0;
   }
 
-  /// Whether a corner of another cube lies on an edge; one on a face has others on its edges.
+  /// Whether a corner of another cube is on an edge; a corner on a face implies others on its edges.
   [[nodiscard]] bool has_hanging(const AmrCube& cube) const {
     const std::int32_t part = finer_than(cube.size);
     if (part == 0) return false;
@@ -75,7 +75,7 @@ class Divider {
     return false;
   }
 
-  /// The corners on an edge, its ends left out, in order.
+  /// The corners inside an edge, without its ends, in order.
   void hanging_on(const AmrIndex& p, std::size_t axis, std::int32_t length, std::vector<std::uint32_t>& out) const {
     const std::int32_t part = finer_than(length);
     if (part == 0 || !cubes_.corners.has(moved(p, axis, part))) return;
@@ -108,18 +108,18 @@ class Divider {
     add_side(corner[2], moved(low, v, size), u, true);
     add_side(corner[3], low, v, true);
     if (round_.size() == 4) {
-      // The lowest corner is the smallest by position, from which split_cell() cuts.
+      // The lowest corner is the smallest by position, and split_cell() cuts from it.
       add_tet(corner[0], corner[1], corner[2]);
       add_tet(corner[0], corner[2], corner[3]);
       return;
     }
-    // The order of the mean is that of the axes, whichever cube's face it is.
+    // The mean sums in the order of the axes, whichever cube the face belongs to.
     const std::uint32_t centre = add_centre(low, moved(moved(low, u, size), v, size), corner);
     for (std::size_t k = 0; k < round_.size(); ++k) add_tet(centre, round_[k], round_[(k + 1) % round_.size()]);
   }
 
-  /// Between two corners that lie opposite each other. Where steps are uneven, the middle of the lattice lies
-  /// elsewhere.
+  /// Adds the centre between two opposite corners. Where steps are not uniform, it is not the middle of the lattice
+  /// cell.
   std::uint32_t add_centre(const AmrIndex& low, const AmrIndex& high, std::span<const std::uint32_t> corners) {
     double sum = 0;
     for (const std::uint32_t c : corners) sum += cubes_.values[c];

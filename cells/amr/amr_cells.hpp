@@ -18,28 +18,29 @@ struct AmrCube {
 
 /// Cubes that fill a part of space, with values at their corners.
 ///
-/// Holds   cubes of a lattice that lie side by side as the leaves of a tree do: one that touches finer cubes along a
-///         face touches there a grid of n x n, each of which may again be divided.
+/// Invariant  cubes of a lattice that are adjacent like the leaves of a tree: a cube with finer neighbours at a face
+/// has
+///            n x n of them there, each of which may be divided further.
 struct AmrCubes {
   AmrVertices corners;  ///< of all cubes
   std::vector<AmrCube> cubes;
-  std::vector<double> values;  ///< of each corner, or of each cube
+  std::vector<double> values;  ///< per corner, or per cube
 
-  /// What cubes of a size are divided into where they are, by size.
+  /// For each size of cubes that have finer neighbours, the size of these.
   std::vector<std::pair<std::int32_t, std::int32_t>> finer;
 };
 
-/// Cubes with one value each, as voxels. `steps` of `cubes` are one of `lattice`.
+/// Cubes with one value each, as voxels. `steps` steps of `cubes` are one step of `lattice`.
 CellBlock voxels_of(const AmrLattice& lattice, int steps, AmrCubes cubes, const std::string& field);
 
-/// Cubes with values at their corners, as voxels and, where a finer cube's corners lie on a cube's edges or faces, as
-/// tets that meet them: a cone from the cube's centre over its faces, which are divided as the other side's are. A face
-/// without corners on its edges is cut as split_cell() cuts it, another is a fan from its centre. Centres have the mean
-/// of the corners. The field is continuous, and linear where the values are.
+/// Cubes with values at their corners. They become voxels or, where the corners of finer cubes are on their edges or
+/// faces, tets that conform to them: a cone from the cube's centre over its faces, which are divided like the other
+/// side's. A face without corners on its edges is cut as in split_cell(); any other face becomes a fan around its
+/// centre. Centres have the mean of the corners. The field is continuous, and linear if the values are linear.
 ///
 /// Source  Cones over subdivided faces: Weber et al., "Crack-free isosurface extraction from adaptive mesh refinement
 ///         data" (Hierarchical and Geometrical Methods in Scientific Visualization, 2003) stitch a dual mesh; here the
-///         cubes themselves are divided, for which levels may differ by any number.
+///         cubes themselves are divided, so levels may differ by any number.
 CellBlock conforming_cells(const AmrLattice& lattice, int steps, AmrCubes cubes, const std::string& field);
 
 }  // namespace tessera::cells

@@ -37,7 +37,7 @@ std::string where(const AmrBlock& part, const std::string& source) {
   return part.name.empty() ? source : fmt::format("{}: block '{}'", source, part.name);
 }
 
-/// Cells along an axis.
+/// Number of cells along an axis.
 std::int64_t cells_along(const AmrBlock& part, std::size_t axis) {
   return part.extent[2 * axis + 1] - part.extent[2 * axis];
 }
@@ -64,7 +64,7 @@ void require_block(const AmrBlock& part, const std::string& source) {
   }
 }
 
-/// Spacings from the coarsest to the finest, each of one block.
+/// Distinct spacings from the coarsest to the finest, each represented by one block.
 std::vector<const AmrBlock*> distinct_levels(std::span<const AmrBlock> blocks) {
   std::vector<const AmrBlock*> levels;
   for (const AmrBlock& block : blocks) levels.push_back(&block);
@@ -103,7 +103,7 @@ scene::Error too_long(double cells, const std::string& source) {
       fmt::format("{}: it is {} of the finest cells long, {} are read; leave out levels", source, cells, most_corners));
 }
 
-/// Puts the blocks on the lattice.
+/// Places the blocks on the lattice.
 void place_blocks(std::span<const AmrBlock> blocks, AmrLeaves& amr, std::span<const AmrBlock* const> levels,
                   const std::string& source) {
   glm::dvec3 anchor;
@@ -151,7 +151,7 @@ void place_blocks(std::span<const AmrBlock> blocks, AmrLeaves& amr, std::span<co
     for (std::size_t a = 0; a < 3; ++a) amr.parts[p].low[a] = static_cast<std::int32_t>(lows[p][a] - first[a]);
 }
 
-/// Finds the leaves of one block after the other.
+/// Finds the leaves, block by block.
 class Coverage {
  public:
   Coverage(AmrLeaves& amr, const std::string& source) : amr_(amr), source_(source) {
@@ -202,7 +202,7 @@ class Coverage {
     return amr_.size[static_cast<std::size_t>(level)];
   }
 
-  /// Blocks that meet this one and are finer, or as fine and listed before.
+  /// Finds blocks that intersect this one and are finer, or equally fine and listed earlier.
   void find_covering(std::size_t p) {
     covering_.clear();
     for (const std::size_t other : order_) {
@@ -233,7 +233,7 @@ class Coverage {
         }
   }
 
-  /// What finer blocks leave of a cell that none of them covers alone.
+  /// Adds the parts of a cell that finer blocks leave uncovered, if several cover it partly.
   void add_rest(const AmrLeaf& cell) {
     const Box box = cell_box(cell.low, size_of_level(cell.level));
     bool met = false;
@@ -260,7 +260,7 @@ class Coverage {
 
   AmrLeaves& amr_;
   const std::string& source_;
-  std::size_t read_ = 0;  ///< cells of the blocks before
+  std::size_t read_ = 0;  ///< cells of the previous blocks
   std::vector<Box> boxes_;
   std::vector<std::size_t> order_, covering_;
   std::vector<std::uint8_t> marks_;

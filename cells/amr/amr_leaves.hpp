@@ -18,19 +18,19 @@ namespace tessera::cells {
 /// A corner on the lattice of the finest cells.
 using AmrIndex = std::array<std::int32_t, 3>;
 
-/// Where the finest cells' corners lie. Corners of all levels are whole numbers on it, so that those at one place have
-/// one position to the bit.
+/// Positions of the finest cells' corners. Corners of all levels have integer coordinates, so that coincident corners
+/// have exactly equal positions.
 struct AmrLattice {
   glm::dvec3 origin{0}, spacing{1};
 
-  /// Of trees: where the coarsest cells' corners lie along each axis, each `coarsest` steps from the next; between them
-  /// steps are even. Empty of blocks, for which origin and spacing hold.
+  /// For trees: the positions of the coarsest cells' corners along each axis, `coarsest` steps apart, with uniform
+  /// steps between them. Empty for blocks, which use origin and spacing.
   std::array<std::vector<double>, 3> corners{};
   std::int32_t coarsest = 1;
 
   [[nodiscard]] bool is_even() const { return corners[0].empty(); }
 
-  /// The coordinate along an axis; n need not be whole.
+  /// The coordinate along an axis; n need not be an integer.
   [[nodiscard]] double position(std::size_t axis, double n) const {
     if (is_even()) return origin[static_cast<int>(axis)] + spacing[static_cast<int>(axis)] * n;
     const std::vector<double>& at = corners[axis];
@@ -40,16 +40,16 @@ struct AmrLattice {
   }
 };
 
-/// A cell that no finer one covers.
+/// A cell that is not covered by a finer one.
 struct AmrLeaf {
   AmrIndex low;        ///< its lowest corner
-  std::uint32_t cell;  ///< whose values it has, counted in its part
-  std::uint32_t part;  ///< counted in `parts`
-  std::int32_t level;  ///< deeper than its part's where finer cells cover a piece of that cell
+  std::uint32_t cell;  ///< index, in its part, of the cell whose value it has
+  std::uint32_t part;  ///< index in `parts`
+  std::int32_t level;  ///< finer than that cell's level if finer cells cover a part of it
 };
 
-/// The cells that are left of a mesh with levels of refinement, which lie side by side without overlap or gap. A cell
-/// of a level and all the finer ones inside are a tree: level l + 1 divides a cell of level l, if at all, into n^3.
+/// The remaining cells of a mesh with refinement levels, which are adjacent without overlap or gap. A cell of a level
+/// and all finer ones inside form a tree: level l + 1 divides a cell of level l, if at all, into n^3 cells.
 struct AmrLeaves {
   /// One block of the file.
   struct Part {
@@ -59,46 +59,46 @@ struct AmrLeaves {
     AmrIndex cells{};  ///< along each axis
   };
   AmrLattice lattice;
-  std::vector<std::int32_t> size;  ///< of a level's cells on the lattice; the last is 1
+  std::vector<std::int32_t> size;  ///< size of each level's cells on the lattice; the last is 1
   std::vector<Part> parts;
   std::vector<AmrLeaf> leaves;
-  std::uint64_t covered = 0, hidden = 0;  ///< cells of the file that are not among them
+  std::uint64_t covered = 0, hidden = 0;  ///< cells of the file that are left out
 
-  /// Whether a cell with these bits of vtkGhostType is not among them, and counts it then.
+  /// Whether a cell with these bits of vtkGhostType is left out; counts it if so.
   bool leaves_out(std::uint8_t ghost);
 };
 
-/// Of cells of the finest level along an axis: two of them at the far end, and their halves, are numbers of 32 bits.
+/// Limit of cells of the finest level along an axis: twice that many, and halves of them, must fit into 32 bits.
 inline constexpr double most_amr_corners = 1 << 29;
 
-/// The leaves of trees, each by its lowest corner on the part's own lattice and its level.
+/// The leaves of trees, each given by its level and its lowest corner on the part's own lattice.
 struct AmrTreeLeaves {
-  std::vector<std::int32_t> lows;  ///< three each
+  std::vector<std::int32_t> lows;  ///< three numbers per leaf
   std::vector<std::uint8_t> levels;
 };
 
-/// A block of cells along the axes, or trees of them, as a file describes it.
+/// A block of axis-aligned cells, or trees of them, as described by a file.
 struct AmrBlock {
   std::string name;                                                      ///< empty if it is the only one
-  std::array<std::int64_t, 6> extent{};                                  ///< first and last point along each axis
+  std::array<std::int64_t, 6> extent{};                                  ///< first and last point index along each axis
   std::function<std::vector<std::uint8_t>(std::size_t cells)> ghosts{};  ///< bits of vtkGhostType, or empty
 
-  // Of a block.
+  // For blocks:
   bool is_image = false;
   std::array<double, 3> origin{}, spacing{};
   std::array<double, 9> direction{};
 
-  // Of trees.
-  int branching = 0, levels = 0;                                       ///< children along an axis; 0 levels: not trees
+  // For trees:
+  int branching = 0, levels = 0;                                       ///< children along an axis; 0 levels: no trees
   std::function<std::vector<double>(std::size_t axis)> coordinates{};  ///< of the coarsest cells' corners; or empty
-  std::function<std::optional<AmrTreeLeaves>()> leaves{};              ///< none: stored as other numbers
+  std::function<std::optional<AmrTreeLeaves>()> leaves{};              ///< no value: stored as another number type
 };
 
-/// The leaves of blocks whose spacings tell their levels. Throws Error(bad_input) where levels do not nest.
+/// The leaves of blocks, whose spacings determine their levels. Throws Error(bad_input) if levels do not nest.
 AmrLeaves leaves_of_blocks(std::span<const AmrBlock> blocks, const std::string& source);
 
-/// The leaves of trees, in one part or several, which have one grid of coarsest cells and divide no cell
-/// of it twice. Cells that are ghosts are left out. Throws Error(bad_input) for others.
+/// The leaves of trees, in one part or several, which share one grid of coarsest cells and divide no cell of it twice.
+/// Ghost cells are left out. Throws Error(bad_input) for other trees.
 AmrLeaves leaves_of_trees(std::span<const AmrBlock> trees, const std::string& source);
 
 }  // namespace tessera::cells

@@ -14,11 +14,11 @@ namespace {
 
 constexpr std::uint32_t none = AmrVertices::none;
 
-/// The leaves around a point, one for each eighth of what is around it: bit a of its number is set on the higher side
-/// along axis a. `none` where there is no leaf.
+/// The leaves around a point, one per octant: bit a of the index is set on the higher side along axis a. `none` where
+/// there is no leaf.
 using Around = std::array<std::uint32_t, 8>;
 
-/// Points are on a lattice of half the leaves' steps.
+/// Points are on a lattice with half the leaves' step.
 class Smoothing {
  public:
   Smoothing(const AmrLeaves& amr, std::span<const double> values) : amr_(amr), values_(values) {
@@ -48,7 +48,7 @@ class Smoothing {
     cubes_.finer.emplace_back(size, part);
   }
 
-  /// The leaf that holds a finest cell.
+  /// The leaf that contains a finest cell.
   [[nodiscard]] std::uint32_t leaf_at(const AmrIndex& cell) const {
     if (cell[0] < 0 || cell[1] < 0 || cell[2] < 0) return none;
     for (std::size_t level = amr_.size.size(); level-- > 0;) {
@@ -70,7 +70,7 @@ class Smoothing {
     return around;
   }
 
-  /// Whether all leaves around a point, of those that there are, have one level.
+  /// Whether all existing leaves around a point have one level.
   [[nodiscard]] bool are_of_one_level(const Around& around) const {
     std::int32_t level = -1;
     for (const std::uint32_t l : around) {
@@ -98,7 +98,7 @@ class Smoothing {
       for (unsigned k = 0; k < 8; ++k) {
         if (around[k] == none) continue;
         const std::int32_t size = size_of(around[k]);
-        if (corner_of(leaf(around[k]).low, size, 7 - k) != p) continue;  // the point lies on an edge or face of it
+        if (corner_of(leaf(around[k]).low, size, 7 - k) != p) continue;  // the point is on an edge or face of the leaf
         add_cube(
             {{p[0] - ((k & 1) != 0 ? 0 : size), p[1] - ((k & 2) != 0 ? 0 : size), p[2] - ((k & 4) != 0 ? 0 : size)},
              size});
@@ -124,7 +124,7 @@ class Smoothing {
     const std::uint32_t finest = *std::max_element(around.begin(), around.end(), [&](std::uint32_t a, std::uint32_t b) {
       return (a == none ? -1 : leaf(a).level) < (b == none ? -1 : leaf(b).level);
     });
-    // In the middle of one of its edges or faces, the mean of those corners: from whichever leaf they are looked at.
+    // In the middle of an edge or face, the mean of its corners, independent of the leaf.
     const std::int32_t size = size_of(finest);
     std::array<std::int32_t, 3> half{};
     int corners = 1;
@@ -144,10 +144,10 @@ class Smoothing {
     return sum / corners;
   }
 
-  /// Of leaves of one level around a point: their values' mean, or, where their sizes differ along an axis, the values
-  /// between their centres.
+  /// For leaves of one level around a point: the mean of their values or, where their sizes differ along an axis, the
+  /// interpolation between their centres.
   [[nodiscard]] double mean_around(const AmrIndex& p, const Around& around) const {
-    std::array<double, 3> higher{0.5, 0.5, 0.5};  // the weight of what lies on the higher side
+    std::array<double, 3> higher{0.5, 0.5, 0.5};  // weight of the higher side
     if (!amr_.lattice.is_even()) {
       const auto some = *std::find_if(around.begin(), around.end(), [](std::uint32_t l) { return l != none; });
       const double half = 0.5 * size_of(some);
@@ -167,7 +167,7 @@ class Smoothing {
     return sum / weights;
   }
 
-  /// Of a corner where levels meet.
+  /// The value at a corner where levels meet.
   [[nodiscard]] double value_at_corner(const AmrIndex& p, const Around& around) const {
     std::array<std::uint32_t, 8> leaves{};
     std::array<glm::dvec3, 8> offsets{};
@@ -193,7 +193,7 @@ class Smoothing {
 
   const AmrLeaves& amr_;
   std::span<const double> values_;
-  AmrVertices lows_;  ///< numbered as the leaves
+  AmrVertices lows_;  ///< numbered like the leaves
   AmrCubes cubes_;
 };
 
@@ -201,9 +201,9 @@ class Smoothing {
 
 namespace {
 
-/// Weights of sum 1 and mean 0 that depart least from the factors' own proportions, some perhaps below 0. False, and
-/// the weights as they were, where there are none, or only such as can take a value farther from the range of the
-/// others than that range is wide.
+/// Weights with sum 1 and mean 0 that deviate least from the proportions of the factors; some may be negative. Returns
+/// false and leaves the weights unchanged if there are none, or if they could extrapolate beyond the range of the
+/// values by more than its width.
 bool weigh_by_squares(std::span<const glm::dvec3> d, std::span<const double> factor, const glm::dvec3& is_used,
                       std::span<double> weights) {
   glm::dmat4 moments(0);
@@ -229,7 +229,7 @@ bool weigh_by_squares(std::span<const glm::dvec3> d, std::span<const double> fac
 }  // namespace
 
 void weigh_by_entropy(std::span<const glm::dvec3> offsets, std::span<double> weights) {
-  // Axes along which all lie on one side are left out: there the values are continued as they are.
+  // Ignores axes along which all offsets are on one side: values are continued constantly there.
   glm::dvec3 scale(0), is_used(0);
   glm::bvec3 below(false), above(false);
   for (const glm::dvec3& d : offsets)
@@ -245,8 +245,8 @@ void weigh_by_entropy(std::span<const glm::dvec3> offsets, std::span<double> wei
     factor[k] = weights[k];
     for (int a = 0; a < 3; ++a) d[k][a] = is_used[a] > 0 ? offsets[k][a] / scale[a] : 0;
   }
-  // Newton's method on the logarithm of the sum of factor exp(multiplier . d), which is convex and has its gradient 0
-  // at the weights sought.
+  // Newton's method on the logarithm of the sum of factor exp(multiplier . d), which is convex; its gradient is 0 at
+  // the desired weights.
   const auto log_sum = [&](const glm::dvec3& multiplier) {
     double sum = 0;
     for (std::size_t k = 0; k < n; ++k) sum += weights[k] = factor[k] * std::exp(glm::dot(multiplier, d[k]));
@@ -265,8 +265,8 @@ void weigh_by_entropy(std::span<const glm::dvec3> offsets, std::span<double> wei
     const glm::dvec3 change = glm::inverse(curvature) * mean;
     glm::dvec3 next = multiplier - change;
     double then = log_sum(next);
-    const double most = now + 1e-14;  // near the end the sum changes by its rounding alone
-    // Where 0 is outside all offsets' hull the sum falls towards 0 for ever.
+    const double most = now + 1e-14;  // near the end only rounding changes the sum
+    // If 0 is outside the hull of the offsets, the sum decreases towards 0 without end.
     const auto is_good = [&] { return then <= most && then > -20; };
     for (double length = 0.5; length > 1e-6 && !is_good(); length /= 2) {
       next = multiplier - length * change;
@@ -280,7 +280,7 @@ void weigh_by_entropy(std::span<const glm::dvec3> offsets, std::span<double> wei
   }
   glm::dvec3 mean(0);
   for (std::size_t k = 0; k < n; ++k) mean += weights[k] * d[k];
-  if (glm::length(mean) > 1e-12)  // far above what Newton's method leaves where there are such weights
+  if (glm::length(mean) > 1e-12)  // far above the residual of Newton's method where such weights exist
     weigh_by_squares(std::span(d).first(n), std::span(factor).first(n), is_used, weights);
 }
 

@@ -31,7 +31,7 @@ std::vector<double> coordinates_of(const AmrBlock& trees, std::size_t axis, cons
   return at;
 }
 
-/// Cells of the last level along one of the first.
+/// Number of finest cells along one of the coarsest.
 std::int32_t steps_of(const AmrBlock& part, int levels, const std::string& source) {
   double steps = 1;
   for (int level = 1; level < levels && steps <= most_amr_corners; ++level) steps *= part.branching;
@@ -43,7 +43,7 @@ std::int32_t steps_of(const AmrBlock& part, int levels, const std::string& sourc
   return static_cast<std::int32_t>(steps);
 }
 
-/// So that all corners of cells lie apart.
+/// Ensures that all corners of cells are distinct.
 void require_rising(std::span<const double> at, std::int32_t steps, std::size_t axis, const std::string& source) {
   for (std::size_t n = 0; n + 1 < at.size(); ++n) {
     const double size = std::max(std::abs(at[n]), std::abs(at[n + 1])), step = (at[n + 1] - at[n]) / steps;
@@ -56,7 +56,7 @@ void require_rising(std::span<const double> at, std::int32_t steps, std::size_t 
   }
 }
 
-/// The leaves of one part after the other.
+/// Finds the leaves, part by part.
 class TreeLeaves {
  public:
   TreeLeaves(AmrLeaves& amr, bool several, const std::string& source) : amr_(amr), source_(source), several_(several) {}
@@ -88,7 +88,7 @@ class TreeLeaves {
   }
 
  private:
-  /// No two leaves begin at one place, and no tree is in two parts.
+  /// Throws if two leaves begin at the same place, or a tree is in two parts.
   void require_new(const AmrLeaf& leaf, const std::array<std::int64_t, 3>& grid, const AmrBlock& part) {
     if (several_) require_own_tree(leaf, grid, part);
     if (lows_.add(leaf.low) != amr_.leaves.size()) throw unfit(part, source_);
@@ -109,7 +109,7 @@ class TreeLeaves {
   const std::string& source_;
   bool several_;
   AmrVertices lows_;
-  std::unordered_map<std::int64_t, std::uint32_t> owners_;  ///< which part each tree is of
+  std::unordered_map<std::int64_t, std::uint32_t> owners_;  ///< the part of each tree
 };
 
 }  // namespace

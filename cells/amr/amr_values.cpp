@@ -23,7 +23,7 @@ AmrCubes leaf_cubes(const AmrLeaves& amr) {
   return cubes;
 }
 
-/// A block's point data between its points.
+/// Interpolates a block's point data between its points.
 double value_at(const AmrLeaves::Part& part, std::int32_t size, std::span<const double> values, const AmrIndex& p) {
   std::array<std::size_t, 3> at{};
   std::array<double, 3> t{};
@@ -38,7 +38,7 @@ double value_at(const AmrLeaves::Part& part, std::int32_t size, std::span<const 
   for (std::size_t k = 0; k < 8; ++k) {
     const double weight =
         ((k & 1) != 0 ? t[0] : 1 - t[0]) * ((k & 2) != 0 ? t[1] : 1 - t[1]) * ((k & 4) != 0 ? t[2] : 1 - t[2]);
-    // A corner that does not count may hold NaN.
+    // A corner with weight 0 may hold NaN.
     if (weight > 0)
       value += weight * values[at[0] + (k & 1) + row * (at[1] + (k >> 1 & 1)) + slice * (at[2] + (k >> 2))];
   }

@@ -7,7 +7,8 @@
 namespace tessera::cells {
 namespace {
 
-/// Sixteen points in a row follow each other, as they are asked for one after the other: one piece of cache has them.
+/// Sixteen consecutive points in a row have adjacent slots, because they are usually requested together: they share
+/// cache lines.
 std::uint64_t hash_of(const AmrIndex& p) {
   const auto word = [](std::int32_t n) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(n)); };
   const std::uint64_t x = word(p[0]);
@@ -16,7 +17,7 @@ std::uint64_t hash_of(const AmrIndex& p) {
 
 }  // namespace
 
-/// Where the point is, or would be. There is always a free slot.
+/// The slot of the point, or the free slot for it. There is always a free slot.
 std::size_t AmrVertices::slot_of(const AmrIndex& p) const {
   const std::size_t mask = slots_.size() - 1;
   std::size_t slot = hash_of(p) & mask;

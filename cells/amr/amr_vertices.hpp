@@ -9,7 +9,7 @@
 
 namespace tessera::cells {
 
-/// Points of a lattice, each once, numbered as they come. Open addressing, linear probing.
+/// Distinct points of a lattice, numbered in the order of insertion. Open addressing, linear probing.
 class AmrVertices {
  public:
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
@@ -21,7 +21,7 @@ class AmrVertices {
   [[nodiscard]] std::uint32_t find(const AmrIndex& p) const;
   [[nodiscard]] bool has(const AmrIndex& p) const { return find(p) != none; }
 
-  /// The number of a point, which is added if it is new. Throws Error(bad_input) for more than 2^32 - 2.
+  /// The number of a point, which is added if new. Throws Error(bad_input) for more than 2^32 - 2 points.
   std::uint32_t add(const AmrIndex& p);
 
  private:

@@ -42,11 +42,11 @@ BernsteinForm make_form(int corners, int degree) {
   std::vector<long double> values(n * n);
   for (std::size_t at = 0; at < n; ++at)
     for (std::size_t of = 0; of < n; ++of) values[of * n + at] = bernstein(form.points[of], form.points[at], degree);
-  form.matrix = inverse_matrix(std::move(values), n);  // of the transpose, as the matrix is kept
+  form.matrix = inverse_matrix(std::move(values), n);  // of the transpose, because the matrix is stored transposed
   return form;
 }
 
-/// One of each degree, made when it is first asked for.
+/// One object per degree, created when it is first requested.
 template <class Made>
 struct OfDegrees {
   std::array<std::unique_ptr<const Made>, highest_degree + 1> all;

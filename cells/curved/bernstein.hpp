@@ -9,39 +9,40 @@
 
 namespace tessera::cells {
 
-/// Polynomials of one degree on a simplex (a segment, triangle or tetrahedron), from their values on its lattice to
-/// Bernstein's form, whose coefficients bound them: a polynomial lies between its least and greatest coefficient.
+/// Converts polynomials of one degree on a simplex (a segment, triangle or tetrahedron) from their values on its
+/// lattice to Bernstein form, whose coefficients bound them: a polynomial is between its least and greatest
+/// coefficient.
 ///
 /// Source  Farin, "Triangular Bernstein-Bezier patches", Computer Aided Geometric Design 3, 1986.
 struct BernsteinForm {
-  /// Of each lattice point but the corners, `corners` numbers that add up to `degree`: its place in barycentric
-  /// coordinates, times the degree.
+  /// For each lattice point except the corners, `corners` numbers that add up to `degree`: its barycentric coordinates
+  /// times the degree.
   std::vector<std::array<int, 4>> points;
-  /// coefficient[k] = sum of matrix[j * points.size() + k] * value[j], for polynomials that are 0 in the corners.
+  /// coefficient[k] = sum of matrix[j * points.size() + k] * value[j], for polynomials that are 0 at the corners.
   std::vector<double> matrix;
 };
 
-/// For `corners` 2 to 4 and a degree of 1 to `highest_degree`. Made once, kept as long as the program runs; from any
-/// thread.
+/// For `corners` 2 to 4 and a degree of 1 to `highest_degree`. Computed once and kept until the program ends; callable
+/// from any thread.
 const BernsteinForm& bernstein_form(int corners, int degree);
 
-/// Bernstein's polynomials on the lattice: row p has all of them at its point p. Of a point, lattice places of the
-/// second corner run fastest, then the third's, the fourth's. As above in all else.
+/// Bernstein polynomials on the lattice: row p has all of them at point p. The lattice index of the second corner runs
+/// fastest, then the third's, then the fourth's. Limits and lifetime as above.
 const std::vector<double>& bernstein_values(int corners, int degree);
 
-/// A tetrahedron's coefficients, those of its corners among them, and what they become when it is halved.
+/// The coefficients of a tetrahedron, including those of its corners, and how they change when it is halved.
 class BernsteinNet {
  public:
   explicit BernsteinNet(int degree);
 
   [[nodiscard]] std::size_t size() const { return points_.size(); }
-  /// Barycentric coordinates, times the degree.
+  /// Barycentric coordinates times the degree.
   [[nodiscard]] std::span<const std::array<int, 4>> points() const { return points_; }
   [[nodiscard]] std::size_t index(const std::array<int, 4>& point) const { return index_[place(point)]; }
   [[nodiscard]] std::size_t corner(std::size_t c) const { return corner_[c]; }
 
-  /// The coefficients of the halves at corners i and j, whose other corner j or i is the edge's middle then
-  /// (de Casteljau's algorithm).
+  /// The coefficients of the halves at corners i and j, in which the other corner is replaced by the midpoint of the
+  /// edge (de Casteljau's algorithm).
   void halve(std::span<const glm::dvec4> net, int i, int j, std::span<glm::dvec4> half_i,
              std::span<glm::dvec4> half_j) const;
 
@@ -58,9 +59,9 @@ class BernsteinNet {
   std::array<std::size_t, 4> corner_{};
 };
 
-/// Made once, kept as long as the program runs; from any thread.
+/// Computed once and kept until the program ends; callable from any thread.
 const BernsteinNet& bernstein_net(int degree);
 
-inline constexpr int highest_degree = 12;  ///< whose coefficients still follow from values to 1e-10 or so
+inline constexpr int highest_degree = 12;  ///< its coefficients still follow from values to about 1e-10
 
 }  // namespace tessera::cells

@@ -22,23 +22,23 @@ namespace tessera::cells {
 /// How the higher-order cells of a mesh are divided.
 struct CurvedSettings {
   CurvedTolerance tolerance;
-  std::size_t limit = 0;  ///< tets that one cell may become; 0: none is divided
-  /// Tets that all cells may become, beside 64 of each.
+  std::size_t limit = 0;  ///< largest number of tets for one cell; 0: no cell is divided
+  /// Largest number of tets for all cells, in addition to 64 for each.
   std::uint64_t all = std::numeric_limits<std::uint64_t>::max() / 2;
-  /// `limit` is a user's, and holds for cells of high order too, which take longer.
+  /// `limit` was set by the user, and also applies to cells of high order, which take longer.
   bool is_chosen = false;
 };
 
-/// What a thread needs to divide them, of one cell after another.
+/// Scratch memory of a thread, reused from cell to cell.
 struct CurvedWork {
   explicit CurvedWork(const CurvedTolerance& tolerance) : splitter(tolerance) {}
   CurvedSplitter splitter;
   std::vector<glm::dvec3> positions;
   std::vector<double> values, weights;
-  std::vector<scene::Tet> first;  ///< of the corners, numbered in the cell
+  std::vector<scene::Tet> first;  ///< between the corners, numbered in the cell
 };
 
-/// The higher-order cells of a block that can be divided. Threads may ask for different ones at once.
+/// The higher-order cells of a block that can be divided. Threads may process different cells in parallel.
 class CurvedCells {
  public:
   CurvedCells(const CellBlock& block, std::span<const glm::dvec3> points, std::span<const double> values,
@@ -46,18 +46,18 @@ class CurvedCells {
 
   [[nodiscard]] bool any() const { return !lattices_.empty(); }
 
-  /// Null if the cell is no higher-order one or of a kind that is drawn by its corners, as are Bezier cells of weights
-  /// that are not positive or more than a factor of 10^6 apart.
+  /// Null if the cell is linear or of a kind that is drawn by its corners. The latter includes Bezier cells with
+  /// weights that are not positive or differ by a factor of more than 10^6.
   [[nodiscard]] const CurvedLattice* lattice(std::size_t cell) const;
 
-  /// Divides a cell that has a lattice: work.splitter has the result. Throws std::length_error for more than
+  /// Divides a cell that has a lattice; work.splitter has the result. Throws std::length_error for more than
   /// settings().limit tets.
   void split(std::size_t cell, CurvedWork& work) const;
 
-  /// Says of each first tet of all cells how far its edges are off, in tolerances.
+  /// Passes the deviation of the edges, in tolerances, for each initial tet of all cells.
   void tally_excess(const std::function<void(double excess)>& say) const;
 
-  /// Whether the cells become more tets than the settings let them, found by dividing them.
+  /// Whether the cells become more tets than the settings allow, determined by dividing them.
   [[nodiscard]] bool take_too_many() const;
 
   [[nodiscard]] const CurvedSettings& settings() const { return settings_; }
@@ -72,14 +72,14 @@ class CurvedCells {
 
   const CellBlock& block_;
   std::span<const glm::dvec3> points_;
-  std::span<const double> values_;  ///< none for cell data
+  std::span<const double> values_;  ///< empty for cell data
   CurvedSettings settings_;
-  std::vector<std::array<int, 3>> degrees_;  ///< of each cell, or none at all
-  std::vector<double> weights_;              ///< of each point, or none at all
+  std::vector<std::array<int, 3>> degrees_;  ///< per cell, or empty
+  std::vector<double> weights_;              ///< per point, or empty
   std::map<Key, CurvedLattice> lattices_;
 };
 
-/// Whether the block has cells that are divided.
+/// Whether the block has cells to be divided.
 bool has_curved_cells(const CellBlock& block);
 
 }  // namespace tessera::cells

@@ -40,7 +40,7 @@ class Numbering {
     for (const LatticePlace& corner : corners_) add(corner);
   }
 
-  /// The nodes between an edge's ends, from the first.
+  /// Adds the nodes between an edge's ends, starting at the first.
   void add_edge(const Edge& edge) {
     const LatticePlace &a = corners_[static_cast<std::size_t>(edge[0])],
                        &b = corners_[static_cast<std::size_t>(edge[1])];
@@ -64,7 +64,7 @@ LatticePlace between(const LatticePlace& a, const LatticePlace& b, const Lattice
   return p;
 }
 
-/// The nodes of a triangle of order n, corners and edges first, then those of the triangle within.
+/// The nodes of a triangle of order n: corners and edges, then recursively the triangle inside.
 void add_triangle(Numbering& numbering, const LatticePlace& a, const LatticePlace& b, const LatticePlace& c, int n) {
   const auto at = [&](int u, int v) { numbering.add(between(a, b, c, u, v, n)); };
   if (n == 0) return numbering.add(a);
@@ -182,7 +182,7 @@ void number_slots(CurvedLattice& lattice) {
         if (is_of_lattice(lattice, {i, j, k})) lattice.slot_of_place[at] = lattice.slots++;
 }
 
-/// The number of the triangle that a place is the middle of; nothing for other places.
+/// The index of the triangle whose middle is this place; no value for other places.
 std::optional<std::size_t> triangle_with_middle(const CurvedLattice& lattice, const LatticePlace& place) {
   const auto faces = faces_of(lattice.family);
   const auto corners = corners_of(lattice.family);
@@ -199,7 +199,7 @@ std::optional<std::size_t> triangle_with_middle(const CurvedLattice& lattice, co
   return std::nullopt;
 }
 
-/// Nodes' slots; of those beside the lattice in their own order.
+/// Numbers the nodes' slots; nodes outside the lattice keep their own order.
 void number_nodes(CurvedLattice& lattice) {
   int beside = lattice.slots, of_lattice = 0;
   for (std::size_t k = 0; k < lattice.nodes.size(); ++k) {
@@ -233,11 +233,11 @@ CurvedLattice quadratic(CurvedFamily family, int order_t = 2) {
   return lattice;
 }
 
-/// Quadratic cells with a node in the middle of each triangle and, of tets and pyramids, in the cell's.
+/// Quadratic cells with a node in the middle of each triangle and, for tets and pyramids, of the cell.
 CurvedLattice bubble_lattice(CurvedFamily family) {
   CurvedLattice lattice = quadratic(family);
   lattice.has_bubbles = true;
-  lattice.refined = family == CurvedFamily::pyramid ? 12 : 6;  // halves, thirds and quarters of the cell
+  lattice.refined = family == CurvedFamily::pyramid ? 12 : 6;  // divides the cell into halves, thirds and quarters
   Numbering numbering(lattice);
   numbering.add_corners();
   const auto refine = [&] {
@@ -270,7 +270,7 @@ CurvedLattice bubble_lattice(CurvedFamily family) {
   return lattice;
 }
 
-/// Quadratic cells of VTK, whose mid-edge nodes come in rounds of their own.
+/// VTK's quadratic cells, whose mid-edge nodes follow another order of edges than in its higher-order cells.
 std::optional<CurvedLattice> quadratic_lattice(CellType type) {
   static constexpr Edge hexahedron_rounds[] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
                                                {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
@@ -316,13 +316,13 @@ std::optional<CurvedLattice> quadratic_lattice(CellType type) {
   }
 }
 
-/// The cells of second order that VTK has not; by their numbers of nodes.
+/// Second-order cells that VTK does not have, identified by their numbers of nodes.
 std::optional<CurvedLattice> incomplete_lattice(CellType type, std::size_t nodes) {
   struct Row {
     CellType type;
     std::size_t nodes;
     CurvedFamily family;
-    std::size_t first, from, to;  ///< of a complete cell's nodes the first ones, then [from, to)
+    std::size_t first, from, to;  ///< the first nodes of a complete cell, then [from, to)
   };
   static constexpr Row rows[] = {{CellType::lagrange_tetrahedron, 5, CurvedFamily::tet, 4, 14, 15},
                                  {CellType::lagrange_tetrahedron, 7, CurvedFamily::tet, 7, 0, 0},
@@ -354,13 +354,13 @@ std::optional<CurvedLattice> incomplete_lattice(CellType type, std::size_t nodes
   return std::nullopt;
 }
 
-/// Of Lagrange cells.
+/// Lattice of Lagrange cells.
 std::optional<CurvedLattice> lagrange_lattice(CellType type, std::size_t nodes, const std::array<int, 3>& degrees) {
   if (type == CellType::lagrange_tetrahedron && nodes == 15) return bubble_lattice(CurvedFamily::tet);
   if (type == CellType::lagrange_wedge && nodes == 21 && degrees[2] <= 2) return bubble_lattice(CurvedFamily::wedge);
   const bool given = degrees[0] > 0 && degrees[1] > 0 && degrees[2] > 0 &&
                      (type == CellType::lagrange_hexahedron || type == CellType::lagrange_wedge);
-  constexpr int highest = 100;  // of 10^6 nodes a cell
+  constexpr int highest = 100;  // limit: 10^6 nodes per cell
   if (given) {
     if (std::max({degrees[0], degrees[1], degrees[2]}) > highest) return std::nullopt;
     const std::size_t p = static_cast<std::size_t>(degrees[0]) + 1, q = static_cast<std::size_t>(degrees[1]) + 1,
@@ -393,7 +393,7 @@ std::optional<CurvedLattice> lagrange_lattice(CellType type, std::size_t nodes, 
   return lattice.nodes.empty() ? std::nullopt : std::optional(std::move(lattice));
 }
 
-/// The cells of third order that have only the first of their lattice's nodes, those of edges or of edges and faces.
+/// Third-order cells that have only the first nodes of their lattice: those of edges, or of edges and faces.
 std::optional<CurvedLattice> incomplete_cubic_lattice(CellType type, std::size_t nodes) {
   struct Row {
     CellType type;
@@ -412,7 +412,7 @@ std::optional<CurvedLattice> incomplete_cubic_lattice(CellType type, std::size_t
   return std::nullopt;
 }
 
-/// Of Bezier cells: those of Lagrange's.
+/// Lattice of Bezier cells: the same as for Lagrange.
 std::optional<CurvedLattice> bezier_lattice(CellType type, std::size_t nodes, const std::array<int, 3>& degrees) {
   if (type < CellType::bezier_tetrahedron || type > CellType::bezier_wedge) return std::nullopt;
   const CellType lagrange = type == CellType::bezier_tetrahedron  ? CellType::lagrange_tetrahedron

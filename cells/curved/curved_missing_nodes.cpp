@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The nodes that serendipity cells and cells of mixed order lack.
+// Computes the missing nodes of serendipity cells and cells of mixed order.
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -9,13 +9,13 @@
 namespace tessera::cells {
 namespace {
 
-/// Transfinite interpolation at a place of a quadrilateral's or box's lattice, from what is on its sides: the functions
-/// of serendipity cells. `node_at(place)` is a node's value.
+/// Transfinite interpolation at a place of a quadrilateral's or box's lattice from the values on its sides: the
+/// functions of serendipity cells. `node_at(place)` returns a node's value.
 template <std::size_t axes, class NodeAt>
 glm::dvec4 between_sides(const std::array<int, axes>& place, const std::array<int, axes>& order,
                          const NodeAt& node_at) {
   glm::dvec4 sum(0);
-  for (int choices = 1; choices < (axes == 2 ? 9 : 27); ++choices) {  // along each axis the place, its first or last
+  for (int choices = 1; choices < (axes == 2 ? 9 : 27); ++choices) {  // each axis uses the place, its first or its last
     std::array<int, axes> at = place;
     double weight = -1;
     int left = choices;
@@ -30,7 +30,7 @@ glm::dvec4 between_sides(const std::array<int, axes>& place, const std::array<in
   return sum;
 }
 
-/// The middle of a triangle of third order with nodes on its edges alone, so that it has all quadratic polynomials.
+/// The middle of a third-order triangle with nodes only on its edges, so that it reproduces all quadratic polynomials.
 template <class NodeAt>
 glm::dvec4 middle_of_cubic_triangle(const NodeAt& node_at) {
   const glm::dvec4 edges =
@@ -40,7 +40,7 @@ glm::dvec4 middle_of_cubic_triangle(const NodeAt& node_at) {
 
 }  // namespace
 
-/// Of cells of second order the middles of edges, then of these and of third order what is on faces and inside.
+/// For second order the middles of edges first; then, for second and third order, the nodes on faces and inside.
 void CurvedCell::add_missing_nodes() {
   std::vector<bool> given(values_.size(), false);
   for (std::size_t k = 0; k < lattice_->given; ++k) given[static_cast<std::size_t>(lattice_->slot_of_node[k])] = true;

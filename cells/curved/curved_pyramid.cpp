@@ -8,8 +8,8 @@
 namespace tessera::cells {
 namespace {
 
-/// What both of VTK's quadratic pyramids have, of x and y from -1 to 1 across at any height and w from 2 at the base to
-/// 0 at the apex. Returns how many.
+/// Functions shared by VTK's two quadratic pyramids, of x and y from -1 to 1 across at any height, and w from 2 at the
+/// base to 0 at the apex. Returns their number.
 std::size_t quadratic_functions(double x, double y, double w, std::span<double> out) {
   const double ww = w * w;
   const std::array<double, 11> values = {1,      w,      ww,         x * w,          y * w,         x * y * w,
@@ -18,7 +18,7 @@ std::size_t quadratic_functions(double x, double y, double w, std::span<double> 
   return values.size();
 }
 
-/// Legendre's polynomials of degree 0 to n.
+/// Legendre polynomials of degree 0 to n.
 void legendre(int n, double x, std::span<double> out) {
   out[0] = 1;
   if (n > 0) out[1] = x;

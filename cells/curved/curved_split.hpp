@@ -19,57 +19,59 @@
 
 namespace tessera::cells {
 
-/// How far linear tets may be from a higher-order cell: in position, world units, and in the field's own unit.
+/// Allowed deviation of linear tets from a higher-order cell: position in world units, field in its own unit.
 struct CurvedTolerance {
   double position = std::numeric_limits<double>::infinity();
   double field = std::numeric_limits<double>::infinity();
 };
 
-/// Bounds on how far they are. `field` is at one place in space: what position is off counts for it too, to first
-/// order, by the cell's slopes at the tet's corners.
+/// Bounds of the deviation. `field` is the error at a fixed point in space: the position error contributes to it, to
+/// first order, by the cell's slopes at the tet's corners.
 struct CurvedError {
   double position = 0, field = 0;
   void add(const CurvedError& other);
 };
 
-/// How many times as long a tet of such a cell takes as one of a quadratic or cubic tetrahedron, by its coefficients.
+/// Time for a tet of such a cell relative to one of a quadratic or cubic tetrahedron, estimated by the number of
+/// coefficients.
 double cost_of_tet(const CurvedLattice& lattice);
 
-/// Divides higher-order cells into tets, as few as keep position and field within a tolerance.
+/// Divides higher-order cells into as few tets as keep position and field within a tolerance.
 ///
-/// Method  A cell's corners give its first tets, as those of a linear cell (cells/cell_split.hpp). Then edges are
-/// halved,
-///         the worst of a tet's six first, as long as position or field on one departs by more than the tolerance from
-///         the straight line; then what is left inside a face or tet is divided about a point in it. What is off is
-///         bounded by the coefficients of Bernstein's form, of an edge, a triangle or a tet.
-/// Shared  What becomes of an edge or a face follows from the nodes on it alone (CurvedCell), so neighbours divide what
-///         they share alike, whatever order their nodes come in: there are no cracks.
-/// Weights What is off is a fraction: the coefficients of its numerator, over the least of its denominator's, bound it.
-///         The slopes that CurvedError counts are then those of a numerator over that one number.
-/// Limits  Bounds hold to rounding for polynomials of a degree of 12 at most: tets up to order 12, hexahedra up to 4,
-///         wedges up to 6; with weights one degree less. Others, and pyramids inside, are as near as a polynomial
-///         through points is. No edge is halved more than 20 times; what is left then is in the error.
+/// Method  A cell's corners give its initial tets, like those of a linear cell (cells/cell_split.hpp). Then edges are
+///         halved, the worst of a tet's six first, while position or field on one deviates by more than the tolerance
+///         from the straight line. A remaining deviation inside a face or tet is reduced by an inner point. Deviations
+///         are bounded by the Bernstein coefficients on an edge, a triangle or a tet.
+/// Shared  The division of an edge or a face depends only on the nodes on it (CurvedCell), so neighbours divide shared
+///         edges and faces in the same way, whatever the order of their nodes: there are no cracks.
+/// Weights The deviation is a fraction, bounded by the coefficients of its numerator over the least coefficient of its
+///         denominator. The slopes in CurvedError are then those of the numerator over that number.
+/// Limits  Bounds hold up to rounding for polynomials of a degree of 12 at most: tets up to order 12, hexahedra up to
+/// 4,
+///         wedges up to 6; with weights one degree less. Others, and pyramids inside, are approximated by interpolating
+///         polynomials. No edge is halved more than 20 times; a deviation that remains is included in the error.
 ///
-/// Source  Halving by edges, so that faces agree without their tets being looked at: Ruprecht, Mueller, "A scheme for
+/// Source  Halving by edges, so that faces agree without comparing their tets: Ruprecht, Mueller, "A scheme for
 ///         edge-based adaptive tetrahedron subdivision" (Mathematical Visualization, 1998).
 class CurvedSplitter {
  public:
   explicit CurvedSplitter(const CurvedTolerance& tolerance) : tolerance_(tolerance) {}
 
-  /// Divides one cell, of as many positions and values as the lattice has nodes; no values: the field is one number.
-  /// Weights as CurvedCell::set() has them.
-  /// `first` are the tets of its corners, numbered as in the cell. Throws std::length_error for more than `limit` tets.
+  /// Divides one cell, with as many positions and values as the lattice has nodes; empty values: the field is constant.
+  /// Weights as in CurvedCell::set(). `first` are the tets of its corners, numbered as in the cell. Throws
+  /// std::length_error for more than `limit` tets.
   void split(const CurvedLattice& lattice, std::span<const glm::dvec3> positions, std::span<const double> values,
              std::span<const double> weights, std::span<const scene::Tet> first, std::size_t limit);
 
-  /// Of the last cell: tets in corner numbers, and from the number of corners on in `added`, position and field.
+  /// Results for the last cell: tets in corner numbers, followed by the indices of `added`, which has position and
+  /// field.
   [[nodiscard]] std::span<const scene::Tet> tets() const { return tets_; }
   [[nodiscard]] std::size_t corners() const { return corners_; }
   [[nodiscard]] std::span<const glm::dvec4> added() const { return std::span(values_).subspan(corners_); }
   [[nodiscard]] const CurvedError& error() const { return error_; }
 
-  /// Says of each of a cell's first tets how far its worst edge is off, in tolerances; more where it will take
-  /// more tets than one of a polynomial.
+  /// Passes the deviation of the worst edge, in tolerances, for each of a cell's initial tets; more if the tet will
+  /// need more tets than one of a polynomial.
   void tally_excess(const CurvedLattice& lattice, std::span<const glm::dvec3> positions, std::span<const double> values,
                     std::span<const double> weights, std::span<const scene::Tet> first,
                     const std::function<void(double excess)>& say);
@@ -77,21 +79,21 @@ class CurvedSplitter {
  private:
   using Corners = std::span<const std::uint32_t>;
   struct Edge {
-    float excess;                 ///< how far it is off, in tolerances; halved if over 1
-    std::uint32_t middle = none;  ///< its point, once it is halved
+    float excess;                 ///< deviation in tolerances; the edge is halved if over 1
+    std::uint32_t middle = none;  ///< its midpoint, once halved
   };
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
   void begin(const CurvedLattice& lattice, std::span<const glm::dvec3> positions, std::span<const double> values,
              std::span<const double> weights);
   Edge& edge(std::uint32_t a, std::uint32_t b);
-  /// Bernstein's coefficients of what is off on a segment, triangle or tet.
+  /// Bernstein coefficients of the deviation on a segment, triangle or tet.
   std::span<const glm::dvec4> departures(Corners corners);
   double least_weight(std::span<const CellPlace> places, unsigned faces, const BernsteinForm& form);
-  /// Those of a tet, from its net.
+  /// The same for a tet, computed from its net.
   std::span<const glm::dvec4> net_departures(const scene::Tet& tet);
   void open(const scene::Tet& tet);
-  /// The coefficients of a tet, from the cell's functions: tet_net_.
+  /// Computes the coefficients of a tet from the cell's functions: tet_net_.
   void make_net(const scene::Tet& tet);
   [[nodiscard]] glm::dvec3 gradient_at(std::size_t corner) const;
   [[nodiscard]] double excess_of(std::span<const glm::dvec4> departures) const;
@@ -110,16 +112,16 @@ class CurvedSplitter {
   std::vector<unsigned> faces_;
   std::vector<glm::dvec4> values_;
   std::unordered_map<std::uint64_t, Edge> edges_;
-  std::map<std::array<std::uint32_t, 3>, std::uint32_t> face_points_;  ///< within faces, by their corners in order
+  std::map<std::array<std::uint32_t, 3>, std::uint32_t> face_points_;  ///< by the sorted corners of their faces
   std::vector<scene::Tet> open_, tets_;
-  int degree_ = 1;  ///< of the cell, or of what stands for its functions
+  int degree_ = 1;  ///< of the cell, or of the approximation of its functions
   const BernsteinNet* net_ = nullptr;
-  bool nets_are_exact_ = false;  ///< a half's coefficients follow from the whole's
-  /// Each open tet's coefficients, one after the other, where they are exact; those of the tet at hand.
+  bool nets_are_exact_ = false;  ///< the coefficients of a half follow from those of the whole
+  /// Coefficients of each open tet, one after the other, if they are exact; and those of the current tet.
   std::vector<glm::dvec4> open_nets_, tet_net_;
   std::vector<glm::dvec4> samples_, coefficients_;
   std::vector<double> weight_samples_;
-  CurvedError error_, tet_error_;  ///< of the cell's tets so far, and of the one at hand
+  CurvedError error_, tet_error_;  ///< of the cell's tets so far, and of the current one
 };
 
 }  // namespace tessera::cells

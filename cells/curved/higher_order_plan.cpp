@@ -15,19 +15,20 @@ namespace {
 constexpr scene::Box no_box{glm::dvec3(std::numeric_limits<double>::infinity()),
                             glm::dvec3(-std::numeric_limits<double>::infinity())};
 
-/// Rays along a surface that is off by so much of the diagonal change pixels some four times as far as a field that is
-/// off by as much of its range: of a block of quadratic hexahedra a quarter takes the fewest tets for one error.
+/// A position error, relative to the diagonal, changes pixels at rays along a surface some four times as much as the
+/// same error of the field relative to its range: for a block of quadratic hexahedra, a quarter takes the fewest tets
+/// for a given error.
 constexpr double position_share = 0.25;
 
 constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
 
-/// About how many tets a first tet of a bin becomes where the tolerance is 2^(step/2) times as large.
+/// Estimated number of tets that an initial tet of a bin becomes with a tolerance 2^(step/2) times as large.
 double tets_of(std::size_t bin, std::size_t step) {
   const double excess = std::exp2((static_cast<double>(bin) + 0.5 - static_cast<double>(step)) / 2);
   return bin <= step ? 1 : excess * std::sqrt(excess);
 }
 
-/// Has `use` look at the higher-order cells of each block that has some.
+/// Calls `use` with the higher-order cells of each block that has any.
 template <class Use>
 void for_curved_cells(std::span<const CellBlock> blocks, const FieldChoice& choice, const CurvedSettings& settings,
                       const Use& use) {
@@ -45,8 +46,7 @@ void for_curved_cells(std::span<const CellBlock> blocks, const FieldChoice& choi
   }
 }
 
-/// A node has up to eight cells of six tets round it, and a cell folded over takes some eight times what is foreseen of
-/// its tets.
+/// A node has up to eight cells of six tets around it, and a folded cell takes about eight times the predicted tets.
 bool may_take_too_many(const ReadOptions& options, const HigherOrderPlan& plan, const ExcessTally& tally) {
   std::size_t worst = tally.size() - 1;
   while (worst > 0 && tally[worst] == 0) --worst;
@@ -54,7 +54,7 @@ bool may_take_too_many(const ReadOptions& options, const HigherOrderPlan& plan, 
   return 6 * 8 * 8 * std::pow(excess / plan.tolerance, 1.5) >= static_cast<double>(plan.settings.limit);
 }
 
-/// Whether dividing all cells takes a second or so: what a tet takes grows with the nodes of its cell.
+/// Whether dividing all cells takes about a second: the time per tet grows with the number of nodes of its cell.
 bool is_quickly_divided(std::span<const CellBlock> blocks, const HigherOrderPlan& plan, const ExcessTally& tally) {
   constexpr std::uint64_t few_tets = 48;
   constexpr std::size_t most_nodes_of_tets = 1 << 24;
@@ -93,7 +93,7 @@ CurvedSettings asked_tolerance(const ReadOptions& options, const scene::Box& box
     return s.name == choice.name && s.association == choice.association;
   });
   if (summary == fields.end() || choice.association != scene::Association::point) return asked;
-  // Of one component of a vector the lengths' range says only that it lies within them, either sign.
+  // For one component of a vector, the range of the lengths only bounds its absolute value.
   const double range =
       summary->components > 1 && choice.component != magnitude ? 2 * summary->high : summary->high - summary->low;
   if (range > 0) asked.tolerance.field = options.higher_order_tolerance * range;
@@ -113,7 +113,7 @@ ExcessTally tally_excess(std::span<const CellBlock> blocks, const FieldChoice& c
 
 std::uint64_t usual_tets(const ExcessTally& tally) {
   constexpr double least = 1 << 18, most = 1 << 21;
-  std::uint64_t outliers = 48;  // eight hexahedra, of six tets each, meet at a node
+  std::uint64_t outliers = 48;  // eight hexahedra with six tets each meet at a node
   double tets = 0, first = 0;
   for (std::size_t bin = tally.size(); bin-- > 0;) {
     const std::uint64_t left_out = std::min(outliers, tally[bin]);
@@ -143,8 +143,8 @@ HigherOrderPlan planned(const ReadOptions& options, const CurvedSettings& asked,
   plan.tolerance = factor * options.higher_order_tolerance;
   plan.settings.tolerance.position *= factor;
   plan.settings.tolerance.field *= factor;
-  // The plan foresees how many there are, within three times, but not of cells folded over themselves, a damaged
-  // file's. What is twice the most is enough then.
+  // The plan predicts the number of tets within a factor of three, except for the folded cells of a damaged file.
+  // Unless the user chose the number, twice as many must be enough.
   plan.settings.limit = std::max<std::size_t>(most / 2 * 3, 1 << 16);
   const std::uint64_t all = std::max(std::min(most, unlimited / 8) * 3, std::uint64_t{1} << 17);
   plan.settings.all = is_chosen ? all : std::min(all, std::max(2 * most, std::uint64_t{1} << 22));
