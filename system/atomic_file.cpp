@@ -20,7 +20,8 @@ namespace fs = std::filesystem;
 
 fs::path folder_of(const fs::path& target) { return target.has_parent_path() ? target.parent_path() : fs::path("."); }
 
-/// A name in the target's folder that does not depend on the target's, which may be as long as names can be.
+/// A name in the target's directory that does not depend on the target's name, which may already have the maximum
+/// length.
 fs::path part_name(const fs::path& target, unsigned number) {
   return folder_of(target) / fmt::format(".tessera-{}-{}.part", ::getpid(), number);
 }
@@ -56,7 +57,7 @@ Error OutputFault::since_changed() const {
 
 void check_writable(const fs::path& target) {
   try {
-    const AtomicFile probe(target);  // never committed: leaves no trace
+    const AtomicFile probe(target);  // never committed: leaves nothing behind
   } catch (const OutputFault& fault) {
     throw Error(fault);
   }
@@ -75,7 +76,7 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
     fail(errno, "cannot be written");
   }
   descriptor_ = ::open(folder_of(target_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
-  // EISDIR and EOPNOTSUPP are how kernels and file systems without O_TMPFILE say so; any other failure will show again.
+  // Kernels and file systems without O_TMPFILE return EISDIR or EOPNOTSUPP; any other failure will occur again.
   if (descriptor_ < 0) open_named();
   begun_ = true;
 }
@@ -129,17 +130,17 @@ fs::path AtomicFile::named_part() {
 }
 
 void AtomicFile::commit() {
-  // What was private stays so; where the file system knows no permissions there are none to keep.
+  // A private file stays private; file systems without permissions have none to keep.
   struct stat present {};
   if (::stat(target_.c_str(), &present) == 0 && S_ISREG(present.st_mode))
     static_cast<void>(::fchmod(descriptor_, present.st_mode & 0777));
-  // Without fsync a machine that goes down after the rename may keep the name and lose the bytes. EINVAL: a file system
-  // that has no such thing.
+  // Without fsync, a machine that crashes after the rename may keep the name and lose the bytes. EINVAL: the file
+  // system does not support it.
   if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(errno, "cannot be written");
   const auto lock = system::naming_outputs();
   if (part_.empty()) {
     const std::string self = fmt::format("/proc/self/fd/{}", descriptor_);
-    // A new file gets its name at once, so that a process killed here leaves nothing else.
+    // A new file gets its name at once, so that a process killed here leaves nothing behind.
     if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, target_.c_str(), AT_SYMLINK_FOLLOW) == 0) {
       ::close(descriptor_);
       descriptor_ = -1;
@@ -202,7 +203,7 @@ void write_text(const fs::path& target, std::string_view text) {
 }
 
 void check_not_input(const fs::path& target, const fs::path& input) {
-  std::error_code absent;  // either of them missing: not the same file
+  std::error_code absent;  // either is missing: not the same file
   if (!input.empty() && fs::equivalent(target, input, absent))
     throw bad_input(
         fmt::format("{}: is an input of this run and would be overwritten; choose another name", target.string()));

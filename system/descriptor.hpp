@@ -5,7 +5,7 @@
 
 namespace tessera::system {
 
-/// A file descriptor that is closed with it.
+/// A file descriptor that this object owns and closes.
 class Descriptor {
  public:
   Descriptor() = default;
@@ -22,7 +22,7 @@ class Descriptor {
   int number_ = -1;
 };
 
-/// Writes all of it; false if it cannot.
+/// Writes all bytes; false if that fails.
 bool write_all(int file, const void* bytes, std::size_t count);
 
 }  // namespace tessera::system

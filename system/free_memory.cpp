@@ -9,10 +9,10 @@ namespace tessera::system {
 
 namespace {
 
-/// What the process's control group, a container's or a job's, may still take. Cached files make room.
+/// Bytes that the process's control group (a container or job) may still allocate. Cached files can be evicted.
 std::uint64_t left_in_group() {
   std::uint64_t most = 0, used = 0, cached = 0;
-  // "max" is no number: there is no limit.
+  // "max" is not a number: there is no limit.
   if (!(std::ifstream("/sys/fs/cgroup/memory.max") >> most) ||
       !(std::ifstream("/sys/fs/cgroup/memory.current") >> used))
     return UINT64_MAX;

@@ -5,8 +5,8 @@
 
 namespace tessera::system {
 
-/// Bytes of memory that can be had without swapping: past it the system ends processes instead of refusing. The largest
-/// number where the system does not say.
+/// Bytes of memory available without swapping: beyond them the system kills processes instead of refusing memory. The
+/// largest number if the system does not report it.
 std::uint64_t available_memory();
 
 }  // namespace tessera::system

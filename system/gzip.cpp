@@ -14,7 +14,7 @@
 namespace tessera::system {
 namespace {
 
-constexpr int either_header = 15 + 32;  // zlib finds out whether it is gzip's or its own
+constexpr int either_header = 15 + 32;  // zlib detects whether the header is gzip's or its own
 
 struct InflateState {
   z_stream z{};
@@ -27,7 +27,7 @@ struct InflateState {
 };
 
 void require_possible(std::uint64_t packed, std::uint64_t count, const std::string& source) {
-  constexpr std::uint64_t best = 1040;  // 1032 and room for headers
+  constexpr std::uint64_t best = 1040;  // 1032, plus headers
   if (count / best > packed)
     throw scene::bad_input(
         fmt::format("{}: its header asks for {} bytes, {} compressed ones cannot hold them; the file is truncated or "
@@ -42,7 +42,7 @@ scene::Error ends_early(std::uint64_t made, std::uint64_t count, const std::stri
                   source, made, count));
 }
 
-/// Fills `out` as far as the stream goes; the number of bytes written. Several gzip members follow one another.
+/// Fills `out` as far as the stream goes; returns the number of bytes written. Supports consecutive gzip members.
 std::size_t inflate_into(std::span<const std::byte> stream, std::span<std::byte> out) {
   constexpr std::size_t most = std::numeric_limits<uInt>::max();
   InflateState state;
@@ -104,7 +104,7 @@ void inflate_parts(const std::filesystem::path& file, const InflatedRange& range
     }
     const bool ended = result == Z_STREAM_END;
     if (ended && inflateReset(&z) != Z_OK) break;
-    // Of a stream that goes on no byte may be left; Z_BUF_ERROR says that nothing could be done.
+    // A stream that continues must not have bytes left; Z_BUF_ERROR means that no progress was possible.
     if ((!ended && result != Z_OK) || (ended && z.avail_in == 0 && at == size)) break;
   }
   if (made < end) throw ends_early(made, end, source);
@@ -135,7 +135,7 @@ std::uint64_t inflate_to(int file, const PositionalFile& packed, const InflateLi
       z.next_in = reinterpret_cast<Bytef*>(in.data());
       z.avail_in = static_cast<uInt>(now);
     }
-    // Members follow one another; what follows the last one is padding, as gzip itself takes it.
+    // Members may follow each other; bytes after the last are padding, as in gzip itself.
     if (ended && (z.avail_in == 0 || *z.next_in != 0x1f)) return written;
     z.next_out = reinterpret_cast<Bytef*>(out.data());
     z.avail_out = static_cast<uInt>(out.size());
@@ -155,7 +155,7 @@ std::uint64_t inflate_to(int file, const PositionalFile& packed, const InflateLi
       throw fail(scene::ErrorCode::system_failure, "memory ran out", "use a larger machine or a part of the data");
     if (is_over) return written;
     ended = result == Z_STREAM_END;
-    if (!ended && result != Z_OK)  // Z_BUF_ERROR where the stream ends
+    if (!ended && result != Z_OK)  // Z_BUF_ERROR if the stream ends
       throw fail(scene::ErrorCode::bad_input,
                  fmt::format("its compressed bytes end or break, {} come out of them", written),
                  "the file is truncated or damaged, write it again");

@@ -13,7 +13,7 @@
 namespace tessera::system {
 namespace {
 
-/// By proc(5): the state follows the name, which is in parentheses and may hold some.
+/// According to proc(5), the state follows the name, which is in parentheses and may contain some.
 bool all_threads_sleep(pid_t process) {
   std::error_code unknown;
   std::filesystem::directory_iterator thread(fmt::format("/proc/{}/task", process), unknown);

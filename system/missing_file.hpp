@@ -8,11 +8,11 @@
 
 namespace tessera::system {
 
-/// The error that a file is not there: it names the file of the same folder that was probably meant, by the names of
-/// the folder's first thousand entries.
+/// The error for a missing file: it suggests the file of the same directory that was probably meant, among the first
+/// thousand entries.
 scene::Error missing_file(const std::filesystem::path& file);
 
-/// "did you mean NAME?", or nothing.
+/// "did you mean NAME?", or empty.
 std::string meant_file(const std::filesystem::path& file);
 
 }  // namespace tessera::system

@@ -10,17 +10,17 @@
 
 namespace tessera::system {
 
-/// An open file that is read by position, by any number of threads. It needs its name no longer: files that are removed
-/// meanwhile can be read to the end.
+/// An open file that any number of threads read by position. The name is no longer needed after opening: a file that is
+/// removed can still be read to the end.
 class PositionalFile {
  public:
-  /// `name` for messages; empty: the file's. Throws as open_regular (system/regular_file.hpp).
+  /// `name` for messages; empty: the file's. Throws like open_regular (system/regular_file.hpp).
   explicit PositionalFile(const std::filesystem::path& file, std::string name = {});
 
-  /// `count` bytes from byte `at` on. Throws Error(system_failure) if the file ends before, or the disk fails.
+  /// `count` bytes from byte `at` on. Throws Error(system_failure) if the file ends earlier, or the disk fails.
   void read(std::uint64_t at, std::byte* to, std::uint64_t count) const;
 
-  /// Up to `count` bytes from the beginning; fewer if it ends before.
+  /// Up to `count` bytes from the beginning; fewer if the file is shorter.
   [[nodiscard]] std::string beginning(std::uint64_t count) const;
 
   [[nodiscard]] std::uint64_t size() const;

@@ -17,10 +17,10 @@
 namespace tessera::system {
 namespace {
 
-/// A file without a name; -1 and errno.
+/// An unnamed file; -1 with errno on failure.
 int nameless_file(const std::filesystem::path& folder) {
   const int file = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  // EISDIR and EOPNOTSUPP are how kernels and file systems without O_TMPFILE say so; other failures will show again.
+  // Kernels and file systems without O_TMPFILE return EISDIR or EOPNOTSUPP; any other failure will occur again.
   if (file >= 0) return file;
   std::string name = (folder / "tessera-XXXXXX").string();
   const int named = ::mkostemp(name.data(), O_CLOEXEC);
@@ -28,9 +28,9 @@ int nameless_file(const std::filesystem::path& folder) {
   return named;
 }
 
-/// 0, or why there is no room for so many bytes, as far as can be known before they are written.
+/// 0, or the reason why there is no space for so many bytes, as far as can be known before writing.
 int room_for(int file, std::uint64_t bytes) {
-  // Past this limit a signal comes, which would end the process.
+  // Beyond this limit the process would be killed by a signal.
   rlimit most{};
   if (::getrlimit(RLIMIT_FSIZE, &most) == 0 && most.rlim_cur != RLIM_INFINITY && bytes > most.rlim_cur) return EFBIG;
   if (::fallocate(file, 0, 0, static_cast<off_t>(bytes)) == 0) return 0;

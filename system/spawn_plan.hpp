@@ -11,19 +11,19 @@
 
 namespace tessera::system {
 
-/// How a program is to be started: its descriptors, `files`, are the caller's to plan. All its signals are at their
-/// defaults, and it is abandoned with this process's outputs (system/unfinished.hpp).
+/// How to start a program. The caller sets up its descriptors, `files`. All signals have their default action, and it
+/// is abandoned with this process's outputs (system/unfinished.hpp).
 class SpawnPlan {
  public:
-  /// Signals that it is deaf to.
+  /// `blocked`: signals blocked in the child.
   explicit SpawnPlan(std::initializer_list<int> blocked = {});
   ~SpawnPlan();
   SpawnPlan(const SpawnPlan&) = delete;
   SpawnPlan& operator=(const SpawnPlan&) = delete;
 
-  /// A terminal's signals do not reach it, only this process.
+  /// Signals from a terminal then reach only this process, not the child.
   void set_own_group();
-  /// Returns 0, or what errno would be. `process` is set, and unfinished, if it has started.
+  /// Returns 0 or an errno value. If the program has started, `process` is set and registered as unfinished.
   int start(const std::filesystem::path& program, std::vector<std::string> words, char* const* environment,
             pid_t& process);
 

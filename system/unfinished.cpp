@@ -23,13 +23,13 @@ struct Unfinished {
   std::vector<pid_t> programs;
 };
 
-/// Never destroyed: a signal may come while the process ends.
+/// Never destroyed: a signal may arrive while the process ends.
 Unfinished& unfinished() {
   static auto* const all = new Unfinished;
   return *all;
 }
 
-/// The same where a handler can read it. Whoever takes a name out has it, and may free it.
+/// The same names in a form that a handler can read. The thread that exchanges a name for null owns it and may free it.
 std::array<std::atomic<char*>, 64> part_names{};
 std::array<std::atomic<pid_t>, 64> program_numbers{};
 
@@ -79,12 +79,12 @@ inline namespace v0_1 {
 
 void abandon_outputs() noexcept {
   system::Unfinished& all = system::unfinished();
-  // A file system that does not answer must not keep the process: then its files stay.
+  // A file system that does not respond must not block the process: its files then stay.
   std::unique_lock lock(all.naming, std::chrono::seconds(1));
   if (!lock.owns_lock()) return;
   for (const std::filesystem::path& part : all.parts) ::unlink(part.c_str());
   for (const pid_t program : all.programs) ::kill(program, SIGKILL);
-  static_cast<void>(lock.release());  // locked for good
+  static_cast<void>(lock.release());  // never unlocked
 }
 
 }  // namespace v0_1

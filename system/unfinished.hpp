@@ -6,23 +6,23 @@
 #include <filesystem>
 #include <mutex>
 
-/// What would outlive this process if it ended in mid-run, for abandon_outputs(): files under a temporary name, and
-/// programs that do not see at once that their caller is gone. Of the process; there is no other owner that a signal
-/// could be answered by.
+/// Things that would outlive this process if it ended during a run, for abandon_outputs(): files with temporary names,
+/// and programs that do not notice at once that their caller has ended. Process-wide: a signal handler has no other
+/// object to use.
 namespace tessera::system {
 
-/// Whoever makes, renames or removes such a file holds this meanwhile. Not to be had any more after abandon_outputs().
+/// To be held while such a file is created, renamed or removed. Not available after abandon_outputs().
 [[nodiscard]] std::unique_lock<std::timed_mutex> naming_outputs();
 
-/// With that lock held.
+/// Requires that lock.
 void add_unfinished(const std::filesystem::path& part);
 void remove_unfinished(const std::filesystem::path& part);
 
-/// What abandon_outputs() does, as far as a signal's handler may: without the lock, of the first 64 of each. The
-/// process ends after it.
+/// The part of abandon_outputs() that a signal handler may execute: without the lock, for the first 64 of each. The
+/// process ends afterwards.
 void abandon_in_handler() noexcept;
 
-/// With that lock held, before its end is waited for.
+/// Requires that lock. To be called before waiting for the program's end.
 void add_unfinished(pid_t program);
 void remove_unfinished(pid_t program);
 
