@@ -14,7 +14,7 @@
 
 namespace tessera::readers {
 
-/// The arrays of the files that were opened, until they are taken or dropped.
+/// The arrays of the opened files, until they are taken or dropped.
 class Holdings {
  public:
   /// Copies tuples [first, first + count) to `out`.
@@ -24,13 +24,13 @@ class Holdings {
     Read read;
   };
 
-  /// Numbers the array and keeps what reads it.
+  /// Numbers the array and stores the function that reads it.
   io::ForeignArray hold(io::ForeignArray array, Read read);
 
-  /// Of numbers that stay where they are for as long as `owner` lives.
+  /// Holds numbers that stay in memory during the lifetime of `owner`.
   io::ForeignArray hold(io::ForeignArray array, const void* numbers, std::shared_ptr<const void> owner);
 
-  /// Null if there is none of this number.
+  /// Null if no array has this number.
   [[nodiscard]] const Held* find(std::uint64_t number) const;
   void drop(std::uint64_t number) { held_.erase(number); }
 
@@ -39,7 +39,7 @@ class Holdings {
   std::uint64_t next_ = 0;
 };
 
-/// A vector's numbers, which the holdings then own. They say how many tuples there are.
+/// Takes ownership of a vector's numbers, which determine the number of tuples.
 template <class T>
 io::ForeignArray hold_vector(Holdings& holdings, io::ForeignArray array, std::vector<T> numbers) {
   array.tuples = numbers.size() * sizeof(T) / (static_cast<std::size_t>(array.components) * io::size_of(array.type));
@@ -48,7 +48,7 @@ io::ForeignArray hold_vector(Holdings& holdings, io::ForeignArray array, std::ve
   return holdings.hold(std::move(array), start, std::move(kept));
 }
 
-/// A block as its reader made it. Its fields are read when they are asked for, twice: once for their ranges.
+/// Holds a block created by a reader. Its fields are read on demand, twice: once for their ranges.
 io::ForeignPart hold_block(Holdings& holdings, cells::CellBlock block);
 
 }  // namespace tessera::readers

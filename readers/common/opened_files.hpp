@@ -6,8 +6,8 @@
 
 namespace tessera::readers {
 
-/// Names of the regular files that this process has opened to read since it was last asked, by its libraries too: they
-/// call this program's own open() and fopen(). The caller notes them (system/files_read.hpp).
+/// Names of the regular files that this process has opened for reading since the last call, including those opened by
+/// its libraries: they call this program's own open() and fopen(). The caller records them (system/files_read.hpp).
 std::vector<std::string> take_opened_files();
 
 }  // namespace tessera::readers

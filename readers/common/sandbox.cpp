@@ -28,7 +28,7 @@ constexpr std::uint32_t architecture = AUDIT_ARCH_X86_64;
 constexpr std::uint32_t architecture = AUDIT_ARCH_AARCH64;
 #endif
 
-/// Refused whatever their arguments are. Old calls that newer architectures lack are left out there.
+/// Refused with any arguments. Old calls that newer architectures lack are left out there.
 constexpr std::array refused = {
 #ifdef SYS_creat
     SYS_creat,
@@ -91,7 +91,7 @@ constexpr std::array refused = {
 
 constexpr std::uint32_t refusal = SECCOMP_RET_ERRNO | EACCES, unknown_call = SECCOMP_RET_ERRNO | ENOSYS;
 
-/// The filter's instructions, one after the other; each check leads to the next one or to a result of its own.
+/// The filter's instructions in order; each check continues with the next one or jumps to its own result.
 class Filter {
  public:
   void load(std::size_t offset) { add(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(offset)); }
@@ -104,11 +104,11 @@ class Filter {
     code_.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, number, 1, 0));
     result(value);
   }
-  /// The lower half of an argument, of a call of this number; what is added until end_call() is for that.
+  /// Loads the lower half of an argument if the call has this number; instructions added until end_call() apply to it.
   void begin_call(long number, std::size_t argument) {
     open_ = code_.size();
     code_.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, static_cast<std::uint32_t>(number), 0, 0));
-    load(offsetof(seccomp_data, args) + 8 * argument);  // little endian, as all architectures here are
+    load(offsetof(seccomp_data, args) + 8 * argument);  // little endian, like all supported architectures
   }
   void result_if_any_bit(std::uint32_t bits, std::uint32_t value) {
     code_.push_back(BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, bits, 0, 1));
@@ -159,7 +159,7 @@ void give_up_rights(MayFork may_fork) {
   opens(SYS_open, 1);
 #endif
   opens(SYS_openat, 2);
-  // Their flags are in memory, which a filter does not see; the C library does without them.
+  // Their flags are in memory, which a filter cannot read; the C library works without these calls.
 #ifdef SYS_clone3
   filter.result_if_equal(SYS_clone3, unknown_call);
 #endif
@@ -171,7 +171,7 @@ void give_up_rights(MayFork may_fork) {
     filter.result_unless_any_bit(CLONE_THREAD, refusal);
     filter.end_call();
   }
-  // abort() sends its own process a signal.
+  // abort() sends a signal to its own process.
   for (const long call : {SYS_kill, SYS_tkill, SYS_tgkill}) {
     filter.begin_call(call, 0);
     filter.result_unless_equal(static_cast<std::uint32_t>(::getpid()), refusal);
@@ -182,7 +182,7 @@ void give_up_rights(MayFork may_fork) {
 }
 
 #else
-void give_up_rights(MayFork /*may_fork*/) {}  // system calls have other numbers, or arguments, elsewhere
+void give_up_rights(MayFork /*may_fork*/) {}  // system calls have other numbers or arguments on other systems
 #endif
 
 }  // namespace tessera::readers

@@ -9,14 +9,14 @@ inline constexpr bool is_sanitized = true;
 inline constexpr bool is_sanitized = false;
 #endif
 
-/// Into processes of the same program.
+/// Whether the process may fork (processes of the same program).
 enum class MayFork : bool { no, yes };
 
-/// From here on this process changes no file, opens no socket, starts no program and sends no signal to another
-/// process: what a damaged or hostile file makes of a library stays in it. It may still read.
+/// From here on this process cannot change files, open sockets, start programs or signal other processes: effects of a
+/// damaged or hostile file on a library stay inside it. It may still read.
 ///
-/// By a seccomp filter, which all its threads have. A kernel without it is no error; builds with sanitizers, which need
-/// more, have none.
+/// Uses a seccomp filter, which applies to all its threads. A kernel without seccomp is not an error; builds with
+/// sanitizers, which need more rights, have no filter.
 void give_up_rights(MayFork may_fork);
 
 }  // namespace tessera::readers

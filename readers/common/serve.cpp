@@ -48,11 +48,11 @@ Json open(std::span<const Reader> readers, Holdings& holdings, const Json& reque
                      fmt::format("it was built without {}", name), "install it as the library");
 }
 
-/// A file without a name that holds an array's numbers.
+/// An unnamed file with an array's numbers.
 system::Descriptor file_of(const Holdings::Held& held) {
   system::Descriptor file(::memfd_create("tessera", MFD_CLOEXEC | MFD_ALLOW_SEALING));
   if (!file.is_open()) throw std::bad_alloc();
-  constexpr std::size_t some_bytes = 1 << 18;  // which stay in the processor's cache
+  constexpr std::size_t some_bytes = 1 << 18;  // stays in the processor's cache
   const std::size_t tuple = held.array.tuple_bytes();
   const std::uint64_t at_once = std::max<std::uint64_t>(some_bytes / tuple, 1);
   std::vector<std::byte> some(std::min(at_once, held.array.tuples) * tuple);
@@ -64,7 +64,7 @@ system::Descriptor file_of(const Holdings::Held& held) {
   return file;
 }
 
-/// Memory of the caller's, in slots, through which arrays go without a file each.
+/// Memory of the caller, in slots, which transfers arrays without a file each.
 class Window {
  public:
   void open(const system::Descriptor& file, std::size_t slot) {
@@ -89,8 +89,9 @@ class Window {
   std::size_t slot_ = 1;
 };
 
-/// Ends this process with its caller, whose end of the socket closes however it ends. A thread that waits for that, and
-/// not PR_SET_PDEATHSIG, which comes when the thread that started this one ends, though its process goes on.
+/// Ends this process with its caller, whose end of the socket closes however it ends. Uses a thread that waits for that
+/// instead of PR_SET_PDEATHSIG, which is sent when the thread that started this process ends, even if its process
+/// continues.
 void end_with_caller() {
   pollfd caller{.fd = socket_to_caller, .events = POLLRDHUP, .revents = 0};
   while (::poll(&caller, 1, -1) < 0 && errno == EINTR) {
@@ -102,7 +103,7 @@ Json error_json(const scene::Error& error) {
   return {{"error", {{"line", error.what()}, {"code", static_cast<int>(error.code())}}}};
 }
 
-/// Answers one request. False if the caller is gone.
+/// Answers one request. False if the caller has ended.
 bool answer(std::span<const Reader> readers, Holdings& holdings, Window& window, const Json& request,
             const system::Descriptor& given) {
   const auto asked = request.at("do").get<std::string>();
@@ -145,11 +146,11 @@ bool answer(std::span<const Reader> readers, Holdings& holdings, Window& window,
 
 void report_progress(double done) {
   using Clock = std::chrono::steady_clock;
-  static Clock::time_point last{};  // the first report goes at once
+  static Clock::time_point last{};  // the first report is sent at once
   if (const Clock::time_point now = Clock::now(); now - last >= std::chrono::milliseconds(100)) {
     last = now;
     static_cast<void>(
-        io::send_message(socket_to_caller, Json::to_cbor({{"progress", done}})));  // if it is gone, serve() ends
+        io::send_message(socket_to_caller, Json::to_cbor({{"progress", done}})));  // fails if the caller has ended
   }
 }
 
@@ -166,14 +167,14 @@ void serve(std::span<const Reader> readers, MayFork may_fork) {
   give_up_rights(may_fork);
   try {
     std::thread(end_with_caller).detach();
-  } catch (const std::system_error&) {  // without a thread for it, it ends with the request that it is at
+  } catch (const std::system_error&) {  // without a thread for it, the process ends after the current request
   }
   Holdings holdings;
   Window window;
   if (!io::send_message(socket_to_caller, Json::to_cbor(Json::object()))) ::_exit(0);
   while (const std::optional<io::HelperMessage> message = io::receive_message(socket_to_caller))
     if (!answer(readers, holdings, window, Json::from_cbor(message->bytes), message->file)) break;
-  ::_exit(0);  // whatever damaged files have done to memory, nothing needs it any more
+  ::_exit(0);  // damaged files may have corrupted memory, so destructors are skipped
 }
 
 }  // namespace tessera::readers

@@ -11,7 +11,7 @@
 
 namespace tessera::readers {
 
-/// What a helper program reads with, by the name that a request gives.
+/// A reader of a helper program, with the name used in requests.
 struct Reader {
   std::string_view name;
   io::ForeignContents (*read)(Holdings&, const std::filesystem::path&, const nlohmann::json& request);
@@ -27,16 +27,16 @@ struct Reader {
 ///           {"do": "put", "array": number, "first", "count", "slot": index} -> {}; those tuples are in that slot
 ///           {"do": "drop", "arrays": [numbers]}                             -> nothing
 /// Failures  {"error": {"line", "code"}} instead.
-/// Before the answer to "open" any number of {"progress": how much of the file is read, 0 to 1} and, of formats that
-/// are many files, of {"reading": the one that is read from now on}, which a crash is then said of.
+/// Before the answer to "open" it sends any number of {"progress": read fraction of the file, 0 to 1} and, for formats
+/// of many files, {"reading": the file read from now on}, to which a crash is then attributed.
 /// Before the first request the process gives up its rights (sandbox.hpp).
-/// As soon as the caller is gone, killed perhaps, so is this process, whatever it is at.
+/// As soon as the caller has ended, for example because it was killed, this process ends too, whatever it is doing.
 [[noreturn]] void serve(std::span<const Reader> readers, MayFork may_fork = MayFork::no);
 
-/// Says how much of the file is read, 0 to 1, if it has not been said for a tenth of a second. For readers.
+/// Reports the read fraction of the file, 0 to 1, at most ten times a second. For readers.
 void report_progress(double done);
 
-/// Says which file is read from now on. For readers of formats that are many files.
+/// Reports the file that is read from now on. For readers of formats of many files.
 void report_reading(const std::filesystem::path& file);
 
 }  // namespace tessera::readers

@@ -8,33 +8,33 @@
 #include <string>
 #include <vector>
 
-/// Values of DICOM elements by their tag. What is missing or is not a number is none, never an error.
+/// Values of DICOM elements by their tag. Missing or non-numeric elements have no value, which is never an error.
 namespace tessera::readers {
 
-/// A text element, without the blanks that fill it up; empty if there is none.
+/// A text element without padding blanks; empty if it is missing.
 std::string dicom_text(const gdcm::DataSet& data, std::uint16_t group, std::uint16_t element);
 
-/// Decimal strings, with backslashes between; fewer than there are words if one is no number.
+/// Decimal strings separated by backslashes; stops before a word that is not a number.
 std::vector<double> dicom_numbers(const gdcm::DataSet& data, std::uint16_t group, std::uint16_t element);
 std::optional<double> dicom_number(const gdcm::DataSet& data, std::uint16_t group, std::uint16_t element);
 
-/// Binary elements: whole numbers of 16 bits (US), one of 16 or 32 (US, UL), and one of type FD.
+/// Binary elements: 16-bit integers (US), one integer of 16 or 32 bits (US, UL), and one of type FD.
 std::vector<std::uint16_t> dicom_shorts(const gdcm::DataSet& data, std::uint16_t group, std::uint16_t element);
 std::optional<double> dicom_count(const gdcm::DataSet& data, std::uint16_t group, std::uint16_t element);
 std::optional<double> dicom_double(const gdcm::DataSet& data, std::uint16_t group, std::uint16_t element);
 
-/// Seconds of HHMMSS.FFFFFF.
+/// Converts HHMMSS.FFFFFF to seconds.
 double dicom_seconds(double clock);
-/// Of YYYYMMDDHHMMSS.FFFFFF, a number that is larger the later it is.
+/// Converts YYYYMMDDHHMMSS.FFFFFF to a number that increases with time.
 std::optional<double> dicom_moment(const std::string& date_and_time);
 
-/// The items of a sequence; none if it is none.
+/// The items of a sequence; empty if the element is not a sequence.
 std::vector<gdcm::DataSet> dicom_items(const gdcm::DataSet& data, std::uint16_t group, std::uint16_t element);
 
-/// What orders pictures of one place.
+/// Sort key of images at one position.
 struct DicomTime {
   double value = 0;
-  double unit = 0;  ///< in seconds; 0: a number that counts
+  double unit = 0;  ///< in seconds; 0: the number is only a count
 };
 
 }  // namespace tessera::readers

@@ -17,7 +17,7 @@ std::optional<glm::dvec3> position_in(const gdcm::DataSet& data) {
   return p.size() == 3 ? std::optional(glm::dvec3(p[0], p[1], p[2])) : std::nullopt;
 }
 
-/// Rows and columns as unit vectors.
+/// Directions of rows and columns as unit vectors.
 std::optional<std::array<glm::dvec3, 2>> orientation_in(const gdcm::DataSet& data) {
   const std::vector<double> axes = dicom_numbers(data, 0x0020, 0x0037);
   if (axes.size() != 6) return std::nullopt;
@@ -26,7 +26,7 @@ std::optional<std::array<glm::dvec3, 2>> orientation_in(const gdcm::DataSet& dat
   return std::array{glm::normalize(row), glm::normalize(column)};
 }
 
-/// What functional groups state of frames; `slices_apart` and `thickness` 0: nothing.
+/// Values of functional groups for frames; `slices_apart` and `thickness` 0: not stated.
 struct FrameFacts {
   DicomFrame frame;
   bool has_position = false;
@@ -34,7 +34,7 @@ struct FrameFacts {
   double slices_apart = 0, thickness = 0;
 };
 
-/// The first item of a group's sequence among an item's.
+/// The first item of a group's sequence within an item.
 std::optional<gdcm::DataSet> group_in(const gdcm::DataSet& groups, std::uint16_t group, std::uint16_t element) {
   std::vector<gdcm::DataSet> items = dicom_items(groups, group, element);
   return items.empty() ? std::nullopt : std::optional(std::move(items.front()));
@@ -43,12 +43,12 @@ std::optional<gdcm::DataSet> group_in(const gdcm::DataSet& groups, std::uint16_t
 void add_measures(const gdcm::DataSet& data, FrameFacts& facts) {
   const std::vector<double> between = dicom_numbers(data, 0x0028, 0x0030);
   if (between.size() == 2 && between[0] > 0 && between[1] > 0)
-    facts.spacing.x = between[1], facts.spacing.y = between[0];  // between rows comes first
+    facts.spacing.x = between[1], facts.spacing.y = between[0];  // the spacing between rows comes first
   if (const auto apart = dicom_number(data, 0x0018, 0x0088)) facts.slices_apart = *apart;
   if (const auto thick = dicom_number(data, 0x0018, 0x0050)) facts.thickness = std::abs(*thick);
 }
 
-/// What orders frames of one place.
+/// Sort key of frames at one position.
 std::optional<DicomTime> time_in(const gdcm::DataSet& groups) {
   if (const auto position = group_in(groups, 0x0020, 0x9310))
     if (const auto offset = dicom_double(*position, 0x0020, 0x930d)) return DicomTime{*offset, 1};
@@ -60,7 +60,7 @@ std::optional<DicomTime> time_in(const gdcm::DataSet& groups) {
   return std::nullopt;
 }
 
-/// Of an item of functional groups, the file's shared ones or a frame's.
+/// Adds the values of an item of functional groups, the file's shared ones or a frame's.
 void add_groups(const gdcm::DataSet& groups, FrameFacts& facts) {
   if (const auto plane = group_in(groups, 0x0020, 0x9113))
     if (const auto position = position_in(*plane)) facts.frame.position = *position, facts.has_position = true;
@@ -79,7 +79,7 @@ void add_groups(const gdcm::DataSet& groups, FrameFacts& facts) {
     if (const auto delay = dicom_double(*heart, 0x0020, 0x9153)) facts.frame.time = {*delay, 1e-3};
 }
 
-/// What holds for all frames unless they state their own.
+/// Values that apply to all frames unless they state their own.
 FrameFacts facts_of_file(const gdcm::DataSet& data, const DicomSlice& slice) {
   FrameFacts facts;
   facts.frame.row = slice.row, facts.frame.column = slice.column;
@@ -101,8 +101,8 @@ FrameFacts facts_of_file(const gdcm::DataSet& data, const DicomSlice& slice) {
   return facts;
 }
 
-/// RT dose: how far each frame is along the normal from the first. Where the first is not zero they are places along
-/// the patient's axis instead.
+/// RT dose: the distance of each frame from the first along the normal. If the first is not zero, they are positions
+/// along the patient's axis instead.
 bool set_dose_places(const gdcm::DataSet& data, DicomSlice& slice) {
   const std::vector<double> offsets = dicom_numbers(data, 0x3004, 0x000c);
   if (offsets.size() != slice.each.size()) return false;
@@ -115,15 +115,15 @@ bool set_dose_places(const gdcm::DataSet& data, DicomSlice& slice) {
   return true;
 }
 
-/// Frames that follow each other, or by number where nuclear medicine numbers slices; of phases and time slots one
-/// after the other.
+/// Consecutive frames, numbered where nuclear medicine numbers slices; for phases and time slots, one sequence after
+/// the other.
 void set_even_places(const gdcm::DataSet& data, const FrameFacts& file, DicomSlice& slice) {
   std::vector<std::uint16_t> places = dicom_shorts(data, 0x0054, 0x0080);
   const std::vector<std::uint16_t> slots = dicom_shorts(data, 0x0054, 0x0070),
                                    phases = dicom_shorts(data, 0x0054, 0x0030);
   const std::size_t count = slice.each.size();
   const bool is_listed = places.size() == count;
-  // Several volumes one after the other, which the file counts.
+  // Several consecutive volumes, whose number the file states.
   const double volumes = dicom_number(data, 0x0020, 0x0105).value_or(1);
   const auto parts = static_cast<std::size_t>(std::clamp(volumes, 1.0, static_cast<double>(count)));
   const std::size_t each = !is_listed && count % parts == 0 ? count / parts : count;

@@ -7,15 +7,15 @@
 
 namespace tessera::readers {
 
-/// Where each frame of a file of several lies, its scale and its time: slice.each, spacing and frames_note. What frames
-/// do not say is the file's, which `slice` has already.
+/// Sets the position, scale and time of each frame of a multi-frame file: slice.each, spacing and frames_note. Frames
+/// without own values use the file's, which `slice` already has.
 ///
 /// Source  DICOM PS3.3, C.7.6.16 (functional groups, shared and per frame: plane position and orientation, pixel
 ///         measures, pixel value transformation, frame content, cardiac synchronization); C.8.8.3 (RT dose: grid frame
 ///         offset vector, dose grid scaling); C.8.4.8 and C.8.4.9 (nuclear medicine: slice, phase and time slot
 ///         vectors, detector information).
-/// Without Frames follow each other along the normal, by the spacing between slices, else the slice thickness, else one
-///         millimetre; frames_note says which.
+/// Without Frames are stacked along the normal, by the spacing between slices, else the slice thickness, else one
+///         millimetre; frames_note mentions which.
 void set_frames(const gdcm::DataSet& data, DicomSlice& slice);
 
 }  // namespace tessera::readers

@@ -9,9 +9,9 @@
 
 namespace tessera::readers {
 
-/// The headers of those files that are DICOM pictures. GDCM checks much by assertions, which end the process: headers
-/// are read in one forked from this helper, and from the next file on in another where that dies. One file among many
-/// that GDCM cannot stand is none of theirs.
+/// The headers of those files that are DICOM images. GDCM checks much by assertions, which end the process: headers are
+/// read in a process forked from this helper; if that dies, another continues with the next file. A file that makes
+/// GDCM abort counts as not being an image.
 std::vector<DicomSlice> read_dicom_headers(std::span<const std::filesystem::path> files);
 
 }  // namespace tessera::readers

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// tessera-read-dicom: reads DICOM files by GDCM, as tessera-read-vtk does other formats. A program of its own, since
-// that library and what it needs take a while to load.
+// tessera-read-dicom: reads DICOM files by GDCM, as tessera-read-vtk does for other formats. A separate program,
+// because that library and its dependencies take a while to load.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@
 namespace tessera::readers {
 namespace {
 
-/// Which of the files begin as DICOM and are none of the slices, for they may be missing ones.
+/// Notes files that begin like DICOM but are not among the slices, because they may be missing slices.
 void note_left_out(const std::vector<std::filesystem::path>& files, const std::vector<DicomSlice>& slices,
                    std::vector<std::string>& notes) {
   std::size_t count = 0;
@@ -44,7 +44,7 @@ void note_left_out(const std::vector<std::filesystem::path>& files, const std::v
                                 count > 1 ? "s" : "", first));
 }
 
-/// Slices beside each other; a folder without any, those in the folders below.
+/// Slices in one directory; if it has none, those in its subdirectories.
 std::vector<DicomSlice> slices_in(const std::filesystem::path& folder, std::vector<std::string>& notes) {
   constexpr std::size_t most_files = 200000;
   std::vector<std::filesystem::path> files;
@@ -54,7 +54,7 @@ std::vector<DicomSlice> slices_in(const std::filesystem::path& folder, std::vect
   const auto slices_among = [&notes](std::vector<std::filesystem::path>& found) {
     std::erase_if(found, [](const std::filesystem::path& file) {
       std::error_code unknown;
-      // A DICOMDIR is a list of the others.
+      // A DICOMDIR is an index of other files.
       return !std::filesystem::is_regular_file(file, unknown) || std::filesystem::file_size(file, unknown) < 132 ||
              file.filename() == "DICOMDIR";
     });
@@ -72,7 +72,7 @@ std::vector<DicomSlice> slices_in(const std::filesystem::path& folder, std::vect
   return slices_among(below);
 }
 
-/// The smallest type that holds all values: of whole numbers exactly, others as floats; blanks need floats.
+/// The smallest type for all values: integers exactly, others as floats; blanks require floats.
 NumberType type_of(const DicomValues& values) {
   const cells::NumberTally& t = values.tally;
   const auto within = [&](double low, double high) { return values.are_whole && t.low >= low && t.high <= high; };
@@ -85,15 +85,15 @@ NumberType type_of(const DicomValues& values) {
   return values.are_whole ? NumberType::float64 : NumberType::float32;
 }
 
-/// The samples of slices' files, each file's once.
+/// The samples of the slices' files, each file once.
 struct DicomStack {
   std::vector<DicomSlice> slices;
-  std::vector<std::shared_ptr<const DicomSamples>> samples;  ///< of each slice, perhaps with frames of others
+  std::vector<std::shared_ptr<const DicomSamples>> samples;  ///< per slice; may contain frames of others
 };
 
-/// As stored, and made into values as they are asked for.
+/// Holds samples as stored; they are converted to values on demand.
 io::ForeignArray hold_samples(Holdings& holdings, const DicomVolume& volume, std::vector<std::string>& notes) {
-  static_cast<void>(take_opened_files());  // those that were looked at, to find the slices' among them
+  static_cast<void>(take_opened_files());  // discards files that were only inspected
   const auto stack = std::make_shared<DicomStack>();
   stack->slices = volume.slices;
   constexpr std::size_t at_once = 1 << 15;
@@ -117,7 +117,7 @@ io::ForeignArray hold_samples(Holdings& holdings, const DicomVolume& volume, std
   if (values.shared > 0)
     notes.push_back(
         fmt::format("{} samples are in several segments; the segment with the largest number is shown", values.shared));
-  const std::size_t each = stack->samples.front()->frame_count();  // slices of a volume are of one size
+  const std::size_t each = stack->samples.front()->frame_count();  // slices of a volume have one size
   io::ForeignArray array{
       .name = "samples", .type = type_of(values), .tuples = each * stack->slices.size(), .tally = values.tally};
   return holdings.hold(array,
@@ -221,5 +221,5 @@ io::ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& 
 int main() {
   using namespace tessera::readers;
   constexpr Reader readers[] = {{"dicom", read_dicom}};
-  serve(readers, MayFork::yes);  // each part of a folder is looked through in a process of its own (dicom_headers.cpp)
+  serve(readers, MayFork::yes);  // a separate process reads the headers of each part of a directory (dicom_headers.cpp)
 }

@@ -15,7 +15,7 @@
 namespace tessera::readers {
 namespace {
 
-/// Decimal strings of a header round to about this, in millimetres and as a share of a step.
+/// Rounding errors of decimal strings in a header, in millimetres and relative to a step.
 constexpr double same_place = 1e-3, even_enough = 1e-2;
 
 bool lie_alike(const DicomSlice& a, const DicomSlice& b) {
@@ -25,12 +25,12 @@ bool lie_alike(const DicomSlice& a, const DicomSlice& b) {
          a.has_position == b.has_position && glm::dot(a.row, b.row) > 0.9999 && glm::dot(a.column, b.column) > 0.9999;
 }
 
-/// Slices that may be of one volume, in groups.
+/// Groups of slices that may belong to one volume.
 std::vector<std::vector<DicomSlice>> groups_of(std::vector<DicomSlice> slices) {
   std::vector<std::vector<DicomSlice>> groups;
   for (DicomSlice& slice : slices) {
     const auto alike = std::find_if(groups.begin(), groups.end(), [&](const std::vector<DicomSlice>& group) {
-      // Frames are a volume of their own.
+      // Each multi-frame file is a volume of its own.
       return slice.frames == 1 && lie_alike(group.front(), slice);
     });
     if (alike != groups.end())
@@ -73,8 +73,7 @@ std::vector<DicomSlice> chosen_group(std::vector<DicomSlice> slices, const std::
   return std::move(*chosen);
 }
 
-/// Each frame of a file of several as a slice of its own; of frames of several directions or spacings, those of the
-/// one that most have.
+/// Splits each multi-frame file into slices; if frames have several directions or spacings, keeps the most frequent.
 std::vector<DicomSlice> frames_as_slices(std::vector<DicomSlice> slices, std::vector<std::string>& notes) {
   if (slices.size() != 1 || slices.front().each.empty()) return slices;
   DicomSlice file = std::move(slices.front());
@@ -104,7 +103,7 @@ std::vector<DicomSlice> frames_as_slices(std::vector<DicomSlice> slices, std::ve
   return std::move(*most);
 }
 
-/// Slices of each place along the normal, those of one place by time and number.
+/// Slices grouped by position along the normal; those at one position sorted by time and number.
 std::vector<std::vector<DicomSlice>> by_place(std::vector<DicomSlice> slices) {
   const glm::dvec3 normal = slices.front().normal();
   const auto place = [&](const DicomSlice& s) {
@@ -114,7 +113,7 @@ std::vector<std::vector<DicomSlice>> by_place(std::vector<DicomSlice> slices) {
     return std::make_tuple(place(a), a.time.value, a.number, a.file) <
            std::make_tuple(place(b), b.time.value, b.number, b.file);
   });
-  // Places that differ by less than rounding are one.
+  // Positions that differ by less than rounding are merged.
   std::vector<std::vector<DicomSlice>> places;
   double last = 0;
   for (DicomSlice& slice : slices) {
@@ -137,7 +136,7 @@ std::size_t chosen_step(std::optional<std::size_t> wish, std::size_t count, cons
   return wish.value_or(count - 1);
 }
 
-/// In seconds from the first of so many slices of one place on; none where the files do not say it.
+/// Times in seconds from the first of `count` slices at one position; empty if the files do not state them.
 std::vector<double> times_of(const std::vector<DicomSlice>& at, std::size_t count) {
   std::vector<double> times;
   for (std::size_t k = 0; k < count; ++k) {
@@ -149,7 +148,7 @@ std::vector<double> times_of(const std::vector<DicomSlice>& at, std::size_t coun
   return times;
 }
 
-/// Slices of one place are of several times: the slices of one of them.
+/// If slices at one position have several times: the slices of one time.
 std::vector<DicomSlice> slices_of_step(std::vector<DicomSlice> slices, std::optional<std::size_t> wish,
                                        const std::string& source, DicomVolume& volume) {
   std::vector<std::vector<DicomSlice>> places = by_place(std::move(slices));
@@ -169,7 +168,7 @@ std::vector<DicomSlice> slices_of_step(std::vector<DicomSlice> slices, std::opti
   return chosen;
 }
 
-/// "2 liver, 5 spleen" of the numbers that there are.
+/// "2 liver, 5 spleen" for the existing numbers.
 std::string names_of(const DicomSegments& segments, const std::vector<std::int64_t>& numbers) {
   constexpr std::size_t most = 12;
   std::string words;
@@ -183,7 +182,7 @@ std::string names_of(const DicomSegments& segments, const std::vector<std::int64
   return words + (numbers.size() > most ? fmt::format(" and {} more", numbers.size() - most) : "");
 }
 
-/// Frames without anything of a segment may be left out of a file: slices of zeros in their places.
+/// A file may omit frames without samples of a segment: inserts slices of zeros.
 std::vector<DicomSlice> with_empty_slices(std::vector<DicomSlice> slices, const std::string& source) {
   if (slices.size() < 2) return slices;
   const glm::dvec3 along = slices.front().normal();
@@ -219,7 +218,7 @@ std::vector<DicomSlice> with_empty_slices(std::vector<DicomSlice> slices, const 
   return filled;
 }
 
-/// One slice of each place: of labels from all frames, of fractions from those of the chosen segment.
+/// One slice per position: for labels from all frames, for fractions from those of the chosen segment.
 std::vector<DicomSlice> slices_of_segments(std::vector<DicomSlice> frames, std::optional<std::size_t> wish,
                                            const std::string& source, DicomVolume& volume) {
   const DicomSegments segments = frames.front().segments;
@@ -251,7 +250,7 @@ std::vector<DicomSlice> slices_of_segments(std::vector<DicomSlice> frames, std::
   return with_empty_slices(std::move(slices), source);
 }
 
-/// Steps from slice to slice, and what is odd about them.
+/// Sets the steps from slice to slice, and notes irregularities.
 void set_places(DicomVolume& volume) {
   const std::vector<DicomSlice>& slices = volume.slices;
   const DicomSlice &first = slices.front(), &last = slices.back();

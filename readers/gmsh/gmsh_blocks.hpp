@@ -16,11 +16,12 @@ struct GmshBlocks {
   std::vector<std::string> names;  ///< of all physical groups and partitions, which may share cells
 };
 
-/// The volume cells of what Gmsh has read, each in one block: of those chosen by name the first that it is in, else its
-/// smallest physical group, and one more for cells in none. Views are their fields (NaN where one has no value); of
-/// several groups or partitions there are the cell fields PhysicalGroupId and PartitionId. Where a view has values of
-/// cells' nodes, each cell has points of its own. `file` as gmsh_volumes() has it. A choice of a name that is not there
-/// chooses all, for the caller to refuse. Throws Error(bad_input) for a node that is not there.
+/// The volume cells that Gmsh has read, each in one block: in the first chosen group that contains it, otherwise in its
+/// smallest physical group, and one more block for cells without a group. Views are their fields (NaN where one has no
+/// value); if there are several groups or partitions, the cell fields PhysicalGroupId and PartitionId are added. If a
+/// view has values for the nodes of each cell, each cell has its own points. `file` as in gmsh_volumes(). If a chosen
+/// name does not exist, all cells are chosen, and the caller reports the error. Throws Error(bad_input) for a missing
+/// node.
 GmshBlocks gmsh_blocks(const std::vector<GmshView>& views, const cells::BlockChoice& choice,
                        const std::filesystem::path& file, const std::string& source, std::vector<std::string>& notes);
 

@@ -9,21 +9,21 @@
 
 namespace tessera::readers {
 
-/// How an element of Gmsh's becomes a cell of VTK's.
+/// Conversion of a Gmsh element to a VTK cell.
 struct GmshCell {
   CellType type = CellType::empty_cell;
-  std::vector<std::size_t> nodes;  ///< for each of VTK's nodes, in its order, the number of Gmsh's
-  bool by_corners = false;         ///< there is no such cell here: the linear one of its corners
+  std::vector<std::size_t> nodes;  ///< for each of VTK's nodes, in its order, the index of Gmsh's node
+  bool by_corners = false;         ///< not supported: uses the linear cell of its corners
 };
 
-/// Nodes are matched by where they lie in the reference cell: `places` are Gmsh's, u v w a node (tetrahedra in the unit
-/// one, hexahedra in [-1, 1]^3, prisms between w = -1 and 1, pyramids over [-1, 1]^2), of which the first
+/// Nodes are matched by their positions in the reference cell: `places` are Gmsh's, u v w per node (tetrahedra in the
+/// unit one, hexahedra in [-1, 1]^3, prisms between w = -1 and 1, pyramids over [-1, 1]^2), of which the first
 /// `corners` are the corners.
 GmshCell gmsh_cell(int order, std::size_t corners, std::span<const double> places);
 
-/// The places of a prism of 3rd and higher order with all its nodes, which Gmsh's library of 4.8 does not tell. They
-/// are where it puts the nodes of one that it makes itself: corners, edges, then the inside of triangles and
-/// quadrilaterals as smaller ones, then of the cell, upright line by upright line.
+/// The node positions of a complete prism of third or higher order, which Gmsh's library 4.8 does not report. They
+/// match the nodes of prisms that the library creates: corners, edges, then the inside of triangles and quadrilaterals
+/// as smaller ones, then the cell's inside, along vertical lines one by one.
 std::vector<double> gmsh_prism_places(int order);
 
 }  // namespace tessera::readers

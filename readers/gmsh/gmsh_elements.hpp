@@ -19,10 +19,10 @@ struct GmshElements {
   const GmshCell* cell = nullptr;
   std::size_t nodes_a_cell = 0;
   std::vector<std::size_t> tags, nodes;
-  std::vector<std::uint32_t> members;  ///< of each element, its GmshMembership
+  std::vector<std::uint32_t> members;  ///< index of each element's GmshMembership
 };
 
-/// What an element is in.
+/// The groups and partition of an element.
 struct GmshMembership {
   std::vector<int> groups;  ///< numbers of its physical groups, ascending
   int partition = 0;        ///< 0: none
@@ -31,18 +31,18 @@ struct GmshMembership {
   }
 };
 
-/// All volume elements that Gmsh has read, each once: ghosts of other partitions are left out, and what the file lists
-/// once for each physical group is one element of them all.
+/// All volume elements that Gmsh has read, each once: ghosts of other partitions are left out, and an element that the
+/// file lists for each of its physical groups becomes one element of all these groups.
 struct GmshVolumes {
   std::map<int, GmshCell> cells;  ///< by Gmsh's type
   std::vector<GmshElements> elements;
   std::vector<GmshMembership> memberships;
-  /// Numbers of elements that were listed before under another number, which is the first; in their order.
+  /// Numbers of elements that are also listed under another number, which is the first; in their order.
   std::vector<std::pair<std::size_t, std::size_t>> other_tags;
 };
 
-/// `file` is empty, or an .msh file whose list of elements names groups element by element where it is of MSH 1 or 2.
-/// Throws Error(bad_input) for cells that are not rendered.
+/// `file` is empty, or an .msh file of MSH 1 or 2, whose list of elements assigns groups element by element. Throws
+/// Error(bad_input) for cells that are not rendered.
 GmshVolumes gmsh_volumes(const std::filesystem::path& file, const std::string& source, std::vector<std::string>& notes);
 
 }  // namespace tessera::readers

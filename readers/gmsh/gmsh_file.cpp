@@ -26,7 +26,7 @@
 namespace tessera::readers {
 namespace {
 
-/// The first error in Gmsh's log; the name that it was given is replaced by the file's.
+/// The first error in Gmsh's log, with the name passed to it replaced by the file's.
 std::string first_error(std::vector<std::string> log, const std::string& given, const std::string& source) {
   for (std::string& line : log) {
     constexpr std::string_view mark = "Error: ";
@@ -38,7 +38,7 @@ std::string first_error(std::vector<std::string> log, const std::string& given, 
   return "";
 }
 
-/// Whether it is read. Not if the library gave up at its partitions, and may be tried without.
+/// Returns false if the library failed on partitions, so that the file may be tried without them.
 bool merge(const std::string& given, const std::string& source, bool is_last_try = true) {
   static bool is_ready = false;
   if (!is_ready) {
@@ -48,14 +48,14 @@ bool merge(const std::string& given, const std::string& source, bool is_last_try
     is_ready = true;
   }
   gmsh::clear();
-  allow_for(source);  // after the library, whose own size is none of the file's
+  allow_for(source);  // after loading the library, whose memory does not count for the file
   gmsh::logger::start();
   bool failed = false;
   try {
     gmsh::merge(given);
   } catch (const std::bad_alloc&) {
     throw;
-  } catch (...) {  // Gmsh throws what it likes
+  } catch (...) {  // Gmsh throws objects of any type
     failed = true;
   }
   std::vector<std::string> log;
@@ -72,7 +72,7 @@ bool merge(const std::string& given, const std::string& source, bool is_last_try
   return true;
 }
 
-/// Gmsh does not mind a file that ends between two sections.
+/// Gmsh accepts a file that ends between two sections.
 void require_last_section(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary | std::ios::ate);
   const std::streamoff size = in.tellg();
@@ -117,7 +117,7 @@ io::ForeignContents read_gmsh(Holdings& holdings, const std::filesystem::path& f
   if (!beginning.starts_with("$MeshFormat") && !beginning.starts_with("$NOD") && !beginning.starts_with("$Comments"))
     throw scene::bad_input(fmt::format("{}: it does not begin with $MeshFormat; write it again", source));
   require_last_section(file);
-  // By a name without an extension, since one of another format would be believed.
+  // Passed by a name without an extension, because Gmsh would trust the extension of another format.
   system::Descriptor opened(::open(source.c_str(), O_RDONLY | O_CLOEXEC));
   if (!opened.is_open()) throw scene::bad_input(fmt::format("{}: it cannot be opened; check its permissions", source));
   if (system::Descriptor quoted = with_quoted_view_names(file); quoted.is_open()) opened = std::move(quoted);
@@ -138,7 +138,7 @@ io::ForeignContents read_gmsh(Holdings& holdings, const std::filesystem::path& f
 
 io::ForeignContents read_by_gmsh(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   const std::string source = file.string(), extension = file.extension().string();
-  if (extension != ".unv" && extension != ".UNV")  // as Gmsh knows it: in no other mixture of capitals
+  if (extension != ".unv" && extension != ".UNV")  // the only capitalizations that Gmsh accepts
     throw scene::bad_input(fmt::format(
         "{}: Gmsh's library knows such files by their names alone; unpack it, if it is packed, and have its name end "
         "in .unv",

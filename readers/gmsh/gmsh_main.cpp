@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// tessera-read-gmsh: reads what Gmsh's library reads, as tessera-read-vtk does other formats. A program of its own,
-// since that library takes a while to load and is under the GPL.
+// tessera-read-gmsh: reads formats supported by Gmsh's library, as tessera-read-vtk does for other formats. A separate
+// program, because that library takes a while to load and is under the GPL.
 #include "readers/common/serve.hpp"
 #include "readers/gmsh/gmsh_file.hpp"
 

@@ -19,12 +19,12 @@ GmshElementType gmsh_element_type(int type) {
     found.corners = static_cast<std::size_t>(std::max(corners, 0));
   } catch (const std::bad_alloc&) {
     throw;
-  } catch (...) {  // Gmsh throws what it likes
+  } catch (...) {  // Gmsh throws objects of any type
     found = {};
     const bool is_third_or_fourth = type == 90 || type == 91;
     if (!is_third_or_fourth && (type < 106 || type > 117)) return found;
     found.name = "Prism", found.corners = 6;
-    found.order = is_third_or_fourth ? type - 87 : type <= 110 ? type - 101 : 0;  // the others lack inner nodes
+    found.order = is_third_or_fourth ? type - 87 : type <= 110 ? type - 101 : 0;  // the others have no inner nodes
     if (found.order > 0) found.places = gmsh_prism_places(found.order);
     found.nodes = found.places.size() / 3;
   }

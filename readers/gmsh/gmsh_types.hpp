@@ -7,17 +7,17 @@
 
 namespace tessera::readers {
 
-/// An element type of Gmsh's.
+/// A Gmsh element type.
 struct GmshElementType {
   std::string name;
   int order = 0;
-  std::size_t nodes = 0;       ///< 0: not known
-  std::size_t corners = 0;     ///< 0: not known
-  std::vector<double> places;  ///< as gmsh_cell() takes them; fewer than the nodes where the dimension is below 3
+  std::size_t nodes = 0;       ///< 0: unknown
+  std::size_t corners = 0;     ///< 0: unknown
+  std::vector<double> places;  ///< as in gmsh_cell(); fewer than the nodes if the dimension is below 3
 };
 
-/// As Gmsh's library describes it. The library of 4.8 does not describe prisms of the third order and above; of those
-/// with all their nodes this knows everything, of the others the corners.
+/// The description by Gmsh's library. Version 4.8 does not describe prisms of third or higher order; this function
+/// completes those with all nodes, and for the others the corners.
 GmshElementType gmsh_element_type(int type);
 
 }  // namespace tessera::readers

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r";
 
-/// A line of the text, without its end and the blanks around it.
+/// A line of the text, without its end and surrounding blanks.
 struct Line {
   std::size_t first = 0, last = 0, next = 0;
 };
@@ -42,7 +42,7 @@ bool begins_view(std::string_view text, std::size_t dollar) {
   return word == "$NodeData" || word == "$ElementData" || word == "$ElementNodeData";
 }
 
-/// Where quotes are lacking, in pairs.
+/// Positions of missing quotes, in pairs.
 std::vector<std::size_t> lacking_quotes(std::string_view text) {
   std::vector<std::size_t> places;
   for (std::size_t at = text.find('$'); at != std::string_view::npos; at = text.find('$', at + 1)) {
@@ -69,7 +69,7 @@ void write_all(int file, std::string_view text, const std::string& source) {
   }
 }
 
-/// An element's line with the first two of its tags: its physical group and entity.
+/// An element's line with only the first two of its tags: its physical group and entity.
 std::string with_two_tags(std::string_view line) {
   std::istringstream words{std::string(line)};
   std::string number, type, group, entity, dropped;

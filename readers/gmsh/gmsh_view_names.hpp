@@ -7,13 +7,13 @@
 
 namespace tessera::readers {
 
-/// Some programs write the names of views without quotes, which Gmsh's library takes for views of no name and mixes up
-/// with each other. A copy of such a file in memory, with quotes; closed where the file needs none. Throws
-/// Error(system_failure) if there is no memory for it.
+/// Some programs write view names without quotes. Gmsh's library treats these as views without a name and mixes them
+/// up. Returns an in-memory copy of such a file, with quotes; a closed descriptor if the file needs none. Throws
+/// Error(system_failure) if memory runs out.
 system::Descriptor with_quoted_view_names(const std::filesystem::path& file);
 
-/// A copy of a file of MSH 2 whose elements are in no partitions; closed where the file is none. Gmsh's library divides
-/// partitioned ones again in its own way, and fails where a mesh has no surfaces. Throws as above.
+/// A copy of an MSH 2 file whose elements have no partitions; a closed descriptor for other files. Gmsh's library
+/// repartitions partitioned elements itself, and fails if a mesh has no surfaces. Throws like the above.
 system::Descriptor without_partitions(const std::filesystem::path& file);
 
 }  // namespace tessera::readers

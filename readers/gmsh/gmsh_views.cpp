@@ -12,7 +12,7 @@
 namespace tessera::readers {
 namespace {
 
-/// What Gmsh knows of a view without its numbers.
+/// A view in Gmsh, without its numbers.
 struct KnownView {
   int tag = 0;
   std::string name;
@@ -27,7 +27,7 @@ struct ModelData {
   double time = 0;
 };
 
-/// Nothing for lists of shapes, which have no mesh, and for a step without data.
+/// No value for lists of shapes, which have no mesh, and for a step without data.
 std::optional<ModelData> data_of(int tag, std::size_t step) {
   ModelData data;
   try {
@@ -35,7 +35,7 @@ std::optional<ModelData> data_of(int tag, std::size_t step) {
                              data.components);
   } catch (const std::bad_alloc&) {
     throw;
-  } catch (...) {  // Gmsh throws what it likes
+  } catch (...) {  // Gmsh throws objects of any type
     return std::nullopt;
   }
   if (data.tags.empty() || data.values.size() != data.tags.size() || data.components < 1) return std::nullopt;
@@ -81,7 +81,7 @@ std::optional<GmshView> view_of(const KnownView& known, std::size_t step) {
   return view;
 }
 
-/// Of the steps of the first view that has so many.
+/// Times of the steps of the first view with so many steps.
 std::vector<double> times_of(const std::vector<KnownView>& views, std::size_t steps) {
   std::vector<double> times;
   const auto longest = std::ranges::find(views, steps, &KnownView::steps);
@@ -121,7 +121,7 @@ std::vector<GmshView> gmsh_views(std::optional<std::size_t> time_step, const std
   const std::size_t step = read.step;
   std::vector<GmshView> views;
   for (const KnownView& each : known) {
-    if (each.steps > 1 && step >= each.steps) continue;  // it ends earlier
+    if (each.steps > 1 && step >= each.steps) continue;  // the view ends earlier
     std::optional<GmshView> view = each.steps > 0 ? view_of(each, step) : std::nullopt;
     if (view)
       views.push_back(std::move(*view));

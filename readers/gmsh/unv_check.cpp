@@ -20,7 +20,7 @@
 namespace tessera::readers {
 namespace {
 
-/// Reads a universal file by its lines.
+/// Reads a universal file line by line.
 class Universal {
  public:
   Universal(std::string_view text, std::string source) : text_(text), source_(std::move(source)) {}
@@ -28,7 +28,7 @@ class Universal {
   void check() {
     while (next()) {
       if (!is_mark() || !next()) continue;
-      if (is_mark() && !next()) break;  // two of them: one ends a dataset
+      if (is_mark() && !next()) break;  // two marks: the first ends a dataset
       const long dataset = whole_numbers<1>()[0];
       known_.insert(dataset);
       while (next() && !is_mark()) read_record(dataset);
@@ -93,7 +93,7 @@ class Universal {
     }
   }
 
-  /// The part's number has been read; its name follows, then all systems up to the dataset's end.
+  /// Call after reading the part's number; its name follows, then all systems up to the dataset's end.
   void read_systems() {
     next();
     while (next() && !is_mark()) {
@@ -128,10 +128,10 @@ class Universal {
 
   std::string_view text_;
   std::string source_, line_;
-  bool is_again_ = false;  ///< the line is the next one, too
+  bool is_again_ = false;  ///< next() returns this line again
   std::set<long> known_;
-  std::map<long, long> points_in_;             ///< of each coordinate system a point that is in it
-  std::map<long, std::string> other_systems_;  ///< that are not the global one: what they are
+  std::map<long, long> points_in_;             ///< a point in each coordinate system
+  std::map<long, std::string> other_systems_;  ///< systems other than the global one, with a description
 };
 
 }  // namespace

@@ -16,7 +16,7 @@
 
 namespace tessera::readers {
 
-/// Cells of volume that MED and VTK both know; cells/curved/node_orders.hpp has the order of their nodes.
+/// Volume cells that both MED and VTK support; cells/curved/node_orders.hpp has the order of their nodes.
 struct MedCellKind {
   med_geometry_type med;
   CellType type;
@@ -34,7 +34,7 @@ inline constexpr std::array med_cell_kinds = {MedCellKind{MED_TETRA4, CellType::
                                               MedCellKind{MED_HEXA20, CellType::quadratic_hexahedron, 20},
                                               MedCellKind{MED_HEXA27, CellType::triquadratic_hexahedron, 27}};
 
-/// An open file. Every call that fails ends in Error.
+/// An open file. Every failing call throws Error.
 class MedFile {
  public:
   explicit MedFile(const std::filesystem::path& file);
@@ -54,14 +54,15 @@ class MedFile {
 /// A mesh of the file, as a block without fields.
 struct MedMesh {
   cells::CellBlock block;
-  std::vector<std::size_t> cells_of_kind;  ///< of each of med_cell_kinds, which follow each other in the block
+  std::vector<std::size_t> cells_of_kind;  ///< per entry of med_cell_kinds, consecutive in the block
 };
 
-/// All meshes of three dimensions; notes name the others. Throws Error(bad_input) for polyhedra, and if there is none.
+/// All three-dimensional meshes; notes name the others. Throws Error(bad_input) for polyhedra, and if there is no such
+/// mesh.
 std::vector<MedMesh> med_meshes(const MedFile& file, std::vector<std::string>& notes);
 
-/// Adds the fields of a mesh's nodes and cells at one time step, counted from 0, or the last; `read` says which. Values
-/// that the file has not are NaN. Throws Error(bad_input) for a step that no field has.
+/// Adds the fields of a mesh's nodes and cells at one time step, counted from 0, or the last; `read` receives the step.
+/// Missing values are NaN. Throws Error(bad_input) if no field has this step.
 void add_med_fields(const MedFile& file, std::optional<std::size_t> time_step, std::vector<MedMesh>& meshes,
                     std::vector<std::string>& notes, scene::TimeStepRead& read);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// tessera-read-med: reads MED by its own library, as tessera-read-vtk does other formats. A program of its own, since
-// that library comes with another build of HDF5, for MPI, than VTK's.
+// tessera-read-med: reads MED by its own library, as tessera-read-vtk does for other formats. A separate program,
+// because that library uses another build of HDF5, for MPI, than VTK's.
 #include <nlohmann/json.hpp>
 
 #include "io/files/inflated_file.hpp"

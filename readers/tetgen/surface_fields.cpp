@@ -25,7 +25,7 @@ struct Box {
   }
 };
 
-/// Boxes halved at their median along their longest axis, down to a few items.
+/// A tree of boxes, split at the median along their longest axis, down to a few items.
 class BoxTree {
  public:
   explicit BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)), order_(boxes_.size()) {
@@ -33,8 +33,8 @@ class BoxTree {
     if (!order_.empty()) split(0, order_.size());
   }
 
-  /// Calls `visit(item)` for items in boxes of at most that squared distance, nearer halves first. It returns the
-  /// squared distance that is still of interest.
+  /// Calls `visit(item)` for items in boxes within a squared distance, nearer halves first. It returns the squared
+  /// distance that is still of interest.
   template <class Visit>
   void near(const glm::dvec3& p, double squared, const Visit& visit) const {
     if (!nodes_.empty()) near(0, p, squared, visit);
@@ -85,7 +85,8 @@ class BoxTree {
   std::vector<Node> nodes_;
 };
 
-/// Of the point of a triangle that is nearest to p. Source: Ericson, "Real-Time Collision Detection", 2005, 5.1.5.
+/// Squared distance from p to the nearest point of a triangle. Source: Ericson, "Real-Time Collision Detection", 2005,
+/// 5.1.5.
 double squared_distance(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const auto to = [&](const glm::dvec3& q) { return glm::dot(p - q, p - q); };
   const glm::dvec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
@@ -105,7 +106,7 @@ double squared_distance(const glm::dvec3& p, const glm::dvec3& a, const glm::dve
 
 using Weights = std::array<double, 4>;
 
-/// Barycentric; none for a flat tet.
+/// Barycentric weights; no value for a flat tet.
 std::optional<Weights> weights_in(const glm::dvec3& p, const FilledSurface& mesh, std::size_t tet) {
   const auto corner = [&](std::size_t k) { return mesh.points[mesh.tets[4 * tet + k]]; };
   const glm::dvec3 a = corner(0), ab = corner(1) - a, ac = corner(2) - a, ad = corner(3) - a, ap = p - a;
@@ -154,7 +155,7 @@ std::vector<std::vector<double>> spread_attributes(const cells::Surface& surface
   const glm::dvec3 size = whole.high - whole.low;
   const double rounding = 1e-18 * glm::dot(size, size);
   for (std::size_t v = surface.points.size(); v < filled.points.size(); ++v) {
-    // The tet in which the point is, or by rounding the least outside.
+    // The tet that contains the point or, because of rounding, is nearest to it.
     double deepest = -infinity;
     Weights weights{};
     std::size_t inside = 0;

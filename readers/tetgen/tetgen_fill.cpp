@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one file that sees TetGen, which is under the AGPL-3.0.
+// The only file that includes TetGen, which is under the AGPL-3.0.
 #include <fmt/format.h>
 
 #define TETLIBRARY
 // The header's terminatetetgen frees the mesh, then throws; the mesh's destructor frees it again, which crashes. The
-// library calls that function through the dynamic linker, so the one defined below takes its place, which it has to be
-// visible for.
+// library calls that function through the dynamic linker, so the function defined below replaces it; it must be visible
+// for that.
 #define terminatetetgen tetgen_header_terminatetetgen
 #include <tetgen.h>
 #undef terminatetetgen
@@ -28,7 +28,7 @@ __attribute__((visibility("default"))) void terminatetetgen(tetgenmesh*, int rea
 namespace tessera::readers {
 namespace {
 
-/// TetGen's words for the numbers it throws (terminatetetgen in tetgen.h).
+/// Messages for the numbers that TetGen throws (terminatetetgen in tetgen.h).
 const char* reason(int thrown) {
   switch (thrown) {
     case 3:
@@ -44,8 +44,8 @@ const char* reason(int thrown) {
   }
 }
 
-/// Takes a surface to the unit box round the origin and back, by a power of two: TetGen's tolerances are not made for
-/// metre-size cells at coordinates of 7e6.
+/// Maps a surface to the unit box around the origin and back, scaled by a power of two: TetGen's tolerances do not work
+/// for metre-size cells at coordinates of 7e6.
 struct Frame {
   glm::dvec3 centre{0};
   double scale = 1;
@@ -69,7 +69,7 @@ tetgenio* keep_for_good() {
   return kept.back();
 }
 
-/// tetgenio frees its arrays by delete[], so they are made by new[].
+/// tetgenio frees its arrays by delete[], so they are allocated by new[].
 void copy_in(const cells::Surface& surface, const Frame& frame, tetgenio& in) {
   const auto put = [&](REAL* list, std::size_t at, const glm::dvec3& p_world) {
     const glm::dvec3 p = frame.in(p_world);
@@ -104,10 +104,10 @@ void copy_in(const cells::Surface& surface, const Frame& frame, tetgenio& in) {
   }
 }
 
-/// Where a surface cuts itself, in words that follow "the surface cuts itself"; none if TetGen does not find it.
+/// Where a surface intersects itself, in words that follow "the surface cuts itself"; empty if TetGen does not find it.
 std::string place_of_cut(const cells::Surface& surface, const Frame& frame) {
   tetgenbehavior wishes;
-  std::string switches = "dzQ";  // d: find faces that meet where they should not
+  std::string switches = "dzQ";  // d: find intersecting faces
   wishes.parse_commandline(switches.data());
   tetgenio* const in = keep_for_good();
   tetgenio* const out = keep_for_good();
@@ -144,7 +144,7 @@ FilledSurface fill(const cells::Surface& surface, std::optional<double> max_volu
     wishes.fixedvolume = 1;  // -a
     wishes.maxvolume = *max_volume * frame.scale * frame.scale * frame.scale;
   }
-  // Never freed: after a failure TetGen's own frees may crash, and the process soon ends.
+  // Never freed: after a failure TetGen's destructors may crash, and the process ends soon.
   tetgenio* const in = keep_for_good();
   tetgenio* const out = keep_for_good();
   copy_in(surface, frame, *in);

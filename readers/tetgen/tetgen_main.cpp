@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// tessera-read-tetgen: fills surfaces by TetGen. A program of its own, since TetGen is under the AGPL-3.0.
+// tessera-read-tetgen: fills surfaces by TetGen. A separate program, because TetGen is under the AGPL-3.0.
 #include "readers/common/readers.hpp"
 #include "readers/common/serve.hpp"
 

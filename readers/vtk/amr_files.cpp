@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Blocks of several levels of refinement that simulations write, by VTK's readers.
+// Blocks of several refinement levels written by simulations, read by VTK's readers.
 #include <fmt/format.h>
 #include <hdf5.h>
 #include <sys/resource.h>
@@ -26,10 +26,10 @@
 namespace tessera::readers {
 namespace {
 
-/// Notes failures of HDF5's functions, which VTK's readers do not look at, for as long as it lives. Where they only ask
-/// whether something is there, they take it out for a moment.
+/// Records failures of HDF5's functions, which VTK's readers ignore, during its lifetime. Where the readers only test
+/// whether something exists, they disable it temporarily.
 ///
-/// By the older of HDF5's interfaces: VTK asks for what is set by that one, and puts back what it was not told.
+/// Uses the older of HDF5's interfaces: VTK saves and restores the handler through that one.
 class Hdf5Failures {
  public:
   Hdf5Failures() { H5Eset_auto1(note, &count_); }
@@ -70,7 +70,7 @@ io::ForeignContents read_blocks(Holdings& holdings, Reader& reader, const std::s
                            const std::string name = fmt::format("level {} block {}", level, b);
                            if (block == nullptr)
                              throw scene::bad_input(fmt::format("{}: {} cannot be read; {}", source, name, write_anew));
-                           // Which cells finer ones cover is found out anew: VTK's way takes blocks to nest.
+                           // The covered cells are computed again: VTK assumes that blocks nest.
                            block->GetCellData()->RemoveArray("vtkGhostType");
                            std::vector<io::ForeignPart> parts = parts_of(holdings, *block, source);
                            for (io::ForeignPart& part : parts) {
@@ -82,14 +82,14 @@ io::ForeignContents read_blocks(Holdings& holdings, Reader& reader, const std::s
                      {"Inconsistent spacing", "tracer particles", "data does not exist in file"});
   if (failures.any())
     throw scene::bad_input(fmt::format("{}: HDF5 cannot read all that belongs to it; {}", source, write_anew));
-  // What they warn of is a fault of the file, but for spacings whose last bits differ from block to block, particles,
-  // and fields that some blocks have not got.
+  // Their warnings mean a damaged file, except for spacings whose last bits differ from block to block, particles, and
+  // fields that some blocks do not have.
   if (!warning.empty()) throw scene::bad_input(fmt::format("{}: {}; {}", source, warning, write_anew));
   if (contents.parts.empty()) throw scene::bad_input(fmt::format("{}: it holds no blocks; {}", source, write_anew));
   return contents;
 }
 
-/// Whether a line says which grid comes after one of those before: Pointer: Grid[1]->NextGridThisLevel = 2.
+/// Whether a line names the grid that follows one of the earlier ones: Pointer: Grid[1]->NextGridThisLevel = 2.
 bool is_pointer(const std::string& line, std::size_t grids) {
   unsigned grid = 0, next = 0;
   int end = 0;
@@ -112,7 +112,7 @@ bool has_values(const std::string& line, bool three_numbers) {
   return static_cast<bool>(words >> numbers[0] >> numbers[1] >> numbers[2]);
 }
 
-/// VTK's reader looks for what a grid lacks for ever.
+/// VTK's reader searches without end for anything that a grid lacks.
 void require_grids(const std::filesystem::path& hierarchy) {
   constexpr std::array keys{"Grid",          "GridStartIndex", "GridEndIndex",     "GridLeftEdge",
                             "GridRightEdge", "BaryonFileName", "NumberOfParticles"};
@@ -160,14 +160,14 @@ io::ForeignContents read_enzo(Holdings& holdings, const std::filesystem::path& n
                                          needed.filename().string()));
   allow_for_folder(file.has_parent_path() ? file.parent_path() : std::filesystem::path("."), true);
   require_grids(file);
-  // VTK's reader closes none of the files that it opens.
+  // VTK's reader never closes the files that it opens.
   rlimit files{};
   if (::getrlimit(RLIMIT_NOFILE, &files) == 0) {
     files.rlim_cur = files.rlim_max;
     ::setrlimit(RLIMIT_NOFILE, &files);
   }
   const vtkNew<vtkAMREnzoReader> reader;
-  reader->SetConvertToCGS(0);  // as stored; of ten fields and more it takes the factors of others
+  reader->SetConvertToCGS(0);  // unconverted; with ten fields or more it would use the factors of others
   io::ForeignContents contents = read_blocks(holdings, *reader, file.string());
   contents.format = "Enzo";
   return contents;

@@ -22,7 +22,7 @@ namespace {
 
 using ElementType = CGNS_ENUMT(ElementType_t);
 
-/// The order of nodes of an element of three dimensions that is read; null for others.
+/// The node order of a supported three-dimensional element; null for others.
 const cells::NodeOrder* order_of(ElementType type) {
   struct Solid {
     ElementType type;
@@ -58,7 +58,7 @@ const cells::NodeOrder* order_of(ElementType type) {
                                : cells::find_node_order(cells::NodeConvention::cgns, found->shape, found->nodes);
 }
 
-/// Corners of a face; 0 of what is none.
+/// Number of corners of a face; 0 if the type is not a face.
 int corners_of_face(ElementType type) {
   switch (type) {
     case CGNS_ENUMV(TRI_3):
@@ -77,14 +77,14 @@ int corners_of_face(ElementType type) {
   }
 }
 
-/// Points, lines and faces, whose types have the first numbers, and later ones of higher orders.
+/// Points, lines and faces have the first type numbers, and later ones for higher orders.
 bool is_below_three(ElementType type) {
   return type <= CGNS_ENUMV(QUAD_9) || corners_of_face(type) > 0 ||
          (type >= CGNS_ENUMV(BAR_4) && type <= CGNS_ENUMV(QUAD_16)) || type == CGNS_ENUMV(BAR_5) ||
          (type >= CGNS_ENUMV(TRI_12) && type <= CGNS_ENUMV(QUAD_25)) || type == CGNS_ENUMV(NGON_n);
 }
 
-/// What the library states of a section of elements.
+/// The library's description of a section of elements.
 struct Section {
   int number = 0;
   std::string name{};
@@ -118,8 +118,8 @@ std::vector<Section> sections_of(const CgnsZone& zone) {
   return sections;
 }
 
-/// A section's numbers: nodes, or of NFACE_n faces, of element k those from offsets[k] to offsets[k + 1]. Elements of a
-/// MIXED section begin with their type.
+/// A section's numbers: nodes, or for NFACE_n faces; those of element k are from offsets[k] to offsets[k + 1]. Elements
+/// of a MIXED section begin with their type.
 struct Elements {
   std::vector<cgsize_t> numbers, offsets, parents;
 
@@ -202,7 +202,7 @@ class Cells {
         faces_.push_back({section, elements_of(zone_, section)});
   }
 
-  /// Null if there is no such face.
+  /// No value if the face does not exist.
   [[nodiscard]] std::optional<Face> face(cgsize_t number) const {
     for (const FaceSection& of : faces_) {
       if (number < of.section.first || number > of.section.last) continue;
@@ -249,7 +249,7 @@ class Cells {
     }
   }
 
-  /// A face of a cell, whose sign states its direction, which does not matter here.
+  /// The sign of a face states its direction in the cell, which is not needed here.
   void add_polyhedron(Face numbers) {
     block_.face_locations.resize(block_.types.size(), cells::CellBlock::no_faces);
     block_.face_locations.push_back(static_cast<std::int64_t>(block_.faces.size()));
@@ -276,7 +276,7 @@ class Cells {
     block_.offsets.push_back(block_.connectivity.size());
   }
 
-  /// Cells that only the faces between them state, in the order of the numbers that these have for them.
+  /// Adds cells defined only by the faces between them, in the order of the numbers in these faces.
   void add_parents() {
     std::map<cgsize_t, std::vector<cgsize_t>> cells;
     for (const FaceSection& of : faces_)
@@ -311,8 +311,7 @@ bool is_plain(const CgnsZone& zone) {
       continue;
     }
     const cells::NodeOrder* const solid = order_of(section.type);
-    // Cells of higher order, and those that are not read, are not left to VTK, which has some in another order of
-    // nodes.
+    // Cells of higher order and unsupported cells are not left to VTK, which uses another node order for some.
     if (section.first != next || solid == nullptr || solid->nodes > 8) return false;
     next = section.last + 1;
   }

@@ -10,7 +10,7 @@
 
 namespace tessera::readers {
 
-/// An unstructured or structured zone of an open CGNS file. Numbers count from 1, as the library's do.
+/// An unstructured or structured zone of an open CGNS file. Numbers count from 1, as in the library.
 struct CgnsZone {
   int file = 0, base = 0, zone = 0;
   std::string name{};   ///< base and zone, "BASE/ZONE"
@@ -22,16 +22,15 @@ struct CgnsZone {
   [[nodiscard]] bool is_structured() const { return type == CGNS_ENUMV(Structured); }
 };
 
-/// Throws Error(bad_input) with what the library reports where `status` is one of its errors.
+/// Throws Error(bad_input) with the library's message if `status` is an error.
 void require_cgns(int status, const CgnsZone& zone);
 
-/// Whether VTK's reader takes the cells of an unstructured zone for what they are. It takes the elements with the first
-/// numbers for the cells, as many as the zone has, in the order of the sections. Elements of order 2 are never plain.
+/// Whether VTK's reader identifies the cells of an unstructured zone correctly. It takes the elements with the first
+/// numbers, as many as the zone has cells, in the order of the sections. Elements of order 2 are never plain.
 bool is_plain(const CgnsZone& zone);
 
-/// Sets the cells of an unstructured zone: elements of three dimensions in the order of their numbers, whatever the
-/// order of the sections and whatever faces are numbered among them. Polyhedra are NFACE_n or, without these, the
-/// parents of faces.
+/// Sets the cells of an unstructured zone: three-dimensional elements in the order of their numbers, whatever the order
+/// of the sections and the numbers of faces among them. Polyhedra are NFACE_n or, without these, the parents of faces.
 ///
 /// Source  CGNS Standard Interface Data Structures, "Grid Coordinates, Elements, and Flow Solutions": 7.3, Elements_t,
 ///         and its figures of the elements' nodes.

@@ -13,8 +13,8 @@
 namespace tessera::readers {
 namespace {
 
-/// The names that a node below a zone or base lists for a step, one of 32 letters each: of arrays whose name ends in
-/// "Pointers" and has `word` in it.
+/// The names that a node below a zone or base lists for a step, 32 characters each: from arrays whose name ends in
+/// "Pointers" and contains `word`.
 std::vector<std::string> names_at_step(std::uint64_t step, std::string_view word) {
   std::vector<std::string> names;
   int arrays = 0;
@@ -41,7 +41,7 @@ std::vector<std::string> names_at_step(std::uint64_t step, std::string_view word
   return names;
 }
 
-/// A zone's arrays of values by name, in the file's order, each with one number a point or cell.
+/// A zone's arrays of values by name, in file order, each with one number per point or cell.
 struct Values {
   scene::Association association{};
   std::vector<std::pair<std::string, std::vector<double>>> arrays;
@@ -50,7 +50,7 @@ struct Values {
     const auto found = std::ranges::find(arrays, name, &std::pair<std::string, std::vector<double>>::first);
     return found == arrays.end() ? nullptr : &found->second;
   }
-  /// That of a name; a new one has no values yet.
+  /// The array of a name; a new one has no values yet.
   std::vector<double>& add(const std::string& name, std::size_t count) {
     if (std::vector<double>* const known = find(name)) return *known;
     arrays.emplace_back(name, std::vector<double>(count, std::numeric_limits<double>::quiet_NaN()));
@@ -58,7 +58,7 @@ struct Values {
   }
 };
 
-/// NameX, NameY and NameZ become the vector Name, as VTK's reader has it.
+/// NameX, NameY and NameZ become the vector Name, as in VTK's reader.
 void add_fields(Values values, cells::CellBlock& block) {
   for (auto& [name, numbers] : values.arrays) {
     if (numbers.empty()) continue;  // used by a vector
@@ -93,8 +93,8 @@ std::vector<std::string> field_names(const CgnsZone& zone, const CgnsSolution& s
   return names;
 }
 
-/// Which of the zone's points or cells have a solution's values, in their order; none for all. Throws Error(bad_input)
-/// for such as the zone has not.
+/// The zone's points or cells that have a solution's values, in order; empty if all have. Throws Error(bad_input) for
+/// those that the zone does not have.
 std::vector<std::size_t> places_of(const CgnsZone& zone, const CgnsSolution& solution, bool of_cells) {
   const std::vector<cgsize_t> size = lengths(zone, of_cells);
   const std::size_t axes = size.size(), count = product(zone, of_cells);
@@ -136,7 +136,7 @@ std::vector<std::size_t> places_of(const CgnsZone& zone, const CgnsSolution& sol
   return places;
 }
 
-/// The first solution that has a value gives it.
+/// The first solution with a value determines it.
 void read_solution(const CgnsZone& zone, const CgnsSolution& solution, const CgnsNamesakes& namesakes, Values& values) {
   const bool of_cells = values.association == scene::Association::cell;
   const std::size_t count = product(zone, of_cells);
@@ -234,7 +234,7 @@ void set_fields(const CgnsZone& zone, std::uint64_t step, const CgnsNamesakes& n
   for (const CgnsSolution& solution : solutions_of(zone, step)) {
     const bool is_vertex = solution.location == CGNS_ENUMV(Vertex),
                is_cell = solution.location == CGNS_ENUMV(CellCenter);
-    // Of parts of a zone cells are given by their elements' numbers.
+    // In parts of a zone, cells are identified by their elements' numbers.
     const bool is_known =
         !solution.is_part() || ((solution.set == CGNS_ENUMV(PointRange) || solution.set == CGNS_ENUMV(PointList)) &&
                                 (is_vertex || zone.is_structured() || is_plain(zone)));

@@ -16,16 +16,16 @@ namespace tessera::readers {
 
 using CgnsName = std::array<char, 34>;
 
-/// Whether a zone has cells of three dimensions.
+/// Whether a zone has three-dimensional cells.
 bool is_mesh(const CgnsZone& zone);
 
-/// Numbers along each index of a zone, of its points or cells.
+/// Numbers of points or cells along each index of a zone.
 std::vector<cgsize_t> lengths(const CgnsZone& zone, bool of_cells);
 
-/// All of them. Throws Error(bad_input) for 2^32 and more.
+/// Total number of points or cells. Throws Error(bad_input) for 2^32 and more.
 std::size_t product(const CgnsZone& zone, bool of_cells);
 
-/// The names of a zone's grids or solutions at a step; none: the zone does not list them.
+/// The names of a zone's grids or solutions at a step; empty if the zone does not list them.
 std::vector<std::string> zone_names_at_step(const CgnsZone& zone, std::uint64_t step, std::string_view word);
 
 /// A solution of a zone.
@@ -39,14 +39,15 @@ struct CgnsSolution {
   [[nodiscard]] bool is_part() const { return set != CGNS_ENUMV(PointSetTypeNull); }
 };
 
-/// Those of a step; all where the zone lists none.
+/// The solutions of a step; all if the zone lists none.
 std::vector<CgnsSolution> solutions_of(const CgnsZone& zone, std::uint64_t step);
 
-/// Where, and names of fields that several solutions have there.
+/// Locations and names of fields that several solutions have there.
 using CgnsNamesakes = std::set<std::pair<CGNS_ENUMT(GridLocation_t), std::string>>;
 CgnsNamesakes namesakes_of(std::span<const CgnsZone> zones, std::uint64_t step);
 
-/// Adds the fields of a zone's points and cells. Namesakes are named SOLUTION/FIELD. What a solution has not is NaN.
+/// Adds the fields of a zone's points and cells. Fields with equal names are named SOLUTION/FIELD. Missing values are
+/// NaN.
 void set_fields(const CgnsZone& zone, std::uint64_t step, const CgnsNamesakes& namesakes, bool has_cell_values,
                 cells::CellBlock& block, std::vector<std::string>& notes);
 

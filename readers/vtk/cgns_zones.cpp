@@ -66,7 +66,7 @@ std::vector<CgnsZone> zones_of(const CgnsFile& file, const std::string& source) 
   return zones;
 }
 
-/// Which grid of coordinates a zone has at a step.
+/// The coordinate grid of a zone at a step.
 int grid_at_step(const CgnsZone& zone, std::uint64_t step) {
   const std::vector<std::string> names = zone_names_at_step(zone, step, "GridCoordinates");
   int count = 0;
@@ -80,7 +80,7 @@ int grid_at_step(const CgnsZone& zone, std::uint64_t step) {
                                      names.empty() ? "" : fmt::format(" named '{}' for time step {}", names[0], step)));
 }
 
-/// Names of a zone's coordinates, in the order of a point's.
+/// Names of a zone's coordinates, in the order of a point's components.
 constexpr std::array<std::string_view, 3> cartesian_axes = {"CoordinateX", "CoordinateY", "CoordinateZ"};
 constexpr std::array<std::string_view, 3> cylinder_axes = {"CoordinateR", "CoordinateTheta", "CoordinateZ"};
 
@@ -97,7 +97,7 @@ bool has_cylinder_axes(const CgnsZone& zone) {
   return false;
 }
 
-/// Whether the units of the nearest node that states some have angles in degrees; radians otherwise.
+/// Whether the nearest node that states units has angles in degrees; radians otherwise.
 bool has_degrees(const CgnsZone& zone, int grid, int array) {
   const auto at = [&](int deep) {
     if (deep == 3)
@@ -157,7 +157,7 @@ void set_positions(const CgnsZone& zone, std::uint64_t step, cells::CellBlock& b
   for (glm::dvec3& p : block.positions) p = {p[0] * std::cos(unit * p[1]), p[0] * std::sin(unit * p[1]), p[2]};
 }
 
-/// Nothing of a zone without cells of three dimensions.
+/// No value for a zone without three-dimensional cells.
 std::optional<io::ForeignPart> part_of(Holdings& holdings, const CgnsZone& zone, std::uint64_t step,
                                        const CgnsNamesakes& namesakes, std::vector<std::string>& notes) {
   cells::CellBlock block;
@@ -181,7 +181,7 @@ std::optional<io::ForeignPart> part_of(Holdings& holdings, const CgnsZone& zone,
   return part;
 }
 
-/// Of the first base that has iterative data.
+/// The steps of the first base with iterative data.
 struct CgnsSteps {
   std::uint64_t count = 0;
   std::vector<double> times;

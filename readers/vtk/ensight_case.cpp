@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// EnSight 6 and Gold case files, by the EnSight User Manual ("EnSight Gold Case File Format").
+// EnSight 6 and Gold case files, according to the EnSight User Manual ("EnSight Gold Case File Format").
 #include "readers/vtk/ensight_case.hpp"
 
 #include <fmt/format.h>
@@ -26,7 +26,7 @@ bool is_count(const std::string& word) {
   return !word.empty() && word.size() < 9 && word.find_first_not_of("0123456789") == std::string::npos;
 }
 
-/// Takes the numbers of a time set and a file set away from the beginning of the words.
+/// Removes the numbers of a time set and a file set from the beginning of the words.
 std::pair<int, int> take_sets(std::vector<std::string>& words, std::size_t names) {
   int time_set = 1, file_set = 0;
   for (int k = 0; k < 2 && words.size() > names && is_count(words.front()); ++k) {
@@ -84,7 +84,7 @@ void EnsightCase::read_geometry(const std::string& line) {
   (is_model ? named_ : beside_).push_back({"model", "", without_quotes(words.front()), time_set, file_set});
 }
 
-/// `scalar per node: [ts] [fs] NAME FILE`; of a complex one two files and a frequency; a constant has no file.
+/// `scalar per node: [ts] [fs] NAME FILE`; a complex variable has two files and a frequency; a constant has no file.
 void EnsightCase::read_variable(const std::string& line) {
   const std::size_t colon = line.find(':');
   if (colon == std::string::npos) return;
@@ -115,8 +115,7 @@ void EnsightCase::read_time(const std::string& line, TimeSet*& set, std::string&
     char* end = nullptr;
     const double number = std::strtod(word.c_str(), &end);
     if (end == word.c_str()) continue;
-    if (list.find("time values") != std::string::npos)
-      set->times.push_back(static_cast<float>(number));  // as VTK has them
+    if (list.find("time values") != std::string::npos) set->times.push_back(static_cast<float>(number));  // as in VTK
     if (list.find("filename numbers") != std::string::npos) set->numbers.push_back(static_cast<long>(number));
     if (list.find("filename start number") != std::string::npos) set->start = static_cast<long>(number);
     if (list.find("filename increment") != std::string::npos) set->increment = static_cast<long>(number);
@@ -166,7 +165,7 @@ std::vector<EnsightCase::Missing> EnsightCase::missing(double time) const {
   std::vector<Missing> missing;
   for (const Named& named : named_) {
     const std::string file = place_of(named, time).file;
-    std::error_code unknown;  // as of a loop of links, which is no file either
+    std::error_code unknown;  // for example a circular link, which is not a file either
     if (!file.empty() && !std::filesystem::is_regular_file(folder_ / file, unknown))
       missing.push_back({named.variable, file, named.of_points});
   }

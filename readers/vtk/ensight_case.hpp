@@ -7,60 +7,60 @@
 #include <string>
 #include <vector>
 
-/// What an EnSight case file names: its files may be gone, of which VTK's reader does not say the name.
+/// The files named by an EnSight case file. VTK's reader does not report the names of missing ones.
 namespace tessera::readers {
 
 class EnsightCase {
  public:
-  /// Parses the sections FORMAT, GEOMETRY, VARIABLE, TIME and FILE; what it does not know it passes over.
+  /// Parses the sections FORMAT, GEOMETRY, VARIABLE, TIME and FILE; ignores unknown ones.
   explicit EnsightCase(const std::filesystem::path& file);
 
   struct Missing {
     std::string variable;  ///< empty: the geometry
-    std::string file;      ///< as the case names it, without the `*`
+    std::string file;      ///< as in the case, without the `*`
     bool of_points = false;
   };
-  /// The files that are not there, of the time step at `time`; of a case without time of the only one.
+  /// The missing files of the time step at `time`; for a case without time, of the only step.
   [[nodiscard]] std::vector<Missing> missing(double time) const;
 
-  /// Throws Error(bad_input) if a file of any step is a folder, a pipe or another that is not regular.
+  /// Throws Error(bad_input) if a file of any step is a directory, a pipe or otherwise not regular.
   void require_regular_files(const std::string& source) const;
 
   struct Values {
     std::string variable;
     std::filesystem::path file;
-    std::string file_name;  ///< to print
-    int components = 0;     ///< of one number in the file; 0: not known
+    std::string file_name;  ///< for messages
+    int components = 0;     ///< per value in the file; 0: unknown
     bool of_points = false;
   };
-  /// The variables' files of that time step; without those of file sets.
+  /// The variables' files of that time step, except those in file sets.
   [[nodiscard]] std::vector<Values> values(double time) const;
 
   [[nodiscard]] bool is_gold() const { return is_gold_; }
-  /// Whether it has file sets, whose files hold several time steps each.
+  /// Whether it has file sets, whose files contain several time steps each.
   [[nodiscard]] bool has_file_sets() const { return !file_sets_.empty(); }
-  /// Those of all time sets, ascending, each once.
+  /// The times of all time sets, ascending, each once.
   [[nodiscard]] std::vector<double> times() const;
 
-  /// A file that a line of the case names, at a time step.
+  /// A file named by a line of the case, at a time step.
   struct Located {
     std::string kind;  ///< `model`, `scalar per node`, ...
-    Values values;     ///< of the geometry, file and file_name alone
+    Values values;     ///< for the geometry, only file and file_name
     std::size_t step = 0;
     bool in_set = false;
   };
-  /// Those that are there. `step` is that of the file in a file set, else that of the time set. Of complex variables
-  /// two after each other.
+  /// The existing files. `step` is the index in the file of a file set, otherwise in the time set. A complex variable
+  /// has two consecutive entries.
   [[nodiscard]] std::vector<Located> located(double time) const;
 
  private:
   struct TimeSet {
     std::vector<double> times;
-    std::vector<long> numbers;      ///< that stand for `*` in names
-    long start = 0, increment = 1;  ///< of them, where they are not listed
+    std::vector<long> numbers;      ///< that replace `*` in names
+    long start = 0, increment = 1;  ///< of the numbers, if they are not listed
   };
   struct InFileSet {
-    long number = 0;  ///< that stands for `*`
+    long number = 0;  ///< that replaces `*`
     std::size_t steps = 0;
   };
   struct Named {
@@ -83,7 +83,7 @@ class EnsightCase {
   std::filesystem::path folder_;
   bool is_gold_ = false;
   std::vector<Named> named_;
-  std::vector<Named> beside_;  ///< measured particles and the like, which VTK's reader opens too
+  std::vector<Named> beside_;  ///< measured particles and similar files, which VTK's reader opens too
   std::map<int, TimeSet> sets_;
   std::map<int, std::vector<InFileSet>> file_sets_;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// EnSight files of several time steps, text, C binary or Fortran binary, by the EnSight User Manual ("Transient single
-// file format"): each step is between the lines, or records of 80 bytes, BEGIN TIME STEP and END TIME STEP.
+// EnSight files of several time steps, text, C binary or Fortran binary, according to the EnSight User Manual
+// ("Transient single file format"): each step is between the lines, or records of 80 bytes, BEGIN TIME STEP and END
+// TIME STEP.
 #include "readers/vtk/ensight_step.hpp"
 
 #include <fmt/format.h>
@@ -22,7 +23,7 @@ namespace {
 
 constexpr std::string_view begin_words = "BEGIN TIME STEP", end_words = "END TIME STEP";
 
-/// Of a step: what is before all steps (`C Binary`), and its own lines.
+/// The text of a step: the lines before all steps (`C Binary`), and its own.
 struct StepText {
   std::string_view before, lines;
 };
@@ -33,7 +34,7 @@ StepText step_text(std::string_view text, std::size_t step, bool in_set) {
   constexpr std::size_t record = 80;
   const std::size_t after = text.find_first_not_of(" \t\r", begin + begin_words.size());
   const bool is_text = after == std::string_view::npos || text[after] == '\n';
-  // Records of Fortran have their length before and after them.
+  // Fortran records have their length before and after them.
   const std::string_view mark = text.substr(std::min(text.size(), begin + record), 4);
   const std::size_t mark_bytes =
       !is_text && begin >= 4 && mark.size() == 4 && mark == text.substr(begin - 4, 4) ? 4 : 0;

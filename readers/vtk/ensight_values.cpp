@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// EnSight 6 and Gold variable files, in text and C binary, by the EnSight User Manual ("EnSight Gold Variable File
-// Format"). Only headers are interpreted; the numbers of points and cells are those that VTK's reader goes by.
+// EnSight 6 and Gold variable files, in text and C binary, according to the EnSight User Manual ("EnSight Gold Variable
+// File Format"). Only headers are interpreted; the numbers of points and cells are those used by VTK's reader.
 #include "readers/vtk/ensight_values.hpp"
 
 #include <fmt/format.h>
@@ -68,22 +68,22 @@ class ValuesText {
 
   [[nodiscard]] bool begins_with(std::string_view word) const { return text_.substr(at_).starts_with(word); }
 
-  /// Whether nothing is left but blanks.
+  /// Whether only blanks remain.
   [[nodiscard]] bool is_at_end() const { return std::ranges::all_of(text_.substr(at_), is_blank); }
 
-  /// Whether the beginning of a part's record is all that is left of a binary file.
+  /// Whether a binary file ends within the record that begins a part.
   [[nodiscard]] bool is_cut_off() const {
     const std::string_view rest = text_.substr(at_);
     return is_binary_ && !rest.empty() && rest.size() < 80 && part_word.starts_with(rest.substr(0, part_word.size()));
   }
 
-  /// Records of Fortran have their length, 80 bytes, before them.
+  /// Fortran records have their length, 80 bytes, before them.
   [[nodiscard]] bool has_records() const {
     return is_binary_ &&
            (text_.starts_with(std::string_view("P\0\0\0", 4)) || text_.starts_with(std::string_view("\0\0\0P", 4)));
   }
 
-  /// The next header without blanks around it; nothing at the end of the file.
+  /// The next header without surrounding blanks; no value at the end of the file.
   std::optional<std::string> header() {
     constexpr std::size_t record = 80;
     std::string_view line;
@@ -112,7 +112,7 @@ class ValuesText {
     if (text_.size() - at_ < sizeof number) return at_ = text_.size(), 0;
     std::memcpy(&number, text_.data() + at_, sizeof number);
     at_ += sizeof number;
-    // It is small, so the other byte order has the larger one.
+    // It is small, so in the wrong byte order it is larger.
     return static_cast<int>(std::min({number, __builtin_bswap32(number), 0x7fffffffu}));
   }
 
@@ -135,7 +135,7 @@ class ValuesText {
     return are_there ? Found::all : Found::too_few;
   }
 
-  /// Those of EnSight 6 may touch each other: each has 12 characters at most.
+  /// Numbers of EnSight 6 may be adjacent without blanks: each has at most 12 characters.
   Found numbers_of_text(std::uint64_t count, bool are_reals) {
     if (count == 0) return Found::all;
     for (; count > 0; --count) {
@@ -155,8 +155,8 @@ class ValuesText {
     return Found::all;
   }
 
-  /// Whether a number at the very end has fewer characters from its point on than all others, which have equally many
-  /// and an exponent: those of a width of their own, as EnSight has them.
+  /// Whether a number at the very end has fewer characters after its point than all others, which have equal numbers of
+  /// them and an exponent: a fixed-width format, as EnSight writes.
   bool is_cut(std::string_view number) {
     const std::size_t length = number.size() - std::min(number.size(), number.find('.'));
     if (at_ == text_.size() && decimals_ && is_even_ && length < *decimals_) return true;
@@ -184,7 +184,7 @@ class ValuesWalk {
         text_(text, reader.IsA("vtkEnSightGoldBinaryReader") != 0 || reader.IsA("vtkEnSight6BinaryReader") != 0,
               is_gold_) {}
 
-  /// As values_in().
+  /// See values_in().
   EnsightValues walk() {
     if (text_.has_records() || text_.begins_with("BEGIN TIME STEP")) return {};
     text_.skip_description();
@@ -223,7 +223,8 @@ class ValuesWalk {
     return text_.reals(static_cast<std::uint64_t>(tuples) * static_cast<std::uint64_t>(values_.components));
   }
 
-  /// The values after a header: of all tuples, of all but those of one value (`undef`), or of listed ones (`partial`).
+  /// The values after a header: for all tuples, for all except those of one value (`undef`), or for listed ones
+  /// (`partial`).
   Found values_after(std::string_view header, vtkIdType tuples) {
     if (header.ends_with(" undef")) {
       if (const Found found = text_.reals(1); found != Found::all) return found;
@@ -234,7 +235,7 @@ class ValuesWalk {
     return reals(tuples);
   }
 
-  /// Those that all unstructured parts of EnSight 6 share.
+  /// Number of nodes shared by all unstructured parts of EnSight 6.
   vtkIdType nodes() {
     vtkPoints* points = nullptr;
     if (auto* const text = vtkEnSight6Reader::SafeDownCast(&reader_)) points = TextNodes::of(*text);
@@ -242,7 +243,7 @@ class ValuesWalk {
     return points != nullptr ? points->GetNumberOfPoints() : 0;
   }
 
-  /// Reads on to the header after the part.
+  /// Continues up to the header after the part.
   Found points_of(vtkDataSet& grid, std::optional<std::string>& line) {
     Found found = Found::all;
     if (grid.GetNumberOfPoints() > 0) {
@@ -277,7 +278,7 @@ class ValuesWalk {
     return Found::all;
   }
 
-  /// VTK leaves the values of cells of other types as memory happened to be.
+  /// VTK leaves the values of cells of other types uninitialized.
   void blank_types(vtkDataSet& grid, vtkIdType index, const std::vector<bool>& is_there) {
     vtkDataArray* const array = grid.GetCellData()->GetArray(values_.variable.c_str());
     for (int type = 0; array != nullptr && type < Tables::types; ++type) {
@@ -288,7 +289,7 @@ class ValuesWalk {
     }
   }
 
-  /// The names of the parts with solid cells that are not there.
+  /// The names of the missing parts with solid cells.
   std::vector<std::string> absent(const std::vector<bool>& is_there) {
     std::vector<std::string> names;
     for (unsigned part = 0; part < parts_.GetNumberOfBlocks(); ++part) {

@@ -67,7 +67,7 @@ void ExodusFaces::add(std::int64_t id, const ex_block& info, std::int64_t points
       if (number < 1 || static_cast<std::size_t>(number) >= starts_.size())
         fail_(fmt::format("block {} has face {}, the file holds {}", id, number, starts_.size() - 1));
       const auto face = static_cast<std::size_t>(number) - 1;
-      // Two cells have a face. More would be many times the file's size.
+      // At most two cells share a face. More could exceed the file's size many times.
       if (++times_used_[face] > 2) fail_(fmt::format("face {} is of more than two elements", number));
       block.faces.push_back(static_cast<std::uint32_t>(starts_[face + 1] - starts_[face]));
       for (std::size_t v = starts_[face]; v < starts_[face + 1]; ++v) {

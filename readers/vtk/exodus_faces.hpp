@@ -13,10 +13,10 @@
 namespace tessera::readers {
 
 /// The polyhedra of an Exodus file: elements of `nfaced` blocks, whose faces are those of the file's face blocks
-/// (`nsided`), counted from 1 over all of them.
+/// (`nsided`), numbered from 1 over all of them.
 class ExodusFaces {
  public:
-  /// Of an open file; arrays hold at most `most_values`. `fail` throws an error that says what is wrong with it.
+  /// For an open file; arrays have at most `most_values`. `fail` throws an error about the file.
   ExodusFaces(int id, std::uint64_t most_values, std::function<void(const std::string&)> fail)
       : id_(id), most_values_(most_values), fail_(std::move(fail)) {}
 
@@ -24,7 +24,7 @@ class ExodusFaces {
   void add(std::int64_t id, const ex_block& info, std::int64_t points, cells::CellBlock& block);
 
  private:
-  /// The numbers of an entity block's parts: what each has of `total`, and these themselves.
+  /// The contents of an entity block: the count of each part, with sum `total`, and the numbers themselves.
   struct Lists {
     std::vector<int> sizes;
     std::vector<std::int64_t> numbers;
@@ -36,9 +36,9 @@ class ExodusFaces {
   std::uint64_t most_values_;
   std::function<void(const std::string&)> fail_;
   bool has_read_ = false;
-  std::vector<std::size_t> starts_;       ///< of each face in `corners_`, one more than faces
+  std::vector<std::size_t> starts_;       ///< per face, in `corners_`, plus one entry
   std::vector<std::int64_t> corners_;     ///< from 1
-  std::vector<std::uint8_t> times_used_;  ///< of each face
+  std::vector<std::uint8_t> times_used_;  ///< per face
 };
 
 }  // namespace tessera::readers

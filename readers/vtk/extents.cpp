@@ -23,7 +23,7 @@ double cells_in(const Extent& extent) {
 }
 
 double cells_covered(std::span<const Extent> pieces) {
-  // The boxes between all planes at which pieces begin or end: few, as pieces lie in rows.
+  // The boxes between all planes at which pieces begin or end: few, because pieces are in rows.
   std::array<std::vector<int>, 3> planes;
   double boxes = 1, sum = 0;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -33,7 +33,9 @@ double cells_covered(std::span<const Extent> pieces) {
     boxes *= static_cast<double>(planes[a].size());
   }
   for (const Extent& piece : pieces) sum += cells_in(piece);
-  if (boxes * static_cast<double>(pieces.size()) > 1e9) return sum;  // thousands of pieces in no rows: by their sizes
+  if (boxes * static_cast<double>(pieces.size()) > 1e9)
+    return sum;  // thousands of pieces that are not in rows: uses
+                 // the sum of their sizes
   double covered = 0;
   for (std::size_t k = 1; k < planes[2].size(); ++k)
     for (std::size_t j = 1; j < planes[1].size(); ++j)

@@ -7,21 +7,21 @@
 
 namespace tessera::readers {
 
-/// Points, first and last along each axis; between them are the cells.
+/// First and last point along each axis; the cells are between them.
 using Extent = std::array<int, 6>;
 
 bool holds(const Extent& extent, const Extent& part);
 
-/// 0 where it is flat or empty.
+/// 0 if it is flat or empty.
 double cells_in(const Extent& extent);
 
-/// Cells that lie in a piece, however the pieces overlap.
+/// Number of cells in the union of the pieces, however these overlap.
 double cells_covered(std::span<const Extent> pieces);
 
-/// The smallest that holds them all.
+/// The smallest extent that contains all pieces.
 Extent box_of(std::span<const Extent> pieces);
 
-/// The six numbers.
+/// The six numbers as text.
 std::string words_of(const Extent& extent);
 
 }  // namespace tessera::readers

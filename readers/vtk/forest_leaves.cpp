@@ -10,12 +10,12 @@
 namespace tessera::readers {
 namespace {
 
-/// Of the deepest cells along an axis: what the library's lattice holds (cells/amr/amr_leaves.cpp).
+/// Limit of the deepest cells along an axis: the capacity of the library's lattice (cells/amr/amr_leaves.cpp).
 constexpr std::int64_t most_cells = 1 << 29;
 
 constexpr const char* remedy = "it is damaged, write it again";
 
-/// A cell of one level, and its place in cells of that level.
+/// A cell of one level, and its position in cells of that level.
 struct Node {
   std::array<std::int32_t, 3> low;
   bool is_hidden;
@@ -30,7 +30,7 @@ class Descent {
 
   ForestLeaves leaves() {
     for (std::size_t t = 0; t < forest_.trees.size(); ++t) add_tree(t);
-    // The lattice is that of the deepest leaf, which may lie less deep than the file allows.
+    // The lattice is that of the deepest leaf, which may be less deep than the file allows.
     std::vector<std::int32_t> scale(static_cast<std::size_t>(leaves_.levels), 1);
     for (std::size_t level = scale.size() - 1; level-- > 0;) scale[level] = scale[level + 1] * forest_.branching;
     for (std::size_t l = 0; l < leaves_.level.size(); ++l)
@@ -95,7 +95,7 @@ class Descent {
   }
 
   void add_children(std::size_t t, const Node& parent, bool is_hidden, std::size_t cell) {
-    // So that no more are held than the file explains.
+    // So that memory is proportional to the file.
     if (next_.size() + children_ > forest_.trees[t].cells) refuse_count(t, cell + next_.size() + children_);
     const std::int32_t b = forest_.branching;
     for (std::int32_t k = 0; k < b; ++k)
@@ -111,14 +111,14 @@ class Descent {
     leaves_.levels = std::max(leaves_.levels, level + 1);
   }
 
-  /// For each of a tree's cells, which one it is in the order of descent.
+  /// For each of a tree's cells, its index in depth-first order.
   void order_by_descent(const StoredTree& tree) {
     std::vector<std::size_t> elder(tree.cells, 0);  // the first child of each cell, level by level
     std::size_t next = 1;
     for (std::size_t cell = 0; cell < tree.cells && cell < tree.bits; ++cell)
       if (is_divided(tree, cell)) elder[cell] = next, next += children_;
     order_.assign(tree.cells, 0);
-    if (next != tree.cells) return;  // refused for its count
+    if (next != tree.cells) return;  // the number of cells is refused later
     std::size_t made = 1;
     std::vector<std::size_t> open{0};
     while (!open.empty()) {

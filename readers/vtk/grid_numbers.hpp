@@ -12,7 +12,7 @@
 
 namespace tessera::readers {
 
-/// Numbers of one type, one after the other.
+/// A contiguous array of numbers of one type.
 struct GridNumbers {
   NumberType type = NumberType::float64;
   std::vector<std::byte> bytes{};
@@ -21,21 +21,20 @@ struct GridNumbers {
   [[nodiscard]] std::vector<double> as_doubles() const;
 };
 
-/// Doubles as they are, or rounded to float32.
+/// Doubles unchanged, or rounded to float32.
 GridNumbers numbers_of(std::span<const double> values, NumberType type = NumberType::float64);
 
-/// Where a stored array has the axes of a grid: axis `along[a]` of it is x, y or z. All its other axes have the
-/// length 1.
+/// Which axes of a stored array are the grid's: its axis `along[a]` is x, y or z. All its other axes have length 1.
 using GridAxes = std::array<std::size_t, 3>;
 
-/// Items of `width` bytes, whose axes have these lengths, the first the slowest, in the order of grids: x fastest.
+/// Reorders items of `width` bytes, whose axes have these lengths, the first the slowest, to grid order: x fastest.
 std::vector<std::byte> in_grid_order(std::vector<std::byte> items, std::size_t width,
                                      std::span<const std::size_t> lengths, const GridAxes& along);
 
-/// A field with its range; `components` numbers a tuple.
+/// Holds a field with its range; `components` numbers per tuple.
 io::ForeignArray hold_field_numbers(Holdings& holdings, std::string name, GridNumbers numbers, int components = 1);
 
-/// Coordinates, points and others without a range.
+/// Holds coordinates, points and other numbers without a range.
 io::ForeignArray hold_numbers(Holdings& holdings, GridNumbers numbers, int components = 1);
 
 }  // namespace tessera::readers

@@ -34,7 +34,7 @@
 namespace tessera::readers {
 namespace {
 
-/// What the kinds of grids are called.
+/// Names of the kinds of grids.
 struct KindWords {
   const char *whole, *piece, *extension;
 };
@@ -52,17 +52,17 @@ KindWords words_of(GridKind kind) {
 
 struct Piece {
   std::filesystem::path file;
-  Extent extent;  ///< as the parallel file says
+  Extent extent;  ///< as stated in the parallel file
 };
 
-/// What a parallel file says.
+/// The contents of a parallel file.
 struct WholeGrid {
   Extent extent{};
-  std::array<double, 3> origin{0, 0, 0}, spacing{1, 1, 1};  ///< images
-  std::vector<Piece> pieces;                                ///< those that have cells
+  std::array<double, 3> origin{0, 0, 0}, spacing{1, 1, 1};  ///< for images
+  std::vector<Piece> pieces;                                ///< those with cells
 };
 
-/// Numbers of an attribute; none if there are fewer.
+/// Numbers of an attribute; no value if there are fewer.
 template <class T, std::size_t count>
 std::optional<std::array<T, count>> attribute_numbers(const std::string& text) {
   std::istringstream words(text);
@@ -72,7 +72,7 @@ std::optional<std::array<T, count>> attribute_numbers(const std::string& text) {
   return numbers;
 }
 
-/// Reads the parallel file alone.
+/// Reads only the parallel file.
 WholeGrid read_whole(const std::filesystem::path& file, GridKind kind) {
   allow_for(file);
   const io::WholeFile mapped(file);
@@ -129,7 +129,7 @@ vtkSmartPointer<vtkDataSet> read_piece(const std::filesystem::path& piece, const
   return data;
 }
 
-/// Half a last place, relative, of what an array stores; 0 of whole numbers.
+/// Largest relative rounding error of a stored value (half a unit in the last place); 0 for integers.
 double rounding_of(vtkDataArray& array) {
   if (array.GetDataType() == VTK_FLOAT) return 0x1p-24;
   return array.GetDataType() == VTK_DOUBLE ? 0x1p-53 : 0;
@@ -143,7 +143,7 @@ Extent extent_of(vtkDataSet& data) {
   return extent;
 }
 
-/// Tuples of a box of points, or of cells, which end one earlier.
+/// Tuples of a box of points, or of cells, which are one fewer per axis.
 class TupleBox {
  public:
   TupleBox(const Extent& extent, bool points) {
@@ -154,7 +154,7 @@ class TupleBox {
   }
   [[nodiscard]] vtkIdType total() const { return count_[0] * count_[1] * count_[2]; }
 
-  /// Copies the tuples of this box from an array that has those of `from` to one that has those of `to`.
+  /// Copies the tuples of this box from an array for `from` to an array for `to`.
   void copy(vtkAbstractArray& from_array, const TupleBox& from, vtkAbstractArray& to_array, const TupleBox& to) const {
     for (vtkIdType k = 0; k < count_[2]; ++k)
       for (vtkIdType j = 0; j < count_[1]; ++j)
@@ -172,7 +172,7 @@ std::string words_of(vtkAbstractArray& array) {
   return fmt::format("{} x {}", array.GetDataTypeAsString(), array.GetNumberOfComponents());
 }
 
-/// Arrays as the first piece has them, with room for the whole.
+/// Allocates arrays like the first piece's for the whole grid.
 void make_arrays(vtkDataSetAttributes& first, vtkIdType tuples, vtkDataSetAttributes& whole) {
   for (int n = 0; n < first.GetNumberOfArrays(); ++n) {
     vtkAbstractArray& like = *first.GetAbstractArray(n);
@@ -188,7 +188,7 @@ void make_arrays(vtkDataSetAttributes& first, vtkIdType tuples, vtkDataSetAttrib
       whole.SetActiveAttribute(active->GetName(), kind);
 }
 
-/// Whether all coordinates are finite too. VTK takes missing ones for zeros.
+/// Also checks that all coordinates are finite. VTK replaces missing ones by zeros.
 bool rises_or_falls(vtkDataArray& coordinates) {
   bool rises = true, falls = true;
   for (vtkIdType i = 0; i < coordinates.GetNumberOfTuples(); ++i) {
@@ -203,7 +203,7 @@ bool rises_or_falls(vtkDataArray& coordinates) {
 class Assembly {
  public:
   Assembly(const std::filesystem::path& file, const WholeGrid& whole, GridKind kind) : file_(file), whole_(whole) {
-    Extent extent = whole_.extent;  // VTK's setters take no constants
+    Extent extent = whole_.extent;  // VTK's setters take non-const arrays
     if (kind == GridKind::image) {
       vtkNew<vtkImageData> image;
       image->SetExtent(extent.data());
@@ -246,7 +246,7 @@ class Assembly {
   }
 
   [[nodiscard]] vtkSmartPointer<vtkDataSet> finished() {
-    // What a piece marks as another's is here once, and nobody else's.
+    // Points and cells that a piece marks as duplicates occur once here, so they are not duplicates.
     for (vtkUnsignedCharArray* ghosts : {grid_->GetPointGhostArray(), grid_->GetCellGhostArray()})
       for (vtkIdType n = 0; ghosts != nullptr && n < ghosts->GetNumberOfTuples(); ++n)
         ghosts->SetValue(n, static_cast<unsigned char>(ghosts->GetValue(n) & ~1));
@@ -259,7 +259,7 @@ class Assembly {
   }
 
  private:
-  /// Of one type and as many components as what the first piece has, and with all its tuples.
+  /// Throws unless the array has the same type and number of components as the first piece's, and all its tuples.
   void require_alike(vtkAbstractArray* own, vtkAbstractArray& first, const std::string& name, const TupleBox& in_piece,
                      const Piece& piece) const {
     const std::string found = own ? words_of(*own) : "missing", wanted = words_of(first);
@@ -317,7 +317,7 @@ class Assembly {
           continue;
         }
         const double before = coordinates_[a]->GetComponent(at, 0);
-        // Each was rounded once or twice on its way from one grid.
+        // Each was rounded once or twice from the same grid.
         const double most = 4 * std::max(rounding_of(*own[a]), rounding_of(*coordinates_[a])) * std::abs(before);
         if (!(std::abs(x - before) <= most))
           throw scene::bad_input(
@@ -333,7 +333,7 @@ class Assembly {
   bool is_first_ = true;
   vtkSmartPointer<vtkDataSet> grid_;
   std::array<vtkSmartPointer<vtkDataArray>, 3> coordinates_;
-  std::array<std::vector<bool>, 3> known_;  ///< which of the coordinates a piece has given
+  std::array<std::vector<bool>, 3> known_;  ///< coordinates set by a piece
 };
 
 }  // namespace

@@ -14,24 +14,24 @@ namespace tessera::readers {
 
 enum class GridKind { image, rectilinear, structured };
 
-/// A grid in pieces (.pvti, .pvtr, .pvts), put together: a vtkImageData, vtkRectilinearGrid or vtkStructuredGrid with
-/// the arrays that the pieces have, each of which is read by itself, so that faults name it. VTK's own readers of grids
-/// in pieces leave zeros where there is no piece, take the bytes of one type for another, and fail by a null pointer if
-/// a piece is damaged.
+/// A grid in pieces (.pvti, .pvtr, .pvts), assembled: a vtkImageData, vtkRectilinearGrid or vtkStructuredGrid with the
+/// arrays of the pieces. Each piece is read by itself, so that errors name it. VTK's own readers of grids in pieces
+/// leave zeros where there is no piece, reinterpret bytes as another type, and dereference a null pointer if a piece is
+/// damaged.
 ///
-/// Pieces may overlap (ghost levels, or planes of points that they share); the last one's samples hold. Origin and
-/// spacing are the parallel file's; the direction, which VTK 9.1 leaves out there, is the first piece's that has one.
-/// Throws Error(bad_input) in one line if the pieces do not fill the whole, or one is missing, damaged, of another
-/// kind, smaller than the whole says, or has other arrays or coordinates than the ones before.
+/// Pieces may overlap (ghost levels, or shared planes of points); the last one's samples are used. Origin and spacing
+/// are the parallel file's; the direction, which VTK 9.1 omits there, is that of the first piece that has one. Throws
+/// Error(bad_input) in one line if the pieces do not fill the whole, or if one is missing, damaged, of another kind,
+/// smaller than the parallel file states, or has other arrays or coordinates than those before.
 vtkSmartPointer<vtkDataSet> read_grid_pieces(const std::filesystem::path& file, GridKind kind,
                                              std::vector<std::string>& notes);
 
-/// Throws Error(bad_input) for one of VTK's XML files that is cut short, which VTK fills up with zeros without a word,
-/// or is not well formed, or nested so deep that VTK's reader does not come out of it.
+/// Throws Error(bad_input) for a VTK XML file that is truncated, which VTK silently completes with zeros, not well
+/// formed, or so deeply nested that VTK's reader does not return.
 void require_whole_xml(const std::filesystem::path& file);
 
-/// One of VTK's XML files, by the `type` of its <VTKFile>; not one in pieces. The pieces within it have to fill the
-/// whole. Throws Error(bad_input).
+/// Reads a VTK XML file, by the `type` of its <VTKFile>; not one in pieces. The pieces within it must fill the whole.
+/// Throws Error(bad_input).
 vtkSmartPointer<vtkDataObject> read_xml_file(const std::filesystem::path& file, const std::string& type,
                                              std::string& warning);
 

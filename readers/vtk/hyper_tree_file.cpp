@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// HyperTreeGrids: VTK's XML reader finds the arrays, and what they say of the trees is worked out here. VTK 9.1's own
-// way from there gets vectors wrong in version 2 of the format, masks in version 0, and masks of files in pieces.
+// HyperTreeGrids: VTK's XML reader finds the arrays, and the trees are derived from them here. VTK 9.1's own code for
+// this mishandles vectors in version 2 of the format, masks in version 0, and masks of files in pieces.
 #include <fmt/format.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
@@ -30,7 +30,7 @@
 namespace tessera::readers {
 namespace {
 
-/// More than any file explains, and less than what sums of a few of them overflow.
+/// Larger than in any real file, and small enough that sums of a few do not overflow.
 constexpr std::int64_t most_numbers = std::int64_t{1} << 40;
 
 class TreeFileReader final : public vtkXMLHyperTreeGridReader {
@@ -41,7 +41,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
     return made;
   }
 
-  /// Called by Update(). VTK's pipeline does not care for exceptions, so that they wait for its end.
+  /// Called by Update(). Exceptions must not pass through VTK's pipeline, so they are stored until it ends.
   void ReadXMLData() override {
     try {
       read();
@@ -67,7 +67,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
     return in.FindNestedElementWithNameAndAttribute("DataArray", "Name", name);
   }
 
-  /// How many tuples an array says that it has; 0 if nothing.
+  /// The number of tuples that an array states; 0 if it states none.
   [[nodiscard]] std::int64_t promised(vtkXMLDataElement& array) const {
     vtkIdType tuples = 0;
     if (array.GetScalarAttribute("NumberOfTuples", tuples) == 0) return 0;
@@ -104,7 +104,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
     return numbers_of(*element, promised(*element));
   }
 
-  /// Adds an array of bits, which may be missing, and says how many they are.
+  /// Appends an array of bits, which may be missing, and returns their number.
   std::size_t add_bits(vtkXMLDataElement& in, const char* name, std::vector<bool>& bits) {
     vtkXMLDataElement* const element = array_named(in, name);
     return element != nullptr ? add_bits(*element, promised(*element), bits) : 0;
@@ -163,7 +163,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
   /// Version 2: arrays of all trees, one tree after the other. The last level of a tree has no divisions.
   void read_trees_together(vtkXMLDataElement& grid, vtkXMLDataElement& trees) {
     vtkXMLDataElement* const ids = array_named(trees, "TreeIds");
-    if (ids == nullptr || promised(*ids) == 0) return;  // as VTK writes none at all
+    if (ids == nullptr || promised(*ids) == 0) return;  // as VTK writes a grid without trees
     const vtkSmartPointer<vtkDataArray> roots = numbers_of(*ids, promised(*ids)),
                                         depths = numbers_named(trees, "DepthPerTree"),
                                         counts = numbers_named(trees, "NumberOfVerticesPerDepth");
@@ -185,19 +185,19 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
       tree.bits = tree.cells - last;
       cells += tree.cells, bit += tree.bits;
       if (mask != nullptr) tree.masks = tree.cells;
-      // So that neither the sums overflow nor arrays are made that no division explains.
+      // So that the sums do not overflow, and no arrays are allocated that no division explains.
       if (bit > bits || cells > 27 * bits + static_cast<std::size_t>(t) + 1)
         throw damaged(fmt::format("tree {} has {} cells, for which it has too few divisions", t, tree.cells));
       forest.trees.push_back(tree);
     }
-    // VTK writes beside it how many it had in memory, which may be more.
+    // VTK also writes how many it had in memory, which may be more.
     if (mask != nullptr) add_bits(*mask, static_cast<std::int64_t>(cells), forest.masked);
     if (vtkXMLDataElement* const data = grid.FindNestedElementWithName("CellData"))
       for (int k = 0; k < data->GetNumberOfNestedElements(); ++k)
         values->AddArray(numbers_of(*data->GetNestedElement(k), static_cast<std::int64_t>(cells)));
   }
 
-  /// Versions 0 and 1: each tree has arrays of its own.
+  /// Versions 0 and 1: each tree has its own arrays.
   void read_trees_apart(vtkXMLDataElement& trees) {
     forest.values_by_descent = GetFileMajorVersion() == 0;
     std::size_t cells = 0;
@@ -215,7 +215,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
       cells += tree.cells;
       forest.trees.push_back(tree);
       vtkXMLDataElement* data = element.FindNestedElementWithName("CellData");
-      if (data == nullptr) data = element.FindNestedElementWithName("PointData");  // as it was called first
+      if (data == nullptr) data = element.FindNestedElementWithName("PointData");  // its original name
       if (data == nullptr) continue;
       for (int k = 0; k < data->GetNumberOfNestedElements(); ++k) {
         if (fields.size() <= static_cast<std::size_t>(k)) fields.emplace_back();
@@ -225,7 +225,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
     for (auto& parts : fields) join(parts, cells);
   }
 
-  /// A field of all trees, whose parts they have.
+  /// Concatenates the parts of a field over all trees.
   void join(std::vector<vtkSmartPointer<vtkDataArray>>& parts, std::size_t cells) {
     if (parts.size() != forest.trees.size())
       throw damaged(fmt::format("{} of its {} trees have a field", parts.size(), forest.trees.size()));
@@ -247,14 +247,14 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
     values->AddArray(joined);
   }
 
-  /// A number that is to be whole; -1 if it is not.
+  /// A number that must be an integer; -1 if it is not.
   static std::int64_t whole(vtkDataArray& array, vtkIdType n) {
     const double number = array.GetComponent(n, 0);
     return number >= 0 && number <= static_cast<double>(most_numbers) ? static_cast<std::int64_t>(number) : -1;
   }
 };
 
-/// The fields of the leaves alone.
+/// The fields of only the leaves.
 vtkSmartPointer<vtkCellData> of_leaves(vtkCellData& all, const std::vector<std::int64_t>& leaves) {
   auto chosen = vtkSmartPointer<vtkCellData>::New();
   const vtkNew<vtkIdList> ids;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// By "VTK File Formats" (legacy formats, versions 1 to 5.1).
+// According to "VTK File Formats" (legacy formats, versions 1 to 5.1).
 #include "readers/vtk/legacy_words.hpp"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@
 namespace tessera::readers {
 namespace {
 
-/// What follows a keyword: n a number, t a type of numbers, d a kind of data set, w any word.
+/// Arguments of a keyword: n a number, t a number type, d a kind of data set, w any word.
 constexpr std::array keywords = {std::pair("dataset", "d"),        std::pair("points", "nt"),
                                  std::pair("cells", "nn"),         std::pair("cell_types", "n"),
                                  std::pair("offsets", "t"),        std::pair("connectivity", "t"),
@@ -58,7 +58,7 @@ std::string odd_word(std::string_view word, const char* expected) {
   return fmt::format("{} is where {} is expected", scene::quote(std::string(word)), expected);
 }
 
-/// What is odd about a line of numbers, of a keyword or of an array of FIELD (name, two numbers and type).
+/// The fault in a line of numbers, of a keyword or of an array of FIELD (name, two numbers and type).
 std::string odd_word_in(const std::vector<std::string_view>& words) {
   if (words.size() == 4 && is_any_number(words[1]) && is_any_number(words[2]) && is_in(number_types, words[3]))
     return "";
@@ -88,7 +88,7 @@ std::string odd_legacy_word(const std::filesystem::path& file) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     const std::vector<std::string_view> words = split_words(text.substr(at, end - at));
     at = end + 1;
-    if (words.empty()) is_metadata = false;  // which goes on to an empty line
+    if (words.empty()) is_metadata = false;  // metadata ends at an empty line
     if (number < 2 || words.empty() || is_metadata) continue;
     is_metadata = lower_case(words[0]) == "metadata";
     std::string found;
@@ -96,7 +96,7 @@ std::string odd_legacy_word(const std::filesystem::path& file) {
       found = odd_word_in(words);
     else if (lower_case(words[0]) != "ascii")
       found = lower_case(words[0]) == "binary" ? "" : odd_word(words[0], "ASCII or BINARY");
-    if (end == text.size() && words.size() < 2) return "";  // a word may be cut off
+    if (end == text.size() && words.size() < 2) return "";  // a word may be truncated
     if (!found.empty()) return fmt::format("line {}: {}", number + 1, found);
     if (number == 2 && lower_case(words[0]) == "binary") return "";
     if (words.size() == 4 && is_in(std::array{"string", "variant"}, words[3])) return "";  // any words follow

@@ -19,7 +19,7 @@
 namespace tessera::readers {
 namespace {
 
-/// The next whole number of a text, from which it is taken; nothing where another word comes.
+/// Removes and returns the next integer of a text; no value if another word comes first.
 std::optional<std::int64_t> take_number(std::string_view& text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first == std::string_view::npos) return std::nullopt;

@@ -6,12 +6,12 @@
 
 namespace tessera::readers {
 
-/// Refuses GAMBIT files with elements of second order, whose nodes VTK's reader would take for the next elements:
-/// throws Error(bad_input). What is no such file is left to the reader.
+/// Refuses GAMBIT files with second-order elements, whose nodes VTK's reader would interpret as the next elements:
+/// throws Error(bad_input). Other files are left to the reader.
 void require_linear_gambit(const std::filesystem::path& file);
 
-/// Of an EnSight 6 case whose geometry has elements of second order a note that VTK's reader knows their corners alone;
-/// empty for all others, EnSight Gold among them.
+/// For an EnSight 6 case whose geometry has second-order elements, a note that VTK's reader reads only their corners;
+/// empty for all others, including EnSight Gold.
 std::string note_on_ensight6(const std::filesystem::path& case_file);
 
 }  // namespace tessera::readers

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Built in place of minc2_file.cpp with TESSERA_MINC=OFF.
+// Built instead of minc2_file.cpp if TESSERA_MINC=OFF.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>

@@ -27,7 +27,7 @@ struct Axis {
   std::array<double, 3> cosines{};
 };
 
-/// An open volume. Every call that fails ends in Error.
+/// An open volume. Every failing call throws Error.
 class Minc2Volume {
  public:
   explicit Minc2Volume(const std::filesystem::path& file) : source_(file.string()) {
@@ -45,15 +45,15 @@ class Minc2Volume {
           "{}: {} cannot be read as MINC 2; the file is truncated or damaged, write it again", source_, what));
   }
 
-  /// Slowest first: time, if it has steps, z, y and x, then components, if it has some. Later reads are in this order,
-  /// whatever the file's.
+  /// Slowest first: time, if it has steps, z, y and x, then components, if any. Later reads use this order, whatever
+  /// the file's.
   [[nodiscard]] std::vector<Axis> ordered_axes() const {
     int count = 0;
     require(miget_volume_dimension_count(volume_, MI_DIMCLASS_ANY, MI_DIMATTR_ALL, &count), "its dimensions");
     if (count < 3 || count > most_axes)
       throw scene::bad_input(
           fmt::format("{}: it has {} dimensions; give a volume of three, besides time and components", source_, count));
-    // The library follows a null pointer where it is given a name that the file has not.
+    // The library dereferences a null pointer for a name that the file does not have.
     const std::vector<std::string> names = names_in_file(count);
     std::vector<std::string> wanted;
     for (const char* name : {"time", "zspace", "yspace", "xspace", "vector_dimension"})
@@ -68,7 +68,7 @@ class Minc2Volume {
                       "volume in space",
                       source_, fmt::join(names, ", ")));
     std::array<midimhandle_t, most_axes> dimensions{};
-    // It gives their number, or 0 as other calls where all is well.
+    // Returns their number, or 0 like other successful calls.
     if (miget_volume_dimensions(volume_, MI_DIMCLASS_ANY, MI_DIMATTR_ALL, MI_DIMORDER_APPARENT, count,
                                 dimensions.data()) < 0)
       require(MI_ERROR, "its dimensions");
@@ -83,7 +83,7 @@ class Minc2Volume {
     return type;
   }
 
-  /// Real values of a part; room for them is the caller's business.
+  /// Real values of a part; the caller provides the memory.
   void read(mitype_t as, const std::vector<misize_t>& first, const std::vector<misize_t>& counts, void* out) const {
     require(miget_real_value_hyperslab(volume_, as, first.data(), counts.data(), out), "its samples");
   }
@@ -115,7 +115,7 @@ class Minc2Volume {
     miboolean_t is_irregular = 0;
     miget_dimension_sampling_flag(dimension, &is_irregular);
     require(miget_dimension_size(dimension, &axis.size), "a dimension's size");
-    if (axis.name == "time" && is_irregular == 0) {  // uneven times have numbers
+    if (axis.name == "time" && is_irregular == 0) {  // non-uniform times are stored as numbers
       if (miget_dimension_start(dimension, MI_ORDER_FILE, &axis.start) != MI_NOERROR ||
           miget_dimension_separation(dimension, MI_ORDER_FILE, &axis.step) != MI_NOERROR)
         axis.step = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MINC 1, which is NetCDF, by VTK's reader.
+// MINC 1, which is NetCDF, read by VTK's reader.
 #include <fmt/format.h>
 #include <vtkImageData.h>
 #include <vtkMINCImageAttributes.h>
@@ -28,7 +28,7 @@
 namespace tessera::readers {
 namespace {
 
-/// VTK's reader takes what lies behind the file's end as zeros.
+/// VTK's reader reads zeros beyond the file's end.
 void require_whole(const std::filesystem::path& file) {
   int id = 0;
   if (nc_open(file.c_str(), NC_NOWRITE, &id) != NC_NOERR)
@@ -40,7 +40,7 @@ void require_whole(const std::filesystem::path& file) {
         fmt::format("{}: it has {} bytes of at least {}; {}", file.string(), size, least, write_anew));
 }
 
-/// Of the steps of a file: where they are in the variable `time`, else by its start and step.
+/// Times of a file's steps: from the variable `time` if present, else from its start and step.
 std::vector<double> minc_times(const std::filesystem::path& file, std::size_t count) {
   int id = 0, time = 0, dimensions = 0;
   if (count < 2 || nc_open(file.c_str(), NC_NOWRITE, &id) != NC_NOERR) return {};
@@ -62,7 +62,7 @@ std::vector<double> minc_times(const std::filesystem::path& file, std::size_t co
   return times;
 }
 
-/// VTK's reader passes over attributes that are no doubles, and over the sign of bytes.
+/// VTK's reader ignores attributes that are not doubles, and the sign of bytes.
 class MincReader : public vtkMINCImageReader {
  public:
   static MincReader* New() { VTK_STANDARD_NEW_BODY(MincReader); }
@@ -96,9 +96,9 @@ class MincReader : public vtkMINCImageReader {
     ImageAttributes->FindValidRange(ValidRange);
   }
 
-  /// Real values go from image-min to image-max where samples go over the valid range.
+  /// Real values range from image-min to image-max as samples range over the valid range.
   void find_valid_range(int id, int image) {
-    if (MINCImageType == NC_FLOAT || MINCImageType == NC_DOUBLE) {  // which are real values
+    if (MINCImageType == NC_FLOAT || MINCImageType == NC_DOUBLE) {  // these are real values
       for (double* range : {ValidRange, ImageRange}) range[0] = 0, range[1] = 1;
       return;
     }
@@ -106,7 +106,7 @@ class MincReader : public vtkMINCImageReader {
     if (!read_attribute(id, image, "valid_range", range)) return;
     const int bits = MINCImageType == NC_BYTE ? 8 : MINCImageType == NC_SHORT ? 16 : 32;
     for (double& end : range)
-      if (end < 0 && MINCImageTypeSigned == 0) end += std::ldexp(1.0, bits);  // classic NetCDF has signed numbers only
+      if (end < 0 && MINCImageTypeSigned == 0) end += std::ldexp(1.0, bits);  // classic NetCDF has only signed numbers
     if (range[0] == range[1]) {
       nc_close(id);
       throw scene::bad_input(
@@ -151,7 +151,7 @@ io::ForeignContents read_minc(Holdings& holdings, const std::filesystem::path& f
   if (!warning.empty()) contents.notes.push_back("VTK warns: " + warning);
   contents.parts = parts_of(holdings, *reader->GetOutput(), source);
   io::ForeignPart& part = contents.parts.front();
-  // The reader's origin is along the axes, whose directions it keeps to itself.
+  // The reader's origin is along the axes; it does not apply their directions.
   const vtkMatrix4x4& cosines = *reader->GetDirectionCosines();
   const std::array<double, 3> along = part.origin;
   for (std::size_t row = 0; row < 3; ++row) {

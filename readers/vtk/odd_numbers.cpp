@@ -25,7 +25,7 @@
 namespace tessera::readers {
 namespace {
 
-/// What stands in: floats, so that arrays of floats have them exactly.
+/// Placeholders: floats, so that arrays of floats represent them exactly.
 struct StandIn {
   double number, meant;
 };
@@ -38,7 +38,7 @@ bool is_number(std::string_view word) {
          ((word.front() == '-' || word.front() == '+') && word.size() > 1);
 }
 
-/// Which of the stand-ins a word needs; null: none.
+/// The placeholder for a word; null if it needs none.
 const StandIn* stand_in_of(std::string_view word) {
   std::string lower = lower_case(word.substr(0, 12));
   const bool is_negative = lower.front() == '-';
@@ -50,7 +50,7 @@ const StandIn* stand_in_of(std::string_view word) {
   return nullptr;
 }
 
-/// The words of a line with stand-ins; empty if it has none, or something else than numbers.
+/// The words of a line with placeholders; empty if it has none, or anything but numbers.
 std::string replaced(std::string_view line) {
   std::string result;
   bool any = false;
@@ -90,7 +90,7 @@ OddNumbers::OddNumbers(const std::filesystem::path& file) : file_(file) {
   const std::string_view text = mapped.text();
   const std::string_view beginning = text.substr(0, 4096);
   if (beginning.find('\0') != std::string_view::npos || beginning.find("\nBINARY") != std::string_view::npos) return;
-  std::size_t done = 0;  // of the text, copied
+  std::size_t done = 0;  // length of the text copied so far
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     const std::string_view line = text.substr(at, end - at);

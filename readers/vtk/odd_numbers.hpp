@@ -10,19 +10,20 @@ class vtkDataObject;
 
 namespace tessera::readers {
 
-/// A text file of numbers some of which are NaN or infinite. C++ streams, by which some of VTK's readers read, do not
-/// know these words: others stand in for them, which no file has, until the numbers are read.
+/// A text file of numbers some of which are NaN or infinite. C++ streams, with which some of VTK's readers read, do not
+/// parse these words: placeholders that do not occur in the file replace them until the numbers are read.
 class OddNumbers {
  public:
-  /// Looks for such numbers in lines of numbers alone. Nothing of a file that is not text.
+  /// Searches lines that consist of numbers. Finds nothing in a file that is not text.
   explicit OddNumbers(const std::filesystem::path& file);
 
   [[nodiscard]] bool any() const { return !text_.empty(); }
-  /// The file with other numbers in their places; empty if there are none.
+  /// The file with placeholders; empty if there are none.
   [[nodiscard]] const std::string& text() const { return text_; }
-  /// The name of a file in memory that has this text, for as long as this lives; without such numbers the file itself.
+  /// The name of a file in memory with this text, valid during the lifetime of this object; without such numbers the
+  /// file itself.
   [[nodiscard]] std::string file_name();
-  /// Puts the numbers back into what was read.
+  /// Replaces the placeholders in the data that was read.
   void restore(vtkDataObject* data) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// OpenFOAM cases, by VTK's reader: whole, or a share of the processors' folders of a decomposed one.
+// OpenFOAM cases, read by VTK's reader: whole, or a share of the processors' directories of a decomposed one.
 #include <fmt/format.h>
 #include <vtkCollection.h>
 #include <vtkDummyController.h>
@@ -28,15 +28,15 @@
 namespace tessera::readers {
 namespace {
 
-/// Reads one processor's part at a time, where VTK's own reader appends all of them.
+/// Reads one processor's part at a time, while VTK's own reader appends all of them.
 class ProcessorReader : public vtkPOpenFOAMReader {
  public:
   static ProcessorReader* New();
 
-  /// How many parts there are, after UpdateInformation().
+  /// Number of parts, after UpdateInformation().
   [[nodiscard]] int processors() const { return Readers->GetNumberOfItems(); }
 
-  /// Which of them the next update reads; all at first.
+  /// Selects the part of the next update; all at first.
   void choose(int processor) {
     chosen_ = processor;
     Modified();
@@ -60,7 +60,7 @@ class ProcessorReader : public vtkPOpenFOAMReader {
 };
 vtkStandardNewMacro(ProcessorReader);
 
-/// The meshes of a case, or of one of its processors: of all regions, if it has several.
+/// The meshes of a case, or of one of its processors: of all regions, if there are several.
 std::vector<std::filesystem::path> meshes_of(const std::filesystem::path& folder) {
   std::error_code unknown;
   std::vector<std::filesystem::path> meshes;
@@ -74,7 +74,7 @@ std::vector<std::filesystem::path> meshes_of(const std::filesystem::path& folder
   return meshes;
 }
 
-/// Whether a case's lists have 64-bit integers, which its files say of themselves ("arch").
+/// Whether a case's lists have 64-bit integers, according to its files ("arch").
 bool has_wide_labels(const std::filesystem::path& folder) {
   std::error_code unknown;
   for (const char* part : {".", "processor0"})
@@ -93,7 +93,7 @@ bool has_wide_labels(const std::filesystem::path& folder) {
   return false;
 }
 
-/// The text that OpenFOAM itself writes has a list for each face.
+/// Text files written by OpenFOAM itself have a list for each face.
 void refuse_compact_text(const std::filesystem::path& faces, const std::string& source) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(faces, unknown)) return;
@@ -112,7 +112,7 @@ void refuse_compact_text(const std::filesystem::path& faces, const std::string& 
                     source, faces.lexically_normal().string()));
 }
 
-/// Throws if a file of a mesh is gone, which VTK's reader takes for a mesh that is not there, or for damage.
+/// Throws if a file of a mesh is missing, which VTK's reader treats as a missing mesh, or as damage.
 void require_mesh_files(const std::filesystem::path& folder, const std::string& source) {
   std::error_code unknown;
   for (const char* part : {".", "processor0"})
@@ -126,8 +126,8 @@ void require_mesh_files(const std::filesystem::path& folder, const std::string& 
     }
 }
 
-/// Throws if a file that VTK's reader may open is a pipe, which it would wait for. What lies in the folder of the case
-/// itself is not read.
+/// Throws if a file that VTK's reader may open is a pipe, which would block it. Files in the directory of the case
+/// itself are not read.
 void require_regular_files(const std::filesystem::path& folder, const std::string& source) {
   std::error_code unknown;
   std::filesystem::recursive_directory_iterator entry(folder, unknown);
@@ -145,7 +145,7 @@ bool is_case(const std::filesystem::path& folder) {
          std::filesystem::exists(folder / "processors", unknown);
 }
 
-/// The folder of the case that a file or folder is of: the one that it is in, or one of those above.
+/// The directory of the case to which a file or directory belongs: the one that contains it, or one above.
 std::filesystem::path case_of(const std::filesystem::path& named) {
   std::error_code unknown;
   if (std::filesystem::is_directory(named, unknown)) return named;
@@ -158,7 +158,7 @@ std::filesystem::path case_of(const std::filesystem::path& named) {
   return own;
 }
 
-/// How many folders of processors a case has, as VTK knows them.
+/// Number of processor directories of a case, as VTK counts them.
 int processor_folders(const std::filesystem::path& folder) {
   std::error_code unknown;
   int count = 0;
@@ -173,8 +173,8 @@ int processor_folders(const std::filesystem::path& folder) {
   return count;
 }
 
-/// Names of the patches of all regions, after UpdateInformation(); not of those between processors, nor of groups of
-/// patches, which are no surfaces of their own.
+/// Names of the patches of all regions, after UpdateInformation(); without those between processors, and without groups
+/// of patches, which are not separate surfaces.
 std::vector<std::string> patches_of(vtkOpenFOAMReader& reader) {
   std::vector<std::string> patches;
   for (int k = 0; k < reader.GetNumberOfPatchArrays(); ++k) {
@@ -187,7 +187,8 @@ std::vector<std::string> patches_of(vtkOpenFOAMReader& reader) {
   return cells::distinct_names(std::move(patches));
 }
 
-/// The request's share of the processors, one by one, as whole and shares alike are read: their blocks in their order.
+/// Reads the request's share of the processors one by one, so that the whole gives the same result as its shares: their
+/// blocks in order.
 void read_processors(Holdings& holdings, ProcessorReader& reader, const std::filesystem::path& folder,
                      const std::string& source, const nlohmann::json& request, io::ForeignContents& contents) {
   const int processors = reader.processors(), part = request.value("part", 0), parts = request.value("parts", 1);
@@ -211,14 +212,14 @@ io::ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::pat
                                   const nlohmann::json& request) {
   const std::filesystem::path folder = case_of(named);
   const std::string source = named.string();
-  // The reader takes the case from a name in its folder, and asks for no such file.
+  // The reader derives the case from a name in its directory, and does not require that this file exists.
   const std::filesystem::path file = is_case(folder) ? folder / "case.foam" : named;
   allow_for_folder(folder);
   const vtkNew<ProcessorReader> reader;
-  const vtkNew<vtkDummyController> alone;  // it takes the parts of a case for processes' and asks who it is
+  const vtkNew<vtkDummyController> alone;  // it treats the parts of a case as those of processes and asks for its rank
   reader->SetController(alone);
   reader->SetFileName(file.c_str());
-  // processor0, processor1, ...: written by parallel runs, and not put together since.
+  // processor0, processor1, ...: written by parallel runs, and not reconstructed since.
   std::error_code unknown;
   const bool is_whole = !meshes_of(folder).empty();
   const bool is_decomposed = !is_whole && (std::filesystem::exists(folder / "processor0", unknown) ||
@@ -233,7 +234,7 @@ io::ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::pat
   reader->SetCaseType(is_decomposed ? vtkPOpenFOAMReader::DECOMPOSED_CASE : vtkPOpenFOAMReader::RECONSTRUCTED_CASE);
   reader->SetUse64BitLabels(has_wide_labels(folder));
   reader->CreateCellToPointOff();
-  reader->DecomposePolyhedraOff();  // ours are conforming, one value a cell (cells/polyhedron_split.hpp)
+  reader->DecomposePolyhedraOff();  // our tets are conforming, with one value per cell (cells/polyhedron_split.hpp)
   io::ForeignContents contents;
   contents.format = "OpenFOAM case";
   if (!is_decomposed && request.value("part", 0) > 0) return contents;
@@ -242,7 +243,7 @@ io::ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::pat
     reader->EnableAllCellArrays();
     reader->EnableAllPointArrays();
     if (request.value("surfaces", false))
-      reader->EnableAllPatchArrays();  // without, the volume alone is on
+      reader->EnableAllPatchArrays();  // otherwise only the volume is enabled
     else if (contents.surface_names = patches_of(*reader); !contents.surface_names.empty())
       contents.notes.push_back(cells::note_on_surfaces("patch", contents.surface_names));
     if (is_decomposed) return read_processors(holdings, *reader, folder, source, request, contents);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What solvers write, by VTK's readers: all cell and point arrays, one time step. OpenFOAM is in openfoam_file.cpp.
+// Files of solvers, read by VTK's readers: all cell and point arrays, one time step. OpenFOAM is in openfoam_file.cpp.
 #include <fmt/format.h>
 #include <vtkAVSucdReader.h>
 #include <vtkCGNSReader.h>
@@ -56,9 +56,8 @@
 namespace tessera::readers {
 namespace {
 
-/// Reads with a reader that is ready but for its file's arrays, which `choose` turns on once they are known. Of those
-/// that know shares of a file the request's `part` of `parts`, which may hold nothing. `mend` puts right what the
-/// reader gets wrong.
+/// Reads with a prepared reader; `choose` enables its file's arrays once they are known. If the reader supports shares
+/// of a file, reads the request's `part` of `parts`, which may be empty. `mend` corrects errors of the reader.
 template <class Reader, class Choose>
 io::ForeignContents read_by(Holdings& holdings, Reader& reader, const std::filesystem::path& file,
                             const nlohmann::json& request, const char* format, const Choose& choose,
@@ -81,7 +80,7 @@ io::ForeignContents read_by(Holdings& holdings, Reader& reader, const std::files
   return contents;
 }
 
-/// The first error of a Fluent reader but for its not finding values, without which a case is a mesh all the same.
+/// The first error of a Fluent reader, except for missing values: a case without them is still a mesh.
 class FluentErrors : public vtkCommand {
  public:
   static FluentErrors* New() { return new FluentErrors; }
@@ -95,15 +94,15 @@ class FluentErrors : public vtkCommand {
   std::string first;
 };
 
-/// Beside the case, by the name with which VTK looks for it.
+/// Next to the case, with the name that VTK searches for.
 std::filesystem::path fluent_values_of(const std::filesystem::path& file) {
   std::string name = file.string();
   name.replace(name.size() - std::min<std::size_t>(name.size(), 3), std::string::npos, "dat");
   return name;
 }
 
-/// The values of a .dat file in which a blank ends those in text; nothing if all have one. VTK's reader takes the last
-/// character before the parenthesis for one.
+/// The values of a .dat file with a blank added at the end of those in text; no value if all have one. VTK's reader
+/// treats the last character before the parenthesis as a blank.
 std::string spaced_fluent_values(std::string_view text) {
   constexpr std::string_view binary_end = "End of Binary Section";
   std::string spaced;
@@ -111,7 +110,7 @@ std::string spaced_fluent_values(std::string_view text) {
   for (std::size_t at = text.find('('); at != std::string_view::npos; at = text.find('(', at)) {
     const std::size_t blank = std::min(text.find_first_of(" (", at + 1), text.size());
     const std::string_view index = text.substr(at + 1, blank - at - 1);
-    if (index.size() > 3) {  // as the reader tells binary sections
+    if (index.size() > 3) {  // as the reader identifies binary sections
       const std::size_t end = text.find(binary_end, at);
       if (end == std::string_view::npos) break;
       at = end + binary_end.size();
@@ -137,7 +136,7 @@ class FluentReader : public vtkFLUENTReader {
 
  protected:
   bool OpenDataFile(const char* file) override {
-    std::error_code unknown;  // a pipe of that name would be waited for
+    std::error_code unknown;  // a pipe of that name would block
     if (!std::filesystem::is_regular_file(fluent_values_of(file), unknown)) return false;
     if (!vtkFLUENTReader::OpenDataFile(file)) return false;
     std::string spaced = spaced_fluent_values(io::WholeFile(fluent_values_of(file)).text());
@@ -148,7 +147,7 @@ class FluentReader : public vtkFLUENTReader {
   }
 };
 
-/// What a Fluent file's sections before its first binary one say.
+/// The sections of a Fluent file before its first binary one.
 struct FluentSections {
   int dimensions = 3;
   std::string untyped;  ///< zone of cells whose section ends before their type, as a hexadecimal number
@@ -179,7 +178,7 @@ FluentSections fluent_sections(const std::filesystem::path& file) {
   return found;
 }
 
-/// VTK's reader takes what is not there as memory happens to be.
+/// VTK's reader leaves missing values uninitialized.
 void require_solid_cells(const std::filesystem::path& file) {
   const FluentSections sections = fluent_sections(file);
   if (sections.dimensions == 2)
@@ -193,8 +192,8 @@ void require_solid_cells(const std::filesystem::path& file) {
 }
 
 /// GAMBIT numbers the corners of a quadrangle row by row, also in bricks and pyramids: (0, 0), (1, 0), (0, 1), (1, 1).
-/// VTK's reader takes them as going round, which makes cells that cut themselves. Some programs do write them so, so
-/// whichever makes fewer such cells is what the file has.
+/// VTK's reader treats them as going around, which makes self-intersecting cells. Some programs do write them around,
+/// so the order with fewer such cells is used.
 void order_gambit_corners(vtkDataObject& data) {
   auto* const grid = vtkUnstructuredGrid::SafeDownCast(&data);
   if (grid == nullptr || grid->GetPoints() == nullptr) return;
@@ -221,7 +220,7 @@ void order_gambit_corners(vtkDataObject& data) {
   }
 }
 
-/// The case files that a master file of several servers lists, each with a part of the mesh; or the file itself.
+/// The case files listed by a master file of several servers, each with a part of the mesh; or the file itself.
 std::vector<std::filesystem::path> ensight_cases(const std::filesystem::path& file) {
   std::ifstream text(file);
   std::vector<std::filesystem::path> cases;
@@ -240,14 +239,14 @@ std::vector<std::filesystem::path> ensight_cases(const std::filesystem::path& fi
   return cases;
 }
 
-/// Whether a field as it is asked for ("point:NAME", "NAME:0", ...) is this variable.
+/// Whether a requested field ("point:NAME", "NAME:0", ...) is this variable.
 bool asks_for(std::string_view field, const std::string& name) {
   for (const std::string_view side : {"point:", "cell:"})
     if (field.starts_with(side)) field.remove_prefix(side.size());
   return field == name || (field.starts_with(name) && field.substr(name.size()).starts_with(':'));
 }
 
-/// Leaves out what has no file at the step that is asked for; without the geometry there is nothing to read.
+/// Leaves out variables without a file at the requested step; without the geometry there is nothing to read.
 void leave_out_missing(vtkGenericEnSightReader& reader, const EnsightCase& described, double time,
                        const std::string& source, const nlohmann::json& request, std::vector<std::string>& notes) {
   for (const EnsightCase::Missing& gone : described.missing(time)) {
@@ -271,7 +270,7 @@ struct CutFile {
   std::string place;
 };
 
-/// The variables whose files end too early. VTK's reader fills them up with zeros (text), or fails without a name.
+/// The variables whose files end too early. VTK's reader completes them with zeros (text), or fails without a name.
 std::vector<CutFile> cut_files(vtkGenericEnSightReader& reader, const std::vector<EnsightCase::Values>& variables,
                                vtkDataObject& data, std::vector<std::string>& notes) {
   std::vector<CutFile> found;
@@ -301,7 +300,7 @@ void require_not_asked_for(const std::vector<CutFile>& cut, const std::filesyste
                       file.string(), each.values.variable, each.values.file_name, each.place));
 }
 
-/// The step of a case with file sets that is asked for.
+/// The requested step of a case with file sets.
 scene::TimeStepRead step_in_file_sets(const EnsightCase& described, nlohmann::json& request,
                                       const std::string& source) {
   std::optional<std::size_t> wish;
@@ -359,7 +358,7 @@ io::ForeignContents read_case(Holdings& holdings, const std::filesystem::path& f
   io::ForeignContents contents;
   try {
     contents = read(true);
-  } catch (const scene::Error&) {  // may be by a binary file that ends too early: the parts alone show which
+  } catch (const scene::Error&) {  // a binary file may end too early: the parts show which
     try {
       read(false);
     } catch (const scene::Error&) {
@@ -404,7 +403,7 @@ io::ForeignContents read_ensight(Holdings& holdings, const std::filesystem::path
 
 io::ForeignContents read_cgns(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   allow_for(file);
-  if (io::read_beginning(file, 8).starts_with("\x89HDF"))  // its links to files of other folders are everyday's
+  if (io::read_beginning(file, 8).starts_with("\x89HDF"))  // links to files of other directories are common in these
     require_sound_references(file, ReferencesMay::lie_anywhere);
   if (auto contents = read_cgns_zones(holdings, file, request)) return std::move(*contents);
   vtkNew<vtkCGNSReader> reader;
@@ -438,7 +437,7 @@ io::ForeignContents read_fluent(Holdings& holdings, const std::filesystem::path&
   io::ForeignContents contents;
   try {
     contents = read_by(holdings, *reader, file, request, "Fluent", [&] { reader->EnableAllCellArrays(); });
-  } catch (const scene::Error&) {  // most often by its memory, for it does not mind where a file ends
+  } catch (const scene::Error&) {  // usually by running out of memory, because it does not check the end of a file
     throw scene::bad_input(fmt::format("{}: VTK's reader cannot read it; export CGNS or EnSight", file.string()));
   }
   if (!errors->first.empty()) throw error_of_vtk(file.string(), errors->first, write_anew);

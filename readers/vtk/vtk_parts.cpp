@@ -35,7 +35,7 @@
 namespace tessera::readers {
 namespace {
 
-/// Bits, of which VTK packs eight into a byte, become bytes.
+/// Bits, which VTK packs eight to a byte, become bytes.
 NumberType type_of(int vtk_type) {
   switch (vtk_type) {
     case VTK_CHAR:
@@ -66,7 +66,7 @@ NumberType type_of(int vtk_type) {
   }
 }
 
-/// The same numbers, one tuple after the other in memory.
+/// The same numbers in contiguous tuples.
 vtkSmartPointer<vtkDataArray> plain(vtkDataArray& array) {
   if (array.HasStandardMemoryLayout() && array.GetDataType() != VTK_BIT) return &array;
   const int type = array.GetDataType() == VTK_BIT ? VTK_UNSIGNED_CHAR : array.GetDataType();
@@ -118,7 +118,7 @@ void set_extent(Grid& grid, io::ForeignPart& part) {
   std::copy(extent.begin(), extent.end(), part.extent.begin());
 }
 
-/// Indices as uint32, those that it cannot hold as its largest.
+/// Indices as uint32; those that do not fit become its largest value.
 template <class Index>
 void narrow_indices(const Index* indices, std::size_t count, std::byte* out) {
   for (std::size_t k = 0; k < count; ++k) {
@@ -128,7 +128,7 @@ void narrow_indices(const Index* indices, std::size_t count, std::byte* out) {
   }
 }
 
-/// Points of cells, half the bytes of VTK's.
+/// Point indices of cells, with half the bytes of VTK's.
 io::ForeignArray hold_indices(Holdings& holdings, vtkDataArray& array, int components) {
   io::ForeignArray held;
   held.type = NumberType::uint32;
@@ -147,7 +147,7 @@ io::ForeignArray hold_indices(Holdings& holdings, vtkDataArray& array, int compo
   });
 }
 
-/// Whether all cells are tets, one after the other, as most large meshes have them.
+/// Whether all cells are tets, as in most large meshes.
 bool are_tets(vtkUnsignedCharArray& types, vtkCellArray& cells) {
   const vtkIdType count = types.GetNumberOfValues();
   if (count == 0 || cells.GetNumberOfCells() != count || cells.GetNumberOfConnectivityIds() != 4 * count) return false;
@@ -166,7 +166,7 @@ void set_cells(Holdings& holdings, vtkCellArray& cells, io::ForeignPart& part) {
   part.connectivity = hold_indices(holdings, *cells.GetConnectivityArray(), 1);
 }
 
-/// Of polyhedra, if there are any.
+/// Sets the faces of polyhedra, if there are any.
 void set_faces(Holdings& holdings, vtkUnstructuredGrid& grid, io::ForeignPart& part) {
   vtkIdTypeArray* const faces = grid.GetFaces();
   vtkIdTypeArray* const locations = grid.GetFaceLocations();
@@ -220,14 +220,14 @@ io::ForeignPart part_of(Holdings& holdings, vtkDataSet& data, const std::string&
 
 using Names = std::map<const vtkDataObject*, std::string>;
 
-/// The names of the data sets of a tree, each a path of those around it.
+/// The names of the data sets of a tree, each a path of the enclosing ones.
 void add_names(vtkDataObject* data, const std::string& path, Names& names) {
   const auto add = [&](unsigned count, const auto& child, const auto& about) {
     for (unsigned k = 0; k < count; ++k) {
       vtkInformation* const facts = about(k);
       const char* const name = facts != nullptr ? facts->Get(vtkCompositeDataSet::NAME()) : nullptr;
       std::string_view own = name != nullptr ? name : "";
-      own = own.substr(0, own.find_last_not_of(' ') + 1);  // EnSight's are filled up with blanks
+      own = own.substr(0, own.find_last_not_of(' ') + 1);  // EnSight pads names with blanks
       if (own.empty())
         add_names(child(k), path, names);
       else

@@ -43,7 +43,7 @@
 namespace tessera::readers {
 namespace {
 
-/// A reader of structured data that says what pieces the file has.
+/// A reader of structured data that exposes the pieces of the file.
 template <class Reader>
 class WithPieces final : public Reader {
  public:
@@ -53,7 +53,7 @@ class WithPieces final : public Reader {
     return made;
   }
 
-  /// After UpdateInformation(). VTK leaves what no piece holds as memory happened to be.
+  /// Call after UpdateInformation(). VTK leaves values outside the pieces uninitialized.
   void require_whole(const std::string& source) const {
     Extent whole{};
     std::copy_n(this->WholeExtent, 6, whole.begin());
@@ -83,8 +83,8 @@ vtkSmartPointer<vtkDataObject> read_structured(const std::string& source) {
   return reader->GetOutputDataObject(0);
 }
 
-/// VTK's reader puts the hexahedra of old files into the order of nodes of today after each piece, and with them those
-/// of all pieces before, which then are as they were.
+/// After each piece, VTK's reader reorders the nodes of old hexahedra, including those of all earlier pieces, which are
+/// thereby reordered twice.
 class OldCellsOnce final : public vtkXMLUnstructuredGridReader {
  public:
   static OldCellsOnce* New() {
@@ -139,7 +139,8 @@ vtkSmartPointer<vtkDataObject> read_surface(const std::string& source) {
   return reader->GetOutputDataObject(0);
 }
 
-/// A surface's triangle strips become polygons as the others are. Each second triangle of one turns the other way.
+/// A surface's triangle strips become polygons like the others. Every second triangle of a strip has the opposite
+/// orientation.
 void add_strips(vtkPolyData& surface) {
   vtkCellArray* const strips = surface.GetStrips();
   if (strips == nullptr || strips->GetNumberOfCells() == 0) return;
@@ -157,7 +158,7 @@ void add_strips(vtkPolyData& surface) {
   surface.SetPolys(polygons);
 }
 
-/// Legacy VTK. A word that does not belong there ends what VTK reads, not always with an error.
+/// Reads legacy VTK. An unexpected word ends VTK's reading, not always with an error.
 vtkSmartPointer<vtkDataObject> read_legacy(const std::filesystem::path& file, std::string& warning) {
   const std::string source = file.string();
   const auto name_odd_word = [&] {

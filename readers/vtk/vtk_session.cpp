@@ -28,7 +28,7 @@
 namespace tessera::readers {
 namespace {
 
-/// The first error and the first warning that VTK had to say, each on one line.
+/// The first error and the first warning that VTK reports, each on one line.
 class MessageTrap : public vtkOutputWindow {
  public:
   static MessageTrap* New();
@@ -43,7 +43,7 @@ class MessageTrap : public vtkOutputWindow {
   void DisplayDebugText(const char*) override {}
 
   std::string error, warning;
-  bool failed = false;  ///< there is an error, if perhaps without words
+  bool failed = false;  ///< an error occurred, perhaps without a message
   std::vector<std::string> passed_over;
 
  private:
@@ -58,7 +58,7 @@ class MessageTrap : public vtkOutputWindow {
 };
 vtkStandardNewMacro(MessageTrap);
 
-/// Installs the trap for as long as it lives.
+/// Installs the trap during its lifetime.
 class Quiet {
  public:
   Quiet()

@@ -13,12 +13,12 @@
 namespace tessera::readers {
 namespace {
 
-/// What VTK says of a legacy file without a data set.
+/// VTK's message for a legacy file without a data set.
 constexpr const char* no_output = "not create output";
 
 bool has(std::string_view text, std::string_view words) { return text.find(words) != std::string_view::npos; }
 
-/// Words of readers that met bytes which the format does not have there.
+/// Messages of readers about bytes that do not follow the format.
 bool proves_damage(std::string_view words) {
   constexpr std::array signs = {"EOF",
                                 "nd of file",
@@ -38,11 +38,11 @@ bool proves_damage(std::string_view words) {
                                 "invalid VARIABLE line",
                                 "entry found for patch",
                                 "but mesh only has",
-                                "cell type: is not supported"};  // a word that is cut off
+                                "cell type: is not supported"};  // a truncated word
   return std::any_of(signs.begin(), signs.end(), [&](const char* sign) { return has(words, sign); });
 }
 
-/// The file that the words are of and that is not there; empty if there is none.
+/// The missing file that a message names; empty if there is none.
 std::string missing_file_in(std::string_view words, const std::string& source) {
   if (!has(words, "open") && !has(words, "not found") && !has(words, "does not exist")) return "";
   const auto is_missing = [&](std::string name, bool is_after_colon) {
@@ -56,7 +56,7 @@ std::string missing_file_in(std::string_view words, const std::string& source) {
       return std::string();
     return path.extension() == ".gz" ? (path.parent_path() / path.stem()).string() : name;  // both names were tried
   };
-  // A name may have blanks in it: all that follows a colon, then word by word.
+  // A name may contain blanks: tries everything after a colon, then word by word.
   for (std::size_t at = words.find(": "); at != std::string_view::npos; at = words.find(": ", at + 1))
     if (std::string name = is_missing(std::string(words.substr(at + 2)), true); !name.empty()) return name;
   for (std::size_t at = 0; at < words.size();) {
@@ -96,9 +96,9 @@ scene::Error error_of_vtk(const std::string& source, const std::string& words, c
   if (words.empty())
     return scene::bad_input(fmt::format(
         "{}: VTK's reader does not get over it and gives no reason; have it written in another format", source));
-  // What a file that is cut short gives VTK's legacy reader to say is a warning to it.
+  // VTK's legacy reader reports a truncated file only as a warning.
   if (has(words, "ends before its data")) return scene::bad_input(fmt::format("{}: {}; {}", source, words, remedy));
-  // Legacy files of fields alone.
+  // Legacy files that contain only fields.
   if (words == no_output)
     return scene::bad_input(fmt::format("{}: it holds no points and cells; give the file that does", source));
   if (const std::string file = missing_file_in(words, source); !file.empty())

@@ -11,13 +11,13 @@ namespace tessera::readers {
 /// The remedy for a file whose bytes are not as its format has them.
 inline constexpr const char* write_anew = "the file is truncated or damaged, write it again";
 
-/// What VTK says of an error or warning, in one line for users: without the place in its sources, the addresses of its
-/// objects and what it prints of their state. Empty if nothing is left.
+/// A VTK error or warning as one line for users: without its source location, object addresses and state dumps. Empty
+/// if nothing remains.
 std::string words_for_users(std::string_view said);
 
-/// The error that a reader's words are for a file. A file that they name and that is not there is called missing; only
-/// words that tell of bytes which are not as the format has them, or end early, are followed by `remedy`, which may
-/// call the file damaged.
+/// The error for a file, made of a reader's message. A missing file named by the message is reported as missing;
+/// `remedy`, which may call the file damaged, is added only if the message reports bytes that do not follow the format,
+/// or end early.
 scene::Error error_of_vtk(const std::string& source, const std::string& words, const std::string& remedy);
 
 }  // namespace tessera::readers

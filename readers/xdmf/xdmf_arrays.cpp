@@ -43,9 +43,9 @@ cells::NumberTally tally_of(const std::vector<T>& numbers, NumberType type, int 
 }  // namespace
 
 XdmfHeavyFiles::XdmfHeavyFiles(const std::filesystem::path& file) : source_(file.string()) {
-  std::error_code unknown;  // there is none of what was in a gzip file
+  std::error_code unknown;  // content of a gzip file has no directory
   folder_ = std::filesystem::weakly_canonical(file, unknown).parent_path();
-  files_.push_back(std::filesystem::absolute(file));  // the current folder may be another one later
+  files_.push_back(std::filesystem::absolute(file));  // the current directory may change later
 }
 
 void XdmfHeavyFiles::add(XdmfArray& array) {
@@ -68,7 +68,7 @@ void XdmfHeavyFiles::add(XdmfArray& array) {
   }
 }
 
-/// Xdmf makes zeros of what a file is short of.
+/// Xdmf fills missing bytes of a file with zeros.
 void XdmfHeavyFiles::require_size(const XdmfBinaryController& numbers, const std::filesystem::path& file) const {
   const std::uint64_t size = io::require_file(file),
                       least = numbers.getSeek() +

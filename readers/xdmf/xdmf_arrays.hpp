@@ -12,16 +12,16 @@ class XdmfBinaryController;
 
 namespace tessera::readers {
 
-/// The files beside an XDMF file that its arrays' numbers lie in.
+/// The files referenced by an XDMF file that contain the numbers of its arrays.
 class XdmfHeavyFiles {
  public:
   explicit XdmfHeavyFiles(const std::filesystem::path& file);
 
-  /// Notes where an array's numbers lie. Throws Error(bad_input) for a file that is not there, or does not lie in the
-  /// folder of the XDMF file or below, and for numbers that are to be computed.
+  /// Records where an array's numbers are. Throws Error(bad_input) for a file that is missing, or is not in the XDMF
+  /// file's directory or below, and for numbers that must be computed.
   void add(XdmfArray& array);
 
-  /// Memory and time for all of them.
+  /// Raises the limits of memory and time for all of them.
   void allow() const;
 
  private:
@@ -32,11 +32,11 @@ class XdmfHeavyFiles {
   std::vector<std::filesystem::path> files_;
 };
 
-/// The numbers as doubles; reads them if need be.
+/// The numbers as doubles; reads them if necessary.
 std::vector<double> doubles_of(XdmfArray& array);
 
-/// The numbers in their own type; reads them if need be. The tally is of `components`' lengths. The array is empty
-/// afterwards, unless it `is_kept`.
+/// The numbers in their own type; reads them if necessary. The tally is of the lengths of `components`. The array is
+/// empty afterwards, unless it `is_kept`.
 io::ForeignArray hold_xdmf(Holdings& holdings, XdmfArray& array, const std::string& name, int components, bool is_kept);
 
 }  // namespace tessera::readers

@@ -21,7 +21,7 @@ namespace {
 struct XdmfCell {
   unsigned xdmf;  ///< in topologies of mixed cells, "XDMF Model and Format"
   CellType type;
-  std::uint8_t nodes;  ///< 0: the number comes first
+  std::uint8_t nodes;  ///< 0: stored before the nodes
 };
 constexpr std::array xdmf_cells = {XdmfCell{1, CellType::poly_vertex, 0},
                                    XdmfCell{2, CellType::poly_line, 0},
@@ -55,7 +55,7 @@ const XdmfCell& cell_of(unsigned xdmf, const std::string& name, const std::strin
   return *type;
 }
 
-/// The library's table of names is its own and its subclasses'.
+/// The library's table of names is accessible only to subclasses.
 class TopologyNames : public XdmfTopologyType {
  public:
   static void add() {
@@ -70,7 +70,7 @@ class TopologyNames : public XdmfTopologyType {
   }
 };
 
-/// Reads along a topology's numbers.
+/// Reads a topology's numbers sequentially.
 class Numbers {
  public:
   Numbers(std::span<const std::int64_t> numbers, std::int64_t base, const std::string& where)
@@ -100,7 +100,7 @@ class Numbers {
   std::size_t at_ = 0;
 };
 
-/// The number of the first point, which rewritten_xdmf() notes; Xdmf's library passes over it.
+/// The number of the first point, which rewritten_xdmf() records; Xdmf's library ignores it.
 std::int64_t base_of(XdmfTopology& topology) {
   const auto noted = topology.getInformation(base_offset);
   return noted == nullptr ? 0 : std::strtoll(noted->getValue().c_str(), nullptr, 10);

@@ -21,7 +21,7 @@ namespace {
 
 using Grid = boost::shared_ptr<XdmfGrid>;
 
-/// All grids in a domain or collection, which Xdmf keeps by their kinds.
+/// All grids in a domain or collection, which Xdmf stores by kind.
 std::vector<Grid> children_of(XdmfDomain& domain) {
   std::vector<Grid> grids;
   for (unsigned k = 0; k < domain.getNumberUnstructuredGrids(); ++k) grids.push_back(domain.getUnstructuredGrid(k));
@@ -32,7 +32,7 @@ std::vector<Grid> children_of(XdmfDomain& domain) {
   return grids;
 }
 
-/// Of the grid, or of the first in it that has one.
+/// Time of the grid, or of the first grid in it that has one.
 std::optional<double> time_of(const Grid& grid) {
   if (const auto time = grid->getTime()) return time->getValue();
   if (const auto collection = boost::dynamic_pointer_cast<XdmfGridCollection>(grid))
@@ -41,7 +41,7 @@ std::optional<double> time_of(const Grid& grid) {
   return std::nullopt;
 }
 
-/// The steps of a collection in time, in the order of their times if all have one.
+/// The steps of a temporal collection, sorted by time if all have one.
 struct Steps {
   std::vector<Grid> grids;
   std::vector<double> times;  ///< empty: not all have one
@@ -65,7 +65,7 @@ bool is_in_time(const XdmfGridCollection& collection) {
   return collection.getType() == XdmfGridCollectionType::Temporal();
 }
 
-/// What all collections in time of a domain have in common.
+/// The common steps of all temporal collections of a domain.
 class Timeline {
  public:
   explicit Timeline(const std::vector<Grid>& grids) {
@@ -77,7 +77,7 @@ class Timeline {
 
   [[nodiscard]] std::size_t count() const { return by_time_ ? times_.size() : longest_; }
 
-  /// Of the steps, where all have one; else none.
+  /// Times of the steps if all have one; else empty.
   [[nodiscard]] std::vector<double> times() const {
     return all_timed_ && times_.size() == count() ? times_ : std::vector<double>();
   }
@@ -124,7 +124,7 @@ class Walk {
       for (const Grid& child : children_of(*collection)) visit(child, joined(path, child->getName()));
       return;
     }
-    // Grids that differ in their times have names that do, too: no block is named by them.
+    // Grids at different times also have different names, so blocks are not named by them.
     const Steps steps = steps_of(*collection);
     if (steps.grids.empty()) return;
     if (const Grid chosen = timeline_.at(steps, step_)) visit(chosen, path);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// tessera-read-xdmf: reads XDMF by its own library, as tessera-read-vtk does other formats. A program of its own, since
-// that library comes with another build of HDF5, for MPI, than VTK's.
+// tessera-read-xdmf: reads XDMF by its own library, as tessera-read-vtk does for other formats. A separate program,
+// because that library uses another build of HDF5, for MPI, than VTK's.
 #include <fmt/format.h>
 
 #include <XdmfAttribute.hpp>
@@ -40,7 +40,7 @@ namespace {
 
 constexpr const char* finite_element_function = "FiniteElementFunction";
 
-/// Points or cells along x, y and z, of dimensions that go the other way.
+/// Numbers of points or cells along x, y and z, from dimensions in reverse order.
 std::array<std::int64_t, 3> sizes_of(XdmfArray& dimensions, const std::string& where) {
   const std::vector<double> numbers = doubles_of(dimensions);
   if (numbers.size() != 3)
@@ -68,12 +68,12 @@ io::ForeignArray hold_points(Holdings& holdings, XdmfGeometry& geometry, const s
   return hold_xdmf(holdings, geometry, "", 3, is_kept);
 }
 
-/// What is the same for all blocks.
+/// Values shared by all blocks.
 struct Reading {
   Holdings& holdings;
   bool only_look;
   const std::string& source;
-  std::set<const XdmfArray*> shared;  ///< that more than one block uses
+  std::set<const XdmfArray*> shared;  ///< used by more than one block
   std::vector<std::string>& notes;
 };
 
@@ -196,14 +196,14 @@ class PartOf {
   std::set<const XdmfAttribute*> taken_;
 };
 
-/// Every array that PartOf reads.
+/// Adds every array that PartOf reads.
 void add_arrays(XdmfGrid& grid, XdmfHeavyFiles& files) {
   for (XdmfArray* const array : mesh_arrays(grid))
     if (array != nullptr) files.add(*array);
   for (unsigned k = 0; k < grid.getNumberAttributes(); ++k) files.add(*grid.getAttribute(k));
 }
 
-/// The name that a block is chosen by; none if it is not.
+/// The name by which a block is chosen; no value if it is not.
 std::optional<std::string> chosen_name(const XdmfBlock& block, const cells::BlockChoice& choice) {
   for (const std::string& name : block.names)
     if (cells::is_chosen(choice, name)) return name;
@@ -217,8 +217,8 @@ io::ForeignContents read(Holdings& holdings, const std::filesystem::path& file, 
   add_cell_names();
   const auto reader = XdmfReader::New();
   XdmfHeavyFiles files(file);
-  // The library takes names apart, which those of unnamed files do not bear; in a text of no file they are relative to
-  // the current folder.
+  // The library splits file names, which fails for those of unnamed files; in a text without a file, names are relative
+  // to the current directory.
   const CurrentFolder current(io::is_inflated(file) || is_plain ? std::filesystem::path() : file.parent_path());
   const auto domain = boost::dynamic_pointer_cast<XdmfDomain>(
       !is_plain               ? reader->parse(rewritten_xdmf(file))

@@ -10,16 +10,16 @@ class XdmfArray;
 
 namespace tessera::readers {
 
-/// The function by which rewritten_xdmf() makes points of an array for each of x, y and z.
+/// The function with which rewritten_xdmf() makes points from one array each for x, y and z.
 constexpr const char* interleaved = "interleaved";
 
-/// The arrays that one is a selection (HyperSlab) or the interleaving of; none where it has numbers of its own.
-/// Throws Error(bad_input) for numbers that are to be computed, and for selections that do not lie in their array.
+/// The arrays of which one is a selection (HyperSlab) or an interleaving; empty if it has its own numbers. Throws
+/// Error(bad_input) for numbers that must be computed, and for selections outside their array.
 std::vector<XdmfArray*> referenced_arrays(XdmfArray& array, const std::string& source);
 
 NumberType number_type_of(const XdmfArray& array);
 
-/// Fills an array that has no numbers yet, one that referenced_arrays() takes.
+/// Fills an array without numbers that referenced_arrays() accepts.
 void read_numbers(XdmfArray& array);
 
 }  // namespace tessera::readers

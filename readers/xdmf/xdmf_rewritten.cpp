@@ -23,7 +23,7 @@ namespace {
 
 const xmlChar* xml(const char* text) { return reinterpret_cast<const xmlChar*>(text); }
 
-/// A string that libxml2 allocated.
+/// Takes a string that libxml2 allocated.
 std::string taken(xmlChar* text) {
   if (text == nullptr) return "";
   std::string copy(reinterpret_cast<const char*>(text));
@@ -41,7 +41,7 @@ class Rewriting {
     complete_grids();
     complete_items();
     spread_times();
-    for (xmlNode* node : all("//*[@href]")) xmlUnsetProp(node, xml("href"));  // of this very file
+    for (xmlNode* node : all("//*[@href]")) xmlUnsetProp(node, xml("href"));  // references within this file
     include_references();
   }
 
@@ -102,7 +102,7 @@ class Rewriting {
     const std::vector<xmlNode*> items = all("DataItem", node);
     if (items.empty()) return;
     xmlUnsetProp(items.front(), xml("DataType"));
-    set(items.front(), "NumberType", "Int"), set(items.front(), "Precision", "8");  // else floats, which round
+    set(items.front(), "NumberType", "Int"), set(items.front(), "Precision", "8");  // otherwise floats, which round
   }
 
   void complete_items() {
@@ -118,7 +118,7 @@ class Rewriting {
     }
   }
 
-  /// The times of a collection's grids, as one list or as first, step and count.
+  /// Distributes the times of a collection to its grids, from one list or from first, step and count.
   void spread_times() {
     for (xmlNode* node : all("//Time[not(@Value)]")) {
       const std::string kind = property(node, "TimeType").value_or("");
@@ -142,7 +142,7 @@ class Rewriting {
     }
   }
 
-  /// What a reference stands for, which may be a reference itself.
+  /// The target of a reference, which may be a reference itself.
   xmlNode* target_of(xmlNode* node) {
     constexpr int most = 16;
     xmlNode* target = node;
@@ -172,7 +172,7 @@ class Rewriting {
       includes.push_back(xmlNewNode(nullptr, xml("include")));
       xmlReplaceNode(node, includes.back());
     }
-    // Now that paths no longer change.
+    // Paths do not change after this point.
     for (std::size_t k = 0; k < includes.size(); ++k)
       set(includes[k], "xpointer", fmt::format("xpointer({})", taken(xmlGetNodePath(targets[k]))));
     for (xmlNode* node : references) xmlFreeNode(node);
@@ -188,7 +188,7 @@ class Rewriting {
 
 std::string rewritten_xdmf(const std::filesystem::path& file) {
   const std::string source = file.string();
-  xmlSetStructuredErrorFunc(nullptr, [](void*, xmlErrorPtr) {});  // else it writes to stderr
+  xmlSetStructuredErrorFunc(nullptr, [](void*, xmlErrorPtr) {});  // otherwise it writes to stderr
   const io::WholeFile mapped(file);
   const std::string_view text = mapped.text();
   const std::unique_ptr<xmlDoc, void (*)(xmlDoc*)> document(

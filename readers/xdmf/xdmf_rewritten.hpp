@@ -6,12 +6,12 @@
 
 namespace tessera::readers {
 
-/// An XDMF file's text in the words of Xdmf's library: elements that stand for others by Reference include these,
-/// attributes without a name or center have the default ones, items without a format have their numbers in the text,
-/// and lists of times are their grids'. Throws Error(bad_input) for a reference to what is not there.
+/// An XDMF file's text in the form that Xdmf's library supports: elements that refer to others by Reference include
+/// these, attributes without a name or center get the defaults, items without a format have their numbers in the text,
+/// and lists of times are distributed to their grids. Throws Error(bad_input) for a reference to a missing element.
 std::string rewritten_xdmf(const std::filesystem::path& file);
 
-/// The current folder of the process while this lives, unless `folder` is empty.
+/// Sets the current directory of the process during its lifetime, unless `folder` is empty.
 class CurrentFolder {
  public:
   explicit CurrentFolder(const std::filesystem::path& folder);

@@ -15,7 +15,7 @@
 
 namespace tessera::readers {
 
-/// What the library knows something by, closed with this.
+/// An identifier of the library, closed with this object.
 class Hdf5Handle {
  public:
   Hdf5Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
@@ -33,14 +33,14 @@ class Hdf5Handle {
   herr_t (*close_)(hid_t);
 };
 
-/// Numbers of a file, of any type that fits one of ours; the first axis is the slowest.
+/// An array of numbers in a file, of any type convertible to one of ours; the first axis is the slowest.
 struct Hdf5Array {
   std::string path;  ///< "exchange/data"
   NumberType type = NumberType::float64;
   std::vector<std::size_t> lengths;
 };
 
-/// An open file of the library's; lzf, h5py's filter, is among those that it can undo.
+/// An open HDF5 file; supports lzf, h5py's filter.
 class Hdf5File {
  public:
   explicit Hdf5File(const std::filesystem::path& file);
@@ -49,19 +49,19 @@ class Hdf5File {
   [[nodiscard]] bool has(const char* name) const { return H5Lexists(file_.get(), name, H5P_DEFAULT) > 0; }
   [[nodiscard]] bool has_attribute(const char* name) const { return H5Aexists(file_.get(), name) > 0; }
 
-  /// The text of an attribute of a group or an array; empty if it has none.
+  /// The text of an attribute of a group or an array; empty if it is missing.
   [[nodiscard]] std::string text_of(const char* object, const char* name) const;
 
-  /// An attribute that is one number, or `otherwise`.
+  /// The value of a numeric attribute, or `otherwise`.
   [[nodiscard]] long number_of(const char* object, const char* name, long otherwise) const;
 
-  /// An attribute's numbers; none if it has none, or text.
+  /// An attribute's numbers; empty if it is missing or a text.
   [[nodiscard]] std::vector<double> numbers_of(const char* object, const char* name) const;
 
-  /// All arrays of numbers in the file, or below a group, by their paths. Links to other files are not followed.
+  /// All arrays of numbers in the file, or below a group, by their paths. Does not follow links to other files.
   [[nodiscard]] std::vector<Hdf5Array> arrays(const std::string& group = "/") const;
 
-  /// Whether an array has scales, as NetCDF's library makes them its dimensions.
+  /// Whether an array has dimension scales, as NetCDF's library creates for its dimensions.
   [[nodiscard]] bool has_scales(const Hdf5Array& array) const;
 
   /// Numbers from `first` on, `counts` along each axis. Throws Error(bad_input) if they cannot be read.

@@ -19,11 +19,11 @@ namespace {
 
 constexpr std::size_t most_components = 4;
 
-/// An array as it is drawn: steps, then z, y and x, then components.
+/// The axes of an array: steps, then z, y and x, then components.
 struct GridArray {
   const Hdf5Array* array = nullptr;
-  std::size_t first = 0;       ///< of its axes, z
-  std::size_t components = 1;  ///< along the last axis, if it is one more than x
+  std::size_t first = 0;       ///< index of its z axis
+  std::size_t components = 1;  ///< along the last axis, if there is one after x
   [[nodiscard]] std::array<std::size_t, 3> points() const {
     return {array->lengths[first + 2], array->lengths[first + 1], array->lengths[first]};
   }
@@ -42,7 +42,8 @@ std::optional<GridArray> grid_array(const Hdf5Array& array) {
   return GridArray{&array, rank - (has_components ? 4 : 3), has_components ? last : 1};
 }
 
-/// Numbers of one step, the components of a sample together. Missing ones, by the attributes of NetCDF, are NaN.
+/// Numbers of one step, with the components of a sample interleaved. Missing values, according to NetCDF's attributes,
+/// are NaN.
 GridNumbers read_step(const Hdf5File& file, const GridArray& of, std::size_t step) {
   std::vector<std::size_t> first(of.array->lengths.size(), 0), counts = of.array->lengths;
   for (std::size_t d = of.first; d-- > 0;) {
@@ -68,7 +69,7 @@ io::ForeignArray hold_step(Holdings& holdings, const Hdf5File& file, const GridA
   return hold_field_numbers(holdings, std::move(name), read_step(file, of, step), static_cast<int>(of.components));
 }
 
-/// Whether a field as it is asked for ("NAME", "point:NAME:0") is this array.
+/// Whether a requested field ("NAME", "point:NAME:0") is this array.
 bool means(std::string_view field, std::string_view name) {
   if (field.starts_with("point:") && field != name) field.remove_prefix(6);
   return field == name || (field.starts_with(name) && field.substr(name.size()).starts_with(':'));
@@ -76,7 +77,7 @@ bool means(std::string_view field, std::string_view name) {
 
 using SameSize = std::vector<GridArray>;
 
-/// Arrays of one size: those of the field, else the most, the first of several.
+/// Arrays of one size: those with the field, else the largest group, the first of several.
 const SameSize& choose_arrays(const std::vector<SameSize>& sizes, const std::string& field,
                               std::vector<std::string>& notes) {
   const SameSize* chosen = &sizes.front();
@@ -156,7 +157,7 @@ io::ForeignContents read_arrays(Holdings& holdings, const Hdf5File& file, const 
 
 namespace {
 
-/// As an array of VTKHDF's images is drawn, whose points or cells are as many; nothing if it does not fit.
+/// The axes of an array of a VTKHDF image with these numbers of points or cells; no value if it does not fit.
 std::optional<GridArray> image_array(const Hdf5Array& array, const std::array<std::size_t, 3>& points) {
   const std::size_t rank = array.lengths.size();
   for (const std::size_t components : {0u, 1u}) {
@@ -192,7 +193,7 @@ io::ForeignPart image_of(const Hdf5File& file, const std::string& source) {
   return part;
 }
 
-/// The place of a step among an array's first index, which is that of the step unless the file says otherwise.
+/// The index of a step along an array's first axis, which is the step's number unless the file states another.
 std::size_t offset_of(const Hdf5File& file, const std::string& offsets, const std::string& name, std::size_t step) {
   for (const Hdf5Array& array : file.arrays(offsets))
     if (array.path == offsets + "/" + name && array.lengths.size() == 1 && step < array.lengths[0]) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// HDF5 says nothing at its beginning of what is in it.
+// The first bytes of an HDF5 file do not identify its contents.
 #include <fmt/format.h>
 #include <vtk_netcdf.h>
 
@@ -19,7 +19,7 @@
 namespace tessera::readers {
 namespace {
 
-/// NetCDF-4, or other HDF5 with scales, which its library takes for such.
+/// NetCDF-4, or other HDF5 with dimension scales, which its library treats as NetCDF.
 bool is_netcdf(const Hdf5File& opened, const std::filesystem::path& file) {
   const std::vector<Hdf5Array> arrays = opened.arrays();
   const bool is_written_by_netcdf = opened.has_attribute("_NCProperties") || opened.has_attribute("_nc3_strict");
@@ -29,11 +29,11 @@ bool is_netcdf(const Hdf5File& opened, const std::filesystem::path& file) {
   int id = 0;
   if (nc_open(file.c_str(), NC_NOWRITE, &id) != NC_NOERR) return false;
   nc_close(id);
-  // Dimensions of NetCDF have a meaning, as time has, which those of other arrays lack.
+  // NetCDF's dimensions have a meaning, such as time, which those of other arrays lack.
   return is_written_by_netcdf || holds_netcdf_grid(file) || !holds_arrays(opened);
 }
 
-/// Files that do not state a type are of the first version.
+/// Files without a type have the first version.
 bool is_mesh_type(const std::string& vtk_type) { return vtk_type.empty() || vtk_type == "UnstructuredGrid"; }
 
 }  // namespace
@@ -75,8 +75,10 @@ io::ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& f
   const auto refuse = [&](const char* what, const char* remedy) {
     return scene::bad_input(fmt::format("{}: it is HDF5 and holds {}; {}", file.string(), what, remedy));
   };
-  if (request.value("look", false) && kind != Kind::netcdf && kind != Kind::minc) return {};  // no grid
-  if (kind != Kind::cgns && request.value("part", 0) > 0) return {};                          // the first share is all
+  if (request.value("look", false) && kind != Kind::netcdf && kind != Kind::minc) return {};  // not a grid
+  if (kind != Kind::cgns && request.value("part", 0) > 0)
+    return {};  // the first share is the
+                // whole
   switch (kind) {
     case Kind::vtk:
       throw refuse(

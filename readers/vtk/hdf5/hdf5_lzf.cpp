@@ -14,12 +14,12 @@ namespace {
 
 constexpr H5Z_filter_t lzf_number = 32000;
 
-/// How many bytes `packed` becomes; nothing if that is more than `out` has room for, or it is damaged.
+/// Number of bytes that `packed` becomes; no value if they do not fit into `out`, or it is damaged.
 std::optional<std::size_t> inflate_lzf(std::span<const unsigned char> packed, std::span<unsigned char> out) {
   std::size_t in = 0, done = 0;
   while (in < packed.size()) {
     const std::size_t control = packed[in++];
-    if (control < 32) {  // that many bytes and one more as they are
+    if (control < 32) {  // a literal run of control + 1 bytes
       const std::size_t count = control + 1;
       if (count > packed.size() - in || count > out.size() - done) return std::nullopt;
       std::copy_n(packed.begin() + static_cast<std::ptrdiff_t>(in), count,
@@ -36,16 +36,16 @@ std::optional<std::size_t> inflate_lzf(std::span<const unsigned char> packed, st
     if (in >= packed.size()) return std::nullopt;
     const std::size_t back = ((control & 31) << 8 | packed[in++]) + 1;
     if (back > done || count > out.size() - done) return std::nullopt;
-    for (std::size_t k = 0; k < count; ++k, ++done) out[done] = out[done - back];  // what it copies may be its own
+    for (std::size_t k = 0; k < count; ++k, ++done) out[done] = out[done - back];  // source and destination may overlap
   }
   return done;
 }
 
-/// As H5Z_func_t wants it: 0 is failure. The third parameter is the bytes of a chunk.
+/// An H5Z_func_t: 0 is failure. The third parameter is the size of a chunk in bytes.
 std::size_t undo_lzf(unsigned flags, std::size_t parameters, const unsigned* parameter, std::size_t bytes,
                      std::size_t* size, void** buffer) {
   if ((flags & H5Z_FLAG_REVERSE) == 0) return 0;
-  constexpr std::size_t most = std::size_t{1} << 32;  // of a chunk, by HDF5
+  constexpr std::size_t most = std::size_t{1} << 32;  // limit of a chunk in HDF5
   std::size_t room = parameters > 2 && parameter[2] != 0 ? parameter[2] : *size;
   for (; room <= most; room *= 2) {
     void* const out = std::malloc(room);

@@ -3,7 +3,7 @@
 
 namespace tessera::readers {
 
-/// Has HDF5's library undo the filter lzf (32000), which h5py brings and the library does not know.
+/// Registers the filter lzf (32000) with HDF5's library, which does not include it; h5py writes it.
 void register_lzf();
 
 }  // namespace tessera::readers

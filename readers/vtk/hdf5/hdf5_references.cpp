@@ -21,7 +21,7 @@ namespace {
 
 using Path = std::filesystem::path;
 
-/// What the links of a file are.
+/// The links of a file.
 struct Links {
   std::vector<std::string> objects, files;
 };
@@ -58,7 +58,7 @@ class References {
       waiting_.pop_back();
       if (seen_.insert(file).second) visit(file);
     }
-    // Only now, when all that is opened on the way to a source is known to be sound.
+    // Done last, when everything opened on the way to a source is known to be sound.
     for (const auto& [file, sources] : sources_)
       for (const auto& [in_file, dataset] : sources)
         if (is_virtual_in(in_file, dataset)) leads_[file].insert(in_file);
@@ -92,7 +92,7 @@ class References {
       std::array<char, 4096> name{};
       off_t offset = 0;
       hsize_t size = 0;
-      // The library looks for these from the current folder alone.
+      // The library resolves these only from the current directory.
       if (H5Pget_external(creation.get(), static_cast<unsigned>(k), name.size() - 1, name.data(), &offset, &size) >= 0)
         static_cast<void>(sound(file, Path(name.data())));
     }
@@ -115,7 +115,7 @@ class References {
     }
   }
 
-  /// The file that the library takes for one of that name, to be visited too.
+  /// The file that the library opens for this name, which must be checked too.
   std::optional<Path> lead_to(const Path& from, const std::string& name) {
     std::error_code unknown;
     if (name == ".") return from;
@@ -172,7 +172,7 @@ class References {
   std::vector<Path> waiting_;
   std::set<Path> seen_;
   std::map<Path, std::set<std::pair<Path, std::string>>> sources_;  ///< of the virtual datasets of a file
-  std::map<Path, std::set<Path>> leads_;                            ///< to other virtual datasets' files
+  std::map<Path, std::set<Path>> leads_;                            ///< to files of other virtual datasets
 };
 
 }  // namespace

@@ -21,16 +21,16 @@
 namespace tessera::readers {
 namespace {
 
-/// A stretch of an array's tuples.
+/// A range of an array's tuples.
 struct Stretch {
   std::size_t first = 0, count = 0;
   [[nodiscard]] std::size_t end() const { return first + count; }
 };
 
-/// One part of the mesh at a step, by its stretches of the arrays that all parts and steps share.
+/// One part of the mesh at a step, given by its ranges in the arrays shared by all parts and steps.
 struct Part {
   Stretch points, cells, connectivity, offsets;
-  std::size_t points_before = 0, cells_before = 0;  ///< of the step's parts before
+  std::size_t points_before = 0, cells_before = 0;  ///< in the previous parts of the step
 };
 
 class HdfMesh {
@@ -77,7 +77,7 @@ class HdfMesh {
     return *array;
   }
 
-  /// All numbers of an array of one dimension, or none.
+  /// All numbers of a one-dimensional array; empty if it is missing.
   [[nodiscard]] std::vector<double> numbers(const std::string& name) const {
     const Hdf5Array* const array = find(name);
     if (array == nullptr || array->lengths.size() != 1) return {};
@@ -90,7 +90,7 @@ class HdfMesh {
     return static_cast<std::size_t>(number);
   }
 
-  /// What a row for the step has first; nothing without steps or the array.
+  /// The first number of the step's row; no value without steps or the array.
   [[nodiscard]] std::optional<std::size_t> at_step(const std::string& name) const {
     const Hdf5Array* const array = step_ ? find(name) : nullptr;
     if (array == nullptr) return std::nullopt;
@@ -100,12 +100,12 @@ class HdfMesh {
     return count_from(file_.read(*array, first, counts).as_doubles().front(), name);
   }
 
-  /// The numbers of the step's parts among those of all steps.
+  /// The range of the step's parts among those of all steps.
   [[nodiscard]] Stretch part_numbers(std::size_t all) const {
     if (!step_) return {0, all};
     const std::size_t first = at_step("Steps/PartOffsets").value_or(0);
     if (const auto count = at_step("Steps/NumberOfParts")) return {first, *count};
-    // As many for each step that has its own.
+    // Each step with its own parts has the same number of them.
     const std::vector<double> offsets = numbers("Steps/PartOffsets");
     return {first, all / std::max<std::size_t>(std::set<double>(offsets.begin(), offsets.end()).size(), 1)};
   }
@@ -174,7 +174,7 @@ class HdfMesh {
     return part;
   }
 
-  /// Arrays may begin a step elsewhere than the points and cells do.
+  /// Arrays may begin a step at another index than the points and cells.
   [[nodiscard]] std::vector<io::ForeignArray> fields(const std::string& kind, const Stretch& tuples, std::size_t before,
                                                      std::vector<std::string>* notes) const {
     const std::string group = fmt::format("VTKHDF/{}/", kind), active = file_.text_of(group.c_str(), "Scalars");

@@ -9,12 +9,12 @@
 
 namespace tessera::readers {
 
-/// VTKHDF of the type UnstructuredGrid at one of its time steps. VTK 9.1 does not know steps.
+/// A VTKHDF file of type UnstructuredGrid at one of its time steps, which VTK 9.1 does not support.
 ///
-/// Source  "VTKHDF format specification", VTK's documentation, version 2.5: parts one after the other, of a step those
-///         from Steps/PartOffsets on, as many as Steps/NumberOfParts; its points, cells and connectivity from
-///         Steps/PointOffsets, CellOffsets and ConnectivityIdOffsets on, its arrays from Steps/PointDataOffsets and
-///         CellDataOffsets on where these have them. `Offsets` has one number more than cells for each part.
+/// Source  "VTKHDF format specification", VTK's documentation, version 2.5: parts one after the other; those of a step
+///         start at Steps/PartOffsets and are as many as Steps/NumberOfParts. Its points, cells and connectivity start
+///         at Steps/PointOffsets, CellOffsets and ConnectivityIdOffsets, its arrays at Steps/PointDataOffsets and
+///         CellDataOffsets if these have them. `Offsets` has one number more than cells for each part.
 io::ForeignContents read_vtk_hdf_mesh(Holdings& holdings, const Hdf5File& file, const std::string& source,
                                       const nlohmann::json& request);
 

@@ -26,7 +26,7 @@ bool is_pressure(std::string_view units) {
                            "dbar", "decibar", "decibars", "atm",      "atmosphere", "atmospheres"});
 }
 
-/// Vertical coordinates without units that are greatest at the ground.
+/// Vertical coordinates without units that are largest at the ground.
 bool is_sigma(std::string_view standard_name) {
   return is_one_of(standard_name, {"atmosphere_sigma_coordinate", "atmosphere_hybrid_sigma_pressure_coordinate"});
 }
@@ -90,7 +90,7 @@ AxisRole role_of_name(const std::string& name) {
 
 struct Evidence {
   AxisRole role = AxisRole::unknown;
-  int strength = 0;  ///< of a name least
+  int strength = 0;  ///< a name is weakest
 };
 
 Evidence evidence_of_attributes(const NetcdfFile& file, const NetcdfVariable& coordinate) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// NetCDF grids by the CF conventions ("NetCDF Climate and Forecast Metadata Conventions"), by NetCDF's library itself:
-// VTK 9.1's reader takes the order of axes, unsigned and 64-bit numbers and what is missing for granted.
+// NetCDF grids by the CF conventions ("NetCDF Climate and Forecast Metadata Conventions"), read by NetCDF's library
+// itself: VTK 9.1's reader makes assumptions about the order of axes, unsigned and 64-bit numbers and missing values.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -29,9 +29,9 @@ struct GridVariable {
   AxisOrder order;
 };
 
-/// Variables of the same axes in space: one grid.
+/// Variables with the same spatial axes: one grid.
 struct GridOfVariables {
-  std::string dimensions;  ///< as they are listed, "(lev, lat, lon)"
+  std::string dimensions;  ///< as listed, "(lev, lat, lon)"
   std::array<int, 3> ids{};
   std::optional<CurvedCoordinates> curved;
   bool is_flat = false;
@@ -50,7 +50,7 @@ bool are_same(const std::optional<CurvedCoordinates>& a, const std::optional<Cur
   return a.has_value() == b.has_value() && (!a || (a->x == b->x && a->y == b->y));
 }
 
-/// Variables that are bounds of the coordinates of others, which are no fields: CF 7.1.
+/// Variables that are bounds of the coordinates of others, and so are not fields: CF 7.1.
 std::set<const NetcdfVariable*> bounds_in(const NetcdfFile& file) {
   std::set<const NetcdfVariable*> bounds;
   for (const NetcdfVariable& variable : file.variables())
@@ -60,7 +60,7 @@ std::set<const NetcdfVariable*> bounds_in(const NetcdfFile& file) {
   return bounds;
 }
 
-/// All grids with variables of three dimensions in space.
+/// All grids with variables of three spatial dimensions.
 std::vector<GridOfVariables> grids_of(const NetcdfFile& file) {
   std::vector<GridOfVariables> grids;
   const std::set<const NetcdfVariable*> bounds = bounds_in(file);
@@ -86,7 +86,7 @@ std::vector<GridOfVariables> grids_of(const NetcdfFile& file) {
   return grids;
 }
 
-/// Whether a field as it is asked for ("point:NAME", "NAME:0", ...) is this variable.
+/// Whether a requested field ("point:NAME", "NAME:0", ...) is this variable.
 bool means(std::string_view field, const std::string& name) {
   for (const std::string_view side : {"point:", "cell:"})
     if (field.starts_with(side) && field != name) field.remove_prefix(side.size());
@@ -116,7 +116,7 @@ std::size_t steps_of(const GridVariable& field) {
   return field.order.steps.empty() || all > 1e15 ? 0 : static_cast<std::size_t>(all);
 }
 
-/// Indices along the dimensions that are not of space, the last the fastest.
+/// Indices along the dimensions that are not spatial, the last the fastest.
 std::vector<std::size_t> indices_of(const GridVariable& field, std::size_t step) {
   std::vector<std::size_t> indices(field.order.steps.size());
   for (std::size_t k = indices.size(); k-- > 0;) {
@@ -127,7 +127,7 @@ std::vector<std::size_t> indices_of(const GridVariable& field, std::size_t step)
   return indices;
 }
 
-/// Coordinates of the one dimension of steps, as they stand, or a time alone; none if there are several, or it is not
+/// Coordinates of the only dimension of steps, unchanged, or a single time; empty if there are several, or it is not
 /// time.
 std::vector<double> times_of(const NetcdfFile& file, const GridVariable& field) {
   std::vector<double> times;
@@ -142,7 +142,7 @@ std::vector<double> times_of(const NetcdfFile& file, const GridVariable& field) 
   return times;
 }
 
-/// Axes other than time are steps too, which is worth a word.
+/// Axes other than time are steps too, which a note mentions.
 void note_steps(const NetcdfFile& file, const GridVariable& field, std::vector<std::string>& notes) {
   std::vector<std::string> names;
   bool is_time = true;
@@ -170,7 +170,7 @@ bool has_degrees(const NetcdfFile& file, const NetcdfVariable& coordinate) {
   return file.text(coordinate, "units").starts_with("degree") && (role == AxisRole::x || role == AxisRole::y);
 }
 
-/// Longitudes that pass the end of the circle go on beyond it.
+/// Longitudes that cross the end of the circle continue beyond it.
 void unwind(std::vector<double>& longitudes) {
   const bool rises = longitudes.size() > 2 && longitudes[1] > longitudes[0];
   for (std::size_t k = 1; k < longitudes.size(); ++k) {
@@ -180,7 +180,7 @@ void unwind(std::vector<double>& longitudes) {
   }
 }
 
-/// Coordinates along an axis, as they are to be drawn: z goes up.
+/// Coordinates along an axis, in the order to be drawn: z increases upwards.
 GridNumbers coordinates_along(const NetcdfFile& file, const GridVariable& field, std::size_t axis,
                               std::vector<std::string>& notes) {
   const NetcdfDimension& dimension = field.variable->dimensions[field.order.along[axis]];
@@ -198,7 +198,7 @@ GridNumbers coordinates_along(const NetcdfFile& file, const GridVariable& field,
   return numbers_of(values, numbers.type == NumberType::float32 ? NumberType::float32 : NumberType::float64);
 }
 
-/// Levels between those of the values, one more: the coordinate's bounds if these fit each other, else half way.
+/// Levels between those of the values, one more: the coordinate's bounds if adjacent ones match, else halfway.
 std::vector<double> levels_between(const NetcdfFile& file, const GridVariable& field, const std::vector<double>& z) {
   std::vector<double> between;
   const NetcdfDimension& dimension = field.variable->dimensions[field.order.along[2]];
@@ -209,7 +209,7 @@ std::vector<double> levels_between(const NetcdfFile& file, const GridVariable& f
       bounds->dimensions[1].length == 2) {
     const std::vector<double> ends = read_whole(file, *bounds, 2 * dimension.length).as_doubles();
     const double sign = counts_downwards(file, *coordinate) ? -1 : 1;
-    const bool is_turned = z.size() > 1 && ends.size() > 3 && ends[0] == ends[3];  // each pair falls as levels rise
+    const bool is_turned = z.size() > 1 && ends.size() > 3 && ends[0] == ends[3];  // pairs are in decreasing order
     bool fit = true;
     for (std::size_t k = 0; k < z.size(); ++k) {
       const double low = sign * ends[2 * k + (is_turned ? 1 : 0)], high = sign * ends[2 * k + (is_turned ? 0 : 1)];
@@ -255,7 +255,7 @@ io::ForeignArray read_field(Holdings& holdings, const NetcdfFile& file, const Gr
 /// A grid without its fields.
 struct PlacedGrid {
   io::ForeignPart part;
-  bool has_cells = false;  ///< the fields are those of cells
+  bool has_cells = false;  ///< the fields are cell data
 };
 
 PlacedGrid place_grid(Holdings& holdings, const NetcdfFile& file, const GridOfVariables& grid, std::size_t step,
@@ -313,7 +313,7 @@ io::ForeignContents read_netcdf(Holdings& holdings, const std::filesystem::path&
         grid.curved ? io::ForeignPart::Kind::structured : io::ForeignPart::Kind::rectilinear;
     return contents;
   }
-  // Variables that do not change with time are there at all steps.
+  // Variables that do not change with time exist at all steps.
   std::size_t steps = 0;
   const GridVariable* with_steps = nullptr;
   for (const GridVariable& field : grid.fields)

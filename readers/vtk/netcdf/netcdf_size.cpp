@@ -12,7 +12,7 @@ namespace {
 
 std::uint64_t padded(std::uint64_t bytes) { return (bytes + 3) / 4 * 4; }
 
-/// Bytes of a header's parts; counts are of 4 bytes, in version 5 of 8.
+/// Sizes of a header's parts; counts have 4 bytes, in version 5 8 bytes.
 class Header {
  public:
   Header(int file, int format)
@@ -23,7 +23,7 @@ class Header {
   [[nodiscard]] std::uint64_t count() const { return count_; }
   [[nodiscard]] std::uint64_t offset() const { return offset_; }
 
-  /// Of a variable, or NC_GLOBAL.
+  /// `of`: a variable, or NC_GLOBAL.
   [[nodiscard]] std::uint64_t attributes(int of, int n) const {
     std::uint64_t bytes = list();
     for (int k = 0; k < n; ++k) {
@@ -75,7 +75,7 @@ std::uint64_t least_netcdf_bytes(int file) {
     for (int k = of_records ? 1 : 0; k < n; ++k)
       values *= static_cast<double>(lengths[static_cast<std::size_t>(ids[static_cast<std::size_t>(k)])]);
     if (values > 1e15) return UINT64_MAX;
-    (of_records ? of_one_record : bytes) += static_cast<std::uint64_t>(values);  // padding aside
+    (of_records ? of_one_record : bytes) += static_cast<std::uint64_t>(values);  // without padding
     if (of_records) records = lengths[static_cast<std::size_t>(unlimited)];
   }
   if (static_cast<double>(of_one_record) * static_cast<double>(records) > 1e15) return UINT64_MAX;

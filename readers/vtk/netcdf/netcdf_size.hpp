@@ -5,9 +5,9 @@
 
 namespace tessera::readers {
 
-/// The bytes that an open NetCDF classic file (versions 1, 2 and 5) has at least if it is whole, by its header ("NetCDF
-/// Classic Format Specification", Unidata): NetCDF's library reads what lies behind a file's end as zeros. 0 for
-/// NetCDF-4, which is HDF5 and tells by itself, and where the header cannot be read.
+/// The minimum size in bytes of a complete NetCDF classic file (versions 1, 2 and 5) with this header ("NetCDF Classic
+/// Format Specification", Unidata): NetCDF's library reads zeros beyond a file's end. 0 for NetCDF-4, which is HDF5 and
+/// detects it itself, and if the header cannot be read.
 std::uint64_t least_netcdf_bytes(int file);
 
 }  // namespace tessera::readers

@@ -44,7 +44,8 @@ NumberType number_type_of(nc_type type, const std::string& is_unsigned) {
   }
 }
 
-/// What NetCDF's library writes where a program writes nothing. Bytes have one too, but every byte is a valid value.
+/// The value that NetCDF's library stores where a program writes nothing. Bytes have one too, but every byte is a valid
+/// value.
 std::optional<double> default_fill_of(nc_type type) {
   switch (type) {
     case NC_SHORT:
@@ -70,12 +71,12 @@ std::optional<double> default_fill_of(nc_type type) {
 
 bool is_float(nc_type type) { return type == NC_FLOAT || type == NC_DOUBLE; }
 
-/// What a variable's attributes say of its numbers.
+/// The attributes of a variable that affect its numbers.
 struct Packing {
-  NumberType type = NumberType::float64;  ///< of what is stored
+  NumberType type = NumberType::float64;  ///< stored type
   double scale = 1, shift = 0;
   bool single = false;              ///< unpacked numbers are float32
-  std::vector<double> missing;      ///< as they are stored
+  std::vector<double> missing;      ///< as stored
   std::optional<double> unwritten;  ///< the default fill value
   double low = -infinity, high = infinity;
   bool range_is_unpacked = false;
@@ -89,7 +90,7 @@ void add_valid_range(const NetcdfFile& file, const NetcdfVariable& variable, Pac
     std::vector<double> ends = file.numbers(variable, name);
     const bool is_range = std::string_view(name) == "valid_range", is_low = std::string_view(name) == "valid_min";
     if (ends.size() != (is_range ? 2u : 1u)) continue;
-    // Of a float type beside packed integers the ends are those of the unpacked values.
+    // If integers are packed and the limits have a float type, these are limits of the unpacked values.
     const bool unpacked = is_float(file.attribute_type(variable, name)) && !is_float(variable.type);
     for (double& end : ends)
       if (!unpacked && end < 0) end += wrap;
@@ -103,7 +104,7 @@ void add_valid_range(const NetcdfFile& file, const NetcdfVariable& variable, Pac
 Packing packing_of(const NetcdfFile& file, const NetcdfVariable& variable) {
   Packing packing;
   packing.type = number_type_of(variable.type, file.text(variable, "_Unsigned"));
-  // Attributes of signed types stand for the unsigned numbers of their bits.
+  // Attributes of signed types represent the unsigned numbers with the same bits.
   const bool reinterpreted = file.text(variable, "_Unsigned") == "true" && variable.type != NC_UBYTE;
   const double wrap = reinterpreted ? std::ldexp(1.0, static_cast<int>(8 * io::size_of(packing.type))) : 0;
   const auto first_of = [&](const char* attribute, double otherwise) {
@@ -131,7 +132,7 @@ Packing packing_of(const NetcdfFile& file, const NetcdfVariable& variable) {
   return packing;
 }
 
-/// Unpacks some numbers in place and counts in `result` those that become NaN. Returns whether a number changed.
+/// Unpacks some numbers in place and counts in `result` those that become NaN. Returns whether any number changed.
 bool unpack_some(const Packing& packing, std::span<double> values, NetcdfValues& result) {
   bool changes = packing.is_packed();
   for (double& value : values) {
