@@ -9,14 +9,15 @@
 
 namespace tessera::colormaps {
 
-/// Colours of a preset: display values at equal distances from the low to the high end, and where to mix them.
+/// Colours of a preset: display values at equal distances from the low to the high end, and the colour space that
+/// interpolates them.
 struct ColorMapTable {
   std::string_view name;
   ColorSpace space;
   std::span<const glm::dvec3> colors;
 };
 
-/// All of them, the default first. Sources stand at the numbers.
+/// All tables, the default first. The sources are cited at the numbers.
 std::span<const ColorMapTable> color_map_tables();
 
 }  // namespace tessera::colormaps

@@ -22,13 +22,13 @@ const glm::dmat3& xyz_from_rgb() {
   return matrix;
 }
 
-/// Its exact inverse rather than the standard's four digits, so that a colour comes back as it went.
+/// The exact inverse instead of the standard's four digits, so that colours survive a round trip.
 const glm::dmat3& rgb_from_xyz() {
   static const glm::dmat3 matrix = glm::inverse(xyz_from_rgb());
   return matrix;
 }
 
-/// XYZ of (1, 1, 1): D65, and the reason why greys have a* = b* = 0 exactly.
+/// XYZ of (1, 1, 1): D65. Because of it, greys have a* = b* = 0 exactly.
 dvec3 display_white() { return xyz_from_rgb() * dvec3(1); }
 
 double lab_curve(double t) { return t > 0.008856 ? std::cbrt(t) : 7.787 * t + 16.0 / 116; }
@@ -68,7 +68,7 @@ double angle_between(double a, double b) {
   return turn > pi ? 2 * pi - turn : turn;
 }
 
-/// Hue of an unsaturated end of magnitude `m`: turned from the saturated end's so that the way between them is
+/// Hue of an unsaturated end of magnitude `m`: rotated from the saturated end's hue so that the path between them is
 /// perceptually straight (Moreland 2009, listing 2).
 double hue_of_unsaturated(const Msh& saturated, double m) {
   if (saturated.m >= m - 0.1) return saturated.h;
@@ -113,7 +113,7 @@ dvec3 hsv_from_rgb(const dvec3& c) {
 }
 
 dvec3 rgb_from_hsv(const dvec3& c) {
-  // Each channel is a trapezoid of hue: full within one sextant of its own, none beyond two.
+  // Each channel is a trapezoid in hue: full within one sextant of its own hue, zero beyond two.
   const auto channel = [&](double own) {
     const double away = std::abs(6 * c.x - own), round = std::min(away, 6 - away);
     return c.z * (1 - c.y * std::clamp(round - 1, 0.0, 1.0));

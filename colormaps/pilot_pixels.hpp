@@ -9,17 +9,18 @@
 
 namespace tessera::colormaps {
 
-/// What pixels of views along a box's axes would hold, from samples alone: optical depths of a 24 x 24 picture each (16
-/// x 16 of few samples), along axes across which faces lie of at least 0.3 of the largest: what is flat is not looked
-/// at along its plane. Good enough to choose how opaque a function is to be.
+/// Estimates the pixels of views along a box's axes from samples alone: optical depths of a 24 x 24 image each (16 x 16
+/// for few samples), along axes whose normal faces have at least 0.3 of the area of the largest: flat boxes are not
+/// viewed along their plane. Accurate enough to choose the opacity of a function.
 class PilotPixels {
  public:
-  /// `extinctions`: value and extinction, linear between; times `unit` 1 / world unit.
+  /// `extinctions`: pairs of value and extinction, linear between them; in units of `unit` / world unit.
   PilotPixels(const scene::FieldSamples& samples, std::span<const std::array<double, 2>> extinctions, double unit);
 
-  /// The factor on extinction that makes pixels of alpha > 1/255 `mean_alpha` opaque in the mean, or less if else more
-  /// than one in 200 had an alpha above 0.97. Where they are less than 0.15 of all, `mean_alpha` is taken times 0.6:
-  /// such parts are smaller than these pixels, which show them too faint. 1 where nothing shows at any factor.
+  /// The factor on extinction that makes the mean opacity of pixels with alpha > 1/255 `mean_alpha`, or less if
+  /// otherwise more than one in 200 would have an alpha above 0.97. If these are less than 0.15 of all pixels, the
+  /// target is 0.6 `mean_alpha`: such parts are smaller than the estimated pixels and appear too faint in them. 1 if no
+  /// factor makes anything visible.
   [[nodiscard]] double scale(double mean_alpha) const;
 
  private:
