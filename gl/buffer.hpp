@@ -7,13 +7,13 @@
 
 namespace tessera::gl {
 
-/// Device memory that grows: reserve() forgets what was in it if it has to.
+/// Device memory that grows; reserve() discards the contents if it must reallocate.
 class Buffer {
  public:
   enum class Use {
-    device,    ///< shaders read and write it
-    upload,    ///< mapped for as long as it lives; the host writes it
-    readback,  ///< mapped for as long as it lives; the host reads it
+    device,    ///< read and written by shaders
+    upload,    ///< mapped for its lifetime; the host writes it
+    readback,  ///< mapped for its lifetime; the host reads it
   };
 
   Buffer(const Context& context, Use use) : context_(&context), use_(use) {}
@@ -21,19 +21,19 @@ class Buffer {
   Buffer(const Buffer&) = delete;
   Buffer& operator=(const Buffer&) = delete;
 
-  /// Room for at least that many bytes. Throws Error(system_failure) if the device has none, or shaders cannot address
-  /// as much.
+  /// Ensures at least that many bytes. Throws Error(system_failure) if the device has not enough memory, or shaders
+  /// cannot address as much.
   void reserve(std::size_t bytes);
 
   [[nodiscard]] GLuint name() const { return name_; }
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
-  /// Of mapped ones. Writes are seen by commands that follow; reads want a Fence waited for.
+  /// For mapped buffers. Writes are visible to later commands; wait for a Fence before reading.
   [[nodiscard]] std::byte* mapped() const { return mapped_; }
-  /// As shader storage number `binding`.
+  /// Binds it as shader storage `binding`.
   void bind(GLuint binding) const { context_->gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name_); }
-  /// The first `bytes` of `from`, from `from_byte` on, to the beginning of this one.
+  /// Copies `bytes` of `from`, starting at `from_byte`, to the beginning of this buffer.
   void copy_from(const Buffer& from, std::size_t from_byte, std::size_t bytes) const;
-  /// Zeros in the first `bytes`, a multiple of four.
+  /// Zeroes the first `bytes`, a multiple of four.
   void clear(std::size_t bytes) const;
 
  private:
@@ -46,8 +46,8 @@ class Buffer {
   std::byte* mapped_ = nullptr;
 };
 
-/// Marks a place in the commands; wait() returns when the device has come there. Throws Error(system_failure) if it
-/// does not within ten minutes, or the context is lost.
+/// Marks a position in the command stream; wait() returns when the device has reached it. Throws Error(system_failure)
+/// if that takes more than ten minutes, or the context is lost.
 class Fence {
  public:
   explicit Fence(const Context& context) : context_(&context) {}

@@ -5,7 +5,7 @@
 
 namespace tessera::gl {
 
-// What the project calls of OpenGL 4.5 core, each with its type of Khronos' glcorearb.h.
+// The functions of OpenGL 4.5 core used here, each with its type from Khronos' glcorearb.h.
 #define TESSERA_GL_FUNCTIONS(X)                                        \
   X(PFNGLATTACHSHADERPROC, AttachShader)                               \
   X(PFNGLBINDBUFFERBASEPROC, BindBufferBase)                           \
@@ -67,7 +67,7 @@ namespace tessera::gl {
   X(PFNGLUSEPROGRAMPROC, UseProgram)                                   \
   X(PFNGLVIEWPORTPROC, Viewport)
 
-/// OpenGL's functions without their prefix, as a context gave them: `gl.DispatchCompute(...)` is glDispatchCompute.
+/// OpenGL's functions without their prefix, as loaded from a context: `gl.DispatchCompute(...)` is glDispatchCompute.
 struct Functions {
 #define TESSERA_GL_MEMBER(type, name) type name = nullptr;
   TESSERA_GL_FUNCTIONS(TESSERA_GL_MEMBER)

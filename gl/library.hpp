@@ -5,14 +5,14 @@
 
 namespace tessera::gl {
 
-/// A shared library opened at run time. It stays open: drivers keep threads and thread-local memory whose code must not
-/// go away.
+/// A shared library opened at run time. It is never closed: drivers keep threads and thread-local memory whose code
+/// must stay loaded.
 class Library {
  public:
-  /// Throws Error(system_failure) naming the library, and what to install.
+  /// Throws Error(system_failure) naming the library and the package to install.
   Library(const char* file, const char* what, const char* package);
 
-  /// A function of the library; throws Error(system_failure) if it lacks it.
+  /// A function of the library; throws Error(system_failure) if it is missing.
   template <class Function>
   Function* function(const char* name) const {
     return reinterpret_cast<Function*>(symbol(name));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gl/context.hpp"
 
-// Not before context.hpp: this brings gl.h, after which glcorearb.h would leave out what both have.
+// Must follow context.hpp: this includes gl.h, after which glcorearb.h would omit their common declarations.
 #include <GL/osmesa.h>
 
 #include <array>
@@ -12,8 +12,8 @@
 namespace tessera::gl {
 namespace {
 
-/// Mesa's off-screen interface: software, drawing into memory of ours. That is one pixel, as all drawing here goes into
-/// framebuffer objects.
+/// Mesa's off-screen interface: a software renderer that draws into memory of ours. That is a single pixel, because all
+/// drawing here uses framebuffer objects.
 class OsmesaContext final : public Context {
  public:
   OsmesaContext()

@@ -3,21 +3,21 @@
 
 #include <optional>
 
-/// What a caller says of a device; needs no OpenGL headers.
+/// How a caller selects a device; needs no OpenGL headers.
 namespace tessera::gl {
 
-/// Where a context comes from. Both libraries are opened at run time; neither needs a display server.
+/// The source of a context. Both libraries are opened at run time; neither needs a display server.
 enum class Platform {
   osmesa,  ///< Mesa in software, in this process
   egl      ///< a device without a surface: a GPU, or Mesa's software device
 };
 
-/// Which of EGL's devices. Numbers are EGL's own order.
+/// Selects one of EGL's devices. Numbers are EGL's own order.
 struct EglDevice {
-  std::optional<int> number;      ///< this one
-  std::optional<int> local_rank;  ///< else: hardware devices in turn by this (software ones if there are none)
-  bool hardware_only = false;     ///< a software device is no answer
-  // None of it: the first hardware device, else the first.
+  std::optional<int> number;      ///< this device
+  std::optional<int> local_rank;  ///< else: hardware devices round-robin by this rank (software ones if there are none)
+  bool hardware_only = false;     ///< refuse software devices
+  // If none is set: the first hardware device, else the first device.
 };
 
 }  // namespace tessera::gl

@@ -47,7 +47,7 @@ std::string first_complaint(std::string_view log, const std::vector<ShaderSource
     std::smatch found;
     if (words.find("rror") == std::string::npos && words.find("ERROR") == std::string::npos) continue;
     if (!std::regex_search(words, found, place)) continue;
-    std::ptrdiff_t line = std::stol(found[1].matched ? found[1] : found[2]) - 1;  // the version's
+    std::ptrdiff_t line = std::stol(found[1].matched ? found[1] : found[2]) - 1;  // without the version line
     for (const ShaderSource& file : files) {
       const std::ptrdiff_t lines = 1 + std::count(file.text.begin(), file.text.end(), '\n');
       if (line <= lines) return fmt::format("{}:{}: {}", file.file, line, found[3].str());

@@ -11,20 +11,19 @@
 
 namespace tessera::gl {
 
-/// A shader file: what messages call it, and its text.
+/// A shader file: its name for messages, and its text.
 struct ShaderSource {
   const char* file;
   std::string_view text;
 };
 
-/// One stage of a program, from files put one after the other. The version line goes before them.
+/// One stage of a program, concatenated from files. The version line precedes them.
 struct Stage {
   GLenum kind;  ///< GL_COMPUTE_SHADER, GL_VERTEX_SHADER, GL_FRAGMENT_SHADER
   std::vector<ShaderSource> files;
 };
 
-/// A linked program. Throws Error(system_failure) in one line that names file and line of the first thing the compiler
-/// did not like.
+/// A linked program. Throws Error(system_failure) in one line that names file and line of the compiler's first error.
 class Program {
  public:
   Program(const Context& context, const std::vector<Stage>& stages);
@@ -33,7 +32,7 @@ class Program {
   Program& operator=(const Program&) = delete;
 
   void use() const { gl_->UseProgram(name_); }
-  /// Uniforms by their layout(location).
+  /// Sets uniforms by their layout(location).
   void set(GLint location, GLuint value) const { gl_->ProgramUniform1ui(name_, location, value); }
   void set(GLint location, GLint value) const { gl_->ProgramUniform1i(name_, location, value); }
   void set(GLint location, GLfloat value) const { gl_->ProgramUniform1f(name_, location, value); }
@@ -43,9 +42,9 @@ class Program {
   GLuint name_ = 0;
 };
 
-/// The first complaint of a compiler's log as "FILE:LINE: words". Mesa writes "0:12(5): error: ...", NVIDIA "0(12) :
-/// error
-/// ...", others "ERROR: 0:12: ...", lines counted through the version line and all files (Mesa knows no #line FILE).
+/// The first error of a compiler's log as "FILE:LINE: words". Mesa writes "0:12(5): error: ...", NVIDIA "0(12) : error
+/// ...", others "ERROR: 0:12: ...", with lines counted through the version line and all files (Mesa does not support
+/// #line FILE).
 std::string first_complaint(std::string_view log, const std::vector<ShaderSource>& files);
 
 }  // namespace tessera::gl

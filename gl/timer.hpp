@@ -10,9 +10,10 @@
 
 namespace tessera::gl {
 
-/// The device's own times of stages of commands (timer queries), for the trace. Does nothing if `trace` is null.
+/// Device times of stages of commands (timer queries), for the trace. Does nothing if `trace` is null.
 ///
-/// A device works beside the thread that feeds it, so its spans are on a row of their own and count no CPU time.
+/// A device works in parallel with the thread that feeds it, so its spans have a row of their own and count no CPU
+/// time.
 class StageTimer {
  public:
   StageTimer(const Context& context, scene::Trace* trace);
@@ -20,12 +21,12 @@ class StageTimer {
   StageTimer(const StageTimer&) = delete;
   StageTimer& operator=(const StageTimer&) = delete;
 
-  /// Commands that follow belong to no stage until the first record().
+  /// Later commands belong to no stage until the first record().
   void begin(std::int32_t frame);
-  /// The commands since the last call were `stage`, a string literal, in so many passes over the lists: the trace has
-  /// them as the messages that they are, to the device.
+  /// Attributes the commands since the last call to `stage`, a string literal, in `passes` passes over the lists: the
+  /// trace records passes as messages to the device.
   void record(const char* stage, std::uint32_t passes = 0);
-  /// Adds the spans to the trace; the device must be through with the commands.
+  /// Adds the spans to the trace; the device must have finished the commands.
   void collect();
 
  private:
@@ -41,7 +42,7 @@ class StageTimer {
   std::binary_semaphore numbered_{0}, ended_{0};
   std::uint32_t row_ = 0;
   std::int32_t frame_ = -1;
-  double offset_us_ = 0;  ///< device's clock to the trace's
+  double offset_us_ = 0;  ///< from the device's clock to the trace's
   std::vector<GLuint> queries_;
   std::size_t used_ = 0;
   std::vector<Stage> recorded_;
