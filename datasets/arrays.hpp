@@ -4,13 +4,13 @@
 #include "scene/tet_mesh.hpp"
 #include "tessera/dataset.hpp"
 
-/// Meshes as the public API has them, and back.
+/// Converts meshes to the arrays of the public API, and back.
 namespace tessera::datasets {
 
-/// The mesh's arrays, which keep it.
+/// The mesh's arrays, which own it.
 MeshArrays arrays_of(scene::TetMesh mesh);
 
-/// A copy of arrays laid out as Dataset::mesh_arrays() gives them.
+/// A copy of arrays in the layout of Dataset::mesh_arrays().
 scene::TetMesh mesh_of(const MeshArrays& arrays);
 
 }  // namespace tessera::datasets

@@ -80,9 +80,9 @@ scene::TetMesh graded(int n, double volume_ratio) {
 scene::TetMesh slivers(int n, double aspect) {
   require(n >= 2 && n <= 500, "slivers", "n must be in 2 .. 500");
   require(aspect >= static_cast<double>(n) * n && aspect <= 1e15, "slivers", "aspect must be in n * n .. 1e15");
-  // Interface k is the saddle z = +-e (i - n/2) (j - n/2): all its squares bend the same way, so the four corners of
-  // each span a tet whose upper edge is one diagonal and whose lower edge the other. The slabs on both sides use these
-  // edges: slab k is a Kuhn split, mirrored in x if k is odd, which alternates the diagonal.
+  // Interface k is the saddle z = +-e (i - n/2) (j - n/2): all its squares bend in the same direction, so the four
+  // corners of each span a tet whose upper edge is one diagonal and whose lower edge is the other. The slabs on both
+  // sides use these edges: slab k is a Kuhn split, mirrored in x if k is odd, which alternates the diagonal.
   const double step = 2.0 / n, bend = step / aspect;
   const std::uint32_t last = u32(n);
   const Lattice lattice{last, last, last};
@@ -119,7 +119,7 @@ scene::TetMesh thin_stack(int layers, double width, double thickness) {
     mesh.scalars[v] = 0.5 + 0.5 * std::sin(2.3999632297286533 * k);  // the golden angle: neighbours differ
   }
 
-  // The plate: lines at the hole's sides and three more on either side of it.
+  // The plate: grid lines at the hole's sides and three more on either side of it.
   const double hole = 0.6 * width;
   const std::array<double, 9> lines{-1.0, -0.7, -0.4, -hole, 0, hole, 0.4, 0.7, 1.0};
   const Lattice plate{8, 8, 1};

@@ -6,14 +6,14 @@
 
 #include "scene/tet_mesh.hpp"
 
-/// Meshes whose cells are split hexahedra in a box. All tets are positively oriented, faces match, one original cell a
-/// tet, point data unless said otherwise; the same arguments give the same bits. A count out of range throws
-/// Error(bad_input).
+/// Meshes whose cells are split hexahedra in a box. All tets are positively oriented, faces match, each tet is one
+/// original cell, and data are point data unless stated otherwise; the same arguments give the same bits. A count out
+/// of range throws Error(bad_input).
 namespace tessera::datasets {
 
 /// [-1, 1]^3 as n^3 voxels of six tets with smooth_field. Inner vertices are moved by up to `jitter` voxels along each
-/// axis (0 to 0.25: more may turn tets inside out). Positions and scalars are float numbers, so files that hold floats
-/// (.tets) describe the same mesh. n in [1, 1000].
+/// axis (0 to 0.25: more may invert tets). Positions and scalars are float numbers, so files that store floats (.tets)
+/// describe the same mesh. n in [1, 1000].
 scene::TetMesh cube(int n, double jitter = 0.2, std::uint64_t seed = 7);
 
 /// nx x ny x nz voxels of six tets at origin + (i, j, k) * spacing with smooth_field of the box mapped to [-1, 1]^3.
@@ -26,15 +26,15 @@ scene::TetMesh regular_split(int nx, int ny, int nz, const glm::dvec3& spacing =
 /// cell has about `volume_ratio` times the volume of the smallest (1 to 1e15). n even, >= 4.
 scene::TetMesh graded(int n, double volume_ratio = 1e6);
 
-/// n x n x n voxels in [-1, 1]^3 where the layers between voxels along z hold one sliver a voxel: four vertices that
-/// are corners of nearly a square, `aspect` times wider than high (>= n * n, so that layers do not cross).
+/// n x n x n voxels in [-1, 1]^3; the layers between voxels along z contain one sliver a voxel: four vertices that are
+/// corners of nearly a square, `aspect` times wider than high (>= n * n, so that layers do not cross).
 /// 6 n^3 + (n - 1) n^2 tets. The classic failure of Delaunay meshes, without flat faces or short edges.
 scene::TetMesh slivers(int n, double aspect = 1e4);
 
-/// A pile of `layers` thin voxels (six tets each) of square footprint `width`, `thickness` high in all, centred on the
-/// z axis, in the middle of a plate of 8 x 8 shallow voxels over [-1, 1]^2 with a hole for it (a gap of a tenth of the
-/// footprint keeps the two apart). Seen along z, a few pixels hold all the depth complexity. The scalar swings
-/// from layer to layer, so that any wrong order shows. Tets: 6 (layers + 60).
+/// A stack of `layers` thin voxels (six tets each) with a square base of side `width`, `thickness` high in total,
+/// centred on the z axis, in the middle of a plate of 8 x 8 shallow voxels over [-1, 1]^2 with a hole for it (a gap of
+/// a tenth of the base separates the two). Seen along z, a few pixels have all the depth complexity. The scalar
+/// alternates from layer to layer, so that any wrong order is visible. Tets: 6 (layers + 60).
 scene::TetMesh thin_stack(int layers = 20000, double width = 0.02, double thickness = 1);
 
 }  // namespace tessera::datasets

@@ -29,14 +29,14 @@ struct Vortex {
   double core, strength, turn;  ///< turn: +1 counter-clockwise, -1 clockwise
 };
 
-/// At span position z: the street's centre lines wave along the span, more so downstream.
+/// At span position z: the street's centre lines are wavy along the span, more so downstream.
 Vortex vortex(int i, double z) {
   const double side = i % 2 == 0 ? 1 : -1, age = i;
   const double wave = (0.05 + 0.05 * age) * std::sin(2 * pi * z / 3 + 0.9 * age);
   return {{1.55 + 1.75 * age + wave, side * (0.38 + 0.05 * age)}, 0.34 + 0.045 * age, 1 / (1 + 0.12 * age), -side};
 }
 
-/// A core with a spiral arm that two turns of the vortex have wound up.
+/// A core with a spiral arm, wound up by two turns of the vortex.
 double rolled_up(const glm::dvec2& p, const Vortex& v) {
   const glm::dvec2 d = p - v.centre;
   const double r = glm::length(d), wound = std::atan2(d.y, d.x) * v.turn + 2.6 * r / v.core;
@@ -44,7 +44,7 @@ double rolled_up(const glm::dvec2& p, const Vortex& v) {
   return v.strength * (bell(r, v.core) + 0.55 * arm);
 }
 
-/// The thin sheet drawn out between two successive vortices, torn into ribs along the span.
+/// The thin sheet between two successive vortices, torn into ribs along the span.
 double braid(const glm::dvec2& p, const Vortex& a, const Vortex& b, double z) {
   const glm::dvec2 along = b.centre - a.centre;
   const double length = glm::length(along), u = glm::dot(p - a.centre, along) / (length * length);
@@ -65,7 +65,7 @@ double vorticity(const glm::dvec3& p_world) {
   for (const Vortex& v : street) sum += rolled_up(p, v);
   for (std::size_t i = 0; i + 1 < count; ++i) sum += braid(p, street[i], street[i + 1], z);
 
-  // The boundary layer from the stagnation point to separation near 100 degrees, and the shear layers it becomes.
+  // The boundary layer from the stagnation point to separation near 100 degrees, and the shear layers that continue it.
   const double from_front = std::acos(std::clamp(-p.x / r, -1.0, 1.0));
   sum += 0.9 * std::exp(-(r - radius) / 0.07) * ramp(from_front, 0.2, 1.0) * (1 - ramp(from_front, 1.7, 2.3));
   for (const double side : {1.0, -1.0}) {
@@ -81,11 +81,11 @@ double vorticity(const glm::dvec3& p_world) {
 scene::TetMesh demo(double resolution) {
   if (!(resolution >= 0.2 && resolution <= 4)) throw scene::bad_input("demo: resolution must be in 0.2 .. 4");
   const auto scaled = [&](int n) { return static_cast<std::uint32_t>(std::lround(n * resolution)); };
-  // Hexahedra along the four walls; the outflow has most, since rays from the body to it cross the wake.
+  // Hexahedra along the four walls; the outflow has most, because lines from the body to it cross the wake.
   const std::uint32_t right = scaled(44), top = scaled(28), left = scaled(12);
   const Lattice lattice{right + top + left + top, scaled(64), scaled(12), true};
 
-  // Round the box from the lower right corner, counter-clockwise.
+  // Around the box from the lower right corner, counter-clockwise.
   const auto wall = [&](std::uint32_t i) {
     const auto part = [](std::uint32_t a, std::uint32_t n) { return static_cast<double>(a) / n; };
     const double width = x_outflow - x_inflow, height = 2 * y_wall;

@@ -18,7 +18,7 @@ void sample_smooth_field(scene::TetMesh& mesh) {
   mesh.scalars.clear();
   mesh.scalars.reserve(mesh.positions.size());
   for (const glm::dvec3& p : mesh.positions) mesh.scalars.push_back(smooth_field(p));
-  mesh.field_name = std::string("f");  // not from the literal itself: g++ 12 then warns of overlap (its bug 105651)
+  mesh.field_name = std::string("f");  // not assigned from the literal: g++ 12 then warns of overlap (its bug 105651)
 }
 
 }  // namespace tessera::datasets

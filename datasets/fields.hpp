@@ -7,11 +7,11 @@
 
 namespace tessera::datasets {
 
-/// The field most generators sample: ripples round the origin, smooth, not linear, in [0, 1] (clipped), meant for
-/// [-1, 1]^3: 0.5 + 0.25 sin 5x cos(4y + z) + 0.25 cos(6 |p|).
+/// The field that most generators sample: ripples around the origin, smooth, not linear, in [0, 1] (clipped), intended
+/// for [-1, 1]^3: 0.5 + 0.25 sin 5x cos(4y + z) + 0.25 cos(6 |p|).
 double smooth_field(const glm::dvec3& p);
 
-/// Gives every vertex smooth_field of its position, as point data "f".
+/// Assigns every vertex smooth_field of its position, as point data "f".
 void sample_smooth_field(scene::TetMesh& mesh);
 
 }  // namespace tessera::datasets

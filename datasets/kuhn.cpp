@@ -7,8 +7,8 @@
 namespace tessera::datasets {
 
 void append_kuhn(const std::array<std::uint32_t, 8>& corners, std::vector<scene::Tet>& tets) {
-  // Each tet walks from corner 0 to corner 7 along the three axes in one order; odd orders swap two vertices so that
-  // all volumes are positive.
+  // Each tet goes from corner 0 to corner 7 along the three axes in one order; odd permutations swap two vertices so
+  // that all volumes are positive.
   constexpr std::array<std::array<int, 4>, 6> walks{
       {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}}};
   for (const auto& w : walks) tets.push_back({corners[w[0]], corners[w[1]], corners[w[2]], corners[w[3]]});

@@ -9,19 +9,19 @@
 
 namespace tessera::datasets {
 
-/// Appends the six tets round a hexahedron's main diagonal, positively oriented.
-/// Corner b of `corners` lies at (b & 1, b >> 1 & 1, b >> 2 & 1). Every face is cut along the diagonal from its lowest
-/// to its highest corner, so hexahedra that are numbered alike agree on the faces they share.
+/// Appends the six tets around a hexahedron's main diagonal, positively oriented.
+/// Corner b of `corners` is at (b & 1, b >> 1 & 1, b >> 2 & 1). Every face is cut along the diagonal from its lowest to
+/// its highest corner, so hexahedra with the same numbering agree on the faces they share.
 /// Source: Kuhn, "Some combinatorial lemmas in topology", IBM Journal, 1960.
 void append_kuhn(const std::array<std::uint32_t, 8>& corners, std::vector<scene::Tet>& tets);
 
-/// Appends the three tets of a prism with triangles `low` and `high` (low[i] is joined to high[i]). Prisms agree on a
-/// shared quadrilateral because the cut starts at the smaller index of `low`. Orientation follows the order of the
+/// Appends the three tets of a prism with triangles `low` and `high` (low[i] is connected to high[i]). Prisms agree on
+/// a shared quadrilateral because the cut starts at the smaller index of `low`. Orientation follows the order of the
 /// indices: see `orient`.
 void append_prism(std::array<std::uint32_t, 3> low, std::array<std::uint32_t, 3> high, std::vector<scene::Tet>& tets);
 
 /// Vertices and tets of a structured block of nx x ny x nz hexahedra. Vertex (i, j, k) has index
-/// (i (ny + 1) + j) (nz + 1) + k. With `wrap_x` the block closes on itself: i = nx is i = 0 and has no vertices.
+/// (i (ny + 1) + j) (nz + 1) + k. With `wrap_x` the block is periodic: i = nx is i = 0 and has no vertices.
 struct Lattice {
   std::uint32_t nx, ny, nz;
   bool wrap_x = false;
@@ -40,7 +40,7 @@ struct Lattice {
 /// Six times the signed volume.
 double signed_volume_6(const scene::TetMesh& mesh, const scene::Tet& tet);
 
-/// Makes every signed volume positive (or leaves it zero).
+/// Makes every signed volume positive (zero stays zero).
 void orient(scene::TetMesh& mesh);
 
 }  // namespace tessera::datasets

@@ -70,7 +70,7 @@ TetMesh with_seam(TetMesh mesh, int axis, double place) {
       if (!used_beyond[v]) continue;
       if (twin[v] == none) {
         twin[v] = static_cast<std::uint32_t>(mesh.positions.size());
-        const glm::dvec3 p = mesh.positions[v];  // a copy: push_back may move what a reference names
+        const glm::dvec3 p = mesh.positions[v];  // a copy: push_back may invalidate a reference
         mesh.positions.push_back(p);
         if (mesh.association == Association::point) {
           const double s = mesh.scalars[v];
@@ -141,7 +141,7 @@ TetMesh subdivided(const TetMesh& mesh) {
     const auto [a, b, c, d] = mesh.tets[t];
     const std::uint32_t ab = midpoint(a, b), ac = midpoint(a, c), ad = midpoint(a, d), bc = midpoint(b, c),
                         bd = midpoint(b, d), cd = midpoint(c, d);
-    // Four corners, then the octahedron round the diagonal ac-bd (Bey 1995, section 2).
+    // Four corners, then the octahedron around the diagonal ac-bd (Bey 1995, section 2).
     for (const Tet& child : {Tet{a, ab, ac, ad}, Tet{ab, b, bc, bd}, Tet{ac, bc, c, cd}, Tet{ad, bd, cd, d},
                              Tet{ab, ac, ad, bd}, Tet{ab, bc, ac, bd}, Tet{ac, ad, bd, cd}, Tet{ac, bd, bc, cd}}) {
       fine.tets.push_back(child);

@@ -7,8 +7,8 @@
 
 #include "scene/tet_mesh.hpp"
 
-/// New meshes from old: what a file of another origin would hold. All keep scalars and the order of tets unless they
-/// say otherwise.
+/// Derives meshes from meshes, with properties of files from other sources. All keep scalars and the order of tets
+/// unless stated otherwise.
 namespace tessera::datasets {
 
 /// Every vertex at scale * p + offset. Extinction is per world unit: scale the transfer function by the inverse
@@ -23,8 +23,8 @@ scene::TetMesh inverted(scene::TetMesh mesh, Orientation orientation = Orientati
 /// them as cell data, with original_cell set to the run. Throws Error(bad_input) unless the count divides evenly.
 scene::TetMesh with_cell_data(scene::TetMesh mesh, int tets_per_cell = 1);
 
-/// Vertices on the border of the tets whose centroid has p[axis] < place get a twin of equal position: the two sides
-/// then share no vertex. Geometry is unchanged.
+/// Vertices on the boundary of the tets whose centroid has p[axis] < place are duplicated at the same position: the two
+/// sides then share no vertex. Geometry is unchanged.
 scene::TetMesh with_seam(scene::TetMesh mesh, int axis, double place);
 
 /// Each tet cut into eight at its edge midpoints ("red" refinement; the inner octahedron is cut along one fixed
@@ -33,20 +33,20 @@ scene::TetMesh with_seam(scene::TetMesh mesh, int axis, double place);
 /// Source: Bey, "Tetrahedral grid refinement", Computing 55, 1995.
 scene::TetMesh subdivided(const scene::TetMesh& mesh);
 
-/// Tets and vertices in random order, original_cell dropped: file order carries no locality any more.
+/// Tets and vertices in random order, original_cell dropped: the order has no spatial locality.
 scene::TetMesh shuffled(const scene::TetMesh& mesh, std::uint64_t seed);
 
 /// How a mesh is distributed over parts.
 enum class Partition {
-  interleaved,  ///< each tet to a random part: the worst case, parts lie within one another everywhere
-  random_blobs  ///< each tet to the nearest of four random centres a part: jagged, not convex, not connected
+  interleaved,  ///< each tet to a random part: the worst case, parts overlap everywhere
+  random_blobs  ///< each tet to the nearest of four random centres per part: jagged, not convex, not connected
 };
 /// Disjoint parts whose union is the mesh; some may be empty. Each keeps the tets' order, has only the vertices it
-/// uses, and names each tet's index in the whole as original_cell (or the whole's own original_cell).
+/// uses, and stores each tet's index in the whole as original_cell (or the whole's own original_cell).
 std::vector<scene::TetMesh> parts(const scene::TetMesh& mesh, int count, Partition partition, std::uint64_t seed);
 
 /// One mesh of all parts, part after part, vertices not merged. Original cells are kept if all parts have them. All
-/// must carry scalars on the same element.
+/// must have the same association of scalars.
 scene::TetMesh merged(const std::vector<scene::TetMesh>& parts);
 
 }  // namespace tessera::datasets

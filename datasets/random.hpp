@@ -8,8 +8,8 @@
 
 namespace tessera::datasets {
 
-/// Random numbers whose bits depend on the seed alone: the standard fixes mt19937_64's sequence but not what its
-/// distributions make of it, so the mapping to numbers is written here.
+/// Random numbers whose bits depend only on the seed: the standard defines mt19937_64's sequence but not the results of
+/// its distributions, so the mapping to numbers is implemented here.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}

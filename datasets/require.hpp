@@ -7,7 +7,7 @@
 
 namespace tessera::datasets {
 
-/// Throws Error(bad_input, "GENERATOR: RULE") unless the generator's argument keeps the rule.
+/// Throws Error(bad_input, "GENERATOR: RULE") unless the generator's argument satisfies the rule.
 inline void require(bool holds, const char* generator, const char* rule) {
   if (!holds) throw scene::bad_input(std::string(generator) + ": " + rule);
 }

@@ -25,7 +25,8 @@ scene::TetMesh octahedron() {
   return mesh;
 }
 
-/// From the octahedron |p|_1 <= 1 to the ball, along rays: smooth and one to one within each octant, so no tet flips.
+/// Maps the octahedron |p|_1 <= 1 to the ball along rays: smooth and one-to-one within each octant, so no tet is
+/// inverted.
 glm::dvec3 to_ball(const glm::dvec3& p) {
   const double sum = std::abs(p.x) + std::abs(p.y) + std::abs(p.z);
   return sum > 0 ? p * (sum / glm::length(p)) : p;
@@ -59,7 +60,7 @@ scene::TetMesh annulus(int n, bool seam) {
   for (std::uint32_t i = 0; i < lattice.columns(); ++i)
     for (std::uint32_t j = 0; j <= across; ++j)
       for (std::uint32_t k = 0; k <= across; ++k) {
-        // i % around: the seam's two sides then have equal bits, not nearly equal ones.
+        // i % around: the seam's two sides then have exactly equal positions.
         const double angle = -2 * std::acos(-1.0) * (i % around) / n, radius = 0.5 + 0.5 * j / across;
         mesh.positions.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0.5 * k / across - 0.25);
       }
@@ -74,11 +75,11 @@ scene::TetMesh shells(int count, int levels, int layers) {
   require(levels >= 0 && levels <= 8, "shells", "levels must be in 0 .. 8");
   require(layers >= 1 && layers <= 1000, "shells", "layers must be in 1 .. 1000");
 
-  // The sphere's triangles: the octahedron's, divided 1:4 by barycentric coordinates with vertices merged by place.
+  // The sphere's triangles: the octahedron's, divided 1:4 by barycentric coordinates with coincident vertices merged.
   const std::uint32_t n = 1u << levels;
   std::vector<glm::dvec3> directions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  // A vertex is an integer point with |x| + |y| + |z| = n; a dense table finds it again.
+  // A vertex is an integer point with |x| + |y| + |z| = n; a dense table maps it to its index.
   const std::size_t side = 2 * n + 1;
   std::vector<std::uint32_t> known(side * side * 2, ~0u);
   const auto vertex = [&](const glm::ivec3& q) {
@@ -128,8 +129,8 @@ scene::TetMesh shells(int count, int levels, int layers) {
 
 scene::TetMesh cyclic_bars(int n) {
   require(n >= 1 && n <= 100000, "bars", "n must be in 1 .. 100000");
-  // Bar b runs along the side of a triangle in the xy plane, past its corners, and rises from z = -0.3 to 0.3: at each
-  // corner the end of one lies above the start of the next.
+  // Bar b extends along the side of a triangle in the xy plane, past its corners, and rises from z = -0.3 to 0.3: at
+  // each corner the end of one is above the start of the next.
   scene::TetMesh mesh;
   const Lattice lattice{static_cast<std::uint32_t>(n), 1, 1};
   for (int bar = 0; bar < 3; ++bar) {

@@ -14,7 +14,7 @@ scene::Knot random_knot(Random& random, double value, double extinction) {
   scene::Knot knot;
   knot.value = value;
   for (int i = 0; i < 3; ++i) knot.color[i] = random.uniform();
-  // Squared: mostly thin with a few thick knots, as drawn functions are.
+  // Squared: mostly thin with a few thick knots, like functions drawn by hand.
   const double u = random.uniform();
   knot.extinction = random.below(4) == 0 ? 0 : extinction * u * u;
   return knot;

@@ -28,13 +28,13 @@ scene::Grid cube_grid(std::int64_t n, int bits) {
   return grid;
 }
 
-/// A field on [-1, 1]^3, of values in [0, 1]; null: the checker, which goes by the point's number.
+/// A field on [-1, 1]^3 with values in [0, 1]; null: the checker, which depends on the point's indices.
 using Field = double (*)(const glm::dvec3&);
 
 struct Kind {
   const char *name, *help;
   Field field;
-  int points;  ///< by default
+  int points;  ///< the default
 };
 constexpr std::array<Kind, 5> kinds{{
     {"ripples", "volume of a smooth field on [-1, 1]^3, as the benchmarks use it", smooth_field, 64},
@@ -66,7 +66,7 @@ class ComputedVolume final : public scene::SampleSource {
         }
   }
 
-  /// By way of the stored type, so that every reader sees one number.
+  /// Converts by way of the stored type, so that every reader sees the same number.
   void put(double value, scene::SampleType type, std::byte* to) const {
     if (top_ == 0) {
       const auto stored = static_cast<float>(value);

@@ -10,9 +10,9 @@
 
 namespace tessera::datasets {
 
-/// Volumes by name, as generate() has meshes, on [-1, 1]^3 (n points a side, 2 to 4096; bits 8 or 16: value * 255 or
+/// Volumes by name, like generate() for meshes, on [-1, 1]^3 (n points a side, 2 to 4096; bits 8 or 16: value * 255 or
 /// 65535 rounded, or 32: float): "ripples" is smooth_field, "radial", "head" and "turbulence" are those of
-/// volume_fields.hpp; "checker" alternates 0 and 1 from point to point (the roughest field there is; float). Samples
+/// volume_fields.hpp; "checker" alternates 0 and 1 from point to point (the roughest possible field; float). Samples
 /// are computed where they are read, so that a volume may be larger than memory. Throws Error(bad_input) for an unknown
 /// kind or parameter, or a value out of range.
 std::unique_ptr<scene::SampleSource> generate_volume(const std::string& kind,
