@@ -46,7 +46,7 @@ struct Line {
   }
 };
 
-/// Value and gradient of a polynomial of a simplex. `at` holds the powers of r, s, t and of the fourth coordinate.
+/// Value and gradient of a polynomial on a simplex. `at` has the powers of r, s, t and of the fourth coordinate.
 double simplex_function(int n, const std::array<int, 3>& e, const std::array<Powers, 4>& at, glm::dvec3& gradient) {
   const int last = n - e[0] - e[1] - e[2];
   const double factor = binomial(n, e[0]) * binomial(n - e[0], e[1]) * binomial(n - e[0] - e[1], e[2]);
@@ -60,7 +60,7 @@ double simplex_function(int n, const std::array<int, 3>& e, const std::array<Pow
   return factor * x[0] * x[1] * x[2] * x[3];
 }
 
-/// Of the polynomials of one degree, from equally spaced values to coefficients; of a simplex of one, two or three
+/// Matrix from equally spaced values to coefficients, for polynomials of one degree on a simplex of one, two or three
 /// dimensions.
 Matrix simplex_from_lattice(const std::vector<std::array<int, 3>>& exponents, int n) {
   Matrix values(exponents.size(), exponents.size());
@@ -172,7 +172,7 @@ Matrix BernsteinBasis::from_lattice() const {
 std::vector<FacePatch> BernsteinBasis::faces() const {
   std::vector<FacePatch> result;
   const auto [nr, ns, nt] = degree_;
-  // `exponents(i, j)` of the cell's function that is number (i, j) on the face.
+  // `exponents(i, j)`: the exponents of the cell's function with index (i, j) on the face.
   const auto add = [&](bool triangle, int nu, int nv, const glm::dvec3& origin, const glm::dvec3& u,
                        const glm::dvec3& v, const auto& exponents) {
     FacePatch face{triangle, nu, nv, origin, u, v, {}};

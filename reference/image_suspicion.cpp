@@ -49,16 +49,16 @@ class Picture {
   }
 
   struct Misfit {
-    float least = 0;  ///< of the directions
-    float alike = 0;  ///< how alike they are, and how smooth the neighbours: mean over spread
+    float least = 0;  ///< smallest over the directions
+    float alike = 0;  ///< similarity of the directions, and smoothness of the neighbours: mean over spread
   };
 
-  /// How far the pixel is from the cubic through its four neighbours along a line, of four directions: along a straight
-  /// edge the least is small; at a single pixel that is off all are alike. `least`: what does not matter.
+  /// Deviation of the pixel from the cubic through its four neighbours along a line, for four directions: along a
+  /// straight edge the smallest is small; for a single wrong pixel all are similar. `least`: negligible differences.
   [[nodiscard]] Misfit misfit(int x, int y, float least) const {
     constexpr std::array<std::array<int, 2>, 4> directions{{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
     std::array<Colour, 4> off{};
-    Colour bend{};  // of the neighbours alone: a step bends, a single wrong pixel does not
+    Colour bend{};  // of the neighbours alone: nonzero at a step, but not around a single wrong pixel
     std::size_t count = 0;
     Misfit misfit{std::numeric_limits<float>::infinity(), 0};
     for (const auto& [i, j] : directions) {
@@ -77,8 +77,8 @@ class Picture {
     }
     if (!std::isfinite(misfit.least)) return {};
     for (std::size_t n = 0; n < 4 && count > 1; ++n) {
-      // A step bends as much as it is off, so that a quarter keeps it below four; smooth matter of wave number k bends
-      // by k^3 of its amplitude, and would hide what a whole of that exceeds.
+      // At a step, bend and misfit are equal, so a quarter keeps the ratio below four. Smooth matter of wave number k
+      // has a bend of k^3 times its amplitude; with the full bend it would hide larger errors.
       float mean = 0, spread = bend[n] / 4;
       for (std::size_t i = 0; i < count; ++i) mean += off[i][n] / static_cast<float>(count);
       for (std::size_t i = 0; i < count; ++i) spread = std::max(spread, std::abs(off[i][n] - mean));
@@ -87,8 +87,8 @@ class Picture {
     return misfit;
   }
 
-  /// Jump across one side of a 4x4 block beyond what the slopes on both sides lead up to, mean over the side. The side
-  /// begins at (x, y), goes along (along_x, along_y), and has the block's pixels towards (in_x, in_y).
+  /// Jump across one side of a 4x4 block beyond the extrapolation of the slopes on both sides, averaged over the side.
+  /// The side begins at (x, y), goes along (along_x, along_y), and has the block's pixels towards (in_x, in_y).
   [[nodiscard]] float jump(int x, int y, int along_x, int along_y, int in_x, int in_y) const {
     Colour sum{};
     for (int n = 0; n < 4; ++n) {
@@ -103,7 +103,7 @@ class Picture {
     return largest;
   }
 
-  /// Of the block whose first pixel is (x, y).
+  /// For the block whose first pixel is (x, y).
   [[nodiscard]] float block(int x, int y) const {
     std::array<float, 4> sides{jump(x, y, 0, 1, 1, 0), jump(x + 3, y, 0, 1, -1, 0), jump(x, y, 1, 0, 0, 1),
                                jump(x, y + 3, 1, 0, 0, -1)};
@@ -115,8 +115,8 @@ class Picture {
   const scene::Image& image_;
 };
 
-/// A misfit over the median of those on a ring that it does not reach: matter is rough in one place and smooth in
-/// another.
+/// A misfit relative to the median on a surrounding ring that it does not affect: matter is rough in one place and
+/// smooth in another.
 float standing_out(const SuspicionMap& misfit, const Picture& picture, int x, int y, float least) {
   constexpr int reach = 4, step = 2;
   std::array<float, 16> ring{};
@@ -127,11 +127,11 @@ float standing_out(const SuspicionMap& misfit, const Picture& picture, int x, in
         ring[count++] = misfit[picture.index(x + i, y + j)];
   std::nth_element(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(count / 2),
                    ring.begin() + static_cast<std::ptrdiff_t>(count));
-  constexpr float most = 32;  // beyond, its size tells no more
+  constexpr float most = 32;  // larger values carry no more information
   return std::min(most, misfit[picture.index(x, y)] / (least + (count == 0 ? 0 : ring[count / 2])));
 }
 
-/// A pixel of each colour that 3x3 pixels have and more.
+/// One pixel of each colour that fills at least 3x3 pixels.
 SuspicionMap plateaus(const Picture& picture) {
   struct Plateau {
     float pixels = 0;

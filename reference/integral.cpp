@@ -40,7 +40,7 @@ void Integral::add(double length, double scalar_front, double scalar_back, doubl
   if (!(length > 0)) return;
   const auto value_less = [origin](double value, const scene::Knot& knot) { return value < knot.value - origin; };
 
-  // Places on the segment, 0 to 1, where the scalar passes a knot.
+  // Positions on the segment, 0 to 1, where the scalar passes a knot.
   std::vector<double> cuts{0, 1};
   const auto [low, high] = std::minmax(scalar_front, scalar_back);
   for (auto knot = std::upper_bound(knots_.begin(), knots_.end(), low, value_less);
@@ -100,9 +100,9 @@ void Integral::add_linear(double length, const Optics& a, const Optics& b) {
     // The longest step d with (extinction + max(rise, 0) d) d length <= largest_step.
     const double q = largest_step / length;
     const double step = rise > 0 ? 2 * q / (extinction + std::sqrt(extinction * extinction + 4 * rise * q))
-                                 : q / extinction;  // infinite where nothing absorbs
+                                 : q / extinction;  // infinite if nothing absorbs
     const double end = step < 1 - begin ? begin + step : 1;
-    if (!(end > begin)) break;  // a step too small for double's spacing at `begin`
+    if (!(end > begin)) break;  // a step below double's spacing at `begin`
     const double width = end - begin;
     const auto optical_depth_at = [&](double d) { return length * d * (extinction + rise * d / 2); };
     for (const GaussNode& node : gauss_nodes)
@@ -116,7 +116,7 @@ void Integral::add_linear(double length, const Optics& a, const Optics& b) {
     sum_.optical_depth += optical_depth_at(width);
     begin = end;
   }
-  // The whole piece in closed form, free of the steps' rounding and also right where the loop stopped early.
+  // The whole piece in closed form, free of the steps' rounding and also correct if the loop ended early.
   sum_.optical_depth = optical_depth_before + total;
 }
 

@@ -13,7 +13,7 @@
 
 namespace tessera::reference {
 
-/// The volume rendering integral along one ray, grown front to back.
+/// The volume rendering integral along one ray, accumulated front to back.
 ///
 ///   I = int kappa c T dt (absorption) or int c T dt (independent),  T = exp(-int kappa)
 ///
@@ -29,14 +29,14 @@ class Integral {
     if (peel) cuts_.emplace(*peel);
   }
 
-  /// What shading makes of colour c over a segment: own * c + white.
+  /// Shading turns colour c over a segment into own * c + white.
   struct Light {
     double own = 1, white = 0;
   };
 
-  /// The next segment: its world length and the scalars at its ends, and the planar depths there. A scalar constant
-  /// along the segment and exactly on a step of the transfer function takes the step's upper knot. Scalars are counted
-  /// from `origin`, so that they may be nearer to a knot than numbers of their size tell apart.
+  /// Adds the next segment: its world length, the scalars at its ends, and the planar depths there. A scalar that is
+  /// constant along the segment and exactly on a step of the transfer function uses the step's upper knot. Scalars are
+  /// relative to `origin`, so that they may be closer to a knot than doubles of their magnitude can represent.
   void add(double length, double scalar_front, double scalar_back, double depth_front, double depth_back, double origin,
            const Light& light);
   void add(double length, double scalar_front, double scalar_back, double depth_front, double depth_back,
@@ -44,17 +44,17 @@ class Integral {
     add(length, scalar_front, scalar_back, depth_front, depth_back, origin, Light());
   }
 
-  /// A surface of no thickness: its own colour, as lit, its opacity and where it is.
+  /// Adds an infinitely thin surface: its own lit colour, opacity and depth.
   void add_surface(const std::array<double, 3>& color, double opacity, double depth);
 
   [[nodiscard]] std::array<double, 3> color() const { return sum_.color; }  ///< linear RGB, premultiplied
   [[nodiscard]] double opacity() const;                                     ///< A = 1 - T, without cancellation
   [[nodiscard]] double optical_depth() const { return sum_.optical_depth; }
 
-  /// Planar depth where the optical depth starts to grow; infinite if it does nowhere.
+  /// Planar depth where the optical depth begins to increase; infinite if it never does.
   [[nodiscard]] double first_visible_depth() const { return sum_.first_visible_depth; }
 
-  /// With a Peel, of which all else tells the layer at hand alone.
+  /// With a Peel; all other results then refer only to the current layer.
   [[nodiscard]] std::vector<Pixel> layers() const { return cuts_->pixels(sum_); }
 
  private:
@@ -62,9 +62,9 @@ class Integral {
     double extinction;
     std::array<double, 3> color;
   };
-  /// The transfer function at `s`, by the straight line between the two knots that have `within` between them.
+  /// The transfer function at `s`, interpolated between the two knots around `within`.
   [[nodiscard]] Optics optics(double s, double within, double origin) const;
-  /// A stretch on which extinction and colour go linearly from `a` to `b`, cut where layers end.
+  /// Adds a piece on which extinction and colour are linear from `a` to `b`, cut where layers end.
   void add_piece(double length, Optics a, const Optics& b, double depth_front, double depth_back);
   void add_linear(double length, const Optics& a, const Optics& b);
 

@@ -18,7 +18,7 @@ namespace tessera::reference {
 namespace {
 
 constexpr double excusing_distance = 1.0 / 1024;  // pixel
-constexpr double excusable_share = 1e-4;          // of the pixels
+constexpr double excusable_share = 1e-4;          // fraction of the pixels
 
 std::array<double, 4> rgba(const Pixel& p) { return {p.r, p.g, p.b, p.a}; }
 
@@ -37,7 +37,7 @@ double largest_difference(const std::array<float, 4>& value, const std::array<do
   return largest;
 }
 
-/// Offsets of the rays around a pixel's centre: a grid over the disc, and its rim.
+/// Offsets of the rays around a pixel's centre: a grid over the disc, and its circumference.
 std::vector<std::array<double, 2>> nearby_offsets() {
   std::vector<std::array<double, 2>> offsets;
   constexpr int half = 2;

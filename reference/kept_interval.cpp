@@ -11,14 +11,14 @@ namespace {
 
 constexpr double in_plane = 1e-13;
 
-/// Whether a ray parallel to the plane is on the side that is kept.
+/// Whether a ray parallel to the plane is on the kept side.
 bool is_kept(const View& view, double x, double y, const scene::HalfSpace& h, const glm::dvec3& normal) {
   const View::Ray ray = view.ray(x, y);
   const double distance = glm::dot(normal, ray.origin - h.point);
   if (std::abs(distance) > in_plane * glm::dot(glm::abs(normal), glm::abs(ray.origin) + glm::abs(h.point)))
     return distance > 0;
-  // How a shift of one pixel moves the ray, at the eye and by depth: in a plane that it stays parallel to, the latter
-  // counts for nothing.
+  // How a shift by one pixel moves the ray, at the eye and per depth: if the ray stays parallel to the plane, the
+  // latter does not count.
   const auto moved = [&](double dx, double dy) {
     const View::Ray other = view.ray(x + dx, y + dy);
     return glm::dot(normal, other.origin - ray.origin) + glm::dot(normal, other.step - ray.step);

@@ -20,7 +20,8 @@ double crossing(const Scalar& scalar, double u0, double u1, double value) {
   }
 }
 
-/// `ends`, between two of which the scalar is monotone, and where it takes the knots' values less `origin`, in order.
+/// `ends`, between which the scalar is monotone, and the positions where it takes the knots' values minus `origin`, in
+/// order.
 template <class Scalar>
 std::vector<double> knot_cuts(const Scalar& scalar, const std::vector<double>& ends, std::span<const scene::Knot> knots,
                               double origin) {

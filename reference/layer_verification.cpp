@@ -8,7 +8,7 @@
 namespace tessera::reference {
 namespace {
 
-/// One layer, of pixels that are known; others are looked for.
+/// One layer: known pixels are stored, others are computed.
 class OneLayer final : public RayReference {
  public:
   OneLayer(const LayerReference& reference, const Peel& peel, scene::ImageSize size, std::size_t number,

@@ -10,15 +10,15 @@
 
 namespace tessera::reference {
 
-/// What was found in the layers of a picture.
+/// The results for the layers of an image.
 struct LayerVerification {
   double bound = 0;
-  std::vector<Tally> layers;  ///< one each, from the eye on
-  bool met = true;            ///< as Verification::met() of each
+  std::vector<Tally> layers;  ///< one per layer, starting at the eye
+  bool met = true;            ///< Verification::met() for every layer
 };
 
-/// Judges layers in the pixels that a picture of `size` is judged in (choose_pixels()), by the same rules: a pixel of a
-/// layer is excused if its value lies inside the range that this layer has over rays within 1/1024 pixel.
+/// Judges layers in the pixels in which an image of `size` is judged (choose_pixels()), by the same rules: a pixel of a
+/// layer is excused if its value is inside the range of this layer over rays within 1/1024 pixel.
 LayerVerification verify_layers(std::span<const scene::Image> layers, const LayerReference& reference, const Peel& peel,
                                 double bound, std::size_t count, const Suspects& suspects, int threads = 0);
 

@@ -11,25 +11,25 @@
 #include "reference/ray_reference.hpp"
 #include "tessera/settings.hpp"
 
-/// Opacity peeling (tessera::Peel), written out for the reference: an integral along a ray is begun anew wherever its
-/// own optical depth has come to -log(1 - threshold), until the last layer, which has the rest.
+/// Opacity peeling (tessera::Peel), implemented separately for the reference: the integral along a ray restarts
+/// wherever its own optical depth reaches -log(1 - threshold), until the last layer, which has the rest.
 namespace tessera::reference {
 
-/// What an integral has gathered since the last cut.
+/// The sums of an integral since the last cut.
 struct LayerSum {
-  std::array<double, 3> color{0, 0, 0};  ///< linear RGB, premultiplied, as if nothing lay before the cut
+  std::array<double, 3> color{0, 0, 0};  ///< linear RGB, premultiplied, as if nothing were in front of the cut
   double optical_depth = 0;
   double first_visible_depth = std::numeric_limits<double>::infinity();
 };
 
-/// The layers that a ray has ended, and whether it is to end another.
+/// The layers that a ray has completed, and whether it may complete another.
 class LayerCuts {
  public:
   explicit LayerCuts(const Peel& peel)
       : limit_(-std::log1p(-peel.threshold)), count_(static_cast<std::size_t>(peel.layers)) {}
 
-  /// Whether the layer at hand ends at this optical depth or before. Rounding, as of surfaces whose opacities are the
-  /// threshold together, is granted.
+  /// Whether the current layer ends at or before this optical depth. Tolerates rounding, for example of surfaces whose
+  /// combined opacity equals the threshold.
   [[nodiscard]] bool ends(double optical_depth) const {
     constexpr double granted = 1e-12;
     return ended_.size() + 1 < count_ && optical_depth >= limit_ * (1 - granted);
@@ -40,8 +40,8 @@ class LayerCuts {
     sum = {};
   }
 
-  /// Where in a stretch from u0 to u1 the layer ends: optical_depth(u) grows with u, and ends() is true of it at u1. By
-  /// halving, down to neighbouring doubles.
+  /// The position in [u0, u1] of a segment at which the layer ends: optical_depth(u) increases with u, and ends() is
+  /// true at u1. Bisection down to neighbouring doubles.
   template <class OpticalDepth>
   [[nodiscard]] double place(double u0, double u1, const OpticalDepth& optical_depth) const {
     double low = u0, high = u1;
@@ -52,7 +52,7 @@ class LayerCuts {
     }
   }
 
-  /// All of a ray's layers, with the one at hand: those that it does not come to are empty.
+  /// All layers of a ray, including the current one; layers that it does not reach are empty.
   [[nodiscard]] std::vector<Pixel> pixels(const LayerSum& at_hand) const;
 
  private:
@@ -61,15 +61,15 @@ class LayerCuts {
   std::vector<LayerSum> ended_;
 };
 
-/// A truth that layers are judged against.
+/// A reference solution for layers.
 class LayerReference {
  public:
   virtual ~LayerReference() = default;
 
-  /// The layers of the ray through pixel coordinates (x, y), Peel::layers of them. From any thread.
+  /// The layers of the ray through pixel coordinates (x, y), Peel::layers of them. Callable from any thread.
   [[nodiscard]] virtual std::vector<Pixel> layers(double x, double y, const Peel& peel) const = 0;
 
-  /// Of the rays through the centres of `wanted`, in that order. `threads` 0: all cores.
+  /// The layers of the rays through the centres of `wanted`, in that order. `threads` 0: all cores.
   [[nodiscard]] virtual std::vector<std::vector<Pixel>> layers(std::span<const PixelIndex> wanted, const Peel& peel,
                                                                int threads = 0) const = 0;
 

@@ -8,7 +8,7 @@
 namespace tessera::reference {
 namespace {
 
-/// Cells across more knots than this count as across all of them.
+/// Cells that span more knots count as spanning all of them.
 constexpr std::ptrdiff_t most_knots = 16;
 
 }  // namespace
@@ -20,7 +20,7 @@ double LightError::matter(const scene::Knot& knot) const {
 
 LightError::LightError(const scene::TransferFunction& function, scene::Emission emission, double noise)
     : knots_(function.knots().begin(), function.knots().end()), emission_(emission), noise_(noise) {
-  // A light ray loses what is absorbed and gains what shines: both count.
+  // A ray loses light by absorption and gains it by emission: both count.
   const auto light = [&](const scene::Knot& k, int c) {
     return k.color[c] * (emission_ == scene::Emission::independent ? 1 : k.extinction);
   };

@@ -9,21 +9,21 @@
 
 namespace tessera::reference {
 
-/// How much light hangs on a rounding of the field, in a cell: what mesh_suspicion.hpp and grid_suspicion.hpp ask of a
-/// transfer function. Estimates to rank pixels by, no bounds.
+/// How much the light in a cell depends on rounding of the field: used by mesh_suspicion.hpp and grid_suspicion.hpp.
+/// Estimates to rank pixels by, not bounds.
 class LightError {
  public:
-  /// `noise`: of the field, as a renderer may round it; > 0.
+  /// `noise`: rounding error of the field in a renderer; > 0.
   LightError(const scene::TransferFunction& function, scene::Emission emission, double noise);
 
   /// Error of light or opacity per unit of length, in a cell with these values at its corners. At a step it is the jump
-  /// times the share of the cell that may be on the wrong side: of rounding against the cell's span, or of the corners
-  /// that lie on the step itself. On a ramp it is the slope times the noise.
+  /// times the fraction of the cell that may be on the wrong side: the ratio of rounding to the cell's range of values,
+  /// or the fraction of corners on the step itself. On a ramp it is the slope times the noise.
   [[nodiscard]] double per_length(std::span<const double> corners) const;
-  /// At most that, of any cell with values in [low, high].
+  /// Upper limit of per_length() for any cell with values in [low, high].
   [[nodiscard]] double most_per_length(double low, double high) const;
 
-  /// Largest extinction (independent emission: colour too) of values in [low, high].
+  /// Largest extinction (independent emission: also colour) of values in [low, high].
   [[nodiscard]] double densest(double low, double high) const;
 
  private:
@@ -37,8 +37,8 @@ class LightError {
   [[nodiscard]] double matter(const scene::Knot& knot) const;
 
   std::vector<scene::Knot> knots_;
-  std::vector<Step> steps_;  ///< by value
-  std::vector<Ramp> ramps_;  ///< by value, those with a slope
+  std::vector<Step> steps_;  ///< sorted by value
+  std::vector<Ramp> ramps_;  ///< sorted by value, only those with a slope
   scene::Emission emission_;
   double noise_, largest_jump_ = 0, largest_slope_ = 0, densest_ = 0;
 };

@@ -11,19 +11,19 @@
 
 namespace tessera::reference {
 
-/// How tets are shaded by the gradient that the field has in each (scene/shading.hpp), written out for the reference.
+/// Shading of tets by the field's gradient in each (scene/shading.hpp), implemented separately for the reference.
 class MatterLight {
  public:
-  /// Throws scene::Error(bad_input) if the direction to the light has no length, or for light that does not depend on
+  /// Throws scene::Error(bad_input) if the direction to the light has length zero, or for light that does not depend on
   /// extinction.
   MatterLight(const scene::Shading& shading, const scene::Camera& camera, scene::Emission emission);
 
-  /// In a tet of point data, seen along a ray of that direction, of any length.
+  /// The light in a tet of point data, seen along a ray with that direction, of any length.
   [[nodiscard]] Integral::Light in(const scene::TetMeshView& mesh, std::size_t tet, const glm::dvec3& ray) const;
 
  private:
   scene::Shading shading_;
-  glm::dvec3 to_light_;  ///< world, of length one
+  glm::dvec3 to_light_;  ///< world, unit length
 };
 
 }  // namespace tessera::reference

@@ -14,12 +14,13 @@ namespace tessera::reference {
 using Pixel = tessera::ReferencePixel;
 using tessera::PixelIndex;
 
-/// A truth that pictures are judged against: what a ray through any place of the picture sees, in double precision.
+/// A reference solution for images: the colour of a ray through any point of the image, in double precision.
 class RayReference {
  public:
   virtual ~RayReference() = default;
 
-  /// The ray through pixel coordinates (x, y); pixel (i, j) has its centre at (i + 0.5, j + 0.5). From any thread.
+  /// The ray through pixel coordinates (x, y); pixel (i, j) has its centre at (i + 0.5, j + 0.5). Callable from any
+  /// thread.
   [[nodiscard]] virtual Pixel pixel(double x, double y) const = 0;
 
   /// The rays through the centres of `wanted`, in that order. `threads` 0: all cores.

@@ -20,7 +20,8 @@
 namespace tessera::reference {
 namespace {
 
-/// Pixels that one task renders in one pass over the tets: many, to share the pass; few, to hold few segments.
+/// Pixels that one task renders in one pass over the tets: enough to amortize the pass, few enough to hold few
+/// segments.
 constexpr std::size_t pixels_per_pass = 256;
 
 bool row_major_less(const PixelIndex& a, const PixelIndex& b) { return std::tie(a.y, a.x) < std::tie(b.y, b.x); }
@@ -118,7 +119,7 @@ Reference::Box Reference::box(std::span<const ProjectedVertex> vertices) const {
   }
   if (!(deepest > 0)) return {infinity, infinity, -infinity, -infinity};                 // behind the eye
   if (!(least_w > 1e-6 * largest_w)) return {-infinity, -infinity, infinity, infinity};  // at or across the eye plane
-  // The quotients are rounded, as are lines of sight; the margin is wider than that.
+  // The quotients are rounded, and so are lines of sight; the margin is larger than that.
   const double x_margin = 1e-7 + 1e-9 * std::max(std::abs(box.x_low), std::abs(box.x_high));
   const double y_margin = 1e-7 + 1e-9 * std::max(std::abs(box.y_low), std::abs(box.y_high));
   return {box.x_low - x_margin, box.y_low - y_margin, box.x_high + x_margin, box.y_high + y_margin};

@@ -23,7 +23,7 @@
 
 namespace tessera::reference {
 
-/// The stretch of one view ray inside one tetrahedron, after clipping.
+/// The interval of one view ray inside one tetrahedron, after clipping.
 struct RaySegment {
   double front, back;  ///< planar depth: world units along the view direction from the camera's position
   double length;       ///< world length along the ray; zero in a flat cell
@@ -33,28 +33,31 @@ struct RaySegment {
   int face_front, face_back;  ///< as in Stretch
 };
 
-/// The slow, exact renderer that the fast one is judged against. Brute force in double precision: every ray against
-/// every tetrahedron whose projected box holds it; no acceleration structure, no shortcut for invisible cells, no code
-/// shared with the fast way but the plain values of scene/.
+/// The slow, exact renderer against which the fast one is judged. Brute force in double precision: every ray against
+/// every tetrahedron whose projected box contains it. It has no acceleration structure, does not skip invisible cells,
+/// and shares no code with the fast renderer except the plain values of scene/.
 ///
-/// Hits     decided exactly, with the tie rule of ray_tet.hpp: along any ray the segments of a mesh tile its way.
+/// Hits     decided exactly, with the tie rule of ray_tet.hpp: along any ray, the segments tile the mesh's interval.
 /// Order    (front, back, tet index).
 /// Error    about 1e-13 in linear RGBA. Cell data is constant in a tet, point data linear between the two hits.
-/// Surfaces are crossed where the scalar goes from below a value to the value or above, or back, from one end of a
-///          segment to the other; where two are crossed at one depth they come as along the segment. Lit by the tet's
-///          gradient. Those of triangles are met where the ray goes through one, a boundary where a segment ends at a
-///          face that one cell alone has, or where a half-space's plane cuts a cell. Segments are cut there, so that
-///          they lie at their true depth in cells that overlap, too. At one depth what a cell has at its back end comes
-///          first, its boundary, triangles, what is in cells of no length, the next cell's boundary, and what that has
-///          at its front end. Depths are one if a shift of the ray by 2^-32 pixel may exchange them (shaded_ray.cpp).
+/// Surfaces Iso-surfaces are crossed where the scalar changes from below a value to the value or above, or back,
+/// between
+///          the ends of a segment; several at one depth have the order along the segment. They are lit by the tet's
+///          gradient. Surfaces of triangles are met where the ray intersects one; a boundary is met where a segment
+///          ends
+///          at a face that only one cell has, or where a half-space's plane cuts a cell. Segments are cut there, so
+///          that
+///          they have their true depth also in cells that overlap. At one depth the order is: what a cell has at its
+///          back end, its boundary, triangles, cells of length zero, the next cell's boundary, and what that has at its
+///          front end. Depths count as equal if a shift of the ray by 2^-32 pixel may exchange them (shaded_ray.cpp).
 /// Shading  of point data by each tet's own gradient (scene/shading.hpp).
 /// Threads  const functions may be called from several threads; `pixels` and `image` use all cores themselves.
 /// Cost     256x256 pixels over 0.5 M tets: seconds to a minute. One point query is a pass over all tets' boxes.
 class Reference final : public RayReference, public LayerReference {
  public:
-  /// The mesh must outlive the reference. Of every ray what lies in all half-spaces counts (kept_interval.hpp); cells
-  /// are not cut. Throws scene::Error(bad_input) for an invalid camera or size, an empty transfer function, or a mesh
-  /// that breaks its invariants.
+  /// The mesh must outlive the reference. Only the part of every ray inside all half-spaces counts (kept_interval.hpp);
+  /// cells are not cut. Throws scene::Error(bad_input) for an invalid camera or size, an empty transfer function, or a
+  /// mesh that breaks its invariants.
   Reference(const scene::TetMeshView& mesh, const scene::Camera& camera, scene::ImageSize size,
             const scene::TransferFunction& transfer_function, scene::Emission emission = scene::Emission::absorption,
             const Surfaces& surfaces = {}, std::span<const scene::HalfSpace> kept = {},
@@ -63,7 +66,7 @@ class Reference final : public RayReference, public LayerReference {
   /// The ray through pixel coordinates (x, y), front to back. Pixel (i, j) has its centre at (i + 0.5, j + 0.5).
   [[nodiscard]] std::vector<RaySegment> segments(double x, double y) const;
 
-  /// The same ray's colour. Any position, not only pixel centres.
+  /// The colour of the same ray. Any position, not only pixel centres.
   [[nodiscard]] Pixel pixel(double x, double y) const override;
 
   /// The rays through the centres of `wanted`, in that order. `threads` 0: all cores.
@@ -79,7 +82,7 @@ class Reference final : public RayReference, public LayerReference {
   [[nodiscard]] scene::ImageSize size() const override { return size_; }
 
  private:
-  /// Pixel coordinates outside of which no ray meets the tet.
+  /// Pixel coordinates outside which no ray meets the tet.
   struct Box {
     double x_low, y_low, x_high, y_high;
   };
@@ -92,11 +95,11 @@ class Reference final : public RayReference, public LayerReference {
   [[nodiscard]] std::vector<TriangleCrossing> triangles_on(double x, double y) const;
   [[nodiscard]] glm::dvec3 face_normal(std::size_t tet, int face) const;
   class Ray;
-  /// Of segments in order.
+  /// The colour of sorted segments.
   [[nodiscard]] Pixel shaded(std::span<const RaySegment> segments, double x, double y) const;
   [[nodiscard]] std::vector<Pixel> layers(std::span<const RaySegment> segments, double x, double y,
                                           const Peel& peel) const;
-  /// Gives each ray's segments in order, with its place in `wanted`, to a function that any thread calls.
+  /// Passes each ray's sorted segments, with its index in `wanted`, to a function that any thread calls.
   void each_ray(std::span<const PixelIndex> wanted, int threads,
                 const std::function<void(std::size_t, std::span<const RaySegment>)>& take) const;
 
@@ -110,8 +113,8 @@ class Reference final : public RayReference, public LayerReference {
   SurfaceLight light_;
   std::optional<MatterLight> matter_light_;
   scene::TransferFunction function_;      ///< if a surface of faces has its colours
-  std::vector<Paint> boundary_, paints_;  ///< the latter by ProjectedTriangle::paint
-  std::vector<std::uint8_t> open_;        ///< if there is a boundary: open_faces()
+  std::vector<Paint> boundary_, paints_;  ///< paints_: indexed by ProjectedTriangle::paint
+  std::vector<std::uint8_t> open_;        ///< set if there is a boundary: open_faces()
   std::vector<ProjectedTriangle> triangles_;
   std::vector<Box> triangle_boxes_;
   std::vector<ProjectedVertex> vertices_;

@@ -15,11 +15,11 @@
 namespace tessera::reference {
 namespace {
 
-/// How far a ray may be moved, in pixels, and still be said to meet two faces at one depth: twice what rounding moves a
-/// vertex by (View::project), and what long double leaves of a pixel coordinate once it is a double.
+/// How far a ray may be moved, in pixels, and still count as meeting two faces at one depth: twice the rounding of a
+/// vertex (View::project), plus the rounding of a pixel coordinate from long double to double.
 constexpr double shift = 0x1p-32, last_places = 0x1p-50;
 
-/// No depths that differ by more of a face's own depth are one.
+/// Depths that differ by more than this, relative to a face's own depth, are never equal.
 constexpr double most_reach = 1e-9;
 
 }  // namespace
@@ -71,15 +71,15 @@ class Reference::Ray {
     }
   }
 
-  /// How the depth of a plane changes from a pixel to the next, and the most that rounding makes of it.
+  /// The change of a plane's depth from one pixel to the next, and its largest rounding error.
   struct Slope {
     double value = 0, error = 0;
   };
 
-  /// Where a ray meets a face of a surface.
+  /// The intersection of a ray with a face of a surface.
   struct Mark {
     double depth, reach;
-    /// In the order in which a ray meets what is in one plane.
+    /// In the order in which a ray meets faces in one plane.
     enum class Kind : std::uint8_t { leaves, goes_through, enters } kind;
     std::size_t paint;
     glm::dvec3 normal;
@@ -87,22 +87,22 @@ class Reference::Ray {
     std::array<Slope, 2> slope{};  ///< in x and y
   };
 
-  /// Faces at one depth: of the first one.
+  /// Faces at one depth, that of the first one.
   struct Place {
     double depth, reach;
-    std::size_t first, last;  ///< of the marks
+    std::size_t first, last;  ///< range of its marks
   };
 
-  /// What of a segment is between two places.
+  /// The part of a segment between two places.
   struct Piece {
-    std::size_t before;  ///< the place that comes next
-    bool at;             ///< it is in that place
+    std::size_t before;  ///< the next place
+    bool at;             ///< it is at that place
     double front, back;
-    std::size_t segment, first, last;  ///< of the segment's crossings
+    std::size_t segment, first, last;  ///< first, last: range of the segment's crossings
   };
 
-  /// The depth by which a ray that is moved as above meets a face elsewhere: by the plane's slope and, of rounding, by
-  /// the farthest of the corners and the largest of their depths.
+  /// The change of depth at which a ray shifted as above meets a face: by the plane's slope and, for rounding, by the
+  /// farthest of the corners and the largest of their depths.
   [[nodiscard]] double reach(const glm::dvec3& normal, double depth, double far, double size) const {
     const View& view = reference_.view_;
     const View::Ray ray = view.ray(x_, y_);
@@ -134,7 +134,7 @@ class Reference::Ray {
       }
     for (const TriangleCrossing& t : reference_.triangles_on(x_, y_)) {
       const double within = reach(t.triangle->normal, t.hit.depth, t.triangle->corners);
-      // In the eye's own place rounding alone puts it before the eye.
+      // At the eye's own position, only rounding puts a face in front of the eye.
       const double nearest = reference_.view_.nearest() > 0 ? reference_.view_.nearest() : within;
       if (nearest < t.hit.depth && t.hit.depth < reference_.view_.farthest())
         marks_.push_back({t.hit.depth, within, Mark::Kind::goes_through,
@@ -142,7 +142,7 @@ class Reference::Ray {
     }
   }
 
-  /// The boundary at an end of a segment, if it is there: of an open face or of the plane that cuts the mesh there,
+  /// Adds the boundary at an end of a segment, if there is one: an open face or the plane that cuts the mesh there,
   /// which a ray meets once.
   void add_boundary(const RaySegment& s, bool front) {
     const double depth = front ? s.front : s.back;
@@ -155,7 +155,7 @@ class Reference::Ray {
       const double at = front ? kept_.nearest : kept_.farthest;
       const double within = reach(plane->normal, at, reference_.corners(s.tet));
       if (front ? s.front <= at + within : s.back >= at - within) {
-        // What only rounding leaves of a cell has none.
+        // A part of a cell that is only a rounding error has no boundary.
         const bool thin = front ? !(s.back > at + within) : !(s.front < at - within);
         bool& met = front ? met_nearest_ : met_farthest_;
         if (thin || met) return;
@@ -200,9 +200,9 @@ class Reference::Ray {
     return slopes;
   }
 
-  /// Marks at one depth as a ray meets them that is shifted by (e, e^2) pixel, as in intersect(): the plane that comes
-  /// nearer by the shift in x is met first, of planes alike in that the one that comes nearer by y, and what is in one
-  /// plane by kind and paint.
+  /// Marks at one depth in the order met by a ray shifted by (e, e^2) pixel, as in intersect(): first the plane that
+  /// comes nearer by the shift in x, among equal ones the plane that comes nearer by y, and in one plane by kind and
+  /// paint.
   static std::vector<Mark> in_order(std::vector<Mark> marks, std::size_t axis) {
     if (marks.size() < 2) return marks;
     if (axis == 2) {
@@ -226,7 +226,7 @@ class Reference::Ray {
     return ordered;
   }
 
-  /// Cuts a segment at all places inside it, so that cells which overlap come in the order of depth, too.
+  /// Cuts a segment at all places inside it, so that overlapping cells are also in the order of depth.
   void cut(std::size_t number) {
     const RaySegment& s = segments_[number];
     Progress& progress = progress_[number];
@@ -236,7 +236,7 @@ class Reference::Ray {
                             kept_.farthest_plane != nullptr};
     if (!reference_.surfaces_.empty())
       progress.crossings = surface_crossings(reference_.surfaces_, reference_.corners(s.tet), x_, y_, depths);
-    std::size_t begin = places_.size(), end = 0;  // the places from begin to end are inside
+    std::size_t begin = places_.size(), end = 0;  // the places in [begin, end) are inside
     while (begin > 0 && places_[begin - 1].depth > s.front + places_[begin - 1].reach) --begin;
     while (end < places_.size() && places_[end].depth < s.back - places_[end].reach) ++end;
     if (begin > end) {
@@ -274,7 +274,7 @@ class Reference::Ray {
     advance(piece.segment, part, s.change_front + (s.change_back - s.change_front) * part);
   }
 
-  /// Integrates up to that part of the segment.
+  /// Integrates up to that fraction of the segment.
   void advance(std::size_t segment, double part, double change) {
     const RaySegment& s = segments_[segment];
     Progress& at = progress_[segment];
@@ -302,7 +302,7 @@ class Reference::Ray {
   std::vector<Mark> marks_;
   std::vector<Place> places_;
   std::vector<Piece> pieces_;
-  /// What of a segment is integrated so far.
+  /// The part of a segment that has been integrated.
   struct Progress {
     double part = 0, change = 0;
     Integral::Light light;

@@ -99,7 +99,7 @@ std::vector<double> SmoothScalar::turning_points() const {
 std::vector<SmoothScalar> smooth_pieces(double front, double back, double scale,
                                         const std::function<double(double depth)>& scalar) {
   constexpr int most_halvings = 30;
-  constexpr std::size_t many = 100;  // more than any scalar of a cell that is one to one needs
+  constexpr std::size_t many = 100;  // more than any scalar of a one-to-one cell needs
   const std::array<double, SmoothScalar::terms> nodes = SmoothScalar::nodes();
   std::vector<SmoothScalar> pieces;
   const auto add = [&](const auto& self, double low, double high, int halvings) -> void {

@@ -20,11 +20,11 @@ std::uint64_t mixed(std::uint64_t z) {
 std::uint64_t key(PixelIndex p) { return static_cast<std::uint64_t>(p.y) << 32 | static_cast<std::uint32_t>(p.x); }
 
 struct Ranked {
-  double key;  ///< high ones first
+  double key;  ///< highest first
   std::size_t pixel;
 };
 
-/// The `most` pixels of the highest keys, in order.
+/// The `most` pixels with the highest keys, in order.
 std::vector<std::size_t> highest(std::vector<Ranked> pixels, std::size_t most) {
   most = std::min(most, pixels.size());
   const auto before = [](const Ranked& a, const Ranked& b) {
@@ -38,7 +38,7 @@ std::vector<std::size_t> highest(std::vector<Ranked> pixels, std::size_t most) {
   return order;
 }
 
-/// Pixels of each 8x8 block's best first, otherwise in the order they have.
+/// Moves the best pixel of each 8x8 block to the front and keeps the order otherwise.
 void spread(std::vector<std::size_t>& pixels, int width) {
   constexpr std::size_t side = 8;
   std::unordered_set<std::size_t> met;
@@ -68,12 +68,12 @@ double hashed(std::uint64_t n, std::uint64_t salt) {
 
 std::vector<PixelIndex> ranked(const SuspicionMap& map, scene::ImageSize size, std::size_t most) {
   // Weighted sampling without replacement: Efraimidis, Spirakis, "Weighted random sampling with a reservoir", IPL 2006.
-  // Scores range over decades and say little more than an order; their fourth roots leave low ones a chance.
+  // Scores span decades and mean little more than an order; their fourth roots give low ones a chance.
   std::vector<Ranked> by_score, by_draw;
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (!(map[i] > 0)) continue;
     const double score = map[i];
-    by_score.push_back({score * (1 + 1e-6 * hashed(i, 1)), i});  // equal ones in no order
+    by_score.push_back({score * (1 + 1e-6 * hashed(i, 1)), i});  // equal scores in random order
     by_draw.push_back({std::log(1 - hashed(i, 2)) / std::sqrt(std::sqrt(score)), i});
   }
   const std::vector<std::size_t> strongest = highest(std::move(by_score), 16 * most);
@@ -126,7 +126,7 @@ std::vector<ChosenPixel> choose_pixels(scene::ImageSize size, std::size_t count,
   count = static_cast<std::size_t>(std::min<std::uint64_t>(count, total));
   const std::size_t suspicious = count < total ? 2 * count / 3 : 0;
   for (const PixelIndex& p : random_pixels(size, count - suspicious, seed)) take({p, std::nullopt});
-  // Chance may have taken some of them.
+  // Random choice may have taken some of them.
   if (suspicious > 0)
     for (const ChosenPixel& pixel : by_turns(suspects, count)) take(pixel);
   std::vector<PixelIndex> more = random_pixels(size, count, seed + 1);

@@ -12,24 +12,26 @@
 
 namespace tessera::reference {
 
-/// What was found in the pixels chosen for one reason.
+/// The result for the pixels chosen for one reason.
 struct Tally {
   std::size_t pixels = 0;
-  double max_error = 0;  ///< excused pixels included
+  double max_error = 0;  ///< including excused pixels
   std::size_t over_bound = 0, excused = 0;
 };
 
-/// Whether a picture keeps what its method promises, as some of its pixels tell.
+/// Whether an image keeps its method's promise, according to a sample of its pixels.
 ///
-/// Passed  no pixel is over the bound but the excused ones, and of those chosen at random no more are excused than a
-///         sample may hold (most_excused()). Those chosen because they are suspicious may all be excused: they were
-///         looked for where that is likely.
+/// Passed  only excused pixels are over the bound, and among those chosen at random no more are excused than a sample
+/// may
+///         contain (most_excused()). All pixels chosen as suspicious may be excused, because they were chosen where
+///         that
+///         is likely.
 struct Verification {
-  Judgement judgement;          ///< of all pixels; but rms_error is of the random ones, an estimate of the picture's
-  std::optional<double> bound;  ///< none: errors are reported, nothing is promised
-  Tally random;                 ///< all of them, if all pixels of the picture were checked
-  std::array<Tally, suspicions> chosen{};  ///< by Suspicion
-  std::optional<Suspicion> worst;          ///< why the worst pixel was chosen; none: at random
+  Judgement judgement;                     ///< of all checked pixels; rms_error of the random ones (an estimate)
+  std::optional<double> bound;             ///< no value: errors are reported, nothing is promised
+  Tally random;                            ///< all checked pixels, if these are all of the image
+  std::array<Tally, suspicions> chosen{};  ///< indexed by Suspicion
+  std::optional<Suspicion> worst;          ///< why the worst pixel was chosen; no value: at random
 
   [[nodiscard]] bool met() const;
 };

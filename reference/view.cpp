@@ -30,7 +30,7 @@ constexpr int finest_unit = -32;  // exponents of two
 constexpr int position_bits = 46, direction_bits = 40;
 constexpr long double most_per_tangent = 4194304;  // 2^22
 
-/// The multiple of 2^exponent that is nearest.
+/// The nearest multiple of 2^exponent.
 double rounded_to(long double v, int exponent) {
   return static_cast<double>(std::ldexp(std::nearbyint(std::ldexp(v, -exponent)), exponent));
 }

@@ -7,32 +7,32 @@
 
 namespace tessera::reference {
 
-/// A vertex as the camera sees it. The ray through pixel coordinates (x, y) (x to the right, y DOWN, pixel (i, j)
+/// A vertex in the camera's view. The ray through pixel coordinates (x, y) (x to the right, y DOWN, pixel (i, j)
 /// centred at (i + 0.5, j + 0.5)) meets it where (x, y, 1) is parallel to `sight`. From here on these doubles are exact
 /// by definition.
 struct ProjectedVertex {
   glm::dvec3 homogeneous;  ///< (X, Y, w): pixel coordinates X/w and Y/w. Orthographic: w = 1. Perspective: w = depth
-  /// What decides on which side a ray passes, rounded (View::project): (x, y, 1) of a vertex in front of the eye,
-  /// (-x, -y, -1) behind it, with the pixel coordinates of the line through it and the eye; (X, Y, 0) beside the eye, a
-  /// direction. Orthographic: `homogeneous`.
+  /// Decides on which side a ray passes; rounded (View::project). For a vertex in front of the eye (x, y, 1), behind it
+  /// (-x, -y, -1), with the pixel coordinates of the line through it and the eye; in the plane of the eye a direction
+  /// (X, Y, 0). Orthographic: `homogeneous`.
   glm::dvec3 sight;
   double depth;  ///< planar: along the view direction from the position, world units; negative behind the eye
 };
 
-/// The camera's geometry, written out once more for the reference alone.
+/// The camera's geometry, implemented separately for the reference.
 class View {
  public:
   /// The camera and size must be valid.
   View(const scene::Camera& camera, scene::ImageSize size);
 
-  /// The pixel coordinates of `sight` are rounded, so that vertices meant to lie on pixel centres, or in the plane of
-  /// the eye and a row or column of them, do, whatever the decimal noise of the camera: to the nearest multiple of
-  /// 2^-32 pixel. In perspective that is too fine for what is far outside of the picture or seen through a very long
-  /// lens. So there the unit is at least 2^(n-46) pixels, where 2^n is the power of two at or below the largest of |x|,
-  /// |y| and the pixels per unit of tangent (2^22 of them count at most). From 2^46 pixels on a vertex is beside the
-  /// eye; the unit for X and Y is then 2^(n-40), where 2^n is the power of two at or below the larger of |X| and |Y|.
-  /// Computed in long double, so that what is rounded has no noise of its own. `homogeneous` is rounded in orthographic
-  /// projection alone.
+  /// The pixel coordinates of `sight` are rounded to the nearest multiple of 2^-32 pixel. So vertices intended to be on
+  /// pixel centres, or in the plane of the eye and a row or column of them, are exactly there despite decimal noise in
+  /// the camera. In perspective that unit is too fine far outside the image or for very long lenses. There the unit is
+  /// at least 2^(n-46) pixels, where 2^n is the power of two at or below the largest of |x|, |y| and the pixels per
+  /// unit of tangent (of which at most 2^22 count). From 2^46 pixels on, a vertex counts as in the plane of the eye;
+  /// the unit for X and Y is then 2^(n-40), where 2^n is the power of two at or below the larger of |X| and |Y|.
+  /// Computed in long double, so that the rounded value has no noise of its own. `homogeneous` is rounded only in
+  /// orthographic projection.
   [[nodiscard]] ProjectedVertex project(const glm::dvec3& p_world) const;
 
   /// The ray through (x, y): at planar depth z it is at `origin` + z * `step`. Not rounded.
@@ -41,11 +41,11 @@ class View {
   };
   [[nodiscard]] Ray ray(double x, double y) const;
 
-  /// World length of the ray through (x, y) per unit of planar depth: 1 in orthographic projection, more towards the
-  /// picture's rim in perspective.
+  /// World length of the ray through (x, y) per unit of planar depth: 1 in orthographic projection, larger towards the
+  /// image's edges in perspective.
   [[nodiscard]] double length_per_depth(double x, double y) const;
 
-  /// What is seen lies strictly between these planar depths: the eye and the clipping range, if there is one.
+  /// The visible range is strictly between these planar depths: the eye and the clipping range, if there is one.
   [[nodiscard]] double nearest() const { return nearest_; }
   [[nodiscard]] double farthest() const { return farthest_; }
 
@@ -56,7 +56,7 @@ class View {
 
   glm::dvec3 position_;
   glm::dvec3
-      depth_axis_;  ///< forward, in double: depths are rounded once a product, as any renderer in double has them
+      depth_axis_;  ///< forward, in double: depths are rounded once per product, as in any renderer that uses double
   Direction right_, up_, forward_;
   long double half_width_, half_height_;  ///< pixels
   long double pixels_per_unit_;  ///< orthographic: per world unit; perspective: per world unit at planar depth one

@@ -16,8 +16,8 @@ constexpr int most_pieces = 4000;
 constexpr double smallest_piece = 0x1p-26;  // of the face
 constexpr double edge_tolerance = 1e-9;     // of a piece
 
-/// Whether no crossing of a piece counts: all control points lie to one side of the ray, by more than `rounding`, or
-/// the piece is a point, or a line along the ray, to within that.
+/// Whether no crossing of a piece counts: all control points are on one side of the ray, by more than `rounding`, or
+/// the piece is a point, or a line along the ray, within that tolerance.
 bool misses(const std::vector<glm::dvec3>& control, double rounding) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::array<double, 4> low, high;
@@ -31,7 +31,7 @@ bool misses(const std::vector<glm::dvec3>& control, double rounding) {
   return high[0] - low[0] < rounding && high[1] - low[1] < rounding;
 }
 
-/// Across the ray, the inverse of a map with these derivatives.
+/// The inverse of the map to the plane across the ray with these derivatives.
 struct Preconditioner {
   double xx, xy, yx, yy;
 
@@ -49,15 +49,15 @@ glm::dvec3 mean(const std::vector<glm::dvec3>& vectors) {
   return sum / static_cast<double>(vectors.size());
 }
 
-/// Whether the map of a piece to the plane across the ray is one to one: |I - A J| <= 1/4 in the maximum norm for all
-/// of its derivatives J, so that Newton's method converges from its middle, too.
+/// Whether the map of a piece to the plane across the ray is one-to-one: |I - A J| <= 1/4 in the maximum norm for all
+/// of its derivatives J, so that Newton's method also converges from its middle.
 bool one_to_one(const FacePiece& piece) {
   const PieceSlopes slope = slopes(piece);
   const Preconditioner across(mean(slope.along_a), mean(slope.along_b));
   glm::dvec2 off_a(0), off_b(0);
   for (const glm::dvec3& v : slope.along_a) off_a = glm::max(off_a, glm::abs(across(v) - glm::dvec2(1, 0)));
   for (const glm::dvec3& v : slope.along_b) off_b = glm::max(off_b, glm::abs(across(v) - glm::dvec2(0, 1)));
-  return off_a.x + off_b.x <= 0.25 && off_a.y + off_b.y <= 0.25;  // false, too, if not a number
+  return off_a.x + off_b.x <= 0.25 && off_a.y + off_b.y <= 0.25;  // also false for NaN
 }
 
 bool is_inside(bool triangle, glm::dvec2 place) {
@@ -75,7 +75,7 @@ std::optional<glm::dvec2> crossing_near(const FacePiece& face, glm::dvec2 place)
     const double length = glm::length(step);
     if (!(length < 10)) return std::nullopt;
     place += step;
-    // Seen from very far, rounding keeps steps from becoming as short as that.
+    // Seen from very far away, rounding keeps steps from becoming that short.
     if (length < last_step || (n > few_steps && length < short_step)) return place;
   }
   return std::nullopt;
@@ -90,7 +90,7 @@ glm::dvec2 within(const FacePiece& piece, glm::dvec2 place) {
 }  // namespace
 
 void find_crossings(const CellOnRay& cell, const FacePatch& face, std::vector<Crossing>& crossings) {
-  constexpr double rounding = 1e-14;  // of the cell's size
+  constexpr double rounding = 1e-14;  // relative to the cell's size
   FacePiece whole{face.triangle, face.u_degree, face.v_degree, {0, 0}, {1, 0}, {0, 1}, {}};
   for (const std::size_t i : face.control) whole.control.push_back(cell.control[i]);
 

@@ -15,7 +15,7 @@ constexpr double most_optical_step = 0.5;
 constexpr double unseen_depth = 41.45;  // exp(-41.45) < 1e-18
 constexpr int most_light_halvings = 50;
 
-/// Integral over [u0, u1], by eight points.
+/// Integral over [u0, u1] with eight points.
 template <class Function>
 double integral(double u0, double u1, const Function& function) {
   const double middle = (u0 + u1) / 2, half = (u1 - u0) / 2;
@@ -60,7 +60,7 @@ void CurvedIntegral::add_cut(const SmoothScalar& scalar, double u0, double u1, d
   if (std::isinf(first_visible_depth_) && (at.extinction > 0 || at.extinction_slope > 0))
     first_visible_depth_ = scalar.front + (scalar.back - scalar.front) * (1 + u0) / 2;
   add_light(scalar, at, u0, u1, half_length, 0, 0);
-  // Rounding at the ends of a ramp may make a little less than nothing.
+  // Rounding at the ends of a ramp may give a slightly negative value.
   optical_depth_ += std::max(0.0, half_length * integral(u0, u1, [&](double u) {
                                     return at.extinction + at.extinction_slope * (scalar.at(u) - at.value);
                                   }));

@@ -12,14 +12,14 @@
 
 namespace tessera::reference {
 
-/// The way of a ray through the inside of a cell, in the cell's own coordinates: isoparametric inversion, warm-started
-/// from the nearest depth at which the place is known.
+/// The path of a ray inside a cell, in the cell's own coordinates: isoparametric inversion, warm-started from the
+/// nearest depth with a known place.
 class InnerPath {
  public:
   /// From two crossings, and a place between them.
   InnerPath(const CellOnRay& cell, const Crossing& front, const Crossing& middle, const Crossing& back);
 
-  /// Depths beyond the crossings are taken as theirs.
+  /// Depths beyond the crossings are clamped to them.
   [[nodiscard]] glm::dvec3 place(double depth);
 
   [[nodiscard]] double front() const { return known_.begin()->first; }
@@ -28,8 +28,8 @@ class InnerPath {
   BasisValues& room() { return room_; }
 
  private:
-  /// From the place known at `from`, following the ray; in halves where a single step does not arrive in the domain. In
-  /// a folded cell, where that does not help, it stays where it came to, and soon stops trying.
+  /// Follows the ray from the place known at `from`; by halves if a single step does not end in the domain. In a folded
+  /// cell, where that may fail, it stays at the last place and soon gives up.
   [[nodiscard]] glm::dvec3 follow(double from, glm::dvec3 place, double to, int halvings);
 
   CellOnRay cell_;
@@ -38,9 +38,9 @@ class InnerPath {
   int failures_ = 0;
 };
 
-/// The stretches of a ray inside a cell, front to back: between two neighbouring crossings it is inside if the point in
-/// the middle has a place in the domain. That is looked for by Newton's method from between the crossings' places, from
-/// either of them along the ray, and from a lattice of places. `crossings` may be in any order, and hold some twice.
+/// The intervals of a ray inside a cell, front to back: between two neighbouring crossings it is inside if the point in
+/// the middle has a place in the domain. Newton's method searches for that from between the crossings' places, from
+/// either of them along the ray, and from a lattice of places. `crossings` may be unordered and contain duplicates.
 std::vector<InnerPath> inner_paths(const CellOnRay& cell, std::vector<Crossing> crossings);
 
 }  // namespace tessera::reference

@@ -88,7 +88,7 @@ void CurvedReference::add_cell(const CurvedCells& cells, std::size_t index, std:
   cell.origin = cells.scalars[of_points ? nodes.front() : index];
   cell.control.resize(to_bernstein.rows);
   cell.field.resize(to_bernstein.rows);
-  // As differences to a node, so that what is the same at all nodes is exactly that at all control points.
+  // As differences to a node, so that a value common to all nodes is exact at all control points.
   const glm::dvec3 from = cells.positions[nodes.front()];
   for (std::size_t row = 0; row < to_bernstein.rows; ++row) {
     glm::dvec3 sum(0);
@@ -132,7 +132,7 @@ void CurvedReference::bound(Cell& cell) const {
 CurvedReference::Frame CurvedReference::frame(double x, double y) const {
   Frame frame{view_.ray(x, y), glm::dvec3(0), glm::dvec3(0), view_.length_per_depth(x, y)};
   const glm::dvec3 along = glm::normalize(frame.ray.step), size = glm::abs(along);
-  glm::dvec3 other(0);  // the axis that is least along the ray
+  glm::dvec3 other(0);  // the axis with the smallest component along the ray
   other[size.x <= size.y && size.x <= size.z ? 0 : size.y <= size.z ? 1 : 2] = 1;
   frame.across_x = glm::normalize(glm::cross(along, other));
   frame.across_y = glm::cross(along, frame.across_x);
@@ -153,7 +153,7 @@ CellOnRay CurvedReference::on_ray(const Cell& cell, const Frame& frame, std::vec
   }
   const glm::dvec3 sides = high - low;
   const double size = std::max({sides.x, sides.y, sides.z});
-  // Distances from the eye are rounded to 1e-16 of themselves, which tolerances of 1e-14 of the size must cover.
+  // Distances from the eye have a relative rounding of 1e-16, which tolerances of 1e-14 of the size must cover.
   constexpr double size_share = 0.05, rounding_share = 0.25;
   const double rounding = size > 0 ? std::max(1.0, rounding_share * farthest / size) : 1;
   return {&shapes_[cell.shape].basis, control, cell.field, std::max(size, size_share * farthest), rounding};
@@ -168,7 +168,7 @@ std::vector<CurvedReference::Met> CurvedReference::met(double x, double y,
     if (!(cell.x_low <= x && x <= cell.x_high && cell.y_low <= y && y <= cell.y_high)) continue;
     std::vector<glm::dvec3> control;
     const CellOnRay on_ray = this->on_ray(cell, frame, control);
-    controls.push_back(std::move(control));  // its points stay where they are
+    controls.push_back(std::move(control));  // moving the vector keeps its points in place
     crossings.clear();
     for (const FacePatch& face : shapes_[cell.shape].faces) find_crossings(on_ray, face, crossings);
     for (InnerPath& path : inner_paths(on_ray, crossings)) {

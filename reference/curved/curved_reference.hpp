@@ -20,11 +20,11 @@
 
 namespace tessera::reference {
 
-/// Cells as VTK has them, of any order, with one scalar.
+/// Cells in VTK's form, of any order, with one scalar.
 ///
 /// Shape   cell c has VTK's type types[c] and the nodes connectivity[offsets[c]] up to connectivity[offsets[c + 1]].
-///         `degrees` are VTK's array HigherOrderDegrees: one entry a cell, or none. Scalars: one a position or one a
-///         cell.
+///         `degrees` are VTK's array HigherOrderDegrees: one entry per cell, or empty. Scalars: one per position or one
+///         per cell.
 struct CurvedCells {
   std::span<const std::uint8_t> types;
   std::span<const std::uint64_t> offsets;
@@ -35,53 +35,53 @@ struct CurvedCells {
   std::span<const std::array<int, 3>> degrees{};
 };
 
-/// A stretch of one ray inside one cell, after clipping. A ray may pass through a curved cell several times.
+/// An interval of one ray inside one cell, after clipping. A ray may pass through a curved cell several times.
 struct CurvedSegment {
   double front, back;  ///< planar depth
   double length;       ///< world length along the ray
   std::size_t cell;
 };
 
-/// The slow, exact renderer of curved cells: every ray against the true faces of every cell whose box holds it, and the
-/// field by isoparametric inversion along it. No subdivision of the mesh, no code shared with the fast way but the
-/// plain values of scene/.
+/// The slow, exact renderer of curved cells: every ray against the true faces of every cell whose box it meets, and the
+/// field by isoparametric inversion along it. Does not subdivide the mesh and shares no code with the fast renderer
+/// except the plain values of scene/.
 ///
-/// Cells    point data: geometry and field by the type's shape functions (curved_shapes.hpp). So linear hexahedra,
+/// Cells    Point data: geometry and field by the type's shape functions (curved_shapes.hpp). So linear hexahedra,
 ///          wedges, pyramids and voxels are trilinear here, with curved faces and a field that is not linear, while
-///          `Reference` is given tets. Cell data: constant in a cell. Cells without a volume are passed over.
-/// Faces    where the ray crosses them: curved_crossing.hpp. Between crossings: curved_inversion.hpp.
+///          `Reference` is given tets. Cell data: constant in a cell. Cells without a volume are skipped.
+/// Faces    intersections with the ray: curved_crossing.hpp. Between crossings: curved_inversion.hpp.
 /// Light    the field as polynomials along the ray (smooth_scalar.hpp), integrated by curved_integral.hpp.
-/// Order    (front, back, cell). Cells must not overlap, nor be folded: where the map from a cell's own coordinates to
-///          space is not one to one, what is seen is finite but not defined, and may take up to a second.
-/// Ties     no rule: a ray exactly through an edge or a node, or along a face, may miss a stretch, or have one of
-///          rounding's length twice. Rays a little beside it are right.
-/// Error    about 1e-12 in linear RGBA for cells of moderate shape; that of inversion grows as cells get flat.
-/// Cost     20 to 100 microseconds a cell met, more where the ray nearly touches it.
+/// Order    (front, back, cell). Cells must not overlap or be folded: where the map from a cell's own coordinates to
+///          space is not one-to-one, the result is finite but undefined, and may take up to a second.
+/// Ties     no rule: a ray exactly through an edge or a node, or along a face, may miss a segment, or count a segment
+///          of negligible length twice. Rays at a small distance are correct.
+/// Error    about 1e-12 in linear RGBA for cells of moderate shape; that of inversion grows as cells become flat.
+/// Cost     20 to 100 microseconds per cell met, more if the ray nearly touches it.
 class CurvedReference final : public RayReference {
  public:
   /// The cells are copied. Throws scene::Error(bad_input) for an invalid camera or size, an empty transfer function, a
-  /// cell that is not what its type needs, an index or an array's length that does not fit, or numbers not finite.
+  /// cell that does not match its type, an invalid index or array length, or numbers that are not finite.
   CurvedReference(const CurvedCells& cells, const scene::Camera& camera, scene::ImageSize size,
                   const scene::TransferFunction& transfer_function,
                   scene::Emission emission = scene::Emission::absorption);
 
-  /// The ray through pixel coordinates (x, y), front to back.
+  /// The segments of the ray through pixel coordinates (x, y), front to back.
   [[nodiscard]] std::vector<CurvedSegment> segments(double x, double y) const;
 
-  /// `length` is that of all segments together, `segments` their number.
+  /// `length` is the total of all segments, `segments` their number.
   [[nodiscard]] Pixel pixel(double x, double y) const override;
   [[nodiscard]] scene::ImageSize size() const override { return size_; }
 
  private:
   struct Cell {
-    std::size_t shape;  ///< of shapes_
-    std::size_t index;  ///< the caller's
+    std::size_t shape;  ///< index in shapes_
+    std::size_t index;  ///< index in the caller's mesh
     std::vector<glm::dvec3> control;
-    std::vector<double> field;            ///< control values from `origin` on; empty if the field is constant
+    std::vector<double> field;            ///< control values relative to `origin`; empty if the field is constant
     double origin, change;                ///< `change`: the largest of the control values
-    double x_low, y_low, x_high, y_high;  ///< pixel coordinates outside of which no ray meets the cell
+    double x_low, y_low, x_high, y_high;  ///< pixel coordinates outside which no ray meets the cell
   };
-  /// A ray with the vectors across it; depths are planar.
+  /// A ray with two vectors across it; depths are planar.
   struct Frame {
     View::Ray ray;
     glm::dvec3 across_x, across_y;
@@ -96,9 +96,9 @@ class CurvedReference final : public RayReference {
   void add_cell(const CurvedCells& cells, std::size_t index, std::size_t shape);
   void bound(Cell& cell) const;
   [[nodiscard]] Frame frame(double x, double y) const;
-  /// The control points of a cell in a ray's frame; `control` holds them.
+  /// The control points of a cell in a ray's frame; `control` is their storage.
   [[nodiscard]] CellOnRay on_ray(const Cell& cell, const Frame& frame, std::vector<glm::dvec3>& control) const;
-  /// In order. `controls` is room for the cells' control points.
+  /// Sorted. `controls` is storage for the cells' control points.
   [[nodiscard]] std::vector<Met> met(double x, double y, std::vector<std::vector<glm::dvec3>>& controls) const;
 
   scene::ImageSize size_;

@@ -30,9 +30,9 @@ Function corner_monomial(int i, int j, int k) {
   return [=](const glm::dvec3& p) { return power(p.x, i) * power(p.y, j) * power(p.z, k); };
 }
 
-/// Shape functions that span the whole of the basis.
+/// Shape functions that span the whole basis.
 CellShape full(const BernsteinBasis& basis, std::vector<glm::dvec3> nodes) {
-  // The nodes are the lattice in another order.
+  // Nodes that are the lattice in another order.
   const std::vector<glm::dvec3> lattice = basis.lattice();
   const Matrix from_lattice = basis.from_lattice();
   CellShape shape{basis, std::move(nodes), Matrix(basis.size(), basis.size()), basis.faces()};
@@ -49,7 +49,7 @@ CellShape full(const BernsteinBasis& basis, std::vector<glm::dvec3> nodes) {
   return shape;
 }
 
-/// Shape functions that span `space`, of as many functions as there are nodes, within the basis.
+/// Shape functions that span `space`, which has as many functions as nodes, within the basis.
 CellShape spanned(const BernsteinBasis& basis, std::vector<glm::dvec3> nodes, const std::vector<Function>& space) {
   const auto values_at = [&](const std::vector<glm::dvec3>& places) {
     Matrix values(places.size(), space.size());
@@ -61,7 +61,7 @@ CellShape spanned(const BernsteinBasis& basis, std::vector<glm::dvec3> nodes, co
   return {basis, std::move(nodes), product(basis.from_lattice(), at_lattice), basis.faces()};
 }
 
-/// Control points are the nodes.
+/// The nodes are the control points.
 CellShape bezier(const BernsteinBasis& basis, std::vector<glm::dvec3> nodes) {
   CellShape shape = full(basis, std::move(nodes));
   const std::vector<glm::dvec3> lattice = basis.lattice();
@@ -86,8 +86,8 @@ void add_serendipity(int most_t, std::vector<Function>& space) {
     for (const auto& e : exponents) space.push_back(monomial(e[0], e[1], k));
 }
 
-/// Of 20 nodes: the monomials whose degree is two at most if variables to the first power are not counted (Arnold,
-/// Awanou, "The Serendipity Family of Finite Elements", Foundations of Computational Mathematics 2011).
+/// With 20 nodes: the monomials of degree two at most, not counting variables to the first power (Arnold, Awanou, "The
+/// Serendipity Family of Finite Elements", Foundations of Computational Mathematics 2011).
 CellShape quadratic_hexahedron() {
   std::vector<Function> space;
   add_serendipity(1, space);
@@ -95,14 +95,14 @@ CellShape quadratic_hexahedron() {
   return spanned(BernsteinBasis(Domain::box, {2, 2, 2}), first(20, hexahedron_nodes({2, 2, 2})), space);
 }
 
-/// Of 24 nodes: serendipity across, quadratic along.
+/// With 24 nodes: serendipity across, quadratic along.
 CellShape biquadratic_hexahedron() {
   std::vector<Function> space;
   add_serendipity(2, space);
   return spanned(BernsteinBasis(Domain::box, {2, 2, 2}), first(24, hexahedron_nodes({2, 2, 2})), space);
 }
 
-/// Of 15 nodes: quadratic in the triangle times linear along, and linear times quadratic.
+/// With 15 nodes: quadratic in the triangle times linear along, and linear times quadratic.
 CellShape quadratic_wedge() {
   std::vector<Function> space;
   for (int k = 0; k < 2; ++k)
@@ -112,7 +112,7 @@ CellShape quadratic_wedge() {
   return spanned(BernsteinBasis(Domain::prism, {2, 0, 2}), first(15, wedge_nodes(2, 2)), space);
 }
 
-/// The bilinear functions in the box that are one function at the apex.
+/// The bilinear functions in the box that reduce to one function at the apex.
 CellShape linear_pyramid() {
   std::vector<Function> space{corner_monomial(0, 0, 0), corner_monomial(0, 0, 1)};
   space.emplace_back([](const glm::dvec3& p) { return p.x * (1 - p.z); });
@@ -126,8 +126,8 @@ Function towards_apex(std::function<double(double x, double y, double w)> f) {
   return [f = std::move(f)](const glm::dvec3& p) { return f(2 * p.x - 1, 2 * p.y - 1, 2 - 2 * p.z); };
 }
 
-/// What both quadratic pyramids have: quadratic on every edge, and apart from xy complete to second degree but for
-/// x^2 + y^2, which is rational.
+/// Functions of both quadratic pyramids: quadratic on every edge, and besides xy complete to second degree, except that
+/// x^2 + y^2 is rational.
 std::vector<Function> quadratic_pyramid_space() {
   std::vector<Function> space;
   for (int k = 0; k <= 2; ++k) space.push_back(corner_monomial(0, 0, k));
@@ -141,7 +141,7 @@ std::vector<Function> quadratic_pyramid_space() {
   return space;
 }
 
-/// Of 13 nodes: the serendipity hexahedron of 20 nodes with the nodes of one face at one place, corrected to be
+/// With 13 nodes: the serendipity hexahedron of 20 nodes with the nodes of one face collapsed, corrected to be
 /// quadratic on the triangles (Felippa, "Advanced Finite Element Methods", chapter on pyramids).
 CellShape quadratic_pyramid() {
   std::vector<Function> space = quadratic_pyramid_space();
@@ -153,7 +153,7 @@ CellShape quadratic_pyramid() {
   return spanned(BernsteinBasis(Domain::box, {2, 2, 2}), first(13, pyramid_nodes()), space);
 }
 
-/// Of 19 nodes: bubbles on faces and inside besides.
+/// With 19 nodes: also bubbles on faces and inside.
 CellShape triquadratic_pyramid() {
   std::vector<Function> space = quadratic_pyramid_space();
   space.push_back(towards_apex([](double x, double y, double w) { return x * (1 - y * y) * w * w * w; }));
@@ -167,9 +167,9 @@ CellShape triquadratic_pyramid() {
   return spanned(BernsteinBasis(Domain::box, {2, 2, 3}), pyramid_nodes(), space);
 }
 
-/// The Lagrange pyramid: of the rational functions of Bergot, Cohen and Durufle ("Higher-order finite elements for
-/// hybrid meshes using new nodal pyramidal elements", Journal of Scientific Computing 2010), in the box x^i y^j times
-/// powers of w from the larger of i and j up to the order.
+/// The Lagrange pyramid: the rational functions of Bergot, Cohen and Durufle ("Higher-order finite elements for hybrid
+/// meshes using new nodal pyramidal elements", Journal of Scientific Computing 2010), which in the box are x^i y^j
+/// times powers of w from the larger of i and j up to the order.
 CellShape lagrange_pyramid(int order) {
   std::vector<Function> space;
   for (int i = 0; i <= order; ++i)
@@ -186,14 +186,14 @@ std::vector<glm::dvec3> tet_middles() {
   return {{third, third, 0}, {third, 0, third}, {third, third, third}, {0, third, third}, glm::dvec3(0.25)};
 }
 
-/// All polynomials of the tet up to a degree.
+/// All polynomials on the tet up to a degree.
 void add_complete(int degree, std::vector<Function>& space) {
   for (int k = 0; k <= degree; ++k)
     for (int j = 0; j + k <= degree; ++j)
       for (int i = 0; i + j + k <= degree; ++i) space.push_back(corner_monomial(i, j, k));
 }
 
-/// What is 1 - r - s - t in the tet.
+/// The fourth barycentric coordinate, 1 - r - s - t.
 double fourth(const glm::dvec3& p) { return 1 - p.x - p.y - p.z; }
 
 /// Cubic bubbles of the tet's faces.
@@ -204,8 +204,8 @@ void add_face_bubbles(std::vector<Function>& space) {
   space.emplace_back([](const glm::dvec3& p) { return p.y * p.z * fourth(p); });
 }
 
-/// The tets of 5, 7, 8, 11, 14 and 15 nodes: complete to first degree, of 11 nodes on to second, with a cubic bubble
-/// for each face and a quartic one inside that have a node. Of 7 nodes the base's edges are quadratic.
+/// The tets of 5, 7, 8, 11, 14 and 15 nodes: complete to first degree, from 11 nodes on to second, with a cubic bubble
+/// for each face and a quartic one inside, if these have a node. With 7 nodes the base's edges are quadratic.
 CellShape enriched_tet(std::size_t count) {
   const bool is_quadratic = count > 10, has_faces = count == 8 || count >= 14,
              has_inside = count != 7 && count != 8 && count != 14;
@@ -237,8 +237,8 @@ Function hexahedron_bubble(int along, int k, bool inside) {
   };
 }
 
-/// The hexahedra of 9, 16, 21 and 26 nodes: trilinear, or of 16 nodes serendipity across and linear along, of more
-/// the 20 nodes' functions; with bubbles for the faces, and inside, that have a node.
+/// The hexahedra of 9, 16, 21 and 26 nodes: trilinear with 9, serendipity across and linear along with 16, the
+/// functions of the 20 nodes with more; plus bubbles for the faces, and inside, that have a node.
 CellShape incomplete_hexahedron(std::size_t count) {
   const std::vector<glm::dvec3> all = hexahedron_nodes({2, 2, 2});
   std::vector<Function> space;
@@ -308,7 +308,7 @@ CellShape enriched_wedge() {
   return spanned(BernsteinBasis(Domain::prism, {3, 0, 2}), std::move(nodes), space);
 }
 
-/// Node counts of the types that have one.
+/// Number of nodes of the types for which it is fixed.
 std::size_t nodes_of(CellType type) {
   switch (type) {
     case CellType::tetra:

@@ -6,7 +6,7 @@
 
 namespace tessera::reference {
 
-/// A dense matrix, row by row.
+/// A dense matrix, stored row by row.
 struct Matrix {
   std::size_t rows = 0, columns = 0;
   std::vector<double> values;
@@ -19,14 +19,14 @@ struct Matrix {
   double operator()(std::size_t row, std::size_t column) const { return values[row * columns + column]; }
 };
 
-/// a b; the columns of `a` are as many as the rows of `b`.
+/// a b; `a` has as many columns as `b` has rows.
 Matrix product(const Matrix& a, const Matrix& b);
 
-/// Of a square matrix that is not singular: Gauss-Jordan with pivots, in long double, so that rounding the result is
-/// the largest error at the condition numbers of interpolation up to degree ten.
+/// The inverse of a non-singular square matrix: Gauss-Jordan with pivots, in long double, so that rounding the result
+/// is the largest error at the condition numbers of interpolation up to degree ten.
 Matrix inverse(const Matrix& matrix);
 
-/// The Kronecker product: index (i, j) is i + j * rows of `fast`, and so for columns.
+/// The Kronecker product: index (i, j) is i + j * rows of `fast`, and likewise for columns.
 Matrix kronecker(const Matrix& slow, const Matrix& fast);
 
 }  // namespace tessera::reference

@@ -20,10 +20,10 @@ struct Cubic {
   [[nodiscard]] double at(double u) const { return ((c[3] * u + c[2]) * u + c[1]) * u + c[0]; }
 };
 
-/// The volume rendering integral along one ray, front to back, where the scalar is a cubic in each stretch: what
-/// Integral is for linear ones.
+/// The volume rendering integral along one ray, front to back, if the scalar is a cubic in each segment: corresponds to
+/// Integral for linear scalars.
 ///
-/// A stretch is cut at the cubic's turning points, and between them where it passes a knot of the transfer function
+/// A segment is cut at the cubic's turning points, and between them where it passes a knot of the transfer function
 /// (bisection down to neighbouring doubles). In a piece extinction and colour are cubics too, the optical depth is a
 /// quartic in closed form, and the colour is Gauss-Legendre quadrature with eight points on steps of at most half a
 /// unit of optical depth. Error about 1e-12 in linear RGBA. It stops where T < 1e-18.
@@ -36,36 +36,37 @@ class GridIntegral {
     if (peel) cuts_.emplace(*peel);
   }
 
-  /// What shading makes of colour c over a stretch: own * c + white.
+  /// Shading turns colour c over a segment into own * c + white.
   struct Light {
     double own = 1, white = 0;
   };
 
-  /// The next stretch: its world length, the scalar over u in [0, 1], the planar depths at its ends, its light. Scalars
-  /// are counted from `origin`, so that they may be nearer to a knot than numbers of their size tell apart.
+  /// Adds the next segment: its world length, the scalar over u in [0, 1], the planar depths at its ends, its light.
+  /// Scalars are relative to `origin`, so that they may be closer to a knot than doubles of their magnitude can
+  /// represent.
   void add(double length, const Cubic& scalar, double depth_front, double depth_back, const Light& light,
            double origin = 0);
   void add(double length, const Cubic& scalar, double depth_front, double depth_back) {
     add(length, scalar, depth_front, depth_back, Light());
   }
 
-  /// A surface of no thickness: its own colour, as lit, its opacity and where it is.
+  /// Adds an infinitely thin surface: its own lit colour, opacity and depth.
   void add_surface(const std::array<double, 3>& color, double opacity, double depth);
 
   [[nodiscard]] std::array<double, 3> color() const { return sum_.color; }  ///< linear RGB, premultiplied
   [[nodiscard]] double opacity() const;
   [[nodiscard]] double optical_depth() const { return sum_.optical_depth; }
   [[nodiscard]] double first_visible_depth() const { return sum_.first_visible_depth; }
-  [[nodiscard]] bool opaque() const;  ///< nothing behind can be seen
+  [[nodiscard]] bool opaque() const;  ///< nothing behind is visible
 
-  /// With a Peel, of which all else tells the layer at hand alone.
+  /// With a Peel; all other results then refer only to the current layer.
   [[nodiscard]] std::vector<Pixel> layers() const { return cuts_->pixels(sum_); }
 
  private:
-  /// A piece u0 to u1 of a stretch in which the transfer function is linear.
+  /// Adds a piece u0 to u1 of a segment in which the transfer function is linear.
   void add_piece(double length, const Cubic& scalar, double u0, double u1, double depth_front, double depth_back,
                  const Light& light, double origin);
-  /// Colour of [u0, u1], which lies `before` of optical depth behind the piece's front.
+  /// Colour of [u0, u1], which is at optical depth `before` behind the piece's front.
   void add_color(double length, double u0, double u1, double before, const Cubic& extinction,
                  const std::array<Cubic, 3>& color, int depth);
 

@@ -19,33 +19,35 @@
 
 namespace tessera::reference {
 
-/// The slow, exact renderer of regular and rectilinear grids: every ray against every voxel on its way, in double
-/// precision. No acceleration structure, no shortcut for invisible voxels, no code shared with the fast way but the
-/// plain values of scene/.
+/// The slow, exact renderer of regular and rectilinear grids: every ray against every voxel along it, in double
+/// precision. It has no acceleration structure, does not skip invisible voxels, and shares no code with the fast
+/// renderer except the plain values of scene/.
 ///
-/// Field    point data: trilinear in each voxel, hence a cubic along the ray (grid_integral.hpp). Cell data: constant
+/// Field    Point data: trilinear in each voxel, hence a cubic along the ray (grid_integral.hpp). Cell data: constant
 ///          in each voxel. A voxel with a blank corner (cell data: a blank sample) is a gap.
 /// Domain   the box between the first and last lattice points.
-/// Ties     a ray that runs in a plane of the lattice (to 1e-9 of a voxel) belongs to the voxels that an infinitesimal
-///          shift of the ray by (e, e^2) in (x, y) selects, as in ray_tet.hpp. So does one in the volume's boundary.
-/// Shading  as scene/shading.hpp defines it: a stretch lies between two crossings of lattice planes, the eye, the
-///          clipping planes and surfaces counted as such. A gradient below 1e-12 of the voxel's samples is zero.
-/// Surfaces of point data: crossed in each voxel as grid_surface.hpp has it, lit by the trilinear field's gradient. A
-///          gap's sides are none.
+/// Ties     a ray in a plane of the lattice (to 1e-9 of a voxel) belongs to the voxels that an infinitesimal shift of
+/// the
+///          ray by (e, e^2) in (x, y) selects, as in ray_tet.hpp. The same applies at the volume's boundary.
+/// Shading  as defined by scene/shading.hpp: a segment is between two crossings of lattice planes, the eye, the
+/// clipping
+///          planes and surfaces. A gradient below 1e-12 of the voxel's samples is zero.
+/// Surfaces of point data: crossed in each voxel as in grid_surface.hpp, lit by the trilinear field's gradient. The
+///          sides of a gap are not surfaces.
 /// Error    about 1e-12 in linear RGBA.
-/// Cost     a microsecond or two a voxel met. It keeps no samples: volumes larger than memory can be checked.
+/// Cost     a microsecond or two per voxel met. It stores no samples: volumes larger than memory can be checked.
 class GridReference final : public RayReference, public LayerReference {
  public:
   /// The source must outlive the reference. Throws scene::Error(bad_input) for an invalid camera or size, or an empty
-  /// transfer function, or for shading of light that does not depend on extinction. What of rays lies in all
-  /// half-spaces counts (kept_interval.hpp).
+  /// transfer function, or for shading of light that does not depend on extinction. Only the parts of rays inside all
+  /// half-spaces count (kept_interval.hpp).
   GridReference(const scene::SampleSource& source, const scene::Camera& camera, scene::ImageSize size,
                 const scene::TransferFunction& transfer_function,
                 scene::Emission emission = scene::Emission::absorption,
                 const std::optional<scene::Shading>& shading = std::nullopt,
                 std::span<const scene::HalfSpace> kept = {}, const Surfaces& surfaces = {});
 
-  /// `length` and `segments` count what is not blank.
+  /// `length` and `segments` count only what is not blank.
   [[nodiscard]] Pixel pixel(double x, double y) const override;
   [[nodiscard]] std::vector<Pixel> layers(double x, double y, const Peel& peel) const override;
   [[nodiscard]] std::vector<std::vector<Pixel>> layers(std::span<const PixelIndex> wanted, const Peel& peel,
@@ -56,29 +58,30 @@ class GridReference final : public RayReference, public LayerReference {
   /// A view ray in the grid's local frame: at planar depth z it is at origin + z * step.
   struct LocalRay {
     glm::dvec3 origin, step;
-    std::array<std::int64_t, 3> in_plane;  ///< the voxel along an axis whose planes the ray is parallel to, else -1
+    std::array<std::int64_t, 3> in_plane;  ///< the voxel along an axis whose planes are parallel to the ray, else -1
     double begin, end;                     ///< planar depths in the volume and in view; empty if begin >= end
     double length_per_depth;
-    bool begin_cut, end_cut;  ///< whether a clip's plane is there
+    bool begin_cut, end_cut;  ///< whether a clipping plane is there
   };
   /// A voxel that a ray meets.
   struct Voxel {
     glm::dvec3 low, side;          ///< local
-    std::array<double, 8> values;  ///< of its corners, or the one that it has
+    std::array<double, 8> values;  ///< at its corners, or the voxel's single value
     bool constant;
     [[nodiscard]] glm::dvec3 place(const glm::dvec3& local) const { return (local - low) / side; }
   };
   [[nodiscard]] LocalRay local_ray(double x, double y) const;
   /// All depths at which a ray begins, ends or passes a plane of the lattice, each computed from the plane alone.
   [[nodiscard]] std::vector<double> plane_depths(const LocalRay& ray) const;
-  /// The one that has the middle of a stretch. False if it is a gap.
+  /// The voxel that contains the middle of a segment. False if it is a gap.
   [[nodiscard]] bool read_voxel(const LocalRay& ray, const glm::dvec3& middle, Voxel& voxel) const;
-  /// The whole ray; `pixel`'s length and segments are counted.
+  /// Integrates the whole ray; counts length and segments in `pixel`.
   void integrate(double x, double y, GridIntegral& integral, Pixel& pixel) const;
   void add_stretch(const LocalRay& ray, const Voxel& voxel, double z0, double z1, GridIntegral& integral) const;
-  /// The part of a stretch between two surfaces.
+  /// Adds the part of a segment between two surfaces.
   void add_part(const LocalRay& ray, const Voxel& voxel, double z0, double z1, GridIntegral& integral) const;
-  /// At a place of a voxel, 0 to 1 along each axis. `step_world`: along the ray, away from the eye, any length.
+  /// The light at a place of a voxel, 0 to 1 along each axis. `step_world`: along the ray, away from the eye, any
+  /// length.
   [[nodiscard]] GridIntegral::Light light(const Voxel& voxel, const glm::dvec3& place,
                                           const glm::dvec3& step_world) const;
   [[nodiscard]] std::int64_t voxel_along(std::size_t axis, double local) const;
@@ -91,7 +94,7 @@ class GridReference final : public RayReference, public LayerReference {
   View view_;
   glm::dmat3 to_local_;
   std::optional<scene::Shading> shading_;
-  glm::dvec3 to_light_{0};  ///< world, of length one
+  glm::dvec3 to_light_{0};  ///< world, unit length
   std::vector<SurfaceOfValue> surfaces_;
   SurfaceLight surface_light_;
 };

@@ -39,11 +39,11 @@ Place between(const Place& front, const Place& back, Real u) {
   return place;
 }
 
-/// 0, the places in (0, 1) where the field turns along the stretch, and 1: by the cubic through four of its values.
+/// 0, the turning points of the field along the segment in (0, 1), and 1: from the cubic through four of its values.
 std::vector<Real> turns(const Corners& v, const Place& front, const Place& back) {
   std::array<Real, 4> f;
   for (std::size_t n = 0; n < 4; ++n) f[n] = field_at(v, between(front, back, static_cast<Real>(n) / 3));
-  // In t = 3 u by Newton's forward differences.
+  // As a function of t = 3 u, by Newton's forward differences.
   const Real d1 = f[1] - f[0], d2 = f[2] - 2 * f[1] + f[0], d3 = f[3] - 3 * f[2] + 3 * f[1] - f[0];
   const Real c3 = d3 / 6, c2 = d2 / 2 - d3 / 2, c1 = d1 - d2 / 2 + d3 / 3;
   std::vector<Real> ends{0};
@@ -69,7 +69,7 @@ std::vector<GridCrossing> surface_crossings(std::span<const SurfaceOfValue> surf
   struct OfSurface {
     const SurfaceOfValue* surface;
     Corners corner;
-    std::vector<Real> value;  ///< at the ends, counted from the surface's
+    std::vector<Real> value;  ///< at the ends, relative to the surface's
   };
   std::vector<OfSurface> met;
   for (const SurfaceOfValue& surface : surfaces) {

@@ -20,12 +20,12 @@ namespace {
 
 constexpr std::int64_t side = 8, most_blocks = 8192;
 constexpr double nothing = 1e-12;
-/// Pixels of a voxel that are marked: one for so many, up to so many. Borders may be small.
+/// Marked pixels of a voxel: one in so many, at most so many. Boundaries may be small.
 constexpr double pixels_per_mark = 16, border_pixels_per_mark = 4, most_marks = 16;
-/// Along a ray, of a voxel's size: what is less far behind the first visible sample is not hidden.
+/// Distance along a ray, in voxel sizes, behind the first visible sample within which nothing counts as hidden.
 constexpr double skin = 4;
 
-/// Smallest and largest of some samples that are not blank, and whether any is.
+/// Range of some samples that are not blank, and whether there are any.
 struct Values {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   bool blank = false;
@@ -56,7 +56,7 @@ class GridSuspects {
 
   [[nodiscard]] std::int64_t blocks() const { return std::min(all_blocks(), most_blocks); }
 
-  /// The n-th of those that are looked at.
+  /// Examines the n-th selected block.
   void look_at(std::int64_t n) {
     const std::int64_t all = all_blocks();
     const double spread = all > most_blocks ? hashed(static_cast<std::uint64_t>(n), 20) : 0;
@@ -67,7 +67,7 @@ class GridSuspects {
     const bool cell_data = geometry_.association == scene::Association::cell;
     scene::SampleBox box;
     for (std::size_t a = 0; a < 3; ++a) {
-      // Of cell data, the neighbours on one side too: a border lies between two voxels.
+      // For cell data, includes neighbours on one side: a boundary is between two voxels.
       box.low[a] = place[a] * side;
       box.high[a] = std::min(samples[a], box.low[a] + side + 1);
     }
@@ -96,7 +96,7 @@ class GridSuspects {
         if ((n >> a & 1) == 0) raise_ties(corner(n), corner(n | 1 << a), image_.size, edge_, found_.tie);
     const glm::dmat3 to_local = scene::world_to_local(geometry_);
     const double far = farthest();
-    // All orthographic rays have one direction, most often along no plane.
+    // All orthographic rays have one direction, usually not along a plane.
     const glm::dvec3 direction = to_local * view_.ray(0, 0).step;
     const auto strays = [&](std::size_t a) { return std::abs(direction[static_cast<int>(a)]) * far / voxel(a); };
     if (!view_.perspective() && std::min({strays(0), strays(1), strays(2)}) > tying_distance) return;
@@ -120,7 +120,7 @@ class GridSuspects {
   }
   [[nodiscard]] std::int64_t all_blocks() const { return blocks_[0] * blocks_[1] * blocks_[2]; }
 
-  /// World units: a mean voxel's side along an axis, and its diagonal.
+  /// World units: the side of a mean voxel along an axis, and its diagonal.
   [[nodiscard]] double voxel(std::size_t a) const {
     return (geometry_.lattice(a, voxels_[a]) - geometry_.lattice(a, 0)) / static_cast<double>(voxels_[a]);
   }
@@ -137,9 +137,9 @@ class GridSuspects {
     return far;
   }
 
-  /// A ray that runs along the planes of an axis, near one of them.
+  /// For a ray along the planes of an axis, close to one of them.
   void raise_planes(int x, int y, std::size_t a, double origin, double step, double far) {
-    const double along = std::abs(step) * far / voxel(a);  // voxels that the ray strays from the plane
+    const double along = std::abs(step) * far / voxel(a);  // distance, in voxels, between the ray and the plane
     if (!(along < tying_distance)) return;
     std::int64_t low = 0, high = voxels_[a];
     while (high - low > 1) {

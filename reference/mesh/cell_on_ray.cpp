@@ -40,9 +40,9 @@ glm::dvec3 change_of_place(const CellPoint& point, const glm::dvec3& wanted) {
 
 std::optional<glm::dvec3> place_on_ray(const CellOnRay& cell, double depth, glm::dvec3 start, BasisValues& room) {
   constexpr int most_steps = 30, few_steps = 8;
-  constexpr double far_away = 10;      // places: the domain is of size one
-  constexpr double last_step = 1e-10;  // the next would be of its square, below rounding
-  constexpr double rounding = 1e-13;   // of the cell's size
+  constexpr double far_away = 10;      // in coordinates of the domain, which has size one
+  constexpr double last_step = 1e-10;  // the next step would be its square, below rounding
+  constexpr double rounding = 1e-13;   // relative to the cell's size
   for (int n = 0; n < most_steps; ++n) {
     const CellPoint point = point_of(cell, start, room);
     const glm::dvec3 missing = glm::dvec3(0, 0, depth) - point.at;
@@ -51,7 +51,7 @@ std::optional<glm::dvec3> place_on_ray(const CellOnRay& cell, double depth, glm:
     if (!std::isfinite(length)) return std::nullopt;
     start += step;
     if (!(glm::length(start) < far_away)) return std::nullopt;
-    // Of a cell that is nearly flat steps may not become as short as that.
+    // In an almost flat cell, steps may never become that short.
     if (length < last_step || (n > few_steps && glm::length(missing) < rounding * cell.size)) return start;
   }
   return std::nullopt;

@@ -38,7 +38,7 @@ std::pair<FacePiece, FacePiece> square_halves(const FacePiece& piece, bool acros
     return across_a ? square_index(piece, i, line) : square_index(piece, line, i);
   };
   for (int line = 0; line <= lines; ++line)
-    for (int round = 1; round <= n; ++round) {  // de Casteljau; the first of each round belongs to the lower half
+    for (int round = 1; round <= n; ++round) {  // de Casteljau; the first point of each round belongs to the lower half
       for (int i = 0; i <= n - round; ++i)
         high.control[at(i, line)] = middle(high.control[at(i, line)], high.control[at(i + 1, line)]);
       low.control[at(round, line)] = high.control[at(0, line)];
@@ -55,7 +55,7 @@ std::pair<FacePiece, FacePiece> triangle_halves(const FacePiece& piece) {
                    m = piece.origin + piece.along_a * 0.5;
   first.along_a = r - piece.origin, first.along_b = m - piece.origin;
   second.origin = q, second.along_a = r - q, second.along_b = m - q;
-  // After `round` rounds point (i, j) has n - round - i - j of p, i of q and j of r, besides `round` of m.
+  // After `round` rounds, point (i, j) depends on n - round - i - j times p, i times q, j times r, and `round` times m.
   std::vector<glm::dvec3> point = piece.control;
   for (int round = 0; round <= n; ++round) {
     for (int j = 0; round > 0 && j <= n - round; ++j)
@@ -98,14 +98,14 @@ std::pair<FacePiece, FacePiece> halves(const FacePiece& piece) {
   if (piece.triangle) return triangle_halves(piece);
   const PieceSlopes s = slopes(piece);
   const double a = longest(s.along_a), b = longest(s.along_b);
-  // Never a sliver of the face, whose narrow side would be taken for small: the longer side in the face decides then.
+  // Avoids slivers of the face, whose narrow side would be taken for small: the longer side in the face then decides.
   const double a_side = glm::length(piece.along_a), b_side = glm::length(piece.along_b);
   const bool across_a = a_side > 16 * b_side ? true : b_side > 16 * a_side ? false : a >= b;
   return square_halves(piece, across_a);
 }
 
 PiecePoint point_of(const FacePiece& piece, glm::dvec2 place) {
-  // De Casteljau down to the last round but one, whose points give the derivatives too.
+  // De Casteljau down to the last round but one, whose points also give the derivatives.
   std::vector<glm::dvec3> p = piece.control;
   if (piece.triangle) {
     const int n = piece.a_degree;

@@ -10,7 +10,7 @@
 namespace tessera::reference {
 
 /// A part of a face as a Bernstein patch of its own, over (a, b) in the unit square or triangle: control points as in
-/// FacePatch, and where the part lies in the face.
+/// FacePatch, and the location of the part in the face.
 struct FacePiece {
   bool triangle = false;
   int a_degree = 1, b_degree = 1;
@@ -18,15 +18,15 @@ struct FacePiece {
   std::vector<glm::dvec3> control;
 };
 
-/// A piece's derivatives by (a, b), as their control vectors.
+/// The control vectors of a piece's derivatives by (a, b).
 struct PieceSlopes {
   std::vector<glm::dvec3> along_a, along_b;
 };
 
 PieceSlopes slopes(const FacePiece& piece);
 
-/// Two halves: a square across the direction in which it is longer, a triangle from the side a = b = 0 to a = 1, so
-/// that halves of halves keep their shape (newest-vertex bisection).
+/// Two halves: a square is cut across its longer direction, a triangle from the middle of the side b = 0 to the
+/// opposite corner, so that halves of halves keep their shape (newest-vertex bisection).
 std::pair<FacePiece, FacePiece> halves(const FacePiece& piece);
 
 /// The point of a patch at (a, b), with its derivatives.

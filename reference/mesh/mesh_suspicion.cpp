@@ -17,12 +17,12 @@
 namespace tessera::reference {
 namespace {
 
-constexpr double quantum = 0x1p-30;  // of a range that a renderer rounds to
-constexpr double nothing = 1e-12;    // scores below say nothing
-/// Of more tets so many are looked at, and of fewer of them the edges.
+constexpr double quantum = 0x1p-30;  // assumed rounding of a renderer, relative to the range
+constexpr double nothing = 1e-12;    // lower scores are ignored
+/// Of larger meshes this many tets are examined, and the edges of fewer.
 constexpr std::size_t most_tets = 1 << 18, most_tets_with_edges = 1 << 16;
 
-/// Pixels of a cell that are marked: one for so many, up to so many.
+/// Marked pixels of a cell: one in so many, at most so many.
 constexpr double pixels_per_mark = 32, most_marks = 64;
 
 class MeshSuspects {
@@ -40,14 +40,15 @@ class MeshSuspects {
       const double depth = view_.project(p).depth;
       near = std::min(near, depth), far = std::max(far, std::min(depth, view_.farthest()));
     }
-    // Perspective renderers round 1/depth. An eye within the mesh has a near plane somewhere; a thousandth will do.
+    // Perspective renderers round 1/depth. If the eye is within the mesh, the near plane is arbitrary; a thousandth of
+    // the far depth is used.
     near = std::max({near, view_.nearest(), 1e-3 * far});
     if (near < far) depth_quantum_ = quantum * (view_.perspective() ? 1 / near - 1 / far : far - near);
   }
 
   [[nodiscard]] std::size_t looked_at() const { return std::min(mesh_.tets.size(), most_tets); }
 
-  /// The n-th of those that are looked at.
+  /// Examines the n-th selected tet.
   void look_at_nth(std::size_t n) {
     const std::size_t all = mesh_.tets.size();
     const bool edges = hashed(n, 21) * static_cast<double>(looked_at()) < static_cast<double>(most_tets_with_edges);
@@ -115,7 +116,7 @@ class MeshSuspects {
     const double x = place.x / place.z, y = place.y / place.z;
     if (!(place.z > 0 && x >= 0 && y >= 0 && x < image_.size.width && y < image_.size.height)) return;
     const std::size_t pixel = image_.index(static_cast<int>(x), static_cast<int>(y));
-    // Of a rounded depth what is let through counts; a step may show from the front.
+    // For a rounded depth, only transmitted light counts; a step may be visible from the front.
     const double through = 1 - std::clamp<double>(image_.rgba[4 * pixel + 3], 0, 1);
     const double along = view_.length_per_depth(x, y);
     if (by_step >= nothing)

@@ -10,19 +10,21 @@
 
 namespace tessera::reference {
 
-/// Where a mesh makes a picture hard.
+/// Where a mesh is difficult to render correctly.
 ///
-/// Noise   scalars and depths are taken as rounded to 2^-30 of their range over the mesh. A renderer that rounds more
-///         or less has the same order of suspects.
-/// Cost    a pass over the tets and over their edges' pixels; of more than 262,144 tets that many, evenly spread, and
-///         the edges of 65,536.
+/// Noise   scalars and depths are assumed to be rounded to 2^-30 of their range over the mesh. The ranking of suspects
+/// is
+///         the same for a renderer that rounds more or less.
+/// Cost    a pass over the tets and over their edges' pixels; if there are more than 262,144 tets, over that many,
+/// evenly
+///         distributed, and the edges of 65,536.
 struct MeshSuspicion {
-  SuspicionMap step;   ///< error of light that the scalars' rounding may make in one cell, at some pixels of it
-  SuspicionMap tie;    ///< nearness of an edge to the pixel's centre (1e-3 pixel at most), times the picture's contrast
-  SuspicionMap depth;  ///< error of light that the depths' rounding may make in one cell, at some pixels of it
+  SuspicionMap step;   ///< possible error of light by the scalars' rounding in one cell, at some of its pixels
+  SuspicionMap tie;    ///< nearness of an edge to the pixel's centre (1e-3 pixel at most), times the image's contrast
+  SuspicionMap depth;  ///< possible error of light by the depths' rounding in one cell, at some of its pixels
 };
 
-/// `edge`: the picture's ImageSuspicion::edge. `threads` 0: all cores.
+/// `edge`: the image's ImageSuspicion::edge. `threads` 0: all cores.
 MeshSuspicion suspect(const scene::TetMeshView& mesh, const scene::Camera& camera,
                       const scene::TransferFunction& transfer_function, scene::Emission emission,
                       const scene::Image& image, const SuspicionMap& edge, int threads = 0);

@@ -10,7 +10,7 @@
 namespace tessera::reference {
 namespace {
 
-/// Whether all corners lie clearly on one side of the plane through the eye that shows as the column (axis 0) or row
+/// Whether all corners are clearly on one side of the plane through the eye that projects to the column (axis 0) or row
 /// (axis 1) `at`: then no line in that plane meets them. Saves most of the work for cells that cross the eye's plane,
 /// which have no box. The margin is far wider than rounding.
 bool on_one_side(const std::array<Corner, 4>& corners, int axis, double at) {
@@ -24,14 +24,14 @@ bool on_one_side(const std::array<Corner, 4>& corners, int axis, double at) {
   return left == 4 || right == 4;
 }
 
-/// E of an edge: the sign on rounded lines of sight, after the tie rule, and the size on the vertices themselves, which
-/// is a weight.
+/// E of an edge: the sign on rounded lines of sight, after the tie rule, and the magnitude on the vertices themselves,
+/// which is a weight.
 struct EdgeValue {
   int sign;
   long double value;
 };
 
-/// Values that rounding could have changed by more than one part in this are computed exactly instead.
+/// Values are computed exactly if rounding may have changed them by more than one part in this number.
 constexpr long double wanted_precision = 1e12L;
 
 /// E, and whether rounding changed it by less than one part in `precision`.
@@ -46,7 +46,8 @@ RoundedValue rounded_value(double x, double y, const glm::dvec3& a, const glm::d
   const long double xa = a.x - xa_part, ya = a.y - ya_part, xb = b.x - xb_part, yb = b.y - yb_part;
   const long double value = xa * yb - ya * xb;
 
-  // Each difference errs by at most epsilon times the sizes that enter it; so do the products and the last difference.
+  // The error of each difference is at most epsilon times the magnitudes of its operands; the same applies to the
+  // products and the last difference.
   const long double xa_size = std::abs(a.x) + std::abs(xa_part), ya_size = std::abs(a.y) + std::abs(ya_part);
   const long double xb_size = std::abs(b.x) + std::abs(xb_part), yb_size = std::abs(b.y) + std::abs(yb_part);
   const long double error =
@@ -60,7 +61,7 @@ int sign_by_sight(double x, double y, const glm::dvec3& a, const glm::dvec3& b) 
   if (rounded.good) return rounded.value > 0 ? 1 : -1;
   const Determinant exact = exact_determinant({x, y, 1}, a, b);
   if (exact.sign != 0) return exact.sign;
-  // On the edge: the derivative of E by x decides, then that by y.
+  // On the edge: the sign is that of the derivative of E by x, or if that is zero, by y.
   const int by_x = exact_determinant({1, 0, 0}, a, b).sign;
   return by_x != 0 ? by_x : exact_determinant({0, 1, 0}, a, b).sign;
 }
@@ -72,7 +73,7 @@ EdgeValue edge_value(double x, double y, const ProjectedVertex& a, const Project
   return {sign_by_sight(x, y, a.sight, b.sight), value};
 }
 
-/// Whether three vertices and the eye lie in one plane.
+/// Whether three vertices and the eye are in one plane.
 bool edge_on(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   long double value = 0, size = 0;
   const auto add = [&](double p, double q, double r) {
@@ -89,11 +90,11 @@ bool edge_on(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
 
 struct Hit {
   double depth, scalar;
-  double change;  ///< scalar less `from`
-  int face = -1;  ///< the corner opposite
+  double change;  ///< scalar minus `from`
+  int face = -1;  ///< the opposite corner
 };
 
-/// Weights need not be normalised, only not negative; the results lie between the corners' by construction.
+/// Weights need not be normalised, only non-negative; the results are between the corners' by construction.
 Hit weighted(const std::array<const Corner*, 3>& corners, const std::array<long double, 3>& weights, double from) {
   const long double sum = weights[0] + weights[1] + weights[2];
   long double depth = 0, scalar = 0, change = 0;
@@ -109,7 +110,7 @@ Hit weighted(const std::array<const Corner*, 3>& corners, const std::array<long 
           std::clamp(static_cast<double>(change), s0 - from, s1 - from)};
 }
 
-/// Of the three edges' values, where the line is on one side of all.
+/// Computed from the three edges' values, if the line is on the same side of all.
 std::optional<Hit> hit_of(const std::array<const Corner*, 3>& c, const EdgeValue& ab, const EdgeValue& bc,
                           const EdgeValue& ac, double from) {
   // E_ca is -E_ac.
@@ -118,8 +119,8 @@ std::optional<Hit> hit_of(const std::array<const Corner*, 3>& c, const EdgeValue
   return weighted(c, {std::abs(bc.value), std::abs(ac.value), std::abs(ab.value)}, from);
 }
 
-/// The scalar at an eye that lies on the cell's surface: the volumes that the eye spans with the four faces are its
-/// barycentric coordinates.
+/// The scalar at an eye on the cell's surface: the volumes spanned by the eye and the four faces are its barycentric
+/// coordinates.
 double scalar_at_eye(const std::array<Corner, 4>& c) {
   const auto volume = [&](int i, int j, int k) {
     return exact_determinant(c[i].vertex.homogeneous, c[j].vertex.homogeneous, c[k].vertex.homogeneous).value;
@@ -147,7 +148,7 @@ std::optional<Stretch> intersect(const std::array<Corner, 4>& corners, double x,
     const std::optional<Hit> hit =
         hit_of({&corners[a], &corners[b], &corners[c]}, e[a][b], e[b][c], e[a][c], corners[0].scalar);
     if (!hit) continue;
-    if (count == 2) return std::nullopt;  // cannot be: a line enters and leaves a tetrahedron once
+    if (count == 2) return std::nullopt;  // impossible: a line enters and leaves a tetrahedron once
     hits[count] = *hit;
     hits[count++].face = 6 - a - b - c;
   }

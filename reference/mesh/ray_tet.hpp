@@ -14,41 +14,41 @@ struct Corner {
   double scalar;
 };
 
-/// The stretch of a line inside a tetrahedron: planar depths front <= back and the scalars there. These are kept as
-/// differences to the scalar of one corner besides: a sum would round away how far a scalar is from a step of the
-/// transfer function that it all but equals, and on which side.
+/// The interval of a line inside a tetrahedron: planar depths front <= back and the scalars there. The scalars are also
+/// stored as differences to the scalar of one corner: a sum would round away on which side of an almost equal step of
+/// the transfer function a scalar is, and how far from it.
 struct Stretch {
   double front, back;
   double scalar_front, scalar_back;
   double corner_scalar, change_front, change_back;
-  int face_front = -1, face_back = -1;  ///< whose corner opposite has this index; -1: it ends at no face
+  int face_front = -1, face_back = -1;  ///< index of the opposite corner; -1: the interval does not end at a face
 };
 
-/// Where the line (not only the half in front of the eye) through pixel coordinates (x, y) passes through a
-/// tetrahedron; nothing if it does not.
+/// The intersection of the line (not only the half in front of the eye) through pixel coordinates (x, y) with a
+/// tetrahedron; no value if there is none.
 ///
 /// Corners  in lexicographic order of their world positions, so that two cells that share a face compute the same
 ///          numbers on it.
-/// Decision exact, on rounded lines of sight (view.hpp). Three of them, A, B and (x, y), are on one plane where E =
+/// Decision exact, on rounded lines of sight (view.hpp). Three of them, A, B and (x, y), are in one plane if E =
 ///          det[(x,y,1), A, B] = 0; the line passes through a triangle ABC iff E_ab, E_bc and E_ca have one sign.
-///          Depths and scalars are those of the corners as they are. Where E is exactly zero (the line goes through the
-///          edge) the sign is that of the line shifted by (e, e^2) pixel in (x, y), e positive and infinitely small. So
-///          among cells that tile space every line, through vertices and edges or in faces, is tiled too. Source of the
+///          Depths and scalars are those of the unrounded corners. If E is exactly zero (the line meets the edge) the
+///          sign is that of the line shifted by (e, e^2) pixel in (x, y), e positive and infinitely small. So if cells
+///          tile space, they also tile every line, including lines through vertices, edges or in faces. Source of the
 ///          idea: Edelsbrunner, Muecke, "Simulation of Simplicity", ACM TOG 1990.
 /// Faces    coplanar with the eye (they project to a line) are never hit.
-/// Eye      on the cell's surface: the line then hits only one other face, and the stretch ends at depth 0 at the eye.
-/// Flat     cells give stretches of length zero, up to rounding.
+/// Eye      on the cell's surface: the line then hits only one other face, and the interval ends at depth 0 at the eye.
+/// Flat     cells give intervals of length zero, up to rounding.
 std::optional<Stretch> intersect(const std::array<Corner, 4>& corners, double x, double y);
 
-/// Where a line meets a triangle, decided as above: among triangles that meet in edges every line through one is met
-/// once. Nothing if it does not, and where the eye lies in the triangle's plane.
+/// The intersection of a line with a triangle, decided as above: among triangles that share edges, every line through
+/// them meets exactly one. No value if there is none, and if the eye is in the triangle's plane.
 struct TriangleHit {
   double depth, scalar;
 };
 std::optional<TriangleHit> intersect(const std::array<Corner, 3>& corners, double x, double y);
 
-/// What of a stretch lies between two planar depths; nothing if nothing of it lies strictly between them. A stretch of
-/// length zero between them stays.
+/// The part of an interval between two planar depths; no value if nothing is strictly between them. An interval of
+/// length zero between them is kept.
 std::optional<Stretch> clipped(const Stretch& stretch, double nearest, double farthest);
 
 }  // namespace tessera::reference

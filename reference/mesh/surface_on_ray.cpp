@@ -9,8 +9,8 @@
 namespace tessera::reference {
 namespace {
 
-// Of the field's size in a cell, where a clip's plane has a surface's value. A ray meets the plane 1e-12 of the depth
-// off, vertices being projected to a double's pixels.
+// Tolerance, relative to the field's magnitude in a cell, within which a clipping plane has a surface's value. A ray
+// meets the plane with an error of 1e-12 of the depth, because vertices are projected to pixels in double.
 constexpr double level = 1e-10;
 
 using Vector = glm::vec<3, long double>;
@@ -20,8 +20,8 @@ using Vector = glm::vec<3, long double>;
 Vector scaled_gradient(const scene::TetMeshView& mesh, std::size_t tet) {
   const scene::Tet& t = mesh.tets[tet];
   const Vector a(mesh.positions[t[0]]), b(mesh.positions[t[1]]), c(mesh.positions[t[2]]), d(mesh.positions[t[3]]);
-  // Each corner's share of the field grows along the normal of the face opposite to it, as fast as that is large; all
-  // four together do not grow.
+  // Each corner's share of the field increases along the normal of the opposite face, in proportion to its area; the
+  // sum of all four is constant.
   const auto above_first = [&](std::size_t i) {
     return static_cast<long double>(mesh.scalars[t[i]]) - mesh.scalars[t[0]];
   };
