@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Frames of an animation through the brick caches of several units, for bench/cache.py: what Moloney, "Ray Coherence in
-// Parallel Volume Rendering" (SFU 2008), prints of loading in 6.2.2 and 6.7.2.
+// Frames of an animation through the brick caches of several units, for bench/cache.py: reproduces the loading results
+// printed in 6.2.2 and 6.7.2 of Moloney, "Ray Coherence in Parallel Volume Rendering" (SFU 2008).
 //
-//   cache_frames [NAME=VALUE ...] [then NAME=VALUE ...]      prints a JSON object a run: bricks, and of each frame its
+//   cache_frames [NAME=VALUE ...] [then NAME=VALUE ...]      prints a JSON object per run: bricks, and for each frame
+//   its
 //                                                            ms and each unit's [waited for, ahead, us waited]
 //
-// Units are ranks of one process, each with a cache, a share of the picture and a thread of its own, as frames follow
+// Units are ranks of one process, each with a cache, a share of the image and a thread of its own, and frames follow
 // each other at once. The volume is in memory; `read_us` is how long a unit waits for each brick, one after the other:
-// a slower disk, or the thesis's way to texture memory. Values and their defaults are those of `Run`.
+// it simulates a slower disk, or the thesis's path to texture memory. Values and their defaults are those of `Run`.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,7 +35,7 @@ namespace {
 
 using namespace tessera;
 
-/// What a run is of: words first, then numbers.
+/// The parameters of a run: strings first, then numbers.
 struct Run {
   std::map<std::string, std::string> words{{"volume", "head"}, {"cache", "lru"}, {"animation", "turn"}};
   std::map<std::string, double> numbers{{"n", 128},     {"brick", 8},   {"units", 4},   {"size", 512},  {"frames", 60},
@@ -55,7 +56,7 @@ struct Run {
   [[nodiscard]] int whole(const char* name) const { return static_cast<int>(numbers.at(name)); }
 };
 
-/// Another's samples, each read of which takes a while; one at a time.
+/// Another source's samples; each read takes a while, one at a time.
 class ThrottledSource final : public scene::SampleSource {
  public:
   ThrottledSource(const scene::SampleSource& source, double read_us)
@@ -75,7 +76,7 @@ class ThrottledSource final : public scene::SampleSource {
   mutable std::mutex one_at_a_time_;
 };
 
-/// A volume, and what a scan of it found.
+/// A volume with the results of scanning it.
 struct Scanned {
   std::unique_ptr<scene::MemorySource> source;
   std::shared_ptr<const volume::CellRanges> ranges;
@@ -90,14 +91,14 @@ Scanned scanned(const Run& run) {
   return scanned;
 }
 
-/// Those that datasets/volume_fields.hpp names, thin enough that few rays end early.
+/// The functions named in datasets/volume_fields.hpp, thin enough that few rays end early.
 scene::TransferFunction function_of(const std::string& volume) {
   if (volume == "head") return scene::TransferFunction({{64, {0.8, 0.5, 0.4}, 0}, {255, {1, 1, 0.9}, 2}});
   return scene::TransferFunction({{76.5, {0.2, 0.4, 0.9}, 0}, {127.5, {1, 1, 1}, 2}, {178.5, {0.9, 0.4, 0.2}, 0}});
 }
 
-/// turn: round the x axis, the volume as large as the picture, `degrees` a frame. zoom: from far away to the middle
-/// and back, as often as a turn of `degrees` comes round. explore: all of it, and panning, as somebody looking about.
+/// turn: around the x axis, the volume as large as the image, `degrees` per frame. zoom: from far away to the middle
+/// and back, as often as a turn of `degrees` is completed. explore: all of these, and panning, like a user exploring.
 scene::Camera camera_at(const Run& run, int frame) {
   const double angle = glm::radians(run.numbers.at("degrees")) * frame;
   scene::Camera camera;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ray caster of regular grids: time of a 1024x1024 picture of 256^3 samples in memory, and CPU nanoseconds a voxel
-// visited, of all threads together; for each method, asked accuracy and kind of sample, shaded or not, and with an
-// opaque and a sparse transfer function, where early ends and skipped space show.
+// The ray caster of regular grids: time of a 1024x1024 image of 256^3 samples in memory, and CPU nanoseconds per
+// visited voxel, over all threads; for each method, requested accuracy and sample type, shaded or not, and with an
+// opaque and a sparse transfer function, which show the effect of early termination and empty space skipping.
 //
 //   cast_volume_bench [--benchmark_filter=auto]      TESSERA_BENCH_VOLUME=n for n^3 samples, TESSERA_BENCH_THREADS=t
 //
-// View and transfer function are those of all speed figures (bench/camera.txt, bench/transfer_function.txt).
+// View and transfer function are those of all performance figures (bench/camera.txt, bench/transfer_function.txt).
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -39,7 +39,7 @@ std::unique_ptr<scene::SampleSource> ripples(int bits) {
   return bits == 8 ? kept(std::uint8_t{}) : kept(float{});
 }
 
-/// bench/transfer_function.txt, or one that is opaque or clear but for its ends.
+/// bench/transfer_function.txt, or one that is opaque, or clear except at its ends.
 scene::TransferFunction function(const std::string& kind, double scale) {
   std::vector<scene::Knot> knots = {{0.0, {0.0, 0.0, 0.3}, 0.0}, {0.3, {0.1, 0.3, 0.9}, 0.4},
                                     {0.5, {0.2, 0.9, 0.3}, 0.0}, {0.7, {0.9, 0.8, 0.1}, 3.0},

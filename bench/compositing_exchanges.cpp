@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What parts of a picture take on their way to the pixels that are composited of them, by several exchanges, for
+// The cost of sending parts of an image to the pixels composited from them, by several exchanges, for
 // bench/exchanges.py:
 //
-//   direct-send   exchange/direct/direct_send.hpp, as `--distribution sort-last` has it
+//   direct-send   exchange/direct/direct_send.hpp, as used by `--distribution sort-last`
 //   binary-swap   Ma, Painter, Hansen, Krogh, "Parallel Volume Rendering Using Binary-Swap Compositing" (1994): rounds
 //   of
-//                 pairs, which give each other halves of what they have; for numbers of ranks that are no power of two
-//                 the rounds are of their prime factors
+//                 pairs that exchange halves of what they have; for numbers of ranks that are not a power of two, the
+//                 rounds use their prime factors
 //   radix-k       Peterka, Goodell, Ross, Shen, Thakur, "A Configurable Algorithm for Parallel Image-Compositing
-//                 Applications" (2009): rounds of four where the number of ranks lets them, direct send within a round
-//   runs          meshes: ray segments that touch, composited, from N projectors to N compositors of tiles, each rank
-//   as
-//                 on a machine of its own
+//                 Applications" (2009): rounds of four if the number of ranks allows, direct send within a round
+//   runs          meshes: composited runs of touching ray segments from N projectors to N compositors of tiles, each
+//   rank
+//                 as if on its own machine
 //
-//   compositing_exchanges [NAME=VALUE ...]     prints a JSON object a number of ranks and exchange; names and defaults
+//   compositing_exchanges [NAME=VALUE ...]     prints a JSON object per number of ranks and exchange; names and
+//   defaults
 //                                              are those of `Run`
 //
-// Ranks are threads of one process; bytes and messages are exact, CPU time is that of the rank that has most, the least
-// of three repetitions. All exchanges pack pixels without loss and send of each packet the rectangle in which a part
-// shows. `error` is the largest difference from the picture of the whole in one process.
+// Ranks are threads of one process; bytes and messages are exact, CPU time is that of the rank with most, the minimum
+// of three repetitions. All exchanges pack pixels losslessly and send of each packet only the rectangle in which a part
+// is visible. `error` is the largest difference from the image of the whole rendered by one process.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -91,20 +92,20 @@ PixelRect hull(const PixelRect& a, const PixelRect& b) {
   return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
 }
 
-/// A picture in parts, one a rank.
+/// An image in parts, one per rank.
 struct Parts {
   std::vector<scene::Image> images;
-  std::vector<PixelRect> own;  ///< where each shows
+  std::vector<PixelRect> own;  ///< where each part is visible
   std::vector<int> order;      ///< ranks, front to back
   PixelRect area{};
-  scene::Image whole;  ///< by one process
+  scene::Image whole;  ///< rendered by one process
 };
 
-/// What an exchange took.
+/// The cost of an exchange.
 struct Cost {
-  std::uint64_t bytes = 0, messages = 0;  ///< of all ranks
-  std::uint64_t most_bytes = 0;           ///< that a rank sent
-  double cpu_seconds = 0;                 ///< of the rank that has most
+  std::uint64_t bytes = 0, messages = 0;  ///< over all ranks
+  std::uint64_t most_bytes = 0;           ///< sent by one rank
+  double cpu_seconds = 0;                 ///< of the rank with most
   double error = 0;
 
   void add(std::uint64_t rank_bytes, std::uint64_t rank_messages, double rank_seconds) {
@@ -113,8 +114,8 @@ struct Cost {
   }
 };
 
-/// Ranks that meet in each round: factors of the number of ranks, `wanted` where it divides what is left, else the next
-/// smaller one that does, else the next larger one.
+/// Sizes of the groups in each round: factors of the number of ranks, `wanted` if it divides the remaining number,
+/// otherwise the next smaller divisor, otherwise the next larger one.
 std::vector<int> radices_of(int ranks, int wanted) {
   std::vector<int> radices;
   while (ranks > 1) {
@@ -128,10 +129,10 @@ std::vector<int> radices_of(int ranks, int wanted) {
   return radices;
 }
 
-/// One rank's part in rounds of swaps. Two ranks meet in one round only, so a message's sender says which it is of.
+/// One rank's part in rounds of swaps. Two ranks meet in only one round, so the sender identifies a message's round.
 class Swap {
  public:
-  /// `scratch` may be of any size, and is worth keeping.
+  /// `scratch` may have any size, and should be reused.
   Swap(Transport& transport, const Parts& parts, std::vector<int> radices, scene::Image& scratch)
       : transport_(transport),
         scratch_(scratch),
@@ -141,7 +142,7 @@ class Swap {
                                 parts.order.begin())),
         came_(parts.order.size()) {}
 
-  /// The region of `image` that is composited then.
+  /// Returns the region of `image` that is composited.
   PixelRect run(scene::Image& image) {
     PixelRect region = parts_.area;
     int stride = 1;
@@ -164,7 +165,7 @@ class Swap {
   std::uint64_t bytes = 0, messages = 0;
 
  private:
-  /// Where any of `stride` ranks of the depth order shows, which have been composited.
+  /// Where any of `stride` consecutive ranks in depth order, which have been composited, is visible.
   [[nodiscard]] PixelRect block(int number, int stride) const {
     PixelRect all{0, 0, 0, 0};
     for (int place = number * stride; place < (number + 1) * stride; ++place)
@@ -222,7 +223,7 @@ double difference(const scene::Image& a, const scene::Image& b, const PixelRect&
   return most;
 }
 
-/// `composite(transport, image, cost)` gives the rank's finished region.
+/// `composite(transport, image, cost)` returns the rank's finished region.
 template <class Composite>
 Cost measured(const Parts& parts, const Composite& composite) {
   Cost least;
@@ -396,7 +397,7 @@ Parts pictures_of(const MeshParts& meshes, const Settings& settings, const scene
   return parts;
 }
 
-/// Runs from N projectors to N compositors; `fragments` gets how many.
+/// Runs from N projectors to N compositors; `fragments` receives their number.
 std::vector<Cost> runs(const MeshParts& parts, const scene::MeshFacts& facts, const Settings& settings,
                        const scene::TransferFunction& function, std::span<const frame::FrameJob> jobs,
                        std::span<const Parts> views, std::uint64_t& fragments) {

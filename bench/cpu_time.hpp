@@ -5,7 +5,7 @@
 
 namespace tessera::bench {
 
-/// Seconds of processor time, in which other work on the machine counts less than in wall time.
+/// Seconds of processor time, which other work on the machine affects less than wall time.
 inline double seconds_of(clockid_t clock) {
   timespec now;
   clock_gettime(clock, &now);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nanoseconds a ray segment of the exact integrators: float lanes beside double, by instruction set, number of knots
-// and share of segments that cross a knot. Batches stay in the L1 cache; optical depths are 1e-3 to 0.3.
+// Nanoseconds per ray segment of the exact integrators: float lanes compared with double, by instruction set, number of
+// knots and fraction of segments that cross a knot. Batches stay in the L1 cache; optical depths are 1e-3 to 0.3.
 //
 //   integrate_lanes_bench --benchmark_filter=AVX3
 //
-// `smooth`: neighbouring segments have neighbouring scalars, as in a picture; `random`: they have not.
+// `smooth`: neighbouring segments have neighbouring scalars, as in an image; `random`: they have not.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <hwy/targets.h>
@@ -37,7 +37,7 @@ struct Segment {
   float length, front, back;
 };
 
-/// Segments of which a share crosses one knot; the others keep within an interval.
+/// Segments of which a fraction crosses one knot; the others stay within an interval.
 std::vector<Segment> segments_of(int knots, double share, bool smooth) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> uniform(0, 1);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The lattice path's kernels: nanoseconds a cell (set up and rasterized), a segment (scattered to its pixel's window)
-// and a segment (sorted, integrated, composited), by the mean size of a cell in pixels and by instruction set, on one
-// thread; and whole frames on one and two threads.
+// The lattice path's kernels: nanoseconds per cell (set up and rasterized), per segment (scattered to its pixel's
+// window) and per segment (sorted, integrated, composited), by the mean size of a cell in pixels and by instruction
+// set, on one thread; and whole frames on one and two threads.
 //
 //   lattice_bench --benchmark_filter=composite/.*AVX3
 //
-// Mesh: cube 32 (TESSERA_BENCH_CUBE=n for another); view and transfer function are those of all speed figures, the
-// image is as large as the size in pixels asks. For the machine's own limits beside them: machine_bench.
+// Mesh: cube 32 (TESSERA_BENCH_CUBE=n for another); view and transfer function are those of all performance figures;
+// the cell size in pixels determines the image size. For the machine's own limits see machine_bench.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <hwy/targets.h>
@@ -82,7 +82,7 @@ struct Frame {
   scene::Lattice lattice{};
   projection::LatticeView view{};
   std::unique_ptr<projection::TileLists> lists;
-  std::vector<std::vector<projection::TileEntry>> ordered;  ///< of each tile
+  std::vector<std::vector<projection::TileEntry>> ordered;  ///< per tile
   std::vector<double> slack;
   std::size_t entries = 0;
 };
@@ -117,7 +117,7 @@ void run_tiles(Frame& f, Stages& stages) {
           final_step < std::numeric_limits<std::int64_t>::max() ? 3 * windows.capacity() / 4 : 1, *state, timer);
       stages.composite += seconds_since(start);
     };
-    constexpr std::size_t at_once = 256;  // cells between looks at the clock
+    constexpr std::size_t at_once = 256;  // cells between clock reads
     for (std::size_t from = 0; from < entries.size(); from += at_once) {
       const auto cells = entries.subspan(from, std::min(at_once, entries.size() - from));
       stream.size = 0;

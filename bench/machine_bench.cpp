@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the machine can do, for figures in percent of it: fused multiply-adds of single precision (GFLOP/s) and the
-// STREAM triad a = b + s * c (GB/s, three arrays that no cache holds, what is read to be written counted too), on one
-// and two threads, by instruction set.
+// The machine's limits, for figures in percent of it: fused multiply-adds of single precision (GFLOP/s) and the STREAM
+// triad a = b + s * c (GB/s, three arrays larger than any cache, including the read before each write), on one and two
+// threads, by instruction set.
 //
 //   machine_bench
 #include <benchmark/benchmark.h>
@@ -19,13 +19,13 @@ namespace tessera::bench {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// `rounds` multiply-adds on each of twelve vectors: enough to hide four cycles of latency on two ports. Returns
-/// floating point operations done.
+/// `rounds` multiply-adds on each of twelve vectors: enough to hide four cycles of latency on two ports. Returns the
+/// number of floating point operations.
 double multiply_add(std::size_t rounds, float* sink) {
   const hn::ScalableTag<float> d;
   using V = hn::Vec<decltype(d)>;
   const V factor = hn::Set(d, 0.999f), term = hn::Set(d, 1e-3f);
-  // All different, or a compiler computes one for all.
+  // All different; otherwise a compiler computes one for all.
   const auto start = [&](int i) HWY_ATTR { return hn::Set(d, static_cast<float>(i)); };
   V a = start(1), b = start(2), c = start(3), e = start(4), f = start(5), g = start(6), h = start(7), i = start(8),
     j = start(9), k = start(10), l = start(11), m = start(12);
@@ -60,7 +60,7 @@ HWY_EXPORT(multiply_add);
 HWY_EXPORT(triad);
 namespace {
 
-/// Runs `work(thread)` on so many threads at once and waits for all.
+/// Runs `work(thread)` on several threads at once and waits for all.
 template <class Work>
 void on_threads(int threads, Work work) {
   std::vector<std::thread> others;
@@ -87,7 +87,7 @@ void flops(benchmark::State& state) {
 
 void bandwidth(benchmark::State& state) {
   const auto threads = static_cast<int>(state.range(0));
-  const std::size_t n = std::size_t{1} << 25;  // 128 MiB an array
+  const std::size_t n = std::size_t{1} << 25;  // 128 MiB per array
   std::vector<float> a(n), b(n, 1), c(n, 2);
   for (auto _ : state) {
     on_threads(threads, [&](int t) {
@@ -96,7 +96,7 @@ void bandwidth(benchmark::State& state) {
     });
     benchmark::ClobberMemory();
   }
-  // Two arrays read, one written, which is read first.
+  // Two arrays read, and one written, which is also read first.
   state.counters["GB_s"] = benchmark::Counter(static_cast<double>(state.iterations()) * 16e-9 * static_cast<double>(n),
                                               benchmark::Counter::kIsRate);
 }

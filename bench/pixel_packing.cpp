@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What finished pixels take on their way to the rank that puts the picture together (exchange/packed_pixels.hpp):
-/// bytes a pixel, and nanoseconds a pixel of one core to pack and unpack them beside appending and placing them as they
-/// are.
+/// The cost of sending finished pixels to the rank that assembles the image (exchange/packed_pixels.hpp): bytes per
+/// pixel, and nanoseconds per pixel of one core to pack and unpack them, compared with copying them unpacked.
 ///
-/// Usage: pixel_packing PICTURE.exr ...; prints one Markdown row a picture. Times are processor time, the least of some
-/// repetitions. Tiles of 32 x 32 pixels, as a run has them, in a random order, as they come; tiles in which nothing is
-/// count with their pixels and not with bytes or time, as compositors do not send them.
+/// Usage: pixel_packing PICTURE.exr ...; prints one Markdown row per image. Times are processor time, the minimum of
+/// some repetitions. Tiles of 32 x 32 pixels as in a run, in random order, as they arrive; empty tiles count with their
+/// pixels but without bytes or time, because compositors do not send them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,7 +31,7 @@ bool is_empty(const Image& image, const PixelRect& rect) {
   return true;
 }
 
-/// A picture's tiles with something in them, each an image as compositors have it.
+/// An image's non-empty tiles, each an image as in compositors.
 struct Tiles {
   std::vector<PixelRect> rects;
   std::vector<Image> images;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The error of the `scanline` rasterizer (Juliachs et al. 2007, 4.1-4.2) and where it comes from, and its time beside
+/// The error of the `scanline` rasterizer (Juliachs et al. 2007, 4.1-4.2) and its sources, and its time compared with
 /// `planes`.
 ///
-/// Usage: scanline_error [IMAGE_HEIGHT] [MESH_FILE ...]; prints one Markdown row a mesh. Times are processor time.
+/// Usage: scanline_error [IMAGE_HEIGHT] [MESH_FILE ...]; prints one Markdown row per mesh. Times are processor time.
 ///
-/// Cells on a ray are compared with those of `planes`, which are the reference's (tests/projection). Three pictures are
+/// Cells on a ray are compared with those of `planes`, which are the reference's (tests/projection). Three images are
 /// made with the `exact` integrator and compared with that of `planes` (3e-8 from the reference): from the segments of
-/// `scanline`; from those of `planes` rounded to the four floats of the tuple, which is what the format costs alone;
-/// and from those of `scanline` on pixels whose cells are all right, which leaves out the lost and added ones.
+/// `scanline`; from those of `planes` rounded to the four floats of the tuple, which is the error of the format alone;
+/// and from those of `scanline` on pixels whose cells are all correct, which excludes the lost and added ones.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,10 +37,10 @@ struct Picture {
   std::uint64_t segments = 0;
 };
 
-struct Cells {  ///< of scanline against planes
+struct Cells {  ///< cells of scanline compared with planes
   std::uint64_t lost = 0, added = 0, unpaired = 0;
   std::uint64_t pixels = 0, pixels_lost = 0, pixels_added = 0;
-  std::vector<std::uint8_t> wrong;  ///< by pixel of the picture
+  std::vector<std::uint8_t> wrong;  ///< per pixel of the image
 };
 
 /// Rounds a segment to {z_back, length over the longest edge, s_front, s_back} in float.
@@ -125,7 +125,7 @@ void measure(const std::string& name, const scene::TetMesh& mesh, const scene::C
   for (std::size_t tile = 0; tile < grid.count(); ++tile) {
     if (lists.entry_count(tile) == 0) continue;
     segments.reserve(8192);
-    Picture untimed;  // both meet the same warm buffers
+    Picture untimed;  // both use the same warm buffers
     rasterize(tile, false, untimed);
     rasterize(tile, true, scanline);
     const auto found = sorted_keys(segments);
@@ -181,7 +181,7 @@ int main(int argc, char** argv) {
   scene::Camera oblique;
   oblique.position = {3.1, 2.3, 4.2};
   oblique.parallel_scale = 1.8;
-  // Down the axis of the regular split with voxel corners on pixel centres: a voxel is 1/16 wide, and height / 64
+  // Along the axis of the regular split with voxel corners on pixel centres: a voxel is 1/16 wide, and height / 64
   // pixels.
   scene::Camera along;
   const double pixel = 4.0 / height, shift = 0.5 * pixel;

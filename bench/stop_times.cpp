@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How long a frame goes on after it was asked to stop, at random times, through the public interface:
+// How long a frame continues after a stop was requested, at random times, through the public interface:
 //   stop_times FILE [STOPS] [WIDTH] [compute|fragment]   prints ms at 50, 95, 99 and 100 per cent of the stops
-//   mpirun -n 4 stop_times ...   ranks in turn ask, and the last to return counts
-// A third word has OpenGL (OSMesa) composite. Ends with status 1 if a frame after a stop has other bits than one that
-// was not.
+//   mpirun -n 4 stop_times ...   ranks request in turn, and the last to return counts
+// The last argument makes OpenGL (OSMesa) composite. Exits with status 1 if a frame after a stop differs in any bit
+// from one without.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -20,9 +20,9 @@
 
 namespace {
 
-using Clock = std::chrono::steady_clock;  // one for all processes of a machine
+using Clock = std::chrono::steady_clock;  // shared by all processes of a machine
 
-/// Of rank `root`.
+/// The value of rank `root`.
 Clock::rep shared(tessera::Job& job, int root, Clock::rep value) {
   std::vector<std::byte> bytes(sizeof value);
   std::memcpy(bytes.data(), &value, sizeof value);

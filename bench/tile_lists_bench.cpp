@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a frame does before its first ray segment: vertices to pixels, cull and count, fill, order. CPU nanoseconds of
-// all threads together, a vertex (transform), a tet (cull, fill) or an entry of a list (order); by threads, by
-// instruction set, and with the transfer function that shows 5 % of the cells. For cull and fill also what they read:
-// 64 threads on fewer cores do the work that they would do on 64.
+// The work of a frame before its first ray segment: project vertices, cull and count, fill, order. CPU nanoseconds over
+// all threads, per vertex (transform), tet (cull, fill) or list entry (order); by threads, by instruction set, and with
+// the transfer function that shows 5 % of the cells. For cull and fill also the amount read: 64 threads on fewer cores
+// do the same work as on 64.
 //
 //   tile_lists_bench [MESH_FILE] --benchmark_filter=cull
 //
-// Meshes: cube 64 (TESSERA_BENCH_CUBE=n for another) as it is made and with its cells and vertices in random order, or
-// a file's. View and transfer function are those of all speed figures; tiles of 32 pixels.
+// Meshes: cube 64 (TESSERA_BENCH_CUBE=n for another) as generated and with its cells and vertices in random order, or a
+// file's. View and transfer function are those of all performance figures; tiles of 32 pixels.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <hwy/targets.h>
@@ -37,7 +37,7 @@ namespace {
 
 using namespace tessera;
 
-/// The same mesh with nothing near its neighbours in memory.
+/// The same mesh with neighbours far apart in memory.
 scene::TetMesh shuffled(const scene::TetMesh& mesh) {
   std::mt19937 random(1);
   std::vector<std::uint32_t> vertex(mesh.positions.size());
@@ -54,7 +54,7 @@ scene::TetMesh shuffled(const scene::TetMesh& mesh) {
   return out;
 }
 
-/// Shows only the highest scalars, of 5 % of the cells.
+/// Shows only the highest scalars, in 5 % of the cells.
 scene::TransferFunction five_percent(const scene::TetMesh& mesh) {
   std::vector<double> highest;
   for (const scene::Tet& t : mesh.tets)
@@ -92,7 +92,7 @@ struct Stage {
   projection::TileListBuffers buffers;
 };
 
-/// Runs `work` in an arena of as many threads as the benchmark's argument; `count` things a run.
+/// Runs `work` in an arena with as many threads as the benchmark's argument; `count` items per run.
 template <class Work>
 void measure(benchmark::State& state, const char* each, Work work) {
   tbb::task_arena arena(static_cast<int>(state.range(0)));
@@ -116,7 +116,7 @@ void transform(benchmark::State& state, Stage& s) {
   });
 }
 
-/// What was read, a tet, between two counts; `serial`: of that, while all threads but one wait.
+/// Reports the reads per tet between two counts; `serial`: those while all threads but one wait.
 void show_reads(benchmark::State& state, const Stage& s, const projection::TileListReads& before,
                 const projection::TileListReads& after) {
   const auto tets = static_cast<double>(s.mesh.tets.size());
@@ -136,7 +136,7 @@ void cull(benchmark::State& state, Stage& s, const scene::TransferFunction& func
 }
 
 void fill(benchmark::State& state, Stage& s, const scene::TransferFunction& function) {
-  // Runs are as many as the arena that culls asks for.
+  // The arena that culls determines the number of runs.
   tbb::task_arena arena(static_cast<int>(state.range(0)));
   std::optional<projection::TileLists> made;
   arena.execute([&] { made.emplace(s.projected, s.grid, function, false, nullptr, &s.buffers); });
