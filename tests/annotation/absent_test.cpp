@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Without Cairo nothing is drawn, and that is said.
+// Without Cairo nothing is drawn, and this is reported.
 
 #include <gtest/gtest.h>
 

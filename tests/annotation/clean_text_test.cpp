@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any bytes become UTF-8 on one line, and fit where they should.
+// Any bytes become UTF-8 on one line, shortened to fit where necessary.
 
 #include <gtest/gtest.h>
 
@@ -19,8 +19,8 @@ TEST(CleanText, ShowsEachByteThatIsNoneAndBlanksControls) {
   EXPECT_EQ(clean_text("a\xFF"
                        "b"),
             "a" + mark + "b");
-  EXPECT_EQ(clean_text("\xC3"), mark);                                   // cut short
-  EXPECT_EQ(clean_text("\xE2\x82"), mark + mark);                        // cut short
+  EXPECT_EQ(clean_text("\xC3"), mark);                                   // truncated
+  EXPECT_EQ(clean_text("\xE2\x82"), mark + mark);                        // truncated
   EXPECT_EQ(clean_text("\xC0\x80"), mark + mark);                        // overlong
   EXPECT_EQ(clean_text("\xE0\x80\x80"), mark + mark + mark);             // overlong
   EXPECT_EQ(clean_text("\xED\xA0\x80"), mark + mark + mark);             // surrogate

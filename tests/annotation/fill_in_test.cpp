@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Words in braces.
+// Placeholders in braces.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is drawn is where and what it should be: by pixels of finished pictures.
+// Position and colour of everything drawn, checked by the pixels of finished images.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace {
 
 const Box box{{-1, -2, -3}, {4, 5, 6}};
 
-/// By hand: the pixel of a point.
+/// Computed independently: the pixel of a point.
 glm::dvec2 pixel_of(const View& view, const glm::dvec3& p) {
   const Camera& c = view.camera;
   const glm::dvec3 forward = glm::normalize(c.focal_point - c.position);
@@ -49,7 +49,7 @@ TEST(AnnotatedPicture, TheOutlinesEdgesAreWhereTheCameraSeesThem) {
     std::vector<char> near_an_edge(layer.depth.size());
     const glm::dvec3 forward = glm::normalize(view.camera.focal_point - view.camera.position);
     int on_picture = 0;
-    constexpr int reach = 6;  // of ink and halo, whatever the size
+    constexpr int reach = 6;  // of ink and halo, independent of the size
     for (int bits = 0; bits < 8; ++bits)
       for (int axis = 0; axis < 3; ++axis) {
         if ((bits >> axis & 1) != 0) continue;
@@ -66,7 +66,7 @@ TEST(AnnotatedPicture, TheOutlinesEdgesAreWhereTheCameraSeesThem) {
               near_an_edge[layer.index(u, v)] = 1;
           if (x < 0 || y < 0 || x >= view.size.width || y >= view.size.height) continue;
           ++on_picture;
-          // A line of a pixel's width through a point covers its pixel and those beside it by one in all.
+          // A line one pixel wide through a point covers its pixel and the neighbours by one in total.
           float ink = 0;
           for (int v = std::max(y - 1, 0); v <= std::min(y + 1, view.size.height - 1); ++v)
             for (int u = std::max(x - 1, 0); u <= std::min(x + 1, view.size.width - 1); ++u)
@@ -90,7 +90,7 @@ TEST(AnnotatedPicture, EdgesBehindTheDataAreSeenThroughIt) {
   Image opaque = plain_picture(view.size, 0.25F, 1), half = plain_picture(view.size, 0.25F, 0.5F);
   annotate(opaque, outline, view, box, {});
   annotate(half, outline, view, box, {});
-  // The far corner hides behind everything; the near one is before it. Both are well inside the outline.
+  // The far corner is behind everything; the near one is in front. Both are well inside the outline.
   const ViewBasis basis = view_basis(view.camera);
   int far = 0, near = 0;
   for (int bits = 0; bits < 8; ++bits) {
@@ -123,7 +123,7 @@ TEST(AnnotatedPicture, TheScaleBarIsAsLongAsItsNumberSays) {
   struct Case {
     Camera camera;
     ImageSize size;
-    double length;  ///< world units: the longest 1, 2 or 5 times ten to something that is at most a quarter wide
+    double length;  ///< world units: the longest 1, 2 or 5 times a power of ten that is at most a quarter wide
   };
   // Orthographic: 2.5 pixels a unit of 800: at most 80 units. Perspective: the window at the focal point is 20 high.
   for (const Case& c : {Case{orthographic({0, 0, 1}, {}, 120), {800, 600}, 50},
@@ -133,7 +133,7 @@ TEST(AnnotatedPicture, TheScaleBarIsAsLongAsItsNumberSays) {
     const View view{c.camera, c.size};
     const Image layer = annotation_layer(empty_picture(c.size), annotation, view, {}, {});
     const double window = c.camera.projection == ProjectionKind::perspective ? 20 : 2 * c.camera.parallel_scale;
-    double longest = 0;  // row of most ink
+    double longest = 0;  // row with the most ink
     for (int y = 0; y < c.size.height; ++y) {
       double row = 0;
       for (int x = 0; x < c.size.width; ++x) row += black_ink(layer, x, y);
@@ -144,7 +144,7 @@ TEST(AnnotatedPicture, TheScaleBarIsAsLongAsItsNumberSays) {
   }
 }
 
-/// The bar's colours, from its low end up. They are all that has exactly this green.
+/// The bar's colours, from its low end up: all pixels with exactly this green.
 std::vector<glm::vec3> bar_colors(const Image& layer, bool upright, float green) {
   std::vector<glm::vec3> colors, along;
   const int outer = upright ? layer.size.width : layer.size.height,
@@ -175,7 +175,7 @@ TEST(AnnotatedPicture, TheColourBarHasTheTransferFunctionsColours) {
         const double t = (static_cast<double>(i) + 0.5) / static_cast<double>(colors.size());
         const double value = logarithmic ? std::pow(10, 3 * t) : 1 + 999 * t;
         const glm::vec3 color = function.evaluate(value).color;
-        // Floats; the logarithmic value errs by some 1e-15, colours change by 2 over 990.
+        // Floats; the logarithmic value has an error of some 1e-15, colours change by 2 over 990.
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(colors[i][c], color[c], 1e-6) << i << " of " << colors.size();
       }
     }

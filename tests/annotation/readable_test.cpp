@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Text is read on any background and over any data, by the contrast of WCAG 2: (lighter + 0.05) / (darker + 0.05).
+// Text is readable on any background and over any data, by the contrast of WCAG 2: (lighter + 0.05) / (darker + 0.05).
 
 #include <gtest/gtest.h>
 
@@ -23,10 +23,10 @@ TEST(Readable, InkStandsOutFromItsBackgroundAndItsHalo) {
         style.background = glm::dvec3(r, g, b) / 10.0;
         const Ink ink(style);
         const double text = luminance(ink.color(Pen::ink));
-        // 4.5 is what WCAG asks of text.
+        // WCAG requires 4.5 for text.
         EXPECT_GE(contrast(text, luminance(*style.background)), 4.5);
         EXPECT_GE(contrast(text, luminance(ink.halo())), 4.5);
-        // 3 is what it asks of graphics.
+        // WCAG requires 3 for graphics.
         for (const Pen pen : {Pen::x_axis, Pen::y_axis, Pen::z_axis})
           EXPECT_GE(contrast(luminance(ink.color(pen)), luminance(*style.background)), 3);
       }
@@ -48,7 +48,7 @@ TEST(Readable, AColourThatIsAskedForIsTakenAndGetsAHaloThatDiffers) {
   }
 }
 
-/// The darkest and the lightest of the pixels, as the page shows it through the picture.
+/// The darkest and the lightest of the pixels, as composited over a page.
 std::array<double, 2> extremes(const Image& picture, double page) {
   double low = 1e9, high = -1e9;
   for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
@@ -71,14 +71,14 @@ TEST(Readable, TransparentPicturesAreReadOnAnyPageAndOverAnyData) {
         Image picture = plain_picture(view.size, light * alpha, alpha);
         annotate(picture, text, view, {}, {});
         const auto [low, high] = extremes(picture, page);
-        // Ink and its halo beside each other, whatever is behind.
+        // Ink next to its halo, whatever is behind.
         EXPECT_GE(contrast(low, high), 4.5) << light << " " << alpha << " " << page;
       }
 }
 
 TEST(Readable, DisplayValuesAreJudgedByTheLightTheyAre) {
   AnnotationStyle style;
-  style.background = glm::dvec3(0.3);  // as light bright enough for black, as a display value dark
+  style.background = glm::dvec3(0.3);  // bright enough for black text in linear light, but dark as a display value
   EXPECT_EQ(Ink(style).color(Pen::ink), glm::dvec3(0));
   style.display_colors = true;
   EXPECT_EQ(Ink(style).color(Pen::ink), glm::dvec3(1));

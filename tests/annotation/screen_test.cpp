@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where points of the world are on the picture, against the ray of that pixel.
+// Positions of world points in the image, compared with the ray of that pixel.
 
 #include "annotation/screen.hpp"
 
@@ -15,7 +15,7 @@
 namespace tessera::annotation {
 namespace {
 
-/// A point on the ray of a pixel's place, as VTK's words define a view.
+/// A point on the ray through a pixel position, for a view as defined by VTK.
 glm::dvec3 on_ray(const View& view, const glm::dvec2& pixel, double depth) {
   const ViewBasis basis = view_basis(view.camera);
   const double height = view.size.height, width = view.size.width;
@@ -54,7 +54,8 @@ TEST(Screen, APointOfAPixelsRayIsAtThatPixel) {
       for (const double depth : {0.01, 1.0, 100.0}) {
         const auto at = screen.pixel(on_ray(view, pixel, depth * distance));
         ASSERT_TRUE(at);
-        // Doubles: positions err by 1e-16 of the largest distance, which the nearest depth and width see 1e4 times.
+        // Doubles: positions have errors of 1e-16 of the largest distance, magnified 1e4 times by the smallest depth
+        // and width.
         EXPECT_NEAR(at->x, pixel.x, 1e-7);
         EXPECT_NEAR(at->y, pixel.y, 1e-7);
       }
@@ -91,7 +92,7 @@ TEST(Screen, ALineIsCutWhereItLeavesThePictureAndBeforeTheEye) {
   EXPECT_NEAR((*across)[0].x, -4, 1e-9);
   EXPECT_NEAR((*across)[1].x, 204, 1e-9);
   EXPECT_NEAR((*across)[0].y, 45, 1e-9);
-  // Through the eye's plane: what is before it goes off to the right.
+  // Through the eye's plane: the part in front extends to the right without end.
   const auto towards = screen.segment({1, 0, 0}, {1, 0, 20}, 4);
   ASSERT_TRUE(towards);
   EXPECT_NEAR((*towards)[0].x, 105, 1e-9);
@@ -109,8 +110,8 @@ TEST(Screen, EdgesOfABoxAreBehindItIfBothFacesLookAway) {
       if (faces_towards_eye(screen, box, edge) == 0) ++count;
     return count;
   };
-  // Seen from a corner three edges meet in the far one; head on, in perspective, the far face has four; from inside
-  // all.
+  // Hidden edges: seen from a corner, three edges meet in the far corner; head on, in perspective, the far face has
+  // four; from inside all are hidden.
   EXPECT_EQ(behind(orthographic({5, 4, 3}, {}, 1)), 3);
   EXPECT_EQ(behind(perspective({5, 4, 3}, {}, 30)), 3);
   EXPECT_EQ(behind(perspective({5, 4, 0}, {}, 30)), 5);

@@ -22,10 +22,10 @@ inline Camera perspective(const glm::dvec3& position, const glm::dvec3& focal_po
   return camera;
 }
 
-/// A picture of no data.
+/// An image without data.
 inline Image empty_picture(ImageSize size) { return Image(size); }
 
-/// Every pixel the same premultiplied colour.
+/// An image in which every pixel has the same premultiplied colour.
 inline Image plain_picture(ImageSize size, float light, float alpha) {
   Image image(size);
   for (std::size_t i = 0; i < image.rgba.size(); ++i) image.rgba[i] = i % 4 == 3 ? alpha : light;
@@ -45,13 +45,13 @@ inline Image noise(ImageSize size, unsigned seed) {
   return image;
 }
 
-/// How much of a pixel black ink covers, of a layer whose halo is white: c + h (1 - c) less h (1 - c).
+/// How much of a pixel black ink covers, in a layer whose halo is white: c + h (1 - c) minus h (1 - c).
 inline float black_ink(const Image& layer, int x, int y) {
   const float* pixel = &layer.rgba[4 * layer.index(x, y)];
   return pixel[3] - pixel[0];
 }
 
-/// All there is.
+/// All annotations.
 inline Annotation everything() {
   Annotation all;
   all.color_bar = ColorBar{.title = "pressure [Pa]"};

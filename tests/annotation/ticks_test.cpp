@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Round numbers: what holds of them for any range, and what some ranges get.
+// Round numbers: properties for any range, and results for some ranges.
 
 #include "annotation/ticks.hpp"
 
@@ -29,7 +29,7 @@ TEST(Ticks, AreWhatOneWouldWrite) {
   EXPECT_EQ(labels(linear_ticks(1e-9, 2e-9, 6)), (Words{"1e-9", "1.2e-9", "1.4e-9", "1.6e-9", "1.8e-9", "2e-9"}));
   EXPECT_EQ(labels(linear_ticks(7388000.5, 7388002.5, 5)),
             (Words{"7.3880005e6", "7.388001e6", "7.3880015e6", "7.388002e6", "7.3880025e6"}));
-  EXPECT_EQ(labels(linear_ticks(-1e-13, 1, 3)), (Words{"0.0", "0.5", "1.0"}));  // no -0.0
+  EXPECT_EQ(labels(linear_ticks(-1e-13, 1, 3)), (Words{"0.0", "0.5", "1.0"}));  // not -0.0
   EXPECT_EQ(labels(linear_ticks(42, 42, 5)), (Words{"42"}));
   EXPECT_EQ(labels(logarithmic_ticks(0.01, 100, 5)), (Words{"0.01", "0.1", "1", "10", "100"}));
   EXPECT_EQ(labels(logarithmic_ticks(1e-12, 1e12, 5)), (Words{"1e-10", "1e-5", "1", "1e5", "1e10"}));
@@ -48,7 +48,7 @@ TEST(Ticks, OfAnyRangeAreMultiplesOfOneRoundStepInItWithLabelsThatReadBack) {
     const int most = 2 + static_cast<int>(random() % 12);
     const std::vector<Tick> ticks = linear_ticks(low, high, most);
     ASSERT_LE(ticks.size(), static_cast<std::size_t>(most)) << low << " " << high;
-    // A step of 2 may be one tick too many where 5 gives but two fifths of them, and one for the ends.
+    // A step of 2 may give one tick too many where 5 gives only two fifths of them; one more for the ends.
     ASSERT_GE(static_cast<double>(ticks.size()), std::floor(0.4 * (most - 1)) - 1 + (most == 2 ? -1 : 0))
         << low << " " << high << " " << most;
     std::set<std::string> different;
@@ -71,7 +71,7 @@ TEST(Ticks, OfAnyRangeAreMultiplesOfOneRoundStepInItWithLabelsThatReadBack) {
     for (const Tick& tick : ticks) {
       ASSERT_NEAR(tick.value / step, std::round(tick.value / step), slack * (1 + std::abs(tick.value / step)))
           << tick.value << " step " << step;
-      // The label is the value, to a millionth of a step: what clamping to the range may take.
+      // The label equals the value to a millionth of a step, the effect of clamping to the range.
       ASSERT_NEAR(std::strtod(tick.label.c_str(), nullptr), tick.value, slack * step + 4e-16 * std::abs(tick.value))
           << tick.label;
     }
@@ -121,7 +121,7 @@ TEST(Ticks, ARoundLengthIsTheLargestThatFits) {
   for (int trial = 0; trial < 5000; ++trial) {
     const double limit = std::pow(10, exponent(random)), length = round_length(limit);
     ASSERT_LE(length, limit);
-    ASSERT_GT(2.5 * length * (1 + 1e-12), limit);  // from 2 to 5 is the widest gap
+    ASSERT_GT(2.5 * length * (1 + 1e-12), limit);  // 2 to 5 is the widest gap
   }
 }
 

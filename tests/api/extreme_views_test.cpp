@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Views, functions and data at the ends of what doubles hold: refused in words, or drawn in numbers.
+// Views, functions and data at the limits of doubles: refused with a message, or rendered to finite numbers.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -42,7 +42,7 @@ double any_magnitude(Random& random) {
   }
 }
 
-/// A view of the unit cube in which some numbers are anything.
+/// A view of the unit cube in which some numbers are arbitrary.
 Camera any_camera(Random& random) {
   Camera camera;
   camera.position = {0.4, 0.6, 5}, camera.focal_point = {0.5, 0.5, 0.5}, camera.view_up = {0, 1, 0};
@@ -59,7 +59,7 @@ Camera any_camera(Random& random) {
   return camera;
 }
 
-/// How many of `count` views were drawn.
+/// How many of `count` views were rendered.
 std::size_t draw_any(const Dataset& data, const Settings& settings, std::uint64_t seed, std::size_t count) {
   Random random(seed);
   Session session(data, settings);
@@ -119,7 +119,7 @@ TEST(ExtremeViews, OfGridsAreDrawnOrRefused) {
   EXPECT_GT(draw_any(grid, settings, 5, 500), 100u);
 }
 
-/// A function in which some numbers are anything.
+/// A function in which some numbers are arbitrary.
 TransferFunction any_function(Random& random) {
   const auto number = [&](double usual) { return random.uniform() < 0.15 ? any_magnitude(random) : usual; };
   std::vector<Knot> knots;
@@ -133,7 +133,7 @@ TransferFunction any_function(Random& random) {
   return TransferFunction(std::move(knots));
 }
 
-/// How many of `count` functions were drawn.
+/// How many of `count` functions were rendered.
 std::size_t draw_any_function(const Dataset& data, const Settings& settings, std::uint64_t seed, std::size_t count) {
   Random random(seed);
   Session session(data, settings);
@@ -164,7 +164,7 @@ TEST(ExtremeFunctions, AreDrawnOrRefused) {
   }
 }
 
-// A scale of a few subnormal numbers had pixels of infinite size, and tiles of no number.
+// A scale of a few subnormal numbers once led to pixels of infinite size, and a NaN number of tiles.
 TEST(ExtremeViews, PixelsWithoutASizeAreRefused) {
   const Dataset mesh = mesh_scaled_by(1);
   Session session(mesh, {});
@@ -176,7 +176,7 @@ TEST(ExtremeViews, PixelsWithoutASizeAreRefused) {
   }
   camera.parallel_scale = 1e-300;
   const RenderedFrame near = session.render({camera, {48, 48}}, function, {});
-  camera.parallel_scale = 1e-20;  // the same ray for every pixel, as far as positions are told apart
+  camera.parallel_scale = 1e-20;  // the same ray for every pixel, within the resolution of positions
   const RenderedFrame far = session.render({camera, {48, 48}}, function, {});
   for (std::size_t i = 0; i < near.image.rgba.size(); ++i)
     ASSERT_NEAR(near.image.rgba[i], far.image.rgba[i], 1e-4) << i;

@@ -51,12 +51,12 @@ TEST(Histogram, CountsWhatLiesInTheRangeAlone) {
 }
 
 TEST(Histogram, GoesByTheLogarithm) {
-  // 10^(2 x): the logarithm is even over -2 to 2.
+  // 10^(2 x): its logarithm is uniform over -2 to 2.
   const Dataset data = grid_of(65, [](const glm::dvec3& p) { return std::pow(10, 2 * p.x); });
   const Histogram found = histogram(data, {.bins = 8, .logarithmic = true});
   EXPECT_TRUE(found.logarithmic);
   for (const double share : found.shares) EXPECT_NEAR(share, 0.125, 0.01);
-  // What begins at or below 0 begins at the smallest positive value.
+  // A range that begins at or below 0 begins at the smallest positive value.
   const Histogram of_x = histogram(grid_of_x(), {.bins = 8, .logarithmic = true});
   EXPECT_GT(of_x.range[0], 0);
   EXPECT_NEAR(of_x.outside, 0.5, 0.02);
@@ -137,7 +137,7 @@ View view_from(const glm::dvec3& eye, bool perspective) {
   return view;
 }
 
-/// Opacity along a ray up to a depth, by another picture that ends there.
+/// Opacity along a ray up to a depth, from another image that ends there.
 double opacity_up_to(const Dataset& data, const View& view, PixelIndex pixel, double depth, const Settings& settings) {
   View cut = view;
   cut.camera.clipping_range = {0, depth};
@@ -145,7 +145,7 @@ double opacity_up_to(const Dataset& data, const View& view, PixelIndex pixel, do
   return image.rgba[4 * image.index(pixel.x, pixel.y) + 3];
 }
 
-/// `off`: how far the field may be from x.
+/// `off`: allowed deviation of the field from x.
 void expect_profile_holds(const RayProbe& probe, const Image& image, PixelIndex pixel, double off = 1e-5) {
   const std::size_t i = image.index(pixel.x, pixel.y);
   EXPECT_NEAR(probe.pixel.r, image.rgba[4 * i], 1e-4);
@@ -164,7 +164,7 @@ void expect_profile_holds(const RayProbe& probe, const Image& image, PixelIndex 
   ASSERT_TRUE(probe.front && probe.half);
   EXPECT_LE(probe.first->depth, probe.front->depth);
   EXPECT_LE(probe.front->depth, probe.half->depth);
-  // The field is x, and shown from -0.5 on.
+  // The field is x, and visible from -0.5 on.
   for (const RayPoint& point : {*probe.first, *probe.front, *probe.half}) {
     EXPECT_NEAR(point.value, point.position.x, off);
     EXPECT_GE(point.value, -0.5 - 1e-5);
@@ -244,7 +244,7 @@ TEST(Probe, SeesSurfacesAndClips) {
   }
 }
 
-/// What a file's grid keeps of a clip holds for all that is asked of it.
+/// A clip of a file's grid applies to all queries.
 TEST(Probe, OfAClippedGridEndsAtThePlane) {
   const test::TemporaryFolder folder;
   write_grid(grid_of_x(), folder / "x.nrrd");
@@ -256,7 +256,7 @@ TEST(Probe, OfAClippedGridEndsAtThePlane) {
   EXPECT_EQ(coarse->bounds(), data.bounds());
   for (const Dataset& asked : {data, *coarse}) {
     const Histogram found = histogram(asked, {.bins = 8, .range = {{-1.0, 1.0}}});
-    // Fewer samples, each the mean of some, are off by up to half of those between them.
+    // Fewer samples, each a mean, deviate by up to half of the distance between them.
     const double off = asked.format() == data.format() ? 1e-5 : 0.04;
     EXPECT_LE(found.shares[5], off);
     EXPECT_EQ(found.shares[6] + found.shares[7], 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Values that stand for nothing do not rule what files show.
+// Fill values do not determine what files show.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -63,7 +63,7 @@ TEST(FillValues, UsualOnesAreNotedWithTheThresholdThatLeavesThemOut) {
   const Dataset without = Dataset::open(file, options);
   EXPECT_EQ(without.range(), (std::array<double, 2>{4, 63}));
   EXPECT_EQ(note_with(without, "fill value"), "");
-  // What it leaves out beside them changes no colour.
+  // Other values that are left out do not change any colour.
   options.selection.threshold = {{20, 30}};
   EXPECT_EQ(Dataset::open(file, options).range(), (std::array<double, 2>{4, 63}));
   EXPECT_EQ(note_with(Dataset::open(volume_with(folder, -70)), "fill value"), "");
@@ -111,7 +111,7 @@ TEST(FillValues, OfMeshesInPartsAreNotedOnceForTheWhole) {
       EXPECT_EQ(std::ranges::count_if(
                     data.notes(), [](const std::string& note) { return note.find("fill value") != std::string::npos; }),
                 1);
-      // Points between parts are on both, so they are not counted.
+      // Points between parts are in both, so they are not counted.
       EXPECT_EQ(note_with(data, "fill value"), of_points ? "some" + whole.substr(1) : whole);
     });
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Labels at points look as the same labels in cells: no color between two, none that the file does not have.
+// Labels at points look like the same labels in cells: no colors between two labels, and none that the file does not
+// have.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +18,7 @@ namespace {
 
 constexpr std::int64_t side = 12;
 
-/// Two balls in each other, of 1 and 9, in nothing.
+/// Two nested balls with values 1 and 9, in empty space.
 std::vector<float> balls() {
   std::vector<float> samples;
   for (int k = 0; k < side; ++k)
@@ -55,7 +56,7 @@ void expect_same_picture(const Image& a, const Image& b) {
     light += a.rgba[k];
   }
   EXPECT_LT(most, 2e-5);
-  EXPECT_GT(light, 1);  // something is seen
+  EXPECT_GT(light, 1);  // something is visible
 }
 
 TEST(LabelGrid, AtPointsLooksAsInCells) {
@@ -71,7 +72,7 @@ TEST(LabelGrid, AtPointsLooksAsInCells) {
 TEST(LabelGrid, ABlankSampleLeavesOutItsVoxelAlone) {
   const test::TemporaryFolder folder;
   std::vector<float> samples = balls();
-  samples[0] = std::nanf("");  // in a corner, where nothing is seen
+  samples[0] = std::nanf("");  // in a corner, where nothing is visible
   const Dataset blank = Dataset::open(write(folder, "b.nrrd", Association::point, samples));
   const Dataset whole = Dataset::open(write(folder, "w.nrrd", Association::point, balls()));
   EXPECT_EQ(blank.transfer_function().name, whole.transfer_function().name);

@@ -38,7 +38,7 @@ TEST(MeshCheck, MeshesWhoseCellsMatchAreClean) {
 TEST(MeshCheck, SaysHowFarItIs) {
   std::vector<double> heard;
   api::check_mesh(datasets::cube(24), [&heard](double done) { heard.push_back(done); });
-  ASSERT_GE(heard.size(), 6u);  // six parts begin, and each 2^15 of 69,120 tets
+  ASSERT_GE(heard.size(), 6u);  // six parts, reported at each start and every 2^15 of 69,120 tets
   EXPECT_TRUE(std::is_sorted(heard.begin(), heard.end()));
   EXPECT_GT(heard.front(), 0);
   EXPECT_LT(heard.back(), 1);
@@ -62,7 +62,7 @@ TEST(MeshCheck, MeasuresSlivers) {
   EXPECT_EQ(check.slivers.places.front().value, check.worst_aspect);
 }
 
-/// Pairs of tets whose volumes overlap, by points thrown into all of them.
+/// Pairs of tets with a common volume, found by points sampled in all of them.
 TEST(MeshCheck, FindsAllPairsOfTwoMeshesThatPassThroughEachOther) {
   const scene::TetMesh one = datasets::cube(3, 0.2),
                        other = datasets::transformed(datasets::cube(2, 0.2, 9), 0.4, {0.9, 0.8, 0});
@@ -103,7 +103,7 @@ TEST(MeshCheck, FindsABodyWithinAnother) {
   const scene::TetMesh both = datasets::merged({datasets::regular_split(1, 1, 1, glm::dvec3(2), glm::dvec3(-1)),
                                                 datasets::transformed(datasets::cube(4), 0.1, {0.05, 0.03, 0.02})});
   const MeshCheck check = api::check_mesh(both);
-  // Every small cell lies in at least one of the six large ones.
+  // Every small cell overlaps at least one of the six large ones.
   EXPECT_GE(check.overlaps.count, 6u * 64);
   EXPECT_GE(check.overlapping_cells, 6u * 64 + 2);
 }
@@ -111,7 +111,7 @@ TEST(MeshCheck, FindsABodyWithinAnother) {
 TEST(MeshCheck, AVertexPushedThroughAFaceIsAFoldAndCellsOverlap) {
   scene::TetMesh mesh = datasets::regular_split(2, 2, 2);
   EXPECT_TRUE(api::check_mesh(mesh).clean());
-  // The vertex in the middle, beyond the next one along x.
+  // The vertex in the middle, moved beyond the next one along x.
   for (glm::dvec3& p : mesh.positions)
     if (p == glm::dvec3(0.25)) p.x += 0.3;
   const MeshCheck check = api::check_mesh(mesh);
@@ -128,7 +128,7 @@ TEST(MeshCheck, TheSameCellTwiceOverlapsItself) {
 }
 
 TEST(MeshCheck, CellsOfSeveralTetsAreCountedAndListedOncePerPair) {
-  // Two voxels of six tets each, one moved by half a side into the other, beside a third on its own.
+  // Two voxels of six tets each, one moved by half a side into the other, and a separate third one.
   scene::TetMesh mesh = datasets::merged({datasets::regular_split(1, 1, 1, glm::dvec3(1)),
                                           datasets::regular_split(1, 1, 1, glm::dvec3(1), {0.5, 0.25, 0.125}),
                                           datasets::regular_split(1, 1, 1, glm::dvec3(1), {5, 0, 0})});
@@ -145,7 +145,7 @@ TEST(MeshCheck, CellsOfSeveralTetsAreCountedAndListedOncePerPair) {
 TEST(MeshCheck, ACellWhoseOwnTetsOverlapIsAPairWithItself) {
   scene::TetMesh mesh = datasets::regular_split(1, 1, 1, glm::dvec3(1));
   mesh.original_cell.assign(mesh.tets.size(), 7);
-  // A corner pushed through the cell and out again.
+  // A corner pushed through the cell and out the other side.
   for (glm::dvec3& p : mesh.positions)
     if (p == glm::dvec3(1, 0, 0)) p = {-0.5, 1.25, 1.5};
   const MeshCheck check = api::check_mesh(mesh);
@@ -157,7 +157,7 @@ TEST(MeshCheck, ACellWhoseOwnTetsOverlapIsAPairWithItself) {
 }
 
 TEST(MeshCheck, FindsHangingNodesAndDiagonalsThatDoNotMatch) {
-  // One large voxel beside 2 x 2 x 2 small ones: two faces against eight.
+  // One large voxel next to 2 x 2 x 2 small ones: two faces against eight.
   const scene::TetMesh hanging = datasets::merged(
       {datasets::regular_split(1, 1, 1, glm::dvec3(0.5), {-0.5, 0, 0}), datasets::regular_split(2, 2, 2)});
   EXPECT_EQ(api::check_mesh(hanging).non_conforming_faces.count, 2u + 8);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the program has of the library beside what is installed: plans of films, and files that appear whole.
+// Parts of the library that the program uses beyond the installed API: plans of films, and files that appear whole.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -38,10 +38,10 @@ TEST(FilmPlans, StepsTimesViewsAreNumberedAndFinishedOnesKnown) {
     EXPECT_EQ(frames[i].step, i / 2);
     EXPECT_EQ(frames[i].data.files.front(), plan.inputs[i / 2]);
     EXPECT_EQ(frames[i].turn.value(), i % 2 == 0 ? 0.0 : 0.5);
-    EXPECT_EQ(frames[i].finished, i == 0) << i;  // of frame 2 one picture is missing
+    EXPECT_EQ(frames[i].finished, i == 0) << i;  // frame 2 has one image missing
   }
   EXPECT_EQ(frames[3].outputs[1], folder / "f_03.pfm");
-  // Half a turn: the eye on the other side, the view still on the box.
+  // Half a turn: the eye is on the other side, the box still in view.
   const Box box{{0, 0, 0}, {2, 2, 2}};
   const Camera first = frames[0].view(box, ProjectionKind::orthographic);
   const Camera turned = frames[1].view(box, ProjectionKind::orthographic);
@@ -79,14 +79,14 @@ TEST(FilmPlans, NamesThatCannotBeAreRefusedBeforeRendering) {
     EXPECT_THROW(check_film_outputs(frames, more, inputs), Error);
   };
   refused({folder / "one.png"}, {});                    // named twice
-  refused({folder / "nowhere" / "report.json"}, {});    // no such folder
+  refused({folder / "nowhere" / "report.json"}, {});    // no such directory
   refused({folder / "a.tets"}, {plan.inputs.front()});  // an input
   frames.front().outputs = {folder / "one.gif"};
   refused({}, {});
   frames.front().outputs = {plan.inputs.front()};
   refused({}, {});
   plan.orbit = 3;
-  EXPECT_THROW(plan_film(plan), Error);  // three frames of one name
+  EXPECT_THROW(plan_film(plan), Error);  // three frames with one name
   plan.inputs.clear();
   EXPECT_THROW(plan_film(plan), Error);
 }

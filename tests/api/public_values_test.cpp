@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Values of the public API that are made, or written as text, without a picture.
+// Values of the public API that are created, or written as text, without an image.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -59,7 +59,7 @@ TEST(PublicValues, CamerasAreReadFromTextAsFromFiles) {
   EXPECT_EQ(message([] { (void)cameras_of("{\"eye\": 1}"); }).rfind("`camera`: ", 0), 0u);
 }
 
-/// What is exported and read back renders as what it was.
+/// A function that is exported and read back renders the same.
 TEST(PublicValues, FunctionsAsTextRenderAlike) {
   const Dataset data = Dataset::of(datasets::arrays_of(datasets::cube(8)));
   const View view = data.default_view({80, 60});

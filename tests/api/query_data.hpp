@@ -14,7 +14,7 @@
 #include "tessera/communicator.hpp"
 #include "tessera/dataset.hpp"
 
-/// Data sets that are asked in tests.
+/// Data sets for queries in tests.
 namespace tessera::tests {
 
 template <class Field>
@@ -42,7 +42,7 @@ Dataset grid_of(std::int64_t n, const Field& field) {
   return Dataset::of(arrays);
 }
 
-/// A rank's share of a mesh: a stretch of its tets.
+/// A rank's share of a mesh: a contiguous range of its tets.
 inline Dataset part_of(const scene::TetMesh& mesh, const Communicator& communicator) {
   const std::size_t tets = mesh.tets.size(), rank = static_cast<std::size_t>(communicator.rank()),
                     size = static_cast<std::size_t>(communicator.size());

@@ -15,8 +15,8 @@
 #include "reference/judge.hpp"
 #include "support/some_cases.hpp"
 
-/// Random cases of a class of scenes, against what was promised. TESSERA_RANDOM_CASES=N asks for N of them instead of a
-/// test's own few, TESSERA_RANDOM_FIRST=N begins with another.
+/// Random cases of a class of scenes, checked against the promised accuracy. TESSERA_RANDOM_CASES=N sets their number
+/// instead of the test's default, TESSERA_RANDOM_FIRST=N the first one.
 namespace tessera::frame {
 
 struct Random {
@@ -52,8 +52,8 @@ struct RandomCase {
   std::optional<Shading> shading{};
 };
 
-/// Renders each with `exact`, and automatically to 1e-4 and 1e-5, on the lattice where that holds it; every fourth in
-/// double precision throughout. Few pixels may be excused: excusable, a share of all.
+/// Renders each with `exact`, and automatically to 1e-4 and 1e-5, on the lattice if it can represent the scene; every
+/// fourth in double precision throughout. `excusable`: fraction of pixels that may be excused.
 template <class Make>
 void expect_random_cases_right(std::uint64_t seed, int cases, Make make) {
   constexpr scene::ImageSize size{20, 20};

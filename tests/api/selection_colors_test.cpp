@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A clip or a threshold leaves colours, opacities and their distance as they are: those of all the data.
+// A clip or a threshold does not change colours, opacities and their unit distance: these are derived from all the
+// data.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -41,7 +42,7 @@ void expect_same(const Colors& a, const Colors& b) {
   EXPECT_TRUE(a.by_logarithm == b.by_logarithm);
 }
 
-/// A field that differs from place to place, above 0.
+/// A field that varies everywhere, above 0.
 double field_at(const glm::dvec3& p) { return 2 + p.x + p.y * p.z + 0.3 * p.z; }
 
 scene::TetMesh varied_cube() { return tests::with_field(datasets::cube(6), field_at); }

@@ -23,7 +23,7 @@ namespace {
 
 constexpr ImageSize size{101, 67};
 
-/// Arrays of a cube's mesh, as a caller has them.
+/// Arrays of a cube's mesh, as a caller owns them.
 struct Cube {
   explicit Cube(int n) {
     const scene::TetMesh mesh = datasets::cube(n);
@@ -65,7 +65,7 @@ View view_of(const Dataset& data) { return data.default_view(size); }
 
 bool same_bits(const Image& a, const Image& b) { return a.size == b.size && a.rgba == b.rgba && a.depth == b.depth; }
 
-/// Counts how often each pixel came, and keeps what it was then.
+/// Counts how often each pixel arrived, and stores its last value.
 class Pixels : public Sink {
  public:
   Pixels() : seen(size), times(static_cast<std::size_t>(size.width) * size.height, 0) {}
@@ -92,7 +92,7 @@ class Pixels : public Sink {
   std::atomic<bool> busy_ = false;
 };
 
-/// Asks for a stop at its tile number `at`.
+/// Requests a stop at its tile number `at`.
 class StopAt final : public Pixels {
  public:
   explicit StopAt(int at) : at_(at) {}
@@ -188,7 +188,7 @@ TEST_P(AnyKind, AStopEndsTheFrameAndTheNextHasTheSameBits) {
   EXPECT_TRUE(session.render(view_of(data), function, {}, nullptr, before.get_token()).stopped);
 }
 
-/// The deep picture of a grid is a pass of its own after the flat one: a stop in it counts, too, on any rank.
+/// The deep image of a grid is a separate pass after the flat one: a stop in it counts too, on any rank.
 TEST(Session, AStopAfterTheLastTileEndsTheDeepPictureOfAGrid) {
   const Dataset data = dataset(Kind::grid);
   const TransferFunction function = data.transfer_function("plasma").function;
@@ -217,7 +217,7 @@ TEST_P(AnyKind, StopsAtAnyTimeLeaveTheSessionUsable) {
   const auto usual = static_cast<unsigned>(1000 * session.render(view_of(data), function).statistics.milliseconds) + 1;
   for (int i = 0; i < 60; ++i) {
     std::stop_source source;
-    // Whenever it comes: before the frame, in it or after it.
+    // At any time: before the frame, during it or after it.
     const auto delay = std::chrono::microseconds(random() % usual);
     std::jthread stopper([&] {
       std::this_thread::sleep_for(delay);
@@ -288,7 +288,7 @@ TEST_P(AnyKind, RanksMakeTheSamePicturesAndStopTogether) {
         EXPECT_EQ(pixels.tiles, 0);
         EXPECT_TRUE(frame.image.rgba.empty());
       }
-      // A stop on the last rank, asked for before it begins, stops all of a film.
+      // A stop on the last rank, requested before it begins, stops all of a film.
       for (int again = 0; again < 3; ++again) {
         std::stop_source source;
         if (transport.rank() == ranks - 1) source.request_stop();
@@ -360,7 +360,7 @@ TEST_P(AnyKind, OnRanksToTheSinksExceptionStopsAllAndComesOut) {
   });
 }
 
-/// Throws an Error of Tessera's own, as a writer would, at its second frame.
+/// Throws an Error, as a writer would, at its second frame.
 class FullDisk final : public Sink {
  public:
   [[nodiscard]] bool wants_tiles() const override { return false; }
@@ -369,7 +369,7 @@ class FullDisk final : public Sink {
   }
 };
 
-/// The same of a tile.
+/// The same for a tile.
 class FullPipe final : public Sink {
  public:
   void tile(const Tile& /*tile*/) override { throw Error(ErrorCode::system_failure, "client: it has gone"); }
@@ -421,7 +421,7 @@ TEST(MeshArrays, AreBorrowedWhereTheLayoutAllows) {
   EXPECT_EQ(data.tet_count(), cube.tets.size() / 4);
   EXPECT_EQ(data.format(), "arrays");
 
-  // The same numbers in other layouts make the same picture.
+  // The same numbers in other layouts give the same image.
   std::vector<std::int64_t> connectivity(cube.tets.begin(), cube.tets.end()), offsets;
   for (std::size_t i = 0; i <= connectivity.size(); i += 4) offsets.push_back(static_cast<std::int64_t>(i));
   const std::vector<CellType> types(cube.tets.size() / 4, CellType::tetra);

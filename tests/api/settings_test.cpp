@@ -17,7 +17,7 @@
 namespace tessera::settings_test {
 namespace {
 
-/// A fault, the setting that the error is about, and what it says of it.
+/// A fault, the setting that the error names, and its message.
 struct Fault {
   std::function<void(Settings&)> make;
   std::string setting, words;

@@ -26,9 +26,10 @@ using scene::ProjectionKind;
 
 constexpr scene::ImageSize size{256, 256};
 constexpr std::size_t looked_at = 1000;
-constexpr float wrong = 1e-3f;  // ten times what the default promises
+constexpr float wrong = 1e-3f;  // ten times the default's promise
 
-/// A picture and where --verify looks in it. At random alone a pixel would be among a thousand with a chance of 1.5 %.
+/// An image and the pixels that --verify checks. Chosen at random only, a pixel would be among a thousand with a
+/// probability of 1.5 %.
 struct Scene {
   scene::Image image;
   std::function<reference::Suspects(const scene::Image&)> suspects;
@@ -38,7 +39,7 @@ struct Scene {
   }
 };
 
-/// Why a pixel is looked at, "" if it is not.
+/// Why a pixel is checked; "" if it is not.
 std::string reason(const std::vector<ChosenPixel>& chosen, PixelIndex p) {
   for (const ChosenPixel& c : chosen)
     if (c.at == p) return c.why ? name_of(*c.why) : "random";
@@ -99,7 +100,7 @@ Scene of_grid(std::unique_ptr<scene::MemorySource> source, const scene::Camera& 
   return scene;
 }
 
-/// Makes each of some pixels wrong by itself; how many of them are looked at, and not by chance.
+/// Makes each of some pixels wrong separately; returns how many of them are checked for a reason other than chance.
 int found(const Scene& scene, const std::vector<PixelIndex>& pixels, float error) {
   int count = 0;
   for (const PixelIndex& p : pixels) {
@@ -111,7 +112,7 @@ int found(const Scene& scene, const std::vector<PixelIndex>& pixels, float error
   return count;
 }
 
-/// Some pixels of those that `which` holds of, drawn at random.
+/// Some random pixels among those for which `which` is true.
 template <class Which>
 std::vector<PixelIndex> some_pixels(std::size_t count, const Which& which) {
   std::vector<PixelIndex> all;
@@ -169,13 +170,13 @@ TEST(VerifyLooksAt, ASmallNaNBorder) {
     }
     near += std::hypot(c.at.x + 0.5 - gap.x, c.at.y + 0.5 - gap.y) < 4 ? 1 : 0;
   }
-  EXPECT_GE(border, 5);  // pixels that are suspicious for two reasons are named after the first
-  EXPECT_GE(near, 10);   // at random one
+  EXPECT_GE(border, 5);  // pixels that are suspicious for two reasons count for the first
+  EXPECT_GE(near, 10);   // one at random
 }
 
 TEST(VerifyLooksAt, WrongPixelsOnTheSurfaceOfAStep) {
-  // Two plateaus a last place apart, on and below the transfer function's jump, in a small ball; the rest is far from
-  // it.
+  // Two plateaus a last place apart, on and below the transfer function's jump, in a small ball; all other values are
+  // far from it.
   const float step = 0.7f;
   const auto saturated = [&](const glm::dvec3& p) {
     const double r = glm::length(p - glm::dvec3(0.3, 0.2, 0));
@@ -195,15 +196,15 @@ TEST(VerifyLooksAt, WrongPixelsOnTheSurfaceOfAStep) {
       ++step_pixels;
       on_it += std::hypot(c.at.x + 0.5 - centre.x, c.at.y + 0.5 - centre.y) < 0.45 * size.height / 3.6 ? 1 : 0;
     }
-    // Its picture is 1,400 of 65,536 pixels.
+    // It covers 1,400 of 65,536 pixels.
     EXPECT_GE(step_pixels, 60);
     EXPECT_GE(on_it, step_pixels * 9 / 10);
   }
 }
 
 TEST(VerifyLooksAt, TiedPixels) {
-  // A box with its left side in the plane of the eye and of a column of pixel centres: only ties say which side is
-  // seen.
+  // A box with its left side in the plane of the eye and of a column of pixel centres: only the tie rule decides which
+  // side is visible.
   scene::Camera camera = reference::looking({0, 0, 3}, {0, 0, 0}, ProjectionKind::perspective, 40);
   const scene::ImageSize odd{257, 257};
   const scene::TetMesh mesh = reference::box_of_tets(2, {0, -0.4, -0.4}, {0.8, 0.4, 0.4}, waves);
@@ -233,7 +234,7 @@ TEST(VerifyLooksAt, PixelsOnTheWrongSideOfASilhouette) {
     const std::string why = reason(scene.chosen(image), p);
     found += !why.empty() && why != "random" ? 1 : 0;
   }
-  EXPECT_GE(found, 15);  // of some 500 that are alike, if nothing told them apart 5; at random none
+  EXPECT_GE(found, 15);  // of some 500 similar ones; 5 if nothing distinguished them, none at random
 }
 
 TEST(VerifyLooksAt, EachPlateauOfColour) {
@@ -247,7 +248,7 @@ TEST(VerifyLooksAt, EachPlateauOfColour) {
   const Scene scene = of_mesh(mesh, camera, scene::TransferFunction(knots));
   int plateaus = 0;
   for (const ChosenPixel& c : scene.chosen(scene.image)) plateaus += c.why == Suspicion::plateau ? 1 : 0;
-  EXPECT_GE(plateaus, 65);  // and nothing at all
+  EXPECT_GE(plateaus, 65);  // also the empty background
 }
 
 TEST(Verify, ACorruptedPictureFailsAndTheReasonIsNamed) {

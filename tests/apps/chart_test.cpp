@@ -46,7 +46,7 @@ TEST(ChartMeasure, ErrorsAreOfThePixelsLookedAt) {
   EXPECT_DOUBLE_EQ(error.max, 0.25);
   EXPECT_DOUBLE_EQ(error.p999, 0.25);
   EXPECT_DOUBLE_EQ(error.rms, std::sqrt(2 * 0.0625 / 12));
-  EXPECT_DOUBLE_EQ(error.visible_share, 1.0 / 3);  // an opacity alone is not seen over black
+  EXPECT_DOUBLE_EQ(error.visible_share, 1.0 / 3);  // opacity alone is not visible over black
   EXPECT_DOUBLE_EQ(analysis::chart_error(image, pixels, truths, 3).rms, std::sqrt(0.0625 / 9));
   image.rgba[0] = std::nanf("");
   EXPECT_TRUE(std::isinf(analysis::chart_error(image, pixels, truths).max));
@@ -114,7 +114,7 @@ TEST(Chart, AMeshGivesEveryMethodAPlaceOrAReason) {
 TEST(Chart, AVolumeAndAPeersPictureShareOneChart) {
   const Folder folder;
   ASSERT_EQ(tessera({"generate", "ripples", folder / "r.vti", "n=12", "--quiet"}).status, 0);
-  // A peer whose picture is ours, without opacity.
+  // A peer whose image equals ours, without opacity.
   ASSERT_EQ(tessera({"render", folder / "r.vti", "-o", folder / "p.pfm", "--size", "16x12", "--quiet"}).status, 0);
   std::ofstream(folder / "p.json")
       << R"([{"family": "peer", "name": "peer one", "frame_ms": [3, 1, 2], "picture": "p.pfm"},

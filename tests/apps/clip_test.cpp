@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `--clip` and `--threshold`, as users give them.
+// `--clip` and `--threshold` on the command line.
 
 #include <gtest/gtest.h>
 
@@ -47,7 +47,7 @@ TEST_F(ClipCommand, IsWrittenByConvert) {
 }
 
 TEST_F(ClipCommand, ThresholdOfAVolumeLeavesOutVoxelsWithASampleOutOfIt) {
-  // 2^3 voxels, the samples at their corners all 1 but that of the first one.
+  // 2^3 voxels; the samples at their corners are all 1 except the first.
   std::string samples(27, '\1');
   samples[0] = '\5';
   const std::string volume = folder.file("v_3x3x3_uint8.raw", samples);
@@ -60,9 +60,9 @@ TEST_F(ClipCommand, ThresholdOfAVolumeLeavesOutVoxelsWithASampleOutOfIt) {
     const Outcome outcome = tessera(all);
     EXPECT_EQ(outcome.status, 0) << outcome.err << outcome.out;
     const auto image = io::read_image(folder / "a.exr");
-    // The front looks along y, z is up: left below, right below, left above.
+    // The front view is along y, with z up: bottom left, bottom right, top left.
     const std::array<std::array<int, 2>, 3> places{{{15, 25}, {25, 25}, {15, 15}}};
-    // 1e-4 is what is promised.
+    // The promised accuracy is 1e-4.
     for (std::size_t i = 0; i < places.size(); ++i)
       EXPECT_NEAR(image.rgba[4 * image.index(places[i][0], places[i][1]) + 3], wanted[i], 1e-4) << i;
   };

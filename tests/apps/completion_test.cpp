@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a shell is told when somebody presses Tab, and manual pages.
+// Completions offered to shells, and manual pages.
 
 #include "apps/help/completion.hpp"
 
@@ -45,7 +45,7 @@ TEST(Completion, KnowsCommandsOptionsWordsAndNames) {
   EXPECT_TRUE(completions({"render", "--size", ""}).empty());
 }
 
-/// What bash has to offer for a line; the words as it splits them.
+/// bash's completions for a line; the words are split as bash splits them.
 Words offered_by_bash(const Folder& folder, const std::string& words, const std::string& script) {
   const std::string program = folder.file("ask.sh", "source '" + script + "'\ncd '" + (folder / ".") + "'\n" +
                                                         "compopt() { :; }\nCOMP_WORDS=(" TESSERA_PROGRAM " " + words +
@@ -71,21 +71,21 @@ TEST(Completion, WorksInBash) {
   EXPECT_EQ(offered_by_bash(folder, "render --orb", file), Words{"--orbit"});
   EXPECT_EQ(offered_by_bash(folder, "render cub", file), Words{"cube.vtu"});
   EXPECT_EQ(offered_by_bash(folder, "render cube.vtu --field ''", file), Words{"f"});
-  // bash splits --view=fr into three words, and wants the last alone.
+  // bash splits --view=fr into three words, and expects only the last.
   EXPECT_EQ(offered_by_bash(folder, "render --view = fr", file), Words{"front"});
 }
 
-/// Whether Debian has put this shell here.
+/// Whether this shell is installed at its place in Debian.
 bool has_shell(const std::string& name) { return std::filesystem::exists("/usr/bin/" + name); }
 
-/// A folder whose `bin` has the program by its name, for shells that look for it.
+/// A directory whose `bin` contains the program by its name, for shells that search for it.
 std::string path_with_tessera(const Folder& folder) {
   std::filesystem::create_directory(folder / "bin");
   std::filesystem::create_symlink(TESSERA_PROGRAM, folder / "bin/tessera");
   return folder / "bin:/usr/bin:/bin";
 }
 
-/// What is completed in zsh and fish, and the only thing that it may become.
+/// Text completed in zsh and fish, and its only possible completion.
 const std::vector<std::array<std::string, 2>> typed = {
     {"tessera ren", "tessera render"},
     {"tessera render --orb", "tessera render --orbit"},
@@ -115,7 +115,7 @@ TEST(Completion, WorksInFish) {
     std::string found, rest;
     std::getline(offered, found);
     EXPECT_TRUE(std::getline(offered, rest) && rest.empty()) << line << ": " << rest;
-    // The last word alone, as it is without quotes.
+    // Only the last word, without quotes.
     std::string word = whole.substr(line.find_last_of(' ') + 1);
     if (line.find("a\\ ") != std::string::npos) word = "a volume.nrrd";
     EXPECT_EQ(found, word) << line;
@@ -128,7 +128,7 @@ TEST(Completion, WorksInZsh) {
   static_cast<void>(folder.cube());
   static_cast<void>(folder.file("a volume.nrrd", ""));
   const std::string script = folder.file("tessera.zsh", tessera({"completion", "zsh"}).out);
-  // A shell at a terminal of its own, in which lines are typed; Ctrl-X keeps what stands there.
+  // A shell at its own pseudo-terminal, in which lines are typed; Ctrl-X prints the current line.
   std::string driver = "zmodload zsh/zpty || exit 77\nexport PATH=" + path_with_tessera(folder) + "\ncd " +
                        (folder / ".") +
                        "\nzpty -b shell 'TERM=dumb zsh -f -i' || exit 77\nzpty -w shell \"PS1=; autoload -Uz " +

@@ -92,7 +92,7 @@ TEST(DistributedMesh, IsWhatOneProcessReads) {
   io::write_tets(mesh, folder / "m.tets");
   expect_as_read_mesh(folder / "m.tets");
   io::write_vtu(mesh, folder / "m.vtu");
-  expect_as_read_mesh(folder / "m.vtu");  // a format that is read whole
+  expect_as_read_mesh(folder / "m.vtu");  // a format that is not read in parts
 
   std::vector<scene::TetMesh> pieces(5);
   for (std::size_t p = 0; p < pieces.size(); ++p) {

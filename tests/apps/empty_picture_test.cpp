@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures that show nothing: the reason is said, and the remedies that are named help.
+// Images that show nothing: the reason is reported, and the suggested remedies help.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -17,7 +17,7 @@ using Names = std::vector<std::string>;
 
 constexpr std::string_view empty = "the picture is empty";
 
-/// A bar of five hexahedra along (1, 0, 0), so thin that no pixel has its centre in it, with the field x.
+/// A bar of five hexahedra along (1, 0, 0), so thin that it contains no pixel centre, with the field x.
 std::string bar(double thickness) {
   std::string points, values, cells;
   for (int i = 0; i <= 5; ++i)
@@ -40,7 +40,7 @@ std::string bar(double thickness) {
          "</UnstructuredGrid></VTKFile>\n";
 }
 
-/// The words that follow an option in a message.
+/// The value after an option in a message.
 std::string value_of(const std::string& option, const std::string& message) {
   const std::size_t at = message.find(option + " ");
   if (at == std::string::npos) return "";
@@ -66,7 +66,7 @@ class EmptyPicture : public ::testing::Test {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return outcome;
   }
-  /// Each of the options that the warning names shows something, without a warning.
+  /// Each of the options suggested by the warning shows something, without a warning.
   void expect_remedies(const std::string& input, const Names& words, const std::string& warning, const Names& options,
                        int ranks = 1) const {
     for (const std::string& option : options) {
@@ -85,7 +85,7 @@ class EmptyPicture : public ::testing::Test {
   std::string cube = folder.cube();  // [-1, 1]^3
 };
 
-// From the front it is along the middle of the picture, where no pixel has its centre.
+// Seen from the front it is in the middle of the image, between pixel centres.
 TEST_F(EmptyPicture, OfABarBetweenPixelsNamesSizeZoomAndScale) {
   const std::string mesh = folder.file("bar.vtu", bar(0.002));
   const Names words = {"--view", "front"};
@@ -159,7 +159,7 @@ TEST_F(EmptyPicture, OfAFunctionThatMissesTheDataNamesWhatMeetsThem) {
   const std::string far = folder.file("far.txt", "5 1 1 1 0\n6 1 1 1 3\n");
   const Outcome missed = render(cube, {"--transfer-function", far});
   EXPECT_NE(missed.err.find("the transfer function shows nothing"), std::string::npos) << missed.err;
-  EXPECT_EQ(missed.err.find(empty), std::string::npos) << missed.err;  // once is enough
+  EXPECT_EQ(missed.err.find(empty), std::string::npos) << missed.err;  // reported only once
   EXPECT_EQ(render(cube, {"--transfer-function", far, "--rescale"}).err.find("shows nothing"), std::string::npos);
   EXPECT_TRUE(shows_something(picture));
 
@@ -171,7 +171,7 @@ TEST_F(EmptyPicture, OfAFunctionThatMissesTheDataNamesWhatMeetsThem) {
 }
 
 TEST_F(EmptyPicture, OfAPartWithoutVisibleValuesSaysSo) {
-  // One cell, from 0 to 1 and from 0.8 to 1, of which the view shows the end that the function does not.
+  // One cell, with values from 0 to 1 of which the view shows only those that the function hides.
   const std::string volume = folder.file("v_2x2x2_uint8.raw", std::string("\0\1\0\1\0\1\0\1", 8));
   const std::string mesh = folder.file("thick.vtu", bar(1));
   const std::string function = folder.file("end.txt", "0.95 1 1 1 0\n1 1 1 1 9\n");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a caller has done to the process before it begins: closed streams, limits.
+// Process state set by the caller: closed streams, limits.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 namespace tessera::apps {
 namespace {
 
-/// Runs the program by a shell, which first does `before` and then has these redirections.
+/// Runs the program in a shell, which first executes `before` and then applies these redirections.
 Outcome by_shell(const std::string& before, const std::vector<std::string>& arguments,
                  const std::string& redirections = "") {
   std::vector<std::string> command = {"bash", "-c", before + " exec \"$0\" \"$@\" " + redirections, TESSERA_PROGRAM};
@@ -17,8 +17,8 @@ Outcome by_shell(const std::string& before, const std::vector<std::string>& argu
   return Running(command).wait();
 }
 
-// What was said on a closed stream went into the first file that took its number, once a pipe of the program's own,
-// which took letters for signals.
+// Output to a closed stream once went into the first file that got its number, for example a pipe of the program's own,
+// which interpreted letters as signals.
 TEST(Environment, ClosedStreamsChangeNothing) {
   const Folder folder;
   const std::string mesh = folder.cube();
@@ -59,7 +59,7 @@ TEST(Environment, ASmallStackIsSaid) {
   const Outcome run = by_shell("ulimit -s 256;", {"render", folder.cube(), "-o", folder / "a.png"});
   EXPECT_EQ(run.status, 3) << run.err;
   EXPECT_NE(run.err.find("ulimit -s"), std::string::npos) << run.err;
-  // A limit that may be raised is.
+  // A limit that may be raised is raised.
   EXPECT_EQ(by_shell("ulimit -S -s 256;", {"render", folder.cube(), "-o", folder / "a.png"}).status, 0);
 }
 

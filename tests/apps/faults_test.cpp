@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a user does wrong, and what the machine does: one line on stderr, the status of the design, nothing
-// half-written.
+// Errors of users and of the machine: one line on stderr, the documented status, no incomplete files.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -16,7 +15,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-/// Runs quietly and expects one error line of the program's form with all of `words` in it.
+/// Runs quietly and expects one error line in the program's format that contains all of `words`.
 void expect_fault(int status, Names arguments, const Names& words) {
   const auto run = tessera(arguments);
   std::string called;
@@ -185,7 +184,7 @@ TEST(Faults, AFullDiskBehindStandardOutputIsASystemFailure) {
 TEST(Faults, APictureLargerThanMemoryIsRefusedInTime) {
   const Folder folder;
   const auto free = static_cast<double>(system::available_memory());
-  const int side = static_cast<int>(std::sqrt(2 * free / 22));  // twice what there is
+  const int side = static_cast<int>(std::sqrt(2 * free / 22));  // twice the available memory
   if (side > 65536) GTEST_SKIP() << "this machine could hold any";
   const std::string size = std::to_string(side) + "x" + std::to_string(side);
   expect_fault(3, {"render", folder.cube(), "--quiet", "-o", folder / "a.png", "--size", size}, {"GiB", "are free"});

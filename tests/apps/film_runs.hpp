@@ -12,11 +12,11 @@
 
 namespace tessera::apps {
 
-/// Films of a mesh and of a volume that a test disturbs.
+/// Films of a mesh and of a volume that a test interrupts.
 class FilmRuns : public ::testing::Test {
  protected:
   using Words = std::vector<std::string>;
-  /// Pictures of a film that is ended before its last: they would take minutes.
+  /// Frames of a film that is ended early: all would take minutes.
   static constexpr int endless = 9999;
 
   void SetUp() override {
@@ -33,7 +33,7 @@ class FilmRuns : public ::testing::Test {
     return words;
   }
 
-  /// Of one process if `ranks` is 0.
+  /// In one process if `ranks` is 0.
   static Words command(int ranks, const Words& arguments) {
     if (ranks > 0) return mpirun_command(ranks, arguments);
     Words words{TESSERA_PROGRAM};
@@ -49,7 +49,7 @@ class FilmRuns : public ::testing::Test {
     return static_cast<std::size_t>(std::distance(begin, std::filesystem::directory_iterator()));
   }
 
-  /// Until so many pictures are there; false if the run ends before.
+  /// Waits until that many images exist; false if the run ends before.
   [[nodiscard]] bool wait_for_pictures(const Running& running, std::size_t count) const {
     return test::await([&] { return pictures() >= count || !running.runs(); }) && pictures() >= count;
   }

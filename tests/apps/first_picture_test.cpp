@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the program chooses when it is told nothing, and the options that choose otherwise.
+// The program's defaults, and the options that override them.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -17,7 +17,7 @@ nlohmann::json report_of(const std::string& file) { return nlohmann::json::parse
 TEST(FirstPicture, SeveralRanksChooseViewRangeAndFunctionOfOne) {
   if (!has_mpirun()) GTEST_SKIP() << "there is no mpirun";
   const Folder folder;
-  // More tets than are all looked at (2^16), so that it matters which are left out.
+  // More tets than are examined (2^16), so that it matters which are left out.
   ASSERT_EQ(tessera({"generate", "cube", folder / "a.vtu", "n=23", "--quiet"}).status, 0);
   const std::vector<std::string> command{"render",  folder / "a.vtu", "-o", folder / "a.pfm", "--size", "32x24",
                                          "--quiet", "--threads",      "1",  "--report"};

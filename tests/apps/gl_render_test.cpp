@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// --compositor and --backend, as users give them.
+// --compositor and --backend on the command line.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ class GlRender : public ::testing::Test {
   }
 };
 
-/// Largest difference of two .pfm of one size.
+/// Largest difference of two .pfm files of one size.
 double picture_difference(const std::string& a, const std::string& b) {
   const std::string x = contents(a), y = contents(b);
   EXPECT_EQ(x.size(), y.size());
@@ -119,7 +119,7 @@ TEST_F(GlRender, RanksCompositeOnDevicesOrPartlyOnTheCpu) {
         run.err.find(backends == "osmesa" ? "composited by gl-compute (OSMesa" : "composited by cpu + gl-compute"),
         std::string::npos)
         << run.err;
-    EXPECT_LT(picture_difference(folder / "one.pfm", folder / "ranks.pfm"), 5e-6);  // floats' roundings
+    EXPECT_LT(picture_difference(folder / "one.pfm", folder / "ranks.pfm"), 5e-6);  // rounding of floats
   }
 }
 
@@ -144,7 +144,7 @@ TEST_F(GlRender, DevicesOfRanksInAnyRolesRasterizeCells) {
   const Folder folder;
   const std::string mesh = folder.cube();
   ASSERT_EQ(tessera(render_arguments(mesh, folder / "one.pfm", {"--quiet", "--integrator", "exact"})).status, 0);
-  for (const int ranks : {2, 4}) {  // in both roles, or in one each
+  for (const int ranks : {2, 4}) {  // with both roles, or one each
     std::vector<std::string> more{"--integrator", "exact", "--projectors", "2",          "--compositors", "2",
                                   "--tile-size",  "8",     "--compositor", "gl-compute", "--rasterizer",  "device",
                                   "--backend"};
@@ -161,7 +161,7 @@ TEST_F(GlRender, DevicesOfRanksInAnyRolesRasterizeCells) {
   }
 }
 
-/// Juliachs et al. 2007 as a whole, by one word and by its parts.
+/// The complete pipeline of Juliachs et al. 2007, selected by one option and by its parts.
 TEST_F(GlRender, ThePresetIsThePrintedPipeline) {
   const Folder folder;
   const std::string mesh = folder.cube();
@@ -178,7 +178,7 @@ TEST_F(GlRender, ThePresetIsThePrintedPipeline) {
   EXPECT_EQ(contents(folder / "parts.pfm"), contents(folder / "one.pfm"));
   const auto method = nlohmann::json::parse(contents(folder / "report.json")).at("method");
   EXPECT_EQ(method.at("framebuffer"), "half");
-  // Options beside it win.
+  // Other options override it.
   ASSERT_EQ(tessera(render_arguments(mesh, folder / "own.pfm",
                                      {"--preset", "juliachs-2007", "--compositor", "cpu", "--integrator", "exact",
                                       "--rasterizer", "planes"}))
@@ -191,8 +191,8 @@ TEST_F(GlRender, ThePresetIsThePrintedPipeline) {
   EXPECT_NE(wrong.err.find("--preset: 'juliachs' is unknown; use juliachs-2007"), std::string::npos) << wrong.err;
 }
 
-/// 1x1, 2x2 and 4x4 processes of the two roles. Sixteen bits round at each of a list's segments; equal keys, whose
-/// order the print leaves open, come in another order from other ranks.
+/// 1x1, 2x2 and 4x4 processes of the two roles. 16-bit values round at each segment of a list; the order of equal keys,
+/// which the paper leaves open, differs between ranks.
 TEST_F(GlRender, ThePresetOnRanksIsOneProcess) {
   if (!has_mpirun()) GTEST_SKIP() << "there is no mpirun";
   const Folder folder;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `--help`, `tessera help`, and what is said of names that are nearly right.
+// `--help`, `tessera help`, and suggestions for misspelled names.
 
 #include <gtest/gtest.h>
 
@@ -54,7 +54,7 @@ TEST(Help, ManualNamesTheOptionsThatThereAre) {
   std::string manual;
   for (const char* page : {"GUIDE.md", "REFERENCE.md", "FORMATS.md", "SERVER.md"})
     manual += contents(std::string(TESSERA_SOURCE_DIR "/docs/") + page);
-  // Of this program's help, and of mpirun and timeout.
+  // Options of this program's help, and of mpirun and timeout.
   std::set<std::string> there = {"--help", "--help-all", "--version", "--oversubscribe", "--timeout"};
   for (const OptionTopic& topic : option_topics())
     for (const OptionRow& row : topic.rows) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A reading program ends with the program that started it, however that ends.
+// A reader program ends with the program that started it, however that ends.
 #include <gtest/gtest.h>
 #include <sys/types.h>
 
@@ -15,7 +15,7 @@
 namespace tessera::apps {
 namespace {
 
-/// A child that has computed for a tenth of a second; 0: none while the command runs.
+/// A child that has computed for a tenth of a second; 0: the command ended without one.
 pid_t busy_child_of(const Running& running) {
   pid_t found = 0;
   std::error_code gone;
@@ -35,7 +35,8 @@ pid_t busy_child_of(const Running& running) {
 TEST(HelperEnd, OfACallerThatIsKilledAReadingProgramEndsAtOnce) {
   if (!io::has_reader(io::Reader::tetgen)) GTEST_SKIP() << "tessera-read-tetgen is not installed";
   const Folder folder;
-  // A plate of a millionth of its width: TetGen fills it with more tets than there is memory for, over minutes.
+  // A plate with a thickness of a millionth of its width: TetGen fills it for minutes with more tets than fit into
+  // memory.
   const std::string plate = folder.file("plate.poly",
                                         "8 3 0 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n"
                                         "5 0 0 1e-6\n6 1 0 1e-6\n7 1 1 1e-6\n8 0 1 1e-6\n"
@@ -47,7 +48,7 @@ TEST(HelperEnd, OfACallerThatIsKilledAReadingProgramEndsAtOnce) {
     ASSERT_GT(helper, 0) << running.wait().err;
     ASSERT_EQ(kill(running.process(), signal), 0);
     running.wait();
-    // Its work would go on for minutes, until the machine's memory ends.
+    // Its work would continue for minutes, until memory runs out.
     const bool ends = test::await([&] { return !state_of(helper).is_alive(); });
     EXPECT_TRUE(ends) << "after signal " << signal;
     if (!ends) kill(helper, SIGKILL);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// No output replaces what the run reads: what is named on the command line, and what those files name.
+// No output replaces a file that the run reads: those named on the command line, and those named in these files.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -15,10 +15,10 @@ namespace {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-/// A run that reads these files, named in one folder.
+/// A run that reads these files, named in one directory.
 struct Case {
-  Words input;  ///< words of render, without outputs
-  Words files;  ///< names of all that it reads
+  Words input;  ///< arguments of render, without outputs
+  Words files;  ///< names of all files that it reads
 };
 
 std::string raw_samples() {
@@ -29,7 +29,7 @@ std::string raw_samples() {
 
 void write(const std::string& file, const std::string& text) { std::ofstream(file) << text; }
 
-/// EnSight Gold in text: a tetrahedron.
+/// An EnSight Gold text file: a tetrahedron.
 void write_ensight(const Folder& folder) {
   write(folder / "e.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: e.geo\nVARIABLE\nscalar per node: p e.scl\n");
   write(folder / "e.geo",
@@ -138,7 +138,7 @@ TEST(InputProtection, ConversionReplacesNoPartOfItsInput) {
   expect_refused(folder, {"convert", folder / "m.vtm", folder.cube()});
 }
 
-// Some earlier version wrote it before it had looked at anything.
+// An earlier version wrote it before it had examined anything.
 TEST(InputProtection, NothingIsWrittenByARunThatIsRefused) {
   const Folder folder;
   const std::string mesh = folder.cube();
@@ -162,7 +162,7 @@ TEST(InputProtection, OneFileByTwoNamesIsOneOutput) {
   EXPECT_NE(run.err.find("named twice"), std::string::npos) << run.err;
 }
 
-// Steps of a list that this run does not draw are data all the same.
+// Steps of a list that this run does not render are protected too.
 TEST(InputProtection, StepsThatAreNotDrawnAreNotReplaced) {
   const Folder folder;
   const std::string mesh = folder.cube();
@@ -176,7 +176,7 @@ TEST(InputProtection, StepsThatAreNotDrawnAreNotReplaced) {
   expect_refused(folder, run + Words{"--report", folder / "other.vtu"});
 }
 
-// A reader that looks into every file of a folder makes none of them an input by that.
+// Files that a reader only inspects in a directory do not become inputs.
 TEST(InputProtection, PicturesInAnInputFolderAreReplaced) {
   const Folder folder;
   fs::create_directories(folder / "case/constant/polyMesh");
@@ -201,7 +201,7 @@ TEST(InputProtection, PicturesInAnInputFolderAreReplaced) {
   EXPECT_EQ(again.status, 0) << again.err;
 }
 
-// What a run has written itself is no input of the next.
+// Outputs of a run are not inputs of the next.
 TEST(InputProtection, OutputsOfAnEarlierRunAreReplaced) {
   const Folder folder;
   const Words run = {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ctrl-C and its like end every command at once and leave nothing; and what a terminal shows until then.
+// Ctrl-C and similar signals end every command at once and leave nothing behind; and the output on a terminal until
+// then.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <pty.h>
@@ -25,7 +26,7 @@ namespace tessera::apps {
 namespace {
 
 namespace fs = std::filesystem;
-/// A word in the environment of what a test starts, by which all that this starts in turn is found.
+/// A variable in the environment of a test's command, which identifies all processes started by it.
 class Mark {
  public:
   Mark() : word_("TESSERA_TEST_MARK=" + std::to_string(::getpid()) + "-" + std::to_string(++count())) {
@@ -38,7 +39,7 @@ class Mark {
   Mark(const Mark&) = delete;
   Mark& operator=(const Mark&) = delete;
 
-  /// Processes that have it, zombies not.
+  /// Processes that have it, except zombies.
   [[nodiscard]] std::vector<pid_t> processes() const {
     std::vector<pid_t> found;
     std::error_code gone;
@@ -50,11 +51,11 @@ class Mark {
     }
     return found;
   }
-  /// Whether none is left in the end: the kernel takes its time to free gigabytes.
+  /// Whether none remain eventually: the kernel needs time to free gigabytes.
   [[nodiscard]] bool is_gone() const {
     return test::await([this] { return processes().empty(); });
   }
-  /// Time of the processor that those that it has now have taken, in its clock's ticks.
+  /// Processor time of the current processes, in clock ticks.
   [[nodiscard]] long ticks() const {
     long sum = 0;
     for (const pid_t process : processes()) sum += state_of(process).ticks;
@@ -69,7 +70,7 @@ class Mark {
   std::string word_;
 };
 
-/// A command at a terminal of its own.
+/// A command at its own pseudo-terminal.
 class AtTerminal {
  public:
   explicit AtTerminal(const std::vector<std::string>& command) {
@@ -92,14 +93,14 @@ class AtTerminal {
   AtTerminal(const AtTerminal&) = delete;
   AtTerminal& operator=(const AtTerminal&) = delete;
 
-  /// Waits until it has shown this; false if it ends before.
+  /// Waits until it has printed this; false if it ends before.
   bool shows(const std::string& text) {
     while (shown_.find(text) == std::string::npos)
       if (!read_more()) return false;
     return true;
   }
   void press_control_c() const { ASSERT_EQ(::write(terminal_, "\x03", 1), 1); }
-  /// Its status, 128 + signal if that was its end.
+  /// Its status, 128 + signal if a signal ended it.
   int wait() {
     while (read_more()) {
     }
@@ -116,7 +117,7 @@ class AtTerminal {
     ssize_t got = 0;
     while ((got = ::read(terminal_, bytes, sizeof bytes)) < 0 && errno == EINTR) {
     }
-    if (got <= 0) return false;  // EIO, once nobody has its other end
+    if (got <= 0) return false;  // EIO once the other end is closed
     shown_.append(bytes, static_cast<std::size_t>(got));
     return true;
   }
@@ -130,15 +131,16 @@ std::vector<std::string> program(std::vector<std::string> arguments) {
   return arguments;
 }
 
-/// A plate of a millionth of its width: TetGen fills it with more tets than there is memory for, over minutes.
+/// A plate with a thickness of a millionth of its width: TetGen fills it for minutes with more tets than fit into
+/// memory.
 std::string plate(const Folder& folder) {
   return folder.file("plate.poly",
                      "8 3 0 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1e-6\n6 1 0 1e-6\n7 1 1 1e-6\n8 0 1 1e-6\n"
                      "6 0\n1\n4 1 2 3 4\n1\n4 5 6 7 8\n1\n4 1 2 6 5\n1\n4 2 3 7 6\n1\n4 3 4 8 7\n1\n4 4 1 5 8\n0\n");
 }
 
-/// Starts it, sends the signal once `when` holds of what has the mark, and looks at what is left. The work would go on
-/// for many times as long.
+/// Starts the command, sends the signal once `when` is true for the marked processes, and checks what remains. The work
+/// would take many times as long.
 template <class When>
 void expect_clean_end(const Folder& folder, const std::vector<std::string>& arguments, int signal, const When& when) {
   SCOPED_TRACE(testing::Message() << arguments[0] << ", signal " << signal);
@@ -155,7 +157,7 @@ void expect_clean_end(const Folder& folder, const std::vector<std::string>& argu
   EXPECT_EQ(folder.names(), before);
 }
 
-/// Why nothing can be shown at a terminal; empty if it can.
+/// Why no terminal can be used; empty if one can.
 std::string no_terminal() {
   const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
   if (terminal < 0) return "this machine has no pseudo-terminals (/dev/ptmx)";
@@ -170,7 +172,7 @@ TEST(Interruption, EndsEveryCommandAtOnceAndLeavesNothing) {
   const std::string mesh = folder / "mesh.tets", large = folder / "large.tets";
   ASSERT_EQ(tessera({"generate", "cube", mesh, "n=4", "--quiet"}).status, 0);
   ASSERT_EQ(tessera({"generate", "cube", large, "n=30", "--quiet"}).status, 0);
-  // At once, at the beginning of its work, and in its midst; signals differ in nothing else but their number.
+  // At once, at the beginning of its work, and during it; signals differ only in their number.
   for (const auto& [signal, moments] :
        {std::pair<int, std::vector<long>>{SIGINT, {0, 2, 30}}, {SIGTERM, {2}}, {SIGHUP, {30}}})
     for (const long ticks : moments) {
@@ -188,7 +190,7 @@ TEST(Interruption, OfAFilmEndsTheProgramThatMakesIt) {
   const Folder folder;
   const std::string mesh = folder.cube(), path = std::getenv("PATH");
   fs::create_directory(folder / "bin");
-  // One that would go on for long after its last picture.
+  // An encoder that would run long after the last image.
   fs::permissions(folder.file("bin/ffmpeg", "#!/bin/sh\ncat > /dev/null\nexec sleep 100000\n"), fs::perms::owner_all);
   ::setenv("PATH", (folder / "bin:/usr/bin:/bin").c_str(), 1);
   for (const int signal : {SIGINT, SIGTERM})
@@ -216,7 +218,7 @@ TEST(Interruption, LeavesTheFinishedPicturesOfASeriesWhole) {
 
 TEST(Interruption, StaysIgnoredWhereTheCallerHasItIgnored) {
   const Folder folder;
-  // Children inherit it, as those of nohup do.
+  // Children inherit it, as under nohup.
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGHUP, SIG_IGN);
   Running running(program({"generate", "cube", folder / "a.tets", "n=40", "--quiet"}));
@@ -253,7 +255,7 @@ TEST(Interruption, AtATerminalControlCEndsAFillingToo) {
   AtTerminal run(program({"info", plate(folder), "--max-volume", "1e-10"}));
   ASSERT_TRUE(run.shows("reading plate.poly: filling it with tets")) << run.shown();
   run.press_control_c();
-  // The helper is at the same terminal: that it has crashed is nothing to tell of.
+  // The helper is at the same terminal: its death by the signal must not be reported as a crash.
   EXPECT_EQ(run.wait(), 130);
   EXPECT_EQ(run.shown().find("crashed"), std::string::npos) << run.shown();
   EXPECT_TRUE(mark.is_gone());

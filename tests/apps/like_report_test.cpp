@@ -21,7 +21,7 @@ Json report_of(const Folder& folder, const Words& words) {
   return Json::parse(contents(folder / "r.json"));
 }
 
-/// A mesh of one tet with these values, twice its size if it is `large`.
+/// A mesh of one tet with these values, of twice the size if `large`.
 std::string tet_with(const Folder& folder, const std::string& name, const std::string& values, bool large = false) {
   return folder.file(
       name, "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 " +

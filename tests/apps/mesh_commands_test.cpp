@@ -58,7 +58,7 @@ TEST(Info, CountsInfiniteNumbersAsSuch) {
   EXPECT_NE(text.out.find("0 to 3, 1 NaN or infinite"), std::string::npos) << text.out;
 }
 
-// A terminal would take them for orders.
+// A terminal would interpret them as commands.
 TEST(Info, ShowsNoControlCharactersOfNames) {
   const Folder folder;
   const auto mesh = folder / "a\x1b[2J\nb.vtu";
@@ -167,7 +167,7 @@ TEST(Render, DividesHigherOrderCellsAsFinelyAsTheAccuracyNeeds) {
   }
   const auto few = report_of({"--accuracy", "1e-2", "--higher-order-tets", "50"}, outcome);
   EXPECT_GT(few.at("pixel_error").get<double>(), 1e-2);
-  for (const char* words : {"--accuracy 0.01", "--higher-order-tets allows more"})  // a line's end may be between them
+  for (const char* words : {"--accuracy 0.01", "--higher-order-tets allows more"})  // a line may break between them
     EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
   const auto fixed = report_of({"--higher-order-tolerance", "0.05"}, outcome);
   EXPECT_EQ(fixed.at("tolerance"), 0.05);
@@ -257,7 +257,7 @@ TEST(Convert, PiecesThatCannotBeWrittenLeaveNothing) {
     EXPECT_EQ(run.error_lines(), 1u) << run.err;
     EXPECT_EQ(folder.names(), names);
   }
-  // A folder where a piece should be: found when pieces get their names.
+  // A directory in place of a piece: detected when pieces are renamed.
   std::filesystem::create_directory(folder / "o_0002.vtu");
   const auto run = tessera({"convert", mesh, folder / "o.pvtu", "--pieces", "4"});
   EXPECT_NE(run.status, 0);
@@ -272,7 +272,7 @@ TEST(Convert, PiecesNeverReplaceWhatIsRead) {
   const auto before = contents(folder / "a_0001.vtu");
   const auto itself = tessera({"convert", folder / "a.pvtu", folder / "a.pvtu", "--pieces", "2"});
   EXPECT_EQ(itself.status, 2);
-  // Another list over the same pieces.
+  // Another list of the same pieces.
   std::filesystem::copy_file(folder / "a.pvtu", folder / "b.pvtu");
   const auto run = tessera({"convert", folder / "b.pvtu", folder / "a.pvtu", "--pieces", "2"});
   EXPECT_EQ(run.status, 2);
@@ -289,7 +289,7 @@ TEST(Convert, RefusesFormatsItDoesNotWrite) {
     EXPECT_EQ(run.error_lines(), 1u);
     EXPECT_FALSE(std::filesystem::exists(folder / name));
   }
-  // An input that is not read: no other output helps.
+  // An input format that is not supported: no other output helps.
   const auto array = tessera({"convert", folder.file("a.npy", "\x93NUMPY"), folder / "a.nrrd"});
   EXPECT_EQ(array.status, 2);
   EXPECT_NE(array.err.find("its format (NumPy array) is not read"), std::string::npos) << array.err;

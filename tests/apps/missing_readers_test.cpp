@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The program on a machine without reader programs: commands that open a file refuse it in one line that names
-// the reader. Which formats there are, readers/missing_readers_test.cpp goes through.
+// The program on a machine without reader programs: commands that open a file refuse it in one line that names the
+// reader. readers/missing_readers_test.cpp covers all formats.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ class WithoutReaders : public ::testing::Test {
  protected:
   void SetUp() override {
     if (std::filesystem::exists(TESSERA_INSTALLED_READERS)) GTEST_SKIP() << "reader programs are installed";
-    // The built program by another name, from which no folder with reader programs is found.
+    // The built program under another name, from which no directory with reader programs is found.
     const std::filesystem::path copy = folder / "alone/bin/tessera";
     std::filesystem::create_directories(copy.parent_path());
     std::error_code other_disk;

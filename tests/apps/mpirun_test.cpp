@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The program on several ranks, as users start it.
+// The program on several ranks, started as by users.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ class Mpirun : public ::testing::Test {
   }
 };
 
-/// Lines of the program's own on stderr; mpirun has some to say itself.
+/// The program's own lines on stderr; mpirun may add others.
 std::vector<std::string> own_lines(const Outcome& outcome) {
   std::vector<std::string> lines;
   std::istringstream err(outcome.err);
@@ -153,13 +153,13 @@ TEST_F(Mpirun, RunsMeetTheReferenceAndTheReportSaysTheJobsShape) {
   EXPECT_EQ(report.at("mesh").at("tets"), 4 * 4 * 4 * 6);
   const auto& counters = report.at("frames").at(0).at("counters");
   EXPECT_EQ(counters.at("tets_total"), 4 * 4 * 4 * 6);
-  // 24 bytes a run, 16 if it is one segment; headers come on top.
+  // 24 bytes a run, 16 if it is one segment; headers are extra.
   EXPECT_GE(counters.at("exchange_bytes").get<std::uint64_t>(), 16 * counters.at("fragments").get<std::uint64_t>());
 
-  // The trace has all ranks, and the projectors' sends moved the bytes that the report counts.
+  // The trace contains all ranks, and the projectors' sends account for the bytes in the report.
   const auto trace = nlohmann::json::parse(contents(folder / "trace.json"));
   std::set<int> ranks;
-  std::set<int> peers, projected, composited;  // ranks sent to, tiles
+  std::set<int> peers, projected, composited;  // destination ranks, tiles
   std::uint64_t sent = 0;
   for (const auto& event : trace.at("traceEvents")) {
     ranks.insert(event.at("pid").get<int>());
@@ -307,7 +307,7 @@ std::string image_text(int cells, double low, double spacing) {
       cells, low, spacing, values);
 }
 
-/// Two cells, of which the first is divided twice.
+/// Two cells, the first divided twice.
 constexpr const char* trees_text =
     R"(<VTKFile type="HyperTreeGrid" version="2.0" byte_order="LittleEndian"><HyperTreeGrid BranchFactor="2"
 TransposedRootIndexing="0" Dimensions="3 2 2"><Grid>

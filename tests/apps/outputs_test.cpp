@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where pictures and reports go: films through a stand-in for ffmpeg, standard streams.
+// Destinations of images and reports: films through a fake ffmpeg, standard streams.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Puts a program named ffmpeg alone on PATH (with what a shell script needs), for as long as it lives.
+/// Makes a fake ffmpeg the only one on PATH (with the commands that a shell script needs) during its lifetime.
 class StandIn {
  public:
   explicit StandIn(const Folder& folder, const std::string& script) : path_(std::getenv("PATH")) {
@@ -31,7 +31,7 @@ class StandIn {
   std::string path_;
 };
 
-// Keeps the pictures as they come; the file is the last word.
+// Stores the images as they arrive; the file is the last argument.
 const char* const keeps = "for last; do :; done\nexec cat > \"$last\"\n";
 
 TEST(Outputs, AFilmIsAllFramesInOneFile) {
@@ -69,7 +69,7 @@ TEST(Outputs, AFilmThatFailsLeavesNothingAndSaysWhy) {
   for (const std::string& name : folder.names()) EXPECT_TRUE(name == "bin" || name.ends_with(".vtu")) << name;
 }
 
-/// The first picture of a film as 24-bit RGB, decoded as BT.709, and how many pictures it has.
+/// The first frame of a film as 24-bit RGB, decoded as BT.709, and the number of frames.
 struct Decoded {
   std::string rgb;
   std::size_t pictures = 0;
@@ -83,8 +83,8 @@ Decoded decoded(const std::string& film, std::size_t bytes_each, bool is_video) 
   return {all.out.substr(0, bytes_each), all.out.size() / bytes_each};
 }
 
-// Colours that encoders' two matrices make different by up to 30 of 255; 6 is what chroma of half the pixels, 8 bits
-// and compression leave of an even ground.
+// Colours for which encoders' two matrices differ by up to 30 of 255; chroma of half the pixels, 8 bits and compression
+// change a uniform background by at most 6.
 TEST(Outputs, FilmsOfARealFfmpegHaveAllPicturesInTheirColours) {
   if (!Running({"sh", "-c", "command -v ffmpeg"}).wait().out.ends_with("ffmpeg\n"))
     GTEST_SKIP() << "ffmpeg is not installed";
@@ -102,7 +102,7 @@ TEST(Outputs, FilmsOfARealFfmpegHaveAllPicturesInTheirColours) {
     for (std::size_t c = 0; c < 3; ++c)
       EXPECT_NEAR(static_cast<unsigned char>(film.rgb[3 * (width * 2 + 2) + c]), ground[c], 6) << name;
   }
-  // Odd sides gain a line of the ground.
+  // Odd sides are extended by a line of the background.
   const Outcome odd = tessera({"render", mesh, "-o", folder / "odd.mp4", "--size", "63x47", "--quiet"});
   EXPECT_EQ(odd.status, 0) << odd.err;
   EXPECT_EQ(decoded(folder / "odd.mp4", bytes, true).pictures, 1u);

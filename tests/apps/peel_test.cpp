@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Layers of pictures, as users ask for them.
+// Layers of images on the command line.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -83,7 +83,7 @@ TEST(Peeling, LayersOfAFilmHaveItsNumbersAndNoBackground) {
     EXPECT_TRUE(has(folder, name)) << name;
   EXPECT_EQ(io::read_image(folder / "f_001.exr").rgba[3], 1);
   EXPECT_EQ(io::read_image(folder / "f_001.layer1.exr").rgba[3], 0);
-  // Resumed, a frame whose layers are gone is made again.
+  // On resume, a frame with missing layers is rendered again.
   std::filesystem::remove(folder / "f_001.layer4.exr");
   ASSERT_EQ(tessera(joined(film, {"--resume"})).status, 0);
   EXPECT_TRUE(has(folder, "f_001.layer4.exr"));
@@ -132,7 +132,7 @@ TEST(Peeling, RanksWriteTheBytesOfOneProcess) {
   const auto expect_refused = [](const Words& words) {
     const Outcome refused = mpirun(2, words);
     EXPECT_EQ(refused.status, 2) << refused.err;
-    // mpirun has lines of its own.
+    // mpirun prints lines of its own.
     const std::size_t first = refused.err.find("tessera: ");
     ASSERT_NE(first, std::string::npos) << refused.err;
     EXPECT_EQ(refused.err.find("tessera: ", first + 1), std::string::npos) << refused.err;

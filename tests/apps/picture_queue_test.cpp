@@ -48,7 +48,7 @@ TEST(PictureQueue, SeveralWritersWriteAtOnceAndEachPictureOnce) {
 
 TEST(PictureQueue, HoldsOneBeingWrittenAndOneThatWaits) {
   std::atomic<int> held = 0, most = 0;
-  constexpr int left = 8;  ///< pictures from this one on are not followed by two others
+  constexpr int left = 8;  ///< images from this one on are not followed by two others
   struct Picture {
     explicit Picture(std::atomic<int>& count) : held(count) { ++held; }
     ~Picture() { --held; }
@@ -57,12 +57,12 @@ TEST(PictureQueue, HoldsOneBeingWrittenAndOneThatWaits) {
   PictureQueue queue(1);
   for (int i = 0; i < 10; ++i) {
     const auto picture = std::make_shared<Picture>(held);
-    // Each is written until the one after the next is handed over.
+    // Each is being written until two more have been handed over.
     queue.add([picture, i, &held] { EXPECT_TRUE(test::await([&] { return held == 3 || i >= left; })); });
     most = std::max(most.load(), held.load());
   }
   queue.finish();
-  EXPECT_LE(most, 3);  // and the one that is handed over
+  EXPECT_LE(most, 3);  // plus the one being handed over
   EXPECT_EQ(held, 0);
 }
 

@@ -31,7 +31,7 @@ void redirect(const char* path, int flags, int target) {
 std::size_t Outcome::error_lines() const {
   std::size_t lines = 0;
   std::istringstream text(err);
-  // hwloc, which is MPI's, complains in every process where there is no /sys, as in a bare chroot.
+  // hwloc, a part of MPI, complains in every process if there is no /sys, as in a bare chroot.
   for (std::string line; std::getline(text, line) && !text.eof();)
     lines += line.starts_with("[hwloc/") || line.starts_with("  ") ? 0 : 1;
   return lines;
@@ -84,7 +84,7 @@ Outcome run(const std::vector<std::string>& command, const std::filesystem::path
   return outcome;
 }
 
-/// Words of a file of /proc, which end in zeros.
+/// Words of a file in /proc, which are terminated by zeros.
 std::vector<std::string> words_of(const std::filesystem::path& file) {
   std::vector<std::string> words;
   std::istringstream text(contents(file));
@@ -144,7 +144,7 @@ std::map<int, pid_t> ranks_with(const std::string& word) {
     const std::string name = entry.path().filename();
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
     const auto command = words_of(entry.path() / "cmdline");
-    // Or a shell that becomes the program.
+    // Or a shell that will exec the program.
     if (std::none_of(command.begin(), command.end(), [&](const auto& w) { return w.find(word) != std::string::npos; }))
       continue;
     for (const std::string& variable : words_of(entry.path() / "environ"))
@@ -171,7 +171,7 @@ std::vector<std::string> joined(std::vector<std::string> words, const std::vecto
 }
 
 std::vector<std::string> mpirun_command(int ranks, const std::vector<std::string>& arguments) {
-  // As root and on fewer cores than ranks, as in a container; Open MPI's own leaks are not ours to report.
+  // As root and on fewer cores than ranks, as in a container; leaks of Open MPI itself are not reported.
   std::vector<std::string> command{"env",
                                    "OMPI_ALLOW_RUN_AS_ROOT=1",
                                    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a run says of how far it is.
+// Progress reports of a run.
 #include "apps/render/progress.hpp"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ TEST(StatusLine, IsNotThereUnlessItIsToBeShown) {
   StatusLine hidden(false);
   EXPECT_FALSE(hidden.shown());
   EXPECT_EQ(hidden.listener(), nullptr);
-  // One that comes to nothing ends at once.
+  // A task without work ends at once.
   StatusLine line(true);
   line.begin("reading a.vtu");
   const ReadProgressFunction listener = line.listener();

@@ -37,7 +37,7 @@ inline std::string quadratic_tet_text(bool above) {
       values, points);
 }
 
-/// A .pvtu of both, in below.vtu and above.vtu beside it.
+/// A .pvtu of both, stored next to it in below.vtu and above.vtu.
 inline std::string quadratic_pair_text() {
   return "<VTKFile type=\"PUnstructuredGrid\" version=\"2.2\" byte_order=\"LittleEndian\"><PUnstructuredGrid "
          "GhostLevel=\"0\"><PPointData><PDataArray type=\"Float64\" Name=\"f\"/></PPointData><PPoints><PDataArray "

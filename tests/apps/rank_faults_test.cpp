@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What happens to a run while it goes on: an output folder or an input that is removed, ranks that are ended. One line
-// in all, and the status of the design.
+// Faults during a run: an output directory or an input that is removed, ranks that are killed. One line in total, and
+// the documented status.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -54,7 +54,7 @@ TEST_F(RankFaults, AStepOfASeriesThatIsRemovedInMidRunIsTheSystemsFault) {
       std::filesystem::copy_file(input, later);
       Running running(command(0, film(input, {later}, frames)));
       ASSERT_TRUE(wait_for_pictures(running, 3)) << running.wait().err;
-      kill(running.process(), SIGSTOP);  // it stands still while the file goes
+      kill(running.process(), SIGSTOP);  // it is stopped while the file is removed
       in_time = pictures() + 8 < static_cast<std::size_t>(frames);
       std::filesystem::remove(later);
       kill(running.process(), SIGCONT);
@@ -97,11 +97,11 @@ TEST_F(RankFaults, AllRanksEndedAtOnceGiveOneLineToo) {
   }
 }
 
-// Of ranks that its launcher ends, because one has died or because the launcher itself is ended.
+// For ranks that their launcher kills, because one has died or because the launcher itself is killed.
 TEST_F(RankFaults, RanksThatTheLauncherEndsGiveOneLine) {
   if (!has_mpirun()) GTEST_SKIP() << "there is no mpirun";
   for (const int signal : {SIGTERM, SIGKILL}) {
-    // Else Open MPI kills ranks a second after it has told them to end, whatever else the machine has to do.
+    // Otherwise Open MPI kills ranks one second after it has asked them to end, however busy the machine is.
     Words words = command(3, film(inputs_[1]));
     words.insert(words.begin() + 1, "OMPI_MCA_odls_base_sigkill_timeout=10");
     Running running(words);
@@ -116,7 +116,7 @@ TEST_F(RankFaults, RanksThatTheLauncherEndsGiveOneLine) {
   }
 }
 
-/// Memory of the process's own, KiB.
+/// Private memory of the process, KiB.
 long own_memory(pid_t process) {
   std::ifstream status("/proc/" + std::to_string(process) + "/status");
   for (std::string word; status >> word;)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Threads and memory that there are not: the picture, or one line that says what to do.
+// Too few threads or too little memory: the image is rendered, or one line states a remedy.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace tessera::apps {
 namespace {
 
-/// One that takes address space without end has no use for limits of it.
+/// Sanitizers reserve unlimited address space, so limits of it cannot be tested.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool is_sanitized = true;
 #else
@@ -26,7 +26,7 @@ class RankLimits : public FilmRuns {
     return words;
   }
 
-  /// The least limit under which the loader comes as far as our code, MiB.
+  /// The lowest limit with which the loader reaches our code, MiB.
   static int least_limit() {
     int too_little = 62, enough = 4096;
     while (enough - too_little > 2) {
@@ -68,8 +68,8 @@ TEST_F(RankLimits, UnderAMemoryLimitThereIsOneLineThatSaysWhatToDo) {
     }
 }
 
-// Where MPI does not start, its report and the launcher's are all that is said, and Open MPI 4.1.4's launcher may hang
-// as it ends itself; of the ranks each prints a line at most, and all end.
+// If MPI does not start, only its report and the launcher's are printed, and Open MPI 4.1.4's launcher may hang at its
+// own end; each rank prints at most one line, and all end.
 TEST_F(RankLimits, UnderAMemoryLimitRanksEndWhereverTheyDie) {
   if (is_sanitized) GTEST_SKIP() << "sanitizers take all address space";
   if (!has_mpirun()) GTEST_SKIP() << "there is no mpirun";

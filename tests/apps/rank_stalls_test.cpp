@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ranks that are stopped: named and waited for, or the run's end.
+// Ranks that are stopped: they are reported and waited for, or end the run.
 
 #include <gtest/gtest.h>
 
@@ -19,16 +19,16 @@ class RankStalls : public FilmRuns {
     FilmRuns::SetUp();
   }
 
-  /// Stops a rank in the midst of a film of `frames` pictures until it has been named; its process, or 0: the film was
-  /// over too soon.
+  /// Stops a rank during a film of `frames` images until it has been reported; returns its process, or 0 if the film
+  /// ended too soon.
   pid_t stop_and_go_on(const Running& running, int ranks, int stopped, int frames) {
-    // By then each rank has had the others' first sign of life, which says their process.
+    // By then each rank has received the others' first heartbeat, which contains their process id.
     if (!wait_for_pictures(running, 20)) return 0;
     const auto all = ranks_with(pictures_);
     if (!all.contains(stopped)) return 0;
     const pid_t process = all.at(stopped);
     kill(process, SIGSTOP);
-    // Two frames at a time are under way: with so many left every rank has a part in what comes.
+    // Two frames are in flight at a time: with so many left, every rank takes part in the remaining work.
     const bool in_time = pictures() + 8 < static_cast<std::size_t>(frames);
     const std::string name = "rank " + std::to_string(stopped) + " of " + std::to_string(ranks) + " (process " +
                              std::to_string(process) + " on ";
@@ -72,7 +72,7 @@ TEST_F(RankStalls, AStoppedRankIsNamedAndWaitedFor) {
 
 TEST_F(RankStalls, AStoppedRankEndsTheRunWhereThatIsAsked) {
   for (const auto& [input, ranks, stopped] : {std::tuple(inputs_[0], 2, 0), std::tuple(inputs_[1], 4, 3)}) {
-    // Ten seconds: no rank that runs is silent for so long, however busy the machine is.
+    // Ten seconds: no running rank is silent for that long, however busy the machine is.
     Running running(command(ranks, film(input, {"--stall-timeout", "10", "--on-stall", "abort"})));
     ASSERT_TRUE(wait_for_pictures(running, 3)) << running.wait().err;
     kill(ranks_with(pictures_).at(stopped), SIGSTOP);
@@ -88,7 +88,7 @@ TEST_F(RankStalls, AStoppedRankEndsTheRunWhereThatIsAsked) {
 
 TEST_F(RankStalls, ARankThatComputesForLongIsNotStopped) {
   constexpr double timeout = 4;
-  // The first rank alone verifies: more and more pixels, until that takes longer than silence may.
+  // Only the first rank verifies: more and more pixels, until that takes longer than the stall timeout.
   double verified = 0;
   for (int pixels = 60000; verified < 1.5 * timeout; pixels *= 2) {
     const Outcome outcome =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `tessera render` run as its users run it: pictures, frames, reports.
+// `tessera render` as users run it: images, frames, reports.
 
 #include <gtest/gtest.h>
 
@@ -66,7 +66,7 @@ TEST(Render, TakesJsonItselfInPlaceOfAFilesName) {
   EXPECT_EQ(contents(folder / "v0.png"), contents(folder / "a.png"));
   EXPECT_NE(contents(folder / "v1.png"), contents(folder / "a.png"));
 
-  // More text than a file's name may have.
+  // A text longer than any file name.
   EXPECT_EQ(render("c.png", near + std::string(5000, ' '), function + std::string(5000, ' ')).status, 0);
   for (const auto& [camera, colors, words] :
        {std::array<std::string, 3>{R"({"position": [1, 2]})", function, "tessera: --camera: "},
@@ -136,7 +136,7 @@ TEST(Render, VerifyMeetsItsBoundAndReportsPixels) {
 
 TEST(Render, AnAccuracyThatCannotBeMetGivesStatusFourAndStillThePicture) {
   const Folder folder;
-  // Of such light the last place of a float is more than the accuracy.
+  // For such bright light the last place of a float exceeds the accuracy.
   const std::string bright = folder.file("bright.txt", "0 1e5 2e5 3e5 0\n1 3e5 1e5 2e5 0\n");
   const auto run = tessera({"render", folder.cube(), "-o", folder / "a.pfm", "--size", "40x40", "--transfer-function",
                             bright, "--emission", "independent", "--accuracy", "1e-6", "--verify", "400"});
@@ -269,7 +269,7 @@ TEST(Render, ADeepPictureStandsBesideTheFlatOne) {
   const auto run = tessera({"render", mesh, "-o", folder / "a.deep.exr", "-o", folder / "a.exr", "--size", "30x20",
                             "--deep-accuracy", "1e-2", "--report", folder / "r.json"});
   ASSERT_EQ(run.status, 0) << run.err;
-  // Beside a deep picture the flat one is made in double precision: not the same bits, but the same picture.
+  // In addition to a deep image the flat one is made in double precision: not the same bits, but the same image.
   const scene::Image beside = io::read_image(folder / "a.exr"), alone = io::read_image(folder / "alone.exr");
   ASSERT_EQ(beside.rgba.size(), alone.rgba.size());
   for (std::size_t i = 0; i < alone.rgba.size(); ++i) ASSERT_NEAR(beside.rgba[i], alone.rgba[i], 2e-6);
@@ -285,11 +285,11 @@ TEST(Render, ProgressIsALineThatGoesAway) {
       tessera({"render", folder.cube(), "-o", folder / "%d.pfm", "--size", "8x8", "--orbit", "2", "--progress"});
   EXPECT_EQ(run.status, 0);
   EXPECT_NE(run.err.find("frame 2 of 2"), std::string::npos);
-  EXPECT_EQ(run.error_lines(), 3u);  // the run's, and each frame's
+  EXPECT_EQ(run.error_lines(), 3u);  // for the run, and for each frame
   EXPECT_TRUE(run.err.ends_with("\x1b[K"));
 }
 
-/// Each mechanism that saves work says in the counters that it was left out, and the picture stays within the accuracy.
+/// Counters show for each optimization that it was disabled, and the image stays within the accuracy.
 TEST(Render, WithoutAnyOfItsMechanismsThePictureIsTheSame) {
   const Folder folder;
   const std::string mesh = folder.cube();
@@ -326,7 +326,7 @@ TEST(Render, WithoutAnyOfItsMechanismsThePictureIsTheSame) {
   const auto lattice = render("lattice");
   EXPECT_EQ(lattice["frames"][0]["arithmetic"], "double");
   const auto termination = render("termination");
-  // How many segments termination spares differs from build to build; without it the counts are the same.
+  // The number of segments saved by termination differs between builds; without it the counts are the same.
   EXPECT_GT(counter(render("culling,termination"), "segments"), counter(termination, "segments"));
   EXPECT_LE(termination["frames"][0]["verify"]["max_error"], all["frames"][0]["verify"]["max_error"]);
   render("culling,skipping,termination,lattice,sharing,merging");

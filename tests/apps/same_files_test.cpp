@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ranks that read different files under one name, as from copies of which one is older.
+// Ranks that read different files with the same name, for example an outdated copy.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-/// Rank N runs in the folder N of `folder`.
+/// Rank N runs in the directory N of `folder`.
 Outcome in_own_folders(const Folder& folder, const Words& arguments) {
   Words command = mpirun_command(2, {});
   command.pop_back();
@@ -71,7 +71,7 @@ TEST_F(SameFiles, PiecesThatDifferAreTold) {
   expect_told({"render", "p.pvtu", "-o", "a.png", "--size", "16x16"}, "p_0001.vtu");
 }
 
-// They waited for each other's cells for ever.
+// They once waited for each other's cells without end.
 TEST_F(SameFiles, VolumesThatDifferAreTold) {
   const std::string header = "NRRD0004\ntype: uint8\ndimension: 3\nencoding: raw\nsizes: ";
   for (const auto& [rank, n] : {std::pair{"0", 8}, std::pair{"1", 6}}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `--scale`, asked for and chosen.
+// `--scale`, given and chosen automatically.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Options in a file: what --save-config writes, --config reads.
+// Options in a file: --config reads what --save-config writes.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the pictures of a time series go by where no option says it, and what `info` says of one.
+// Defaults for the images of a time series, and the report of `info` on one.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 using Names = std::vector<std::string>;
-/// Of a point's x from 0 to 1.
+/// As a function of a point's x from 0 to 1.
 using Values = std::function<double(double)>;
 
 struct Field {
@@ -114,7 +114,7 @@ TEST_F(SeriesDefaults, GoByTheStepsThatVary) {
     EXPECT_EQ(said.at("renders").at("transfer_function"), by_default.at("transfer_function"));
     EXPECT_EQ(said.at("notes"), by_default.at("mesh").at("notes"));
   }
-  // One step alone goes by itself.
+  // A single step uses its own values.
   EXPECT_EQ(info_of(pvd, {"--time-step", "0"}).at("field").at("name"), "depth");
   EXPECT_EQ(info_of(pvd, {"--time-step", "3"}).at("field").at("range").at(1), 1);
 }
@@ -194,7 +194,7 @@ TEST_F(SeriesDefaults, NumberedFilesHaveTheTimesThatTheyState) {
               R"(RangeMax="0.5">CAAAAAAAAAAAAOA/</DataArray>)");
   EXPECT_EQ(info_of(folder / "t_%d.vtu").at("time_steps").at("times"), Json({0.125, 0.5}));
   EXPECT_EQ(report_of(folder / "t_%d.vtu").at("frames").at(1).at("time"), 0.5);
-  write_at(9, "");  // then there is none of a part of the series
+  write_at(9, "");  // no time is used if only a part of the series has one
   EXPECT_EQ(info_of(folder / "t_%d.vtu").at("time_steps").at("numbers"), Json({7, 8, 9}));
 }
 
@@ -215,7 +215,7 @@ TEST_F(SeriesDefaults, LegacyFilesAndListsOfPiecesHaveTheTimesThatTheyState) {
   (void)folder.file("l_7.vtk", ascii);
   (void)folder.file("l_8.vtk", binary);
   EXPECT_EQ(info_of(folder / "l_%d.vtk").at("time_steps").at("times"), Json({0.125, 0.5}));
-  // In a list of files, whose places they would be, too.
+  // The same in a list of files, whose times would otherwise be their indices.
   Names list = film(folder / "l_8.vtk");
   list.insert(list.begin() + 1, folder / "l_7.vtk");
   EXPECT_EQ(tessera(list).status, 0);
@@ -262,7 +262,7 @@ TEST_F(SeriesDefaults, NeverShowAFieldInSomeStepsAndTheShapeInOthers) {
 
 TEST_F(SeriesDefaults, AFieldOfOneStepThatWasNotLookedAtIsNotShownInColorsOfTheShape) {
   std::vector<std::vector<Field>> steps(13, {{"p", times(0)}});
-  steps[8] = {{"p", times(4)}};  // looked at are 0, 3, 6, 9 and 12
+  steps[8] = {{"p", times(4)}};  // steps 0, 3, 6, 9 and 12 are examined
   write(steps);
   const Outcome run = tessera(film(pvd));
   EXPECT_EQ(run.status, 2);
@@ -274,7 +274,7 @@ TEST_F(SeriesDefaults, AFieldOfOneStepThatWasNotLookedAtIsNotShownInColorsOfTheS
 }
 
 TEST_F(SeriesDefaults, CountAFieldAsIdsOnlyIfItIsInAllStepsInWhichItVaries) {
-  // 24 points: 0, 1, ... in the first step, which no quantity is, and other values in the next.
+  // 24 points: 0, 1, ... in the first step, which is not a quantity, and other values in the next.
   int n = 0;
   const auto counted = [&n](double) { return n++ % 24; };
   write({{{"heat", counted}, {"other", times(0)}}, {{"heat", times(3)}, {"other", times(0)}}});

@@ -123,7 +123,7 @@ TEST_F(Series, PartsOfATimestepAreOneMesh) {
 }
 
 TEST_F(Series, TheFieldOfTheFirstStepIsKept) {
-  // The field is chosen by what varies. A later step that lacks it is reported before any picture.
+  // The field is chosen among those that vary. A later step that lacks it is reported before any image is rendered.
   const auto rename = [&](const std::string& mesh) {
     const auto text = contents(mesh);
     std::string changed = text;

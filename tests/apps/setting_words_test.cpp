@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Settings of libraries' messages are options in what the program says, and nothing else that stands in backquotes is.
+// The program prints settings in the library's messages as options, and leaves all other text in backquotes unchanged.
 
 #include <gtest/gtest.h>
 
@@ -23,13 +23,13 @@ TEST(SettingWords, AllElseStaysAsItIs) {
   for (const char* text :
        {"", "`", "``", "a ` b", "no setting", "`memory", "memory`", "`no_setting`", "`deep-accuracy`", "--memory",
         "has a broken header; it is `PF`, width and height", "each line is `value r g b extinction`",
-        // Names of files, and words that somebody quotes.
+        // File names, and quoted words.
         "`memory`.vtu: is empty", "data/`memory`/a.vtu: is empty", "a`memory`: is empty", "no field '`memory`'"})
     EXPECT_EQ(with_options(text), text);
   EXPECT_EQ(with_options("it`s `memory` `` `size`"), "it`s --memory `` --size");
 }
 
-/// What `tessera` says on stderr, less the line's end.
+/// The line that `tessera` prints on stderr, without the line end.
 std::string said(const std::vector<std::string>& arguments) {
   std::string words = tessera(arguments).err;
   if (words.ends_with('\n')) words.pop_back();

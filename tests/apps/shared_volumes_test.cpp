@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Volumes in formats that are read as a whole, on several ranks: kept once, in a file without a name. And what memory
-// ranks, and programs within a budget, really take.
+// Volumes in formats that are read as a whole, on several ranks: stored once, in an unnamed file. And the actual memory
+// of ranks, and of programs with a budget.
 #include <gtest/gtest.h>
 #include <spawn.h>
 #include <sys/resource.h>
@@ -83,8 +83,8 @@ class SharedVolumes : public ::testing::Test {
     return file;
   }
 
-  /// The command line on so many ranks, whose temporary files go to `scratch`; mpirun has some of its own elsewhere. In
-  /// each rank's shell `first` runs before.
+  /// The command line on `ranks` ranks, whose temporary files go to `scratch`; mpirun puts its own elsewhere. `first`
+  /// runs in each rank's shell before.
   [[nodiscard]] static Words on_ranks(int ranks, const std::string& scratch, const Words& arguments,
                                       const std::string& first = ":") {
     Words words = mpirun_command(ranks, arguments);
@@ -159,13 +159,13 @@ TEST_F(SharedVolumes, AreAnnouncedOnce) {
   EXPECT_EQ(nlohmann::json::parse(contents(folder_ / "r.json")).at("volume").at("notes").size(), 1u);
   const Outcome quiet = Running(on_ranks(3, scratch_, render(volume, folder_ / "a.pfm", {"--quiet"}))).wait();
   EXPECT_EQ(count_of(quiet.err, "tessera") + count_of(quiet.err, "note"), 0u) << quiet.err;
-  // Nobody else needs them.
+  // No other process needs them.
   EXPECT_EQ(count_of(Running(on_ranks(1, scratch_, words)).wait().err, "read as a whole"), 0u);
   EXPECT_EQ(count_of(tessera(words).err, "read as a whole"), 0u);
 }
 
 TEST_F(SharedVolumes, WithoutRoomEndTheRunInOneLineWithARemedyThatWorks) {
-  // 27 MB, which the limit is below; what MPI's ranks share of memory is within it.
+  // 27 MB, more than the limit, which still includes the memory shared by MPI's ranks.
   const std::string volume = zipped(300), missing = folder_ / "nowhere";
   const Words words = render(volume, folder_ / "a.pfm", {"--quiet"});
   for (const int ranks : {2, 3})
@@ -184,7 +184,7 @@ TEST_F(SharedVolumes, WithoutRoomEndTheRunInOneLineWithARemedyThatWorks) {
   EXPECT_EQ(Running(on_ranks(2, missing, bricks)).wait().status, 0);
 }
 
-/// Whether a process has a file open that lies, or lay, in a folder.
+/// Whether a process has a file open that is, or was, in a directory.
 bool has_open_in(const std::string& folder, pid_t process) {
   std::error_code gone;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/" + std::to_string(process) + "/fd", gone))
@@ -201,12 +201,12 @@ TEST_F(SharedVolumes, LeaveNothingWhenARankIsEnded) {
     for (const int signal : {SIGKILL, SIGTERM})
       for (const int ended : {0, 1}) {
         if (!some.next()) continue;
-        // Of its own: a rank of the run before may still be ending.
+        // A unique name: a rank of the previous run may still be ending.
         const std::string pictures = folder_ / ("f" + std::to_string(++number) + "_");
         Running running(on_ranks(3, scratch_, render(volume, pictures + "%03d.pfm", {"--orbit", "9999", "--quiet"})));
         std::map<int, pid_t> ranks;
         ASSERT_TRUE(test::await([&] {
-          ranks = ranks_with(pictures);  // each time: what a rank starts is for a moment like the rank
+          ranks = ranks_with(pictures);  // each time: a rank's child first looks like the rank
           return !running.runs() || (ranks.size() == 3 && has_open_in(scratch_, ranks.at(opened)));
         }));
         ASSERT_TRUE(running.runs()) << running.wait().err;
@@ -218,7 +218,7 @@ TEST_F(SharedVolumes, LeaveNothingWhenARankIsEnded) {
       }
 }
 
-/// KiB, of a process that runs.
+/// Peak memory of a running process, KiB.
 long peak_of(pid_t process) {
   std::ifstream status("/proc/" + std::to_string(process) + "/status");
   for (std::string line; std::getline(status, line);)
@@ -229,7 +229,7 @@ long peak_of(pid_t process) {
 TEST_F(SharedVolumes, AreWholeInTheMemoryOfNoRank) {
   if (is_sanitized) GTEST_SKIP() << "sanitizers take memory of their own";
   const std::string volume = zipped(400);
-  constexpr long budget = 64l << 10;  // KiB, of 62,500 that all samples are
+  constexpr long budget = 64l << 10;  // KiB; all samples take 62,500
   Words words = of_size("256x256", render(volume, folder_ / "g_%03d.pfm", {"--orbit", "9999", "--memory", "64M"}));
   Running running(on_ranks(3, scratch_, words));
   ASSERT_TRUE(test::await([&] { return !running.runs() || std::filesystem::exists(folder_ / "g_002.pfm"); }));
@@ -237,14 +237,14 @@ TEST_F(SharedVolumes, AreWholeInTheMemoryOfNoRank) {
   ASSERT_EQ(ranks.size(), 3u);
   for (const auto& [rank, process] : ranks) {
     EXPECT_GT(peak_of(process), 0);
-    // The program and MPI are 28 MiB of it: one that holds the volume once is far beyond.
+    // 28 MiB of it are the program and MPI: holding the volume once would exceed it by far.
     EXPECT_LT(peak_of(process), budget) << rank;
   }
   kill(running.process(), SIGTERM);
   running.wait();
 }
 
-/// Status, and the largest peak of all processes that it has waited for, KiB.
+/// Status, and the largest peak memory of all processes that it has waited for, KiB.
 std::pair<int, long> peak_of(const Words& command) {
   std::vector<char*> arguments;
   for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
@@ -269,13 +269,13 @@ TEST_F(SharedVolumes, InFormatsThatAreUnpackedFitTheBudgetOfOneProcess) {
   EXPECT_EQ(small.first, 0);
   EXPECT_EQ(large.first, 0);
   EXPECT_LE(small.second, 64l << 10);
-  EXPECT_GT(large.second, 400l * 400 * 400 / 1024);  // where there is room it stays in memory
+  EXPECT_GT(large.second, 400l * 400 * 400 / 1024);  // with enough memory it stays in memory
   EXPECT_EQ(contents(folder_ / "small.pfm"), contents(folder_ / "large.pfm"));
 }
 
 TEST_F(SharedVolumes, InASmallPictureKeepTheBudget) {
   if (is_sanitized) GTEST_SKIP() << "sanitizers take memory of their own";
-  // A tile of 32 x 32 pixels sees nearly all of it: 20 MiB of samples at a time.
+  // A tile of 32 x 32 pixels covers almost all of it: 20 MiB of samples at a time.
   const std::string volume = folder_ / "v_400x400x400_uint8.raw";
   {
     std::ofstream out(volume, std::ios::binary);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Surfaces in the volume, as users ask for them.
+// Surfaces in the volume on the command line.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -25,7 +25,7 @@ TEST(Surfaces, OfValuesAreRenderedVerifiedAndReported) {
   EXPECT_NE(text.find(R"("iso":[{"color":[1.0,0.0,0.0],"opacity":)"), std::string::npos) << text;
 }
 
-/// Two triangles that cross [-1, 1]^3 and reach beyond it.
+/// Two triangles that intersect [-1, 1]^3 and extend beyond it.
 std::string write_sheet(const Folder& folder) {
   return folder.file("sheet.ply",
                      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
@@ -95,7 +95,7 @@ TEST(Surfaces, ThatTheFieldDoesNotReachAreWarnedOf) {
   EXPECT_NE(run.err.find("--iso 5: shows nothing, the field goes from 0.03"), std::string::npos) << run.err;
 }
 
-// It changes what the picture means.
+// It changes the meaning of the image.
 TEST(Surfaces, AWarningIsSaidQuietlyToo) {
   const Folder folder;
   const Outcome run =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `--time-step` of files that have several: one of them, or a film.
+// `--time-step` for files with several steps: one of them, or a film.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ using Names = std::vector<std::string>;
 
 class TimeSteps : public ::testing::Test {
  protected:
-  /// 5^3 samples at four times: a ramp along x that is shifted by 10 a step.
+  /// 5^3 samples at four times: a ramp along x shifted by 10 per step.
   void SetUp() override {
     std::string text =
         "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 5 5 5 4\nkinds: domain domain domain time\n"

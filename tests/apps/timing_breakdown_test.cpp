@@ -10,7 +10,7 @@
 namespace tessera::apps {
 namespace {
 
-/// Times in files are rounded to a nanosecond, a few hundred of them are summed.
+/// Times in files are rounded to a nanosecond; a few hundred of them are summed.
 constexpr double rounding_us = 1;
 
 enum Stage : std::uint16_t { frame, wait, project, sort, integrate, stage_count };
@@ -60,7 +60,7 @@ TEST(SharedClock, ThreadsShareTheInstantsTheyWorkInAndALoneOneHasThemAll) {
                            span(sort, 2, 40, 60), span(wait, 3, 0, 100)});
   EXPECT_EQ(time.in_frames[project].wall_us, 40 + 60 / 3.0);
   EXPECT_EQ(time.in_frames[sort].wall_us, 60 * 2 / 3.0);
-  EXPECT_EQ(time.in_frames[wait].wall_us, 0);  // others worked
+  EXPECT_EQ(time.in_frames[wait].wall_us, 0);  // only others worked
   EXPECT_EQ(time.in_frames[wait].thread_us, 100);
   EXPECT_EQ(time.in_frames[sort].thread_us, 120);
   EXPECT_EQ(time.busy_us, 220);
@@ -162,8 +162,8 @@ TEST(Breakdown, ClocksOfRanksAreBroughtTogether) {
 }
 
 TEST(Breakdown, OverlapIsTheBytesMovedInTimeAndTheFramesUnderWayTogether) {
-  // Projectors send from 84 to 90 ms of each frame, their last work ends at 84, their frame at 100. Compositors begin
-  // at 80 and receive for 10 ms.
+  // Projectors send from 84 to 90 ms of each frame; their work ends at 84, their frame at 100. Compositors begin at 80
+  // and receive for 10 ms.
   TracedPipeline pipeline{2, 2, false, 4};
   pipeline.compositors_begin_ms = 80;
   auto overlap = run_of(pipeline).overlap;
@@ -175,8 +175,8 @@ TEST(Breakdown, OverlapIsTheBytesMovedInTimeAndTheFramesUnderWayTogether) {
   EXPECT_EQ(overlap.frames_overlapping, 3);
   EXPECT_NEAR(overlap.overlapping_us, 3 * 80e3, rounding_us);
 
-  // A compositor that begins when the projectors have ended receives nothing in time, and one frame at a time overlaps
-  // with no other.
+  // Compositors that begin after the projectors have ended receive nothing meanwhile, and a single frame at a time has
+  // no overlap.
   pipeline.compositors_begin_ms = 100;
   pipeline.every_ms = 250;
   overlap = run_of(pipeline).overlap;
@@ -234,7 +234,7 @@ TEST(Breakdown, ARankHasTheRolesThatItMadeFramesIn) {
 }
 
 TEST(Breakdown, EfficiencyIsTheRateACoreAgainstTheSmallestRunOfTheSameMesh) {
-  // Twice the processes; frames come twice as fast, then a quarter slower than that.
+  // Twice the processes: frames are twice as fast, then a quarter slower than that.
   std::vector<analysis::RunTime> runs = {run_of({4, 4, false, 20, 50, 50, 0}), run_of({2, 2, false, 20, 100, 100, 0}),
                                          run_of({4, 4, false, 20, 62.5, 62.5, 0})};
   TracedPipeline other{1, 1, false, 20, 100, 100, 0};

@@ -10,7 +10,7 @@ namespace {
 
 using Values = std::vector<std::string>;
 
-/// The values of the one line.
+/// The values of the only line.
 Values values_of(const std::string& text) {
   const std::vector<TomlLine> lines = parse_toml(text, "s.toml");
   EXPECT_EQ(lines.size(), 1U) << text;

@@ -11,9 +11,9 @@ namespace {
 using scene::Trace;
 using scene::TraceRole;
 
-constexpr double clock_ms = 1e6;  // by how much a rank's clock lags behind the one before it
+constexpr double clock_ms = 1e6;  // difference between the clocks of consecutive ranks
 
-/// One thread's spans, one after the other.
+/// One thread's spans, in sequence.
 class Thread {
  public:
   Thread(Trace& trace, std::uint32_t number, int frame, double begin_ms)

@@ -6,15 +6,14 @@
 
 namespace tessera::apps {
 
-/// A run that never was, with times that can be summed in one's head: N projectors and P compositors of two threads,
-/// on N + P ranks or sharing the first ones. Times in milliseconds; a frame takes `frame_ms` of every process, and each
-/// begins `every_ms` after the one before.
+/// A fictitious run, with times that can be summed mentally: N projectors and P compositors of two threads, on N + P
+/// ranks or sharing the first ones. Times in milliseconds; a frame takes `frame_ms` of every process, and each begins
+/// `every_ms` after the previous one.
 ///
-/// Projector, both threads: transform 10 (thread 0 alone), project 40, sort 10, composite 20 (integrate 15 of it), pack
-/// 4, send 6 (1000 bytes in 2 messages a thread); wait for the rest of the frame. Compositor, thread 0: receive 10
-/// (all the projectors' bytes, evenly), wait 60, sort 5, composite 10; the first one assembles 5 and writes 5; then
-/// nothing.
-/// Each rank's clock starts 1000 s after the one before it; the trace has them on rank 0's.
+/// Projector, both threads: transform 10 (only thread 0), project 40, sort 10, composite 20 (integrate 15 of it), pack
+/// 4, send 6 (1000 bytes in 2 messages a thread); wait for the rest of the frame. Compositor, thread 0: receive 10 (all
+/// the projectors' bytes, evenly), wait 60, sort 5, composite 10; the first one assembles 5 and writes 5; then nothing.
+/// Each rank's clock starts 1000 s after the previous one's; the trace converts them to rank 0's.
 struct TracedPipeline {
   int projectors = 2, compositors = 1;
   bool shared = false;

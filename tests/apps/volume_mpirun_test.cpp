@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Volumes on several ranks, as users start them.
+// Volumes on several ranks, started as by users.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -21,13 +21,13 @@ class VolumeMpirun : public ::testing::Test {
     if (!has_mpirun()) GTEST_SKIP() << "there is no mpirun";
     ASSERT_EQ(tessera({"generate", "ripples", volume_, "n=24", "--quiet"}).status, 0);
   }
-  /// `render` of the volume with these words, small, quiet, one thread a rank.
+  /// `render` of the volume with these options, small, quiet, one thread per rank.
   [[nodiscard]] std::vector<std::string> render(const std::string& output, std::vector<std::string> more = {}) const {
     std::vector<std::string> words{"render", volume_, "-o", output, "--size", "70x50", "--threads", "1", "--quiet"};
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }
-  /// The program's own lines on stderr; mpirun has some to say itself.
+  /// The program's own lines on stderr; mpirun may add others.
   static std::size_t own_lines(const Outcome& outcome) {
     std::istringstream err(outcome.err);
     std::size_t count = 0;
@@ -77,7 +77,8 @@ TEST_F(VolumeMpirun, RectilinearGridsHaveTheBytesOfOneProcessToo) {
 }
 
 TEST_F(VolumeMpirun, LabelsAndFillValuesAreFoundByAllProcessesAlike) {
-  // Boxes of four labels, of which one is in a corner alone, and fill values: one that is blanked, one that is noted.
+  // Boxes of four labels, one of which is only in a corner, and fill values: one that is blanked, one that is only
+  // noted.
   constexpr int side = 16;
   std::string labels = "NRRD0004\ntype: float\ndimension: 3\nsizes: 16 16 16\nendian: little\nencoding: ascii\n\n",
               filled = labels;
@@ -178,10 +179,10 @@ TEST_F(VolumeMpirun, ASeriesBrokenOffAndResumedHasTheBytesOfOneRun) {
     return render(folder_ / name, {folder_ / "w.nrrd", "--camera", path, "--resume"});
   };
   ASSERT_EQ(mpirun(3, film("whole_%d.exr")).status, 0);
-  // As a run that ended within its second time step leaves it: pictures appear whole or not at all.
+  // As left by a run that ended within its second time step: images appear whole or not at all.
   for (const char* number : {"0", "1", "2"})
     std::filesystem::copy_file(folder_ / "whole_" + number + ".exr", folder_ / "part_" + number + ".exr");
-  std::filesystem::remove(volume_);  // no step is read whose pictures are all there, but for the first's defaults
+  std::filesystem::remove(volume_);  // a step whose images all exist is not read, except for the defaults of the first
   ASSERT_NE(mpirun(2, film("part_%d.exr")).status, 0);
   ASSERT_EQ(tessera({"generate", "ripples", volume_, "n=24", "--quiet"}).status, 0);
   ASSERT_EQ(mpirun(2, film("part_%d.exr")).status, 0);
@@ -211,7 +212,7 @@ TEST_F(VolumeMpirun, FaultsAreOneLineInAllAndLeaveNothing) {
   const Outcome flat = mpirun(2, {"render", folder_.file("x_9x9x9_uint8.raw", "short"), "-o", folder_ / "a.png"});
   EXPECT_EQ(flat.status, 2);
   EXPECT_EQ(own_lines(flat), 1u) << flat.err;
-  // What only all ranks together know.
+  // Facts that only all ranks together know.
   const std::string nothing(std::size_t{4} * 9 * 9 * 40, '\xff');  // NaN
   const Outcome blank = mpirun(3, {"render", folder_.file("n_9x9x40_float32.raw", nothing), "-o", folder_ / "a.png"});
   EXPECT_EQ(blank.status, 2);

@@ -8,7 +8,7 @@
 
 namespace tessera {
 
-/// A box of n^3 cubes, each cut into six tets; the scalar bends.
+/// A box of n^3 cubes, each cut into six tets; the scalar is not linear.
 struct Cubes {
   explicit Cubes(int n) {
     const auto point = [n](int i, int j, int k) { return static_cast<std::uint32_t>(i + (n + 1) * (j + (n + 1) * k)); };

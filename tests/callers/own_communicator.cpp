@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A caller with MPI of its own: ranks 0 and 1 of three render a mesh from arrays on a communicator of theirs, while
-// rank 2 does something else and speaks to rank 0. Exit status 0 if all was as it should be.
+// A caller that uses MPI itself: ranks 0 and 1 of three render a mesh from arrays on their own communicator, while rank
+// 2 does something else and sends messages to rank 0. Exit status 0 on success.
 //   mpirun -n 3 own_communicator            the above
-//   mpirun -n 3 own_communicator funneled   MPI is started for too few threads: an error that says so
+//   mpirun -n 3 own_communicator funneled   MPI is started with too few threads: an error that reports it
 #include <cstdio>
 #include <cstring>
 #include <stop_token>
@@ -48,14 +48,14 @@ void render(MPI_Comm two, int rank) {
   };
   whole(session, "the picture has other bits than one process's");
   whole(other, "a second session's picture has other bits");
-  // Stops of either rank, before it begins and from the sink.
+  // Stops from either rank, before it begins and from the sink.
   for (int who = 0; who < 2; ++who) {
     std::stop_source source;
     if (rank == who) source.request_stop();
     expect(session.render(view, function, {}, nullptr, source.get_token()).stopped, "it was not stopped on all ranks");
     whole(session, "the picture after a stop has other bits");
   }
-  // Of a picture so large that its tiles come in many messages.
+  // For an image so large that its tiles are sent in many messages.
   const tessera::View large = data.default_view({1600, 1200});
   StopAtFirstTile sink;
   expect(session.render(large, function, {}, &sink, sink.source.get_token()).stopped, "the sink's stop was not heard");
@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
   MPI_Comm_split(MPI_COMM_WORLD, rank < 2 ? 0 : MPI_UNDEFINED, rank, &two);
   constexpr int tag = 5, messages = 1000;
   if (rank == 2) {
-    // Something else, with the caller's own messages, of tags that the library uses too.
+    // Other work, with the caller's own messages, whose tags the library uses too.
     for (int i = 0; i < messages; ++i) MPI_Send(&i, 1, MPI_INT, 0, tag, MPI_COMM_WORLD);
   } else {
     try {

@@ -10,7 +10,7 @@
 namespace tessera {
 namespace {
 
-/// A hexahedron over [0, 1]^3 and on it a pyramid given as a polyhedron, with a field that is linear.
+/// A hexahedron over [0, 1]^3 and on it a pyramid given as a polyhedron, with a linear field.
 struct House {
   std::vector<double> points = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1, 0.5, 0.5, 2};
   std::vector<CellType> types = {CellType::hexahedron, CellType::polyhedron};

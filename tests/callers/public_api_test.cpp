@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What callers get from the public headers and the whole library, and nothing else: traces, samples of their
-// own, a mesh's arrays, the reference, ranks without MPI.
+// The public headers with the whole library, and nothing else: traces, a caller's own samples, a mesh's arrays, the
+// reference, ranks without MPI.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of this process, gone at the end.
+/// A temporary directory of this process.
 class Folder {
  public:
   Folder() : path_(fs::temp_directory_path() / ("tessera_callers_" + std::to_string(getpid()))) {
@@ -153,7 +153,7 @@ TEST(CallersReference, PicturesKeepThePromiseAgainstIt) {
     for (int c = 0; c < 4; ++c) worst = std::max(worst, std::abs(rgba[c] - right[c]));
     largest = std::max(largest, truth[i].a);
   }
-  EXPECT_GT(largest, 0.1);  // there is something to see
+  EXPECT_GT(largest, 0.1);  // something is visible
   EXPECT_LE(worst, session.promised_error().value());
 }
 
@@ -228,7 +228,7 @@ TEST(CallersMesh, PiecesAreOneMeshThatNumbersItsOriginalCells) {
   ASSERT_NE(cells, fields.end());
   EXPECT_EQ(cells->association, Association::cell);
   EXPECT_EQ(cells->high, static_cast<double>(cubes.cubes - 1));
-  // What is read may not be written over.
+  // An input must not be overwritten.
   EXPECT_THROW(check_mesh_output(folder / "mesh.pvtu", folder / "mesh.pvtu", 2), Error);
   EXPECT_NO_THROW(check_mesh_output(folder / "other.pvtu", folder / "mesh.pvtu", 2));
   EXPECT_THROW(check_mesh_output(folder / "other.vtu", folder / "mesh.pvtu", 2), Error);
@@ -291,7 +291,7 @@ TEST(CallersBalance, PicturesAreOfAFrameThatKeptItsCost) {
   const BalancePictures pictures = session.balance_pictures(frame, view, function);
   EXPECT_EQ(pictures.bricks.size, size);
   const std::size_t middle = 4 * pictures.cost.index(size.width / 2, size.height / 2), corner = 0;
-  EXPECT_GT(pictures.cost.rgba[middle], 0.0f);  // dear
+  EXPECT_GT(pictures.cost.rgba[middle], 0.0f);  // expensive
   EXPECT_EQ(pictures.cost.rgba[corner], 0.0f);  // nothing is there
   EXPECT_EQ(pictures.cost.rgba[corner + 3], 1.0f);
   EXPECT_NE(pictures.bricks.rgba, frame.image.rgba);
@@ -315,7 +315,7 @@ TEST(CallersBalance, OfSortLastBricksHaveTheColoursOfThePartsTheyLieIn) {
     const BalancePictures pictures = session.balance_pictures(frame, view, function);
     int red = 0, green = 0, white = 0, costly = 0;
     for (std::size_t n = 0; n < pictures.bricks.depth.size(); ++n) {
-      // Lines are drawn over a picture that is dimmed to half.
+      // Lines are drawn over an image that is dimmed to half.
       const float* const p = &pictures.bricks.rgba[4 * n];
       red += p[0] > 0.7f && p[1] < 0.4f ? 1 : 0;
       green += p[1] > 0.4f && p[0] < 0.3f ? 1 : 0;
@@ -336,7 +336,7 @@ TEST(CallersDevice, WhatNoErrorIsPromisedOfSaysSo) {
   EXPECT_TRUE(Session(data).promised_error().has_value());
   Settings settings;
   settings.mesh.device.method = GlMethod::fragment;
-  EXPECT_TRUE(Session(data, settings).promised_error().has_value());  // no device is asked for
+  EXPECT_TRUE(Session(data, settings).promised_error().has_value());  // no device is requested
 }
 
 TEST(CallersJob, OneProcessIsAJobToo) {
@@ -365,8 +365,8 @@ TEST(CallersErrors, AnyExceptionHasAnError) {
 }
 
 #ifdef TESSERA_VTK
-/// A block of `n` cells of size 1 / `parts` from cell `first` on, along each axis: a file of VTK's structured grids or
-/// regular ones, with a point field p that is linear and a cell field c, `cell_at` of the cells' centres.
+/// A block of `n` cells of size 1 / `parts` from cell `first` on, along each axis: a VTK structured or regular grid,
+/// with a linear point field p and a cell field c, `cell_at` of the cells' centres.
 void write_block(const fs::path& file, bool structured, int parts, int first, int n,
                  const std::function<double(std::array<double, 3>)>& cell_at) {
   std::ofstream out(file);
@@ -399,7 +399,7 @@ void write_block(const fs::path& file, bool structured, int parts, int first, in
 
 TEST(CallersLevels, MakeThePictureOfTheFinestGridEverywhere) {
   const Folder folder;
-  // Cells of a block a side: 4 in units, 4 of half a unit, 4 of a quarter, where one corner jumps by two levels.
+  // Cells per side of a block: 4 of size one, 4 of half, 4 of a quarter; at one corner the level changes by two.
   struct Block {
     int level, parts, first, n;
   };

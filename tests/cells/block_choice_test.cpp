@@ -25,7 +25,7 @@ TEST(BlockChoice, ANameIsThatOfABlockOrAnEndOfItsPath) {
   EXPECT_FALSE(cells::is_chosen({"b"}, "a"));
 }
 
-/// A tetrahedron of a volume of 1 / 6 at `x`, as a zone.
+/// A tetrahedron with a volume of 1 / 6 at `x`, as a zone.
 std::string zone(int number, int x) {
   const std::string at = std::to_string(x), next = std::to_string(x + 1);
   return "IZONE= " + std::to_string(number) + "\nNDIME= 3\nNELEM= 1\n10 0 1 2 3\nNPOIN= 4\n" + at + " 0 0\n" + next +

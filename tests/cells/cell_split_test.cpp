@@ -22,10 +22,11 @@ bool on_box(const testing::TrianglePlace& t) {
   return false;
 }
 
-/// Inside, two tets meet in every triangle; on the box, one has it. This is what "no gap, no overlap" means.
+/// Inside, every triangle belongs to two tets; on the box, to one. This is the meaning of "no gap, no overlap".
 void expect_conforming(const scene::TetMesh& mesh) {
   for (const auto& [place, uses] : count_triangles(mesh)) EXPECT_EQ(uses, on_box(place) ? 1 : 2);
-  // The cells tile the box, whatever the faces' warp: rounding of some 1e4 determinants of order 1e-3.
+  // The cells tile the box, however warped the faces are; tolerance for rounding of some 1e4 determinants of order
+  // 1e-3.
   EXPECT_NEAR(testing::volume(mesh), 1.0, 1e-12);
 }
 
@@ -86,10 +87,10 @@ TEST(SplitCell, PrismsOverPolygonsAgreeHoweverTheyAreNumbered) {
 }
 
 TEST(SplitCell, AHexahedronWhoseFarCornerNoCutMeetsGivesFiveTets) {
-  // A cube turned so that the corners 0 2 5 7 are the smallest: x first decides.
+  // A cube rotated so that the corners 0 2 5 7 are the smallest: x decides first.
   const std::vector<glm::dvec3> p = {{0, 0, 0},     {1, 0, 0.5}, {0.1, 1, 0}, {1, 1, 0.5},
                                      {1, 0.2, 1.2}, {0.2, 0, 1}, {1, 1, 1.2}, {0.3, 1, 1}};
-  // Corners 0 (smallest), 2, 5, 7 hold x of 0 to 0.3, the others 1: every cut runs between two of the four.
+  // Corners 0 (smallest), 2, 5, 7 have x of 0 to 0.3, the others 1: every cut connects two of the four.
   const std::vector<std::uint32_t> corner = {0, 1, 2, 3, 4, 5, 6, 7};
   std::vector<scene::Tet> tets;
   cells::split_cell(cells::CellKind::hexahedron, corner, p, tets);
@@ -97,7 +98,7 @@ TEST(SplitCell, AHexahedronWhoseFarCornerNoCutMeetsGivesFiveTets) {
 }
 
 TEST(SplitCell, CollapsedHexahedraAgreeWithTheirNeighbours) {
-  // Cubes in a ring whose inner edge has no length, each cell with points of its own: a pole as in C-grids and O-grids.
+  // Cubes in a ring whose inner edge has length zero, each cell with its own points: a pole as in C-grids and O-grids.
   std::mt19937 random(11);
   constexpr int around = 7, up = 3;
   const auto place = [](int radius, int turn, int layer) {
@@ -130,7 +131,7 @@ TEST(SplitCell, CollapsedHexahedraAgreeWithTheirNeighbours) {
     EXPECT_LE(uses, 2);
     boundary += uses == 1;
   }
-  // Mantle: 2 triangles a cell; lid and floor: 1 for the collapsed cells, 2 for the outer ones.
+  // Sides: 2 triangles per cell; top and bottom: 1 for the collapsed cells, 2 for the outer ones.
   EXPECT_EQ(boundary, 2 * around * up + 2 * around * 3);
   const double area = 0.5 * around * std::sin(2 * 3.141592653589793 / around) * 4;
   EXPECT_NEAR(testing::volume(file.mesh), area * up, 1e-12 * area * up);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Higher-order cells: their functions, that neighbours divide what they share alike, and that errors keep their bounds.
+// Higher-order cells: their functions, identical division of shared faces by neighbours, and errors within their
+// bounds.
 #include "cells/curved/curved_split.hpp"
 
 #include <fmt/format.h>
@@ -84,7 +85,7 @@ TEST(CurvedCell, HasAllPolynomialsOfItsDegree) {
       const cells::CellPlace place = random_place(lattice->family, random);
       const glm::dvec4 found = cell.at(place, 0);
       const glm::dvec3 x = glm::dvec3(place[0], place[1], place[2]) / static_cast<double>(cells::cell_unit);
-      EXPECT_NEAR(found.x, x.x, 1e-12);  // positions are the identity, a polynomial too
+      EXPECT_NEAR(found.x, x.x, 1e-12);  // positions are the identity, also a polynomial
       EXPECT_NEAR(found.z, x.z, 1e-12);
       EXPECT_NEAR(found.w, f(x), 1e-11);
     }
@@ -107,7 +108,7 @@ TEST(CurvedCell, HasItsNodesWhereTheLatticeSays) {
     cell.set(*lattice, positions, values);
     for (std::size_t k = 0; k < kind.nodes; ++k) {
       cells::CellPlace place;
-      bool is_whole = true;  // a third has no place in units
+      bool is_whole = true;  // a third cannot be represented in units
       for (std::size_t x = 0; x < 3; ++x) {
         const int steps = lattice->order[x] * lattice->refined;
         is_whole = is_whole && std::int64_t{lattice->nodes[k][x]} * cells::cell_unit % steps == 0;
@@ -119,7 +120,7 @@ TEST(CurvedCell, HasItsNodesWhereTheLatticeSays) {
   }
 }
 
-// A place on a face, told by the face alone and by the whole cell: two ways to one number.
+// A place on a face, evaluated by the face alone and by the whole cell: both must give the same number.
 TEST(CurvedCell, AgreesWithItselfOnFacesAndEdges) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> anywhere(-1, 1);
@@ -153,7 +154,7 @@ ReadOptions tolerance(double relative) {
   return options;
 }
 
-/// Triangles used once must enclose what the tets fill: a crack would show as edges that are not between two of them,
+/// Triangles used once must enclose the tets' volume: a crack would appear as edges that do not separate two of them,
 /// or as more surface than a ball has.
 void expect_closed_ball(const scene::TetMesh& mesh) {
   std::size_t inside = 0, once = 0;
@@ -172,14 +173,14 @@ void expect_closed_ball(const scene::TetMesh& mesh) {
   for (const auto& [edge, uses] : rim) inside += uses != 2;
   EXPECT_GT(once, 0u);
   EXPECT_EQ(inside, 0u) << "edges of the surface that are not between two triangles";
-  // Cracks would also add surface: its number of parts is Euler's.
+  // Cracks would also add surface: the Euler characteristic determines its number of parts.
   std::map<testing::Point, int> corners;
   for (const auto& [edge, uses] : rim) ++corners[edge[0]], ++corners[edge[1]];
   EXPECT_EQ(static_cast<long>(corners.size()) - static_cast<long>(rim.size()) + static_cast<long>(once), 2)
       << "the surface is not one ball's";
 }
 
-/// Many tets a cell, few enough for sanitized builds.
+/// Many tets per cell, few enough for builds with sanitizers.
 constexpr double coarse = 6e-2;
 
 void expect_one_ball(std::vector<cells::CellBlock> blocks) {
@@ -193,7 +194,7 @@ TEST(CurvedSplit, LeavesNoCracksWhateverTheNumbering) {
   const Field wavy = [](const glm::dvec3& p) { return std::sin(9 * p.x * p.y) + p.z * p.z; };
   test::SomeCases some(5);
   for (const Kind& kind : kinds)
-    for (const double relative : {1e-1, 6e-2})  // cells look at faces apart: some divide one just here, some there
+    for (const double relative : {1e-1, 6e-2})  // each cell decides on its own; some faces just need a division
       for (const bool turned : {false, true}) {
         if (!some.next()) continue;
         SCOPED_TRACE(fmt::format("{}, {} nodes, {}{}", kind.type, kind.nodes, relative, turned ? ", turned" : ""));
@@ -237,12 +238,12 @@ TEST(CurvedSplit, KeepsAFieldWithinItsBound) {
       SCOPED_TRACE(::testing::PrintToString(static_cast<int>(kind.type)) + " " + ::testing::PrintToString(relative));
       const cells::MeshFile file =
           cells::assemble_mesh({warped_box(kind, 1, straight, quadratic, true)}, tolerance(relative), "mesh");
-      const double range = 4;  // -1 ... 2.5, nearly
+      const double range = 4;  // about -1 ... 2.5
       const double worst = worst_difference(file.mesh, quadratic, 4);
       EXPECT_LE(worst, file.higher_order.field_error + 1e-12);
       EXPECT_LE(file.higher_order.field_error, relative * range);
       EXPECT_GT(worst, 0.02 * file.higher_order.field_error) << "the bound is no use";
-      EXPECT_LE(file.higher_order.position_error, 1e-11);  // rounding, times what a degree of 9 makes of it
+      EXPECT_LE(file.higher_order.position_error, 1e-11);  // rounding, amplified by degree 9
       EXPECT_NEAR(testing::volume(file.mesh), 1, 1e-12);
     }
   }
@@ -251,11 +252,14 @@ TEST(CurvedSplit, KeepsAFieldWithinItsBound) {
 TEST(CurvedSplit, KeepsALinearFieldOnCurvedCells) {
   const Field linear = [](const glm::dvec3& p) { return 1 + p.x - 2 * p.y + 3 * p.z; };
   for (const Kind& kind : kinds) {
-    if (kind.type == 27 || kind.type == 31) continue;  // whose functions of a curved face are not all of its positions
+    if (kind.type == 27 || kind.type == 31)
+      continue;  // their functions on a curved face do not include all of its
+                 // positions
     const cells::MeshFile file =
         cells::assemble_mesh({warped_box(kind, 2, bent, linear, false)}, tolerance(4e-2), "mesh");
     EXPECT_LE(worst_difference(file.mesh, linear, 1), 1e-12) << static_cast<int>(kind.type) << " of " << kind.nodes;
-    // Edges that are straight are not halved: tets around a point inside become thin, and their slopes round more.
+    // Straight edges are not halved: tets around an inner point become thin, and their slopes have larger rounding
+    // errors.
     const bool has_straight_edges = kind.type == 71 && (kind.nodes == 5 || kind.nodes == 8);
     EXPECT_LE(file.higher_order.field_error, has_straight_edges ? 1e-8 : 1e-11)
         << static_cast<int>(kind.type) << " of " << kind.nodes;
@@ -290,7 +294,7 @@ TEST(CurvedSplit, LoosensItsToleranceWhereThatTakesTooManyTets) {
 }
 
 TEST(CurvedSplit, FillsWhatTheCellsFill) {
-  // A box that quadratic cells bend exactly: the integral of (1 + 0.4 x) (1 + 0.2 z).
+  // A box bent by a map that quadratic cells represent exactly: the integral of (1 + 0.4 x) (1 + 0.2 z).
   const Warp bend = [](const glm::dvec3& p) { return glm::dvec3(p.x + 0.2 * p.x * p.x, p.y + 0.2 * p.y * p.z, p.z); };
   const Field one = [](const glm::dvec3&) { return 1.0; };
   test::SomeCases some(5);
@@ -300,14 +304,14 @@ TEST(CurvedSplit, FillsWhatTheCellsFill) {
       if (!some.next()) continue;
       const cells::MeshFile file =
           cells::assemble_mesh({warped_box(kind, 1, bend, one, false)}, tolerance(relative), "mesh");
-      // The surface, of 6.9, is nowhere off by more than that.
+      // The deviation of the surface, of area 6.9, is nowhere larger.
       EXPECT_NEAR(testing::volume(file.mesh), 1.32, 7 * file.higher_order.position_error);
       EXPECT_LE(file.higher_order.position_error, 2 * relative);  // the diagonal is 2
     }
   }
 }
 
-/// As a writer of rational cells adds them.
+/// As stored by a writer of rational cells.
 void add_weights(cells::CellBlock& block, const std::function<double(const glm::dvec3&)>& weight) {
   std::vector<double> weights;
   for (const glm::dvec3& p : block.positions) weights.push_back(weight(p));
@@ -323,7 +327,7 @@ cells::CellBlock quarter_tube() {
     const double radius = 1 + p.y;
     const glm::dvec2 control[3] = {{radius, 0}, {radius, radius}, {0, radius}};
     const glm::dvec2 at = control[static_cast<int>(std::lround(2 * p.x))];
-    return glm::dvec3(at.x, at.y, -p.z);  // as r, s, t turn
+    return glm::dvec3(at.x, at.y, -p.z);  // with r, s, t rotated
   };
   cells::CellBlock block = warped_box(kind, 1, tube, height, false);
   add_weights(block, [](const glm::dvec3& p) { return p.x == p.y ? std::sqrt(0.5) : 1; });
@@ -357,7 +361,7 @@ TEST(CurvedSplit, DrawsTheCirclesOfRationalCells) {
     }
     EXPECT_GE(on_circles, 8u) << "the surface has no points on its circles";
     const double volume = testing::volume(file.mesh), truth = 0.75 * 3.14159265358979324;
-    EXPECT_NEAR(volume, truth, 4.8 * error);  // times the area of what is curved
+    EXPECT_NEAR(volume, truth, 4.8 * error);  // times the area of the curved surface
     EXPECT_LT(volume, truth) << "chords of the outer circle take more away than those of the inner one add";
     EXPECT_LE(file.higher_order.field_error, 1e-12) << "the height is linear";
   }
@@ -401,7 +405,7 @@ TEST(CurvedSplit, DrawsCellsOfUnusableWeightsByTheirCornersAndSaysSo) {
 
 TEST(CurvedSplit, LeavesNoCracksBetweenKinds) {
   const Field wavy = [](const glm::dvec3& p) { return std::sin(9 * p.x * p.y) + p.z * p.z; };
-  // Two cubes side by side, each of one kind: those of a group have the same nodes on the face between them.
+  // Two adjacent cubes, each of one kind: kinds in a group have the same nodes on the face between them.
   const std::vector<std::vector<Kind>> alike = {
       {{29, 27, 2}, {37, 19, 2}, {74, 14, 2}, {72, 27, 2, {2, 2, 2}}},
       {{72, 64, 3, {3, 3, 3}}, {74, 30, 3}},
@@ -421,7 +425,7 @@ TEST(CurvedSplit, LeavesNoCracksBetweenKinds) {
       }
 }
 
-/// Cubic tets of a cube, the nodes within the first face of so many of them moved through their cells.
+/// Cubic tets of a cube; in the first `folded`, the nodes within a face are moved through the cell.
 cells::CellBlock folded_box(std::size_t folded, double by) {
   cells::CellBlock block = warped_box(
       {71, 20, 3}, 2, bent, [](const glm::dvec3& p) { return p.x; }, false);
@@ -440,14 +444,14 @@ TEST(CurvedSplit, RefusesCellsThatTakeTetsWithoutEnd) {
   ReadOptions remedy = options;
   remedy.higher_order_tolerance = 0.1;
   EXPECT_NO_THROW(cells::assemble_mesh({folded_box(1, 2)}, remedy, "mesh", planning));
-  // Few are tried out first.
+  // A small number of cells is divided on trial first.
   const cells::MeshFile file = cells::assemble_mesh({folded_box(1, 2)}, options, "mesh");
   EXPECT_LE(file.higher_order.tets, 65536u + 64 * 48);
   EXPECT_GT(file.higher_order.tolerance, 1e-5);
 }
 
 TEST(CurvedSplit, TakesTheToleranceThatOneStronglyCurvedCellAllows) {
-  // Values of 1 at the corners and 0 halfway, of one tet: more than a million tets at a ten-thousandth.
+  // One tet with values 1 at the corners and 0 halfway: more than a million tets at a ten-thousandth.
   cells::CellBlock block = warped_box(
       {24, 10, 2}, 1, bent, [](const glm::dvec3&) { return 0.0; }, false);
   block.types.resize(1), block.offsets.resize(2), block.connectivity.resize(10);
@@ -470,7 +474,7 @@ TEST(CurvedSplit, GivesOneCellTheFewerTetsTheLongerTheyTake) {
   };
   constexpr std::size_t many = 1 << 22, usual = 1 << 18;
   EXPECT_EQ(limit_of({24, 10, 2}, many), many);      // quadratic tetrahedra
-  EXPECT_LT(limit_of({29, 27, 2}, many), many / 4);  // triquadratic hexahedra: 84 coefficients for 10
+  EXPECT_LT(limit_of({29, 27, 2}, many), many / 4);  // triquadratic hexahedra: 84 coefficients instead of 10
   EXPECT_EQ(limit_of({29, 27, 2}, usual), usual);
 }
 
@@ -492,7 +496,7 @@ TEST(CurvedSplit, RefusesMeshesThatTakeTetsWithoutEnd) {
                            {"mesh: its higher-order cells, as far as ", " take more than ", "`higher_order_tets`"});
   };
   expect_refusal(1, alone - 64 * block.types.size() - 1);
-  expect_refusal(2, 2 * (alone - 64 * block.types.size()) - 1);  // each of which is below it
+  expect_refusal(2, 2 * (alone - 64 * block.types.size()) - 1);  // each alone is below the limit
 }
 
 TEST(CurvedSplit, TakesNoMemoryOutOfProportionForADamagedNode) {
@@ -524,7 +528,7 @@ TEST(CurvedSplit, TakesNoMemoryOutOfProportionForADamagedNode) {
 TEST(CurvedSplit, DividesNoCellForDistancesThatAreNoNumbers) {
   cells::CellBlock block = warped_box(
       {24, 10, 2}, 1, bent, [](const glm::dvec3& p) { return p.x; }, false);
-  block.positions[block.connectivity[4]].z = 1e308;  // whose square is not finite
+  block.positions[block.connectivity[4]].z = 1e308;  // its square is not finite
   const cells::MeshFile file = cells::assemble_mesh({std::move(block)}, tolerance(1e-2), "mesh");
   EXPECT_LT(file.higher_order.tets, 1000u);
   EXPECT_EQ(file.higher_order.position_error, std::numeric_limits<double>::infinity());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cells that are in a mesh twice: counted, and drawn once if that is asked for.
+// Cells that occur twice in a mesh: counted, and on request drawn once.
 #include "cells/duplicate_cells.hpp"
 
 #include <gtest/gtest.h>
@@ -28,8 +28,8 @@ scene::TetMesh mixed_tets(bool own_points) {
   return cells::assemble_mesh(std::move(blocks), {}, "mesh").mesh;
 }
 
-/// The mesh and then again the cells that `again` says, with points of their own, every tet's corners and every cell's
-/// tets in another order.
+/// The mesh followed by the cells selected by `again`, with their own points, every tet's corners and every cell's tets
+/// in another order.
 scene::TetMesh with_copies(scene::TetMesh mesh, const auto& again, unsigned seed) {
   std::mt19937 random(seed);
   const std::size_t tets = mesh.tets.size();
@@ -93,7 +93,7 @@ TEST(DuplicateCells, AreFoundByTheirCornersAndDropped) {
 TEST(DuplicateCells, ATetThatIsPartOfAnotherCellIsNone) {
   const scene::TetMesh once = mixed_tets(false);
   scene::TetMesh mesh = once;
-  std::size_t split = 0;  // a tet of a cell of several
+  std::size_t split = 0;  // a tet of a cell with several
   while (mesh.cell_of(split) != mesh.cell_of(split + 1)) ++split;
   mesh.tets.push_back(mesh.tets[split]);
   mesh.original_cell.push_back(mesh.original_cell.back() + 1);
@@ -147,7 +147,7 @@ TEST_F(DuplicateFiles, ARepeatedPieceIsAWarningAndDrawnOnceIfAskedFor) {
   EXPECT_TRUE(cells::warnings_on_cells(once.counts, once.higher_order).empty());
   EXPECT_TRUE(readable_in_parts(io::identify(file), {}));
   EXPECT_FALSE(readable_in_parts(io::identify(file), options)) << "two parts would each keep their copy";
-  // The same of several files of one mesh, as a .pvd lists those of one time.
+  // The same for several files of one mesh, as a .pvd lists those of one time.
   const std::vector<std::filesystem::path> files = {folder / "a.vtu", folder / "b.vtu"};
   EXPECT_EQ(read_mesh(files).counts.cells_duplicate, cells);
   EXPECT_NEAR(testing::volume(read_mesh(files, options).mesh), 1, 1e-9);
@@ -162,7 +162,7 @@ TEST_F(DuplicateFiles, GhostCellsAreNotDuplicates) {
   EXPECT_EQ(mesh.counts.cells_ghost, block.types.size());
   EXPECT_EQ(mesh.counts.cells_duplicate, 0u);
   EXPECT_NEAR(testing::volume(mesh.mesh), 1, 1e-9);
-  // As levels, which older files have.
+  // As levels, used by older files.
   for (const char* name : {"a.vtu", "b.vtu", "m.pvtu"}) {
     std::string text = test::contents(folder / name);
     for (std::size_t at = text.find("vtkGhostType"); at != std::string::npos; at = text.find("vtkGhostType", at + 1))
@@ -179,7 +179,7 @@ TEST_F(DuplicateFiles, EveryDuplicateOfALargeMeshIsCounted) {
     std::vector<cells::CellBlock> blocks;
     blocks.push_back(testing::mixed_mesh(24, 5, false));
     blocks.push_back(testing::mixed_mesh(24, 5, false));
-    cells::CellBlock& copy = blocks.back();  // of few cells
+    cells::CellBlock& copy = blocks.back();  // with few cells
     copy.types.resize(repeated ? 3 : 0);
     copy.offsets.resize(copy.types.size() + 1);
     copy.connectivity.resize(copy.offsets.back());
@@ -201,7 +201,7 @@ TEST_F(DuplicateFiles, KeysOfPartsGiveTheCountOfTheWhole) {
   const scene::TetMesh once = mixed_tets(false);
   const scene::TetMesh twice = with_copies(
       once, [](std::uint64_t cell) { return cell % 5 == 2; }, 9);
-  scene::TetMesh copies = twice;  // what was added, as a part of its own
+  scene::TetMesh copies = twice;  // the added cells as a separate part
   const auto first = static_cast<std::ptrdiff_t>(once.tets.size());
   copies.tets.erase(copies.tets.begin(), copies.tets.begin() + first);
   copies.original_cell.erase(copies.original_cell.begin(), copies.original_cell.begin() + first);

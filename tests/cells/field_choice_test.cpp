@@ -89,7 +89,7 @@ TEST(FieldChoice, NamesTellLabelsOfWholeNumbersOnly) {
     EXPECT_EQ(choose("", quantity).label, name);
     EXPECT_EQ(cells::choose_field("", summary(std::vector{quantity}), "mesh.vtu", true).label, name);
     EXPECT_EQ(choose("", block_with({field(name, Association::point, {0, 3, 7, 7}), other})).label, "other") << name;
-    // One part of the file has whole numbers, another has not.
+    // One part of the file has only integers, another has not.
     const std::vector<cells::CellBlock> parts = {block_with({field(name, Association::point, {0, 3, 7, 7}), other}),
                                                  quantity};
     EXPECT_EQ(cells::choose_field("", summary(parts), "mesh.vtu").label, name);
@@ -100,7 +100,7 @@ cells::BlockField integers(const std::string& name, std::vector<double> values) 
   return cells::field_of_values(name, "int64", Association::point, 1, std::move(values));
 }
 
-/// The numbers first, first + 1, ... in an order that is none.
+/// The numbers first, first + 1, ... in a pseudo-random order.
 std::vector<double> shuffled(std::size_t count, double first) {
   std::vector<double> values(count);
   for (std::size_t k = 0; k < count; ++k) values[k * 37 % count] = first + static_cast<double>(k);
@@ -118,10 +118,10 @@ TEST(FieldChoice, NumbersOfPointsAreIdsByAnyName) {
         EXPECT_EQ(cells::choose_field("", fields, "mesh.vtu").label, "porosity");
         EXPECT_EQ(cells::choose_field("", fields, "mesh.vtu", true).label, "porosity");
       }
-  // Integers may begin anywhere; floats that do are pressures.
+  // Integers may begin anywhere; floats that do not begin at 0 or 1 are pressures.
   EXPECT_EQ(choose("", block_with({integers("nr", shuffled(90, 501)), cells})).label, "porosity");
   EXPECT_EQ(choose("", block_with({field("p", Association::point, shuffled(90, 300)), cells})).label, "p");
-  // One twice, one left out, one between, vectors.
+  // One twice, one missing, one in between, vectors.
   std::vector<double> twice = shuffled(90, 0);
   twice[7] = twice[8];
   EXPECT_EQ(choose("", block_with({integers("n", twice), cells})).label, "n");
@@ -149,7 +149,7 @@ TEST(FieldChoice, IdsAreKnownInBlocksAndPartsAlike) {
   std::vector<std::vector<cells::FieldTally>> parts;
   for (const cells::CellBlock& block : blocks) parts.push_back(cells::tally_fields(std::span(&block, 1)));
   EXPECT_EQ(cells::summarize_fields(parts), together);
-  // Each block counts its own.
+  // Each block numbers its own.
   const std::vector<cells::CellBlock> own = {block_with({integers("nr", shuffled(20, 0)), cells}),
                                              block_with({integers("nr", shuffled(33, 0)), cells})};
   EXPECT_TRUE(summary(own)[0].ids);
@@ -169,7 +169,7 @@ TEST(FieldChoice, IdsAreLastAndThenOnlyWithAWord) {
   EXPECT_NE(chosen.notes[1].find("perhaps ids"), std::string::npos);
   const cells::CellBlock numbered = block_with({integers("p", {0, 1, 2, 3, 4, 5, 6, 7}), constant});
   EXPECT_TRUE(cells::choose_field("", summary(std::vector{numbered}), "mesh.vtu", true).shape);
-  // What the file itself calls ids.
+  // Fields that the file marks as ids.
   cells::CellBlock marked =
       block_with({field("n", Association::point, {7, 3, 3, 9}), field("c", Association::cell, {0, 5})});
   EXPECT_EQ(choose("", marked).label, "n");
@@ -188,7 +188,7 @@ TEST(FieldChoice, NoiseAroundZeroIsShownOnlyWithAWord) {
   EXPECT_EQ(alone.label, "y");
   ASSERT_EQ(alone.notes.size(), 1u);
   EXPECT_NE(alone.notes.front().find("noise"), std::string::npos);
-  // Small but nowhere below zero: a charge, a permeability.
+  // Small but never negative: a charge, a permeability.
   EXPECT_TRUE(choose("", block_with({field("k", Association::point, {1e-15, 2e-13})})).notes.empty());
 }
 

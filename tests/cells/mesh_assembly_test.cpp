@@ -14,7 +14,8 @@ using scene::Association;
 using testing::message_of;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
 
-/// A row of n tets that share no point; cell c has the points 4 c to 4 c + 3, the value c at its points and its cell.
+/// A row of n tets without shared points; cell c has the points 4 c to 4 c + 3, and the value c at its points and its
+/// cell.
 cells::CellBlock row_of_tets(std::size_t n) {
   cells::CellBlock block;
   std::vector<double> point, cell;
@@ -115,7 +116,7 @@ TEST(MeshAssembly, FlatCellsAreKeptAndCounted) {
 TEST(MeshAssembly, TetsWithTwoCornersAtOnePlaceAreNotMade) {
   cells::CellBlock block = row_of_tets(3);
   block.tets[1][1] = block.tets[1][0];            // a repeated index
-  block.positions[8] = block.positions[9] + 0.0;  // another point at the same place
+  block.positions[8] = block.positions[9] + 0.0;  // another point at the same position
   const cells::MeshFile file = assemble(block);
   EXPECT_EQ(file.counts.tets_collapsed, 2u);
   EXPECT_EQ(file.counts.cells_zero_volume, 2u);
@@ -186,7 +187,7 @@ TEST(MeshAssembly, BlocksFollowEachOtherAndALackingFieldBlanksItsBlock) {
   EXPECT_NE(file.notes.back().find("block 'shell' lacks the field 'p'"), std::string::npos);
 }
 
-/// Every seventh cell a ghost, every eleventh of NaN, every thirteenth a wedge's corners on the points of two tets.
+/// Every seventh cell is a ghost, every eleventh has NaN, every thirteenth is a wedge on the points of two tets.
 cells::CellBlock many_cells(std::size_t n) {
   cells::CellBlock block = with_types(row_of_tets(n));
   block.cell_ghost.assign(n, 0);
@@ -283,7 +284,7 @@ TEST(MeshAssembly, MinusZeroAndZeroAreOnePlace) {
   EXPECT_FALSE(std::signbit(assemble(block).mesh.positions[0].x));
 }
 
-/// Two tets over one face, of 1 and 3 times the same volume, with values 4 and 8.
+/// Two tets on one face, with volumes in the ratio 1 : 3 and values 4 and 8.
 cells::CellBlock two_tets(bool own_points) {
   cells::CellBlock block;
   const glm::dvec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0), up(0, 0, 1), down(0, 0, -3);

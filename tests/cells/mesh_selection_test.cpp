@@ -42,7 +42,7 @@ std::vector<HalfSpace> box(const glm::dvec3& low, const glm::dvec3& high) {
   return {sides.begin(), sides.end()};
 }
 
-/// Faces that only one tet has lie on the cube's surface or a plane of the clip: a crack would have others.
+/// Faces that belong to only one tet are on the cube's surface or a plane of the clip: a crack would have others.
 void expect_no_cracks(const scene::TetMesh& mesh, std::span<const HalfSpace> clip, const std::string& words) {
   std::map<std::array<std::uint32_t, 3>, int> faces;
   for (const scene::Tet& tet : mesh.tets)
@@ -105,7 +105,7 @@ TEST(Clip, SeveralPlanesLeaveNoCracks) {
   }
 }
 
-/// Pieces of one mesh that share no vertex, as ranks and files have them, are cut to the same faces.
+/// Pieces of one mesh without shared vertices, as in ranks and files, are cut to the same faces.
 TEST(Clip, PiecesAreCutAsTheWhole) {
   const scene::TetMesh whole = cube_of_linear_field(4);
   const std::vector<HalfSpace> clip{{{0.1, 0.05, 0}, {1, 2, -0.5}}, {{0, 0, 0.4}, {0.1, 0, -1}}};
@@ -134,7 +134,7 @@ TEST(Clip, ABoxInsideOneCellIsItsVolume) {
   EXPECT_EQ(counts.tets_made, inside.tets.size());
 }
 
-/// A plane along faces of cells divides none, at a slant that is rounded either.
+/// A plane along faces of cells divides no cell, even at an angle with rounding.
 TEST(Clip, PlanesThroughVerticesLeaveNoSplinters) {
   const scene::TetMesh straight = datasets::regular_split(6, 6, 6, glm::dvec3(0.1), glm::dvec3(0.3));
   for (const glm::dvec3 normal : {glm::dvec3(1, 0, 0), glm::dvec3(0, 0, -1), glm::dvec3(1, -1, 0)}) {
@@ -157,7 +157,7 @@ TEST(Clip, PlanesThatMissChangeNothing) {
 TEST(Clip, RemovesAllBehindThePlane) {
   scene::TetMesh mesh = datasets::cube(3);
   MeshCounts counts;
-  cells::select(mesh, {{{{1, 0, 0}, {1, 0, 0}}}}, counts, "a.vtu");  // its surface alone is left
+  cells::select(mesh, {{{{1, 0, 0}, {1, 0, 0}}}}, counts, "a.vtu");  // only its surface remains
   EXPECT_TRUE(mesh.tets.empty());
   EXPECT_EQ(counts.cells_clipped, 162u);
   EXPECT_THROW(cells::require_selected(counts, "a.vtu"), scene::Error);
@@ -172,7 +172,7 @@ TEST(Clip, CellDataStaysTheCells) {
     EXPECT_EQ(part.scalars[t], mesh.scalars[6 * part.original_cell[t]]);
 }
 
-/// Two hexahedra of which one has a corner out of range: all of its tets go, those without that corner too.
+/// Two hexahedra, one with a corner out of range: all of its tets are removed, including those without that corner.
 TEST(Threshold, KeepsWholeCellsOfPointData) {
   cells::CellBlock block;
   for (int k = 0; k < 2; ++k)
@@ -189,7 +189,7 @@ TEST(Threshold, KeepsWholeCellsOfPointData) {
   const cells::MeshFile file = cells::assemble_mesh({block}, options, "mesh");
   EXPECT_EQ(file.counts.cells_out_of_range, 1u);
   EXPECT_NEAR(volume(file.mesh), 1, 1e-15);
-  options.selection.threshold = {1.0, 3.0};  // both ends belong to it
+  options.selection.threshold = {1.0, 3.0};  // both ends are included
   EXPECT_NEAR(volume(cells::assemble_mesh({block}, options, "mesh").mesh), 2, 1e-15);
   options.selection.threshold = {4.0, 5.0};
   EXPECT_THROW(cells::assemble_mesh({block}, options, "mesh"), scene::Error);

@@ -33,7 +33,8 @@ bool on_unit_box(const testing::TrianglePlace& t) {
   return false;
 }
 
-/// The field at a point of the mesh; the largest difference from x + 2 y + 3 z in all tets that hold the point.
+/// Compares the field at a point of the mesh: the largest difference from x + 2 y + 3 z in all tets that contain the
+/// point.
 double field_error(const scene::TetMesh& mesh, const glm::dvec3& x) {
   double worst = -1;
   for (const scene::Tet& t : mesh.tets) {
@@ -59,8 +60,8 @@ double area_of(const testing::TrianglePlace& t) {
   return glm::length(glm::cross(b - a, c - a)) / 2;
 }
 
-/// Inside, two tets meet in every triangle; on the box, those that one alone has are the box; the volume is the box's,
-/// and the field linear.
+/// Inside, every triangle belongs to two tets; triangles of a single tet form the box; the volume is the box's, and the
+/// field is linear.
 void expect_fills_the_box(const cells::MeshFile& file, unsigned seed, bool has_flat_faces = false) {
   SCOPED_TRACE(fmt::format("seed {}", seed));
   scene::validate(file.mesh, "mesh");
@@ -70,7 +71,7 @@ void expect_fills_the_box(const cells::MeshFile& file, unsigned seed, bool has_f
     if (uses == 1 && on_unit_box(place))
       outside += area_of(place);
     else if (uses % 2 != 0 || (uses != 2 && !has_flat_faces))
-      ++wrong;  // flat tets lie between two diagonals of one face of a cell
+      ++wrong;  // flat tets are between the two diagonals of one face of a cell
   }
   EXPECT_EQ(wrong, 0u) << "triangles that not just two tets have";
   EXPECT_NEAR(outside, 6, 1e-11);
@@ -134,7 +135,7 @@ TEST_P(Polyhedra, NativeCellsGivenAsPolyhedraGiveTheSameTets) {
 INSTANTIATE_TEST_SUITE_P(Seeds, Polyhedra, ::testing::Range(1u, 9u));
 
 TEST(PolyhedronCells, FacesWithCornersOnTheirEdgesLeaveNoHoles) {
-  // A slab under four columns: points on its edges and amid its lid, which is four faces in one plane.
+  // A slab under four columns: points on its edges and within its top, which consists of four coplanar faces.
   std::mt19937 random(1);
   std::vector<glm::dvec3> p;
   const auto at = [&](double x, double y, double z) {
@@ -224,7 +225,7 @@ TEST(PolyhedronCells, HexahedraThatTheirSmallestCornerDoesNotSeeAreSplitAnotherW
       block.offsets.push_back(block.connectivity.size());
     }
     const cells::MeshFile file = assemble_f(block);
-    // The cones that overlap, if all are from the smallest corners.
+    // The cells whose cones would overlap if all were from the smallest corners.
     for (std::size_t c = 0; c < block.types.size(); ++c) {
       scene::TetMesh cone;
       cone.positions = block.positions;

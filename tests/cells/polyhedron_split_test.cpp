@@ -30,11 +30,11 @@ cells::MeshFile assembled(const cells::CellBlock& block, const std::string& fiel
   ReadOptions options;
   options.field = field, options.threads = threads;
   cells::MeshFile file = cells::assemble_mesh({block, block}, options, "mesh");
-  file.counts.cells_duplicate = 0;  // the second block is on top of the first, which is of no interest here
+  file.counts.cells_duplicate = 0;  // the second block is on top of the first, which does not matter here
   return file;
 }
 
-/// [0, 1]^3 as one polyhedron, and where it is moved to.
+/// [0, 1]^3 as one polyhedron, possibly moved.
 Faces cube_faces(std::uint32_t first = 0) {
   Faces faces = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {0, 4, 7, 3}};
   for (auto& face : faces)
@@ -45,7 +45,7 @@ std::vector<glm::dvec3> cube_points(double x = 0) {
   return {{x, 0, 0}, {x + 1, 0, 0}, {x + 1, 1, 0}, {x, 1, 0}, {x, 0, 1}, {x + 1, 0, 1}, {x + 1, 1, 1}, {x, 1, 1}};
 }
 
-/// The triangles of a face, its corners numbered as positions go, from a random start, either way round.
+/// The triangles of a face with corners numbered by position, from a random start, in either direction.
 std::set<testing::TrianglePlace> triangles_of(const std::vector<glm::dvec3>& outline, std::mt19937& random) {
   std::vector<glm::dvec3> p = outline;
   std::sort(p.begin(), p.end(), comes_before);
@@ -81,7 +81,7 @@ TEST(FaceTriangles, DependOnNeitherTheStartNorTheOrderOfTheCorners) {
     const bool is_convex = round % 3 == 0, is_plane = round % 2 == 0;
     std::vector<glm::dvec3> outline;
     double whole = 0;
-    for (int k = 0; k < n; ++k) {  // a star round the origin
+    for (int k = 0; k < n; ++k) {  // a star around the origin
       const double angle = 2 * 3.141592653589793 * k / n, r = is_convex ? 1 : radius(random), x = r * std::cos(angle);
       outline.emplace_back(x, r * std::sin(angle), is_plane ? 0.3 * x : warp(random));
     }
@@ -153,7 +153,7 @@ TEST(PolyhedronSplit, LeavesOutWithAWarningWhatIsNotClosed) {
 }
 
 TEST(PolyhedronSplit, CutsUpWhatNoPointSeesAllOf) {
-  // A U of five unit squares, one high: no point sees all of it.
+  // A U of five unit squares, of height one: no point sees all of it.
   std::vector<glm::dvec3> p;
   for (const double z : {0.0, 1.0})
     for (const auto& [x, y] : {std::pair{0, 0}, {3, 0}, {3, 2}, {2, 2}, {2, 1}, {1, 1}, {1, 2}, {0, 2}})
@@ -172,7 +172,7 @@ TEST(PolyhedronSplit, CutsUpWhatNoPointSeesAllOf) {
 }
 
 TEST(PolyhedronSplit, AddsAPointToWhatHasNoTetsOfItsOwnCorners) {
-  // Schoenhardt's polyhedron (1928): a prism over a triangle, turned by 30 degrees until its side faces bend inward.
+  // Schoenhardt's polyhedron (1928): a prism over a triangle, twisted by 30 degrees until its side faces bend inward.
   std::vector<glm::dvec3> p;
   for (const double turn : {0.0, 1.0})
     for (int k = 0; k < 3; ++k) {
@@ -194,7 +194,7 @@ TEST(PolyhedronSplit, AddsAPointToWhatHasNoTetsOfItsOwnCorners) {
 }
 
 TEST(PolyhedronSplit, WarnsOfTetsThatOverlapWhereItFindsNoWay) {
-  // A cube with a smaller one left out inside.
+  // A cube with a smaller cube cut out inside.
   std::vector<glm::dvec3> p = cube_points();
   for (const glm::dvec3& x : cube_points()) p.push_back(0.5 * x + glm::dvec3(0.25));
   Faces faces = cube_faces(), inner = cube_faces(8);
@@ -210,7 +210,7 @@ TEST(PolyhedronSplit, WarnsOfTetsThatOverlapWhereItFindsNoWay) {
 }
 
 TEST(PolyhedronSplit, FindsAPointInsideWhereCornersAndTheirMeanDoNot) {
-  // A prism whose lids are a square with a deep notch, of many corners at one end, so that their mean is beside.
+  // A prism whose ends are a square with a deep notch and many corners at one end, so that their mean is outside.
   const std::vector<std::pair<double, double>> outline = {{0, 0},      {4, 0}, {4, 0.9},    {3.99, 0.95}, {4, 1},
                                                           {3.99, 1.5}, {4, 2}, {3.99, 2.5}, {4, 3},       {3.99, 3.5},
                                                           {4, 4},      {0, 4}, {0, 2.2},    {2.5, 2},     {0, 1.8}};
@@ -266,7 +266,7 @@ TEST(PolyhedronSplit, KeepsOneValueACellOfCellData) {
 }
 
 TEST(PolyhedronSplit, GivesTheSameMeshWithAnyThreads) {
-  // More cells than a thread takes at a time, with points added in between.
+  // More cells than a thread takes at a time, with added points in between.
   std::mt19937 random(1);
   std::vector<glm::dvec3> p;
   std::vector<Faces> cells;
@@ -301,7 +301,7 @@ TEST(PolyhedronSplit, GivesTheSameMeshWithAnyThreads) {
 }
 
 TEST(PolyhedronSplit, CutsPrismsWithHollowLidsAsPolyhedra) {
-  // A hexagonal prism with a corner pushed in, given as type 16, over one given as a polyhedron.
+  // A hexagonal prism with a corner pushed in, given as type 16, on top of one given as a polyhedron.
   std::vector<glm::dvec3> p;
   for (const double z : {0.0, 1.0, 2.0})
     for (const auto& [x, y] : {std::pair{0.0, 0.0}, {2.0, 0.0}, {2.0, 2.0}, {1.0, 2.0}, {0.9, 0.4}, {0.0, 2.0}})

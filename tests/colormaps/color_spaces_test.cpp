@@ -24,7 +24,7 @@ TEST(ColorSpaces, AMixBeginsAndEndsExactlyAtItsColours) {
   for (const ColorSpace space : {ColorSpace::rgb, ColorSpace::hsv, ColorSpace::lab, ColorSpace::diverging}) {
     EXPECT_EQ(mix_colors(a, b, 0, space), a);
     EXPECT_EQ(mix_colors(a, b, 1, space), b);
-    // And comes there without a jump.
+    // The result approaches the ends continuously.
     const glm::dvec3 near_a = mix_colors(a, b, 1e-9, space), near_b = mix_colors(a, b, 1 - 1e-9, space);
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(near_a[k], a[k], 1e-6);
@@ -34,9 +34,9 @@ TEST(ColorSpaces, AMixBeginsAndEndsExactlyAtItsColours) {
 }
 
 TEST(ColorSpaces, MixesAreVtksToTheRoundingOfItsMatrices) {
-  // Truths by VTK 9.1's vtkColorTransferFunction::GetColor in the spaces Lab, Diverging and HSV with SetHSVWrap(1),
-  // between the colours below. VTK's XYZ matrices are rounded to four digits, forth and back: 1.3e-4 of green in its
-  // own end colour.
+  // Reference values from VTK 9.1's vtkColorTransferFunction::GetColor in the spaces Lab, Diverging and HSV with
+  // SetHSVWrap(1), between the colours below. VTK's XYZ matrices are rounded to four digits, in both directions: an
+  // error of 1.3e-4 in green of its own end colour.
   const glm::dvec3 a{0.231373, 0.298039, 0.752941}, b{0.705882, 0.0156863, 0.14902}, c{0.9, 0.9, 0.2};
   const struct {
     ColorSpace space;

@@ -45,7 +45,7 @@ TEST(DefaultFunction, AnOutlierDoesNotDecideTheRange) {
 }
 
 TEST(DefaultFunction, PixelsAreAsOpaqueAsWantedByBeerLambert) {
-  // One extinction everywhere: each pixel's depth is it times the edge, so the factor is known.
+  // Uniform extinction: each pixel's depth is extinction times the edge, so the factor is known.
   const auto samples = cube_of([](float, float, float) { return 1.0; });
   const std::array<std::array<double, 2>, 1> extinction{{{1, 2}}};
   const PilotPixels pixels(samples, extinction, 1);
@@ -83,7 +83,7 @@ TEST(DefaultFunction, KnownLabelsHaveNoOpacityBetweenThemAndMoreThan63StillAColo
     EXPECT_GT(function.evaluate(label).extinction, 0) << label;
     EXPECT_NE(function.evaluate(label).color, function.evaluate(label + 1).color) << label;
   }
-  // Known to be no labels, however few they are.
+  // Known not to be labels, however few there are.
   EXPECT_EQ(default_kind({.samples = &samples, .is_grid = true, .labels = std::vector<double>()}, {1, 9}),
             DefaultKind::values);
 }
@@ -104,7 +104,7 @@ TEST(DefaultFunction, AirOfACtIsClearAndBoneIsDenserThanMuscle) {
   EXPECT_TRUE(loaded.shaded);
   EXPECT_EQ(loaded.function.evaluate(-950).extinction, 0);
   EXPECT_GT(loaded.function.evaluate(600).extinction, 3 * loaded.function.evaluate(40).extinction);
-  EXPECT_NE(default_kind({&samples, true}, {-1000, 700}), DefaultKind::ct);  // of nobody
+  EXPECT_NE(default_kind({&samples, true}, {-1000, 700}), DefaultKind::ct);  // not of a patient
 }
 
 TEST(DefaultFunction, TheGroundOfAGridIsClear) {

@@ -50,7 +50,7 @@ std::vector<DeepSample> integrated(const std::vector<DeepPiece>& pieces, const M
   for (std::size_t k = 0; k < pieces.size(); ++k)
     out.push_back({pieces[k].front,
                    pieces[k].back,
-                   {batch.red[k], batch.green[k], batch.blue[k]},  // Behind what it finds opaque the integrator stops.
+                   {batch.red[k], batch.green[k], batch.blue[k]},  // The integrator stops behind opaque matter.
                    pieces[k].optical_depth > 0 ? pieces[k].optical_depth : batch.optical_depth[k]});
   return out;
 }
@@ -71,7 +71,7 @@ std::vector<DeepSample> samples_of(const std::vector<DeepPiece>& segments, const
   return samples;
 }
 
-/// The truth before depth z: segments cut there, integrated exactly.
+/// The exact light in front of depth z: segments cut there, integrated exactly.
 Light truth(const std::vector<DeepPiece>& segments, const Medium& medium, double z) {
   std::vector<DeepPiece> before;
   for (DeepPiece s : segments) {
@@ -87,7 +87,7 @@ Light truth(const std::vector<DeepPiece>& segments, const Medium& medium, double
   return light;
 }
 
-/// What samples give before depth z, cut by OpenEXR's rule.
+/// The light of samples in front of depth z, cut by OpenEXR's rule.
 Light cut_samples(const std::vector<DeepSample>& samples, double z) {
   Light light;
   for (const DeepSample& s : samples) {
@@ -154,12 +154,12 @@ TEST(DeepFragments, CuttingAnywhereErrsLessThanTheAccuracy) {
       const double z = k == 0 ? 100 : uniform(segments.front().front, segments.back().back);
       const Light right = truth(segments, medium, z);
       const double wrong = error(cut_samples(samples, z), right);
-      // 1e-7: the integrator's own error. Nothing else is granted: the bounds are proven.
+      // 1e-7: the integrator's own error. No other tolerance: the bounds are proven.
       ASSERT_LE(wrong, (k == 0 ? 0 : accuracy) + 1e-7)
           << "round " << round << " z " << z << " accuracy " << accuracy << " thickness " << thickness
           << (medium.emission == Emission::independent ? " independent" : "");
-      // In floats the cut falls where the rounded depths say, which moves it by 2e-7 of depths up to 5: what that is
-      // worth is the extinction's business. Judged where it is worth little.
+      // With floats, rounded depths determine the cut, which moves it by 2e-7 for depths up to 5; the effect depends on
+      // the extinction. Checked only where it is small.
       if (thickness > 10) continue;
       const auto cut_floats = tests::composited(floats, z), in_front_of_white = tests::composited(floats, z, {1, 1, 1});
       double light = 0, brightest = 1;
@@ -190,7 +190,7 @@ TEST(DeepFragments, AHomogeneousRayIsOneSampleHoweverManyCellsItPasses) {
 }
 
 TEST(DeepFragments, GapsSeparateAndClearMatterCarriesNothing) {
-  // Clear below 0.5: the ray's scalar falls to 0 and rises again.
+  // Clear below 0.5: the ray's scalar decreases to 0 and increases again.
   const Medium medium{scene::TransferFunction({{0, {1, 1, 1}, 0}, {0.5, {1, 1, 1}, 0}, {0.5, {1, 1, 1}, 2}})};
   const auto samples = samples_of({{1, 2, 1, 0}, {2, 3, 0, 1}, {3.5, 4, 1, 1}, {4, 5, 0.2, 0.4}}, medium, 1e-3);
   ASSERT_EQ(samples.size(), 3u);
@@ -229,7 +229,7 @@ TEST(DeepFragments, OverlappingCellsComeOutOneBehindTheOther) {
 }
 
 TEST(DeepFragments, FloatsStayTidyWhereDepthsCannotBeToldApart) {
-  // Near 1.6e7 floats are 1 or 2 apart: samples of a tenth become points or get whole units.
+  // Near 1.6e7 floats are 1 or 2 apart: samples of length a tenth become points or get whole units.
   std::mt19937 random(3);
   std::vector<DeepSample> samples;
   double z = 16777200;
@@ -238,7 +238,7 @@ TEST(DeepFragments, FloatsStayTidyWhereDepthsCannotBeToldApart) {
     samples.push_back({z, next, {0.001, 0.002, 0}, 1e-3});
     z = next;
   }
-  samples.push_back({z, z + 1, {0, 0, 0}, 1e-60});  // nothing left of it in float
+  samples.push_back({z, z + 1, {0, 0, 0}, 1e-60});  // vanishes in float
   std::vector<scene::DeepImageSample> tidy;
   append_tidy(samples, tidy);
   ASSERT_GT(tidy.size(), 10u);
@@ -249,7 +249,7 @@ TEST(DeepFragments, FloatsStayTidyWhereDepthsCannotBeToldApart) {
     EXPECT_LE(tidy[i - 1].z_back, tidy[i].z);
     EXPECT_FALSE(tidy[i].z == tidy[i].z_back && tidy[i - 1].z == tidy[i - 1].z_back && tidy[i].z == tidy[i - 1].z);
   }
-  // Composited they are what the samples are: 2000 roundings of 6e-8.
+  // Composited they equal the samples up to 2000 roundings of 6e-8.
   const auto sum = tests::composited(tidy);
   EXPECT_NEAR(sum[3], -std::expm1(-2.0), 1e-4);
   EXPECT_NEAR(sum[1], -std::expm1(-2.0) * 0.002 / -std::expm1(-1e-3), 1e-4);

@@ -44,14 +44,14 @@ struct GlFrame {
     return made;
   }
 
-  /// On the device, or on the CPU if it is null.
+  /// Merged on the device, or on the CPU if `device` is null.
   scene::Image merged(GlCompositor* device, const std::vector<exchange::TilePart>& parts) const {
     const bool on_lattice =
         parts.front().kind == exchange::RecordKind::lattice || parts.front().kind == exchange::RecordKind::lattice_runs;
     MergeContext mine = context(on_lattice);
     mine.device = device;
     static std::uint32_t frames = 0;
-    mine.frame = ++frames;  // each its own: devices keep a frame's table
+    mine.frame = ++frames;  // unique: devices cache a frame's table
     if (device != nullptr && !on_lattice) {
       mine.lattice = &units;
       mine.table = &units_table;
@@ -78,11 +78,11 @@ struct GlFrame {
   integrals::LaneTable units_table;
 };
 
-/// Ray segments that touch end to end: `counts` of them in each pixel (in turn), in the order that `arrange` leaves.
+/// Ray segments that touch end to end: `counts` of them per pixel (cyclically), in the order produced by `arrange`.
 struct Stack {
   std::vector<std::uint32_t> counts;
   std::string arrangement = "shuffled";
-  bool one_depth = false;  ///< all segments lie at the same depth: only their last key tells them apart
+  bool one_depth = false;  ///< all segments are at the same depth: only their last key distinguishes them
 };
 
 struct StackSegment {
@@ -94,7 +94,7 @@ std::vector<StackSegment> segments_of(std::uint32_t count, const Stack& stack, s
   const auto uniform = [&] { return std::uniform_real_distribution<double>(0, 1)(random); };
   double scalar = uniform();
   for (std::uint32_t i = 0; i < count; ++i) {
-    // Turned back at the ends, not cut off there: equal segments would stand as they came.
+    // Reflected at the ends instead of clamped: otherwise equal segments would keep their order.
     double next = scalar + 8 * (uniform() - 0.5) / std::sqrt(count);
     if (std::abs(next - 0.5) > 0.6) next = uniform();
     const double step = 1.5 / count;
@@ -185,7 +185,7 @@ double difference(const scene::Image& a, const scene::Image& b) {
 
 void expect_same_depth(const scene::Image& a, const scene::Image& b) {
   for (std::size_t i = 0; i < a.depth.size(); ++i) {
-    if (a.depth[i] == b.depth[i]) continue;                      // infinities too
+    if (a.depth[i] == b.depth[i]) continue;                      // also for infinities
     ASSERT_NEAR(a.depth[i], b.depth[i], 1e-6) << "pixel " << i;  // a float's last places at depth 3
   }
 }
@@ -201,7 +201,7 @@ GlSettings fragment(bool half) {
   return settings;
 }
 
-/// Opens a device of these settings, or skips the test.
+/// Opens a device with these settings, or skips the test.
 #define TESSERA_DEVICE_OR_SKIP(device, settings)                                              \
   if (tessera::tests::osmesa_or_none() == nullptr) GTEST_SKIP() << "OSMesa cannot be opened"; \
   GlCompositor device(gl::Platform::osmesa, settings, nullptr)
@@ -214,8 +214,8 @@ TEST(GlCompute, ExactIsTheCpusWithinFloatRounding) {
     const GlFrame frame(exact, emission);
     for (const exchange::TilePart& part : {lattice_part(frame, shallow), chain_part(shallow)}) {
       const auto cpu = frame.merged(nullptr, {part}), gpu = frame.merged(&device, {part});
-      // 64 segments of up to 8 optical depths, colours up to 8 times their extinction: floats' roundings, each below
-      // 2^-24 of the light. A quarter of what `exact` promises.
+      // 64 segments of up to 8 optical depths, with colours up to 8 times their extinction: rounding of floats, each
+      // below 2^-24 of the light. A quarter of what `exact` promises.
       EXPECT_LT(difference(cpu, gpu), 5e-6) << int(part.kind);
       expect_same_depth(cpu, gpu);
     }
@@ -227,7 +227,7 @@ TEST(GlCompute, SampledIsTheCpus) {
   for (const auto emission : {scene::Emission::absorption, scene::Emission::independent}) {
     const GlFrame frame(sampled, emission);
     for (const exchange::TilePart& part : {chain_part(shallow), tuple_part(shallow)})
-      // A sample whose scalar rounds across the step at 0.7 takes the other side's colour: none does here.
+      // A sample whose scalar rounds across the step at 0.7 would get the colour of the other side: none does here.
       EXPECT_LT(difference(frame.merged(nullptr, {part}), frame.merged(&device, {part})), 5e-6) << int(part.kind);
   }
 }
@@ -309,7 +309,7 @@ TEST(TileMerger, CellsAtACompositorWithoutADeviceAreRefused) {
 class Arrangements : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(All, Arrangements, testing::Values("sorted", "reversed", "shuffled"));
 
-/// One pixel of 20,000 among shallow ones, all keys equal or not.
+/// One pixel of 20,000 among shallow ones, with all keys equal or not.
 Stack deep_stack(const char* arrangement, bool one_depth) {
   Stack stack{std::vector<std::uint32_t>(128, 3), arrangement, one_depth};
   stack.counts[37] = 20000;
@@ -324,7 +324,7 @@ TEST_P(Arrangements, OneDeepPixelAmongShallowOnesIsRightByCompute) {
     const Stack stack = deep_stack(GetParam(), one_depth);
     for (const exchange::TilePart& part : {lattice_part(frame, stack), chain_part(stack)}) {
       const auto cpu = frame.merged(nullptr, {part}), gpu = frame.merged(&device, {part});
-      // Sums are double on both; each of 20,000 segments is right to 2^-23 of its own light.
+      // Sums are double on both; each of 20,000 segments is accurate to 2^-23 of its own light.
       EXPECT_LT(difference(cpu, gpu), 5e-6) << int(part.kind) << (one_depth ? ", one depth" : "");
       expect_same_depth(cpu, gpu);
     }
@@ -337,7 +337,7 @@ TEST_P(Arrangements, OneDeepPixelAmongShallowOnesIsRightByFragments) {
   for (const bool one_depth : {false, true}) {
     const exchange::TilePart part = chain_part(deep_stack(GetParam(), one_depth));
     const auto cpu = frame.merged(nullptr, {part}), gpu = frame.merged(&device, {part});
-    EXPECT_LT(difference(cpu, gpu), 1e-4) << (one_depth ? "one depth" : "");  // issue: float equals sampled:Ns to 1e-4
+    EXPECT_LT(difference(cpu, gpu), 1e-4) << (one_depth ? "one depth" : "");  // required agreement
     expect_same_depth(cpu, gpu);
   }
 }
@@ -348,7 +348,7 @@ TEST(GlFragment, SampledIsTheCpusWithAFloatFramebuffer) {
     const GlFrame frame(sampled, emission);
     for (const exchange::TilePart& part : {lattice_part(frame, shallow), chain_part(shallow), tuple_part(shallow)}) {
       const auto gpu = frame.merged(&device, {part});
-      if (part.kind == exchange::RecordKind::lattice) continue;  // no counterpart: the CPU samples in double alone
+      if (part.kind == exchange::RecordKind::lattice) continue;  // not comparable: the CPU samples only in double
       const auto cpu = frame.merged(nullptr, {part});
       EXPECT_LT(difference(cpu, gpu), 1e-5) << int(part.kind);  // 64 blends of 2^-24
       expect_same_depth(cpu, gpu);
@@ -370,7 +370,7 @@ TEST(GlFragment, AHalfFramebufferErrsByItsRoundingAndNoMore) {
   const GlFrame frame(sampled);
   const exchange::TilePart part = chain_part(shallow);
   const double error = difference(frame.merged(nullptr, {part}), frame.merged(&device, {part}));
-  EXPECT_GT(error, 1e-5);          // else it would not be one
+  EXPECT_GT(error, 1e-5);          // otherwise it would not be an approximation
   EXPECT_LT(error, 64 * 0x1p-11);  // each blend rounds by 2^-12 of a value below 2
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tiles on their way from compositors to the picture.
+// Transfer of tiles from compositors to the final image.
 #include "compositor/image_assembly.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ namespace {
 using exchange::Bytes;
 using exchange::MessageKind;
 
-constexpr scene::ImageSize size{70, 45};  // tiles at the rim are narrower
+constexpr scene::ImageSize size{70, 45};  // tiles at the edges are narrower
 constexpr projection::TileGrid grid{size, 32};
 
 AssemblySettings settings_of_grid(std::uint64_t deep_bytes = 0) {
@@ -33,7 +33,7 @@ AssemblySettings settings_of_grid(std::uint64_t deep_bytes = 0) {
   return settings;
 }
 
-/// Runs each piece of work on a thread of its own.
+/// Runs each task on its own thread.
 class ThreadEach {
  public:
   ThreadEach() = default;
@@ -46,7 +46,7 @@ class ThreadEach {
     threads_.emplace_back([work = std::move(work)] {
       try {
         work();
-      } catch (const scene::Error&) {  // accept() throws it once more
+      } catch (const scene::Error&) {  // accept() throws it again
       }
     });
   }
@@ -55,13 +55,13 @@ class ThreadEach {
   std::vector<std::thread> threads_;
 };
 
-/// A tile with pixels, and perhaps deep samples, drawn at random.
+/// A tile with random pixels, and perhaps deep samples.
 MergedTile random_tile(std::size_t tile, bool deep, std::mt19937& random) {
   const scene::PixelRect rect = grid.rect(tile);
   MergedTile made;
   made.image = scene::Image({rect.x1 - rect.x0, rect.y1 - rect.y0});
   std::uniform_real_distribution<float> uniform(0, 1);
-  const float step = random() % 2 == 0 ? 1 : 1e-4f;  // noise, or so smooth that packing pays
+  const float step = random() % 2 == 0 ? 1 : 1e-4f;  // noise, or smooth enough that packing pays
   for (auto* values : {&made.image.rgba, &made.image.depth})
     for (float& value : *values) value = 0.5f + step * uniform(random);
   if (!deep) return made;
@@ -78,7 +78,7 @@ struct Job {
     for (int c = 0; c < compositors; ++c) sent.emplace_back();
   }
   TileSender sender(int compositor, std::uint32_t frame) { return {network.rank(1 + compositor), 0, frame}; }
-  /// The messages that have come, by compositor.
+  /// The messages received, by compositor.
   void collect() {
     while (auto message = network.rank(0).receive(exchange::Channel::tiles, std::chrono::milliseconds(1)))
       sent[static_cast<std::size_t>(message->from - 1)].push_back(std::move(*message));
@@ -112,7 +112,7 @@ TEST(ImageAssembly, TilesFromAnyoneInAnyOrderMakeThePictureOnce) {
       for (std::uint32_t tile = 0; tile < order.size(); ++tile) order[tile] = tile;
       std::shuffle(order.begin(), order.end(), random);
       for (const std::uint32_t tile : order) {
-        if (random() % 4 == 0) continue;  // nothing in it: it is not sent
+        if (random() % 4 == 0) continue;  // empty tiles are not sent
         has_come[tile] = true;
         tiles.emplace(tile, random_tile(tile, deep, random));
         senders[random() % senders.size()]->send(tile, tiles.at(tile));
@@ -147,7 +147,7 @@ TEST(ImageAssembly, TilesFromAnyoneInAnyOrderMakeThePictureOnce) {
     };
     if (seed % 3 > 0) settings.run = [&](std::function<void()> work) { threads.run(std::move(work)); };
     if (seed % 5 > 0)
-      settings.memory = [&](scene::ImageSize of) {  // of another picture
+      settings.memory = [&](scene::ImageSize of) {  // for another image
         scene::Image memory(seed % 5 == 1 ? scene::ImageSize{of.height, of.width} : of);
         std::fill(memory.rgba.begin(), memory.rgba.end(), 7.0f);
         std::fill(memory.depth.begin(), memory.depth.end(), std::numeric_limits<float>::quiet_NaN());
@@ -257,7 +257,7 @@ TEST(ImageAssembly, WhatIsCutChangedOrNotTilesIsRefused) {
     return message;
   };
   constexpr std::size_t empty =
-      sizeof(exchange::MessageHeader) + sizeof(std::uint64_t);  // of no tiles: that is allowed
+      sizeof(exchange::MessageHeader) + sizeof(std::uint64_t);  // without tiles, which is allowed
   for (const exchange::Message& message : job.sent[0]) {
     ASSERT_FALSE(refused(message.bytes));
     for (std::size_t cut = 0; cut < message.bytes.size(); cut += cut < 200 ? 1 : 97) {
@@ -273,7 +273,7 @@ TEST(ImageAssembly, WhatIsCutChangedOrNotTilesIsRefused) {
   EXPECT_TRUE(refused(frame_and(MessageKind::tiles, ~std::uint64_t{0})));
   EXPECT_TRUE(refused(frame_and(MessageKind::parts, 0)));
 
-  // The number of deep samples, behind the pixels of tile 2: more than there are, however many.
+  // The number of deep samples, after the pixels of tile 2: any number above the actual one.
   const scene::PixelRect rect = grid.rect(2);
   scene::Image image(size);
   exchange::MessageReader reader(job.sent[0][0].bytes, 1);
@@ -287,7 +287,7 @@ TEST(ImageAssembly, WhatIsCutChangedOrNotTilesIsRefused) {
     bytes[at + byte] ^= std::byte{0x40};
     EXPECT_TRUE(refused(bytes)) << byte;
   }
-  // One sample more in a pixel than there are in all.
+  // One more sample in a pixel than there are in total.
   Bytes bytes = job.sent[0][0].bytes;
   bytes[at + sizeof(std::uint64_t)] ^= std::byte{8};
   EXPECT_TRUE(refused(bytes));

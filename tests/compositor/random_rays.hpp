@@ -20,22 +20,22 @@ namespace tessera::compositor::tests {
 
 using projection::LatticeSegment;
 
-/// The rays of a small picture as lattice segments that doubles hold too, and what becomes of them in double precision,
-/// one segment after the other.
+/// The rays of a small image as lattice segments that are exact in double too, and their composited result in double
+/// precision, one segment after the other.
 struct RandomRays {
   static constexpr scene::ImageSize size{16, 11};
   static constexpr scene::PixelRect rect{0, 0, 16, 11};
   static constexpr std::size_t pixels = 16 * 11;
 
-  /// One run of segments that touch, composited; the whole ray, if they are not to be told apart.
+  /// One run of touching segments, composited; or the whole ray, if runs are not separated.
   struct Run {
     std::size_t pixel = 0;
-    double front = 0, back = 0;  ///< planar: where it begins to show, and where its last segment ends
+    double front = 0, back = 0;  ///< planar: where it becomes visible, and where its last segment ends
     double red = 0, green = 0, blue = 0, transmittance = 1;
     int showing = 0;  ///< segments with light or depth
   };
 
-  /// Up to `most` segments a ray, some of them clear, some of no length, with gaps between some.
+  /// Up to `most` segments per ray, some of them clear, some of length zero, with some gaps.
   RandomRays(std::uint32_t seed, std::size_t most, double extinction, bool perspective)
       : random(seed),
         function(random_function(extinction)),
@@ -47,7 +47,7 @@ struct RandomRays {
       std::int64_t at = -(1 << 29) + static_cast<std::int64_t>(random() % 1000000);
       float scalar = random_scalar();
       for (std::size_t k = 0; k < count; ++k) {
-        // Gaps are many steps long: on the lattice segments touch that are a few steps apart.
+        // Gaps are many steps long: on the lattice segments that are a few steps apart count as touching.
         const bool gap = random() % 8 == 0;
         if (gap) at += 1000 + static_cast<std::int64_t>(random() % 1000000);
         const auto step = static_cast<std::int64_t>((1 << 30) / (static_cast<std::int64_t>(most) + 2));
@@ -58,7 +58,7 @@ struct RandomRays {
         at += length;
         scalar = next;
       }
-      // Only what its key does not tell apart may change places; those of no length are level with their neighbours.
+      // Only segments with equal keys may change places; those of length zero are level with their neighbours.
       std::sort(rays[p].begin(), rays[p].end(), [](const LatticeSegment& a, const LatticeSegment& b) {
         return std::tie(a.front, a.back, a.scalar_front, a.scalar_back) <
                std::tie(b.front, b.back, b.scalar_front, b.scalar_back);
@@ -66,7 +66,8 @@ struct RandomRays {
     }
   }
 
-  /// What shows of a pixel, run by run, or of the ray as one; segments behind less light than `least` are left out.
+  /// The visible result for a pixel, per run, or for the whole ray; segments behind less light than `least` are
+  /// omitted.
   [[nodiscard]] std::vector<Run> composited(std::size_t pixel, bool runs, double least = 0) const {
     return composited(pixel, rays[pixel], runs, least);
   }
@@ -118,7 +119,7 @@ struct RandomRays {
   scene::TransferFunction function;
   integrals::SegmentIntegrator integrator;
   projection::PixelSpace space;
-  std::vector<std::vector<LatticeSegment>> rays;  ///< by pixel, in order
+  std::vector<std::vector<LatticeSegment>> rays;  ///< by pixel, sorted
 
  private:
   static scene::Camera camera(bool perspective) {

@@ -49,7 +49,7 @@ struct PixelRuns {
 /// By projector and pixel.
 using Runs = std::array<std::array<PixelRuns, pixels>, projectors>;
 
-/// Runs of random pixels, none of which overlap: each lies in a depth of its own.
+/// Runs of random pixels without overlap: each is in a depth range of its own.
 Runs random_runs(std::mt19937& random, bool segments) {
   Runs made;
   const auto uniform = [&] { return std::uniform_real_distribution<float>(0, 1)(random); };
@@ -93,7 +93,7 @@ exchange::TilePart part_of(const Runs& runs, int projector, bool ascending) {
   return part;
 }
 
-/// `ascending`: which projectors' parts are. `cut`: a depth to which all is merged first.
+/// `ascending`: which projectors' parts are sorted. `cut`: a depth up to which everything is merged first.
 scene::Image merged(const Scene& scene, const Runs& runs, std::array<bool, projectors> ascending,
                     double cut = -infinity) {
   const auto merger = scene.merger();
@@ -173,7 +173,7 @@ TEST(RunMerger, PartsThatAreNotWhatTheySayAreRefused) {
   EXPECT_TRUE(refused({{3, 1, 1}}, false, 0)) << "a segment that it did not announce";
   const std::size_t whole = 2 * (sizeof(exchange::RunsHeader) + sizeof run) + sizeof segment;
   for (std::size_t cut = 1; cut < whole; ++cut) {
-    if (cut == sizeof(exchange::RunsHeader) + sizeof run) continue;  // the first record alone is whole
+    if (cut == sizeof(exchange::RunsHeader) + sizeof run) continue;  // only the first record is complete
     EXPECT_TRUE(refused({{3, 1, 1}, {4, 1, 0}}, true, cut)) << cut << " bytes cut off";
   }
 }

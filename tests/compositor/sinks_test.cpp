@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What sinks of segments and of runs send of given rays, told from their records alone, in both encodings.
+// What sinks of segments and of runs send for given rays, decoded from their records alone, in both encodings.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using projection::LatticeSegment;
 using tests::RandomRays;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// A segment or a run as a record says it. Raw segments have no light.
+/// A segment or a run as decoded from a record. Raw segments have no light.
 struct Sent {
   std::size_t pixel;
   double front, back = 0;
@@ -34,13 +34,13 @@ struct Scene : RandomRays {
   Scene(std::uint32_t seed, std::size_t most, double extinction)
       : RandomRays(seed, most, extinction, false),
         table(function, lattice.scalar_origin, lattice.scalar_unit, lattice.depth_unit, scene::Emission::absorption) {}
-  /// `left_out`: opacity_weight(); the more of it the later a pixel closes.
+  /// `left_out`: opacity_weight(); the larger it is, the later a pixel closes.
   [[nodiscard]] TileScene tile_scene(double left_out = 1e30) const {
     return {&space, &integrator, left_out, &table, lattice};
   }
   integrals::LaneTable table;
 
-  /// A segment that travels as it is: what its compositor makes of it.
+  /// A segment that is sent unchanged, as its compositor evaluates it.
   [[nodiscard]] Sent shown(std::size_t pixel, const LatticeSegment& s) const {
     return shown(composited(pixel, {s}, true, 0).at(0));
   }
@@ -49,7 +49,7 @@ struct Scene : RandomRays {
   }
 };
 
-/// The parts of a tile that a sink has delivered, taken apart.
+/// The parts of a tile that a sink has delivered, decoded.
 struct Parts {
   exchange::PartWriter::Deliver deliver() {
     return [this](exchange::TilePart part) { parts.push_back(std::move(part)); };
@@ -134,11 +134,11 @@ typename Encoding::Depth depth_of(const Scene& scene, std::int64_t step) {
 
 enum class How {
   in_order,   ///< take() of what is final
-  unordered,  ///< take_unordered() of what has come
+  unordered,  ///< take_unordered() of what has been produced
 };
 
-/// One tile through a sink, in rounds as the renderer gives them: each brings what begins before its
-/// depth, and some of what lies behind.
+/// Passes one tile through a sink, in rounds as the renderer does: each adds what begins in front of its depth, and
+/// some of what is behind.
 template <class Encoding>
 void send_tile(TileSink<Encoding>& sink, const Scene& scene, int rounds, How how) {
   typename Encoding::Store store;
@@ -168,8 +168,8 @@ void send_tile(TileSink<Encoding>& sink, const Scene& scene, int rounds, How how
   sink.end_tile();
 }
 
-/// Parts are of tile 3, one is the last, and what a part says to be complete stays so: nothing of a later part begins
-/// before it.
+/// Parts belong to tile 3, one is the last, and depths declared complete stay complete: no later part begins in front
+/// of them.
 void expect_promises_kept(const Parts& parts, const std::vector<Sent>& sent) {
   ASSERT_FALSE(parts.parts.empty());
   for (std::size_t i = 0; i < parts.parts.size(); ++i) {
@@ -221,9 +221,9 @@ TYPED_TEST(Sinks, SegmentsTravelOnceEachHoweverTheyAreTaken) {
     }
 }
 
-/// Floats in the records, and float lanes on the lattice: window_kernel_test says how far they err.
+/// Floats in the records, and float lanes on the lattice: window_kernel_test measures their errors.
 constexpr double light_error = 1e-6;
-/// A run's thickness is a float; a lattice run's front is a step.
+/// A run's thickness is a float; the front of a lattice run is a step.
 constexpr double depth_error = 2e-7;
 
 void expect_same(const Sent& sent, const Sent& expected) {
@@ -247,7 +247,7 @@ TYPED_TEST(Sinks, SegmentsThatTouchTravelAsOneRun) {
       for (std::size_t p = 0; p < Scene::pixels; ++p)
         for (const auto& run : scene.composited(p, true)) {
           expected.push_back(Scene::shown(run));
-          // A run of which one segment shows may travel as that segment, or with the clear ones behind it.
+          // A run with one visible segment may be sent as that segment, or with the clear ones behind it.
           if (run.showing == 1) expected.back().back = 0;
         }
       std::sort(expected.begin(), expected.end(), [](const Sent& a, const Sent& b) { return a.place() < b.place(); });
@@ -260,7 +260,7 @@ TYPED_TEST(Sinks, SegmentsThatTouchTravelAsOneRun) {
     }
 }
 
-/// The light of a ray from what was sent of it, front to back.
+/// The light of a ray computed from what was sent, front to back.
 Sent joined(const std::vector<Sent>& sent, std::size_t pixel) {
   Sent whole{pixel, infinity};
   double transmittance = 1;
@@ -278,7 +278,7 @@ TYPED_TEST(Sinks, RunsThatAreCutInDepthAreInAllWhatTheyWere) {
   for (const How how : {How::in_order, How::unordered}) {
     const Scene scene(7, 200, 1);
     Parts parts, uncut;
-    send_tile(*this->runs(scene, parts, 1), scene, 6, how);  // a cut with each taking
+    send_tile(*this->runs(scene, parts, 1), scene, 6, how);  // with a cut at each taking
     send_tile(*this->runs(scene, uncut, std::uint64_t{1} << 40), scene, 6, How::in_order);
     const std::vector<Sent> sent = parts.sent(scene), runs = uncut.sent(scene);
     EXPECT_GT(sent.size(), runs.size());
@@ -289,7 +289,7 @@ TYPED_TEST(Sinks, RunsThatAreCutInDepthAreInAllWhatTheyWere) {
         EXPECT_EQ(whole.front, infinity);
         continue;
       }
-      // A ray's runs each err as one does.
+      // Each of a ray's runs has the error of one.
       EXPECT_NEAR(whole.front, expected[0].front, depth_error);
       EXPECT_NEAR(whole.red, expected[0].red, 4 * light_error);
       EXPECT_NEAR(whole.opacity, 1 - expected[0].transmittance, 4 * light_error);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// composite_windows() under every instruction set, against segments integrated and composited in double precision.
+// composite_windows() under every instruction set, compared with segments integrated and composited in double
+// precision.
 #include "compositor/window_kernel.hpp"
 
 #include <gtest/gtest.h>
@@ -19,13 +20,13 @@ namespace {
 using tests::RandomRays;
 constexpr std::int64_t all = std::numeric_limits<std::int64_t>::max();
 
-/// A float lane's integral errs by some 2^-22 of a segment's opacity (lane_integrator_test), and along a ray opacities,
-/// each times the light that is left, add up to at most one; the sums themselves are double. Rounded knots change a
-/// segment by as much again.
+/// A float lane's integral has an error of some 2^-22 of a segment's opacity (lane_integrator_test), and along a ray
+/// the opacities, each times the remaining light, sum to at most one; the sums themselves are double. Rounded knots
+/// change a segment by the same amount.
 constexpr double lanes_error = 1e-6;
 
-/// The rays in a square's lists, shuffled, in `rounds`: each round brings segments that begin before its depth, and
-/// some of those behind; then what is final is composited. Returns how many segments went.
+/// Adds the rays in a square's lists, shuffled, in `rounds`: each round adds segments that begin in front of its depth,
+/// and some of those behind; then what is final is composited. Returns the number of segments composited.
 std::uint64_t composite(RandomRays& rays, const WindowRules& rules, int rounds, std::uint32_t seed,
                         WindowState& state) {
   std::mt19937 random(seed);
@@ -72,7 +73,8 @@ struct Case {
   double extinction;
   bool perspective;
 };
-/// From rays of one segment to such as no network sorts in one, from thin matter to some that is opaque at once.
+/// From rays of one segment to more than any single sorting network handles, from thin matter to some that is opaque at
+/// once.
 constexpr std::array<Case, 7> cases{{{1, 5, false},
                                      {9, 1, true},
                                      {16, 30, false},
@@ -145,8 +147,8 @@ TEST(CompositeWindows, APixelClosesBehindTooLittleLightAndNoneBefore) {
     WindowState state;
     composite(rays, {&table.lanes, least}, 3, seed, state);
     for (std::size_t p = 0; p < RandomRays::pixels; ++p) {
-      // Where the light that is left is near the limit, lanes may see it on the other side; else it ends where double
-      // precision does.
+      // Where the remaining light is near the limit, lanes may be on the other side of it; otherwise they end where
+      // double precision does.
       const auto ended = rays.composited(p, false, least), before = rays.composited(p, false, least * 1.0001),
                  after = rays.composited(p, false, least * 0.9999);
       if (ended.empty() || before[0].transmittance != after[0].transmittance) continue;
@@ -190,7 +192,7 @@ TEST(CompositeWindows, RunsEndWhereSegmentsDoNotTouchAndNotBefore) {
     SCOPED_TRACE(name);
     RandomRays rays(1, 1, 5, false);
     const Table table(rays);
-    const float visible = static_cast<float>(0x1p27);  // above the middle, 0.5: it absorbs
+    const float visible = static_cast<float>(0x1p27);  // above the middle, 0.5, it absorbs
     for (const std::int32_t gap : {-touching_steps, 0, touching_steps, touching_steps + 1, 100000}) {
       for (auto& ray : rays.rays) ray = {{0, 1 << 20, visible, visible}, {(1 << 20) + gap, 1 << 21, visible, visible}};
       WindowState state;

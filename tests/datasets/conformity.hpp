@@ -25,7 +25,7 @@ inline double smallest_volume(const scene::TetMesh& mesh) {
   return least;
 }
 
-/// How many faces belong to one, two and more tets, with vertices told apart by position.
+/// Number of faces that belong to one, two and more tets; vertices at different positions count as different.
 struct FaceCount {
   std::size_t boundary = 0, shared = 0, wrong = 0;
 };

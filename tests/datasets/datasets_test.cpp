@@ -67,7 +67,7 @@ TEST(Generators, AreMeshesOfTheVolumeTheyClaim) {
   EXPECT_NEAR(volume(graded(8)), 8, 1e-12);
   EXPECT_NEAR(volume(slivers(6)), 8, 1e-12);
   EXPECT_NEAR(volume(single_tet()), 1.0 / 6, 1e-16);
-  // Inscribed polyhedra: second order in the edge length, so twice as fine is four times as near.
+  // Inscribed polyhedra: second order in the edge length, so twice the resolution has a quarter of the error.
   const double coarse = 4 * pi / 3 - volume(ball(2)), fine = 4 * pi / 3 - volume(ball(3));
   EXPECT_NEAR(coarse / fine, 4, 0.5);
   const double ring = pi * 0.75 * 0.5, loss = ring - volume(annulus(32)), less = ring - volume(annulus(64));
@@ -112,7 +112,7 @@ TEST(Generators, SliversAreFlatButHaveNoShortEdge) {
 TEST(Generators, StackAndPlateAreApart) {
   const scene::TetMesh mesh = thin_stack(100);
   EXPECT_EQ(mesh.tets.size(), 6u * (100 + 60));
-  // Each part has a closed surface of its own: the pile 12 + 8 triangles per layer, the plate's top, bottom and sides.
+  // Each part has a closed surface of its own: the stack 12 + 8 triangles per layer, the plate's top, bottom and sides.
   EXPECT_EQ(count_faces(mesh).boundary, (2 * 2 + 100 * 8u) + (60 * 2 * 2 + 4 * 8 * 2 + 8 * 2));
 }
 

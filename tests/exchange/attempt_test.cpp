@@ -17,7 +17,7 @@ TEST(Attempt, ThrowsOneRanksErrorOnAllAndLeavesNothingBehind) {
           try {
             attempt(beneath, [&](Transport& transport) {
               barrier(transport);
-              // What nobody will take.
+              // Messages that are never received.
               for (int to = 0; to < ranks; ++to)
                 transport.send(to, Channel::mesh, message_of(MessageKind::tet_count, std::uint64_t{7}));
               if (transport.rank() == faulty) throw scene::bad_input("mesh.vtu: is empty; give another");

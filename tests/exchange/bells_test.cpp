@@ -21,13 +21,13 @@ TEST(Bells, WakeTheRankThatTheyAreRungFor) {
     barrier(transport);
     if (transport.rank() == 0) {
       for (const int rank : {1, 2}) bells->ring(rank);
-      EXPECT_EQ(bells->heard(), heard);  // nobody has rung here
+      EXPECT_EQ(bells->heard(), heard);  // no wake-up was sent here
       return;
     }
-    // One that is not woken hangs.
+    // A thread that is not woken hangs.
     while (bells->heard() == heard) bells->wait(heard, std::chrono::hours(1));
     EXPECT_EQ(bells->heard(), heard + 1);
-    bells->wait(heard, std::chrono::hours(1));  // it has rung since: at once
+    bells->wait(heard, std::chrono::hours(1));  // a wake-up was sent since: returns at once
   });
 }
 

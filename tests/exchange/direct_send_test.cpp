@@ -48,7 +48,7 @@ TEST(DirectSend, BandsMakeUpTheArea) {
   }
 }
 
-/// What a rank sees: pixels of a rectangle, some of them empty.
+/// A rank's contribution: pixels of a rectangle, some of them empty.
 struct Seen {
   PixelRect rect;
   scene::Image image{size};
@@ -179,7 +179,7 @@ TEST(DirectSend, MessagesOfAnotherPictureEndTheRun) {
                           {7, rows, {0, -1, size.width, packet_rows}, 0},
                           {7, rows, {9, 0, 3, packet_rows}, 0},
                           {7, rows, rows, 0},           // pixels are missing
-                          {7, rows, {0, 0, 0, 0}, 1}};  // stopped; with a byte too many
+                          {7, rows, {0, 0, 0, 0}, 1}};  // stopped; with one byte too many
   for (const Header& header : wrong) {
     EXPECT_THROW(run_ranks(2,
                            [&](Transport& transport) {

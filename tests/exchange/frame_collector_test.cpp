@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A compositor's bookkeeping of a frame, against a plain account of what was sent.
+// A compositor's bookkeeping of a frame, compared with a simple record of what was sent.
 #include "exchange/frame_collector.hpp"
 
 #include <gtest/gtest.h>
@@ -19,13 +19,13 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// What one projector says of the frame, in order: a begin, parts, an end.
+/// One projector's messages of the frame, in order: a begin, parts, an end.
 struct Said {
   enum class Kind { begin, part, end } kind;
   TilePart part{};
 };
 
-/// A frame at compositor 0 of a job drawn at random.
+/// A frame at compositor 0 of a random job.
 struct Frame {
   Frame(std::uint64_t seed, bool large_parts)
       : random(seed),
@@ -67,20 +67,20 @@ struct Frame {
   int projectors;
   TileMap map;
   const std::vector<std::uint32_t>& tiles;
-  std::vector<std::vector<bool>> contributes;  ///< by projector and place of the tile
+  std::vector<std::vector<bool>> contributes;  ///< by projector and index of the tile
   std::vector<std::deque<Said>> said;
   FrameCollector collector;
   std::uint64_t parts = 0;
 };
 
-/// Hears a frame in any order that keeps each projector's own, merges whenever there is work, and checks what it is
-/// given on the way. Returns how often a tile was merged before it was complete.
+/// Receives a frame in any order that keeps each projector's own, merges whenever there is work, and checks the
+/// results. Returns how often a tile was merged before it was complete.
 std::size_t expect_whole(std::uint64_t seed, bool large_parts) {
   Frame frame(seed, large_parts);
   FrameCollector& collector = frame.collector;
-  std::map<std::uint32_t, double> complete_to;     // what was merged of each tile, at least
+  std::map<std::uint32_t, double> complete_to;     // depth up to which each tile was at least merged
   std::map<std::uint64_t, std::uint32_t> pending;  // parts with records that were not taken, by their number
-  std::map<std::uint32_t, std::size_t> awaited;    // last parts that have not come, by tile
+  std::map<std::uint32_t, std::size_t> awaited;    // last parts that have not arrived, by tile
   for (std::size_t p = 0; p < frame.said.size(); ++p)
     for (const Said& said : frame.said[p])
       if (said.kind == Said::Kind::part && said.part.last) ++awaited[said.part.tile];
@@ -94,7 +94,7 @@ std::size_t expect_whole(std::uint64_t seed, bool large_parts) {
     for (std::size_t i = 1; i < waiting.parts.size(); ++i)
       EXPECT_LE(waiting.parts[i - 1].start_depth, waiting.parts[i].start_depth) << "seed " << seed;
     for (const TilePart& part : waiting.parts) {
-      // Nothing comes before what was said to be complete, and no part twice.
+      // Nothing arrives in front of a depth declared complete, and no part twice.
       if (complete_to.contains(tile)) {
         EXPECT_GE(part.final_depth, complete_to[tile]);
       }
@@ -152,13 +152,14 @@ std::size_t expect_whole(std::uint64_t seed, bool large_parts) {
       EXPECT_LE(paid[q], owed[q]);
     }
   }
-  // A complete tile is work at once, so that all are finished when all has been said, and nothing is owed any more.
+  // A complete tile is work at once, so that all tiles are finished after the last message, and no credit is
+  // outstanding.
   EXPECT_TRUE(collector.finished()) << "seed " << seed;
   EXPECT_TRUE(pending.empty()) << "seed " << seed;
   EXPECT_EQ(paid, owed) << "seed " << seed;
   EXPECT_EQ(std::set<std::uint32_t>(finished.begin(), finished.end()).size(), finished.size());
   EXPECT_EQ(collector.longest_ray(), frame.projectors - 1);
-  std::uint64_t ended = 0;  // of those whose ends come here
+  std::uint64_t ended = 0;  // of tiles whose ends arrive here
   for (int p = 0; p < frame.projectors; p += 2) ended += static_cast<std::uint64_t>(p + 1);
   EXPECT_EQ(collector.sums().counters.fragments, ended);
   return early;
@@ -174,7 +175,7 @@ TEST(FrameCollector, MergesLargeTilesBeforeTheyAreComplete) {
   EXPECT_GT(early, 100u);
 }
 
-/// Of one projector and of one of two compositors' tiles.
+/// One projector and one of two compositors with its tiles.
 struct OneProjector {
   TileMap map{8, 2, 1};
   FrameCollector collector{1, map, 0};
@@ -201,7 +202,7 @@ TEST(FrameCollector, CreditForATileThatIsNotItsFirstUnfinishedOneWaits) {
   EXPECT_EQ(one.collector.pay(0), 10u);  // the first one's
   one.collector.take(tiles[1]);
   one.collector.finish(tiles[1]);
-  EXPECT_EQ(one.collector.pay(0), 0u);  // finished, but behind the first unfinished one
+  EXPECT_EQ(one.collector.pay(0), 0u);  // finished, but after the first unfinished one
   one.collector.take(tiles[0]);
   one.collector.finish(tiles[0]);
   EXPECT_EQ(one.collector.pay(0), 10u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ranks that stop and go on, in a simulated job: who notices, how often, and who keeps silent.
+// Ranks that stop and continue, in a simulated job: which ranks report it, how often, and which do not.
 #include "exchange/heartbeats.hpp"
 
 #include <gtest/gtest.h>
@@ -19,8 +19,8 @@ using Clock = Heartbeats::Clock;
 
 constexpr milliseconds timeout(8000), step(10);
 
-/// Ranks whose engines look at their messages every 10 ms of a clock of its own, unless they are stopped. Messages take
-/// up to `delay`.
+/// Ranks whose engines check their messages every 10 ms of a simulated clock, unless they are stopped. Messages take up
+/// to `delay`.
 class SimulatedJob {
  public:
   SimulatedJob(int ranks, bool ends_run, std::uint64_t seed, milliseconds delay = milliseconds(20))
@@ -48,7 +48,7 @@ class SimulatedJob {
     for (const auto& of_rank : said) all.insert(all.end(), of_rank.begin(), of_rank.end());
     return all;
   }
-  /// Ranks that would end the run, and which rank they have lost.
+  /// Ranks that would end the run, and the rank that each has lost.
   [[nodiscard]] std::vector<std::array<int, 2>> losses() const {
     std::vector<std::array<int, 2>> losses;
     for (std::size_t rank = 0; rank < ranks_.size(); ++rank)
@@ -168,8 +168,8 @@ TEST(Heartbeats, RandomStopsAreNoticedIfTheyAreLongAndOnlyThen) {
     SimulatedJob job(ranks, false, seed, milliseconds(std::uniform_int_distribution<int>(0, 80)(random)));
     job.run(milliseconds(std::uniform_int_distribution<int>(0, 9000)(random)));
     const int stopped = std::uniform_int_distribution<int>(0, ranks - 1)(random);
-    // In timeouts. Between a stop and the last word before it lies up to an eighth, a delay and a rank's quarters of a
-    // second.
+    // In timeouts. Up to an eighth, a delay and a rank's quarters of a second may pass between the last heartbeat and
+    // the stop.
     const double length = std::uniform_real_distribution<double>(0, 1.9)(random);
     job.stop(stopped);
     job.run(milliseconds(static_cast<int>(length * 8000)));

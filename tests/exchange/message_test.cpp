@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Messages: what is written comes back, and nothing else is taken for a message.
+// Messages: reading returns what was written, and refuses anything that is not a message.
 #include "exchange/message.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 namespace tessera::exchange {
 namespace {
 
-/// What `read` throws, or "" if it throws nothing. Anything but an Error(system_failure) fails the test.
+/// The error that `read` throws, or "" if it throws none. Anything but an Error(system_failure) fails the test.
 template <class Read>
 std::string refusal(const Read& read) {
   try {
@@ -36,7 +36,7 @@ struct Point {
   bool operator==(const Point&) const = default;
 };
 
-/// All that a message may hold, drawn at random.
+/// Random values for everything that a message may contain.
 struct Contents {
   std::uint16_t small;
   double real;
@@ -138,8 +138,8 @@ TEST(Message, OfAnotherVersionKindOrOriginIsRefusedInWords) {
 }
 
 TEST(Message, HostileLengthsAreRefusedBeforeAnythingIsAllocated) {
-  // A vector of so many would throw std::bad_alloc or std::length_error, which refusal() lets through; and the smallest
-  // that does not fit would pass for an allocation: its vector stays as it was.
+  // A vector of this size would throw std::bad_alloc or std::length_error, which refusal() does not catch; for the
+  // smallest size that does not fit, the vector must stay unchanged.
   constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
   for (const std::uint64_t length : {std::uint64_t{3}, std::uint64_t{1} << 31, std::uint64_t{1} << 40, most / 8 + 1,
                                      most / 8 + 3, most / 4 + 2, most - 7, most}) {
@@ -169,7 +169,7 @@ TEST(Message, NoBytesAtRandomCrashAReader) {
     Bytes message = written(random_contents(random));
     for (int changes = 1 + i % 3; changes > 0; --changes)
       message[random() % message.size()] = static_cast<std::byte>(random());
-    refusal([&] { read(message); });  // refused in words, or read as other values
+    refusal([&] { read(message); });  // refused with a message, or read as other values
   }
 }
 

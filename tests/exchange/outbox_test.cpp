@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A projector's outbox, with the test as its compositors: what arrives, in which order, and who waits for whom.
+// A projector's outbox, with the test as its compositors: what arrives, in which order, and which threads wait.
 #include "exchange/outbox.hpp"
 
 #include <gtest/gtest.h>
@@ -23,10 +23,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// How long nothing is awaited that must not come.
+/// How long the test waits for messages that must not arrive.
 constexpr milliseconds moment(50);
 
-/// A projector's transport, which shows whether a thread of it waits for credit.
+/// A projector's transport that reports whether one of its threads waits for credit.
 class Watched final : public Transport {
  public:
   explicit Watched(Transport& beneath) : beneath_(beneath) {}
@@ -57,7 +57,7 @@ class Watched final : public Transport {
   std::atomic<bool> waits_ = false;
 };
 
-/// Rank 0 projects, the others composite.
+/// Rank 0 is the projector, the others are compositors.
 struct Job {
   explicit Job(int compositors, std::uint64_t window, std::uint64_t backlog)
       : network(1 + compositors), projector(network.rank(0)), settings{{}, window, backlog} {
@@ -65,7 +65,7 @@ struct Job {
     received.resize(static_cast<std::size_t>(compositors));
   }
 
-  /// What has come to a compositor by now, in a message or none; `pays`: its bytes are given back.
+  /// Takes what has arrived at a compositor, one message or none; `pays`: returns the credit for its bytes.
   bool take(int compositor, bool pays, milliseconds patience = test::hang) {
     Transport& transport = network.rank(1 + compositor);
     const auto message = transport.receive(Channel::fragments, patience);
@@ -100,11 +100,11 @@ TilePart part_of(std::uint32_t tile, std::size_t part, std::size_t size, bool la
   return made;
 }
 
-/// A compositor's messages, taken apart.
+/// A compositor's messages, decoded.
 struct Heard {
   std::vector<MessageKind> kinds;
   FrameBegin begin{};
-  std::vector<std::uint32_t> begun;  ///< tiles whose bit is set, by place in the compositor's list
+  std::vector<std::uint32_t> begun;  ///< tiles whose bit is set, by index in the compositor's list
   FrameEnd end{};
   std::vector<PartHeader> parts;
   std::map<std::uint32_t, Bytes> records;  ///< by tile
@@ -181,7 +181,7 @@ TEST(Outbox, EveryPartArrivesOnceInTileOrderWhateverTheThreadsDo) {
       for (auto& projector : projectors) projector.join();
       FrameEnd sums{};
       sums.on_lattice = 1;
-      outbox.end_frame(sums);  // all has been sent
+      outbox.end_frame(sums);  // everything has been sent
       over = true;
       for (auto& receiver : receivers) receiver.join();
     }
@@ -205,7 +205,7 @@ TEST(Outbox, EveryPartArrivesOnceInTileOrderWhateverTheThreadsDo) {
       std::vector<std::uint32_t> order;  // of the parts
       for (const PartHeader& part : heard.parts)
         if (order.empty() || order.back() != part.tile) order.push_back(part.tile);
-      EXPECT_EQ(order, begun) << "seed " << seed;  // each tile once, in the compositor's order, the awaited ones
+      EXPECT_EQ(order, begun) << "seed " << seed;  // each expected tile once, in the compositor's order
       for (const std::uint32_t tile : begun) {
         Bytes expected;
         for (std::size_t part = 0; part < sizes[tile].size(); ++part) {
@@ -240,7 +240,7 @@ TEST(Outbox, SendsNoMoreThanTheWindowAheadAndGoesOnWithCredit) {
   auto projector = std::async(std::launch::async, [&] {
     for (; put < parts; ++put) outbox.put(part_of(0, put, part_bytes, false));
   });
-  // Nothing comes back: it stops, and what it has sent is the window and at most a message.
+  // No credit returns: it stops after sending the window and at most one more message.
   ASSERT_TRUE(job.projector.comes_to_wait());
   const std::size_t stuck_at = put;
   EXPECT_LT(stuck_at, parts);
@@ -248,7 +248,7 @@ TEST(Outbox, SendsNoMoreThanTheWindowAheadAndGoesOnWithCredit) {
   while (job.take(0, false, milliseconds(1))) sent += job.received[0].back().size();
   EXPECT_GE(sent, window - message_bytes);
   EXPECT_LE(sent, window + message_bytes + part_bytes + 1024);
-  // Credit for one message lets about one more leave.
+  // Credit for one message allows about one more.
   job.give_back(0, job.received[0].back().size());
   ASSERT_TRUE(job.take(0, false));
   EXPECT_FALSE(job.take(0, false, moment));
@@ -272,8 +272,8 @@ TEST(Outbox, ALaterTileWaitsButTheFirstUnfinishedOneIsNotHeldUp) {
   Outbox outbox(job.projector, job.settings);
   outbox.begin_frame(0, map, {true, true, true}, {});
   auto later = std::async(std::launch::async, [&] { outbox.put(part_of(2, 0, 200 << 10, true)); });
-  ASSERT_TRUE(job.projector.comes_to_wait());  // it may not run ahead
-  // Though the backlog is full, tiles 0 and 1 get through on their compositor's credit alone.
+  ASSERT_TRUE(job.projector.comes_to_wait());  // it must not run ahead
+  // Although the backlog is full, tiles 0 and 1 proceed on their compositor's credit alone.
   auto first = std::async(std::launch::async, [&] {
     outbox.put(part_of(0, 0, 32, true));
     outbox.put(part_of(1, 0, 32, true));
@@ -283,7 +283,7 @@ TEST(Outbox, ALaterTileWaitsButTheFirstUnfinishedOneIsNotHeldUp) {
     while (job.received[0].empty() || MessageReader(job.received[0].back(), 0).kind() != MessageKind::end)
       job.take(0, true, milliseconds(100));
   });
-  later.get();  // all before it have ended: now it is the first
+  later.get();  // all earlier ones have ended: now it is the first
   outbox.end_frame({});
   receiver.join();
   std::vector<std::uint32_t> order;
@@ -299,7 +299,7 @@ TEST(Outbox, TilesThatArePassedEndWithoutRecordsInTheirOrder) {
   outbox.pass(1);
   outbox.put(part_of(2, 0, 64, true));
   outbox.put(part_of(0, 0, 32, false));
-  outbox.flush();  // not full, but it leaves
+  outbox.flush();  // not full, but it is sent
   ASSERT_TRUE(job.take(0, true));
   ASSERT_TRUE(job.take(0, true));
   outbox.put(part_of(0, 1, 32, true));
@@ -318,9 +318,9 @@ TEST(Outbox, AThreadThatWaitsKeepsNothingBackThatOthersAwait) {
   const TileMap map(2, 2, 1);
   Outbox outbox(job.projector, job.settings);
   outbox.begin_frame(0, map, {true, true}, {});
-  outbox.put(part_of(0, 0, 320, false));  // much less than a message
+  outbox.put(part_of(0, 0, 320, false));  // much smaller than a message
   const int compositor = map.owner(0);
-  ASSERT_TRUE(job.take(compositor, false));  // the begin
+  ASSERT_TRUE(job.take(compositor, false));  // the begin message
   EXPECT_FALSE(job.take(compositor, false, moment));
   auto later = std::async(std::launch::async, [&] {
     for (std::size_t part = 0; part < 2; ++part)
@@ -344,7 +344,7 @@ TEST(Outbox, AStoppedFrameEndsEveryTileThatHasNotEndedAndSaysSo) {
     outbox.end_tiles();
     outbox.end_frame({});
   }
-  std::map<std::uint32_t, int> last;  // what each tile's last part says
+  std::map<std::uint32_t, int> last;  // contents of each tile's last part
   for (int c = 0; c < 2; ++c) {
     while (job.take(c, false, milliseconds(1))) {
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pixels that travel in fewer bytes are the same bits.
+// Pixels that are sent in fewer bytes keep their bits.
 #include "exchange/packed_pixels.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ constexpr std::size_t raw_pixel = 20, size_bytes = 4;
 struct Kind {
   const char* name;
   std::function<void(scene::Image&, std::mt19937&)> fill;
-  bool packs;  ///< whether a large picture takes fewer bytes
+  bool packs;  ///< whether a large image takes fewer bytes
 };
 
 void smooth(scene::Image& image, std::mt19937&) {
@@ -39,7 +39,7 @@ void smooth(scene::Image& image, std::mt19937&) {
     }
 }
 
-/// Half of a picture, to a slanting edge.
+/// Clears half of an image, up to a slanting edge.
 void half_empty(scene::Image& image, std::mt19937& random) {
   smooth(image, random);
   for (int y = 0; y < image.size.height; ++y)
@@ -51,7 +51,7 @@ void half_empty(scene::Image& image, std::mt19937& random) {
     }
 }
 
-/// Values that differ in so many bits that where words end is left to chance.
+/// Values that differ in so many bits that the word boundaries are random.
 void slightly_noisy(scene::Image& image, std::mt19937& random) {
   const float noise = std::ldexp(1.0f, -10 - static_cast<int>(random() % 13));
   std::uniform_real_distribution<float> uniform(0.5f, 0.5f + noise);
@@ -59,7 +59,7 @@ void slightly_noisy(scene::Image& image, std::mt19937& random) {
     for (float& value : *values) value = uniform(random);
 }
 
-/// Any bits at all: NaN, infinite and denormal numbers, and -0.
+/// Arbitrary bits: NaN, infinite and denormal numbers, and -0.
 void any_bits(scene::Image& image, std::mt19937& random) {
   for (auto* values : {&image.rgba, &image.depth})
     for (float& value : *values) value = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
@@ -81,7 +81,7 @@ bool same_bits(const scene::Image& a, const scene::Image& b) {
   return same(a.rgba, b.rgba) && same(a.depth, b.depth);
 }
 
-/// `of` in the rectangle, `rest` elsewhere.
+/// `of` inside the rectangle, `rest` elsewhere.
 scene::Image with_rect(const scene::Image& of, const PixelRect& rect, scene::Image rest) {
   for (int y = rect.y0; y < rect.y1; ++y)
     for (int x = rect.x0; x < rect.x1; ++x) {
@@ -104,7 +104,7 @@ TEST(PackedPixels, ComeOutAsTheyWentInAndTouchNothingElse) {
         Bytes first;
         tests::for_each_instruction_set([&](const char* name) {
           for (const bool pack : {true, false}) {
-            Bytes bytes(3);  // no alignment is owed
+            Bytes bytes(3);  // no alignment is required
             append_pixels(bytes, image, rect, pack);
             append(bytes, std::uint8_t{77});
             const std::size_t raw = raw_pixel * static_cast<std::size_t>(rect.area());
@@ -130,7 +130,7 @@ TEST(PackedPixels, ComeOutAsTheyWentInAndTouchNothingElse) {
     }
 }
 
-/// What is said of these bytes, "" if they are taken.
+/// The message with which these bytes are refused, "" if they are accepted.
 std::string refusal(const Bytes& bytes, const PixelRect& rect) {
   scene::Image image({70, 60});
   RecordReader reader(bytes);
@@ -167,7 +167,7 @@ TEST(PackedPixels, RefuseWhatIsNoPicture) {
   Bytes endless = bytes;
   endless[3] = std::byte{0xff};
   EXPECT_NE(refusal(endless, rect).find("shorter than it says"), std::string::npos) << refusal(endless, rect);
-  // Those of another rectangle.
+  // For another rectangle.
   EXPECT_NE(refusal(bytes, {7, 1, 39, 59}), "");
   EXPECT_NE(refusal(bytes, {7, 0, 39, 60}), "");
 }

@@ -101,7 +101,7 @@ TEST(FirstContact, FindsTheFirstArgumentInWhichARankDiffers) {
   run_ranks(3, [&](Transport& transport) { make_first_contact(transport, std::chrono::milliseconds(0), first); });
 }
 
-/// Loses what its rank sends from message `first` on, as Open MPI does where memory was short at its start.
+/// Loses messages of its rank from message `first` on, as Open MPI does if memory ran out at its start.
 class Losing final : public Transport {
  public:
   Losing(Transport& whole, int first) : whole_(whole), first_(first) {}
@@ -134,7 +134,7 @@ TEST(FirstContact, EndsTheRunWhicheverMessageIsLost) {
         run_ranks(3, [&](Transport& transport) {
           Losing losing(transport, transport.rank() == mute ? first : 1000);
           make_first_contact(losing, std::chrono::milliseconds(300));
-          barrier(losing);  // where a rank waits that was not told
+          barrier(losing);  // waits on a rank that did not get the error
         });
         ADD_FAILURE() << "rank " << mute << ", message " << first << ": nobody noticed";
       } catch (const scene::Error& error) {

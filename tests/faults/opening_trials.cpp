@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Damages files and opens them with the library, many in one process: what reads them by other people's libraries does
-/// so in a helper program, which may die, but this process may not.
+/// Damages files and opens them with the library, many in one process: third-party readers run in a helper program,
+/// which may die, but this process may not.
 ///
 ///     opening_trials RUNS SEED FOLDER [LARGEST]
 ///
-/// FOLDER holds files of at most LARGEST bytes (default 262144); those that cannot be opened are left out. Each run
-/// damages one and opens it. A fault is: another exception than Error(bad_input), a message of more than one line or
-/// without the file's name, over 20 s, or more than twice the memory of the intact file and 256 MiB, in this process or
-/// the helper. The 20 s are of processor time, whatever else the machine does; after 300 s of the clock it hangs.
-/// What a process has had at most never falls, so a run that takes no more than one before is not looked at. A fault's
-/// file is kept in the working folder as opening_trial_RUN_NAME. Prints the faults and the counts; ends with status 1
-/// if there are any, with 2 if nothing can be tried.
+/// FOLDER contains files of at most LARGEST bytes (default 262144); those that cannot be opened are left out. Each run
+/// damages one and opens it. A fault is: an exception other than Error(bad_input), a message of more than one line or
+/// without the file's name, over 20 s, or more than twice the memory of the intact file plus 256 MiB, in this process
+/// or the helper. The 20 s are processor time, whatever else the machine does; after 300 s of wall time it counts as a
+/// hang. A process's peak memory never decreases, so a run that stays below an earlier peak is not checked. The file of
+/// a fault is kept in the working directory as opening_trial_RUN_NAME. Prints the faults and the counts; exits with
+/// status 1 if there are any, with 2 if nothing can be tried.
 #include <fmt/format.h>
 #include <malloc.h>
 #include <sys/resource.h>
@@ -37,8 +37,8 @@ namespace {
 using Random = std::mt19937_64;
 namespace fs = std::filesystem;
 
-constexpr double most_seconds = 20;   ///< of the processor
-constexpr double hang_seconds = 300;  ///< of the clock, which only a hang takes
+constexpr double most_seconds = 20;   ///< of processor time
+constexpr double hang_seconds = 300;  ///< of wall time, reached only by a hang
 constexpr long spare_mebibytes = 256;
 
 double processor_seconds() {
@@ -62,7 +62,7 @@ void flip_bits(std::string& bytes, Random& random, std::size_t reach) {
   }
 }
 
-/// Another number in place of one of the first 400 written out in the text.
+/// Replaces one of the first 400 numbers written as text by another.
 void change_number(std::string& bytes, Random& random) {
   static const std::string numbers[] = {"0",          "-1",         "1",   "255",   "65536", "999999",
                                         "2147483647", "2147483648", "nan", "1e308", "",      "99999999999999999999"};
@@ -79,7 +79,7 @@ void change_number(std::string& bytes, Random& random) {
   bytes.replace(at, count, numbers[below(random, std::size(numbers))]);
 }
 
-/// Eight bytes that may be an offset or a count, at a multiple of four of a binary part.
+/// Replaces eight bytes that may be an offset or a count, at a multiple of four of a binary part.
 void change_word(std::string& bytes, Random& random) {
   const std::size_t mark = bytes.find("<AppendedData");
   std::size_t at = mark == std::string::npos ? 4 * below(random, bytes.size() / 4 + 1)
@@ -123,7 +123,7 @@ void damage(std::string& bytes, Random& random) {
   }
 }
 
-/// What is wrong with how a file was taken; empty: nothing. `taken` says whether it was.
+/// The fault in opening a file; empty: none. `taken` is set to whether it was opened.
 std::string fault_of(const fs::path& file, bool& taken) {
   taken = false;
   const auto begin = std::chrono::steady_clock::now();
@@ -143,13 +143,13 @@ std::string fault_of(const fs::path& file, bool& taken) {
     fault = fmt::format("another exception: {}", e.what());
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const double processor = processor_seconds() - used;  // a helper that has ended is in it
+  const double processor = processor_seconds() - used;  // includes a helper that has ended
   if (processor > most_seconds || seconds > hang_seconds)
     fault += fmt::format("{:.0f} s, {:.0f} s of the processor; ", seconds, processor);
   return fault;
 }
 
-/// The most MiB that this process has had, and a helper.
+/// Peak memory of this process, and of a helper, MiB.
 struct Memory {
   long own = 0, helper = 0;
 };
@@ -161,7 +161,7 @@ Memory memory_so_far() {
   return {own.ru_maxrss / 1024, helpers.ru_maxrss / 1024};
 }
 
-/// What a file takes as it is, found in a process of its own; nothing if it cannot be opened.
+/// Memory for an intact file, measured in a separate process; no value if it cannot be opened.
 std::optional<Memory> memory_of_intact(const fs::path& file) {
   int ends[2];
   if (::pipe(ends) != 0) throw std::runtime_error("no pipe");
@@ -181,7 +181,7 @@ std::optional<Memory> memory_of_intact(const fs::path& file) {
   return is_told ? std::optional(memory) : std::nullopt;
 }
 
-/// What is wrong with the memory of a run, by what was the most before and after it.
+/// The fault in the memory of a run, given the peaks before and after it.
 std::string memory_fault(const Memory& before, const Memory& after, const Memory& intact) {
   std::string fault;
   const auto judge = [&](const char* who, long had, long has, long whole) {
@@ -201,7 +201,7 @@ void write_all(const fs::path& file, const std::string& bytes) {
   std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
-/// A folder in memory where there is one: hundreds of files a second are written.
+/// A directory in memory if available: hundreds of files per second are written.
 fs::path scratch_folder() {
   std::string name =
       (fs::exists("/dev/shm") ? fs::path("/dev/shm") : fs::temp_directory_path()) / "tessera-trials-XXXXXX";
@@ -238,7 +238,7 @@ int trials(std::size_t runs, std::uint64_t seed, const fs::path& folder, std::ui
     const fs::path file = scratch / name;
     write_all(file, bytes);
     bool opened = false;
-    ::malloc_trim(0);  // what is left of earlier runs is not this one's
+    ::malloc_trim(0);  // memory kept from earlier runs does not count for this one
     const Memory before = memory_so_far();
     const std::string fault = fault_of(file, opened) + memory_fault(before, memory_so_far(), intact);
     ++(opened ? taken : refused)[file.extension().string()];

@@ -30,7 +30,7 @@ struct NamedMesh {
   scene::TetMesh (*make)();
 };
 
-/// All lie in [-1, 1]^3 or little more, with scalars in [0, 1].
+/// All are within [-1, 1]^3 or slightly more, with scalars in [0, 1].
 const NamedMesh meshes[] = {
     {"cube", [] { return datasets::cube(8, 0.2); }},
     {"cube_cells", [] { return datasets::with_cell_data(datasets::cube(8, 0.2), 6); }},
@@ -64,7 +64,7 @@ std::vector<NamedView> views() {
   const auto orthographic = ProjectionKind::orthographic, perspective = ProjectionKind::perspective;
   std::vector<NamedView> all{
       {"orthographic", view(orthographic, 1.7, {3.1, 2.3, 4.2}, {0, 0, 0})},
-      // Vertices of the regular split lie on the centres of every fourth pixel.
+      // Vertices of the regular split are on the centres of every fourth pixel.
       {"along an axis", view(orthographic, 1, {1 / 32., 1 / 32., 5}, {1 / 32., 1 / 32., 0})},
       {"perspective", view(perspective, 30, {-2.1, 2.3, 5.2}, {0, 0, 0})},
       {"eye inside", view(perspective, 80, {0.61, -0.13, 0.07}, {-1, 0.4, -0.3})},
@@ -111,7 +111,7 @@ TEST_P(Accuracy, ExactKeepsItsPromise) {
   for (const NamedView& v : views())
     for (const NamedFunction& f : functions()) {
       if (!some.next()) continue;
-      // Optical depth through the mesh: haze, the usual, opaque within a ten-thousandth of the way. Neighbouring
+      // Optical depth through the mesh: haze, the usual, opaque within a ten-thousandth of the path. Neighbouring
       // functions and views get different ones; all pairs of view and thickness, and of function and thickness, occur.
       const double thickness = std::array{0.002, 1.0, 1000.0}[n % 3];
       const Emission emission = n % 4 == 3 ? Emission::independent : Emission::absorption;
@@ -175,7 +175,7 @@ TEST(AccuracyOfLanes, WhatTheyCannotTellIsRenderedInDoublePrecision) {
     expect_kept(accuracy, ramp, Emission::absorption, {});
     expect_kept(accuracy, ramp, Emission::absorption, surface);
   }
-  // Light of hundreds, of which lanes keep 5e-7.
+  // Light of magnitude in the hundreds, which lanes reproduce to 5e-7.
   const TransferFunction bright({{0, {20, 40, 180}, 0.2}, {1, {200, 120, 20}, 0.3}});
   expect_kept(1e-4, bright, Emission::independent, {});
 }

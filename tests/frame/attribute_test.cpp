@@ -14,8 +14,8 @@
 #include "projection/tile_lists.hpp"
 #include "reference/view.hpp"
 
-/// Segments that carry a second linear value beside the scalar: here the light that reaches each point, linear in
-/// space, so that the light of whole rays through a mesh of one extinction has a closed form.
+/// Segments that carry a second linear value in addition to the scalar: here the light that reaches each point, linear
+/// in space, so that the light of whole rays through a mesh of uniform extinction has a closed form.
 namespace tessera::frame::attribute_test {
 namespace {
 
@@ -29,7 +29,7 @@ double scattered(double from, double slope, double length) {
   return from * (1 - through) + slope * ((1 - through) / extinction - length * through);
 }
 
-/// The seam's user: emission scaled by the attribute, segment after segment.
+/// A user of the extension point: emission scaled by the attribute, segment after segment.
 class LightSink final : public compositor::TileSink<sorting::AttributeEncoding> {
  public:
   std::vector<double> light;
@@ -100,7 +100,7 @@ struct Scene {
     at_steps = projection::CellsAtSteps(prepared, steps, 10, nullptr);
   }
 
-  /// Renders all tiles into `sink`; small buffers, so that several flushes come to a tile.
+  /// Renders all tiles into `sink`; small buffers, so that a tile has several flushes.
   template <class Source, class Sink>
   void render(Sink& sink) {
     const projection::ProjectedMesh projected{
@@ -177,10 +177,10 @@ TEST(Attribute, LightThatIsLinearInSpaceIsIntegratedAsInClosedForm) {
   }
 }
 
-/// Cells that a transfer function's step cuts have their attribute cut too: the sum over the pieces is the same.
+/// Cells cut by a transfer function's step have their attribute cut too: the sum over the pieces is the same.
 TEST(Attribute, IsCutWithItsSegmentAtSteps) {
   scene::TetMesh mesh = datasets::cube(6);
-  // Within a double's last places of the step everywhere, so that cells need care.
+  // Within a double's last places of the step everywhere, so that cells need extra precision.
   for (std::size_t i = 0; i < mesh.scalars.size(); ++i) mesh.scalars[i] = i % 3 == 0 ? 0.5 : std::nextafter(0.5, i % 2);
   const scene::TransferFunction step(
       {{0, {1, 1, 1}, extinction}, {0.5, {1, 1, 1}, extinction}, {0.5, {0, 1, 0}, 2}, {1, {0, 1, 0}, 2}});
@@ -194,7 +194,7 @@ TEST(Attribute, IsCutWithItsSegmentAtSteps) {
   for (std::size_t p = 0; p < in_one.light.size(); ++p) EXPECT_NEAR(in_pieces.light[p], in_one.light[p], 1e-12);
 }
 
-/// Keeps all segments, whichever values they carry.
+/// Stores all segments, whichever values they carry.
 template <class Segments>
 class KeepingSink final : public compositor::TileSink<sorting::DoubleEncodingOf<Segments>> {
  public:
@@ -231,7 +231,7 @@ TEST(Attribute, LeavesDepthsAndScalarsAsTheyAre) {
     scene.render<DoubleSource>(without);
     scene.render<DoubleSourceOf<projection::AttributeSegments>>(with);
     ASSERT_GT(without.kept.size(), 1000u);
-    std::sort(without.kept.begin(), without.kept.end());  // flushes come at other times: attributes take room
+    std::sort(without.kept.begin(), without.kept.end());  // flushes occur at other times: attributes need memory
     std::sort(with.kept.begin(), with.kept.end());
     EXPECT_EQ(with.kept, without.kept);
   }

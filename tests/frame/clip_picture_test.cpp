@@ -22,12 +22,11 @@
 #include "tessera/session.hpp"
 #include "volume/render.hpp"
 
-/// Pictures of meshes whose cells are cut, against the reference's of the whole mesh along the parts of rays that are
-/// kept.
+/// Images of meshes whose cells are cut, compared with the reference's of the whole mesh along the kept parts of rays.
 namespace tessera::frame::clip_picture_test {
 namespace {
 
-constexpr double promised_error = 2e-5;  // that of the exact integrator (include/tessera/session.hpp)
+constexpr double promised_error = 2e-5;  // of the exact integrator (include/tessera/session.hpp)
 constexpr scene::ImageSize size{40, 40};
 
 scene::Camera random_camera(Random& random, const glm::dvec3& centre, double extent) {
@@ -82,7 +81,7 @@ TEST(ClipPicture, IsThatOfRaysCutShort) {
               worst, excused, pixels);
 }
 
-/// Rays that run in the planes of a box, and of cells: which of them are inside is a rule, not chance.
+/// Rays in the planes of a box, and of cells: a rule decides which of them are inside, not chance.
 TEST(ClipPicture, HoldsAlongTheAxes) {
   const scene::TetMesh mesh = datasets::regular_split(4, 4, 4, glm::dvec3(0.25), glm::dvec3(-0.5));
   scene::TetMesh cut = mesh;
@@ -98,7 +97,7 @@ TEST(ClipPicture, HoldsAlongTheAxes) {
       camera.position[axis] = 3 * sign;
       camera.view_up[(axis + 1) % 3] = 1;
       camera.projection = scene::ProjectionKind::orthographic;
-      camera.parallel_scale = 17.0 / 32;  // 16 pixels are 0.5: planes go through their centres
+      camera.parallel_scale = 17.0 / 32;  // 16 pixels are 0.5: planes contain their centres
       const scene::ImageSize odd{35, 34};
       Settings settings;
       settings.integrator.kind = scene::IntegratorKind::exact;
@@ -154,7 +153,7 @@ scene::Grid random_grid(Random& random, std::vector<float>& samples) {
   g.points = {3 + random.below(7), 3 + random.below(7), 3 + random.below(7)};
   g.origin = random.uniform(0, 3) * random.direction();
   for (int axis = 0; axis < 3; ++axis) g.spacing[axis] = random.uniform(0.2, 0.6);
-  if (random.chance(0.3)) {  // turned
+  if (random.chance(0.3)) {  // rotated
     const glm::dvec3 x = random.direction(), y = glm::normalize(glm::cross(x, random.direction()));
     g.direction = {x, y, glm::cross(x, y)};
   }
@@ -236,7 +235,7 @@ TEST(ClipPicture, OfVolumesIsThatOfRaysCutShort) {
               pixels);
 }
 
-/// What another caller does: a part of a data set of arrays, verified by the whole.
+/// Another caller's use: a part of a data set of arrays, verified against the whole.
 TEST(SelectedDataset, IsVerifiedByTheWhole) {
   const scene::TetMesh mesh = datasets::cube(4);
   MeshArrays arrays;
@@ -261,7 +260,7 @@ TEST(SelectedDataset, IsVerifiedByTheWhole) {
   const RenderedFrame frame = session.render(view, function);
   const Verification verified = session.verify(frame, view, function, 2500);
   EXPECT_TRUE(verified.met) << verified.max_error;
-  // Against the mesh that was not clipped it does not hold: the test can fail.
+  // Verification against the unclipped mesh fails: the test is able to fail.
   Session other(whole, settings);
   EXPECT_FALSE(other.verify(frame, view, function, 2500).met);
   EXPECT_THROW(static_cast<void>(whole.selected({{{{9, 0, 0}, {1, 0, 0}}}})), scene::Error);

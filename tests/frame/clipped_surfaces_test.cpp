@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Iso-surfaces in meshes whose cells are cut, against the reference's in the whole mesh along the parts of rays that
-// are kept.
+// Iso-surfaces in meshes whose cells are cut, compared with the reference's in the whole mesh along the kept parts of
+// rays.
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
@@ -39,13 +39,13 @@ Clipping random_clipping(Random& random) {
   Clipping c;
   c.mesh = datasets::cube(2 + random.below(4), random.uniform(0, 0.2), random.bits());
   c.clip = random_clip(random, c.mesh, c.words);
-  if (random.chance(0.3)) {  // the field is the plane's distance, so each of its values is on a plane like it
+  if (random.chance(0.3)) {  // the field is the plane's distance, so each of its values is on a parallel plane
     const HalfSpace plane = c.clip.front();
     const glm::dvec3 normal = glm::normalize(plane.normal);
     const double offset = random.uniform(-1, 1), scale = random.chance(0.5) ? 1 : random.power(-3, 3);
     for (std::size_t v = 0; v < c.mesh.positions.size(); ++v)
       c.mesh.scalars[v] = (offset + glm::dot(normal, c.mesh.positions[v] - plane.point)) * scale;
-    // In the plane, where it is the cut face or nothing, and near it, in pieces however thin.
+    // In the plane, where it is the cut face or nothing, and close to it, in pieces however thin.
     for (const double distance : {0.0, 1e-2, 1e-4, 1e-6, -1e-3})
       if (random.chance(0.7))
         c.surfaces.iso.push_back({(offset + distance) * scale, glm::dvec3(random.uniform(0, 1)), 0.6});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A caller's higher-order cells in parts, one a rank: what they share is divided alike, as in one process.
+// A caller's higher-order cells in parts, one per rank: shared faces are divided in the same way as in one process.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace tessera::frame::curved_parts_test {
 namespace {
 
-/// A tet by its corners' positions and values, in one order.
+/// A tet as its corners' positions and values, in a fixed order.
 using Corners = std::array<std::array<double, 4>, 4>;
 
 std::vector<Corners> tets_of(const Dataset& data) {
@@ -34,7 +34,7 @@ std::vector<Corners> tets_of(const Dataset& data) {
   return all;
 }
 
-/// Some of a block's cells; each has points of its own.
+/// Some of a block's cells; each has its own points.
 struct Cells {
   Cells(const cells::CellBlock& block, std::size_t first, std::size_t last) {
     std::vector<double> values(block.positions.size());
@@ -72,7 +72,7 @@ struct Cells {
 };
 
 TEST(CurvedParts, AreDividedAsTheWholeIs) {
-  // Steep at one end only: a part's range and number of tets are not another's.
+  // Steep only at one end: parts differ in range and number of tets.
   const auto field = [](const glm::dvec3& p) { return std::exp(4 * p.x) + std::sin(5 * p.y * p.z); };
   test::SomeCases some(4);
   for (const io::testing::Kind& kind : {io::testing::Kind{24, 10, 2}, {72, 27, 2}})
@@ -88,7 +88,7 @@ TEST(CurvedParts, AreDividedAsTheWholeIs) {
         std::mutex mutex;
         std::vector<Corners> found;
         exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
-          // Of four the last has nothing; what another allows beyond the smallest does not count.
+          // With four ranks the last has no cells; a larger limit of another rank has no effect beyond the smallest.
           const auto self = static_cast<std::size_t>(transport.rank()),
                      parts = static_cast<std::size_t>(std::min(ranks, 3));
           const auto first = [&](std::size_t part) { return std::min(cells, cells * part / parts); };

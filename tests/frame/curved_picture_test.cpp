@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures of higher-order cells, against the reference that knows their true faces and fields.
+// Images of higher-order cells, compared with the reference that uses their true faces and fields.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -33,7 +33,7 @@ Camera random_camera(Random& random) {
   return camera;
 }
 
-/// Ramps without steps, an average ray half opaque.
+/// Ramps without steps; an average ray is half opaque.
 TransferFunction random_function(Random& random, const std::array<double, 2>& range) {
   std::vector<Knot> knots;
   const int count = 2 + random.below(4);
@@ -45,8 +45,8 @@ TransferFunction random_function(Random& random, const std::array<double, 2>& ra
   return TransferFunction(knots);
 }
 
-/// Some cells that formats have lack nodes in faces or inside. No source defines their shape functions, so the
-/// reference does not have them.
+/// Some cells in formats lack nodes in faces or inside. No source defines their shape functions, so the reference does
+/// not support them.
 bool is_in_reference(const io::testing::Kind& kind) {
   try {
     return !reference::cell_shape(kind.type, kind.nodes, kind.degrees, "").nodes.empty();
@@ -60,7 +60,7 @@ struct Case {
   std::string words;
 };
 
-/// As smooth as a mesh has to be that so little error can be asked of: of few and nearly straight cells.
+/// As smooth as a mesh must be for the requested small errors: few and nearly straight cells.
 Case random_case(Random& random, double accuracy) {
   std::vector<io::testing::Kind> kinds = io::testing::kinds;
   std::erase_if(kinds, [](const io::testing::Kind& k) { return !is_in_reference(k); });
@@ -75,12 +75,12 @@ Case random_case(Random& random, double accuracy) {
   const auto field = [=](const glm::dvec3& p) {
     return p.x + 0.5 * p.y - p.z + wave * std::sin(2 * p.x + phase.z) * std::cos(2 * p.y - p.z);
   };
-  // Serendipity sides do not meet others' where cells are turned.
+  // Sides of serendipity cells do not match others' if cells are rotated.
   return {io::testing::warped_box(kind, 1 + random.below(2), warp, field, random.chance(0.5)),
           "type " + std::to_string(static_cast<int>(kind.type)) + " of " + std::to_string(kind.nodes) + " nodes"};
 }
 
-/// The cells as the reference takes them.
+/// The cells in the reference's form.
 struct Truth {
   explicit Truth(const cells::CellBlock& block) {
     scalars.resize(block.positions.size());
@@ -110,7 +110,7 @@ TEST(CurvedPicture, IsWithinTheAccuracyAskedFor) {
   std::uint64_t tets = 0;
   for (int number = first; number < last; ++number) {
     Random random(7000003u + static_cast<std::uint64_t>(number));
-    // The latter, which take a million tets a mesh, are for who asks for more cases.
+    // The last two, which take a million tets per mesh, are used only if more cases are requested.
     static constexpr std::array accuracies = {1e-2, 1e-3, 1e-2, 1e-3, 1e-4, 1e-5, 1e-4, 1e-5};
     const double accuracy = accuracies[static_cast<std::size_t>(number) % accuracies.size()];
     const Case made = random_case(random, accuracy);
@@ -132,7 +132,7 @@ TEST(CurvedPicture, IsWithinTheAccuracyAskedFor) {
     data = std::move(read.dataset);
     const double stated = read.pixel_error;
     Settings settings;
-    settings.integrator.kind = IntegratorKind::exact;  // so that all error is the cells'
+    settings.integrator.kind = IntegratorKind::exact;  // so that only the cells cause errors
     const RenderedFrame frame = Session(data, settings).render({camera, size}, function);
     const Truth truth(made.block);
     const reference::CurvedReference reference(truth.cells, camera, size, function);

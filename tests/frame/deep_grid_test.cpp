@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The promise of deep pictures, for volumes: flattened they are the picture, and with an opaque plane put in at any
-// depth they are within the accuracy of a rendering that ends there. The truth is reference/'s.
+// The promise of deep images, for volumes: flattened they equal the image, and with an opaque plane inserted at any
+// depth they are within the accuracy of a rendering that ends there. The expected values are reference/'s.
 #include "frame/grid/deep_grid.hpp"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ scene::DeepImage deep(const scene::SampleSource& source, const scene::Camera& ca
   return frame::deep_image(source, camera, size, f, settings, 0, size.height);
 }
 
-/// Largest difference of a composited pixel to the truth that ends at `z`, or goes on for ever.
+/// Largest difference of a composited pixel from the exact one that ends at `z`, or continues without end.
 double error_at(const scene::DeepImage& image, const scene::SampleSource& source, scene::Camera camera,
                 const scene::TransferFunction& function, double z,
                 scene::Emission emission = scene::Emission::absorption) {
@@ -87,7 +87,7 @@ TEST(DeepGrid, FlattenedItIsThePicture) {
           constexpr auto independent = scene::Emission::independent;
           EXPECT_LT(error_at(deep(*source, camera, function, 1e-3, independent), *source, camera, function, HUGE_VAL,
                              independent),
-                    1e-4);  // light of the whole way, up to 10 a pixel
+                    1e-4);  // light of the whole path, up to 10 per pixel
         }
     }
 }

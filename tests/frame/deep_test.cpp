@@ -24,7 +24,7 @@
 #include "support/temporary_folder.hpp"
 #include "support/vtk_or_skip.hpp"
 
-/// The promise of deep pictures: flattened they are the image, and with an opaque plane put in at any depth they are
+/// The promise of deep images: flattened they equal the image, and with an opaque plane inserted at any depth they are
 /// within --deep-accuracy of a rendering with that plane.
 namespace tessera::frame::deep_test {
 namespace {
@@ -35,7 +35,7 @@ using scene::Image;
 using scene::ImageSize;
 using scene::TransferFunction;
 
-/// Everything through a file: what is judged is what OpenEXR reads back.
+/// Everything passes through a file, so that the data that OpenEXR reads back is judged.
 DeepImage written_and_read(const DeepImage& image) {
   const test::TemporaryFolder folder;
   const std::filesystem::path file = folder / "a.deep.exr";
@@ -65,7 +65,7 @@ DeepImage written_and_read(const DeepImage& image) {
   for (const unsigned int count : counts) read.begin.push_back(read.begin.back() + count);
   read.samples.resize(read.begin.back());
   for (std::size_t p = 0; p < pixels; ++p)
-    for (std::size_t c = 0; c < 6; ++c)  // the struct's six floats stand in the order of `names`
+    for (std::size_t c = 0; c < 6; ++c)  // the struct's six floats are in the order of `names`
       pointers[c][p] = reinterpret_cast<char*>(read.samples.data() + read.begin[p]) + c * sizeof(float);
   input.readPixels(0, height - 1);
   return read;
@@ -140,7 +140,7 @@ Camera oblique(scene::ProjectionKind kind = scene::ProjectionKind::orthographic)
 }
 
 const ImageSize small{48, 40};
-const double middle = glm::length(glm::dvec3(3.1, 2.3, 4.2));  // the mesh's centre from oblique()
+const double middle = glm::length(glm::dvec3(3.1, 2.3, 4.2));  // distance of the mesh's centre from oblique()
 
 TEST(Deep, KeepsItsPromiseForPointAndCellDataViewsAndThickness) {
   const scene::TetMesh points = datasets::cube(8, 0.2), cells = datasets::with_cell_data(points, 6);
@@ -168,7 +168,7 @@ TEST(Deep, KeepsItsPromiseForIndependentEmission) {
 }
 
 TEST(Deep, OneTetWithASharpTransferFunctionIsCutAsFinelyAsItNeeds) {
-  // All of the matter lies in a hundredth of the cell's scalars, and it is thick.
+  // All matter is within a hundredth of the range of the cell's scalars, and it is thick.
   const TransferFunction sharp({{0.30, {1, 0, 0}, 0},
                                 {0.31, {0, 1, 0}, 400},
                                 {0.32, {0, 0, 1}, 0},
@@ -206,8 +206,8 @@ TEST(Deep, GivesTheSameSamplesForAnyThreadsTilesAndMemory) {
   DeepImage expected;
   const Image image = Renderer(mesh, exact()).render(oblique(), size, function, nullptr, &expected);
   const Image alone = Renderer(mesh, exact()).render(oblique(), size, function);
-  // The picture beside a deep one is in double precision, the one alone on the integer lattice in float: the same to
-  // what `exact` promises.
+  // The flat image made together with a deep one is in double precision, the separate one on the integer lattice in
+  // float: equal up to what `exact` promises.
   for (std::size_t i = 0; i < image.rgba.size(); ++i) ASSERT_NEAR(image.rgba[i], alone.rgba[i], 2e-6);
   for (const int threads : {1, 3})
     for (const int tile : {5, 32, 128})

@@ -28,7 +28,7 @@ scene::TransferFunction stepped() {
       {{0, {0.1, 0, 0.3}, 0.1}, {0.45, {0.1, 0.3, 0.9}, 0.4}, {0.45, {0.9, 0.2, 0.1}, 2}, {1, {1, 1, 1}, 0.5}});
 }
 
-/// All pixels within the bound of `exact`, of which devices rasterized most cells.
+/// All pixels are within the bound of `exact`, and devices rasterized most cells.
 FinishedFrame expect_exact(const GlJobSetup& setup, const scene::TetMesh& mesh) {
   auto frames = rendered(setup, mesh);
   EXPECT_EQ(frames.size(), 1u);
@@ -102,7 +102,7 @@ TEST(DeviceRasterizer, SegmentsAreThoseOfPlanes) {
   for (std::size_t view = 0; view < views().size(); ++view) {
     GlJobSetup setup = on_device();
     setup.view = views()[view];
-    // Nothing opaque: the CPU leaves out what lies behind, and counts no part of it.
+    // Nothing is opaque: otherwise the CPU skips hidden parts and does not count them.
     setup.function = scene::TransferFunction({{0, {1, 0, 0}, 0.1}, {1, {0, 1, 0}, 0.3}});
     const scene::TetMesh mesh = datasets::cube(6, 0);
     const FinishedFrame device = expect_exact(setup, mesh);
@@ -111,7 +111,7 @@ TEST(DeviceRasterizer, SegmentsAreThoseOfPlanes) {
     EXPECT_EQ(device.statistics.segments, planes.statistics.segments) << "view " << view;
     EXPECT_LT(difference(device.image, planes.image), 5e-6);
     for (std::size_t i = 0; i < planes.image.depth.size(); ++i)
-      if (planes.image.depth[i] != device.image.depth[i]) {  // infinities too
+      if (planes.image.depth[i] != device.image.depth[i]) {  // also for infinities
         EXPECT_NEAR(planes.image.depth[i], device.image.depth[i], 2e-6);
       }
   }
@@ -159,7 +159,7 @@ TEST(DeviceRasterizer, RanksInAnyRolesMakeThePictureOfOne) {
         setup.exchange = exchange;
         const FinishedFrame ranks = expect_exact(setup, mesh);
         EXPECT_LT(difference(ranks.image, one), 5e-6);
-        // Outside every cell's segments come from a device, in one order whoever sent the cells.
+        // With the eye outside, a device produces every cell's segments, in one order whichever rank sent the cells.
         if (!inside && exchange == Exchange::segments) {
           EXPECT_EQ(ranks.image.rgba, one.rgba);
         }
@@ -195,7 +195,7 @@ TEST(DeviceRasterizer, WhatDevicesDoNotIntegrateIsTheCpus) {
 
 TEST(DeviceRasterizer, TheCpuTakesOverWhereTheDeviceFails) {
   try {
-    static_cast<void>(gl::open_context(gl::Platform::egl));  // automatic takes EGL's devices alone
+    static_cast<void>(gl::open_context(gl::Platform::egl));  // automatic uses only EGL's devices
   } catch (const scene::Error& error) {
     GTEST_SKIP() << error.what();
   }

@@ -61,7 +61,8 @@ Settings exact() {
 
 using Parts = std::vector<scene::TetMesh>;
 
-/// File order by count. Parts name each tet's index in the whole as original_cell, as datasets::parts does.
+/// Contiguous ranges of equal size in file order. Parts store each tet's index in the whole as original_cell, like
+/// datasets::parts.
 Parts slices(const scene::TetMesh& mesh, std::size_t count) {
   Parts parts(count, mesh);
   for (std::size_t part = 0; part < count; ++part) {
@@ -122,7 +123,7 @@ double difference(const Image& a, const Image& b) {
   return most;
 }
 
-/// Each projector by itself, as on machines of its own, but the pictures that projectors make together are the same.
+/// Each projector separately, as on different machines, except images for which projectors work together.
 std::vector<FinishedFrame> render(const Parts& parts, const Shape& shape, DistributedSettings settings,
                                   const std::vector<FrameJob>& jobs, const TransferFunction& function,
                                   double diagonal = 4, float longest_edge = 0) {
@@ -135,7 +136,7 @@ std::vector<FinishedFrame> render(const Parts& parts, const Shape& shape, Distri
   for (std::size_t i = 0; i < std::min(shared.size(), frames.size()); ++i) {
     const Image &one = frames[i].image, &other = shared[i].image;
     EXPECT_EQ(one.rgba.size(), other.rgba.size());
-    // Parts are rounded run by run.
+    // Parts are rounded per run.
     if (settings.exchange == Exchange::segments && settings.render.mesh.rasterizer != Rasterizer::scanline)
       EXPECT_TRUE(same_bits(one, other)) << "frame " << i;
     else
@@ -170,7 +171,7 @@ TEST_P(AnyShape, SegmentsGiveTheBitsOfASingleProcessAndRunsAlmost) {
         for (const int threads : {1, 2}) {
           if (!some.next()) continue;
           Parts numbered = parts;
-          if (cells) numbered = slices(mesh, n);  // with_cell_data has original cells: parts() names those
+          if (cells) numbered = slices(mesh, n);  // with_cell_data has original cells, which parts() keeps
           DistributedSettings settings;
           settings.render = exact();
           settings.render.threads = threads;
@@ -181,7 +182,7 @@ TEST_P(AnyShape, SegmentsGiveTheBitsOfASingleProcessAndRunsAlmost) {
           EXPECT_TRUE(same_bits(segments.front().image, expected)) << threads << " threads";
           settings.exchange = Exchange::runs;
           const auto runs = render(numbered, shape, settings, {{camera, size}}, six_knots());
-          // Each run is rounded to float: 6e-8 of its light; a pixel has at most a few dozen that matter.
+          // Each run is rounded to float: 6e-8 of its light; at most a few dozen runs of a pixel matter.
           EXPECT_LT(difference(runs.front().image, expected), 2e-6);
           EXPECT_LE(runs.front().statistics.fragments, segments.front().statistics.fragments);
         }
@@ -225,7 +226,7 @@ TEST(Distributed, TuplesOfTheScanlineRasterizerGiveItsPictureOfASingleProcess) {
   const Image expected = Renderer(mesh, settings.render).render(oblique(), size, six_knots());
   const auto frames = render(datasets::parts(mesh, 3, datasets::Partition::interleaved, 4), {5, 3, 2}, settings,
                              {{oblique(), size}}, six_knots(), 4, projection::longest_edge(mesh));
-  // No ray of this mesh meets two segments of equal z_back, whose order the paper leaves to chance.
+  // No ray of this mesh meets two segments with equal z_back, whose order the paper does not define.
   EXPECT_TRUE(same_bits(frames.front().image, expected));
   settings.exchange = Exchange::runs;
   EXPECT_THROW(render(slices(mesh, 2), {2, 2, 2}, settings, {{oblique(), size}}, six_knots()), scene::Error);
@@ -240,9 +241,9 @@ TEST(Distributed, TabledIntegratorsGiveThePictureOfASingleProcess) {
     settings.render.integrator = {.kind = kind, .table_size = 64};
     Renderer alone(mesh, settings.render);
     const Image expected = alone.render(oblique(), size, six_knots());
-    EXPECT_TRUE(same_bits(alone.render(oblique(), size, six_knots()), expected));  // the kept table
-    // Entries are 1 / 63 of the range apart, beside ramps a tenth of it wide: near a kink an eighth of 1 / 6 of its
-    // rise.
+    EXPECT_TRUE(same_bits(alone.render(oblique(), size, six_knots()), expected));  // the cached table
+    // Entries are 1 / 63 of the range apart, compared with ramps a tenth of it wide: near a kink an eighth of 1 / 6 of
+    // its rise.
     EXPECT_LT(difference(expected, exact_picture), 2e-2);
     EXPECT_GT(difference(expected, exact_picture), 0);
     for (const Exchange exchange : {Exchange::segments, Exchange::runs}) {
@@ -270,7 +271,7 @@ TEST(Distributed, IsWithinTheReferencesBound) {
   }
 }
 
-/// Runs of all parts by the reference: stretches of touching segments of one part.
+/// Runs of all parts by the reference: intervals of touching segments of one part.
 std::uint64_t reference_runs(const Parts& parts, const Camera& camera, ImageSize size,
                              const TransferFunction& function) {
   std::uint64_t runs = 0;
@@ -281,7 +282,7 @@ std::uint64_t reference_runs(const Parts& parts, const Camera& camera, ImageSize
       for (int x = 0; x < size.width; ++x) {
         double back = -1;
         for (const reference::RaySegment& segment : reference.segments(x + 0.5, y + 0.5)) {
-          // Cells are 0.2 long; the two sides of a shared face differ by rounding alone.
+          // Cells are 0.2 long; the two sides of a shared face differ only by rounding.
           if (std::fabs(segment.front - back) > 1e-9) ++runs;
           back = segment.back;
         }
@@ -322,7 +323,7 @@ TEST(Distributed, ProjectorsThatShareMemoryMakeEachTileOnce) {
     settings.render.use.sharing = shared;
     runs[shared ? 1 : 0] = render_once(parts, {4, 4, 4}, settings, jobs, six_knots(), 4, 0).at(0).statistics.fragments;
   }
-  // Together they send finished pixels; scattered parts are several runs a pixel that shows something.
+  // Working together they send finished pixels; scattered parts give several runs per visible pixel.
   EXPECT_EQ(runs[1], 0u);
   EXPECT_GT(runs[0], 96u * 80u);
 }
@@ -333,7 +334,7 @@ TEST(Distributed, TakesRanksWithoutCellsARankWithOneAndMoreCompositorsThanTiles)
   const Image expected = Renderer(mesh, exact()).render(oblique(), size, six_knots());
   Parts parts = slices(mesh, 1);
   parts.resize(6);
-  // One tet to rank 2, all others to rank 4.
+  // One tet on rank 2, all others on rank 4.
   parts[4] = parts[0];
   parts[4].tets.erase(parts[4].tets.begin() + 7);
   parts[4].original_cell.erase(parts[4].original_cell.begin() + 7);
@@ -384,7 +385,7 @@ TEST(Distributed, FramesComeInOrderEachWithItsOwnViewAndSize) {
   }
 }
 
-/// Deep tiles in little memory: many windows, parts sent before the tile is complete, credit that runs out.
+/// Deep tiles with little memory: many windows, parts sent before the tile is complete, exhausted credit.
 TEST(Distributed, DeepTilesStreamThroughALittleMemoryWithoutDeadlock) {
   const scene::TetMesh mesh = datasets::thin_stack(3000);
   Camera camera;
@@ -407,15 +408,15 @@ TEST(Distributed, DeepTilesStreamThroughALittleMemoryWithoutDeadlock) {
                                  {{camera, size}, {camera, size}}, function);
       ASSERT_EQ(frames.size(), 2u);
       for (const auto& frame : frames)
-        // Interleaved, a ray has thousands of runs, each rounded to float by 6e-8 of what it adds.
+        // With interleaved parts, a ray has thousands of runs, each rounded to float by 6e-8 of its contribution.
         EXPECT_LE(difference(frame.image, expected), exchange == Exchange::segments ? 0 : 2e-6);
     }
 }
 
-/// More segments overlap in depth than the projectors' memory holds, after some have already left.
+/// More segments overlap in depth than fit into the projectors' memory, after some have already been sent.
 TEST(Distributed, CellsThatOverlapBeyondMemoryAreSentOnce) {
   scene::TetMesh mesh = leaning_stack(20000);
-  const scene::TetMesh front = datasets::cube(4, 0.2);  // its runs have ended and left when memory runs out
+  const scene::TetMesh front = datasets::cube(4, 0.2);  // its runs have ended and been sent when memory runs out
   const auto base = static_cast<std::uint32_t>(mesh.positions.size());
   for (const glm::dvec3& p : front.positions) mesh.positions.emplace_back(0.2 * p.x, 0.2 * p.y, 6 + p.z);
   mesh.scalars.insert(mesh.scalars.end(), front.scalars.begin(), front.scalars.end());
@@ -431,13 +432,13 @@ TEST(Distributed, CellsThatOverlapBeyondMemoryAreSentOnce) {
   for (const auto partition : {datasets::Partition::interleaved, datasets::Partition::random_blobs}) {
     DistributedSettings settings;
     settings.render = exact();
-    settings.render.memory_bytes = 96ull << 20;  // compositors hold a tile's runs, projectors not all its windows
+    settings.render.memory_bytes = 96ull << 20;  // enough for a tile's runs, not for all its windows
     settings.render.threads = 2;
     settings.render.mesh.tile_size = 8;
     const auto frames = render(datasets::parts(mesh, 2, partition, 2), {4, 2, 2}, settings, {{camera, size}}, function);
     ASSERT_EQ(frames.size(), 1u);
     EXPECT_GT(frames[0].statistics.tiles_split, 0u);
-    // Up to 20,000 runs of a ray are each rounded to float.
+    // Each of up to 20,000 runs of a ray is rounded to float.
     EXPECT_LE(difference(frames[0].image, expected), 2e-5);
   }
 }
@@ -520,11 +521,11 @@ TEST(Roles, FillTheJobOrShareItsRanks) {
   EXPECT_THROW(assign_roles(4, 0, 4), scene::Error);
 }
 
-/// Every tet is counted once, in one group; what projectors count arrives, whoever composites.
+/// Every tet is counted once, in one group; the projectors' counts arrive, whichever rank composites.
 TEST_P(AnyShape, CountersAddUp) {
   const Shape shape = GetParam();
   const ImageSize size{97, 61};
-  const scene::TetMesh mesh = datasets::cube(20, 0.2);  // cells smaller than pixels, some outside of the view
+  const scene::TetMesh mesh = datasets::cube(20, 0.2);  // cells smaller than pixels, some outside the view
   Camera near_by = oblique();
   near_by.parallel_scale = 0.7;
   const TransferFunction half({{0.5, {1, 0.5, 0}, 0}, {1, {0, 0.5, 1}, 3}});
@@ -545,7 +546,7 @@ TEST_P(AnyShape, CountersAddUp) {
                               &scene::FrameCounters::tets_outside_view, &scene::FrameCounters::tets_between_pixels,
                               &scene::FrameCounters::tets_projected, &scene::FrameCounters::segments})
       EXPECT_EQ(together.*member, alone.*member);
-    // Segments are sent one by one, those behind opaque ones too.
+    // Segments are sent individually, including those behind opaque ones.
     EXPECT_EQ(together.fragments, together.segments);
     EXPECT_GT(together.exchange_messages, 0u);
     EXPECT_GT(together.exchange_bytes, 16 * together.fragments);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Surfaces of triangles, a mesh's boundary among them, against places and colours known in closed form and against the
-// reference.
+// Surfaces of triangles, including a mesh's boundary, compared with positions and colours known in closed form and with
+// the reference.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -66,7 +66,7 @@ TEST(BoundarySurface, IsTheSidesOfACubeInTheFieldsColour) {
   surfaces.boundary = {{{}, 0.4}};
   const auto image =
       Renderer(mesh, exact(surfaces)).render(view(ProjectionKind::orthographic, {0, 0, 4}), {16, 16}, ramp);
-  // Seen face on, ambient and diffuse parts make 1 and the highlight 0.2. The far side is black but for that.
+  // Seen face on, ambient and diffuse parts sum to 1 and the highlight is 0.2. The far side has only the highlight.
   const std::size_t middle = image.index(8, 8);
   EXPECT_NEAR(image.rgba[4 * middle], 0.4 * 1.2 + 0.6 * 0.4 * 0.2, 1e-6);
   EXPECT_NEAR(image.rgba[4 * middle + 1], 0.4 * 0.7 + 0.6 * 0.4 * 0.2, 1e-6);
@@ -100,7 +100,7 @@ TEST(TriangleSurface, LiesBetweenWhatIsBeforeAndBehindIt) {
     EXPECT_NEAR(image.rgba[middle], 0.5 * fog + (1 - fog), 2e-6) << z;
     EXPECT_NEAR(image.rgba[middle + 1], 0.5 * fog, 2e-6);
     EXPECT_EQ(image.rgba[middle + 3], 1.0f);
-    // Outside of the mesh, where there are no cells.
+    // Outside the mesh, where there are no cells.
     const std::size_t beside = 4 * image.index(0, 4);
     EXPECT_EQ(image.rgba[beside], 1.0f);
   }
@@ -109,7 +109,7 @@ TEST(TriangleSurface, LiesBetweenWhatIsBeforeAndBehindIt) {
 TEST(TriangleSurface, HasNoGapsAtItsEdgesAndNoneIsMetTwice) {
   Surfaces surfaces;
   surfaces.light = even_light;
-  // Pixel centres lie on the diagonal, and rows and columns of them on the sides of inner squares.
+  // Pixel centres are on the diagonal, and rows and columns of them on the sides of inner squares.
   std::vector<glm::dvec3> points;
   for (int i = -6; i < 6; ++i)
     for (int k = -6; k < 6; ++k) {
@@ -170,7 +170,7 @@ TEST(BoundarySurface, ThatTouchesItselfIsTheLimitOfShiftedRays) {
     for (std::uint32_t t = 0; t < all.tets.size(); ++t)
       if (random.chance(0.4)) some.push_back(t);
     const scene::TetMesh mesh = scene::subset(all, some);
-    // Centres of pixels lie on edges and corners of the lattice.
+    // Pixel centres are on edges and corners of the lattice.
     scene::Camera camera = view(ProjectionKind::orthographic, {0, 0, 4});
     camera.parallel_scale = 17.0 / 16;
     const scene::ImageSize size{17, 17};
@@ -190,8 +190,8 @@ TEST(TriangleSurface, ThatCoincidesWithTheBoundaryComesFirstHoweverNearTheEyeItI
   surfaces.light = even_light;
   surfaces.boundary = {{glm::dvec3(0, 1, 0), 1}};
   surfaces.triangles = {{square(0.97, 1), glm::dvec3(1, 0, 0), 0.5}};
-  // The eye is above the side z = 1 so little that the line in which its plane cuts the side is 1/20 pixel off the
-  // centres of a row.
+  // The eye is so little above the side z = 1 that the line in which its plane cuts the side is 1/20 pixel away from
+  // the centres of a row.
   const scene::ImageSize size{40, 40};
   scene::Camera camera = view(ProjectionKind::orthographic, {0.013, -0.3, 1});
   camera.parallel_scale = 0.5;
@@ -212,7 +212,7 @@ TEST(TriangleSurface, ThatCoincidesWithTheBoundaryComesFirstHoweverNearTheEyeItI
   }
 }
 
-/// Triangles of some kind in and about a mesh.
+/// Triangles of some kind in and around a mesh.
 std::vector<glm::dvec3> random_triangles(Random& random, const scene::TetMesh& mesh, const glm::dvec3& eye,
                                          std::string& words) {
   std::vector<glm::dvec3> points;
@@ -356,7 +356,8 @@ TEST(FaceSurfaces, ArePointsAmongDeepSamples) {
     for (const auto& s : deep.pixel(p)) points += s.z == s.z_back ? 1u : 0u;
   }
   EXPECT_GT(points, 300u);
-  // A plane put in before a surface hides it: the samples are those of a frame whose far clipping plane is there.
+  // A plane inserted in front of a surface hides it: the samples are those of a frame whose far clipping plane is
+  // there.
   const double plane = 5.3;
   scene::Camera clipped = camera;
   clipped.clipping_range = scene::ClippingRange{0.1, plane};

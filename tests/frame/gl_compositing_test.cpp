@@ -39,7 +39,7 @@ TEST(GlCompositing, AnyMixOfCompositorsGivesThePictureOfTheCpu) {
       setup.backends = backends;
       setup.exchange = exchange;
       const auto frames = rendered(setup, mesh);
-      EXPECT_LT(difference(cpu, frames[0].image), 5e-6);  // floats' roundings
+      EXPECT_LT(difference(cpu, frames[0].image), 5e-6);  // rounding of floats
       const std::string& on = frames[0].statistics.composited_on;
       EXPECT_EQ(on.find("cpu") != std::string::npos, backends.size() == 2) << on;
     }
@@ -60,7 +60,7 @@ TEST(GlCompositing, FragmentShadersGiveThePictureOfTheCpusSamples) {
     setup.gl.half = false;
     EXPECT_LT(difference(cpu, rendered(setup, mesh)[0].image), 1e-4);
     setup.gl.half = true;
-    // About 20 blends of a half's 2^-12 each, of values around one.
+    // About 20 blends, each with a half's error of 2^-12, of values around one.
     EXPECT_LT(difference(cpu, rendered(setup, mesh)[0].image), 20 * 0x1p-12);
   }
 }
@@ -71,12 +71,12 @@ TEST(GlCompositing, FramesFollowOneAnother) {
   setup.frames = 3;
   const auto frames = rendered(setup, small_cube());
   ASSERT_EQ(frames.size(), 3u);
-  // Which fragments go in which batch varies; what becomes of them does not.
+  // Fragments are distributed differently over batches; the result does not change.
   EXPECT_EQ(frames[0].image.rgba, frames[1].image.rgba);
   EXPECT_EQ(frames[0].image.rgba, frames[2].image.rgba);
 }
 
-/// The one error of a job.
+/// The only error of a job.
 scene::Error error_of(const GlJobSetup& setup) {
   try {
     rendered(setup, small_cube());
@@ -120,7 +120,7 @@ TEST(GlCompositing, AutomaticGoesOnWithTheCpuWhereTheDeviceFailsAndSaysSo) {
   const Image cpu = rendered(setup, mesh)[0].image;
   setup.backends = {Backend::automatic};
   setup.gl.fault = compositor::GlFault::lost;
-  setup.frames = 3;  // and as many batches at least: a batch holds tiles of one frame, how many depends on the hour
+  setup.frames = 3;  // at least as many batches: a batch has tiles of one frame, and their number depends on timing
   for (const int after : {0, 2}) {
     setup.gl.fault_after = after;
     const auto frames = rendered(setup, mesh);

@@ -40,7 +40,7 @@ inline scene::Camera camera(bool inside) {
   return camera;
 }
 
-/// A small cube of 6 * 6^3 tets on `projectors` + `compositors` ranks, each third tet to the same projector.
+/// A small cube of 6 * 6^3 tets on `projectors` + `compositors` ranks, every third tet on the same projector.
 struct GlJobSetup {
   int projectors = 1, compositors = 1;
   std::vector<Backend> backends = {Backend::osmesa};
@@ -50,7 +50,7 @@ struct GlJobSetup {
   bool inside = false, shared = false;
   compositor::GlSettings gl{};
   int frames = 1;
-  std::optional<scene::Camera> view{};  ///< in place of camera(inside)
+  std::optional<scene::Camera> view{};  ///< instead of camera(inside)
   scene::TransferFunction function = bands();
   int tile_size = 16;
   bool software_will_do = true;  ///< for Backend::automatic

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which instruction set serves a frame, and that none without lanes serves the lattice.
+// Which instruction set serves a frame, and that sets without lanes never serve the lattice.
 #include "frame/mesh/lattice_frame.hpp"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ TEST(LatticeFrame, IsServedByEveryInstructionSetWithLanesAndByTheOneThatWasChose
     EXPECT_EQ(statistics.instruction_set, name);
     served.insert(statistics.instruction_set);
   });
-  // Every machine that this is built on has SSE4 at least.
+  // Every supported machine has at least SSE4.
   EXPECT_FALSE(served.empty());
 }
 
@@ -62,9 +62,9 @@ TEST(LatticeFrame, OnEmulatedLanesAFrameTakesTheDoubleWayToTheSamePromise) {
     EXPECT_EQ(statistics.instruction_set, name);
     EXPECT_FALSE(statistics.on_lattice);
     EXPECT_EQ(image.rgba, rendered(mesh, false, in_double).rgba);
-    EXPECT_LE(reference::judge(image, reference, 2e-5).max_error, 2e-5);  // what `exact` promises
+    EXPECT_LE(reference::judge(image, reference, 2e-5).max_error, 2e-5);  // the promise of `exact`
   });
-  EXPECT_EQ(targets, (HWY_TARGETS & tests::emulated_targets) != 0 ? 1 : 0);  // a build has one fallback or none
+  EXPECT_EQ(targets, (HWY_TARGETS & tests::emulated_targets) != 0 ? 1 : 0);  // a build has at most one fallback
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 
 namespace tessera::frame {
 
-/// Under a small square, `layers` slabs of 12 tets, each so oblique that all overlap in depth; beside them a coarse
+/// Under a small square, `layers` slabs of 12 tets, each so oblique that all overlap in depth; next to them a coarse
 /// box.
 inline scene::TetMesh leaning_stack(int layers) {
   scene::TetMesh mesh = datasets::cube(2, 0);

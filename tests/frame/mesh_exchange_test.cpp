@@ -22,10 +22,10 @@ using exchange::Transport;
 using projection::Partition;
 using projection::PartitionKind;
 
-/// How the tets lie before the exchange.
+/// Distribution of the tets before the exchange.
 enum class Start { first_rank, last_rank, slices, in_turns };
 
-/// The part of `rank` of a mesh that lies so: with vertices that no tet uses, and its own numbers for them.
+/// The part of `rank` of a mesh distributed in this way: with unused vertices, and its own vertex numbers.
 MeshPart part_of(const scene::TetMesh& mesh, Start start, int rank, int ranks, unsigned seed) {
   std::mt19937 random(seed);
   MeshPart part;
@@ -52,11 +52,11 @@ MeshPart part_of(const scene::TetMesh& mesh, Start start, int rank, int ranks, u
     part.global_tet.push_back(t);
     if (mesh.association == scene::Association::cell) part.mesh.scalars.push_back(mesh.scalars[t]);
   }
-  if (part.mesh.tets.empty()) part = {};  // as a rank that has read nothing
+  if (part.mesh.tets.empty()) part = {};  // like a rank that has read nothing
   return part;
 }
 
-/// A tet as bits that do not depend on any numbering of vertices: positions and scalars in the order of its corners.
+/// A tet as bits that do not depend on vertex numbers: positions and scalars in the order of its corners.
 std::vector<double> content(const scene::TetMesh& mesh, std::size_t t) {
   std::vector<double> values;
   for (const std::uint32_t v : mesh.tets[t]) {
@@ -72,7 +72,7 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 struct Result {
-  std::vector<MeshPart> parts;  ///< a rank each
+  std::vector<MeshPart> parts;  ///< one per rank
   std::vector<scene::MeshFacts> facts;
 };
 
@@ -90,7 +90,7 @@ Result exchange(const scene::TetMesh& mesh, Start start, int ranks, const std::v
   return result;
 }
 
-/// Every tet on exactly one projector, with its bits, in ascending order, no vertex unused.
+/// Every tet is on exactly one projector, with its bits, in ascending order, without unused vertices.
 void expect_whole(const Result& result, const scene::TetMesh& mesh, const std::vector<int>& projectors) {
   std::vector<int> seen(mesh.tets.size(), 0);
   for (std::size_t r = 0; r < result.parts.size(); ++r) {
@@ -141,7 +141,7 @@ TEST(MeshExchange, PartsDependOnTheMeshAndNotOnWhoReadIt) {
       const auto other = exchange(mesh, start, 4, {0, 2, 3}, {kind, 9}, small, 5);
       for (std::size_t r = 0; r < 4; ++r) EXPECT_EQ(other.parts[r].global_tet, reference.parts[r].global_tet);
     }
-    // From one reader there is one numbering of vertices, however it was cut into messages.
+    // With one reader there is one numbering of vertices, however it was cut into messages.
     const auto chunked = exchange(mesh, Start::first_rank, 4, {0, 2, 3}, {kind, 9}, small);
     for (std::size_t r = 0; r < 4; ++r) {
       EXPECT_EQ(chunked.parts[r].mesh.tets, reference.parts[r].mesh.tets);
@@ -197,7 +197,7 @@ TEST(MeshExchange, NoMessageIsMuchLargerThanAsked) {
     redistribute(transport, std::move(part), facts, {}, projectors, transport.rank() == 0 ? &trace : nullptr, small);
     if (transport.rank() != 0) return;
     const auto sent = transport.sent(Channel::mesh);
-    EXPECT_GE(sent.messages, sent.bytes / (small.chunk_bytes + 200));  // one tet more than asked
+    EXPECT_GE(sent.messages, sent.bytes / (small.chunk_bytes + 200));  // up to one tet more than the limit
     const auto spans = trace.spans();
     ASSERT_EQ(spans.size(), 1u);
     EXPECT_STREQ(spans[0].stage, "partition");

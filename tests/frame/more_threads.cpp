@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Threads of these tests are real ones, on a machine of few cores too: scene::threads_for() gives no more than oneTBB
-// does.
+// These tests use several threads even on a machine with few cores: scene::threads_for() does not exceed oneTBB's
+// limit.
 #include <tbb/global_control.h>
 
 namespace tessera::frame {

@@ -24,7 +24,8 @@
 #include "tessera/communicator.hpp"
 #include "tessera/session.hpp"
 
-/// Opacity peeling: every layer is the reference's, composited they are the image, and ranks and threads change no bit.
+/// Opacity peeling: every layer equals the reference's, composited they equal the image, and ranks and threads change
+/// no bit.
 namespace tessera::peel_test {
 namespace {
 
@@ -55,7 +56,7 @@ FrameSettings peeled(double threshold, int layers, bool deep = false) {
 
 double waves(const glm::dvec3& p) { return 0.5 + 0.5 * std::sin(3 * p.x + p.y) * std::cos(2 * p.z - p.x * p.y); }
 
-/// Samples over [-1, 1]^3, of cells or at points, evenly or not, one of them blank.
+/// Samples over [-1, 1]^3, of cells or at points, uniform or not, one of them blank.
 Dataset grid(Association association, bool rectilinear) {
   GridArrays arrays;
   arrays.geometry.association = association;
@@ -73,7 +74,7 @@ Dataset grid(Association association, bool rectilinear) {
   return Dataset::of(arrays);
 }
 
-/// What the layers make together, against the image.
+/// Compares the composited layers with the image.
 void expect_the_image(const RenderedFrame& frame, double bound) {
   for (std::size_t p = 0; p < frame.image.depth.size(); ++p) {
     std::array<double, 4> sum{};
@@ -86,7 +87,7 @@ void expect_the_image(const RenderedFrame& frame, double bound) {
   }
 }
 
-/// Every pixel of every layer is the reference's to 1e-5, but for one in a hundred whose neighbours differ.
+/// Every pixel of every layer is within 1e-5 of the reference, except one in a hundred whose neighbours differ.
 void expect_the_reference(const Dataset& data, const Settings& settings, const View& view,
                           const TransferFunction& function, double threshold, int layers) {
   SCOPED_TRACE(::testing::Message() << "threshold " << threshold << ", layers " << layers);
@@ -140,7 +141,7 @@ TEST(Peel, LayersOfGridsAreTheReferences) {
     }
 }
 
-/// Where extinction is next to nothing at a cut, rounding moves the place.
+/// Where extinction is almost zero at a cut, rounding moves the cut.
 TEST(Peel, LayersBeginWhereTheReferencesDo) {
   const TransferFunction function = datasets::scaled(datasets::benchmark_transfer_function(), 8);
   const View view = view_of(ProjectionKind::perspective);
@@ -198,7 +199,7 @@ TEST(Peel, SurfacesEndTheLayersThatTheyFill) {
   }
 }
 
-/// Shells one in the other, opaque each: a layer is what the shells before it hide.
+/// Nested opaque shells: each layer shows what the shells in front of it hide.
 TEST(Peel, WhatIsHiddenIsInALaterLayer) {
   const Dataset data = Dataset::of(datasets::arrays_of(datasets::shells(4, 3, 1)));
   const TransferFunction opaque({{0, {0.2, 0.5, 0.9}, 1e4}});
@@ -296,7 +297,7 @@ TEST(Peel, RanksAndThreadsChangeNoBit) {
           expect_the_same(frame);
         else
           EXPECT_TRUE(frame.layers.empty());
-        // And a picture without layers after it.
+        // A later image without layers has none.
         EXPECT_TRUE(session.render(view, function).layers.empty());
       });
   }

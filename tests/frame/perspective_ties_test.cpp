@@ -15,9 +15,9 @@
 #include "reference/reference.hpp"
 #include "support/some_cases.hpp"
 
-/// The tie rule in perspective (docs/ACCURACY.md), held against what it says: a ray in a face, along an edge or through
-/// a vertex belongs to the cells of the ray shifted by (e, e^2) pixel. So a picture is the limit of pictures of the
-/// scene shifted by less and less, for the renderer and for the reference, neither of which is asked about the other.
+/// The tie rule in perspective (docs/ACCURACY.md), checked against its definition: a ray in a face, along an edge or
+/// through a vertex belongs to the cells of the ray shifted by (e, e^2) pixel. So an image is the limit of images of
+/// the scene shifted by less and less. This is checked for the renderer and for the reference independently.
 namespace tessera::frame::perspective_ties_test {
 namespace {
 
@@ -25,7 +25,7 @@ using scene::Camera;
 using scene::ImageSize;
 using scene::TetMesh;
 
-/// A perspective camera, and world points from pixel positions, with the rounding that comes with it.
+/// A perspective camera, and world points computed from pixel positions, with the usual rounding.
 struct View {
   Camera camera;
   ImageSize size;
@@ -49,8 +49,8 @@ struct View {
            basis.up * ((0.5 * size.height - y) / per_tangent);
   }
 
-  /// The mesh moved so that it shows `shift` pixels further left, and a thousandth of that further up. (No edge of
-  /// these tests is so steep that it would not do for the square.)
+  /// The mesh moved so that it appears `shift` pixels further left, and a thousandth of that further up. (No edge of
+  /// these tests is so steep that the square would be needed.)
   [[nodiscard]] TetMesh shifted(TetMesh mesh, double shift) const {
     for (glm::dvec3& p : mesh.positions) {
       const double part = shift * glm::dot(basis.forward, p - camera.position) / per_tangent;
@@ -93,8 +93,8 @@ double difference(const Picture& a, const Picture& b, std::size_t pixel) {
 
 constexpr double visible = 1e-2;
 
-/// Expects the picture to be the limit of those of the mesh shifted, for each method. Returns at how many pixels the
-/// rule decides, where a shift the other way shows something else.
+/// Expects the image to be the limit of those of the shifted mesh, for each method. Returns the number of pixels that
+/// the rule decides, where the opposite shift shows something else.
 int expect_the_limit(const TetMesh& mesh, const View& view) {
   int decided = 0;
   for (const auto& [name, picture] : {std::pair<const char*, Method>{"lattice", renderer(true)},
@@ -105,7 +105,7 @@ int expect_the_limit(const TetMesh& mesh, const View& view) {
     int wrong = 0;
     decided = 0;
     for (std::size_t pixel = 0; pixel < at.size() / 4; ++pixel) {
-      // Ten times the shift changes what is seen ten times as much, or an edge that is nowhere near lies between.
+      // Ten times the shift changes the result ten times as much, or else a distant edge is between.
       const double change = difference(far, near, pixel);
       if (change > visible) continue;
       wrong += difference(at, near, pixel) > 1e-5 + change;
@@ -116,7 +116,7 @@ int expect_the_limit(const TetMesh& mesh, const View& view) {
   return decided;
 }
 
-/// A box of voxels, six tets each: from `corner` along `u`, `v`, `w`, a voxel each. Cell data at random, or a constant.
+/// A box of voxels, six tets each: from `corner` along `u`, `v`, `w`, one voxel each. Cell data at random, or constant.
 TetMesh box(const std::array<int, 3>& voxels, const glm::dvec3& corner, const glm::dvec3& u, const glm::dvec3& v,
             const glm::dvec3& w, bool constant = false) {
   TetMesh mesh = datasets::regular_split(voxels[0], voxels[1], voxels[2], glm::dvec3(1));
@@ -129,7 +129,7 @@ TetMesh box(const std::array<int, 3>& voxels, const glm::dvec3& corner, const gl
   return mesh;
 }
 
-/// Cameras of all kinds: along axes, level, tilted; from afar, near, through long and wide lenses.
+/// Cameras of all kinds: along axes, level, tilted; far, near, with long and wide lenses.
 std::vector<View> views() {
   const ImageSize even{32, 24}, odd{21, 17};
   return {{{0.1, 0.2, 5}, {0.1, 0.2, 0}, {0, 1, 0}, 30, even},
@@ -191,7 +191,8 @@ TEST(PerspectiveTies, LatticesWithCellDataAreTheLimitOfShiftedOnes) {
 }
 
 TEST(PerspectiveTies, LatticesInRaysAreTheLimitOfShiftedOnes) {
-  // All upright and level faces lie in planes of eye and centres, all edges through the picture on rays of centres.
+  // All vertical and horizontal faces are in planes of the eye and centres, all edges along the view on rays of
+  // centres.
   int decided = 0, scenes = 0;
   for (const View& view : views()) {
     SCOPED_TRACE("scene " + std::to_string(scenes++));
@@ -207,9 +208,10 @@ TEST(PerspectiveTies, LatticesInRaysAreTheLimitOfShiftedOnes) {
 }
 
 TEST(PerspectiveTies, MeshesRoundTheEyeAreTheLimitOfShiftedOnes) {
-  // The eye inside, in a plane of faces, on an edge, on a vertex; at the mesh's surface; vertices beside and behind it.
+  // The eye is inside, in a plane of faces, on an edge, on a vertex; at the mesh's surface; with vertices in its plane
+  // and behind it.
   int decided = 0, scenes = 0;
-  bool column = true;  // in turn
+  bool column = true;  // alternating
   test::SomeCases some(5);
   for (const glm::dvec3& eye :
        {glm::dvec3(1.3, 1.6, 2), {2.2, 0, 2}, {1.4, 2.3, 0}, {2, 1.5, 2}, {2, 2, 2}, {1.5, -0.5, 1}})
@@ -222,7 +224,7 @@ TEST(PerspectiveTies, MeshesRoundTheEyeAreTheLimitOfShiftedOnes) {
       const glm::dvec3 position = view.camera.position;
       TetMesh mesh = box({4, 4, 4}, position - eye.x * u - eye.y * v - eye.z * w, u, v, w);
       for (glm::dvec3& p : mesh.positions)
-        if (glm::length(p - position) < 1e-9) p = position;  // not beside it by a rounding
+        if (glm::length(p - position) < 1e-9) p = position;  // not away from it by rounding
       decided += expect_the_limit(mesh, view);
     }
   EXPECT_GT(decided, 100);

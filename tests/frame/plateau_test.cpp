@@ -8,7 +8,7 @@
 #include "frame/plateaus.hpp"
 #include "reference/judge.hpp"
 
-/// Fields that lie within some last places of a step's value over whole regions, as saturated ones do.
+/// Fields that are within some last places of a step's value over whole regions, like saturated ones.
 namespace tessera::frame::plateau_test {
 namespace {
 
@@ -72,7 +72,7 @@ TEST_P(Plateaus, ShowEachSideOfAStepWhereItIs) {
   }
 }
 
-/// Knots that the lattice cannot tell apart.
+/// Knots that the lattice cannot distinguish.
 TEST(Plateau, BetweenTwoStepsTooCloseForTheLatticeGoesInDoublePrecision) {
   const double low = 0.5, high = beside(low, 4, LastPlace::of_double);
   const scene::TransferFunction function({{0, {0.2, 0.3, 0.9}, 0.1},
@@ -92,7 +92,8 @@ TEST(Plateau, BetweenTwoStepsTooCloseForTheLatticeGoesInDoublePrecision) {
   EXPECT_FALSE(statistics.on_lattice);
 }
 
-/// Knots with a step at each of `steps` and a few others; between steps some last places apart the function is flat.
+/// Knots with a step at each of `steps` and a few others; between steps some last places apart the function is
+/// constant.
 scene::TransferFunction random_function(Random& random, std::vector<double> steps, double low, double high) {
   const double dense = random.power(-0.5, 2.2), near = 1e-3 * (high - low);
   const auto optics = [&](double value) {

@@ -23,8 +23,8 @@ inline double beside(double value, int places, LastPlace kind) {
   return value + places * (places > 0 ? step : below);
 }
 
-/// A cube whose field rises from 0 to `level` and stays there, but for noise of up to `places` last places; with cell
-/// data if `cells`.
+/// A cube whose field increases from 0 to `level` and stays there, except for noise of up to `places` last places; with
+/// cell data if `cells`.
 inline scene::TetMesh plateau(double level, int places, LastPlace kind, bool cells, std::uint64_t seed) {
   scene::TetMesh mesh = datasets::cube(5, 0.2);
   std::mt19937_64 random(seed);
@@ -49,7 +49,7 @@ inline scene::TetMesh plateau(double level, int places, LastPlace kind, bool cel
   return mesh;
 }
 
-/// Nearly clear below `level`, dense from there on, or the other way round, and another step half way.
+/// Almost clear below `level`, dense from there on, or the reverse, and another step halfway.
 inline scene::TransferFunction step_at(double level, bool up) {
   const scene::Knot clear{level, {0.1, 0.2, 0.9}, 0.05}, dense{level, {0.9, 0.6, 0.1}, 3};
   const glm::dvec3 green(0.2, 0.9, 0.2);

@@ -12,12 +12,12 @@
 #include "reference/small_meshes.hpp"
 #include "support/polyhedral_meshes.hpp"
 
-/// Pictures of polyhedra that fill a box with a linear field, against the reference's of the same box and field in a
-/// few tets that no polyhedron had a part in.
+/// Images of polyhedra that fill a box with a linear field, compared with the reference's of the same box and field in
+/// a few tets without any polyhedron.
 namespace tessera::frame::polyhedra_picture_test {
 namespace {
 
-constexpr double promised_error = 2e-5;  // that of the exact integrator (include/tessera/session.hpp)
+constexpr double promised_error = 2e-5;  // of the exact integrator (include/tessera/session.hpp)
 constexpr scene::ImageSize size{40, 40};
 
 double field_at(const glm::dvec3& p) { return p.x + 2 * p.y + 3 * p.z; }

@@ -19,7 +19,7 @@ struct RandomView {
   double extent;  ///< of the mesh: its box's diagonal
 };
 
-/// From anywhere outside of a mesh, which fills a good part of the picture.
+/// From a random place outside a mesh, which fills much of the image.
 inline RandomView random_view(Random& random, const scene::TetMesh& mesh) {
   const scene::Box box = scene::bounds(mesh);
   RandomView view{{}, glm::length(box.high - box.low)};
@@ -33,7 +33,7 @@ inline RandomView random_view(Random& random, const scene::TetMesh& mesh) {
   return view;
 }
 
-/// Half-spaces of some kind that cut a mesh in [-1, 1]^3, or miss it; `words` says of which kind.
+/// Half-spaces of some kind that cut a mesh in [-1, 1]^3, or miss it; `words` describes the kind.
 inline std::vector<HalfSpace> random_clip(Random& random, const scene::TetMesh& mesh, std::string& words) {
   std::vector<HalfSpace> clip;
   const auto add_box = [&](const glm::dvec3& low, const glm::dvec3& high) {

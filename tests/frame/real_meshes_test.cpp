@@ -10,8 +10,8 @@
 #include "reference/judge.hpp"
 #include "support/read_files.hpp"
 
-/// The promise of accuracy_test.cpp on meshes that nobody here made: curvilinear grids with seams and boundary layers,
-/// parts of machines, an oil reservoir with faults at coordinates of 7e6.
+/// The promise of accuracy_test.cpp on external meshes: curvilinear grids with seams and boundary layers, machine
+/// parts, an oil reservoir with faults at coordinates of 7e6.
 namespace tessera::frame::real_meshes_test {
 namespace {
 

@@ -10,8 +10,8 @@
 
 namespace tessera::frame {
 
-/// A list of pictures of one volume. Each rank calls this with the same arguments but for `done`, which runs on rank 0,
-/// in order. Throws the run's error, on every rank.
+/// Renders a list of images of one volume. Each rank calls this with the same arguments except `done`, which runs on
+/// rank 0, in order. Throws the run's error, on every rank.
 inline void render_sort_first(exchange::Transport& transport, const Settings& settings, std::span<const VolumeJob> jobs,
                               const scene::TransferFunction& function, volume::Renderer& renderer,
                               const std::function<void(FinishedVolumeFrame)>& done, const FrameSettings& frame = {}) {

@@ -123,7 +123,8 @@ TEST(Render, ScanlineGivesTheSameBitsForAnyThreadsTilesAndMemory) {
 }
 
 TEST(Render, ScanlineIsPlanesToFloatRoundingWithEveryIntegrator) {
-  // No ray of this view passes an edge closer than float rounds (1e-6 pixel); scanline_rasterizer_test measures it.
+  // No ray of this view passes an edge closer than the rounding of float (1e-6 pixel); scanline_rasterizer_test
+  // measures it.
   const scene::TetMesh mesh = datasets::cube(3, 0.25);
   const ImageSize size{31, 27};
   for (const auto kind :
@@ -136,7 +137,7 @@ TEST(Render, ScanlineIsPlanesToFloatRoundingWithEveryIntegrator) {
       const Image paper = Renderer(mesh, settings).render(oblique(), size, six_knots());
       settings.mesh.rasterizer = Rasterizer::planes;
       const Image ours = Renderer(mesh, settings).render(oblique(), size, six_knots());
-      // Depths to 5e-7 each, colours and extinctions of up to 8 that change over scalars of 0.1.
+      // Depths are accurate to 5e-7 each, colours and extinctions of up to 8 change over scalars of 0.1.
       EXPECT_LT(largest_difference(paper, ours), 1e-5);
       EXPECT_GT(largest_difference(paper, ours), 0);
     }
@@ -171,7 +172,7 @@ TEST(Render, CullingInvisibleCellsChangesNoBit) {
   EXPECT_GT(statistics.tets_invisible, mesh.tets.size() / 3);
   // The reference projects all cells.
   const reference::Reference reference(mesh, oblique(), {64, 64}, peak);
-  EXPECT_LT(reference::judge(image, reference, 1e-6).max_error, 1e-6);  // float output rounds by 6e-8
+  EXPECT_LT(reference::judge(image, reference, 1e-6).max_error, 1e-6);  // float output has rounding errors of 6e-8
 }
 
 TEST(Render, AStackOfTwentyThousandThinCellsIsRightInBoundedMemory) {
@@ -202,7 +203,7 @@ TEST(Render, OpaqueMatterIsRightAndTheSameInAnyTilesAndThreads) {
   const ImageSize size{40, 40};
   const TransferFunction clear = six_knots();
   std::vector<scene::Knot> knots(clear.knots().begin(), clear.knots().end());
-  for (scene::Knot& knot : knots) knot.extinction = 40 * knot.extinction + 20;  // 3.5 units of it let nothing through
+  for (scene::Knot& knot : knots) knot.extinction = 40 * knot.extinction + 20;  // 3.5 units of it are opaque
   const TransferFunction function(knots);
   const reference::Reference reference(mesh, oblique(), size, function);
   for (const double accuracy : {0.0, 1e-4}) {
@@ -285,8 +286,8 @@ TEST(Render, AnEyeFarAwayHoldsNoMoreSegmentsAlive) {
 }
 
 TEST(Render, ScalarsRoundedAlikeAllAlongARayStayWithinTheBound) {
-  // A field that is constant but for two corners, in the middle of pieces in which colour and extinction change as fast
-  // as they may: every segment is wrong by the same.
+  // A field that is constant except at two corners, in the middle of pieces in which colour and extinction change as
+  // fast as allowed: every segment has the same error.
   const ImageSize size{24, 24};
   for (const scene::Emission emission : {scene::Emission::absorption, scene::Emission::independent})
     for (const double least : {0.0, 2.4, 200.0}) {

@@ -20,14 +20,14 @@
 #include "tessera/field_queries.hpp"
 #include "tessera/session.hpp"
 
-/// Meshes whose matter is lit by the field's gradient, against light known in closed form and against the reference.
+/// Meshes whose matter is lit by the field's gradient, compared with light known in closed form and with the reference.
 namespace tessera::shading_test {
 namespace {
 
 using frame::Random;
 using frame::RandomCase;
 
-/// A cube in [-1, 1]^3 of a field that grows along (1, 2, 2) / 3.
+/// A cube in [-1, 1]^3 with a field that increases along (1, 2, 2) / 3.
 constexpr glm::dvec3 normal{1 / 3.0, 2 / 3.0, 2 / 3.0};
 scene::TetMesh ramp() {
   return tests::with_field(datasets::cube(6), [](const glm::dvec3& p) { return glm::dot(p, normal); });
@@ -44,7 +44,7 @@ Settings shaded(const Shading& shading = {}) {
   return settings;
 }
 
-/// The direction of a pixel's ray, of length one.
+/// The direction of a pixel's ray, with unit length.
 glm::dvec3 ray_of(const View& view, int x, int y) {
   const ViewBasis basis = view_basis(view.camera);
   if (view.camera.projection == ProjectionKind::orthographic) return basis.forward;
@@ -90,13 +90,13 @@ TEST(MeshShading, LeavesWhatHasNoGradientAsItIs) {
   for (const scene::TetMesh& mesh : {flat, nearly, datasets::with_cell_data(datasets::cube(4))}) {
     const Dataset data = Dataset::of(datasets::arrays_of(mesh));
     Settings dark = shaded();
-    dark.use.lattice = false;  // as shaded ones are
+    dark.use.lattice = false;  // as for shaded ones
     dark.mesh.shading.reset();
     EXPECT_EQ(Session(data, shaded()).render(view, fog).image.rgba, Session(data, dark).render(view, fog).image.rgba);
   }
 }
 
-/// Cubes, slivers and seams, in random views and light, with surfaces at times.
+/// Cubes, slivers and seams, in random views and light, sometimes with surfaces.
 RandomCase random_case(Random& random) {
   RandomCase c;
   const int kind = random.below(4);
@@ -105,7 +105,7 @@ RandomCase random_case(Random& random) {
            : kind == 2 ? datasets::regular_split(3, 3, 3)
                        : datasets::cube(2 + random.below(4), random.uniform(0, 0.25));
   if (kind == 3 && random.chance(0.3)) c.mesh = datasets::with_seam(c.mesh, 0, 0);
-  if (random.chance(0.3))  // values in common: cells without gradient
+  if (random.chance(0.3))  // equal values: cells without gradient
     for (double& s : c.mesh.scalars) s = std::round(s * 4) / 4;
   if (random.chance(0.3)) c.mesh = datasets::transformed(c.mesh, random.power(-3, 3), {0, 0, 0});
   const Box box = scene::bounds(c.mesh);
@@ -178,7 +178,7 @@ TEST(MeshShading, OfSeveralRanksIsThatOfOne) {
   }
 }
 
-/// Cut at any depth, a deep picture is the picture that ends there.
+/// A deep image cut at any depth equals the image that ends there.
 TEST(MeshShading, OfDeepPicturesMayBeCut) {
   const Dataset data = Dataset::of(datasets::arrays_of(datasets::cube(6)));
   const TransferFunction function({{0, {0, 0, 0.3}, 0}, {0.5, {0.2, 0.9, 0.3}, 3}, {1, {1, 0.4, 0.2}, 1}});
@@ -191,7 +191,7 @@ TEST(MeshShading, OfDeepPicturesMayBeCut) {
     const Image image = session.render(cut, function).image;
     for (std::size_t p = 0; p < image.depth.size(); ++p) {
       const auto seen = tests::composited(whole.deep.pixel(p), z, {0, 0, 0});
-      // A black plane is there; alpha is its.
+      // There is a black plane; alpha belongs to it.
       for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], image.rgba[4 * p + c], 1e-3) << z << ' ' << p;
     }
   }

@@ -9,7 +9,7 @@
 #include "io/files/reader_programs.hpp"
 #include "io/mesh/mesh_formats.hpp"
 
-/// Meshes that nobody here made, which lie beside the project on some machines only.
+/// External meshes, which are available only on some machines.
 namespace tessera::frame {
 
 inline auto shared_meshes() {
@@ -22,7 +22,7 @@ inline std::filesystem::path shared_mesh(const char* name) {
   return std::filesystem::path(TESSERA_SOURCE_DIR) / "../shared/data" / name;
 }
 
-/// Why a test of it is to be skipped; empty where it can be read.
+/// Why a test of it is skipped; empty if it can be read.
 inline std::string missing_mesh(const char* name) {
   if (!io::has_reader(io::Reader::vtk)) return "tessera-read-vtk is not installed";
   return std::filesystem::exists(shared_mesh(name)) ? "" : "no " + shared_mesh(name).string();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Volumes that are read as a whole, by several ranks.
+// Volumes that several ranks read as a whole.
 #include "frame/grid/shared_volume.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@
 namespace tessera::frame::shared_volume_test {
 namespace {
 
-/// Files in one folder, temporary ones in another.
+/// Files in one directory, temporary ones in another.
 class SharedVolume : public ::testing::Test {
  protected:
   SharedVolume() { ::setenv("TMPDIR", scratch_.path().c_str(), 1); }
@@ -36,7 +36,7 @@ class SharedVolume : public ::testing::Test {
     return file;
   }
 
-  /// What every one of `ranks` ranks opens.
+  /// The volume opened by every one of `ranks` ranks.
   [[nodiscard]] static std::vector<io::VolumeFile> opened(const std::filesystem::path& file, int ranks,
                                                           ReadOptions options = {}) {
     options.threads = 1;
@@ -50,7 +50,7 @@ class SharedVolume : public ::testing::Test {
     return all;
   }
 
-  /// The error that ends the run, found by every rank.
+  /// The error that ends the run, thrown on every rank.
   [[nodiscard]] static test::Fault fault(const std::filesystem::path& file, int ranks) {
     std::mutex mutex;
     std::multiset<std::string> told;
@@ -98,7 +98,7 @@ TEST_F(SharedVolume, IsKeptOnceWithTheDescriptionOfOneProcess) {
       ASSERT_EQ(volume.fields.size(), 1u);
       EXPECT_EQ(volume.fields[0].name, alone.fields[0].name);
       EXPECT_EQ(volume.fields[0].type, alone.fields[0].type);
-      // Memory reads nothing from a file.
+      // Samples in memory are not read from a file.
       EXPECT_EQ(volume.source->bytes_read() > 0, ranks > 1) << ranks;
       ASSERT_EQ(volume.notes.size(), alone.notes.size() + (ranks > 1 ? 1 : 0));
       if (ranks == 1) continue;
@@ -172,7 +172,7 @@ TEST_F(SharedVolume, WithoutRoomForItEndsTheRunForAllWithARemedy) {
   EXPECT_EQ(ended.code, scene::ErrorCode::bad_input);
   for (const std::string part : {"v.nii.gz", "nowhere", "set TMPDIR to another folder"})
     EXPECT_NE(ended.message.find(part), std::string::npos) << ended.message;
-  // A process alone needs none.
+  // A single process needs none.
   EXPECT_EQ(opened(file, 1).size(), 1u);
 }
 
@@ -180,12 +180,12 @@ TEST(BrickMemory, IsWhatTheRestOfTheProcessLeaves) {
   constexpr std::uint64_t mib = 1 << 20, brick = 33 * 33 * 33;
   const BesideBricks rest{200 * mib, 30 * mib, {512, 512}, 1};
   const std::uint64_t left = brick_memory(1024 * mib, rest, brick);
-  // The picture twice (10 MiB), a thread, the heap; a hundredth for what each brick costs beside its samples.
+  // The image twice (10 MiB), a thread, the heap; a hundredth for the overhead of each brick.
   EXPECT_LT(left, (1024 - 200 - 30 - 10) * mib);
   EXPECT_GT(left, (1024 - 200 - 30 - 10 - 20) * mib * 99 / 100);
   EXPECT_EQ(brick_memory(64 * mib, rest, brick), 8 * mib);
   EXPECT_EQ(brick_memory(mib, rest, brick), mib);
-  // Small bricks cost more beside their samples.
+  // Small bricks have a larger overhead.
   EXPECT_LT(brick_memory(1024 * mib, rest, 729), left * 9 / 10);
 }
 

@@ -6,7 +6,7 @@
 #include "frame/mesh/render.hpp"
 #include "reference/judge.hpp"
 
-/// Thin dense sheets, through which a ray goes a hundred-thousandth of what their faces span in depth.
+/// Thin dense sheets, in which a ray's path is a hundred-thousandth of their faces' range of depth.
 namespace tessera::frame::sheet_test {
 namespace {
 
@@ -21,7 +21,7 @@ INSTANTIATE_TEST_SUITE_P(Frame, Sheets,
                                          Sheet{1.1e-3, 3.1, 0.042, 1.2, 131, 87},
                                          Sheet{6e-3, 2.2, 0.24, 3.1, 115, 220}));
 
-/// The eye looks along a sheet beside it: depth is the sheet's length, rays at the window's edge go through its
+/// The eye looks along a sheet from next to it: depth is the sheet's length, rays at the window's edge pass through its
 /// thickness.
 TEST_P(Sheets, KeepTheirThicknessUnderWidePerspective) {
   const Sheet sheet = GetParam();
@@ -47,7 +47,7 @@ TEST_P(Sheets, KeepTheirThicknessUnderWidePerspective) {
   }
 }
 
-/// A sheet or a stack of them, thickness 1e-7 to 1 of its width; half of them seen lengthwise under a wide angle.
+/// A sheet or a stack of them, thickness 1e-7 to 1 of its width; half of them seen lengthwise with a wide angle.
 RandomCase random_sheet(Random& random) {
   const bool lengthwise = random.chance(0.5);
   const double thickness = lengthwise ? random.power(-6, -1) : random.power(-7, 0);

@@ -12,7 +12,7 @@
 
 namespace tessera::frame {
 
-/// Samples of a function of the place at n^3 points of the box from -1 to 1.
+/// Samples of a function of position at n^3 points of the box from -1 to 1.
 inline std::unique_ptr<scene::MemorySource> small_grid(std::int64_t n,
                                                        const std::function<double(const glm::dvec3&)>& value) {
   scene::Grid grid;

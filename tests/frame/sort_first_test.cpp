@@ -124,7 +124,7 @@ double deviation(const std::vector<std::uint64_t>& samples) {
 }
 
 TEST(SortFirst, LearnedBalanceSharesCountedSamplesInTheFirstFrameAndWhereRaysEndEarly) {
-  // Each view by itself: nothing is known of it, nor what gathering takes of rank 0. The ball is opaque.
+  // Each view separately: nothing is known about it, nor about rank 0's time for gathering. The ball is opaque.
   std::vector<VolumeJob> jobs;
   scene::Camera camera;
   camera.position = {2.5, 1.8, 3.3};
@@ -147,7 +147,7 @@ TEST(SortFirst, LearnedBalanceSharesCountedSamplesInTheFirstFrameAndWhereRaysEnd
     });
     return worst;
   };
-  // Edges lie on every fourth pixel: two pixels of about a hundred on each side of a rectangle.
+  // Edges are on every fourth pixel: two pixels of about a hundred on each side of a rectangle.
   EXPECT_LT(worst_of(Balance::learned), 0.16);
   EXPECT_GT(worst_of(Balance::even), 0.3);
 }
@@ -157,7 +157,7 @@ TEST(SortFirst, LearnedBalanceGoesByTheTimesOfTilesWhereViewsAreNear) {
   scene::Camera camera;
   camera.position = {2.5, 1.8, 3.3};
   camera.parallel_scale = 1.6;
-  // The third is far from the second, the last of another size.
+  // The third is far from the second, the last has another size.
   for (const double turn : {0.0, 0.005, 0.4, 0.405}) jobs.push_back({scene::orbit(camera, turn), {161, 107}});
   jobs.push_back({jobs.back().camera, {67, 101}});
   const auto source = ball();
@@ -168,7 +168,7 @@ TEST(SortFirst, LearnedBalanceGoesByTheTimesOfTilesWhereViewsAreNear) {
     const auto frames = render(ranks, {}, jobs);
     ASSERT_EQ(frames.size(), jobs.size());
     for (std::size_t i = 0; i < jobs.size(); ++i) {
-      // Only edges that are found from times step.
+      // Only edges derived from times have steps.
       EXPECT_EQ(!frames[i].split.steps.empty(), i == 1 || i == 3) << i;
       EXPECT_EQ(frames[i].image.rgba, renderer.render(jobs[i].camera, jobs[i].size, haze()).rgba) << ranks << ' ' << i;
     }

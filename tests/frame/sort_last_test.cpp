@@ -83,7 +83,7 @@ scene::Camera random_view(Random& random, const scene::Box& box) {
   if (random.chance(0.6)) {
     camera.projection = scene::ProjectionKind::perspective;
     camera.view_angle = random.uniform(20, 100);
-    if (random.chance(0.4)) camera.position = random.direction() * (0.4 * radius);  // inside, mostly
+    if (random.chance(0.4)) camera.position = random.direction() * (0.4 * radius);  // usually inside
   }
   if (random.chance(0.1)) camera.clipping_range = {1.8 * radius, 3.1 * radius};
   return camera;
@@ -135,7 +135,8 @@ std::optional<FinishedVolumeFrame> render(const Case& c, scene::ImageSize size) 
   return finished;
 }
 
-// Splits, numbers of processes, views inside and outside, opaque and thin: what `accuracy` promises of one process.
+// Splits, numbers of processes, views inside and outside, opaque and thin: the same promise as `accuracy` for one
+// process.
 TEST(SortLast, PicturesAreWithinAccuracyInRandomCases) {
   constexpr scene::ImageSize size{24, 20};
   const int first = wanted("TESSERA_RANDOM_FIRST", 0), cases = wanted("TESSERA_RANDOM_CASES", 300);
@@ -177,7 +178,7 @@ Case ball(int ranks) {
   return c;
 }
 
-/// Counts what is read of its volume beyond a part.
+/// Counts the samples read of its volume outside a part.
 class PartOfVolume final : public scene::SampleSource {
  public:
   PartOfVolume(const scene::SampleSource& all, const volume::VoxelBox& part)
@@ -188,7 +189,7 @@ class PartOfVolume final : public scene::SampleSource {
   void read_samples(const scene::SampleBox& box, const scene::SampleLayout& layout,
                     std::byte* destination) const override {
     bool within = true;
-    // A brick has the first samples of the next one too.
+    // A brick includes the first samples of the next one.
     for (std::size_t a = 0; a < 3; ++a)
       within = within && box.low[a] >= part_.low[a] && box.high[a] <= part_.high[a] + 1;
     ++(within ? inside : outside);
@@ -206,9 +207,9 @@ TEST(SortLast, EachProcessReadsItsOwnBricksAlone) {
   exchange::run_ranks(c.ranks, [&](exchange::Transport& transport) {
     const PartOfVolume part(*c.source, split.boxes()[static_cast<std::size_t>(transport.rank())]);
     volume::RenderSettings render = c.render;
-    // A quarter of the bricks and no more than that.
+    // A quarter of the bricks and no more.
     render.memory_bytes = 17 * 17 * 17 * 4 * (64 / 4 + 4);
-    // Nor are others loaded ahead.
+    // Nor are others preloaded.
     if (transport.rank() % 2 == 0) render.grid.cache = CachePolicy::proximity, render.grid.preload_limit = 8;
     volume::Renderer renderer(part, render, ranges);
     SortLast run(transport, c.render);
@@ -229,7 +230,7 @@ TEST(SortLast, EachProcessReadsItsOwnBricksAlone) {
 
 TEST(SortLast, CountersPartsAndTilesAreThoseOfTheWholePicture) {
   Case c = ball(5);
-  // Steps, of which float lanes are not sure everywhere.
+  // Steps, for which float lanes are not certain everywhere.
   c.knots = {{0, {0.2, 0.4, 1}, 0}, {0.5, {0.2, 0.4, 1}, 0}, {0.5, {1, 0.5, 0.2}, 5}, {1, {1, 0.5, 0.2}, 5}};
   constexpr scene::ImageSize size{60, 50};
   std::vector<int> told(60 * 50, 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Splits by what pictures before took: rank 0, which gathers them, gets less of the tiles.
+// Splits based on the times of previous images: rank 0, which gathers them, gets fewer of the tiles.
 #include "frame/grid/split_by_times.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ const VolumeJob job = [] {
   return VolumeJob{camera, {side, side}};
 }();
 
-/// Two ranks, of which each has the left or right half, 50 ms of work each, and so many milliseconds of other things.
+/// Two ranks, each with the left or right half, with 50 ms of tile work each, and so many milliseconds of other work.
 std::vector<CastTimes> times(double beside_first, double beside_second) {
   constexpr double half_ms = 50;
   std::vector<CastTimes> ranks(2);
@@ -36,7 +36,7 @@ std::vector<CastTimes> times(double beside_first, double beside_second) {
   return ranks;
 }
 
-/// The weights when all that is known of what ranks do beside their tiles is one picture.
+/// The weights when one image is all that is known about the ranks' other work.
 std::vector<double> weights_of(double beside_first, double beside_second) {
   SplitByTimes splits;
   splits.learn(job, box, times(beside_first, beside_second));
@@ -49,7 +49,7 @@ void expect_same(const std::vector<double>& ours, const std::vector<double>& the
 }
 
 TEST(SplitByTimes, ARankGetsLessByWhatItDoesBesideItsTiles) {
-  // 100 ms of tiles and 24 of other things are 62 for each: 42 and 58 of tiles.
+  // 100 ms of tiles and 24 of other work are 62 for each: 42 and 58 of tiles.
   const std::vector<double> weights = weights_of(20, 4);
   ASSERT_EQ(weights.size(), 2u);
   EXPECT_NEAR(weights[0] / weights[1], 42.0 / 58.0, 1e-9);
@@ -84,15 +84,15 @@ TEST(SplitByTimes, ASplitGivesRanksTheSameTime) {
     return sum / (side * side);
   };
   EXPECT_NEAR(pixels(0) + pixels(1), 1, 1e-9);
-  EXPECT_NEAR(pixels(0), 0.42, 0.02);  // to a step of the rectangles' edges
+  EXPECT_NEAR(pixels(0), 0.42, 0.02);  // up to a step of the rectangles' edges
 }
 
-// What is foreseen goes with the box as the eye moves past it; what tiles take here stays where it is in the picture.
-// So at each step the same is missed: the split of one picture says little, that of many is even.
+// The prediction moves with the box as the eye moves past it; the tile times here stay fixed in the image. So each step
+// has the same prediction error: the split of one image does not reveal it, that of many is even.
 TEST(SplitByTimes, WhatIsMissedFromPictureToPictureAlikeIsLearned) {
   constexpr scene::ImageSize size{512, 512};
   constexpr int ranks = 4;
-  const auto took = [](const scene::PixelRect& r) {  // microseconds: the more the farther to the right
+  const auto took = [](const scene::PixelRect& r) {  // microseconds: increasing to the right
     return 0.02 * (r.y1 - r.y0) * (r.x1 - r.x0) * (0.2 + 0.5 * (r.x0 + r.x1) / size.width);
   };
   SplitByTimes splits;

@@ -7,7 +7,7 @@
 #include "api/random_cases.hpp"
 #include "frame/mesh/render.hpp"
 
-/// What tests of surfaces in a cube [-1, 1]^3 share.
+/// Common parts of tests of surfaces in a cube [-1, 1]^3.
 namespace tessera::frame {
 
 inline Settings exact(const Surfaces& surfaces, bool lattice = true) {
@@ -34,7 +34,7 @@ inline scene::TransferFunction grey_fog() {
   return scene::TransferFunction({{0, {0.5, 0.5, 0.5}, 0.7}, {1, {0.5, 0.5, 0.5}, 0.7}});
 }
 
-/// Two to five knots, evenly over the range, some of them clear.
+/// Two to five knots, uniform over the range, some of them clear.
 inline scene::TransferFunction random_function(Random& random, const std::array<double, 2>& range) {
   std::vector<scene::Knot> knots;
   const int n = 2 + random.below(4);

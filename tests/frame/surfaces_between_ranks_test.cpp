@@ -12,7 +12,7 @@
 #include "frame/ranks/distributed.hpp"
 #include "scene/mesh_facts.hpp"
 
-/// Surfaces that several ranks render have the place and the light that one gives them.
+/// Surfaces rendered by several ranks have the same position and light as with one rank.
 namespace tessera::frame::surfaces_between_ranks_test {
 namespace {
 
@@ -48,7 +48,7 @@ double difference(const scene::Image& a, const scene::Image& b) {
   return most;
 }
 
-/// Three ranks' pictures, as segments and as runs, against one process's.
+/// Compares three ranks' images, as segments and as runs, with one process's.
 void expect_those_of_one_process(const scene::TetMesh& mesh, DistributedSettings settings, const FrameJob& job,
                                  const scene::TransferFunction& function) {
   const auto expected = Renderer(mesh, settings.render).render(job.camera, job.size, function);
@@ -69,7 +69,7 @@ void expect_those_of_one_process(const scene::TetMesh& mesh, DistributedSettings
 
 TEST(SurfacesBetweenRanks, AreThoseOfOneProcess) {
   scene::TetMesh mesh = datasets::cube(8, 0.2);
-  // Values of vertices among them: the surfaces coincide with faces that ranks share.
+  // Values of vertices among them: the surfaces coincide with faces shared by ranks.
   for (std::size_t i = 0; i < mesh.scalars.size(); i += 3) mesh.scalars[i] = std::round(mesh.scalars[i] * 8) / 8;
   const scene::TransferFunction function({{0, {0, 0, 0.3}, 0}, {0.5, {0.2, 0.9, 0.3}, 0}, {1, {1, 0.4, 0.2}, 2}});
   DistributedSettings settings;
@@ -126,7 +126,7 @@ TEST(SurfacesBetweenRanks, OfFacesAreThoseOfOneProcess) {
   }
 }
 
-/// The boundary once more as triangles of a surface, every other one turned round.
+/// The boundary again as triangles of a surface, every second one reversed.
 std::shared_ptr<TriangleMesh> skin_of(const scene::TetMesh& mesh) {
   auto skin = std::make_shared<TriangleMesh>(boundary_faces(mesh).mesh);
   for (std::size_t t = 0; t < skin->triangles.size(); t += 2) std::swap(skin->triangles[t][0], skin->triangles[t][1]);
@@ -168,7 +168,7 @@ TEST(RunsBetweenRanks, SayWhereCellsOverlap) {
     for (const bool lattice : {true, false}) {
       DistributedSettings settings;
       settings.exchange = Exchange::runs;
-      settings.render.use.sharing = false;  // ranks of one machine have all cells of a tile else
+      settings.render.use.sharing = false;  // otherwise ranks of one machine have all cells of a tile
       settings.render.use.lattice = lattice;
       std::vector<scene::TetMesh> parts{cube_at(0), cube_at(apart)};
       std::uint32_t number = 0;

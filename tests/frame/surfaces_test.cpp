@@ -20,7 +20,7 @@
 #include "support/instruction_sets.hpp"
 #include "support/read_files.hpp"
 
-/// Surfaces in the volume, against places and colours known in closed form and against the reference.
+/// Surfaces in the volume, compared with positions and colours known in closed form and with the reference.
 namespace tessera::frame::surfaces_test {
 namespace {
 
@@ -29,7 +29,7 @@ using scene::TransferFunction;
 
 constexpr double promised_error = 2e-5;  // docs/ACCURACY.md: of exact
 
-/// A cube in [-1, 1]^3 of the field z / 2 + 1 / 2, which is the same along all rows of vertices.
+/// A cube in [-1, 1]^3 with the field z / 2 + 1 / 2, which is constant along all rows of vertices.
 scene::TetMesh ramp(double jitter) {
   scene::TetMesh mesh = datasets::cube(8, jitter);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) mesh.scalars[i] = mesh.positions[i].z / 2 + 0.5;
@@ -40,7 +40,7 @@ TEST(IsoSurface, OfARampIsAPlaneLitByItsAngleAtTheDepthWhereTheFieldHasItsValue)
   const scene::ImageSize size{24, 24};
   Surfaces surfaces;
   surfaces.iso = {{0.625, glm::dvec3(0.5, 0.25, 0), 0.4}};
-  for (const double jitter : {0.0, 0.2})  // without, the plane coincides with faces
+  for (const double jitter : {0.0, 0.2})  // without jitter, the plane coincides with faces
     for (const bool lattice : {true, false}) {
       const scene::TetMesh mesh = ramp(jitter);
       const scene::Camera camera = view(ProjectionKind::orthographic, {2, 0, 4});
@@ -71,7 +71,7 @@ TEST(IsoSurface, LiesBetweenWhatIsBeforeAndBehindIt) {
     Renderer renderer(mesh, exact(surfaces, true));
     const auto image = renderer.render(view(ProjectionKind::orthographic, {0, 0, 4 * side}), size, grey_fog());
     const std::size_t middle = 4 * image.index(4, 4);
-    const double fog = 1 - std::exp(-0.7);  // one unit of it before the plane, half of it grey
+    const double fog = 1 - std::exp(-0.7);  // one unit of it in front of the plane, half of it grey
     EXPECT_NEAR(image.rgba[middle], 0.5 * fog + (1 - fog), 2e-6);
     EXPECT_NEAR(image.rgba[middle + 1], 0.5 * fog, 2e-6);
     EXPECT_EQ(image.rgba[middle + 3], 1.0f);
@@ -115,7 +115,7 @@ Surfaces random_surfaces(Random& random, const scene::TetMesh& mesh) {
   const int n = 1 + random.below(random.chance(0.2) ? 30 : 5);
   for (int i = 0; i < n; ++i) {
     IsoSurface iso;
-    // The value of a vertex, a double beside it, or any.
+    // The value of a vertex, an adjacent double, or any.
     const double of_vertex =
         mesh.scalars[static_cast<std::size_t>(random.below(static_cast<int>(mesh.scalars.size())))];
     iso.value = of_vertex;
@@ -128,8 +128,8 @@ Surfaces random_surfaces(Random& random, const scene::TetMesh& mesh) {
   return surfaces;
 }
 
-/// Boxes, balls and bars, some with vertices and edges on pixel centres, with fields of many values or of few, which
-/// are then the same over faces and cells.
+/// Boxes, balls and bars, some with vertices and edges on pixel centres, with fields of many values, or of few that are
+/// then constant over faces and cells.
 RandomCase random_surface_case(Random& random) {
   scene::TetMesh mesh;
   const int kind_of_mesh = random.below(6);
@@ -230,7 +230,8 @@ TEST(IsoSurface, IsAPointAmongDeepSamples) {
     for (const auto& s : deep.pixel(p)) points += s.z == s.z_back ? 1u : 0u;
   }
   EXPECT_GT(points, 100u);
-  // A plane put in before a surface hides it: the samples are those of a frame whose far clipping plane is there.
+  // A plane inserted in front of a surface hides it: the samples are those of a frame whose far clipping plane is
+  // there.
   const double plane = 5.3;
   scene::Camera clipped = camera;
   clipped.clipping_range = scene::ClippingRange{0.1, plane};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lists of pictures of a volume, of which the next one is cast while the one before is gathered.
+// Lists of images of a volume, where the next one is cast while the previous one is gathered.
 #include "frame/grid/volume_frames.hpp"
 
 #include <gtest/gtest.h>
@@ -178,7 +178,7 @@ TEST_P(VolumeLists, WhatACallbackThrowsIsTheCallersAndTheOthersGoOn) {
     }
 }
 
-/// Of which a brick cannot be read after some.
+/// A source whose bricks cannot be read after some reads.
 class Failing final : public scene::SampleSource {
  public:
   explicit Failing(const scene::SampleSource& all) : SampleSource(all.grid(), "failing"), all_(all) {}

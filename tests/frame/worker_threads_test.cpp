@@ -33,9 +33,9 @@ TEST(WorkerThreads, RunAllTasksAndHandOnWhatTheyThrow) {
   EXPECT_EQ(failed, 100);
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they take all address space
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // sanitizers take all address space
 
-/// Leaves this process room for a few threads.
+/// Leaves this process enough memory for a few threads.
 void limit_memory() {
   std::uint64_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
@@ -44,7 +44,7 @@ void limit_memory() {
   setrlimit(RLIMIT_AS, &limit);
 }
 
-/// Ends the process with 7 if `start` throws what a user is to be told.
+/// Ends the process with 7 if `start` throws an error for the user.
 template <class Start>
 void judge(const Start& start) {
   limit_memory();

@@ -107,7 +107,7 @@ TEST(Egl, ADeviceThatIsNotThereIsRefused) {
   EglDevice none;
   none.number = 1000;
   const auto error = error_of([&] { open_context(Platform::egl, none); });
-  const std::string words = error.what();  // there may be no EGL, or no device at all
+  const std::string words = error.what();  // EGL, or any device, may be missing
   EXPECT_TRUE(words.starts_with("`egl_device` 1000: ") || words.starts_with("EGL: ")) << words;
 }
 

@@ -20,7 +20,7 @@ using scene::Emission;
 using scene::Knot;
 using scene::TransferFunction;
 
-/// Scalars in whole units that a float holds, so that float and double see the same function and segments.
+/// Scalars in whole units that a float represents exactly, so that float and double use the same function and segments.
 struct Segment {
   float length, front, back;
 };
@@ -83,7 +83,7 @@ class Random {
 
 float whole(double x) { return static_cast<float>(std::nearbyint(x)); }
 
-/// Knots over [-range / 2, range / 2], unevenly spread; every third a step, some extinctions zero.
+/// Knots over [-range / 2, range / 2], not uniform; every third a step, some extinctions zero.
 TransferFunction random_function(Random& random, int knots, double range) {
   std::vector<double> values;
   for (int i = 0; i < knots; ++i) values.push_back(whole(range * (random() - 0.5)));
@@ -95,7 +95,8 @@ TransferFunction random_function(Random& random, int knots, double range) {
   return TransferFunction(list);
 }
 
-/// Up, down and level; from and to knots; with an optical depth of about `depth` where extinction is not zero.
+/// Increasing, decreasing and constant; from and to knots; with an optical depth of about `depth` if extinction is not
+/// zero.
 std::vector<Segment> random_segments(Random& random, const TransferFunction& f, int count, double depth) {
   const double low = f.knots().front().value, high = f.knots().back().value, range = std::max(1.0, high - low);
   const auto scalar = [&] {
@@ -112,10 +113,11 @@ std::vector<Segment> random_segments(Random& random, const TransferFunction& f, 
   return list;
 }
 
-/// Bounds, in units of the brightest light a segment can give (colours are at most 1). Each is some six roundings of a
-/// float (6e-8) and the polynomials' 2e-7.
+/// Bounds, in units of the brightest light of a segment (colours are at most 1). Each is some six roundings of a float
+/// (6e-8) and the polynomials' 2e-7.
 constexpr double light_bound = 5e-7, depth_bound = 5e-7;
-/// Of a thin segment, in units of its own optical depth: no bias that a sum over a thousand of them would show.
+/// For a thin segment, in units of its own optical depth: no bias that would be visible in a sum over a thousand of
+/// them.
 constexpr double thin_bound = 1e-6;
 
 void expect_close(const std::vector<Segment>& segments, const std::vector<Light>& lights,
@@ -124,7 +126,7 @@ void expect_close(const std::vector<Segment>& segments, const std::vector<Light>
     const Light &a = lights[i], &b = truth[i];
     SCOPED_TRACE(testing::Message() << "length " << segments[i].length << ", scalars " << std::fixed
                                     << segments[i].front << " to " << segments[i].back);
-    // Double's own 1 - exp(-q) is right to 1e-16: 1e-7 of an optical depth of 1e-9.
+    // Double's own 1 - exp(-q) is accurate to 1e-16: 1e-7 of an optical depth of 1e-9.
     const double brightest = emission == Emission::independent ? segments[i].length : 1;
     const double thin = emission == Emission::independent ? segments[i].length : std::max(1e-9, b.optical_depth);
     const double bound = std::min(light_bound * brightest, thin_bound * thin);
@@ -157,7 +159,7 @@ TEST(LaneIntegrator, AgreesWithDoublePrecisionOnEveryInstructionSet) {
   });
 }
 
-// Spaced as by a logarithm: nearly all knots are in one cell of the table's grid, so that searches begin with large
+// Spaced logarithmically: almost all knots are in one cell of the table's grid, so that searches begin with large
 // steps, from other cells too.
 TEST(LaneIntegrator, FindsIntervalsOfKnotsCrowdedAtOneEnd) {
   tests::for_each_instruction_set([&](const char* name) {
@@ -214,8 +216,8 @@ TEST(LaneIntegrator, AThousandThinSegmentsSumWithoutBias) {
       for (int trial = 0; trial < 50; ++trial) {
         const Segment s{static_cast<float>(depth), whole((1 << 21) * random()), whole((1 << 21) * random())};
         const Light light = in_lanes(f, {s})[0];
-        // The segment in long double, thin enough for its light to be kappa c l (1 - q / 2 + ...): exact up to 1e-9,
-        // the double integrator above.
+        // The segment in long double, thin enough for its light to be kappa c l (1 - q / 2 + ...), which is exact up to
+        // 1e-9; thicker ones use the double integrator.
         double r = 0, g = 0, tau = 0;
         if (depth <= 1e-9) {
           const double step = 1 << 20, lo = std::min(s.front, s.back), hi = std::max(s.front, s.back);
@@ -251,7 +253,7 @@ TEST(LaneIntegrator, AThousandThinSegmentsSumWithoutBias) {
 }
 
 TEST(LaneIntegrator, OpticalDepthIsRelativelyRightCloseToAClearKnot) {
-  // From a clear knot at 2^29 on: kappa is the distance from it, whether it rises or falls towards it.
+  // From a clear knot at 2^29 on: kappa is the distance from it, whether the segment moves away from it or towards it.
   const double knot = 1 << 29;
   const TransferFunction f({{0, {1, 1, 1}, 1}, {knot, {1, 1, 1}, 0}, {2 * knot, {1, 1, 1}, 1}});
   for (const float distance : {64.0f, 1024.0f, 1048576.0f})
@@ -276,7 +278,7 @@ TEST(LaneIntegrator, CuttingASegmentChangesNothing) {
         const auto l = in_lanes(f, {s,
                                     {static_cast<float>(s.length * u), s.front, middle},
                                     {static_cast<float>(s.length * (1 - u)), middle, s.back}});
-        // Three results' bounds. At a step the level segment of zero length may lie on either side.
+        // The bounds of three results. At a step the constant segment of length zero may be on either side.
         const double bound = 3 * std::min(light_bound, thin_bound * l[0].optical_depth);
         EXPECT_NEAR(l[0].r, l[1].r + (1 - l[1].alpha) * l[2].r, bound);
         EXPECT_NEAR(l[0].g, l[1].g + (1 - l[1].alpha) * l[2].g, bound);
@@ -375,7 +377,7 @@ TEST(LaneIntegrator, OverflowSaturates) {
       }
       EXPECT_LE(light.alpha, 1 + 1e-6);
     }
-  // An opaque wall is its own colour.
+  // An opaque wall has its own colour.
   const Light wall = in_lanes(f, {{largest, -1000, -1000}})[0];
   EXPECT_NEAR(wall.r, 1, light_bound);
   EXPECT_NEAR(wall.alpha, 1, light_bound);
@@ -399,7 +401,7 @@ TEST(LaneIntegrator, TinyAndHugeScenesAreTheSameScene) {
 }
 
 TEST(LaneIntegrator, KnotsOutOfReachOfTheScalarsKeepTheirSlope) {
-  // Data in [-1, 1], knots at +-1000: the part in reach is a ramp from 0.999 to 1.001 of the middle.
+  // Data in [-1, 1], knots at +-1000: the used part is a ramp from 0.999 to 1.001 of the middle.
   const TransferFunction f({{-1000, {0, 0.5, 0}, 0}, {1000, {1, 0.5, 0}, 2}});
   const LaneTable table(f, 0, 0x1p-30, 1, Emission::absorption);
   const Light light = in_lanes(table, {{0.5f, -0x1p30f, 0x1p30f}})[0];

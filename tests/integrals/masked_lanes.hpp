@@ -5,9 +5,8 @@
 
 namespace tessera::tests {
 
-/// integrate_lanes-inl.h inlined in a loop of our own: every other segment first, then those between, each time with
-/// the rest masked off and holding NaN. Adds what comes out to the batch's outputs, so lanes that are not active must
-/// give zeros.
+/// integrate_lanes-inl.h inlined in a separate loop: first every second segment, then those between, each time with the
+/// rest masked off and set to NaN. Adds the results to the batch's outputs, so inactive lanes must return zeros.
 void integrate_masked_lanes(const integrals::LaneTable& table, integrals::FloatBatch& batch);
 
 }  // namespace tessera::tests

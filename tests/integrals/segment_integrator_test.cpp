@@ -111,11 +111,12 @@ TEST(SegmentIntegrator, AgreesWithBruteForceOnEveryInstructionSet) {
           const auto lights = integrated(f, segments, emission);
           for (std::size_t i = 0; i < segments.size(); ++i) {
             const Light expected = brute_force(f, segments[i], emission, 20000);
-            // Midpoint steps err by h^2 / 24 of the second derivative (30 * 300 knots' kinks): 3e-6 is their share.
+            // Midpoint steps have an error of h^2 / 24 of the second derivative (30 * 300 knots' kinks): 3e-6 covers
+            // it.
             EXPECT_NEAR(lights[i].r, expected.r, 3e-6);
             EXPECT_NEAR(lights[i].g, expected.g, 3e-6);
             EXPECT_NEAR(lights[i].b, expected.b, 3e-6);
-            // Behind a transmittance of 1e-10 the exact form stops counting.
+            // Behind a transmittance of 1e-10 the exact form stops.
             EXPECT_NEAR(std::exp(-lights[i].optical_depth), expected.transmittance, 3e-6);
           }
         }
@@ -140,7 +141,7 @@ TEST(SegmentIntegrator, AutoMakesLongerPiecesWithinItsShareOfTheAccuracy) {
         const auto [light, through] = seen({IntegratorKind::exact, 0, 0});
         for (const double accuracy : {1e-2, 1e-3, 1e-4, 1e-5}) {
           const auto fast = seen({.kind = IntegratorKind::automatic, .accuracy = accuracy});
-          // A 64th each for longer pieces and for what is left out; `exact` itself errs by 2e-8.
+          // A 64th each for longer pieces and for early termination; `exact` itself has an error of 2e-8.
           EXPECT_NEAR(fast.first, light, accuracy / 32 + 2e-8) << extinction << " " << knots << " " << accuracy;
           EXPECT_NEAR(fast.second, through, accuracy / 32 + 2e-8) << extinction << " " << knots << " " << accuracy;
         }
@@ -171,7 +172,7 @@ TEST(SegmentIntegrator, AScalarOnAStepTakesTheUpperKnot) {
   const Light light = integrated(f, {{1, 0.5, 0.5}}, Emission::absorption)[0];
   EXPECT_DOUBLE_EQ(light.r, 0);
   EXPECT_DOUBLE_EQ(light.optical_depth, 2);
-  // A ray that goes through the step sees both sides, in order.
+  // A ray through the step passes both sides, in order.
   const Light down = integrated(f, {{2, 0.6, 0.4}}, Emission::absorption)[0];
   EXPECT_NEAR(down.g, 1 - std::exp(-2.0), 1e-12);
   EXPECT_NEAR(down.r, std::exp(-2.0) * (1 - std::exp(-1.0)), 1e-12);
@@ -228,7 +229,7 @@ TEST(SegmentIntegrator, TablesAreExactWhereTheColourIsConstantAndExtinctionLinea
        {Integrator{.kind = IntegratorKind::preintegrated, .table_size = 16}, Integrator{IntegratorKind::partial}}) {
     const auto light = integrated(f, segments, Emission::absorption, integrator);
     for (std::size_t i = 0; i < segments.size(); ++i) {
-      // The table's floats: 6e-8 of the extinction, times what is left of the light at that depth (at most 1 / e).
+      // The table's floats: 6e-8 of the extinction, times the remaining light at that depth (at most 1 / e).
       EXPECT_NEAR(light[i].r, exact[i].r, 1e-7);
       EXPECT_NEAR(light[i].b, exact[i].b, 1e-7);
       EXPECT_NEAR(light[i].transmittance, exact[i].transmittance, 1e-7);
@@ -252,7 +253,7 @@ TEST(SegmentIntegrator, PreintegratedConvergesWithTheTablesSize) {
   std::uniform_real_distribution<double> scalar(0, 1), length(0, 2);
   std::vector<Segment> segments;
   for (int i = 0; i < 2000; ++i) segments.push_back({length(random), scalar(random), scalar(random)});
-  // Without kinks inside, with the square of the size; with them, at least linearly.
+  // Without kinks inside, proportional to the square of the size; with them, at least linear.
   const TransferFunction smooth({{0, {0, 0.3, 1}, 1}, {1, {1, 0.6, 0}, 5}});
   const TransferFunction kinked = random_function(random, 7, 5, false);
   for (const Emission emission : {Emission::absorption, Emission::independent}) {
@@ -260,7 +261,7 @@ TEST(SegmentIntegrator, PreintegratedConvergesWithTheTablesSize) {
       return table_error(f, segments, emission, {.kind = IntegratorKind::preintegrated, .table_size = size});
     };
     const double coarse = error(smooth, 16), fine = error(smooth, 64);
-    EXPECT_GT(coarse / fine, 10);  // 16 but for where the largest error lies between entries
+    EXPECT_GT(coarse / fine, 10);  // 16, except for the position of the largest error between entries
     EXPECT_LT(fine, emission == Emission::absorption ? 1e-3 : 2e-3);  // light of up to 1, or of the length
     const double coarse_kinked = error(kinked, 16), fine_kinked = error(kinked, 64);
     EXPECT_GT(coarse_kinked / fine_kinked, 2.5);
@@ -277,7 +278,7 @@ TEST(SegmentIntegrator, PreintegratedCutsOffWhatLiesOutsideTheKnots) {
   const Integrator fine{.kind = IntegratorKind::preintegrated, .table_size = 128};
   // Between the knots the error is the table's, from the colour's change along w (size / 4 steps, second order).
   EXPECT_LT(table_error(f, segments, Emission::absorption, fine), 4e-4);
-  // A step alone leaves nothing to the table.
+  // A single step leaves nothing to the table.
   EXPECT_LT(table_error(step, segments, Emission::absorption, fine), 1e-9);
   EXPECT_LT(table_error(one, segments, Emission::independent, fine), 1e-9);
 }
@@ -289,13 +290,13 @@ TEST(SegmentIntegrator, PartialErrsByItsTableOnly) {
     const TransferFunction f = random_function(random, 9, 5, true);
     std::vector<Segment> segments;
     for (int i = 0; i < 500; ++i) segments.push_back({std::pow(10, power(random)), scalar(random), scalar(random)});
-    // Ten pieces at most, each off by 1e-6 of a change of colour of at most 1, attenuated.
+    // Ten pieces at most, each with an error of 1e-6 of a change of colour of at most 1, attenuated.
     EXPECT_LT(table_error(f, segments, Emission::absorption, {IntegratorKind::partial}), 1e-5);
   }
 }
 
 TEST(PsiTable, ErrsAsItsHeaderSays) {
-  // Light of a white segment whose extinction is its scalar, beside a blue one's: red alone comes from 1 - M.
+  // Light of a white segment whose extinction is its scalar, compared with a blue one's: red comes only from 1 - M.
   std::mt19937 random(53);
   for (const auto& [deepest, bound] : {std::pair{10.0, 1e-5}, {1e3, 2e-2}, {1e6, 2e-2}}) {
     const TransferFunction f({{0, {1, 0, 0}, 0}, {deepest, {0, 0, 1}, deepest}});

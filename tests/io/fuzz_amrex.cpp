@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any text is the Header, a list of boxes or the line before values of an AMReX plot file, or is refused in one line.
+// Any text is parsed as the Header, a list of boxes or the line before values of an AMReX plot file, or refused in one
+// line.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any text is a camera or is refused in one line; what is accepted is valid and survives being written.
+// Any text is parsed as a camera or refused in one line; an accepted camera is valid and survives being written.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       test::require(again.size() == 1 && again.front() == view);
     }
   });
-  // Each format by itself too, whatever the first character.
+  // Also each format separately, whatever the first character.
   test::parse_or_refuse([&] { io::parse_text_camera(text, "f"); });
   test::parse_or_refuse([&] { io::parse_pvcc_camera(text, "f"); });
   return 0;

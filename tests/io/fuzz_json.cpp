@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any text is a ParaView colour map, knots, a ParaView file series or list of PLOT3D files, a JSON camera, or refused
-// in one line.
+// Any text is parsed as a ParaView colour map, knots, a ParaView file series or list of PLOT3D files, a JSON camera, or
+// refused in one line.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

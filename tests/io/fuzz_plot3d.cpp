@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any text is a PLOT3D grid whose counts hold, or none; the input's rest after a NUL is its solution.
+// Any text gives a PLOT3D grid with valid counts, or none; the input after a NUL is its solution.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -18,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::size_t numbers = 0;
     for (const auto& n : layout->grids)
       numbers += 3 * static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(n[2]);
-    test::require(2 * numbers <= grid.size() + 1);  // a digit and a blank each
+    test::require(2 * numbers <= grid.size() + 1);  // at least a digit and a blank each
     io::check_plot3d_text_solution(solution, *layout, "f.q");
   });
   return 0;

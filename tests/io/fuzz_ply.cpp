@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any bytes are a surface whose indices hold, or are refused in one line.
+// Any bytes give a surface with valid indices, or are refused in one line.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any text is zones of cells whose indices hold, or is refused in one line.
+// Any text gives zones of cells with valid indices, or is refused in one line.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// TetGen's text files: the input, cut at its first NUL, is a .node and a .ele, a .poly or a .smesh, or is refused.
+// TetGen's text files: the input, split at its first NUL, is parsed as a .node and a .ele, a .poly or a .smesh, or
+// refused.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any bytes are a mesh whose indices hold, or are refused in one line.
+// Any bytes give a mesh with valid indices, or are refused in one line.
 #include <cstddef>
 #include <cstdint>
 #include <span>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any text is a transfer function or is refused in one line.
+// Any text is parsed as a transfer function or refused in one line.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any bytes in a file of any volume format of our own reading (NRRD, NIfTI, MetaImage, bricks, plain .vti and .vtr, by
-// what they begin with) are a volume whose samples can be read and lie in its range, or are refused in one line; held
-// in memory or not makes no difference.
+// Any bytes in a file of any volume format with a parser of ours (NRRD, NIfTI, MetaImage, bricks, plain .vti and .vtr,
+// by their first bytes) give a volume whose samples can be read and are within its range, or are refused in one line;
+// holding it in memory or not makes no difference.
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -26,16 +26,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::vector<double> values(static_cast<std::size_t>(all.count()));
     volume.source->read(all, std::span<double>(values));
     in_memory = values;
-    // Where floats hold the samples, they are floats, magnitudes too.
+    // If floats represent the samples, magnitudes are floats too.
     if (scene::fits_float(volume.source->grid().type))
       for (double& v : values) v = static_cast<double>(static_cast<float>(v));
-    // A brick file may say that its range is wider than it is.
+    // A brick file may state a range that is wider than the actual one.
     for (const double v : values)
       if (const double value = volume.source->grid().value(v); std::isfinite(v) && std::isfinite(value))
         test::require(volume.format.find("rick") != std::string::npos ||
                       (value >= volume.range.low && value <= volume.range.high));
   });
-  // The same samples by way of a scratch file, which also takes plain .vti and .vtr files, or nothing again.
+  // The same samples by way of a scratch file, which also accepts plain .vti and .vtr files; or refused again.
   test::parse_or_refuse([&] {
     ReadOptions options;
     options.memory_bytes = 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any bytes in a VTK XML file of one data set are blocks of cells whose indices hold and whose fields can be read, or
-// are left to VTK's reader, or are refused in one line.
+// Any bytes in a VTK XML file of one data set give blocks of cells with valid indices and readable fields, or are left
+// to VTK's reader, or refused in one line.
 #include <tbb/global_control.h>
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a file is, is told from what it begins with, then from its name.
+// The kind of a file is determined by its first bytes, then by its name.
 #include "io/formats/identify.hpp"
 
 #include <fmt/format.h>
@@ -145,7 +145,7 @@ TEST_F(Identify, APointerOfGitLfsIsNamedWhateverTheNameOfTheFile) {
     const auto file = write(name, pointer);
     EXPECT_EQ(message_of([&] { open_volume(file); }), refusal_of(file));
   }
-  // Samples beside a header are files, too.
+  // Samples next to a header are files, too.
   write("samples.raw", pointer);
   const auto header =
       write("h.nhdr", "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: samples.raw\n");
@@ -172,7 +172,7 @@ TEST_F(Identify, AFolderIsACaseOrRefused) {
 }
 
 TEST_F(Identify, EveryExtensionBelongsToOneKindOfData) {
-  // .vtk alone is a mesh's and a grid's.
+  // Only .vtk is both a mesh's and a grid's extension.
   std::map<std::string, int> rows;
   for (const FileFormat& format : file_formats()) {
     EXPECT_FALSE(format.name.empty());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is opened and how: regular files alone, whatever names them; files that are shortened as they are read; and a
-// process without descriptors.
+// What is opened and how: only regular files, wherever their names come from; files that are shortened while they are
+// read; and a process without descriptors.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -37,7 +37,7 @@ std::filesystem::path make_pipe(const std::filesystem::path& name) {
   return name;
 }
 
-/// A case of one cube, whose folder is given back.
+/// A case of one cube; returns its directory.
 std::filesystem::path write_cube_case(const TemporaryFolder& folder) {
   const auto path = folder / "case";
   testing::write_foam(path, testing::Cubes(1), [](int) { return true; });
@@ -45,7 +45,7 @@ std::filesystem::path write_cube_case(const TemporaryFolder& folder) {
   return path;
 }
 
-// Each of these waited without end for somebody to write into the pipe.
+// Each of these once waited without end for a writer of the pipe.
 TEST(InputFiles, PipesAreRefusedByThemselves) {
   const TemporaryFolder folder;
   for (const char* name : {"p.vtu", "p.vtk", "p.stl", "p.ply", "p.tets", "p.mesh", "p.su2", "p.bdf", "p.dat", "p.ele"})
@@ -126,7 +126,7 @@ TEST(InputFiles, WithoutDescriptorsTheSystemHasFailed) {
   EXPECT_NE(fault.message.find("ulimit -n"), std::string::npos) << fault.message;
 }
 
-// A mapping of these files ended the process by SIGBUS when it was touched.
+// A mapping of these files once ended the process by SIGBUS when it was accessed.
 TEST(InputFiles, ShortenedBeforeTheyAreReadIsAnError) {
   const TemporaryFolder folder;
   const auto expect_failure = [](const auto& action, const char* what) {
@@ -155,7 +155,7 @@ TEST(InputFiles, ShortenedBeforeTheyAreReadIsAnError) {
 }
 
 TEST(InputFiles, AWholeFileThatEndsBeforeItsSizeIsAnError) {
-  // Files of the kernel's have a page's size and some words.
+  // Files of the kernel have a page's size and a few words.
   const std::filesystem::path words = "/sys/kernel/mm/transparent_hugepage/enabled";
   std::error_code unknown;
   if (std::filesystem::file_size(words, unknown) == 0 || unknown) GTEST_SKIP() << "no " << words;

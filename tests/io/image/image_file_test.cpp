@@ -27,7 +27,7 @@ using test::TemporaryFolder;
 
 constexpr float inf = std::numeric_limits<float>::infinity();
 
-/// Uneven sides, every pixel its own; some with nothing in them.
+/// Odd side lengths, every pixel different; some are empty.
 scene::Image picture(int width = 37, int height = 21) {
   scene::Image image({width, height});
   for (int y = 0; y < height; ++y)
@@ -44,7 +44,7 @@ scene::Image picture(int width = 37, int height = 21) {
   return image;
 }
 
-/// A .png as libpng reads it: channels and bits as the file has them, 16-bit numbers in the machine's order.
+/// A .png as read by libpng: channels and bits as in the file, 16-bit numbers in native order.
 struct Png {
   png_uint_32 width = 0, height = 0;
   int channels = 0, bits = 0, intent = -1;
@@ -99,7 +99,7 @@ TEST(ImageFile, ExrInHalfRoundsColoursButNotDepth) {
   const scene::Image back = read_image(folder / "a.EXR");
   EXPECT_EQ(back.depth, image.depth);
   for (std::size_t i = 0; i < image.rgba.size(); ++i)
-    EXPECT_NEAR(back.rgba[i], image.rgba[i], std::max(image.rgba[i] * 0x1p-11f, 0x1p-25f));  // half's rounding
+    EXPECT_NEAR(back.rgba[i], image.rgba[i], std::max(image.rgba[i] * 0x1p-11f, 0x1p-25f));  // rounding of half
   const Imf::InputFile file((folder / "a.EXR").c_str(), 0);
   EXPECT_EQ(file.header().channels().findChannel("R")->type, Imf::HALF);
   EXPECT_EQ(file.header().channels().findChannel("Z")->type, Imf::FLOAT);
@@ -269,7 +269,7 @@ TEST(ImageFile, JpegStandsOnBlackUnlessThereIsABackground) {
   const TemporaryFolder folder;
   scene::Image image({16, 16});
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) image.rgba[i] = 0.2f, image.rgba[i + 3] = 0.4f;
-  // Decoded by hand it would take a decoder: one flat colour is its first coefficient, so that files of one differ.
+  // Checking more would need a decoder: one flat colour is its first coefficient, so files of different colours differ.
   write_image(image, folder / "black.jpg", {});
   write_image(image, folder / "background.jpg", {.background = glm::dvec3(0)});
   write_image(image, folder / "white.jpg", {.background = glm::dvec3(1)});
@@ -290,7 +290,7 @@ TEST(ImageFile, ExrHasTheSameBytesOnAnyNumberOfThreads) {
 TEST(ImageFile, DisplayCodesAreTheFormulas) {
   const auto formula = [](double linear) { return std::lround(255 * colormaps::encode_srgb(linear)); };
   for (int i = 0; i <= 1'000'000; ++i) ASSERT_EQ(srgb_code(i * 1e-6), formula(i * 1e-6)) << i;
-  // At the edges between codes, where a table would err first.
+  // At the boundaries between codes, where a table would be wrong first.
   for (int code = 0; code < 255; ++code) {
     double edge = colormaps::decode_srgb((code + 0.5) / 255);
     for (int i = 0; i < 20; ++i) edge = std::nextafter(edge, 0.0);

@@ -68,7 +68,7 @@ TEST(Amrex, FieldsAreListedAndTheFolderIsToldByItsHeader) {
   EXPECT_EQ(read.format, "AMReX plot file");
   ASSERT_NE(identify(plot).format, nullptr);
   EXPECT_STREQ(identify(plot).format->name, "AMReX plot file");
-  // A Header is one by what is in it.
+  // The contents identify a Header.
   EXPECT_FALSE(looks_like_amrex("Header of something\n2\na\nb\n3\n"));
   EXPECT_FALSE(looks_like_amrex("HyperCLaw-V1.1\n2\na\nb\n7\n"));
   EXPECT_FALSE(looks_like_amrex(""));

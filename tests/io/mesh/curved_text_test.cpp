@@ -22,7 +22,7 @@ using testing::BentCell;
 using testing::CellSpace;
 using testing::ReferenceCell;
 using Lists = std::vector<std::vector<int>>;
-/// With what the format calls it.
+/// With the format's name for it.
 using Named = std::vector<std::pair<ReferenceCell, std::string>>;
 
 constexpr auto tet = cells::CurvedFamily::tet, pyramid = cells::CurvedFamily::pyramid,
@@ -41,7 +41,7 @@ const Lists tet_edges = {{1, 2}, {2, 3}, {3, 1}, {1, 4}, {2, 4}, {3, 4}},
             base_edges = {{1, 2}, {2, 3}, {3, 4}, {4, 1}}, top_edges = {{5, 6}, {6, 7}, {7, 8}, {8, 5}},
             upright_edges = {{1, 5}, {2, 6}, {3, 7}, {4, 8}};
 
-/// As VTK's headers have them, and with it XDMF and EnSight.
+/// As in VTK's headers, and therefore in XDMF and EnSight.
 const ReferenceCell tet10{"10-node tetrahedron", tet, tet_edges},
     pyramid13{"13-node pyramid", pyramid, pyramid_edges, CellSpace::linear},
     wedge15{"15-node wedge", wedge, together(wedge_base, wedge_top, wedge_upright)},
@@ -236,7 +236,7 @@ std::string universal(const std::vector<glm::dvec3>& points, int type, const std
 
 TEST_F(CurvedText, IdeasParabolicElementsGoRoundFromCornerToMiddle) {
   if (!has_reader(Reader::gmsh)) GTEST_SKIP() << "tessera-read-gmsh is not installed";
-  // Corners and middles, counted from 1 as VTK has them, in the order of I-DEAS.
+  // Corners and middles, numbered from 1 as in VTK, in the order of I-DEAS.
   const std::vector<int> of_tet = {1, 5, 2, 6, 3, 7, 8, 9, 10, 4},
                          of_wedge = {1, 7, 2, 8, 3, 9, 13, 14, 15, 4, 10, 5, 11, 6, 12},
                          of_brick = {1, 9, 2, 10, 3, 11, 4, 12, 17, 18, 19, 20, 5, 13, 6, 14, 7, 15, 8, 16};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Medit meshes, binary and text, written here as libMeshb's documentation has them.
+// Medit meshes, binary and text, written according to libMeshb's documentation.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -81,7 +81,7 @@ class Writer {
   std::size_t place_at_ = 0;
 };
 
-/// A cube with a pyramid upon it and a prism and a tetrahedron beside it.
+/// A cube with a pyramid on top and a prism and a tetrahedron next to it.
 std::string tower(int version, bool is_big) {
   Writer file(version, is_big);
   file.points({{0, 0, 0},
@@ -195,7 +195,7 @@ TEST(MeditText, LinesAndCommentsPartWordsAsBlanksDo) {
     EXPECT_NEAR(testing::volume(read.mesh), 2.0 / 6, 1e-12);
     EXPECT_EQ(read.blocks, (std::vector<std::string>{"reference 7", "reference 8"}));
   }
-  // Whatever the name.
+  // With any name.
   EXPECT_EQ(read_mesh(folder.write("a.dat", "\n" + two_tets("\n"))).counts.cells_read, 2u);
 }
 
@@ -225,7 +225,7 @@ TEST(MeditText, FaultsAreNamedWithTheirLine) {
   for (const std::string word : {"HexahedraQ2", "TetrahedraP3", "TetrahedraP2Ordering", "Prisms9", "PolyhedraHeaders"})
     refuse("Tetrahedra", word, {fmt::format("its {} are not read", word)});
   refuse("Tetrahedra", "Triangles", {"no cells of volume"});
-  // Numbers are left over: the count is too small, or cells have more nodes than their keyword takes.
+  // Numbers remain: the count is too small, or cells have more nodes than their keyword allows.
   refuse("Tetrahedra\n2", "Tetrahedra\n1", {"follows the last of the Tetrahedra"});
   refuse("Vertices\n5", "Vertices\n4", {"follows the last of the Vertices"});
 }

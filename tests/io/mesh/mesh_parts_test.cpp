@@ -41,7 +41,7 @@ class MeshParts : public ::testing::Test {
   test::TemporaryFolder folder;
 };
 
-/// A mixed mesh moved along x, so that pieces stand side by side, with fields that tell the pieces apart.
+/// A mixed mesh moved along x, so that pieces are adjacent, with fields that distinguish the pieces.
 cells::CellBlock piece_at(int p) {
   cells::CellBlock block = testing::mixed_mesh(2, static_cast<unsigned>(p) + 1, p % 2 == 0);
   for (glm::dvec3& x : block.positions) x.x += p;
@@ -62,7 +62,7 @@ TEST_F(MeshParts, PiecesGiveTheTetsCountsAndFieldOfTheWhole) {
   std::vector<cells::CellBlock> pieces;
   for (int p = 0; p < 5; ++p) pieces.push_back(piece_at(p));
   const auto file = write_pieces(pieces);
-  // "piece" is constant in each piece; only all together know that it varies, and so is chosen.
+  // "piece" is constant in each piece; only all together show that it varies, so it is chosen.
   EXPECT_EQ(read_mesh(file).mesh.field_name, "piece");
   expect_as_whole(file);
   for (const char* field : {"noisy", "cells", "point:piece"}) {
@@ -100,9 +100,9 @@ TEST_F(MeshParts, ListsOfBlocksAreReadInParts) {
   write_pieces({piece_at(1), piece_at(2)});  // m.pvtu
   folder.write("first.vtu", testing::vtu_text(piece_at(0)));
   cells::CellBlock last = piece_at(3);
-  last.fields.pop_back();  // its cells are blanked where "cells" is drawn
+  last.fields.pop_back();  // its cells are blank where "cells" is drawn
   folder.write("last.vtu", testing::vtu_text(last));
-  folder.write("skin.vtp", "<VTKFile type=\"PolyData\">");  // not looked into further
+  folder.write("skin.vtp", "<VTKFile type=\"PolyData\">");  // not examined further
   const auto file = folder.write("m.vtm",
                                  "<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet>"
                                  "<DataSet name=\"a\" file=\"first.vtu\"/><DataSet name=\"skin\" file=\"skin.vtp\"/>"
@@ -125,7 +125,7 @@ TEST_F(MeshParts, ListsOfBlocksAreReadInParts) {
 
 TEST_F(MeshParts, NeighbouringPiecesAgreeOnTheirFaces) {
   TESSERA_VTK_OR_SKIP();
-  // One mesh cut into three pieces, each with points of its own: only positions tell that hexahedra touch.
+  // One mesh cut into three pieces, each with its own points: only positions reveal that hexahedra touch.
   const cells::CellBlock whole = testing::mixed_mesh(3, 4, true);
   std::vector<cells::CellBlock> pieces(3);
   for (std::size_t p = 0; p < 3; ++p) {
@@ -167,7 +167,7 @@ TEST_F(MeshParts, FaultsNameThePiece) {
   EXPECT_EQ(message_of([&] { read_in_parts(file, 2); }), message_of([&] { read_mesh(file); }));
   EXPECT_EQ(message_of([&] { read_in_parts(file, 3); }), message_of([&] { read_mesh(file); }));
   ReadOptions options;
-  options.field = "noisy";  // which all have
+  options.field = "noisy";  // all pieces have it
   EXPECT_NO_THROW(read_in_parts(file, 3, options));
   options.field = "absent";
   EXPECT_EQ(message_of([&] { read_in_parts(file, 3, options); }), message_of([&] { read_mesh(file, options); }));
@@ -180,7 +180,7 @@ TEST_F(MeshParts, FaultsNameThePiece) {
   EXPECT_EQ(message_of([&] { read_in_parts(file, 2); }),
             fmt::format("{}: there is no such file, which {} lists; put it there", (folder / "piece2.vtu").string(),
                         file.string()));
-  folder.write("piece2.vtu", test::contents(file));  // a file in pieces is no piece
+  folder.write("piece2.vtu", test::contents(file));  // a file in pieces is not a piece
   EXPECT_NE(message_of([&] { read_mesh(file); }).find("'PUnstructuredGrid'"), std::string::npos);
   options.time_step = 3;
   EXPECT_NE(message_of([&] { read_in_parts(file, 2, options); }).find("no time step 3"), std::string::npos);
@@ -210,7 +210,7 @@ TEST_F(MeshParts, RangesOfTetsGiveTheWhole) {
     mesh.positions.push_back({v % 3, (v / 3) % 4, v / 12 + 0.25 * v});
     mesh.scalars.push_back(v == 11 ? no_number : v * 0.5);
   }
-  // Vertices 30 and more are used by none, 11 only by tets that are blanked; one tet comes twice, one has collapsed.
+  // Vertices 30 and more are unused, 11 is used only by blanked tets; one tet occurs twice, one is collapsed.
   for (std::uint32_t t = 0; t < 20; ++t) mesh.tets.push_back({t, t + 2, (7 * t) % 30, (t * t + 5) % 30});
   mesh.tets.push_back(mesh.tets[3]);
   mesh.tets.push_back({4, 4, 5, 6});
@@ -221,7 +221,7 @@ TEST_F(MeshParts, RangesOfTetsGiveTheWhole) {
   EXPECT_GT(whole.counts.tets_collapsed, 0u);
   EXPECT_GE(whole.counts.points_unused, 10u);
   expect_as_whole(file);
-  // A part holds no vertex that its tets do not name.
+  // A part has no vertex that its tets do not use.
   const InParts read = read_in_parts(file, 7);
   for (const MeshFilePart& part : read.parts) EXPECT_LE(part.mesh.positions.size(), 4 * 4u);
 }

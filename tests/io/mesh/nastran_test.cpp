@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nastran decks, written here as MSC's Quick Reference Guide has them.
+// Nastran decks, written according to MSC's Quick Reference Guide.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -19,7 +19,7 @@ namespace {
 
 using Points = std::vector<glm::dvec3>;
 
-/// An entry in fields of 8 letters, continued after eight.
+/// An entry in fields of 8 characters, continued after eight.
 std::string small(const std::vector<std::string>& fields) {
   std::string text = fmt::format("{:8}", fields[0]);
   for (std::size_t k = 1; k < fields.size(); ++k) {
@@ -61,7 +61,7 @@ std::vector<std::string> hexahedron(int id, int property) {
 
 std::string deck(const std::string& bulk) { return "SOL 101\nCEND\nBEGIN BULK\n" + bulk + "ENDDATA\n"; }
 
-/// A hexahedron over two units of radius and a quarter of a turn about z, in a system that `system` defines.
+/// A hexahedron over two units of radius and a quarter turn about z, in a system that `system` defines.
 std::string quarter(const std::string& system, const std::string& id = "7") {
   std::string text = system;
   const Points corners = {{1, 0, 0}, {2, 0, 0}, {2, 90, 0}, {1, 90, 0}, {1, 0, 1}, {2, 0, 1}, {2, 90, 1}, {1, 90, 1}};
@@ -112,18 +112,18 @@ TEST_F(Nastran, PointsAreInTheSystemsOfTheirGrids) {
     return small(corners);
   };
   expect_points(quarter(cord("CORD2C", "7", "", axes)), turned);
-  // Along another axis and from another place: z is x, and x is y.
+  // Along another axis and from another place: z becomes x, and x becomes y.
   Points moved;
   for (const glm::dvec3& p : turned) moved.emplace_back(5 + p.z, p.x, p.y);
   const std::string other = cord("CORD2C", "7", "0", {"5.", "0.", "0.", "6.", "0.", "0.", "5.", "1.", "0."});
   expect_points(quarter(other), moved);
-  // By a system that is in another, and one that is by three points.
+  // By a system defined in another, and one defined by three points.
   expect_points(quarter(cord("CORD2R", "3", "0", {"5.", "0.", "0.", "6.", "0.", "0.", "5.", "1.", "0."}) +
                         cord("CORD2C", "7", "3", axes)),
                 moved);
   expect_points(quarter("GRID,101,,5.,0.,0.\nGRID,102,,9.,0.,0.\nGRID,103,,7.,3.,0.\nCORD1C,6,1,2,3,7,101,102,103\n"),
                 moved);
-  // As the default of all points without a system of their own, but for those with a 0.
+  // As the default of all points without a system of their own, except those with a 0.
   expect_points(quarter(other + "GRDSET,,7\nGRID,20,0,9.,9.,9.\nCTETRA,5,1,1,2,3,20\n", ""), [&] {
     Points with = moved;
     with.insert(with.begin() + 3, {9, 9, 9});
@@ -161,7 +161,7 @@ TEST_F(Nastran, BlankNodesInTheMiddleOfEdgesAreTheMiddle) {
   EXPECT_NEAR(testing::volume(straight.mesh), 8.0 / 6, 1e-12);
 }
 
-/// A cell of corners and the middles of `edges`, in Nastran's order, as VTK has it.
+/// A cell of corners and the middles of `edges`, in Nastran's order, compared with VTK's.
 TEST_F(Nastran, CellsOfSecondOrderHaveTheirNodesInVtksOrder) {
   using Edges = std::vector<std::array<std::size_t, 2>>;
   struct Case {
@@ -215,7 +215,7 @@ TEST_F(Nastran, IncludedFilesAreReadInTheirPlaces) {
     EXPECT_NEAR(testing::volume(read.mesh), 1, 1e-12) << include;
     EXPECT_EQ(read.counts.cells_read, 1u);
   }
-  // What comes before the bulk data holds no mesh.
+  // The sections before the bulk data contain no mesh.
   const std::string control = "INCLUDE 'modes.v2005'\n" + deck("INCLUDE 'parts/grids.bdf'\n" + small(hexahedron(1, 1)));
   EXPECT_NEAR(testing::volume(read_mesh(folder.write("d.bdf", control)).mesh), 1, 1e-12);
   test::expect_bad_input([&] { read_mesh(folder.write("b.bdf", deck("INCLUDE 'none.bdf'\n"))); },
@@ -268,12 +268,12 @@ TEST_F(Nastran, ReplicationsCopyAndAddToTheEntryBefore) {
             tets);
   EXPECT_EQ(cells_of("CTETRA,1,1,1,2,3,4\nCTETRA,*1,=,5,6,7,8\n=,*1,==\n"),
             (Cells{{1, 2, 3, 4}, {5, 6, 7, 8}, {5, 6, 7, 8}}));
-  // Continued; `==` copies what a continuation holds.
+  // Continued; `==` copies the fields of a continuation.
   const Cells hexahedra = {{1, 2, 3, 4, 5, 6, 7, 8}, {9, 10, 11, 12, 13, 14, 15, 16}};
   EXPECT_EQ(cells_of("CHEXA,1,1,1,2,3,4,5,6,+\n+,7,8\n=,*1,=,*8,*8,*8,*8,*8,*8,+\n+,*8,*8\n"), hexahedra);
   EXPECT_EQ(cells_of("CHEXA,1,1,1,2,3,4,5,6,+\n+,7,8\n=,*1,=,3,4,5,6,==\n"),
             (Cells{hexahedra[0], {3, 4, 5, 6, 5, 6, 7, 8}}));
-  // Of entries that are not read they are not read either.
+  // Replications of entries that are not read are not read either.
   EXPECT_EQ(cells_of("CTETRA,1,1,1,2,3,4\nCQUAD4,2,1,1,2,3,4\n=,*1,=,*4,*4,*4,*4\n").size(), 1u);
 }
 

@@ -48,7 +48,7 @@ TEST(PlyFile, AsciiAndEitherByteOrderAreTheSame) {
     EXPECT_EQ(ply.surface.points, (std::vector<glm::dvec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1.5}}));
     ASSERT_EQ(ply.surface.facets.size(), 2u);
     EXPECT_EQ(ply.surface.facets[1].polygons, (std::vector<cells::Polygon>{{0, 1, 2, 3}}));
-    EXPECT_EQ(ply.attribute_names, std::vector<std::string>{"heat"});  // a colour is no quantity
+    EXPECT_EQ(ply.attribute_names, std::vector<std::string>{"heat"});  // a colour is not a quantity
     EXPECT_EQ(ply.surface.attributes, (std::vector<std::vector<double>>{{-1, 2, 3, 4}}));
   }
 }
@@ -68,7 +68,7 @@ TEST(PlyFile, WrongCountsTypesAndIndicesAreTold) {
   };
   expect("vertex 4", "vertex 99999999999", "promises '99999999999'");
   expect("vertex 4", "vertex -4", "promises '-4'");
-  expect("vertex 4", "vertex 5", "ends before");  // the faces' numbers are taken for a vertex
+  expect("vertex 4", "vertex 5", "ends before");  // the faces' numbers are interpreted as a vertex
   expect("face 2", "face 3", "ends before");
   expect("3 0 1 2 7", "3 0 1 4 7", "face 0 uses vertex 4");
   expect("3 0 1 2 7", "3 0 1 -2 7", "face 0 uses vertex -2");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// SU2 meshes, written here as SU2's documentation has them.
+// SU2 meshes, written according to SU2's documentation.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace tessera::io {
 namespace {
 
-/// A unit cube as two prisms, a cube above it, and a pyramid upon that.
+/// A unit cube as two prisms, a cube above it, and a pyramid on top of that.
 std::string tower(const std::string& points_last) {
   const std::string cells =
       "NELEM= 4\n13 0 1 3 4 5 7 0\n13\t1 2 3\t5 6 7 1\n12 4 5 6 7 8 9 10 11 2\n14 8 9 10 11 12 3\n";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tecplot text files, written here as Tecplot's Data Format Guide has them: a cube of bricks with a field that is
-// linear in space at its nodes and another at its cells.
+// Tecplot text files, written according to Tecplot's Data Format Guide: a cube of bricks with a linear field at its
+// nodes and another at its cells.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -233,7 +233,7 @@ TEST_F(Tecplot, BricksWithRepeatedNodesAreWedgesPyramidsAndTetrahedra) {
 }
 
 TEST_F(Tecplot, PolyhedraHaveTheFacesBesideThem) {
-  // Two cubes; their common face has one of them on each side.
+  // Two cubes; one is on each side of their common face.
   const std::string text =
       "VARIABLES=X,Y,Z,f\nZONE NODES=12 ELEMENTS=2 FACES=11 TOTALNUMFACENODES=44 NUMCONNECTEDBOUNDARYFACES=0 "
       "TOTALNUMBOUNDARYCONNECTIONS=0 DATAPACKING=BLOCK ZONETYPE=FEPOLYHEDRON VARLOCATION=([4]=CELLCENTERED)\n"
@@ -273,7 +273,7 @@ TEST_F(Tecplot, FaultsAreNamedWithTheirLine) {
   const std::string tet = head + "ZONETYPE=FETETRAHEDRON\n";
   EXPECT_EQ(parse_tecplot(tet + points + "1 2 3 4\n", "a.tec", std::nullopt).blocks.size(), 1u);
   const std::string one = tet + points + "1 2 3 4\n";
-  EXPECT_EQ(parse_tecplot(one + "TITLE=\"b\"\n" + one, "a.tec", std::nullopt).blocks.size(), 2u);  // put together
+  EXPECT_EQ(parse_tecplot(one + "TITLE=\"b\"\n" + one, "a.tec", std::nullopt).blocks.size(), 2u);  // concatenated
   refuse(one + "VARIABLES=X,Y,Z,p\n" + one, {"line 8", "VARIABLES names others"});
   refuse(tet + points + "1 2 3\n", {"a.tec", "line 8", "nodes of elements", "truncated"});
   refuse(tet + points + "1 2 3 5\n", {"line 2", "uses node 5, the zone has 4"});

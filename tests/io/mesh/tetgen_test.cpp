@@ -50,7 +50,7 @@ TEST(NodeEle, NumberingFromZeroAndSecondOrderTetsWork) {
 }
 
 TEST(NodeEle, SecondOrderNodesAreInTetGensOrder) {
-  // The middles of the edges as TetGen 1.5 writes them (-o2): 3-4, 1-4, 1-2, 2-3, 2-4, 1-3.
+  // The middles of the edges as written by TetGen 1.5 (-o2): 3-4, 1-4, 1-2, 2-3, 2-4, 1-3.
   const std::string node =
       "10 3 0 0\n1 0 0 0\n2 2 0 0\n3 0 2 0\n4 0 0 2\n5 0 1 1\n6 0 0 1\n7 1 0 0\n8 1 1 0\n9 1 0 1\n10 0 1 0\n";
   const cells::CellBlock block = parse_node_ele(node, "1 10 0\n1 1 2 3 4 5 6 7 8 9 10\n", "m.node", "m.ele");
@@ -88,7 +88,7 @@ TEST(NodeEle, AMissingPartnerIsTold) {
 
 // --- surfaces ------------------------------------------------------------------------------------------------------
 
-/// A sphere of triangles, n slices round and n / 2 layers, as ASCII STL or PLY.
+/// A sphere of triangles, n slices around and n / 2 layers, as ASCII STL or PLY.
 struct Sphere {
   std::vector<glm::dvec3> points;
   std::vector<std::array<int, 3>> faces;
@@ -191,7 +191,7 @@ TEST_F(Filled, ASphereHasThePolyhedronsVolumeAndDepth) {
     SCOPED_TRACE(file);
     const cells::MeshFile read = read_mesh(file, options);
     scene::validate(read.mesh, "s");
-    EXPECT_NEAR(testing::volume(read.mesh), s.volume, 1e-6 * s.volume);  // the files hold floats
+    EXPECT_NEAR(testing::volume(read.mesh), s.volume, 1e-6 * s.volume);  // the files store floats
     EXPECT_GE(read.mesh.tets.size(), 5000u);
     EXPECT_EQ(read.mesh.field_name, "depth");
     const auto range = scene::scalar_range(read.mesh);
@@ -227,7 +227,7 @@ TEST_F(Filled, APolyKeepsItsLinearAttribute) {
 }
 
 TEST_F(Filled, ASmeshTakesItsPointsFromTheNodeFileAndLeavesCavitiesEmpty) {
-  // A cube in a cube; the hole's point lies in the inner one.
+  // A cube in a cube; the hole's point is in the inner one.
   std::string node = "16 3 0 0\n";
   for (int v = 0; v < 16; ++v) {
     const double inset = v < 8 ? 0 : 0.25;
@@ -265,7 +265,7 @@ TEST_F(Filled, OpenCuttingFlatAndEmptySurfacesAreTold) {
   expect_bad_input([&] { read_mesh(folder.write("s.ply", ply({s})), options); }, {"give a positive one"});
 }
 
-/// A prism whose three sides are quads that are not flat, as those of many drawn surfaces: TetGen takes none of them.
+/// A prism whose three sides are warped quads, as in many modelled surfaces, which TetGen does not accept.
 TEST_F(Filled, WarpedPolygonsAreCutIntoTriangles) {
   std::string text =
       "ply\nformat ascii 1.0\nelement vertex 6\nproperty double x\nproperty double y\nproperty double z\n"
@@ -279,7 +279,7 @@ TEST_F(Filled, WarpedPolygonsAreCutIntoTriangles) {
   ReadOptions options;
   options.max_volume = 0.01;
   const cells::MeshFile read = read_mesh(folder.write("w.ply", text), options);
-  // Each side's diagonal is one of two: what is inside lies between the volumes of all inward and all outward.
+  // Each side is cut along one of two diagonals: the volume is between those with all cuts inward and all outward.
   const double base = 0.75 * std::sqrt(3.0);
   EXPECT_NEAR(testing::volume(read.mesh), base, 0.25 * base);
   EXPECT_GT(read.mesh.tets.size(), 100u);
@@ -304,8 +304,8 @@ TEST_F(Filled, WhatNoFewFacetsNeedIsRefusedWithARemedy) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "the helper has address space without a limit, for the sanitizer's sake";
 #endif
-  // Tets of a good shape are no wider than the plate is thick, which would be 10^12 of them. Half a percent is
-  // no trouble: some 10^5.
+  // Well-shaped tets are no wider than the plate is thick, so there would be 10^12 of them. Half a percent is feasible:
+  // some 10^5.
   EXPECT_NEAR(testing::volume(read_mesh(folder.write("thick.poly", box_poly(1, 1, 0.005))).mesh), 0.005, 1e-9);
   rusage before{}, after{};
   ::getrusage(RUSAGE_CHILDREN, &before);

@@ -15,7 +15,7 @@ namespace {
 
 using test::expect_bad_input;
 
-/// g++ 12 drops the rounding of `x = static_cast<float>(x)` where it vectorizes a loop of them; volatile keeps it.
+/// g++ 12 drops the rounding of `x = static_cast<float>(x)` when it vectorizes a loop of them; volatile keeps it.
 double rounded(double x) {
   const volatile float f = static_cast<float>(x);
   return f;

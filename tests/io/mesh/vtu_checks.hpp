@@ -17,14 +17,14 @@
 
 namespace tessera::test {
 
-/// All that a block has, its fields as they come.
+/// All values of a block's field, in order.
 inline std::vector<double> values_of(const cells::BlockField& field, int component) {
   std::vector<double> values(field.tuples);
   field.read(component, 0, values);
   return values;
 }
 
-/// A NaN's sign and payload are not the file's to choose where it is text.
+/// A text cannot store the sign and payload of a NaN.
 inline bool is_same(double a, double b) {
   return (std::isnan(a) && std::isnan(b)) || std::memcmp(&a, &b, sizeof a) == 0;
 }
@@ -72,7 +72,7 @@ inline void expect_same_blocks(const cells::CellBlock& a, const cells::CellBlock
   }
 }
 
-/// The one block of a .vtu that this process reads.
+/// The only block of a .vtu that this process reads.
 inline cells::CellBlock vtu_block(const std::filesystem::path& file) {
   const auto opened = io::open_vtk_xml(file);
   EXPECT_TRUE(opened.has_value()) << file << " is left to VTK's reader";

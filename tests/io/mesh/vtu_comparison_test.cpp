@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// .vtu files as this process reads them and as VTK's reader does: the same cells and values to the bit. Besides files
-// of our own those in a folder that the environment variable TESSERA_VTU_FILES names.
+// .vtu files as read by this process and by VTK's reader: the same cells and values to the bit. In addition to our own
+// files, those in a directory named by the environment variable TESSERA_VTU_FILES.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -86,7 +86,7 @@ TEST_F(VtuComparison, OurMeshesAreReadAsVtkReadsThem) {
   expect_same(testing::vtu_text(testing::voronoi_mesh(3, 5)));
 }
 
-// Not -inf, of which VTK 9.1 makes inf, nor -nan and infinity, which it does not read.
+// Without -inf, which VTK 9.1 reads as inf, and without -nan and infinity, which it does not read.
 TEST_F(VtuComparison, NumbersAreSpelledAsVtkReadsThem) {
   test::SomeCases some(5);
   for (const char* numbers :
@@ -107,7 +107,7 @@ TEST_F(VtuComparison, NumbersAreSpelledAsVtkReadsThem) {
     }
 }
 
-// Eight in a byte, the first highest; each piece begins with a byte.
+// Eight per byte, the first highest; each piece begins with a byte.
 TEST_F(VtuComparison, BitsAreReadPieceByPiece) {
   for (const bool is_text : {false, true}) {
     std::string text = vtu_file_text({}, {test::sample_piece(), test::sample_piece()});

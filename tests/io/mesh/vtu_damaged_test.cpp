@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Damaged .vtu files are refused in one line, or left to VTK's reader, and take no memory that they cannot fill.
+// Damaged .vtu files are refused in one line, or left to VTK's reader, and do not allocate memory that they cannot
+// fill.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -31,7 +32,7 @@ class VtuDamaged : public ::testing::Test {
  protected:
   void SetUp() override { before_ = peak(); }
   void TearDown() override {
-#ifndef __SANITIZE_ADDRESS__  // which keeps what was freed
+#ifndef __SANITIZE_ADDRESS__  // it keeps freed memory
     EXPECT_LT(peak() - before_, most_memory) << "bytes that damaged files took";
 #endif
   }
@@ -42,7 +43,7 @@ class VtuDamaged : public ::testing::Test {
     return static_cast<std::size_t>(usage.ru_maxrss) << 10;
   }
 
-  /// Reads all of a file; whether it was accepted.
+  /// Reads all of a file; returns whether it was accepted.
   bool is_read(const std::string& text) const {
     const auto file = folder.write("d.vtu", text);
     bool known = true;

@@ -49,7 +49,7 @@ void expect_points(const cells::CellBlock& block, const std::vector<double>& num
     EXPECT_EQ(block.positions[first + k / 3][static_cast<int>(k % 3)], numbers[k]) << k;
 }
 
-/// The block of sample_piece().
+/// Checks the block of sample_piece().
 void expect_sample(const cells::CellBlock& block, const VtuPiece& piece) {
   ASSERT_EQ(block.positions.size(), piece.points);
   expect_points(block, piece.coordinates[0].numbers);
@@ -80,7 +80,7 @@ void expect_sample(const cells::CellBlock& block, const VtuPiece& piece) {
   EXPECT_EQ(c.tally->high, 1000);
 }
 
-/// A tet at (8 * at, 0, 0) whose cell field is `value` and point field 10 times that and the point's number.
+/// A tet at (8 * at, 0, 0) with the cell field `value` and the point field 10 times that plus the point's number.
 VtuPiece one_tet(double at, double value) {
   return {.points = 4,
           .cells = 1,
@@ -223,7 +223,7 @@ TEST_F(Vtu, PiecesWithOtherArraysAreLeftToVtk) {
   EXPECT_FALSE(open_vtk_xml(write(vtu_file_text({}, {one_tet(0, 1), other}))));
 }
 
-/// A cube and a tet on it, as polyhedra, beside a cell that is none.
+/// A cube and a tet on it, as polyhedra, next to a cell that is not a polyhedron.
 VtuPiece polyhedra(bool numbered) {
   VtuPiece piece = sample_piece();
   piece.point_data.clear(), piece.cell_data.clear();
@@ -259,7 +259,7 @@ TEST_F(Vtu, PolyhedraOfBothLayoutsHaveTheSameFaces) {
     }
 }
 
-/// Cells [first, last) of a block of polyhedra as VTK 9.4 writes them, with cell numbers; faces between cells once.
+/// Cells [first, last) of a block of polyhedra as written by VTK 9.4, with cell numbers; faces between cells once.
 std::string numbered_polyhedra(const cells::CellBlock& block, std::size_t first, std::size_t last) {
   const std::vector<testing::Faces> cells = testing::faces_of_cells(block);
   std::map<std::vector<std::uint32_t>, std::size_t> numbers;

@@ -98,7 +98,7 @@ std::string ascii_of(const VtuArray& array) {
   return text;
 }
 
-/// As the header and data of an array are stored.
+/// The header and data of an array as stored.
 std::string stored(const VtuStorage& s, const std::string& bytes) {
   const bool is_text = s.coding != Coding::appended_raw;
   std::string head, body;

@@ -18,12 +18,12 @@ struct VtuStorage {
   bool wide_numbers = false;  ///< header_type UInt64
   bool big_endian = false;
   std::size_t block = 40;   ///< bytes of a compressed block; 0: the whole array
-  bool split_text = false;  ///< base64: the number of bytes is a text by itself
-  std::size_t line = 0;     ///< base64: characters of a line; 0: all in one
+  bool split_text = false;  ///< base64: the number of bytes is a separate text
+  std::size_t line = 0;     ///< base64: characters per line; 0: all in one
   std::string version = "1.0";
 };
 
-/// An array and its numbers, as many as a double holds.
+/// An array and its numbers, as far as doubles represent them.
 struct VtuArray {
   std::string type, name;
   int components = 1;
@@ -39,12 +39,12 @@ struct VtuPiece {
 /// The text of a file.
 std::string vtu_file_text(const VtuStorage& storage, const std::vector<VtuPiece>& pieces);
 
-/// Two cubes of 12 points, the second of wedges: a hexahedron and two wedges with the point field "f", the vectors
-/// "v", the cell field "c" and points of `point_type`, indices of `index_type`.
+/// Two cubes of 12 points, the second made of wedges: a hexahedron and two wedges with the point field "f", the vectors
+/// "v", the cell field "c", points of `point_type` and indices of `index_type`.
 VtuPiece sample_piece(const std::string& point_type = "Float64", const std::string& index_type = "Int64",
                       const std::string& cell_type = "UInt8");
 
-/// All ways to store: four codings, four codecs (of ascii none), two widths, two byte orders.
+/// All storage variants: four encodings, four codecs (none for ascii), two widths, two byte orders.
 std::vector<VtuStorage> all_storages();
 
 }  // namespace tessera::test

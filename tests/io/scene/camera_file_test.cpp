@@ -27,7 +27,7 @@ TEST(CameraFile, ReadsBackTheSameDoublesItWrote) {
   orthographic.camera.clipping_range = {0.1, 1e300};
   CameraFile perspective = oblique();
   perspective.camera.projection = ProjectionKind::perspective;
-  perspective.camera.parallel_scale = 1;  // not written: it says nothing about a perspective view
+  perspective.camera.parallel_scale = 1;  // not written: it has no meaning in a perspective view
   perspective.camera.view_angle = 33.3;
   for (const CameraFile& view : {orthographic, perspective}) {
     write_camera(view, folder / "view.json");

@@ -16,7 +16,7 @@ namespace {
 using nlohmann::json;
 using scene::TraceRole;
 
-/// The one event of this phase and name.
+/// The only event with this phase and name.
 json event(const json& events, const std::string& phase, const std::string& name) {
   json found;
   for (const auto& candidate : events)

@@ -80,7 +80,7 @@ TEST(JsonTransferFunction, IsTakenInPlaceOfAName) {
   EXPECT_TRUE(same(load_transfer_function((folder / "f.json").string(), {}).function, stepped()));
 }
 
-/// Largest differences of colours, and of extinctions in proportion, between two functions.
+/// Largest differences of colours, and relative ones of extinctions, between two functions.
 struct Off {
   double color = 0, extinction = 0;
 };
