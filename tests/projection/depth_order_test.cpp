@@ -20,7 +20,7 @@ bool before(const TileEntry& a, const TileEntry& b) {
   return std::tie(a.near_depth, a.tet) < std::tie(b.near_depth, b.tet);
 }
 
-/// The same entries, none nearer than one before it by more than the slack.
+/// Expects the same entries, none nearer than one before it by more than the slack.
 double expect_ordered(std::vector<TileEntry> entries, DepthOrderScratch& scratch, const std::string& what) {
   std::vector<TileEntry> expected = entries;
   const DepthOrder order = order_by_depth(entries, scratch);
@@ -96,7 +96,7 @@ TEST(DepthOrder, SlackIsShort) {
       };
       // At least a step for every second entry, up to 4096 of them; the rest is the slack's margin for rounding.
       EXPECT_LE(slack("even"), 1.02 / std::min(static_cast<double>(n) / 2 - 1, 4095.0)) << name;
-      // Crowds are put in order for certain.
+      // Large numbers of entries are certainly reordered.
       if (n < 5003) continue;
       for (const char* what : {"one value", "one far outlier", "two far apart crowds", "every size"})
         EXPECT_EQ(slack(what), 0) << name << ", " << what << ", " << n;

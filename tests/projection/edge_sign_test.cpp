@@ -16,10 +16,10 @@ constexpr double orthographic = 0, perspective = 1000;  // pixels per tangent
 
 __extension__ using Wide = __int128;
 
-/// A vertex in whole numbers: homogeneous coordinates with w = 2, -2 or 0, so that positions are in half pixels.
+/// A vertex with integer coordinates: homogeneous with w = 2, -2 or 0, so that positions are in half pixels.
 struct WholeVertex {
   std::int64_t x, y, w;
-  /// The same vertex at a depth of `distance` on either side of the eye, with the rounding of that.
+  /// The same vertex at a depth of `distance` on either side of the eye, with the rounding of that depth.
   [[nodiscard]] PixelVertex seen(double distance) const {
     if (w == 0) return {static_cast<double>(x), static_cast<double>(y), 0, 0};
     const double side = w > 0 ? 1 : -1;
@@ -38,10 +38,10 @@ TEST(EdgeSign, AgreesWithIntegersOnAndBesideTheEdgeBeforeBesideAndBehindTheEye) 
     const std::int64_t signs[] = {2, -2, 0};
     const auto vertex = [&](std::int64_t x, std::int64_t y) {
       const std::int64_t w = signs[random() % 3], side = w < 0 ? -1 : 1;
-      // Beside the eye: where the line from the pixel to the point leads.
+      // In the plane of the eye: the direction from the pixel to the point.
       return w == 0 ? WholeVertex{x - px, y - py, 0} : WholeVertex{side * x, side * y, w};
     };
-    // Half of the trials have the pixel on the edge by construction.
+    // In half of the trials the pixel is on the edge by construction.
     const std::int64_t dx = draw(20), dy = draw(20), m = draw(10), n = draw(10);
     const WholeVertex a = vertex(px + m * dx, py + m * dy);
     const WholeVertex b = trial % 2 == 0 ? vertex(draw(30), draw(30)) : vertex(px + n * dx, py + n * dy);
@@ -65,7 +65,7 @@ TEST(EdgeSign, AgreesWithIntegersOnAndBesideTheEdgeBeforeBesideAndBehindTheEye) 
 
 TEST(EdgeSign, OnTheEdgeTheRayIsShiftedRightThenDown) {
   for (const double view : {orthographic, perspective}) {
-    // An upright edge: the shift to the right decides. A level one: the shift down.
+    // For a vertical edge the shift to the right decides, for a horizontal one the shift down.
     const auto sign = [view](const PixelVertex& a, const PixelVertex& b, double px, double py) {
       return edge_sign(a, b, px, py, view);
     };

@@ -17,7 +17,7 @@ FaceMark mark(std::uint32_t number, double slope_x, double slope_y, double depth
   return {0, number, depth, 0, 1e-14, {slope_x, slope_y}, {error, error}, 0.5f, true};
 }
 
-/// Those of one ray, in the order in which they are met.
+/// The crossings of one ray, in the order in which they are met.
 struct Met {
   std::vector<std::uint32_t> numbers;
   std::vector<double> depths;
@@ -41,7 +41,7 @@ Met met(std::vector<FaceMark> given) {
 
 TEST(FaceMarks, AtOneDepthAreInTheOrderOfAShiftedRay) {
   std::vector<FaceMark> marks{mark(1, 0.5, 0), mark(2, -1, 3), mark(3, -1, -2), mark(4, 0.5 + 1e-13, 0), mark(5, 0, 9)};
-  // By slope in x, then in y; one plane's by number.
+  // By slope in x, then in y; in one plane by number.
   const std::vector<std::uint32_t> expected{3, 2, 5, 1, 4};
   std::ranges::sort(marks, {}, &FaceMark::number);
   do {
@@ -74,10 +74,10 @@ TEST(FaceMarks, CellsEndBeforeThoseThatTheyMeetAndBeginBehindThem) {
   };
   add(1, 2, 0);                           // ends there
   add(2, 3, 0);                           // begins there
-  add(1, 3, 0);                           // goes through
-  add(2, 2, marked(Crossing{5, 0.5f}));   // an iso-surface that the ray meets before it leaves anything
-  add(2, 2, marked(Crossing{15, 0.5f}));  // one before all of larger numbers
-  add(2, 2, marked(Crossing{99, 0.5f}));  // one behind all
+  add(1, 3, 0);                           // passes through
+  add(2, 2, marked(Crossing{5, 0.5f}));   // an iso-surface that the ray meets before it leaves a cell
+  add(2, 2, marked(Crossing{15, 0.5f}));  // in front of all larger numbers
+  add(2, 2, marked(Crossing{99, 0.5f}));  // behind all
   marks.cut(segments, 0);
   ASSERT_EQ(segments.size, 7u) << "the third has two parts";
   const std::vector<double> places = met({mark(10, 1, 0), mark(20, -1, 0), mark(30, 0, 0)}).depths;
@@ -87,7 +87,7 @@ TEST(FaceMarks, CellsEndBeforeThoseThatTheyMeetAndBeginBehindThem) {
   EXPECT_EQ(segments.back[2], 2);
   EXPECT_EQ(segments.front[6], segments.front[1]);
   EXPECT_EQ(segments.back[6], 3);
-  // In order of slope the numbers are 20, 30, 10.
+  // Sorted by slope the numbers are 20, 30, 10.
   EXPECT_LT(segments.front[3], places[0]);
   EXPECT_LT(segments.front[4], places[0]);
   EXPECT_GT(segments.front[5], places[2]);

@@ -26,7 +26,7 @@ namespace {
 
 using Records = std::vector<CellRecord>;
 
-/// A mesh as a view sees it.
+/// A mesh in a view.
 struct Scene {
   Scene(const scene::TetMesh& mesh, const scene::Camera& camera, scene::ImageSize size_)
       : prepared(mesh), space(camera, size_), size(size_) {
@@ -38,7 +38,7 @@ struct Scene {
     return {&prepared, vertices, space.near_depth(), space.far_depth(), space.pixels_per_tangent()};
   }
   [[nodiscard]] CellUnits units() const {
-    // Steps of depth and of scalars finer than what is compared.
+    // Steps of depth and of scalars finer than the tolerances.
     const scene::Lattice lattice{
         .depth_origin = 0, .depth_unit = 0x1p-28, .scalar_origin = 0.5, .scalar_unit = 0x1p-29};
     return {0.5 * size.width, 0.5 * size.height, space.pixels_per_tangent(), lattice, 0, 0x1p28};
@@ -93,7 +93,7 @@ std::vector<T> read_back(const gl::Context& context, const gl::Buffer& buffer, s
   return values;
 }
 
-/// Counted, then filled into lists that are exactly as long.
+/// Counted, then filled into lists of exactly that length.
 std::vector<Segment> by_device(const gl::Context& context, const Scene& scene, std::size_t most_cells) {
   using gl::Buffer;
   GlRasterizer rasterizer(context, most_cells);
@@ -134,7 +134,7 @@ std::vector<Segment> by_device(const gl::Context& context, const Scene& scene, s
   return ordered(std::move(segments));
 }
 
-/// The same cells on every ray, and the same numbers within the roundings of what a device keeps.
+/// The same cells on every ray, and the same numbers within the rounding of a device's formats.
 void expect_like_planes(const gl::Context& context, const Scene& scene) {
   const auto expected = by_planes(scene), found = by_device(context, scene, 1 << 17);
   ASSERT_EQ(found.size(), expected.size());
@@ -142,8 +142,8 @@ void expect_like_planes(const gl::Context& context, const Scene& scene) {
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const Segment &a = expected[i], &b = found[i];
     ASSERT_EQ(a.key(), b.key()) << "pixel " << a.pixel << " tet " << a.tet;
-    // Keys and scalars are cut to 2^-28 and 2^-29, lengths and scalars are floats; nearly edge-on faces magnify the
-    // 2^-33 pixel that the tie rule moves corners by.
+    // Keys and scalars are truncated to 2^-28 and 2^-29, lengths and scalars are floats; almost edge-on faces magnify
+    // the 2^-33 pixel by which the tie rule moves corners.
     EXPECT_NEAR(a.front, b.front, 1e-8) << "pixel " << a.pixel << " tet " << a.tet;
     EXPECT_NEAR(a.back, b.back, 1e-8) << "pixel " << a.pixel << " tet " << a.tet;
     EXPECT_NEAR(a.length, b.length, 1e-8 + 1e-7 * a.length) << "pixel " << a.pixel << " tet " << a.tet;
@@ -152,7 +152,7 @@ void expect_like_planes(const gl::Context& context, const Scene& scene) {
   }
 }
 
-/// Where OpenGL comes from, in software on machines without a GPU.
+/// The source of OpenGL, in software on machines without a GPU.
 class GlRasterizerOn : public testing::TestWithParam<gl::Platform> {
  protected:
   void SetUp() override {
@@ -192,7 +192,8 @@ TEST_P(GlRasterizerOn, KeepsTheTieRuleWhereVerticesLieOnPixelCentres) {
   const int n = 8;
   const Scene scene(datasets::cube(n, 0), aligned(n, 24), {24, 24});
   expect_like_planes(*context_, scene);
-  // Shifted right and down, 2n columns and rows of pixels hit the box: every ray of them goes 2 deep, no other at all.
+  // Shifted right and down, 2n columns and rows of pixels hit the box: each of their rays has depth complexity 2, all
+  // others 0.
   std::vector<double> length(24 * 24, 0);
   for (const Segment& s : by_device(*context_, scene, 1 << 17)) length[s.pixel] += s.back - s.front;
   std::size_t hit = 0;
@@ -205,7 +206,8 @@ TEST_P(GlRasterizerOn, KeepsTheTieRuleWhereVerticesLieOnPixelCentres) {
 }
 
 TEST_P(GlRasterizerOn, KeepsTheTieRuleInPerspective) {
-  // The eye on the axis: faces of the split lie in planes through the eye that hold rows and columns of pixel centres.
+  // The eye on the axis: faces of the split are in planes through the eye that contain rows and columns of pixel
+  // centres.
   scene::Camera camera;
   camera.position = {0, 0, 4};
   camera.projection = scene::ProjectionKind::perspective;
@@ -223,12 +225,12 @@ TEST_P(GlRasterizerOn, CellsWithoutVolumeAreThoseOfPlanes) {
     const auto any = [&] { return static_cast<std::uint32_t>(random() % vertices); };
     for (int i = 0; i < 60; ++i) {
       const std::uint32_t a = any(), b = any(), c = any();
-      if (flat) {  // a point between a, b and c: which face is the front is noise, and makes no difference
+      if (flat) {  // a point between a, b and c: rounding decides which face is in front, without any effect
         mesh.positions.push_back(0.25 * mesh.positions[a] + 0.25 * mesh.positions[b] + 0.5 * mesh.positions[c]);
         mesh.scalars.push_back(0.25 * mesh.scalars[a] + 0.25 * mesh.scalars[b] + 0.5 * mesh.scalars[c]);
         mesh.tets.push_back({a, b, c, static_cast<std::uint32_t>(mesh.positions.size() - 1)});
       } else {
-        mesh.tets.push_back({a, b, i % 2 == 0 ? b : a, c});  // two or three corners in one
+        mesh.tets.push_back({a, b, i % 2 == 0 ? b : a, c});  // two or three coincident corners
       }
     }
     for (const scene::Camera& camera : {aligned(3, 32), oblique(), perspective({3.1, 2.3, 4.2}, 40)})
@@ -264,7 +266,7 @@ TEST_P(GlRasterizerOn, EdgesWithinTheLastPlacesOfPixelCentresAreDecidedExactly) 
   scene::TetMesh mesh;
   mesh.association = scene::Association::point;
   const auto place = [&](int most) {
-    // A pixel centre of a picture of 32 x 32 in which a pixel is one unit, or next to one by a last place.
+    // A pixel centre of an image of 32 x 32 in which a pixel is one unit, or a number adjacent to one.
     return static_cast<double>(random() % static_cast<unsigned>(most)) - 15.5 +
            0x1p-32 * (static_cast<int>(random() % 3) - 1);
   };
@@ -282,7 +284,7 @@ TEST_P(GlRasterizerOn, EdgesWithinTheLastPlacesOfPixelCentresAreDecidedExactly) 
   expect_like_planes(*context_, Scene(mesh, camera, {32, 32}));
 }
 
-/// Whole numbers with m * v - n * u = 1, of m and n without a common factor (Euclid).
+/// Integers with m * v - n * u = 1, for coprime m and n (Euclid).
 std::array<std::int64_t, 2> beside(std::int64_t m, std::int64_t n) {
   std::int64_t r0 = m, r1 = n, s0 = 1, s1 = 0, t0 = 0, t1 = 1;
   while (r1 != 0) {
@@ -295,7 +297,7 @@ std::array<std::int64_t, 2> beside(std::int64_t m, std::int64_t n) {
   return {-t0, s0};  // m * s0 + n * t0 = 1
 }
 
-/// The smallest E that there is but zero, 2^-64: doubles take it for zero, or, where a product is fused, for anything.
+/// The smallest nonzero E, 2^-64: in double arithmetic it becomes zero or, if a product is fused, anything.
 TEST_P(GlRasterizerOn, EdgesThatPassCentresByLessThanDoublesTellAreDecidedExactly) {
   std::mt19937_64 random(3);
   scene::TetMesh mesh;

@@ -60,8 +60,8 @@ struct Scene {
   std::vector<LatticeVertex> lattice_vertices;
 };
 
-/// All segments, the picture rasterized in rectangles of `tile` pixels a side, a power of two up to 32. If cells are
-/// rasterized together, segments do not say of which they are.
+/// All segments, with the image rasterized in rectangles of `tile` pixels a side, a power of two up to 32. If cells are
+/// rasterized together, segments do not identify their cell.
 Rays rasterized(const Scene& scene, int tile, RasterCounts* counts_out = nullptr, std::size_t together = 1) {
   const LatticeView view = scene.view();
   OpenPixels open;
@@ -92,7 +92,7 @@ Rays rasterized(const Scene& scene, int tile, RasterCounts* counts_out = nullptr
   return rays;
 }
 
-/// Whether a face of the cell is so close to edge-on that double precision takes the cell over.
+/// Whether a face of the cell is so close to edge-on that the cell is handled in double precision.
 bool edge_on(const Scene& scene, std::uint32_t tet) {
   const scene::Tet& corners = scene.prepared.tets()[tet];
   for (const auto& face : {std::array{0, 1, 2}, std::array{0, 1, 3}, std::array{0, 2, 3}, std::array{1, 2, 3}}) {
@@ -108,7 +108,7 @@ bool edge_on(const Scene& scene, std::uint32_t tet) {
   return false;
 }
 
-/// The cells that rasterize_planes hits, no other, with its depths and scalars to the lattice's error.
+/// Exactly the cells that rasterize_planes hits, with its depths and scalars up to the lattice's error.
 void expect_like_planes(const scene::TetMesh& mesh, const scene::Camera& camera, scene::ImageSize size) {
   const Scene scene(mesh, camera, size);
   const Rays rays = rasterized(scene, 32);
@@ -125,8 +125,8 @@ void expect_like_planes(const scene::TetMesh& mesh, const scene::Camera& camera,
       expected[out.pixel(i)][t] = {out.front[i], out.back[i], out.scalar_front[i], out.scalar_back[i]};
   }
   // Gradients rounded to a step, over 16 pixels a direction, and scalars to floats of 2^30 steps: 20 and 32 steps.
-  // Perspective adds a float quotient times what a face spans: an estimate of 1.5 * 2^-12 (SSE's) squared by a Newton
-  // step and three roundings, 3.2e-7 in all, of less than half the lattice.
+  // Perspective adds a float quotient times a face's range: an estimate of 1.5 * 2^-12 (SSE's) squared by a Newton step
+  // and three roundings, 3.2e-7 in total, of less than half the lattice.
   const double quotient = scene.space.perspective() ? 3.2e-7 * scene::Lattice::limit : 0;
   const double depth_error = (20 + quotient) * scene.lattice.depth_unit;
   const double scalar_error = (20 + 32 + quotient) * scene.lattice.scalar_unit;
@@ -190,7 +190,7 @@ TEST(LatticeRasterizer, NeighboursShareTheBitsOfTheirFace) {
           if (ray[i - 1].back == ray[i].front && ray[i - 1].scalar_back == ray[i].scalar_front) continue;
           ++irregular;
           EXPECT_TRUE(edge_on(scene, ray[i - 1].tet) != edge_on(scene, ray[i].tet));
-          EXPECT_NEAR(ray[i - 1].back, ray[i].front, 64);  // what runs take for touching
+          EXPECT_NEAR(ray[i - 1].back, ray[i].front, 64);  // the tolerance within which runs count as touching
         }
       EXPECT_GT(junctions, 5000u);
       EXPECT_LT(irregular, junctions / 100);
@@ -198,7 +198,7 @@ TEST(LatticeRasterizer, NeighboursShareTheBitsOfTheirFace) {
   });
 }
 
-/// One cell goes through blocks of its pixels, many of a few pixels go side by side: the same segments either way.
+/// A large cell is processed by blocks of its pixels, small ones in parallel: the same segments either way.
 TEST(LatticeRasterizer, CellsTogetherGiveWhatEachGivesAlone) {
   scene::TetMesh by_cell = datasets::cube(8, 0.25);
   by_cell.association = scene::Association::cell;
@@ -220,7 +220,7 @@ TEST(LatticeRasterizer, CellsTogetherGiveWhatEachGivesAlone) {
           }
           EXPECT_EQ(rasterized(scene, 32, &together_counts, 16), alone) << side;
           EXPECT_EQ(rasterized(scene, 32, nullptr, 5), alone) << side;
-          // Exact signs are asked for where they decide, not for all pixels on an edge's line.
+          // Exact signs are computed where they decide, not for all pixels on an edge's line.
           EXPECT_EQ(together_counts.exact_sign_tests, alone_counts.exact_sign_tests);
         }
   });

@@ -43,14 +43,14 @@ TEST(Partition, RandomIsBalancedSeededAndIndependentOfNeighbours) {
     same_as_next_tet += p == part_at_random(t + 1, 5, parts);
     same_as_next_seed += p == part_at_random(t, 6, parts);
   }
-  // Binomial, standard deviation 93: five of them.
+  // Binomial, standard deviation 93: the tolerance is five of them.
   for (const int s : size) EXPECT_NEAR(s, n / parts, 465);
   EXPECT_NEAR(same_as_next_tet, n / parts, 465);
   EXPECT_NEAR(same_as_next_seed, n / parts, 465);
 }
 
 TEST(Curve, VisitsEveryCellOfAGridOnceInStepsToANeighbour) {
-  // A curve that keeps to the halves at every level visits the 2^3k cells of a coarse grid in contiguous stretches.
+  // A curve that respects the halves at every level visits the 2^3k cells of a coarse grid in contiguous intervals.
   constexpr int n = 8;
   std::vector<std::pair<std::uint64_t, std::array<int, 3>>> cells;
   for (int k = 0; k < n; ++k)
@@ -59,7 +59,7 @@ TEST(Curve, VisitsEveryCellOfAGridOnceInStepsToANeighbour) {
         cells.push_back({curve_place((glm::dvec3(i, j, k) + 0.5) / double(n), unit_box), {i, j, k}});
   std::sort(cells.begin(), cells.end());
   for (std::size_t c = 0; c < cells.size(); ++c) {
-    EXPECT_EQ(cells[c].first >> (63 - 9), c);  // nine bits of the place: the cell's turn
+    EXPECT_EQ(cells[c].first >> (63 - 9), c);  // nine bits of the key: the index of the cell
     if (c == 0) continue;
     int steps = 0;
     for (std::size_t a = 0; a < 3; ++a) steps += std::abs(cells[c].second[a] - cells[c - 1].second[a]);
@@ -75,7 +75,7 @@ TEST(Curve, ExtremesHaveAPlace) {
   EXPECT_EQ(curve_place({-9, -9, -9}, unit_box), curve_place({0, 0, 0}, unit_box));
 }
 
-/// The splitters when the keys lie on `ranks` processes, distributed by `random`.
+/// The splitters if the keys are on `ranks` processes, distributed by `random`.
 std::vector<CurveKey> cut(const std::vector<CurveKey>& keys, int parts, std::size_t ranks, unsigned seed, int* rounds) {
   std::mt19937 random(seed);
   std::vector<std::vector<CurveKey>> held(ranks);
@@ -147,7 +147,7 @@ TEST(Curve, PartsOfACubeAreCompact) {
     const scene::Box box = scene::bounds(p);
     volume += (box.high.x - box.low.x) * (box.high.y - box.low.y) * (box.high.z - box.low.z);
   }
-  EXPECT_LT(volume, 1.5 * 8);  // a layer of cells more where the cut is 0.4 % off
+  EXPECT_LT(volume, 1.5 * 8);  // one more layer of cells where the cut is off by 0.4 %
 }
 
 TEST(Partition, OfAWholeMeshIsTheRulesOwn) {

@@ -25,7 +25,7 @@ struct Segment {
 };
 using Rays = std::vector<std::vector<Segment>>;  // by pixel, row-major, each in visibility order
 
-/// All segments of a mesh, the picture rasterized in rectangles of `tile` pixels a side.
+/// All segments of a mesh, with the image rasterized in rectangles of `tile` pixels a side.
 Rays rasterized(const scene::TetMesh& mesh, const scene::Camera& camera, scene::ImageSize size, int tile,
                 RasterCounts* counts_out = nullptr) {
   const PreparedMesh prepared(mesh);
@@ -63,7 +63,7 @@ Rays rasterized(const scene::TetMesh& mesh, const scene::Camera& camera, scene::
   return rays;
 }
 
-/// The same cells on every ray as the reference, and the same numbers to rounding.
+/// The same cells on every ray as in the reference, and the same numbers up to rounding.
 void expect_like_reference(const scene::TetMesh& mesh, const scene::Camera& camera, scene::ImageSize size) {
   const reference::Reference reference(mesh, camera, size, scene::TransferFunction({{0, {1, 1, 1}, 1}}));
   const Rays rays = rasterized(mesh, camera, size, 16);
@@ -78,8 +78,7 @@ void expect_like_reference(const scene::TetMesh& mesh, const scene::Camera& came
       for (const Segment& s : ray) {
         const auto found = expected.find(s.tet);
         ASSERT_NE(found, expected.end()) << "pixel " << x << "," << y << " tet " << s.tet;
-        // Both sides round the projection (1e-16 of depths of order 5) and magnify it by the slope of nearly edge-on
-        // faces.
+        // Both round the projection (1e-16 of depths of order 5) and magnify it by the slope of almost edge-on faces.
         EXPECT_NEAR(s.front, found->second.front, 1e-9);
         EXPECT_NEAR(s.back, found->second.back, 1e-9);
         EXPECT_NEAR(s.scalar_front, found->second.scalar_front, 1e-9);
@@ -117,8 +116,8 @@ TEST(PlanesRasterizer, KeepsTheTieRuleWhereVerticesLieOnPixelCentres) {
     RasterCounts counts;
     const Rays rays = rasterized(mesh, aligned(n, size.height), size, 32, &counts);
     EXPECT_GT(counts.exact_sign_tests, 0u);
-    // Shifted right and down, 2n columns and rows of pixels hit the box: every ray of them goes 2 deep, no other at
-    // all.
+    // Shifted right and down, 2n columns and rows of pixels hit the box: each of their rays has depth complexity 2, all
+    // others 0.
     std::size_t hit = 0;
     for (const auto& ray : rays) {
       if (ray.empty()) continue;
@@ -149,7 +148,7 @@ TEST(PlanesRasterizer, NeighboursShareTheBitsOfTheirFace) {
 }
 
 TEST(PlanesRasterizer, NeighboursAgreeWhateverIndicesAndOrientationTheyUse) {
-  // Every tet gets vertices of its own, in a shuffled order.
+  // Every tet gets its own vertices, in a shuffled order.
   const scene::TetMesh whole = datasets::cube(4, 0.25);
   scene::TetMesh torn;
   std::mt19937 random(5);
@@ -175,7 +174,7 @@ TEST(PlanesRasterizer, BitsDoNotDependOnTheRectangle) {
 }
 
 TEST(PlanesRasterizer, FlatInvertedAndNeedleCellsTileTheRayToo) {
-  // A box squeezed to a thickness of 1e-9 along the ray, and one stretched along it, and one of zero thickness.
+  // A box compressed to a thickness of 1e-9 along the ray, one stretched along it, and one of zero thickness.
   for (const double thickness : {1e-9, 1e6, 0.0}) {
     scene::TetMesh mesh = datasets::regular_split(3, 3, 3, glm::dvec3(2.0 / 3), {-1, -1, -1});
     for (glm::dvec3& p : mesh.positions) p.z *= 0.5 * thickness;

@@ -12,7 +12,7 @@
 namespace tessera::projection::prepared_mesh_test {
 namespace {
 
-/// A cube's tets, their corners shuffled, and some vertices twice.
+/// A cube's tets with shuffled corners, and some vertices twice.
 scene::TetMesh shuffled_corners() {
   scene::TetMesh mesh = datasets::cube(12, 0.2);
   std::mt19937 random(1);
@@ -55,7 +55,7 @@ TEST(PreparedMesh, AnOrderedMeshIsNotCopied) {
   order_corners(ordered);
   expect_canonical(ordered.tets, mesh);
   EXPECT_EQ(PreparedMesh(ordered).tets().data(), ordered.tets.data());
-  // One corner out of order, in the last tet: that is seen.
+  // One corner out of order, in the last tet, is detected.
   std::swap(ordered.tets.back()[2], ordered.tets.back()[3]);
   const PreparedMesh prepared(ordered);
   EXPECT_NE(prepared.tets().data(), ordered.tets.data());

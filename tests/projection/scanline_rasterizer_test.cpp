@@ -43,7 +43,8 @@ struct Frame {
   }
 };
 
-/// All segments of a picture rasterized in rectangles of `tile` pixels a side, and what must hold of any input.
+/// All segments of an image rasterized in rectangles of `tile` pixels a side; checks invariants that hold for any
+/// input.
 Rays rasterized(const Frame& frame, scene::ImageSize size, int tile, Way way = Way::scanline,
                 RasterCounts* counts_out = nullptr) {
   std::vector<TileEntry> entries;
@@ -115,7 +116,7 @@ double closest_edge(const Frame& frame, scene::ImageSize size) {
 }
 
 TEST(ScanlineRasterizer, ACornerOfACubeIsWhatPaperAndPencilSay) {
-  // Corners at 0, x, y, z: seen down z from height 5, a ray enters at z = 1 - x - y and leaves at z = 0.
+  // Corners at 0, x, y, z: along z from height 5, a ray enters at z = 1 - x - y and leaves at z = 0.
   const scene::TetMesh mesh = datasets::single_tet();
   const scene::ImageSize size{64, 64};
   const Frame frame(mesh, down_z(5, 0.6, {0.4, 0.4}), size);
@@ -149,7 +150,7 @@ TEST(ScanlineRasterizer, IsPlanesToFloatRoundingWhereNoRayComesNearAnEdge) {
   const scene::TetMesh mesh = datasets::cube(3, 0.25);
   const scene::ImageSize size{31, 27};
   const Frame frame(mesh, oblique(), size);
-  ASSERT_GT(closest_edge(frame, size), 1e-4);  // float rounds a pixel of this picture by 1e-6
+  ASSERT_GT(closest_edge(frame, size), 1e-4);  // float rounds a pixel coordinate of this image by 1e-6
   const Rays exact = rasterized(frame, size, 16, Way::planes);
   tests::for_each_instruction_set([&](const char* name) {
     SCOPED_TRACE(name);
@@ -163,7 +164,7 @@ TEST(ScanlineRasterizer, IsPlanesToFloatRoundingWhereNoRayComesNearAnEdge) {
       for (const auto& [tet, s] : rays[p]) {
         const auto found = exact[p].find(tet);
         ASSERT_NE(found, exact[p].end());
-        // Pixels of 1e-6 and depths of 5e-7, magnified by the steepest face met here.
+        // Errors of 1e-6 in pixels and 5e-7 in depths, magnified by the steepest face here.
         EXPECT_NEAR(s.front, found->second.front, 2e-5);
         EXPECT_NEAR(s.back, found->second.back, 2e-5);
         EXPECT_NEAR(s.scalar_front, found->second.scalar_front, 2e-5);
@@ -179,7 +180,7 @@ TEST(ScanlineRasterizer, BitsDoNotDependOnTheRectangle) {
                                    datasets::regular_split(4, 4, 4, glm::dvec3(0.5), glm::dvec3(-1))};
   const scene::ImageSize size{41, 37};
   for (const scene::TetMesh& mesh : meshes)
-    // Oblique; edge-on faces and vertices on pixel centres; close up, cells larger than the picture.
+    // Oblique; edge-on faces and vertices on pixel centres; close up, cells larger than the image.
     for (const scene::Camera& camera :
          {oblique(), down_z(5, 37.0 / 32, {1 / 32., -1 / 32.}), down_z(5, 0.03, {0.21, 0.37})}) {
       const Frame frame(mesh, camera, size);
@@ -203,7 +204,7 @@ TEST(ScanlineRasterizer, CellDataIsTheCellsValueAtBothEnds) {
 }
 
 TEST(ScanlineRasterizer, TheClippingRangeCutsSegments) {
-  // The scalar is the depth, so a cut is right if it stays so.
+  // The scalar is the depth, so a cut is correct if it stays so.
   scene::TetMesh mesh = datasets::cube(3, 0.2);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) mesh.scalars[v] = 5 - mesh.positions[v].z;
   scene::Camera camera = down_z(5, 0.8, {0.01, 0.02});
@@ -223,8 +224,8 @@ TEST(ScanlineRasterizer, TheClippingRangeCutsSegments) {
 }
 
 TEST(ScanlineRasterizer, AnyCoordinatesStayInsideTheBuffers) {
-  // rasterized() checks pixels, counts and room; a sanitizer build the rest. Depths and scalars stay small, so that all
-  // numbers that come out must be finite.
+  // rasterized() checks pixels, counts and capacity, a sanitizer build the rest. Depths and scalars stay small, so all
+  // results must be finite.
   std::mt19937 random(11);
   const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
   const scene::ImageSize size{23, 19};
@@ -256,7 +257,7 @@ TEST(ScanlineRasterizer, AnyCoordinatesStayInsideTheBuffers) {
     Frame frame(mesh);
     for (std::size_t v = 0; v < mesh.positions.size(); ++v)
       frame.vertices.push_back({pixel(), pixel(), 1, random() % 3 == 0 ? 5.0 : uniform(1, 9)});
-    for (std::size_t t = 0; t < mesh.tets.size(); t += 5) {  // flat in the picture, and of one or two points
+    for (std::size_t t = 0; t < mesh.tets.size(); t += 5) {  // flat in the image, and of one or two points
       PixelVertex* c = &frame.vertices[mesh.tets[t][0]];
       if (t % 2 == 0) c[3].x = c[2].x, c[3].y = c[2].y;
       c[1].y = c[0].y = c[2].y;
@@ -272,7 +273,7 @@ TEST(ScanlineRasterizer, AnyCoordinatesStayInsideTheBuffers) {
         for (const double value : {s.front, s.back, s.scalar_front, s.scalar_back})
           ASSERT_TRUE(std::isfinite(value)) << "round " << round << " tet " << tet;
         ASSERT_LE(s.front, s.back);
-        ASSERT_GE(s.back, cut ? 3 : 1);  // not before the nearest vertex, nor the near plane
+        ASSERT_GE(s.back, cut ? 3 : 1);  // not in front of the nearest vertex, nor the near plane
       }
     EXPECT_GT(segments, 1000u);
     EXPECT_EQ(rasterized(frame, size, 7), whole);
@@ -300,7 +301,7 @@ TEST(ScanlineRasterizer, SaysWhatFloatsDoNotHold) {
 }
 
 TEST(SegmentTuple, GivesBackTheFloatsThatTheRasterizerMade) {
-  // From afar, where lengths are a few units of the depth's last place, as well as near by.
+  // From far away, where lengths are a few units of the depth's last place, and from near.
   for (const double distance : {3.0, 5.0, 100.0, 1e4, 1e6})
     for (const double scale : {1.0, 3e-12, 7e15}) {
       scene::Camera camera = down_z(distance, 1.2, {0.013, 0.027});
@@ -340,7 +341,7 @@ TEST(SegmentTuple, RoundTripsExactlyDownToLengthsOfOneUnitOfTheDepth) {
     const auto edge = static_cast<float>(std::pow(10.0, uniform(-20, 20)));
     const auto z_back = static_cast<float>(edge * std::pow(10.0, uniform(-2, 7)));
     const auto z_front = static_cast<float>(z_back - edge * std::pow(10.0, uniform(-9, 0)));
-    const float length = std::max(0.0f, z_back - z_front) * (1 / edge);  // as rasterize_scanline() makes it
+    const float length = std::max(0.0f, z_back - z_front) * (1 / edge);  // computed like rasterize_scanline()
     const SegmentTuple tuple{z_back, length, static_cast<float>(uniform(-1, 1)), static_cast<float>(uniform(-1, 1))};
     from_tuple(tuple, 17, 4'000'000'000u, edge, segments, 0);
     ASSERT_EQ(to_tuple(segments, 0, edge), tuple) << i;

@@ -87,7 +87,7 @@ TEST(TileLists, CountsWhyCellsAreLeftOut) {
   scene::Camera camera;
   camera.position = {0, 0, 5};
   camera.parallel_scale = 0.4;  // the window is smaller than the box
-  // Visible from 0.9 up only.
+  // Visible only from 0.9 up.
   const scene::TransferFunction function({{0.9, {1, 1, 1}, 0}, {1, {1, 1, 1}, 5}});
   Lists lists(mesh, camera, {30, 30}, 8, function);
   const CullCounts& counts = lists.lists->counts();
@@ -109,7 +109,7 @@ TEST(TileLists, CountsWhyCellsAreLeftOut) {
   EXPECT_EQ(behind.lists->counts().outside_view, mesh.tets.size());
 }
 
-/// What culling says in double precision, one cell after the other.
+/// The result of culling in double precision, one cell after the other.
 struct Expected {
   CullCounts counts;
   std::vector<std::vector<std::uint32_t>> tiles;
@@ -178,7 +178,7 @@ std::vector<View> views() {
   all.push_back({"clipped", camera, {64, 64}, 8});
   camera = {};
   camera.position = {0, 0, 5};
-  camera.parallel_scale = 1;  // on a lattice of 1/4 all vertices lie on pixel corners
+  camera.parallel_scale = 1;  // on a lattice of 1/4 all vertices are on pixel corners
   all.push_back({"along an axis", camera, {16, 16}, 4});
   camera.projection = scene::ProjectionKind::perspective;
   camera.position = {3, 2, 4};
@@ -213,7 +213,7 @@ void expect_lists(const scene::TetMesh& mesh, const View& view, const scene::Tra
     for (std::size_t tile = 0; tile < grid.count(); ++tile) {
       ASSERT_EQ(lists.entry_count(tile), expected.tiles[tile].size()) << where << ", tile " << tile;
       const std::span<TileEntry> entries = lists.tile(tile);
-      // In the order of blocks, of whose tets those in one tile come first.
+      // In the order of blocks; within a block tets of a single tile come first.
       const auto by_block = [](const TileEntry& a, const TileEntry& b) { return a.tet / 64 < b.tet / 64; };
       EXPECT_TRUE(std::is_sorted(entries.begin(), entries.end(), by_block)) << where << ", tile " << tile;
       std::sort(entries.begin(), entries.end(), [](const TileEntry& a, const TileEntry& b) { return a.tet < b.tet; });
@@ -224,7 +224,7 @@ void expect_lists(const scene::TetMesh& mesh, const View& view, const scene::Tra
         for (const auto v : mesh.tets[entry.tet]) nearest = std::min(nearest, vertices[v].depth);
         nearest = std::max(nearest, projected.near_depth);
         EXPECT_LE(lists.depth_origin() + entry.near_depth, nearest) << where;
-        // A float's rounding, and the margin for it.
+        // Rounding of floats, and the margin for it.
         EXPECT_GE(lists.depth_origin() + entry.near_depth, nearest - 4e-7 * (nearest - lists.depth_origin()) - 1e-14);
       }
     }
@@ -237,7 +237,7 @@ TEST(TileLists, AreThoseOfDoublePrecisionOnEveryInstructionSet) {
     scene::TetMesh on_knots = datasets::regular_split(8, 8, 8, glm::dvec3(0.25), glm::dvec3(-1));
     for (double& s : on_knots.scalars) s = std::round(s * 20) / 20;
     scene::TetMesh fine = jittered;
-    for (double& s : fine.scalars) s = s * 0.999 + 1e-12;  // no float numbers any more
+    for (double& s : fine.scalars) s = s * 0.999 + 1e-12;  // no longer float numbers
     scene::TetMesh per_cell = on_knots;
     per_cell.association = scene::Association::cell;
     per_cell.scalars.resize(per_cell.tets.size());
@@ -317,7 +317,7 @@ TEST(TileLists, ReadEachCellTwiceHoweverManyTasks) {
       const std::uint64_t counters = all.lists->reads().counters;
       all.lists->fill(0, all.grid.count());
       EXPECT_EQ(all.lists->reads().cells, mesh.tets.size() + all.lists->counts().projected) << threads << " threads";
-      // Eight runs a thread, each with its counters.
+      // Eight runs per thread, each with its counters.
       EXPECT_EQ(all.lists->reads().serial_counters, counters);
       EXPECT_EQ(counters, 8 * static_cast<std::uint64_t>(threads) * all.grid.count()) << threads << " threads";
     });

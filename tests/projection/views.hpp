@@ -23,7 +23,7 @@ inline scene::Camera perspective(const glm::dvec3& position, double angle) {
   return camera;
 }
 
-/// A view along z in which a vertex of the split of [-1, 1]^3 into n voxels lies on every second pixel's centre.
+/// A view along z in which a vertex of the split of [-1, 1]^3 into n voxels is on every second pixel's centre.
 inline scene::Camera aligned(int n, int height) {
   scene::Camera camera;
   const double pixel = 1.0 / n;  // half a voxel

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Meshes with levels of refinement: blocks of regular grids that a list names.
+// Meshes with refinement levels: blocks of regular grids listed in a file.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ namespace {
 
 using namespace testing;
 
-/// The stretch of a line inside a tet; empty if it misses it.
+/// The interval of a line inside a tet; empty if it misses it.
 std::optional<std::pair<double, double>> stretch_in(const scene::TetMesh& mesh, const scene::Tet& tet,
                                                     const glm::dvec3& from, const glm::dvec3& along) {
   double low = -1e9, high = 1e9;
@@ -41,7 +41,7 @@ std::optional<std::pair<double, double>> stretch_in(const scene::TetMesh& mesh, 
   return std::pair(low, high);
 }
 
-/// Lines through the block of nested_blocks(): some from random places, some straight through corners of cells.
+/// Lines through the block of nested_blocks(): some from random places, some exactly through corners of cells.
 std::vector<std::pair<glm::dvec3, glm::dvec3>> lines() {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> inside(0.01, 3.99), turn(-1, 1);
@@ -72,7 +72,7 @@ TEST(Amr, LinesThroughCellDataSumUpWhatTheirFinestCellsHold) {
         length += stretch->second - stretch->first;
         sum += (stretch->second - stretch->first) * read.mesh.scalars[t];
       }
-    // Between all planes of the finest lattice that the line crosses, from the file alone.
+    // Between all planes of the finest lattice that the line crosses, computed from the file alone.
     std::vector<double> cuts;
     double first = -1e9, last = 1e9;
     for (int a = 0; a < 3; ++a) {

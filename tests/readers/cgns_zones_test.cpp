@@ -25,7 +25,7 @@ namespace {
 
 using Numbers = std::vector<cgsize_t>;
 
-/// Elements of a type with the numbers from `first` on; those of NGON_n and NFACE_n and MIXED with offsets.
+/// Elements of one type numbered from `first` on; those of NGON_n, NFACE_n and MIXED with offsets.
 struct Section {
   CGNS_ENUMT(ElementType_t) type;
   cgsize_t first;
@@ -35,7 +35,7 @@ struct Section {
 
 void require(int status) { ASSERT_EQ(status, CG_OK) << cg_get_error(); }
 
-/// An open file of one base.
+/// An open file with one base.
 class CgnsWriter {
  public:
   explicit CgnsWriter(const std::filesystem::path& file,
@@ -96,7 +96,7 @@ class CgnsWriter {
       require(cg_field_write(id_, base_, zone_, solution, CGNS_ENUMV(RealDouble), field.c_str(), values.data(), &made));
   }
 
-  /// A field of those points or cells alone that `indices` tell.
+  /// A field of only those points or cells that `indices` lists.
   void write_part(const std::string& name, CGNS_ENUMT(GridLocation_t) location, CGNS_ENUMT(PointSetType_t) set,
                   cgsize_t count, const Numbers& indices, const std::string& field, const std::vector<double>& values) {
     int solution = 0, made = 0;
@@ -111,7 +111,7 @@ class CgnsWriter {
                            CGNS_ENUMV(Degree)));
   }
 
-  /// Times, and for each the solutions and grids of the zone at hand.
+  /// Times, and for each the solutions and grids of the current zone.
   void write_steps(const std::vector<double>& times, const std::vector<std::string>& solutions,
                    const std::vector<std::string>& grids) {
     const auto steps = static_cast<cgsize_t>(times.size());
@@ -135,8 +135,8 @@ class CgnsWriter {
   std::size_t points_ = 0, cells_ = 0;
 };
 
-/// Makes the file as CGNS before 3.4 wrote it: without ElementStartOffset. Sections of NGON_n and NFACE_n have the
-/// length of each element before its numbers instead.
+/// Converts the file to CGNS before 3.4: without ElementStartOffset. Sections of NGON_n and NFACE_n have the length of
+/// each element before its numbers instead.
 void make_old(const std::filesystem::path& file, const std::vector<std::string>& lengths_among_numbers,
               const std::vector<std::string>& others = {}) {
   static_assert(sizeof(cgsize_t) == 8);
@@ -222,7 +222,7 @@ cells::MeshFile read(const std::filesystem::path& file, const std::string& field
   return read_mesh(file, options);
 }
 
-/// A cube at x has the value `from` + x.
+/// The cube at x has the value `from` + x.
 void expect_row(const cells::MeshFile& file, int n, double from = 0) {
   EXPECT_NEAR(testing::volume(file.mesh), n, 1e-12);
   EXPECT_EQ(file.counts.cells_read, static_cast<std::uint64_t>(n));
@@ -331,7 +331,7 @@ struct Faces {
   }
 
   Numbers nodes, offsets{0};
-  std::vector<std::array<int, 2>> sides;  ///< cubes from 1, 0 is none
+  std::vector<std::array<int, 2>> sides;  ///< cubes from 1, 0 means none
 };
 
 TEST(CgnsZones, PolyhedraAreNumberedBeforeOrAfterTheirFaces) {
@@ -455,7 +455,7 @@ TEST(CgnsZones, StepsHaveTheirOwnSolutionsAndGrids) {
 }
 
 TEST(CgnsZones, CellsOfSecondOrderHaveTheirNodesInVtksOrder) {
-  // CGNS SIDS, figures of the elements; the middles of edges and faces by their corners from 1.
+  // CGNS SIDS, figures of the elements; the middles of edges and faces given by their corners from 1.
   using Groups = std::vector<Numbers>;
   struct Case {
     CGNS_ENUMT(ElementType_t) type;
@@ -510,7 +510,7 @@ TEST(CgnsZones, CellsOfSecondOrderHaveTheirNodesInVtksOrder) {
     file.write_values("points", CGNS_ENUMV(Vertex), {{"f", values}});
     file.close();
     const cells::MeshFile mesh = read(folder / "a.cgns", "f");
-    // All nodes are where a straight cell has them: one that is not moves the surface and the field.
+    // All nodes are where a straight cell has them: a misplaced node moves the surface and the field.
     EXPECT_NEAR(testing::volume(mesh.mesh), c.corners == 8 ? 30 : c.corners == 6 ? 15 : c.corners == 5 ? 10 : 5, 1e-9);
     for (std::size_t v = 0; v < mesh.mesh.positions.size(); ++v) {
       const glm::dvec3& p = mesh.mesh.positions[v];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cells of second and third order in CGNS files, which its own library writes here, in the order of SIDS.
+// Cells of second and third order in CGNS files, written by the CGNS library in the order of SIDS.
 #include <gtest/gtest.h>
 #include <vtk_cgns.h>
 #include VTK_CGNS(cgnslib.h)

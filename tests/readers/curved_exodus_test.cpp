@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cells of second order in Exodus files, which its own library writes here, in the order of the Exodus manual.
+// Cells of second order in Exodus files, written by the Exodus library in the order of the Exodus manual.
 #include <gtest/gtest.h>
 #include <vtk_exodusII.h>
 
@@ -44,7 +44,7 @@ const Lists pyramid_edges = {{1, 2}, {2, 3}, {3, 4}, {4, 1}, {1, 5}, {2, 5}, {3,
             pyramid_base = {{1, 2, 3, 4}}, pyramid_triangles = {{1, 2, 5}, {2, 3, 5}, {3, 4, 5}, {4, 1, 5}},
             pyramid_inside = {{1, 2, 3, 4, 5}};
 
-/// Patran's hexahedron of third order: corners, edges, then what is left of each of four levels, base to top.
+/// Patran's hexahedron of third order: corners, edges, then the remaining nodes of each of four levels, base to top.
 ReferenceCell hex64() {
   using testing::a_third, testing::near_first;
   Lists lists;
@@ -70,7 +70,7 @@ ReferenceCell hex64() {
   return {"HEX64", cells::CurvedFamily::hexahedron, lists};
 }
 
-/// Cells of third order with nodes on their edges alone: those of upright edges come low ones first.
+/// Cells of third order with nodes only on their edges: on vertical edges the lower ones come first.
 Lists cubic_edges(const Lists& base, const Lists& upright, const Lists& top) {
   Lists lists;
   const auto add = [&](const Lists& edges) {
@@ -89,37 +89,37 @@ std::vector<ReferenceCell> manual_cells() {
                  wedge = cells::CurvedFamily::wedge, pyramid = cells::CurvedFamily::pyramid;
   const Lists hex20 = together(base_edges, upright_edges, top_edges),
               wedge15 = together(wedge_base, wedge_upright, wedge_top);
-  return {{"HEX9", hexahedron, hexahedron_inside, CellSpace::linear},
-          {"HEX16", hexahedron, together(base_edges, top_edges), CellSpace::quadratic_in_r_s},
-          {"HEX20", hexahedron, hex20},
-          {"hex21", hexahedron, together(hex20, hexahedron_inside)},
-          {"HEX", hexahedron, together(hex20, hexahedron_inside, hexahedron_faces)},
-          {"HEX32", hexahedron, cubic_edges(base_edges, upright_edges, top_edges)},
-          hex64(),
-          {"TETRA5", tet, tet_inside, CellSpace::linear},
-          {"TETRA8", tet, {{1, 2, 4}, {2, 3, 4}, {1, 2, 3}, {1, 3, 4}}, CellSpace::linear},
-          {"TETRA10", tet, tet_edges},
-          {"tet11", tet, together(tet_edges, tet_inside)},
-          {"TETRA14", tet, together(tet_edges, tet_faces)},
-          {"TETRA15", tet, together(tet_edges, tet_inside, tet_faces)},
-          {"TETRA", tet, together(tet_edges, tet_faces, tet_inside)},  // as the library's own side sets have it
-          {"TETRA16", tet, cubic_edges(wedge_base, {{1, 4}, {2, 4}, {3, 4}}, {})},
-          {"WEDGE12", wedge, together(wedge_base, wedge_top), CellSpace::quadratic_in_r_s},
-          {"WEDGE15", wedge, wedge15},
-          {"WEDGE16", wedge, together(wedge15, wedge_inside)},
-          {"Wedge", wedge, together(wedge15, wedge_sides)},
-          {"WEDGE20", wedge, together(wedge15, wedge_triangles, wedge_sides_after_triangles)},
-          {"WEDGE21", wedge, together(wedge15, wedge_inside, wedge_triangles, wedge_sides_after_triangles)},
-          {"WEDGE", wedge,
-           together(wedge15, wedge_triangles, wedge_inside, wedge_sides_after_triangles)},  // as Ioss has it
-          {"WEDGE24", wedge, cubic_edges(wedge_base, wedge_upright, wedge_top)},
-          {"PYRAMID13", pyramid, pyramid_edges, CellSpace::linear},
-          {"PYRAMID14", pyramid, together(pyramid_edges, pyramid_base)},
-          {"pyramid", pyramid, together(pyramid_edges, pyramid_base, pyramid_triangles)},
-          {"PYRAMID19", pyramid, together(pyramid_edges, pyramid_base, pyramid_triangles, pyramid_inside)}};
+  return {
+      {"HEX9", hexahedron, hexahedron_inside, CellSpace::linear},
+      {"HEX16", hexahedron, together(base_edges, top_edges), CellSpace::quadratic_in_r_s},
+      {"HEX20", hexahedron, hex20},
+      {"hex21", hexahedron, together(hex20, hexahedron_inside)},
+      {"HEX", hexahedron, together(hex20, hexahedron_inside, hexahedron_faces)},
+      {"HEX32", hexahedron, cubic_edges(base_edges, upright_edges, top_edges)},
+      hex64(),
+      {"TETRA5", tet, tet_inside, CellSpace::linear},
+      {"TETRA8", tet, {{1, 2, 4}, {2, 3, 4}, {1, 2, 3}, {1, 3, 4}}, CellSpace::linear},
+      {"TETRA10", tet, tet_edges},
+      {"tet11", tet, together(tet_edges, tet_inside)},
+      {"TETRA14", tet, together(tet_edges, tet_faces)},
+      {"TETRA15", tet, together(tet_edges, tet_inside, tet_faces)},
+      {"TETRA", tet, together(tet_edges, tet_faces, tet_inside)},  // as in the library's own side sets
+      {"TETRA16", tet, cubic_edges(wedge_base, {{1, 4}, {2, 4}, {3, 4}}, {})},
+      {"WEDGE12", wedge, together(wedge_base, wedge_top), CellSpace::quadratic_in_r_s},
+      {"WEDGE15", wedge, wedge15},
+      {"WEDGE16", wedge, together(wedge15, wedge_inside)},
+      {"Wedge", wedge, together(wedge15, wedge_sides)},
+      {"WEDGE20", wedge, together(wedge15, wedge_triangles, wedge_sides_after_triangles)},
+      {"WEDGE21", wedge, together(wedge15, wedge_inside, wedge_triangles, wedge_sides_after_triangles)},
+      {"WEDGE", wedge, together(wedge15, wedge_triangles, wedge_inside, wedge_sides_after_triangles)},  // as in Ioss
+      {"WEDGE24", wedge, cubic_edges(wedge_base, wedge_upright, wedge_top)},
+      {"PYRAMID13", pyramid, pyramid_edges, CellSpace::linear},
+      {"PYRAMID14", pyramid, together(pyramid_edges, pyramid_base)},
+      {"pyramid", pyramid, together(pyramid_edges, pyramid_base, pyramid_triangles)},
+      {"PYRAMID19", pyramid, together(pyramid_edges, pyramid_base, pyramid_triangles, pyramid_inside)}};
 }
 
-/// One block of so many such cells, each with nodes of its own, along x.
+/// One block of `count` cells, each with its own nodes, along x.
 void write_exodus(const std::string& name, const std::string& topology, const BentCell& cell, int sides = 0,
                   int cells = 1) {
   int word = sizeof(double), stored = sizeof(double);
@@ -191,7 +191,7 @@ TEST(CurvedExodus, ANodeInATrianglesMiddleBendsIt) {
 
 TEST(CurvedExodus, ANodeInsideChangesTheFieldAndNotTheShape) {
   TESSERA_VTK_OR_SKIP();
-  // Of a cube of field 0 with 1 in its middle: the integral of 64 r (1 - r) s (1 - s) t (1 - t), and of a tetrahedron
+  // For a cube with field 0 and 1 in its middle: the integral of 64 r (1 - r) s (1 - s) t (1 - t); for a tetrahedron
   // that of 256 L1 L2 L3 L4, 256 / 7!.
   const ReferenceCell hex9{"HEX9", cells::CurvedFamily::hexahedron, hexahedron_inside, CellSpace::linear},
       tet11{"TETRA11", cells::CurvedFamily::tet, together(tet_edges, tet_inside)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lagrange hexahedra of .vtu files in several pieces, old and new, as Tessera itself and as VTK's reader read them.
+// Lagrange hexahedra of .vtu files in several pieces, old and new, as read by Tessera itself and by VTK's reader.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 using testing::BentCell;
 
-/// A cell of these degrees, bent as a quadratic one of another numbering.
+/// A cell of these degrees, bent like a quadratic one with another numbering.
 BentCell bent_lagrange(const std::array<int, 3>& degrees, bool is_old) {
   std::size_t nodes = 1;
   for (const int degree : degrees) nodes *= static_cast<std::size_t>(degree) + 1;
@@ -27,7 +27,7 @@ BentCell bent_lagrange(const std::array<int, 3>& degrees, bool is_old) {
   std::vector<glm::dvec3> places;
   for (std::size_t k = 0; k < nodes; ++k) places.push_back(lattice->place(k));
   if (is_old) {
-    // VTK 8 has the edge from corner 3 to 7 before that from 2 to 6.
+    // In VTK 8 the edge from corner 3 to 7 precedes that from 2 to 6.
     std::vector<std::size_t> third, fourth;
     for (std::size_t k = 8; k < nodes; ++k)
       if (const glm::dvec3& p = places[k]; p.y == 1 && p.z > 0 && p.z < 1)
@@ -42,7 +42,7 @@ std::string array(const std::string& type, const std::string& name, int componen
                      type, name, components, numbers);
 }
 
-/// One piece of the cell `copies` times, each with its own points; `more` is in its <CellData>.
+/// One piece with the cell `copies` times, each with its own points; `more` is in its <CellData>.
 std::string piece(const BentCell& cell, int copies, double shift, const std::string& more) {
   std::string points, values, nodes, ends, types;
   for (int copy = 0; copy < copies; ++copy) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Real files cut short and with bytes changed: read, or refused in one line, never a crash. What sanitizers are for.
+// Real files, truncated and with bytes changed: read, or refused in one line, never a crash. Intended for sanitizer
+// builds.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -25,7 +26,7 @@ class Damaged : public ::testing::TestWithParam<const char*> {
     }
   }
 
-  /// Reads the bytes as a file of the original's name; whether they were accepted.
+  /// Reads the bytes as a file with the original's name; returns whether they were accepted.
   bool read(const std::string& bytes) {
     const auto file = folder.write(name, bytes);
     const test::Fault fault = test::fault_of([&] { scene::validate(read_mesh(file).mesh, name); });

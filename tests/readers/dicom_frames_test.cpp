@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Frames of one DICOM file: order, places, scale and time of each.
+// Frames of one DICOM file: order, position, scale and time of each.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ using test::has_note;
 constexpr std::size_t frame_size = 12;
 const std::string upright = "1\\0\\0\\0\\1\\0";
 
-/// What frame k at its place shows, before its scale: 100 k, 100 k + 1, ...
+/// The samples of frame k at its place, before scaling: 100 k, 100 k + 1, ...
 std::vector<std::int16_t> samples_of(const std::vector<int>& places, const std::vector<double>& slopes = {}) {
   std::vector<std::int16_t> samples;
   for (std::size_t f = 0; f < places.size(); ++f)
@@ -74,7 +74,7 @@ TEST_F(DicomFrameFiles, LieWhereEachSaysWhateverTheirOrder) {
     const scene::GridGeometry& g = volume.source->geometry();
     EXPECT_EQ(g.points, (GridIndex{4, 3, 4}));
     EXPECT_EQ(g.origin, glm::dvec3(10, -20, 5));
-    EXPECT_EQ(g.spacing, glm::dvec3(0.5, 0.75, 2.5));  // by the places, not by the thickness
+    EXPECT_EQ(g.spacing, glm::dvec3(0.5, 0.75, 2.5));  // from the positions, not from the thickness
     EXPECT_EQ(all_samples(*volume.source), wanted(4));
     EXPECT_EQ(volume.body_axes, BodyAxes::lps);
     EXPECT_EQ(volume.tags.modality, "CT");
@@ -91,7 +91,7 @@ TEST_F(DicomFrameFiles, HaveScalesOfTheirOwn) {
 }
 
 TEST_F(DicomFrameFiles, OfOnePlaceAreTimeSteps) {
-  // By their temporal positions, which run against the order of the frames.
+  // By their temporal positions, in the reverse order of the frames.
   DicomFrames file = frames_at({0, 1, 2, 0, 1, 2});
   for (std::size_t f = 0; f < 6; ++f)
     file.each[f] = dicom_group(0x20, 0x9111, dicom_element(0x20, 0x9128, "UL", test::dicom_little(f < 3 ? 2 : 1, 4))) +
@@ -102,7 +102,7 @@ TEST_F(DicomFrameFiles, OfOnePlaceAreTimeSteps) {
   EXPECT_EQ(last.source->geometry().points, (GridIndex{4, 3, 3}));
   EXPECT_EQ(last.range, (scene::ValueRange{-211, 0, 0}));
   EXPECT_EQ(all_samples(*open(file, {.time_step = 0}).source), wanted(3));
-  // Without them by the order of the frames, one volume after the other or place by place.
+  // Without them by the order of the frames, one volume after the other or position by position.
   DicomFrames after = frames_at({0, 1, 2, 0, 1, 2});
   for (std::size_t k = 3 * frame_size; k < 6 * frame_size; ++k) after.samples[k] = 7;
   EXPECT_EQ(all_samples(*open(after, {.time_step = 0}).source), wanted(3));
@@ -186,7 +186,7 @@ TEST_F(DicomFrameFiles, InSeveralDirectionsOrSpacingsAreThoseOfOneAndOfOnePlaceA
   const VolumeFile most = open(file);
   EXPECT_EQ(all_samples(*most.source), wanted(3));
   EXPECT_TRUE(has_note(most, "frames have 2 directions or spacings, of which the 3 of one are read"));
-  // One of another spacing, and all of one that is not what the file states of all.
+  // One with another spacing, and all with a spacing that differs from the file's.
   file.each.back() = test::dicom_position({10, -20, 12.5}) + test::dicom_measures(1.5, 1, 9);
   EXPECT_EQ(all_samples(*open(file).source), wanted(3));
   for (std::string& each : file.each) each += test::dicom_measures(1.5, 1, 9);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// DICOM segmentations: samples of one bit, segments in frames of their own, frames that are left out (PS3.3, A.51).
+// DICOM segmentations: one-bit samples, segments in separate frames, omitted frames (PS3.3, A.51).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -24,9 +24,9 @@ using test::DicomFrames;
 using test::expect_no_volume;
 using test::has_note;
 
-constexpr std::size_t columns = 5, rows = 3, frame_size = columns * rows;  // no frame but the first begins a byte
+constexpr std::size_t columns = 5, rows = 3, frame_size = columns * rows;  // only the first frame is byte-aligned
 
-/// A frame of a segment at z = 5 + 2.5 * place: 1 where the samples' numbers are from `first` to before `last`.
+/// A frame of a segment at z = 5 + 2.5 * place: 1 for the samples [first, last).
 struct Frame {
   std::uint32_t segment = 1;
   int place = 0;
@@ -70,7 +70,7 @@ DicomFrames segmentation(const std::vector<Frame>& frames, const std::string& ty
   return file;
 }
 
-/// Samples of so many places, where the frames' are `value` or, if that is 0, the number of their segment.
+/// Samples at `places` positions: those of the frames are `value` or, if that is 0, the number of their segment.
 std::vector<double> wanted(const std::vector<Frame>& frames, int places, double value = 0) {
   std::vector<double> samples(static_cast<std::size_t>(places) * frame_size);
   for (const Frame& f : frames)

@@ -35,20 +35,20 @@ struct Slice {
   std::string series = "1.2.3";
   int number = 1;
   double slope = 1, intercept = 0;
-  int time = 0;  ///< 0: none said
+  int time = 0;  ///< 0: not stated
   std::string image_type = "ORIGINAL\\PRIMARY";
   int columns = 4, rows = 3, colours = 1;
   std::string spacing = "0.75\\0.5";
   bool is_placed = true;
   std::vector<std::int16_t> samples{};
-  std::vector<std::int16_t> padding{};  ///< none, a value, or a value and the limit of a range
+  std::vector<std::int16_t> padding{};  ///< empty, a value, or a value and the limit of a range
   bool is_deflated = false;
-  bool is_wide = false;  ///< samples are the upper halves of 32 bits without a sign, the lower ones 1
+  bool is_wide = false;  ///< samples are the upper halves of unsigned 32-bit numbers, the lower ones are 1
 };
 
 constexpr const char* ct_storage = "1.2.840.10008.5.1.4.1.1.2";
 
-/// Without a header, of an even count of bytes (PS3.5, A.5).
+/// Without a header, padded to an even number of bytes (PS3.5, A.5).
 std::string deflated(const std::string& bytes) {
   z_stream stream{};
   EXPECT_EQ(deflateInit2(&stream, 9, Z_DEFLATED, -15, 8, Z_DEFAULT_STRATEGY), Z_OK);
@@ -115,7 +115,7 @@ class Dicom : public ::testing::Test {
 };
 
 TEST_F(Dicom, AFolderOfSlicesIsOneVolumeInTheOrderOfTheirPlaces) {
-  // Named and numbered in another order than they lie in.
+  // Names and numbers have another order than the positions.
   const double z[] = {5, 3, 7};
   for (int k = 0; k < 3; ++k)
     write(fmt::format("{}.dcm", k), {.z = z[k], .number = 3 - k, .intercept = -1000, .samples = twelve(100 * k)});
@@ -240,7 +240,7 @@ TEST_F(Dicom, DamagedFilesAreNamedAndOtherFilesLeftOut) {
   const std::string whole = dicom({.z = 1, .samples = twelve(1)});
   folder.write("1.dcm", whole.substr(0, whole.size() - 10));
   expect_no_volume(folder.path(), "1.dcm: it ends before its samples do");
-  // Any one byte of a header.
+  // Changes any one byte of a header.
   test::SomeCases some(7);
   for (std::size_t at = 132; at < whole.size(); at += 3) {
     if (!some.next()) continue;
@@ -274,9 +274,9 @@ TEST_F(Dicom, PaddingIsBlank) {
 }
 
 TEST_F(Dicom, WholeValuesBeyondThirtyOneBitsAreExact) {
-  // 65536 s + 1, beyond what a float holds.
+  // 65536 s + 1, not representable as float.
   std::vector<std::int16_t> upper = twelve(0);
-  upper[5] = -1;  // 65535 as the samples have no sign
+  upper[5] = -1;  // 65535, because the samples are unsigned
   for (int k = 0; k < 2; ++k)
     write(fmt::format("{}.dcm", k), {.z = 1.0 * k, .number = k, .samples = upper, .is_wide = true});
   const VolumeFile volume = open_volume(folder.path());
@@ -285,7 +285,7 @@ TEST_F(Dicom, WholeValuesBeyondThirtyOneBitsAreExact) {
   EXPECT_EQ(all_samples(*volume.source)[11], 720897.0);
   for (int k = 0; k < 2; ++k)
     write(fmt::format("{}.dcm", k), {.z = 1.0 * k, .number = k, .intercept = -10, .samples = upper, .is_wide = true});
-  const VolumeFile beyond = open_volume(folder.path());  // from -9 on: no integer of 32 bits
+  const VolumeFile beyond = open_volume(folder.path());  // from -9 on: no 32-bit integer type
   EXPECT_EQ(beyond.source->grid().type, scene::SampleType::float64);
   EXPECT_EQ(all_samples(*beyond.source)[5], 4294901751.0);
 }

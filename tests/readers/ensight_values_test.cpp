@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// EnSight's variable files that end too early are named, and their fields left out; whole ones of any layout are read,
-// also those of several time steps.
+// EnSight variable files that end too early are reported, and their fields left out; complete ones of any layout are
+// read, also those of several time steps.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ using testing::message_of;
 enum class Layout : std::uint8_t { gold_text, gold_binary, six_text, six_binary };
 constexpr Layout layouts[] = {Layout::gold_text, Layout::gold_binary, Layout::six_text, Layout::six_binary};
 
-/// What such a file has one after the other.
+/// The contents of such a file, in order.
 class Content {
  public:
   explicit Content(Layout layout)
@@ -61,8 +61,7 @@ class Content {
   std::string text;
 };
 
-/// Two parts, each of one tetrahedron of nodes of its own: `f` of nodes is 0 to 7, `v` a vector, `g` of cells 10
-/// and 20.
+/// Two parts, each of one tetrahedron with its own nodes: `f` at nodes is 0 to 7, `v` a vector, `g` at cells 10 and 20.
 class EnsightValues : public ::testing::Test {
  protected:
   void write_case(Layout layout) {
@@ -82,7 +81,7 @@ class EnsightValues : public ::testing::Test {
       std::vector<float> points;
       for (std::size_t k = 0; k < 8; ++k) points.insert(points.end(), {x[k], y[k], z[k]});
       std::vector<float> values = {0, 1, 2, 3, 4, 5, 6, 7};
-      // VTK's reader wants 80 bytes after the description of a binary file: nodes that no cell has.
+      // VTK's reader expects 80 bytes after the description of a binary file: nodes that no cell uses.
       points.resize(points.size() + 3 * 16), values.resize(24);
       geometry.line("coordinates").whole({24}).real(points, 3);
       f.real(values), v.real(points);
@@ -106,7 +105,7 @@ class EnsightValues : public ::testing::Test {
     folder.write("a.g", g.text);
   }
 
-  /// Its last bytes are gone.
+  /// Removes its last bytes.
   void cut(const std::string& name, std::size_t bytes) const {
     const auto file = folder.path() / name;
     std::filesystem::resize_file(file, std::filesystem::file_size(file) - bytes);
@@ -279,7 +278,7 @@ TEST_F(EnsightValues, WhatGoldFilesMayLeaveOutIsNotMissed) {
   for (const Layout layout : {Layout::gold_text, Layout::gold_binary}) {
     SCOPED_TRACE(static_cast<int>(layout));
     write_case(layout);
-    // Parts in another order, one alone, and one without cells of the variable.
+    // Parts in another order, a single one, and one without cells with the variable.
     folder.write("a.f", Content(layout)
                             .line("f")
                             .part(2)
@@ -322,7 +321,7 @@ TEST_F(EnsightValues, StructuredPartsCount) {
   }
 }
 
-/// One of three steps, at 0, 0.7 and 2: `f` of nodes is 10 times the step and 0 to 7.
+/// One of three steps, at 0, 0.7 and 2: `f` at nodes is 10 times the step plus 0 to 7.
 Content at_step(Content content, const std::vector<float>& numbers, float step) {
   std::vector<float> values;
   values.reserve(numbers.size());
@@ -330,7 +329,7 @@ Content at_step(Content content, const std::vector<float>& numbers, float step) 
   return content.real(values);
 }
 
-/// write_case() with a file of three steps for `f`, files of one step each for `g`, and geometry and `v` that stay.
+/// write_case() with a file of three steps for `f`, files of one step each for `g`, and constant geometry and `v`.
 class EnsightSteps : public EnsightValues {
  protected:
   void write_steps(Layout layout, const std::string& files) {
@@ -426,7 +425,7 @@ TEST_F(EnsightSteps, OnesThatAreNotThereAreLeftOutByName) {
   }
 }
 
-TEST_F(EnsightSteps, TheFileOfAStepIsFoundByItsTimeAsFloat) {  // 0.7 as a float is less
+TEST_F(EnsightSteps, TheFileOfAStepIsFoundByItsTimeAsFloat) {  // 0.7 as a float is smaller
   TESSERA_VTK_OR_SKIP();
   write_steps(Layout::gold_text, "");
   folder.write("a.f", steps[0] + steps[1] + steps[2]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The subject of an error is the file, whatever its name holds.
+// The subject of an error is the file, whatever its name contains.
 
 #include <gtest/gtest.h>
 

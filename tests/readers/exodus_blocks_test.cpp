@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Element blocks and sets of an Exodus file, which its own library writes here.
+// Element blocks and sets of an Exodus file, written by the Exodus library.
 #include <gtest/gtest.h>
 #include <vtk_exodusII.h>
 
@@ -32,8 +32,8 @@ void write_sets(int id) {
   ex_put_set(id, EX_NODE_SET, 5, nodes.data(), nullptr);
 }
 
-/// Three unit cubes along x in blocks of the ids 7, 8 (without a name) and 9, each with its own number as a value; with
-/// sets if asked for, and then in one block, 7, whose cubes have the values 0, 10 and 20.
+/// Three unit cubes along x in blocks with the ids 7, 8 (without a name) and 9, each with its own number as a value;
+/// with sets, if requested, they are in one block, 7, with the values 0, 10 and 20.
 void write_cubes(const std::string& name, bool with_sets = false) {
   int word = sizeof(double), stored = sizeof(double);
   const int id = ex_create(name.c_str(), EX_CLOBBER, &word, &stored);
@@ -112,7 +112,7 @@ TEST(ExodusBlocks, ElementSetsAreChosenLikeBlocks) {
   EXPECT_NEAR(testing::volume(middle.mesh), 1, 1e-12);
   values = {middle.mesh.scalars.begin(), middle.mesh.scalars.end()};
   EXPECT_EQ(values, std::set<double>{10});
-  // What is named twice is there once.
+  // A block named twice is read once.
   EXPECT_NEAR(testing::volume(read({"ends", "element set 4"}).mesh), 3, 1e-12);
   EXPECT_NEAR(testing::volume(read({"ends", "steel"}).mesh), 3, 1e-12);
   const auto notes = read({}).notes;
@@ -142,7 +142,7 @@ TEST(ExodusBlocks, SideSetsAreSurfaces) {
   EXPECT_NEAR(area(inlet), 1, 1e-12);
   EXPECT_TRUE(inlet.values.empty());
   for (const glm::dvec3& p : inlet.points) EXPECT_TRUE(p.x >= 1 && p.x <= 2) << p.x;
-  // Of a block of volume, and of an element set, the boundary, with values.
+  // The boundary of a volume block, and of an element set, with values.
   ReadOptions options;
   options.field = "v";
   const tessera::TriangleMesh steel = read_block_surface(files, "steel", options);

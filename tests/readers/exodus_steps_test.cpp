@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Exodus files whose nodes move with time, which its own library writes here: times, displacements, `warp`.
+// Exodus files whose nodes move with time, written by the Exodus library: times, displacements, `warp`.
 #include <gtest/gtest.h>
 #include <vtk_exodusII.h>
 #include <vtk_netcdf.h>
@@ -19,7 +19,7 @@
 namespace tessera::io::exodus_steps_test {
 namespace {
 
-/// A unit cube at times 0.5, 0.75 and 4. Of each vector the nodes at x = 1 have (step, 0, 0), the others 0.
+/// A unit cube at times 0.5, 0.75 and 4. In each vector the nodes at x = 1 have (step, 0, 0), the others 0.
 void write_cube(const std::filesystem::path& file, const std::vector<std::string>& vectors, int mode = EX_CLOBBER) {
   int word = sizeof(double), stored = sizeof(double);
   const int id = ex_create(file.c_str(), mode, &word, &stored);
@@ -91,7 +91,7 @@ TEST(ExodusSteps, NodesMoveByDisplacementsOnly) {
     write_cube(folder / "a.exo", {name});
     EXPECT_NEAR(volume_of(folder / "a.exo"), 1, 1e-12) << name;
   }
-  write_cube(folder / "a.exo", {"disp", "displacement"});  // the first alone
+  write_cube(folder / "a.exo", {"disp", "displacement"});  // only the first
   EXPECT_NEAR(volume_of(folder / "a.exo"), 4, 1e-12);
   EXPECT_EQ(std::ranges::count(read_mesh(folder / "a.exo").notes, "nodes are displaced by 'disp'"), 1);
 }
@@ -136,7 +136,7 @@ TEST(ExodusSteps, PartsOfAVectorNeedNotBeNeighbours) {
   EXPECT_EQ(fields_of({"u_x", "u_y", "T"}), (Names{"u_x1", "u_y1", "T1"}));
 }
 
-/// A tetrahedron with T and, of three numbers a node, v as meshio 5 writes them: without `file_size`.
+/// A tetrahedron with T and, with three numbers per node, v as written by meshio 5: without `file_size`.
 void write_as_meshio(const std::filesystem::path& file) {
   int id = 0, nodes = 0, space = 0, elements = 0, blocks = 0, letters = 0, steps = 0, corners = 0, variables = 0,
       node = 0, three = 0;

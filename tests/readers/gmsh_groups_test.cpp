@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Physical groups, partitions and names of views in Gmsh's files, written here as its reference manual has them.
+// Physical groups, partitions and names of views in Gmsh's files, written according to its reference manual.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -59,14 +59,14 @@ std::string tet(int number, const std::string& tags, const char* of) {
   return fmt::format("{} 4 {} {}", number, tags, of);
 }
 
-/// Each of the two in its own group and in `all`, listed once for each, as Gmsh writes them.
+/// Each of the two is in its own group and in `all`, and listed once for each, as Gmsh writes them.
 std::vector<std::string> listed_twice(const char* left_entity, const char* right_entity) {
   const auto tags = [](int group, const char* entity) { return fmt::format("2 {} {}", group, entity); };
   return {tet(1, tags(1, left_entity), corner_nodes), tet(2, tags(3, left_entity), corner_nodes),
           tet(3, tags(2, right_entity), middle_nodes), tet(4, tags(3, right_entity), "5 4 3 2")};
 }
 
-/// The same as binary numbers, or the two each in its partition and a ghost of the other's.
+/// The same as binary numbers, or each of the two in its own partition and a ghost of the other's.
 std::string binary_msh2(bool is_partitioned = false) {
   const auto put = [](std::string& bytes, auto number) {
     bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
@@ -155,7 +155,7 @@ TEST_F(GmshGroups, AViewHasTheValueOfAnElementUnderAnyOfItsNumbers) {
 }
 
 TEST_F(GmshGroups, PartitionsAreBlocksAndTheirGhostsAreNotDrawn) {
-  // 2.2: the first partition has the element, those below 0 have it as a ghost.
+  // 2.2: the first partition owns the element, negative ones have it as a ghost.
   for (const std::string& text :
        {msh2({tet(1, "5 1 1 2 1 -2", corner_nodes), tet(2, "5 2 2 2 2 -1", middle_nodes)}), binary_msh2(true)}) {
     const cells::MeshFile mesh = read(text);
@@ -164,7 +164,7 @@ TEST_F(GmshGroups, PartitionsAreBlocksAndTheirGhostsAreNotDrawn) {
     EXPECT_NEAR(volume_of(text, {"partition 2"}), middle, 1e-12);
     EXPECT_NEAR(volume_of(text, {"left", "partition 1"}), corner, 1e-12);
   }
-  // 4.1: ghost entities 4 and 5 hold what the other partition has.
+  // 4.1: ghost entities 4 and 5 contain elements of the other partition.
   std::string later =
       "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 0 1\n1 0 0 0 1 1 1 0 0\n$EndEntities\n"
       "$PartitionedEntities\n2\n2\n4 1\n5 2\n0 0 0 2\n2 3 1 1 1 0 0 0 1 1 1 0 0\n3 3 1 1 2 0 0 0 1 1 1 0 0\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Gmsh's files and those that its library reads, written here by hand as its reference manual has them.
+// Gmsh's files and others that its library reads, written by hand according to its reference manual.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ namespace {
 
 using Points = std::vector<glm::dvec3>;
 
-/// Two cubes side by side along x, points at even places: 12 points, x fastest.
+/// Two adjacent cubes along x, points at even positions: 12 points, x fastest.
 Points two_cubes() {
   Points points;
   for (int k = 0; k < 2; ++k)
@@ -33,7 +33,7 @@ Points two_cubes() {
 }
 constexpr std::array<std::array<int, 8>, 2> cube_corners = {{{0, 1, 4, 3, 6, 7, 10, 9}, {1, 2, 5, 4, 7, 8, 11, 10}}};
 
-/// Tags have gaps and fall.
+/// Tags have gaps and decrease.
 int tag_of(int point) { return 1000 - 7 * point; }
 
 double field_at(const glm::dvec3& p) { return p.x + 2 * p.y + 3 * p.z; }
@@ -46,7 +46,7 @@ std::string corners_text(int cell) {
   return text + "\n";
 }
 
-/// Fields as MSH has them in all versions: `sections` of one name for time steps.
+/// Fields in the format of all MSH versions: several sections of one name for time steps.
 std::string node_data(const std::string& name, int step, double factor) {
   std::string text = fmt::format("$NodeData\n1\n\"{}\"\n1\n{}\n3\n{}\n1\n12\n", name, 0.5 * step, step);
   const Points points = two_cubes();
@@ -142,7 +142,7 @@ class Gmsh : public ::testing::Test {
   test::TemporaryFolder folder;
 };
 
-/// Both cubes with the field as it is given.
+/// Both cubes with the field unchanged.
 void expect_cubes(const cells::MeshFile& read, double factor) {
   EXPECT_NEAR(testing::volume(read.mesh), 2, 1e-12);
   EXPECT_EQ(read.counts.cells_read, 2u);
@@ -226,7 +226,7 @@ TEST_F(Gmsh, AFieldOfSomeNodesLeavesTheOtherCellsBlank) {
   EXPECT_EQ(read.counts.cells_nan, 1u);
 }
 
-/// One cell of MSH 2.2, its nodes at `places` numbered from 1.
+/// One cell of MSH 2.2, with its nodes at `places` numbered from 1.
 std::string one_cell(int type, const Points& places) {
   std::string text = fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", places.size());
   std::string nodes;
@@ -237,7 +237,7 @@ std::string one_cell(int type, const Points& places) {
   return text + fmt::format("$EndNodes\n$Elements\n1\n1 {} 2 0 1{}\n$EndElements\n", type, nodes);
 }
 
-/// The points of a block's first cell in its order.
+/// The points of a block's first cell, in its order.
 Points cell_points(const cells::CellBlock& block) {
   Points points;
   for (const std::uint32_t v : block.connectivity) points.push_back(block.positions[v]);
@@ -312,7 +312,7 @@ TEST_F(Gmsh, ThirdOrderTetrahedraComeInVtksOrder) {
 }
 
 TEST_F(Gmsh, ThirdOrderHexahedraComeInVtksOrder) {
-  // Edges in thirds, as both have them; faces and inside are elsewhere.
+  // Edges in thirds, the same in both; faces and inside differ.
   const Points corners = {{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}, {0, 0, 3}, {3, 0, 3}, {3, 3, 3}, {0, 3, 3}};
   const auto thirds = [&](Points& points, const Edges& edges) {
     for (const auto& [a, b] : edges)
@@ -321,7 +321,7 @@ TEST_F(Gmsh, ThirdOrderHexahedraComeInVtksOrder) {
   Points theirs = corners, vtks = corners;
   thirds(theirs, {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 5}, {2, 3}, {2, 6}, {3, 7}, {4, 5}, {4, 7}, {5, 6}, {6, 7}});
   thirds(vtks, {{0, 1}, {1, 2}, {3, 2}, {0, 3}, {4, 5}, {5, 6}, {7, 6}, {4, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}});
-  // Only where the edges' nodes go is looked at here: those of faces and inside may lie anywhere.
+  // Only the order of the edges' nodes is checked here: those of faces and inside may be anywhere.
   for (int k = 0; k < 32; ++k) theirs.emplace_back(1.5, 1.5, 1.5 + 0.01 * k);
   const cells::MeshBlocks read =
       read_foreign_mesh(identify(folder.write("a.msh", one_cell(92, theirs))), {Reader::gmsh, "gmsh"}, {});
@@ -346,7 +346,7 @@ TEST_F(Gmsh, CompleteQuadraticPyramidsComeInLagrangesOrder) {
 }
 
 TEST_F(Gmsh, ThirdOrderPrismsComeInVtksOrder) {
-  // Nodes in thirds, as Gmsh 4.8 numbers those of a prism that it makes (Mesh.ElementOrder 3), and as VTK's
+  // Nodes in thirds, as Gmsh 4.8 numbers those of a prism that it creates (Mesh.ElementOrder 3), and as VTK's
   // vtkHigherOrderWedge does.
   const Points theirs = {{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {0, 0, 3}, {3, 0, 3}, {0, 3, 3}, {1, 0, 0}, {2, 0, 0},
                          {0, 1, 0}, {0, 2, 0}, {0, 0, 1}, {0, 0, 2}, {2, 1, 0}, {1, 2, 0}, {3, 0, 1}, {3, 0, 2},
@@ -388,7 +388,7 @@ TEST_F(Gmsh, ScriptsAreNotRun) {
       test::fault_of([&] { read_mesh(folder.write(name, before + script + "//\n$End\n")); });
       EXPECT_FALSE(std::filesystem::exists(ran)) << name << before;
     }
-  // The options file that Gmsh takes along with a mesh.
+  // The options file that Gmsh reads together with a mesh.
   folder.write("b.msh", msh2(""));
   folder.write("b.msh.opt", script);
   read_mesh(folder / "b.msh");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// HDF5 that follows no convention, and images of VTKHDF, written here.
+// HDF5 files that follow no convention, and VTKHDF images, written here.
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
@@ -41,7 +41,7 @@ class Hdf5Writer {
              const std::vector<double>& values) const {
     const hid_t space = H5Screate_simple(static_cast<int>(lengths.size()), lengths.data(), nullptr);
     const hid_t set = H5Dcreate2(file_, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    // MINC's library, in this process too, registers conversions of doubles to integers that convert nothing.
+    // MINC's library, which is also in this process, registers conversions of doubles to integers that convert nothing.
     const std::vector<std::int64_t> whole(values.begin(), values.end());
     const bool is_integer = H5Tget_class(type) == H5T_INTEGER;
     EXPECT_GE(H5Dwrite(set, is_integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
@@ -51,7 +51,7 @@ class Hdf5Writer {
     H5Dclose(set), H5Sclose(space);
   }
 
-  /// One chunk, as a filter has packed it.
+  /// One chunk in a filter's packed form.
   void packed(const char* name, const std::vector<hsize_t>& lengths, H5Z_filter_t filter,
               const std::string& bytes) const {
     const hid_t space = H5Screate_simple(static_cast<int>(lengths.size()), lengths.data(), nullptr),
@@ -201,7 +201,7 @@ TEST(Hdf5Arrays, MissingOnesAreBlank) {
   EXPECT_EQ(open_volume(folder / "a.h5").range, (scene::ValueRange{0, 7, 1}));
 }
 
-/// LZF of LibLZF, as its decoder takes it: bytes as they are, or repeats of what was four bytes before.
+/// LibLZF's LZF for its decoder: literal bytes, or repeats of the bytes four before.
 std::string lzf(const std::string& plain) {
   std::string packed, literal;
   const auto end_literal = [&] {
@@ -214,7 +214,7 @@ std::string lzf(const std::string& plain) {
     if (same >= 3) {
       end_literal();
       const std::size_t length = same - 2;
-      packed += static_cast<char>(std::min<std::size_t>(length, 7) << 5);  // and the distance's high bits, none
+      packed += static_cast<char>(std::min<std::size_t>(length, 7) << 5);  // with the distance's high bits, zero
       if (length >= 7) packed += static_cast<char>(length - 7);
       packed += static_cast<char>(3);  // one less than the distance
       at += same;
@@ -272,7 +272,7 @@ void write_image(const Hdf5Writer& w) {
   w.numbers("VTKHDF", "WholeExtent", {10, 13, 0, 2, -1, 0});
   w.numbers("VTKHDF", "Origin", {100, 200, 300});
   w.numbers("VTKHDF", "Spacing", {1, 2, 3});
-  w.numbers("VTKHDF", "Direction", {0, -1, 0, 1, 0, 0, 0, 0, 1});  // x goes along y, y along -x
+  w.numbers("VTKHDF", "Direction", {0, -1, 0, 1, 0, 0, 0, 0, 1});  // x points along y, y along -x
 }
 
 TEST(VtkHdfImages, AreGridsWithTheirAxes) {

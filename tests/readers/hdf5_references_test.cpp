@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What HDF5 files lead to: other files, by links, external storage and virtual datasets.
+// Files referenced by HDF5 files: by links, external storage and virtual datasets.
 #include <gtest/gtest.h>
 #include <hdf5.h>
 #include <sys/stat.h>
@@ -18,7 +18,7 @@ namespace {
 using testing::HdfWriter;
 using testing::write_tets;
 
-/// The folder `in` of a temporary one, with a file of two tets in both.
+/// The directory `in` of a temporary one, with a file of two tets in both.
 class Hdf5References : public ::testing::Test {
  protected:
   Hdf5References() : in(folder / "in") {
@@ -100,7 +100,7 @@ TEST_F(Hdf5References, ToPipesAreRefused) {
   expect_refused(with_external_field("e.vtkhdf", pipe.c_str()), "no regular file");
 }
 
-// The library calls itself until its stack ends.
+// The library recurses until its stack overflows.
 TEST_F(Hdf5References, OfVirtualDatasetsToThemselvesAreRefused) {
   expect_refused(with_virtual_field("v.vtkhdf", "v.vtkhdf", "/VTKHDF/PointData/g"), "lead back to themselves");
   expect_refused(with_virtual_field("w.vtkhdf", ".", "/VTKHDF/PointData/g"), "lead back to themselves");

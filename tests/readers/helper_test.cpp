@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The helper program, from its caller's side: what it inherits, what its deaths become, what damaged files ask of it.
+// The helper program, from its caller's side: what it inherits, how its deaths are reported, how it handles damaged
+// files.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -33,7 +34,7 @@ std::string proc_text(int process, const char* what) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// An image of n^3 points in one piece, its whole extent as said; ASCII samples 0, 1, 2, ...
+/// An image of n^3 points in one piece, with the stated whole extent; ASCII samples 0, 1, 2, ...
 std::string image_text(int n, const std::string& whole_extent) {
   const std::string last = std::to_string(n - 1), extent = "0 " + last + " 0 " + last + " 0 " + last;
   std::string text =
@@ -65,7 +66,7 @@ TEST(Helper, InheritsNoFileNoSignalsAndNoRank) {
   const auto helper = std::make_shared<HelperProcess>();
   ::unsetenv("OMPI_COMM_WORLD_RANK");
   ::unsetenv("PMIX_RANK");
-  // It answers, so it has long been what it was started as.
+  // It replies, so it has completed its start.
   const ForeignFile opened =
       open_foreign(helper, folder.write("m.vtu", testing::vtu_text(testing::mixed_mesh(2, 1, false))),
                    {{"reader", "vtk_xml"}, {"type", "UnstructuredGrid"}});
@@ -111,7 +112,7 @@ TEST(Helper, IsEndedWhereItWaitsForAPipe) {
   testing::write_foam(cube, testing::Cubes(1), [](int) { return true; });
   testing::write_control(cube);
   std::string text = test::contents(boundary);
-  text.insert(text.find('}') + 1, "\n#include \"../../../pipe\"\n");  // which VTK's reader opens
+  text.insert(text.find('}') + 1, "\n#include \"../../../pipe\"\n");  // VTK's reader opens it
   std::ofstream(boundary) << text;
   HelperTask task;
   task.patience = std::chrono::milliseconds(200);
@@ -126,7 +127,7 @@ TEST(Helper, TellsHowFarItIs) {
   const test::TemporaryFolder folder;
   std::string text = testing::vtu_text(testing::mixed_mesh(60, 1, false));
   const std::string element = "<UnstructuredGrid";
-  text.insert(text.find(element + ">") + element.size(), " TimeValues=\"0\"");  // VTK's reader alone knows them
+  text.insert(text.find(element + ">") + element.size(), " TimeValues=\"0\"");  // only VTK's reader supports them
   const auto file = folder.write("m.vtu", text);
   std::vector<ReadProgress> heard;
   ReadOptions options;
@@ -233,7 +234,7 @@ TEST(Helper, ADescriptionComesBackAsItWas) {
   EXPECT_EQ(got.point_fields[0].bytes(), 3 * 8 * (1ull << 33));
   EXPECT_EQ(got.point_fields[0].tally.low, -0.3);
   EXPECT_EQ(got.point_fields[0].tally.not_finite, 9u);
-  // Anything else is refused, whatever byte of it differs.
+  // Anything else is refused, whichever byte differs.
   for (std::size_t cut = 0; cut < bytes.size(); ++cut)
     EXPECT_ANY_THROW(contents_of(std::span(bytes).first(cut))) << cut;
 }
@@ -256,7 +257,7 @@ TEST(Helper, ASmallFileThatPromisesMuchCostsLittle) {
   text.replace(at, text.find('"', at) - at, "3999999999");
   const auto file = folder.write("m.vtu", text);
   EXPECT_NE(message_of([&] { read_mesh(file); }), "");
-  // Sanitizers have address space without a limit, and memory of their own.
+  // Sanitizers use unlimited address space, and memory of their own.
   if (!is_sanitized) {
     EXPECT_LT(children_kib(), 600 << 10);
   }

@@ -11,7 +11,7 @@ namespace {
 
 using Root = std::array<std::size_t, 3>;
 
-/// An array; how many tuples it has is said by `count`, if that is not how many there are.
+/// An array; `count`, if set, overrides the stated number of tuples.
 std::string array(const std::string& type, const std::string& name, const std::vector<double>& values,
                   int components = 1) {
   return fmt::format(
@@ -25,7 +25,7 @@ struct Stored {
   std::vector<double> divided, masked, counts, order;
 };
 
-/// In which order version 0 stores values: that in which cells come to be.
+/// The order in which version 0 stores values: depth first.
 void descend(const std::vector<TreeCell>& cells, std::size_t children, std::size_t cell, std::vector<double>& order) {
   if (cells[cell].first_child == 0) return;
   for (std::size_t c = 0; c < children; ++c) order.push_back(static_cast<double>(cells[cell].first_child + c));

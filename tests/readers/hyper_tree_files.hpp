@@ -10,7 +10,7 @@
 
 #include "support/amr_files.hpp"
 
-/// HyperTreeGrids as text, written from what the format is.
+/// HyperTreeGrids as text, written according to the format.
 namespace tessera::io::testing {
 
 /// A cell of a tree.
@@ -36,17 +36,17 @@ struct TreeScene {
   [[nodiscard]] glm::dvec3 sides() const;
 };
 
-/// What else a file may be like.
+/// Optional properties of a file.
 struct TreeWish {
   int version = 2;
   bool transposed = false;
   std::function<bool(const std::array<std::size_t, 3>&)> has_root = [](const auto&) { return true; };
-  /// Bits of vtkGhostType; none without it.
+  /// Bits of vtkGhostType; null: none.
   std::function<int(const TreeCell&)> ghost{};
 };
 
-/// The text of a file with the field "f" and the vectors "v", whose second component is the field too. Cells that are
-/// divided hold 1e30.
+/// The text of a file with the field "f" and the vectors "v", whose second component is the field too. Divided cells
+/// have 1e30.
 std::string htg_text(const TreeScene& scene, const Field& at, const TreeWish& wish = {});
 
 }  // namespace tessera::io::testing

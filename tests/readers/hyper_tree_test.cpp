@@ -19,7 +19,7 @@ using namespace testing;
 const std::array<std::vector<double>, 3> even{{{0.3, 1, 1.7, 2.4}, {-1, -0.5, 0}, {2, 2.5, 3, 3.5}}},
     uneven{{{0.3, 1, 1.2, 2.4}, {-1, -0.8, 0}, {2, 2.5, 3.7, 4}}};
 
-/// Deep about one place, so that cells of level 0 touch some of level 3, and elsewhere as chance has it.
+/// Deep around one place, so that cells of level 0 touch some of level 3, and random elsewhere.
 TreeScene deep(const std::array<std::vector<double>, 3>& axes, int branching) {
   TreeScene scene;
   scene.axes = axes;
@@ -88,7 +88,7 @@ TEST(HyperTrees, SmoothedTheyAreContinuousAcrossLevelsAndLinearInside) {
         std::size_t inner = 0;
         for (std::size_t v = 0; v < read.mesh.positions.size(); ++v) {
           const glm::dvec3 p = read.mesh.positions[v];
-          // Between the outermost roots' centres: as far as any leaf's value is continued outwards.
+          // Between the outermost roots' centres: the limit of continuing any leaf's value outwards.
           bool is_inside = true;
           for (int a = 0; a < 3; ++a) {
             const std::vector<double>& axis = axes[static_cast<std::size_t>(a)];
@@ -136,7 +136,7 @@ TEST(HyperTrees, PiecesAreOneGridAndGhostsAreLeftOut) {
     std::sort(x.begin(), x.end()), std::sort(y.begin(), y.end());
     EXPECT_EQ(x, y);
   }
-  // Trees that both have are ghosts in one of them, or at fault.
+  // Trees in both files are ghosts in one of them, or an error.
   second.has_root = [](const auto&) { return true; };
   folder.write("p1.htg", htg_text(scene, wavy, second));
   const std::string twice = message_of([&] { read_mesh(pieces); });

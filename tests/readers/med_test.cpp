@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MED meshes and fields, which MED's library writes here.
+// MED meshes and fields, written by MED's library.
 #include <gtest/gtest.h>
 #include <hdf5.h>
 #include <med.h>
@@ -33,7 +33,7 @@ void write_field(med_idt file, const char* name, med_int components, med_entity_
   ASSERT_EQ(values.size(), static_cast<std::size_t>(count * components));
 }
 
-/// A unit cube, as a hexahedron, and a tet and a pyramid beside it. Point field "t" is x + 2 y + 3 z, ten times that at
+/// A unit cube, as a hexahedron, with an adjacent tet and pyramid. Point field "t" is x + 2 y + 3 z, ten times that at
 /// the second step; cell field "p" is 5 in the hexahedron and 6 in the tet; "u" is a vector at the nodes.
 void write_bar(const std::string& name) {
   const med_idt file = MEDfileOpen(name.c_str(), MED_ACC_CREAT);
@@ -51,7 +51,7 @@ void write_bar(const std::string& name) {
                                            MED_FULL_INTERLACE, 1, corners.data()),
               0);
   };
-  cells(MED_HEXA8, {1, 4, 3, 2, 5, 8, 7, 6});  // the sense of faces is MED's, against VTK's
+  cells(MED_HEXA8, {1, 4, 3, 2, 5, 8, 7, 6});  // faces have MED's orientation, opposite to VTK's
   cells(MED_TETRA4, {2, 9, 10, 11});
   cells(MED_PYRA5, {5, 8, 7, 6, 12});
   cells(MED_TRIA3, {1, 2, 3});
@@ -113,7 +113,7 @@ TEST(Med, CellsAndFieldsAreRead) {
   options.field = "t";
   const cells::MeshFile mesh = read_mesh(folder / "bar.med", options);
   EXPECT_EQ(mesh.format, "MED");
-  EXPECT_EQ(mesh.counts.cells_read, 3u);  // the triangle is none of volume
+  EXPECT_EQ(mesh.counts.cells_read, 3u);  // the triangle is not a volume cell
   EXPECT_NEAR(testing::volume(mesh.mesh), 1 + 1.0 / 6 + 1, 1e-12);
   for (std::size_t v = 0; v < mesh.mesh.positions.size(); ++v) {
     const glm::dvec3& p = mesh.mesh.positions[v];
@@ -132,7 +132,7 @@ TEST(Med, WhatAFieldHasNoValueForIsBlank) {
   ReadOptions options;
   options.field = "p";
   const cells::MeshFile cells = read_mesh(folder / "bar.med", options);
-  EXPECT_NEAR(testing::volume(cells.mesh), 1 + 1.0 / 6, 1e-12);  // the pyramid has none
+  EXPECT_NEAR(testing::volume(cells.mesh), 1 + 1.0 / 6, 1e-12);  // the pyramid has no value
   for (std::size_t t = 0; t < cells.mesh.tets.size(); ++t) {
     const bool of_tet = cells.mesh.positions[cells.mesh.tets[t][0]].x + cells.mesh.positions[cells.mesh.tets[t][1]].x +
                             cells.mesh.positions[cells.mesh.tets[t][2]].x +
@@ -148,7 +148,7 @@ TEST(Med, WhatAFieldHasNoValueForIsBlank) {
   EXPECT_EQ(u->nan_count, 10u);
 }
 
-/// One cell of second order, whose corners go round the base in MED's sense.
+/// One cell of second order, whose corners go around the base in MED's orientation.
 void write_cell(const std::string& name, const testing::BentCell& cell, med_geometry_type kind) {
   const med_idt file = MEDfileOpen(name.c_str(), MED_ACC_CREAT);
   ASSERT_GE(file, 0);
@@ -204,11 +204,11 @@ TEST(Med, CellsOfSecondOrderHaveTheirVolumeAndTheirField) {
   }
 }
 
-/// Two tets over a square of side 2, as version 2.3.6 stores them: MED's library reads that version and does not write
-/// it. Coordinates and corners are one axis or corner after the other.
+/// Two tets over a square of side 2, as stored in version 2.3.6: MED's library reads that version and does not write
+/// it. Coordinates and corners are stored one axis or corner after the other.
 void write_version_2(const std::string& name) {
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-  H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);  // closes what is open in the file, too
+  H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);  // also closes objects open in the file
   const hid_t file = H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
   ASSERT_GE(file, 0);
   const hid_t one = H5Screate(H5S_SCALAR);
@@ -282,8 +282,8 @@ TEST(Med, DamagedOnesAreRefusedInOneLine) {
   }
   test::expect_bad_input([&] { read_mesh(folder.write("text.med", "no HDF5")); }, {"text.med: it cannot be opened"});
   test::expect_no_crash_of_changes(folder, "changed.med", whole, [](const auto& file) { read_mesh(file); });
-  if (!has_reader(Reader::vtk)) return;  // nobody looks into HDF5
-  // By another name it is told, and what to do.
+  if (!has_reader(Reader::vtk)) return;  // otherwise no program inspects HDF5
+  // With another name the error names the format and a remedy.
   std::filesystem::copy_file(folder / "bar.med", folder / "bar.h5");
   test::expect_bad_input([&] { read_mesh(folder / "bar.h5"); }, {"bar.h5: it is HDF5 and holds a MED mesh", ".med"});
 }

@@ -21,7 +21,7 @@
 namespace tessera::io::mesh_shares_test {
 namespace {
 
-/// Coordinates of a cube from x = `at` to at + 1, as hexahedra number their corners.
+/// Coordinates of a cube from x = `at` to at + 1, in the corner order of hexahedra.
 std::array<std::vector<double>, 3> corners_of(int at) {
   std::array<std::vector<double>, 3> xyz;
   for (int k = 0; k < 8; ++k) {
@@ -67,7 +67,7 @@ TEST(MeshShares, AnExodusMeshInSeveralFilesIsReadByTheNameOfOne) {
   EXPECT_EQ(whole.blocks, (std::vector<std::string>{"block 1", "block 2"}));
   EXPECT_EQ(whole.format, "Exodus II in 12 files");
   ReadOptions options;
-  options.field = std::string("point:v");  // of a bare literal GCC 12 warns that it overlaps itself
+  options.field = std::string("point:v");  // GCC 12 warns of a bare literal that it overlaps itself
   for (const std::size_t step : {std::size_t{0}, std::size_t{1}}) {
     options.time_step = step;
     testing::expect_as_whole(file, options);
@@ -133,7 +133,7 @@ TEST(MeshShares, ZonesOfACgnsFileAreDivided) {
     EXPECT_EQ(read_mesh(file, options).counts.cells_read, 1u);
     testing::expect_as_whole(file, options);
   }
-  // Named as CGNS, and none: the first share is all.
+  // Named like CGNS, but not CGNS: the first share is everything.
   write_exodus(folder / "m.exo", 0);
   std::filesystem::rename(folder / "m.exo", folder / "exodus.cgns");
   EXPECT_NEAR(testing::volume(read_mesh(folder / "exodus.cgns").mesh), 1, 1e-12);

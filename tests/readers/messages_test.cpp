@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What files of other programs lack or have otherwise is said as it is, and what is there is read.
+// Missing and unusual parts in files of other programs are reported correctly, and the remaining parts are read.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ std::string numbers(const std::vector<double>& values) {
   return text;
 }
 
-/// A tet with a field of points, `f`, and one of cells, `g`, at three times, whose files are numbered from 7 on.
+/// A tet with a point field `f` and a cell field `g` at three times, in files numbered from 7 on.
 class EnsightMessages : public Messages {
  protected:
   EnsightMessages() {
@@ -107,7 +107,7 @@ TEST_F(Messages, AMissingBlockIsNamedWithItsList) {
                                                               (folder / "gone.vtu").string(), list.string()));
 }
 
-/// Two tets with a field of points, of which `odd` is a value of the second's.
+/// Two tets with a point field in which `odd` is a value of the second's.
 std::string legacy(const std::string& odd) {
   return "# vtk DataFile Version 3.0\nmade\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n0 0 0\n1 0 0\n0 1 0\n"
          "0 0 1\n1 1 1\nCELLS 2 10\n4 0 1 2 3\n4 1 2 3 4\nCELL_TYPES 2\n10\n10\nPOINT_DATA 5\nSCALARS nan double 1\n"
@@ -129,7 +129,7 @@ TEST_F(Messages, NanInLegacyTextIsANumber) {
   EXPECT_EQ(read_mesh(write("a.vtk", legacy("9"))).counts.cells_nan, 0u);
 }
 
-/// Bytes of numbers, in the order of legacy VTK files or the other.
+/// Bytes of numbers, in the order of legacy VTK files or the opposite one.
 template <class T>
 std::string binary(const std::vector<T>& numbers, bool is_little) {
   std::string bytes;
@@ -172,7 +172,7 @@ TEST_F(Messages, LittleEndianLegacyFilesAreNamed) {
            head + "STRUCTURED_POINTS\nDIMENSIONS 2 2 2\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 8\n" +
                "SCALARS f float 1\nLOOKUP_TABLE default\n" + binary(values, is_little),
            true);
-    // One value, which is odd in the right order alone.
+    // One value that is unusual only in the correct order.
     expect(false,
            head + "STRUCTURED_POINTS\nDIMENSIONS 2 2 2\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 8\n" +
                "SCALARS f float 1\nLOOKUP_TABLE default\n" + binary(std::vector<float>(8, 1e-35F), false),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MINC 2 volumes, which MINC's library writes here.
+// MINC 2 volumes, written by MINC's library.
 extern "C" {
 #include <minc2.h>
 }
@@ -27,9 +27,9 @@ struct AxisOfFile {
   std::array<double, 3> cosines;
 };
 
-/// Samples 0, 1, ... of 2 x 3 x 4 in the order of the file's axes, and if `steps` > 1 as many times more.
+/// Samples 0, 1, ... of 2 x 3 x 4 in the order of the file's axes, and if `steps` > 1 that many times as many.
 void write_minc2(const std::string& name, misize_t steps) {
-  // The file's order is another than z, y, x.
+  // The file's order is not z, y, x.
   const std::array<AxisOfFile, 3> axes = {AxisOfFile{"yspace", 3, 20, -2, {-1, 0, 0}},
                                           AxisOfFile{"zspace", 2, 30, 3, {0, 0, 1}},
                                           AxisOfFile{"xspace", 4, 10, 0.5, {0, 1, 0}}};
@@ -83,7 +83,7 @@ TEST(Minc2, RealValuesLieWhereTheDirectionCosinesPutThem) {
         EXPECT_NEAR(place.x, -(20 - 2 * j), 1e-12);
         EXPECT_NEAR(place.y, 10 + 0.5 * i, 1e-12);
         EXPECT_NEAR(place.z, 30 + 3 * k, 1e-12);
-        // In the file x is the fastest, then z, then y. Float holds the sum of a whole and a half exactly.
+        // In the file x is the fastest, then z, then y. Float represents the sum of an integer and a half exactly.
         EXPECT_EQ(samples[static_cast<std::size_t>(i + 4 * (j + 3 * k))], 5 + (i + 4 * (k + 2 * j)) / 2.0);
       }
 }
@@ -117,7 +117,7 @@ void write_marked(const std::filesystem::path& file, const std::vector<AxisOfFil
   ASSERT_EQ(miclose_volume(volume), MI_NOERROR);
 }
 
-/// The file's axis a is named x, y or z by what it leads along, or by its number and turned by its cosines.
+/// The file's axis a is named x, y or z by its direction, or by its number and rotated by its cosines.
 std::vector<AxisOfFile> marked_axes(const test::MarkedVolume& v, bool turns) {
   constexpr std::array names = {"xspace", "yspace", "zspace"};
   std::vector<AxisOfFile> axes;
@@ -165,7 +165,7 @@ TEST(Minc2, TimeStepsAreChosen) {
   test::expect_no_volume(folder / "f.mnc", "there is no time step 2", options);
 }
 
-/// Three bytes a sample, x the fastest but for these; `steps` > 1 of them.
+/// Three bytes per sample, x the fastest except for these; `steps` > 1 of them.
 void write_minc2_vectors(const std::string& name, misize_t steps) {
   std::vector<midimhandle_t> dimensions;
   std::vector<misize_t> first, counts;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A machine without reader programs: this test is built where none is found (CMakeLists.txt).
+// A machine without reader programs: this test is built if none is found (CMakeLists.txt).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -34,7 +34,8 @@ std::string vtk_legacy(const std::string& type) {
   return "# vtk DataFile Version 3.0\nwords\nASCII\nDATASET " + type + "\n";
 }
 
-/// What a file of a format begins with, as far as this library looks before its reader is asked; by the format's name.
+/// The beginning of a file of each format, as far as this library examines it before it calls its reader; by the
+/// format's name.
 std::map<std::string, std::string> beginnings() {
   using namespace std::string_literals;
   std::string dicom(128, '\0');
@@ -76,7 +77,7 @@ class MissingReaders : public ::testing::Test {
     folder.write("grid.xyz", plot3d_cube);
   }
 
-  /// `file`: the one that the message is about.
+  /// `file`: the subject of the message.
   static void expect_named(const test::Fault& fault, const std::string& file, const std::string& format,
                            const ReaderProgram& program) {
     EXPECT_EQ(fault.code, scene::ErrorCode::bad_input) << fault.message;
@@ -99,9 +100,9 @@ TEST_F(MissingReaders, EveryFormatNamesItsReaderAndHowToGetIt) {
     if (row.needs.empty()) continue;
     const ReaderProgram& program = reader_program(row.needs.front());
     const std::string extensions = row.extensions;
-    // FLASH is found by its reader: to this library it is HDF5.
+    // The reader detects FLASH: to this library it is HDF5.
     if (extensions.empty() && row.recognizes == nullptr) continue;
-    // Of VTK XML of a kind that no row has, this library itself reports which that is.
+    // For VTK XML of a kind without a row, this library itself reports the kind.
     if (row.container == Container::vtk_xml && !row.is_listed) continue;
     SCOPED_TRACE(row.name);
     ++read_by_programs;
@@ -111,7 +112,7 @@ TEST_F(MissingReaders, EveryFormatNamesItsReaderAndHowToGetIt) {
     const InputFile identified = identify(file);
     ASSERT_NE(identified.format, nullptr);
     const std::string format = identified.format->name;
-    // Lists are opened by this library; what they list needs the reader.
+    // This library opens lists; the files that they name need the reader.
     const std::string subject = format == "PLOT3D list" ? (folder / "grid.xyz").string() : file.string();
     if (row.holds != FileHolds::grid) expect_named(test::fault_of([&] { read_mesh(file); }), subject, format, program);
     if (row.holds == FileHolds::grid || row.holds == FileHolds::grid_or_mesh)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Axes of NetCDF grids by the CF conventions: every order of dimensions, every direction, and what else a dimension is.
+// Axes of NetCDF grids by the CF conventions: every order of dimensions, every direction, and other dimensions.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -55,7 +55,7 @@ void write_marked(const std::filesystem::path& file, const std::array<AxisOfFile
   for (std::size_t a = 0; a < 3; ++a) w.put(variables[a], axes[a].coordinates);
 }
 
-/// Where the largest sample is.
+/// Position of the largest sample.
 glm::dvec3 place_of_marker(const VolumeFile& volume) {
   const std::vector<double> samples = test::all_samples(*volume.source);
   const auto at = static_cast<std::int64_t>(std::max_element(samples.begin(), samples.end()) - samples.begin());
@@ -172,7 +172,7 @@ TEST(NetcdfAxes, ThatAreNoneOfSpaceAreSteps) {
   for (const auto& [name, attribute] : std::vector<std::pair<const char*, const char*>>{
            {"member", "realization"}, {"month", ""}, {"number", ""}, {"spectral_band", ""}}) {
     SCOPED_TRACE(name);
-    // Wherever it is among the dimensions.
+    // At any position among the dimensions.
     for (const std::size_t where : {0u, 1u, 3u}) {
       {
         NetcdfWriter w(folder / "members.nc", NC_NETCDF4);
@@ -240,12 +240,12 @@ TEST(NetcdfAxes, LongitudesThatPassTheEndOfTheCircleGoOn) {
   EXPECT_EQ(place_of_marker(open_volume(folder / "a.nc")), glm::dvec3(370, 0, 100));
 }
 
-/// A curvilinear grid of 4 x 3 x 2 samples, the field's dimensions in an order; values 100 k + 10 j + i.
+/// A curvilinear grid of 4 x 3 x 2 samples, with the field's dimensions in a given order; values 100 k + 10 j + i.
 struct Curved {
   std::array<std::size_t, 3> order = {2, 1, 0};  ///< of x, y, z
   bool cells = false;                            ///< with corners of cells
-  std::size_t first_corner = 0;                  ///< that the file gives
-  bool turned = false;                           ///< corners go round the other way
+  std::size_t first_corner = 0;                  ///< in the file's list
+  bool turned = false;                           ///< corners go around in the other direction
   bool down = false, level_bounds = false;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// NetCDF grids and MINC 1 volumes, which NetCDF's library writes here.
+// NetCDF grids and MINC 1 volumes, written by NetCDF's library.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -36,8 +36,8 @@ glm::dvec3 at(const scene::GridGeometry& g, const GridIndex& index) {
   return scene::world_of_index(g, {index[0], index[1], index[2]});
 }
 
-/// Air of 5 x 4 x 3 samples at two times: levels fall and are uneven, latitudes fall. T is float with a fill value, P
-/// packed in shorts with one, W on other levels.
+/// Air with 5 x 4 x 3 samples at two times: levels decrease and are not uniform, latitudes decrease. T is float with a
+/// fill value, P packed in shorts with one, W on other levels.
 void write_air(const std::filesystem::path& file, int mode) {
   NetcdfWriter w(file, mode);
   const int time = w.dimension("time", NC_UNLIMITED), lev = w.dimension("lev", 3), ilev = w.dimension("ilev", 2),
@@ -83,7 +83,7 @@ TEST(NetcdfGrids, HaveTheirValuesAtTheirPlaces) {
     const scene::GridGeometry& g = volume.source->geometry();
     EXPECT_EQ(g.points, (GridIndex{5, 4, 3}));
     ASSERT_TRUE(g.rectilinear());  // by its levels
-    // Falling axes are turned over: the first sample lies where the file puts it.
+    // Decreasing axes are reversed: the first sample is at its position in the file.
     EXPECT_EQ(at(g, {0, 0, 0}), glm::dvec3(0, 60, 1000));
     EXPECT_EQ(at(g, {4, 1, 1}), glm::dvec3(40, 30, 500));
     EXPECT_EQ(at(g, {4, 3, 2}), glm::dvec3(40, -30, 100));
@@ -268,7 +268,7 @@ TEST(NetcdfGrids, CellsWithBoundsHaveAValueEach) {
         for (const double dx : {0, 1, 1, 0}) lon_bounds.push_back(i + dx);
         for (const double dy : {0, 0, 1, 1}) lat_bounds.push_back(j + dy);
       }
-    w.put(vz, {1, 3});  // levels half way between 0, 2 and 4
+    w.put(vz, {1, 3});  // levels halfway between 0, 2 and 4
     w.put(vlat, lat);
     w.put(vlon, lon);
     w.put(blat, lat_bounds);
@@ -297,7 +297,7 @@ TEST(NetcdfGrids, DamagedOnesAreRefusedInOneLine) {
     }
   }
   for (const int mode : {0, NC_NETCDF4})
-    for (const bool has_time : {false, true}) {  // which is not the third in space
+    for (const bool has_time : {false, true}) {  // it is not the third spatial dimension
       {
         NetcdfWriter w(folder / "flat.nc", mode);
         std::vector<int> dimensions;
@@ -312,7 +312,7 @@ TEST(NetcdfGrids, DamagedOnesAreRefusedInOneLine) {
     }
 }
 
-/// As whichever it is.
+/// As a grid or a mesh.
 void read_any(const std::filesystem::path& file) {
   if (is_volume(file))
     open_volume(file);
@@ -328,7 +328,7 @@ TEST(NetcdfGrids, ChangedBytesNeverCrash) {
   }
 }
 
-/// A MINC volume of 2 x 3 x 4 samples (z, y, x) in signed shorts, each slice with a range of its own.
+/// A MINC volume of 2 x 3 x 4 samples (z, y, x) in signed shorts, each slice with its own range.
 void write_minc(const std::filesystem::path& file, bool has_time) {
   NetcdfWriter w(file, 0);
   std::vector<int> dimensions;
@@ -346,7 +346,7 @@ void write_minc(const std::filesystem::path& file, bool has_time) {
   };
   if (has_time) axis("time", 3, 1.5, {});
   axis("xspace", 10, 0.5, {0, 1, 0});
-  axis("yspace", 20, -2, {-1, 0, 0});  // falls
+  axis("yspace", 20, -2, {-1, 0, 0});  // decreases
   axis("zspace", 30, 3, {0, 0, 1});
   const int image = w.variable("image", NC_SHORT, dimensions);
   w.text(image, "varid", "MINC standard variable");
@@ -373,12 +373,12 @@ TEST(Minc, RealValuesLieWhereTheDirectionCosinesPutThem) {
   const auto value_at = [&](const GridIndex& index) {
     return samples[static_cast<std::size_t>(index[0] + 4 * (index[1] + 3 * index[2]))];
   };
-  // A sample of the file, and where the file says it lies: start + step * index along each axis' direction.
+  // A sample of the file, and its position: start + step * index along each axis' direction.
   const auto expect = [&](std::int64_t i, std::int64_t j, std::int64_t k) {
     const glm::dvec3 place = (10 + 0.5 * double(i)) * glm::dvec3(0, 1, 0) +
                              (20 - 2 * double(j)) * glm::dvec3(-1, 0, 0) + (30 + 3 * double(k)) * glm::dvec3(0, 0, 1);
     const double raw = double(i + 4 * (j + 3 * k)), real = k == 0 ? raw : 5 + raw / 2;
-    for (const std::int64_t row : {j, 2 - j}) {  // the reader may turn rows over
+    for (const std::int64_t row : {j, 2 - j}) {  // the reader may reverse rows
       if (glm::length(at(g, {i, row, k}) - place) < 1e-12) {
         EXPECT_EQ(value_at({i, row, k}), real);
         return;
@@ -391,7 +391,7 @@ TEST(Minc, RealValuesLieWhereTheDirectionCosinesPutThem) {
   expect(1, 2, 1);
 }
 
-/// 24 samples from `first` on, of real values from 0 to 230 over the valid range.
+/// 24 samples from `first` on, with real values from 0 to 230 over the valid range.
 VolumeFile minc_of(const std::filesystem::path& file, nc_type type, const char* sign, nc_type of_range,
                    const std::vector<double>& range, double first) {
   {
@@ -427,7 +427,7 @@ TEST(Minc, TheValidRangeMayBeOfAnyType) {
     const std::vector<double> samples = all_samples(*volume.source);
     for (std::size_t k = 0; k < 24; ++k)
       EXPECT_NEAR(samples[k], (first + double(k)) * slope + intercept, 1e-4) << type << " " << of_range;
-    // Along y, by cosines that are no doubles.
+    // Along y, by cosines that are not doubles.
     EXPECT_EQ(at(volume.source->geometry(), {1, 0, 0}) - at(volume.source->geometry(), {0, 0, 0}), glm::dvec3(0, 1, 0));
   };
   for (const nc_type of_range : {NC_SHORT, NC_INT, NC_FLOAT, NC_DOUBLE})

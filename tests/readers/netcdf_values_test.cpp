@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Values of NetCDF variables: every type, packing, and what the conventions leave blank.
+// Values of NetCDF variables: every type, packing, and blanks defined by the conventions.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -93,7 +93,7 @@ TEST(NetcdfValues, NeverWrittenAreBlankButForBytes) {
     EXPECT_TRUE(has_note(volume, "v: 2 samples of NetCDF's default fill value are blank"));
   }
   expect_samples(read_back(NC_BYTE, {7, 1, 2, 3, 4, 5, 6}, {}), {7, 1, 2, 3, 4, 5, 6, NC_FILL_BYTE});
-  // An attribute takes the default value's place.
+  // An attribute replaces the default value.
   expect_samples(read_back(NC_SHORT, {7, 1, 2, 3, 4, 5, NC_FILL_SHORT, 8}, {{"_FillValue", NC_SHORT, {3}}}),
                  {7, 1, 2, nan, 4, 5, NC_FILL_SHORT, 8});
 }
@@ -110,7 +110,7 @@ TEST(NetcdfValues, OutsideTheirValidRangeAreBlank) {
     expect_samples(read_back(type, stored, {{"valid_max", type, {5}}}), {-5, 0, 1, 2, 3, 4, 5, nan});
     expect_samples(read_back(type, stored, {{"valid_min", type, {0}}}), {nan, 0, 1, 2, 3, 4, 5, 90});
   }
-  // Of packed numbers it is that of the stored ones, unless it has the type of the unpacked ones.
+  // For packed numbers it applies to the stored ones, unless it has the type of the unpacked ones.
   const std::vector<double> unpacked = {nan, 10, 12, 14, 16, 18, 20, nan};
   const Attribute scale{"scale_factor", NC_DOUBLE, {2}}, shift{"add_offset", NC_DOUBLE, {10}};
   expect_samples(read_back(NC_SHORT, stored, {scale, shift, {"valid_range", NC_SHORT, {0, 5}}}), unpacked);
@@ -138,7 +138,7 @@ TEST(NetcdfValues, OfGroupsAreNamedByTheirPaths) {
     root.put(vx, {10, 20});
     NetcdfWriter group(root, "ocean");
     NetcdfWriter inner(group, "upper");
-    // The x axis is the root's, wherever it is among the dimensions.
+    // The x axis is the root's, at any position among the dimensions.
     const int v = inner.variable("t", NC_UBYTE, {x, inner.dimension("z", 3), inner.dimension("y", 2)});
     inner.end_definitions();
     inner.put(v, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11});

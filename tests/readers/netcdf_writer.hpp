@@ -11,13 +11,13 @@
 
 namespace tessera::test {
 
-/// A file that is being written; every call has to succeed.
+/// A file being written; every call must succeed.
 class NetcdfWriter {
  public:
   NetcdfWriter(const std::filesystem::path& file, int mode) {
     EXPECT_EQ(nc_create(file.c_str(), NC_CLOBBER | mode, &id_), NC_NOERR);
   }
-  /// Of a group of another's file, which the other one closes.
+  /// A group of another writer's file, which the other one closes.
   NetcdfWriter(const NetcdfWriter& parent, const char* group) : owns_(false) {
     EXPECT_EQ(nc_def_grp(parent.id_, group, &id_), NC_NOERR);
   }

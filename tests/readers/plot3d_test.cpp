@@ -163,7 +163,7 @@ std::string grid_text(const Plot3dLayout& layout) {
   return w.text;
 }
 
-/// Density is the number of the point in its grid and a tenth.
+/// Density is the number of the point in its grid plus a tenth.
 std::string solution_text(const Plot3dLayout& layout) {
   TextWriter w;
   w.dimensions(layout);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Polyhedra as VTK's own writers and the CGNS library write them.
+// Polyhedra as written by VTK's own writers and the CGNS library.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <vtkDoubleArray.h>
@@ -104,7 +104,8 @@ TEST(PolyhedraWritten, ByVtkAreReadInEveryEncoding) {
     }
 }
 
-/// A zone with faces as NGON_n and cells as NFACE_n, where a face whose cell is its second has a negative number.
+/// A zone with faces as NGON_n and cells as NFACE_n, in which a cell refers to a face that it shares as the second by a
+/// negative number.
 void write_cgns(const std::filesystem::path& file, const cells::CellBlock& block) {
   const std::vector<Faces> cells = testing::faces_of_cells(block);
   std::map<std::vector<std::uint32_t>, cgsize_t> numbers;
@@ -230,7 +231,7 @@ TEST(PolyhedraWritten, OfExodusAreFacesOfNsidedAndNfaced) {
   const test::TemporaryFolder folder;
   const cells::CellBlock block = testing::agglomerates(3, 5, 0.2, 2);
   write_exodus(folder / "m.exo", block);
-  // The cube alone lies over others.
+  // Only the cube overlaps others.
   ReadOptions options;
   options.field = std::string("f");
   const cells::MeshFile both = read_mesh(folder / "m.exo", options);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files with polyhedra, written here as each format has them, against the same cells in memory.
+// Files with polyhedra, written according to each format, compared with the same cells in memory.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -47,7 +47,8 @@ void expect_same(const cells::MeshFile& read, const cells::MeshFile& wanted) {
   EXPECT_EQ(read.counts, wanted.counts);
 }
 
-/// As formats of faces have a mesh: each face once, outward of its first cell, faces between cells first.
+/// A mesh in the form of face-based formats: each face once, oriented outward from its first cell, faces between cells
+/// first.
 struct FaceList {
   struct Face {
     std::vector<std::uint32_t> corners;
@@ -225,7 +226,7 @@ void write_case(const std::filesystem::path& folder, const cells::CellBlock& blo
   write("case.foam", "");
 }
 
-/// Volume, faces, cell numbers and linear point data of a mesh that was read through floats.
+/// Compares volume, faces, cell numbers and linear point data of a mesh that was read through floats.
 void expect_like(const cells::MeshFile& read, const cells::CellBlock& block, bool has_polyhedra = true) {
   scene::validate(read.mesh, "mesh");
   EXPECT_NEAR(testing::volume(read.mesh), 1, 1e-5);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What reader programs can no longer do.
+// Rights that reader programs give up.
 #include "readers/common/sandbox.hpp"
 
 #include <fcntl.h>
@@ -31,7 +31,8 @@ bool kernel_has_it() {
   return !is_sanitized && ::syscall(SYS_seccomp, SECCOMP_GET_ACTION_AVAIL, 0, &action) == 0;
 }
 
-/// Does `attempts` in a process that has given up its rights; the number of the first that returns false, or -1.
+/// Executes `attempts` in a process that has given up its rights; returns the number of the first that returns false,
+/// or -1.
 int first_that_fails(MayFork may_fork, const std::vector<std::function<bool()>>& attempts) {
   const pid_t child = ::fork();
   if (child == 0) {

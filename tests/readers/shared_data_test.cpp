@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The public meshes in ../shared/data, against what its README says of them.
+// The public meshes in ../shared/data, compared with the statements of its README.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -28,7 +28,7 @@ class SharedData : public ::testing::Test {
     return file;
   }
 
-  /// No triangle is shared by more than two tets: the split cells fit, and none lie over each other.
+  /// No triangle is shared by more than two tets: the split cells conform and do not overlap.
   static std::size_t boundary_triangles(const scene::TetMesh& mesh) {
     std::size_t boundary = 0, crowded = 0;
     for (const auto& [place, uses] : testing::count_triangles(mesh)) {
@@ -59,8 +59,8 @@ TEST_F(SharedData, OxygenPostClosesAtItsSeam) {
   EXPECT_EQ(field(file, "Density").high, 1);
   EXPECT_EQ(field(file, "IBlank").low, -1);
   EXPECT_EQ(field(file, "Momentum").components, 3);
-  // The grid is 37 x 75 x 37 cells with i across, j round and k up; j closes on itself at the seam, so only the two
-  // i-ends and two k-ends are boundary: 2 triangles a face.
+  // The grid is 37 x 75 x 37 cells with i across, j around and k up; j is periodic with a seam, so only the two i-ends
+  // and two k-ends are boundary: 2 triangles a face.
   EXPECT_EQ(boundary_triangles(file.mesh), 2u * 2u * (37 * 75 + 37 * 75));
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files of solvers and lists of blocks: a cube of hexahedra written as each has it, with a field that is linear in
-// space.
+// Files of solvers and lists of blocks: a cube of hexahedra written in each format, with a linear field.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -55,13 +54,13 @@ std::string tecplot(const Cubes& cubes) {
   return text;
 }
 
-/// Faces with the cells on both sides, as Fluent has them, all numbers from 1 and hexadecimal.
+/// Faces with the cells on both sides, as in Fluent, with all numbers from 1 and hexadecimal.
 std::string fluent(const Cubes& cubes) {
   std::string text =
       fmt::format("(0 \"cubes\")\n(2 3)\n(10 (0 1 {0:x} 0 3))\n(10 (1 1 {0:x} 1 3)(\n", cubes.points.size());
   for (const glm::dvec3& p : cubes.points) text += fmt::format("{} {} {}\n", p.x, p.y, p.z);
   text += fmt::format("))\n(12 (0 1 {0:x} 0))\n(12 (2 1 {0:x} 1 4))\n", cubes.cells.size());
-  // By its corners: the corners as the first cell has them, outward, and the cells.
+  // Keyed by sorted corners: the corners in the first cell's order, outward, and the cells.
   std::map<std::array<int, 4>, std::pair<std::array<int, 4>, std::vector<std::size_t>>> faces;
   constexpr std::array<std::array<std::size_t, 4>, 6> sides = {
       {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {2, 3, 7, 6}, {1, 2, 6, 5}, {0, 4, 7, 3}}};
@@ -79,7 +78,7 @@ std::string fluent(const Cubes& cubes) {
   std::array<std::size_t, 2> counts{};
   for (const auto& [key, face] : faces) {
     const std::size_t wall = face.second.size() == 1 ? 1 : 0;
-    // The right-hand rule has the face's normal point to its first cell.
+    // By the right-hand rule the face's normal points to its first cell.
     const auto& v = face.first;
     lines[wall] += fmt::format("{:x} {:x} {:x} {:x} {:x} {:x}\n", v[3] + 1, v[2] + 1, v[1] + 1, v[0] + 1,
                                face.second[0], wall == 1 ? 0 : face.second[1]);
@@ -96,7 +95,7 @@ void expect_cube(const cells::MeshFile& file, int n) {
   EXPECT_EQ(file.counts.cells_read, static_cast<std::uint64_t>(n * n * n));
   if (file.mesh.association != scene::Association::point) return;
   for (std::size_t v = 0; v < file.mesh.positions.size(); ++v)
-    EXPECT_NEAR(file.mesh.scalars[v], field_at(file.mesh.positions[v]), 1e-5);  // their readers make floats
+    EXPECT_NEAR(file.mesh.scalars[v], field_at(file.mesh.positions[v]), 1e-5);  // their readers convert to float
 }
 
 TEST(SolverFiles, AvsUcdAndTecplotAreReadAsTheyAre) {
@@ -108,7 +107,7 @@ TEST(SolverFiles, AvsUcdAndTecplotAreReadAsTheyAre) {
   expect_cube(read_mesh(folder.write("tecplot.dat", tecplot(cubes))), 3);
 }
 
-/// The first cell as six pyramids about a point within, the others as bricks, corners in this order.
+/// The first cell as six pyramids around an inner point, the others as bricks, with corners in this order.
 std::string gambit(const Cubes& cubes, const std::array<std::size_t, 8>& order) {
   constexpr std::array<std::array<std::size_t, 4>, 6> sides = {
       {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1}, {3, 2, 6, 7}, {1, 5, 6, 2}, {0, 3, 7, 4}}};
@@ -160,7 +159,7 @@ TEST(SolverFiles, AFluentCaseIsAMeshWithTheValuesBesideItIfAny) {
   EXPECT_EQ(alone.counts.cells_read, 27u);
   EXPECT_NE(std::find(alone.notes.begin(), alone.notes.end(), "no .dat file is next to the case: it has no field"),
             alone.notes.end());
-  // Temperature, a value a cell.
+  // Temperature, one value per cell.
   std::string data = fmt::format("(0 \"values\")\n(300 (3 2 1 0 0 1 {})\n(", cubes.cells.size());
   for (std::size_t c = 0; c < cubes.cells.size(); ++c) data += fmt::format("{}\n", 300 + c);
   folder.write("a.dat", data + "))\n");
@@ -173,7 +172,7 @@ TEST(SolverFiles, AFluentCaseIsAMeshWithTheValuesBesideItIfAny) {
     const glm::ivec3 at(centre);
     EXPECT_EQ(read.mesh.scalars[t], 300 + at.x + 3 * (at.y + 3 * at.z));
   }
-  // The same numbers in one line, the parenthesis directly after the last, behind another section.
+  // The same numbers in one line, with the parenthesis directly after the last, after another section.
   data.back() = ')';
   std::string line = data;
   std::replace(line.begin(), line.end(), '\n', ' ');
@@ -219,7 +218,7 @@ TEST(SolverFiles, AnOpenFoamCaseIsReadAtItsLastTimeOrTheOneAskedFor) {
             std::string::npos);
 }
 
-/// A zero-gradient patch has the pressure of the cells beside it, 1000.
+/// A zero-gradient patch has the pressure of the adjacent cells, 1000.
 TEST(SolverFiles, PatchesOfAnOpenFoamCaseAreReadByName) {
   const test::TemporaryFolder folder;
   write_foam(folder.path(), Cubes(3), [](int) { return true; });
@@ -260,11 +259,11 @@ TEST(SolverFiles, ADecomposedOpenFoamCaseIsReadWhole) {
   none.blocks = {"solid"};
   test::expect_bad_input([&] { testing::read_in_parts(folder / "case.foam", 2, none); },
                          {"case.foam", "there is no block", "internalMesh"});
-  // As some copy it from a cluster: without what the processors share.
+  // As some users copy it from a cluster: without the files shared by the processors.
   std::filesystem::remove_all(folder / "system");
   std::filesystem::remove(folder / "case.foam");
   expect_cube(read_mesh(folder.path()), 4);
-  // A picture without one of the parts would be wrong.
+  // An image without one of the parts would be wrong.
   std::filesystem::remove_all(folder / "processor1" / "constant");
   test::expect_bad_input([&] { read_mesh(folder.path()); }, {"of its 2 processors' folders 1 can be read"});
 }
@@ -346,7 +345,7 @@ TEST(SolverFiles, AMultiBlockFilesVolumesAreDrawnTogether) {
   EXPECT_EQ(file.surfaces, std::vector<std::string>{"2"});
   ReadOptions options;
   options.blocks = {"solid"};
-  // The block that is not asked for is not even there.
+  // The block that is not requested does not even exist.
   const std::string nested =
       "<Block index=\"0\" name=\"fluid\"><DataSet index=\"0\" name=\"inner\" file=\"gone.vtu\"/></Block><Block "
       "index=\"1\" name=\"solid\"><DataSet index=\"0\" name=\"inner\" file=\"b.vti\"/></Block>";
@@ -358,7 +357,7 @@ TEST(SolverFiles, AMultiBlockFilesVolumesAreDrawnTogether) {
       std::string::npos);
 }
 
-/// A square that no cell of the volume has.
+/// A square that does not belong to any volume cell.
 TEST(SolverFiles, AMultiBlockFilesSurfacesAreReadByName) {
   const test::TemporaryFolder folder;
   folder.write("a.vtu", testing::vtu_text(testing::mixed_mesh(2, 1, false)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// FLASH and Enzo as their programs write them, written here, and VTK's own HyperTreeGrids.
+// FLASH and Enzo files in their programs' formats, written here, and VTK's own HyperTreeGrids.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
@@ -41,7 +41,7 @@ class Hdf5Writer {
     H5Gclose(H5Gcreate2(file_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
   }
 
-  /// Stored as `stored`, compressed if `is_packed`.
+  /// Stored as type `stored`, compressed if `is_packed`.
   void data(const std::string& name, hid_t type, hid_t stored, const std::vector<hsize_t>& sizes, const void* numbers,
             bool is_packed = false) const {
     const hid_t space = H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr);
@@ -62,7 +62,7 @@ class Hdf5Writer {
   hid_t file_;
 };
 
-/// A name and its number, as FLASH lists them.
+/// A name and its number, in FLASH's list format.
 template <class T>
 struct Scalar {
   std::array<char, 80> name{};
@@ -80,7 +80,7 @@ void write_scalars(const Hdf5Writer& file, const char* name, hid_t type, const s
   H5Tclose(pair), H5Tclose(text);
 }
 
-/// A FLASH file of blocks of 4 x 4 x 4 cells, of which each that is divided has eight children.
+/// A FLASH file with blocks of 4 x 4 x 4 cells; each divided block has eight children.
 std::filesystem::path write_flash(const test::TemporaryFolder& folder, const AmrScene& scene, const Field& at,
                                   bool is_packed = false) {
   const std::filesystem::path name = folder / "run_hdf5_plt_cnt_0003";
@@ -124,7 +124,7 @@ std::filesystem::path write_flash(const test::TemporaryFolder& folder, const Amr
   return name;
 }
 
-/// One block; its eight children, of which the first has eight, of which the last, in the middle, again.
+/// One block; its eight children, the first of which has eight, the last of which, in the middle, has eight again.
 AmrScene oct_tree() {
   AmrScene scene{{{0, 1, {0, 0, 0}, {3, 3, 3}}}};
   const auto add_children = [&](int level, int parts, std::array<int, 3> first) {
@@ -176,7 +176,7 @@ TEST(Flash, DamagesAreOneLine) {
   };
   fault(good.substr(0, good.size() / 2));
   std::string text = good;
-  const std::size_t packed = text.rfind("\x78\x5e");  // where a chunk of zlib's begins
+  const std::size_t packed = text.rfind("\x78\x5e");  // beginning of a zlib chunk
   ASSERT_NE(packed, std::string::npos);
   for (std::size_t k = 20; k < 60; ++k) text[packed + k] ^= '\x5a';
   fault(text);
@@ -203,7 +203,7 @@ class EnzoWriter {
   EnzoWriter(const std::filesystem::path& folder, Field at)
       : at_(std::move(at)), data_(folder / "output_0003.cpu0000") {}
 
-  /// The siblings from one on: all of them, then the insides of the last, ..., as Enzo writes them.
+  /// The siblings from one on: all of them, then the contents of the last, ..., in Enzo's order.
   void add(const std::vector<EnzoGrid>& siblings, std::size_t from = 0) {
     const EnzoGrid& grid = siblings[from];
     const int id = ++last_;
@@ -254,7 +254,7 @@ std::filesystem::path write_enzo(const test::TemporaryFolder& folder, const std:
   return folder.write("output_0003.hierarchy", writer.text());
 }
 
-/// As nested_blocks(), each block in one of the level before.
+/// Like nested_blocks(), each block in one of the previous level.
 std::vector<EnzoGrid> nested_grids() {
   const std::vector<Block> b = nested_blocks().blocks;
   return {{b[0], {{b[1], {{b[2]}}}, {{1, 2, {6, 6, 0}, {7, 7, 1}}, {{b[3]}}}}}};
@@ -304,7 +304,7 @@ TEST(Enzo, ChangedBytesAreReadOrRefused) {
     expect_read_or_refused(file, folder / name, 20);
 }
 
-/// A grid of VTK's own, divided about its middle, some of it masked; cells' values are their number.
+/// A grid of VTK's own, divided around its middle, partly masked; a cell's value is its number.
 vtkSmartPointer<vtkHyperTreeGrid> trees_of_vtk() {
   auto grid = vtkSmartPointer<vtkHyperTreeGrid>::New();
   grid->SetDimensions(3, 3, 3);
@@ -334,7 +334,7 @@ vtkSmartPointer<vtkHyperTreeGrid> trees_of_vtk() {
   return grid;
 }
 
-/// The leaves' boxes and values, as VTK has them.
+/// The leaves' boxes and values in VTK's order.
 void add_leaves(vtkHyperTreeGrid& grid, vtkHyperTreeGridNonOrientedGeometryCursor& cursor,
                 std::vector<std::pair<std::array<double, 6>, double>>& leaves) {
   if (cursor.IsMasked()) return;

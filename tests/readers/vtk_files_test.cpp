@@ -13,7 +13,7 @@ namespace {
 
 using testing::message_of;
 
-/// Replaces the first occurrence; the test's own text must hold it.
+/// Replaces the first occurrence; the test's own text must contain it.
 std::string with(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
@@ -46,7 +46,7 @@ TEST_F(VtkFiles, AMixedVtuKeepsItsFacesAndLinearField) {
 }
 
 TEST_F(VtkFiles, PiecesOfAPvtuAgreeOnTheFacesBetweenThem) {
-  // Cells scattered over three pieces at random, as a partition with no sense would; piece 0 holds some of piece 1 as
+  // Cells distributed over three pieces at random, like an unstructured partition; piece 0 has some of piece 1 as
   // ghosts.
   const cells::CellBlock whole = testing::mixed_mesh(4, 9, false);
   std::vector<cells::CellBlock> pieces(3);
@@ -119,7 +119,7 @@ TEST_F(VtkFiles, CurvilinearGridsInPiecesAreOneAndBadPiecesAreNamed) {
     EXPECT_EQ(mesh.mesh.positions[p].x, static_cast<double>(p % 3));
     EXPECT_EQ(mesh.mesh.scalars[p], static_cast<double>(p));
   }
-  // A ghost cell of one piece is the other's, and of the whole.
+  // A ghost cell of one piece belongs to the other, and to the whole.
   std::string ghosts = piece(1, "Float32", values);
   ghosts.insert(ghosts.find("<Points>"),
                 "<CellData><DataArray type=\"UInt8\" Name=\"vtkGhostType\" "

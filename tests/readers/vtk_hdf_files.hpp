@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-/// VTKHDF as VTK's file format documentation has it, written here.
+/// VTKHDF files, written according to VTK's file format documentation.
 namespace tessera::io::testing {
 
-/// A file of one group, VTKHDF, which is closed with this.
+/// A file with one group, VTKHDF, closed with this object.
 class HdfWriter {
  public:
   HdfWriter(const std::string& name, const std::string& type)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// VTKHDF as VTK's file format documentation has it, written here.
+// VTKHDF files, written according to VTK's file format documentation.
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
@@ -31,8 +31,8 @@ TEST(VtkHdf, AnUnstructuredGridIsReadWithItsField) {
   }
 }
 
-/// Three steps at the times 1.5, 2 and 4. The first has two tets in one part. The second has their two halves as parts,
-/// twice as large along z. The third has the second's mesh with another field.
+/// Three steps at the times 1.5, 2 and 4. The first has two tets in one part. The second has the two tets as separate
+/// parts, twice as large along z. The third has the second's mesh with another field.
 void write_steps(const HdfWriter& file) {
   using Int = std::int64_t;
   const auto ints = [&](const char* name, const std::vector<Int>& numbers, hsize_t components = 1) {

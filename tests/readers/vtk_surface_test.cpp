@@ -24,10 +24,10 @@ class VtkSurfaces : public ::testing::Test {
   test::TemporaryFolder folder;
 };
 
-constexpr const char* points = "0 0 0 2 0 0 2 2 0 0 2 0 0 0 2 2 0 2 2 2 2 0 2 2";  // of a cube of 8
+constexpr const char* points = "0 0 0 2 0 0 2 2 0 0 2 0 0 0 2 2 0 2 2 2 2 0 2 2";  // of a cube with volume 8
 constexpr const char* quads = "0 3 2 1 4 5 6 7 0 1 5 4 2 3 7 6 1 2 6 5 0 4 7 3";
 constexpr const char* quad_ends = "4 8 12 16 20 24";
-/// The walls as one strip round, floor and roof as one each.
+/// The walls as one strip around, bottom and top as one each.
 constexpr const char* strips = "0 4 1 5 2 6 3 7 0 4 0 1 3 2 4 7 5 6";
 constexpr const char* strip_ends = "10 14 18";
 
@@ -66,7 +66,7 @@ TEST_F(VtkSurfaces, PolygonsAndStripsAreFilledWithTheirNumbers) {
   const cells::MeshFile polygons = read_mesh(folder.write("a.vtp", vtp(6, cells("Polys", quads, quad_ends))));
   expect_cube(polygons);
   EXPECT_EQ(polygons.mesh.field_name, "t");
-  // What is given at the corners of a cube stays there.
+  // Values given at the corners of a cube are preserved.
   for (std::size_t v = 0; v < polygons.mesh.positions.size(); ++v) {
     const glm::dvec3 p = polygons.mesh.positions[v];
     if (p == glm::dvec3(2, 2, 2) || p == glm::dvec3(0, 0, 2)) {

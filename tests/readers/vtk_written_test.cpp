@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What VTK's own writers write, in all their encodings.
+// Output of VTK's own writers, in all their encodings.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -35,8 +35,8 @@
 namespace tessera::io::vtk_written_test {
 namespace {
 
-/// `n` hexahedra side by side along x, each with points of its own, of which the second is moved halfway into the
-/// first, and a twin of the last.
+/// `n` adjacent hexahedra along x, each with its own points, the second moved halfway into the first, and a copy of the
+/// last.
 vtkNew<vtkUnstructuredGrid> hexahedra(int n) {
   vtkNew<vtkUnstructuredGrid> grid;
   vtkNew<vtkPoints> points;
@@ -58,7 +58,7 @@ vtkNew<vtkUnstructuredGrid> hexahedra(int n) {
   return grid;
 }
 
-/// Cells 0 and 1, and n - 1 with its twin.
+/// Overlaps of cells 0 and 1, and of n - 1 with its copy.
 void expect_pairs(const std::filesystem::path& file, int n) {
   const cells::MeshFile read = read_mesh(file);
   ASSERT_EQ(read.mesh.tets.size(), 6u * static_cast<std::size_t>(n + 1)) << file;
@@ -72,7 +72,7 @@ void expect_pairs(const std::filesystem::path& file, int n) {
   EXPECT_EQ(pairs, (std::vector<std::pair<std::uint64_t, std::uint64_t>>{{0, 1}, {last - 1, last}})) << file;
 }
 
-/// All enumerators, with the names and values that VTK gives them.
+/// All enumerators, with VTK's names and values.
 constexpr std::pair<CellType, int> cell_types[] = {
     {CellType::tetra, VTK_TETRA},
     {CellType::voxel, VTK_VOXEL},
@@ -128,7 +128,7 @@ constexpr std::pair<CellType, int> cell_types[] = {
 TEST(VtkWritten, CellTypesHaveTheNumbersOfVtk) {
   for (const auto& [type, number] : cell_types) EXPECT_EQ(vtk_number(type), number);
   for (int number = 0; number < 256; ++number) {
-    // VTK's curves and surfaces that no file has are accepted and have no name.
+    // VTK's curves and surfaces that do not occur in files are accepted and have no name.
     const bool is_unused = (number >= 51 && number <= 54) || (number >= 60 && number <= 63);
     const bool is_accepted = cells::cell_shape(static_cast<std::uint8_t>(number)).kind != cells::CellKind::unsupported;
     const bool is_listed = std::ranges::count(cell_types, number, &std::pair<CellType, int>::second) == 1;
@@ -164,7 +164,7 @@ TEST(VtkWritten, OverlappingHexahedraAreOnePairEachInEveryEncoding) {
   }
 }
 
-/// Even along z, along x and y too only if it is `even`; falling along y.
+/// Uniform along z, and along x and y only if `even`; decreasing along y.
 template <class Array>
 vtkNew<vtkRectilinearGrid> rectilinear(bool even, bool of_cells) {
   const std::array<int, 3> n{21, 30, 47};

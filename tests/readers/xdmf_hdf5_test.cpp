@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// XDMF with its numbers in HDF5, which VTK's library writes here.
+// XDMF with its numbers in HDF5, written by VTK's library.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
@@ -29,7 +29,7 @@ void write_set(hid_t file, const char* name, hid_t type, const std::vector<hsize
   H5Dclose(set), H5Sclose(space);
 }
 
-/// A quadratic tet whose edges are straight, two values a node: x and 10 x.
+/// A quadratic tet with straight edges and two values per node: x and 10 x.
 void write_data(const std::string& name) {
   const hid_t file = H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   ASSERT_GE(file, 0);

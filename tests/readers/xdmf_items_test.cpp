@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// XDMF's items: selections (HyperSlab) of arrays, the types of numbers in binary files, points by an array for each
-// axis, sizes by NumberOfElements, points counted from 1. The numbers are in the text, in HDF5 and in binary files.
+// XDMF's items: selections (HyperSlab) of arrays, number types in binary files, points with one array per axis, sizes
+// by NumberOfElements, points numbered from 1. The numbers are in the text, in HDF5 and in binary files.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
@@ -58,7 +58,7 @@ class XdmfItems : public ::testing::Test {
     test::expect_bad_input([&] { values(item); }, all);
   }
 
-  /// An array of these lengths, each value its own index, in the text, in HDF5 and in a binary file.
+  /// An array of these lengths, in which each value is its own index, in the text, in HDF5 and in a binary file.
   std::array<std::string, 3> arrays(const std::vector<hsize_t>& lengths) const {
     std::vector<float> numbers(std::accumulate(lengths.begin(), lengths.end(), std::size_t{1}, std::multiplies<>()));
     std::iota(numbers.begin(), numbers.end(), 0.0F);
@@ -94,7 +94,7 @@ TEST_F(XdmfItems, SelectionsTakeTheSlowestDimensionFirst) {
   }
   for (const std::string& item : arrays({3, 5, 6})) EXPECT_EQ(values(selection("1 1 1 1 1 1 2 3 4", item)), inner);
   for (const std::string& item : arrays({48})) EXPECT_EQ(values(selection("24 1 24", item)), second);
-  // Of what is a selection itself.
+  // Of an array that is a selection itself.
   for (const std::string& item : arrays({3, 2, 3, 4}))
     EXPECT_EQ(values(selection("0 0 0 0 1 1 1 1 1 2 3 4", selection("1 0 0 0 1 1 1 1 2 2 3 4", item))), second);
 }
@@ -163,7 +163,7 @@ TEST_F(XdmfItems, PointsMayBeAnArrayForEachAxisAndCountFromOne) {
   test::expect_bad_input(
       [&] { mesh(cell + "<Geometry GeometryType=\"X_Y_Z\">" + axis("0 2 2 0 0 2 2 0") + "</Geometry>"); },
       {"m.xmf: its points are given as X_Y_Z, and not by three arrays"});
-  // A grid, whose points go along x first, with its size in the other attribute.
+  // A grid whose points are x fastest, with its size in the other attribute.
   const std::string rows = "<Geometry GeometryType=\"X_Y_Z\">" + axis("0 2 0 2 0 2 0 2") + axis("0 0 3 3 0 0 3 3") +
                            axis("0 0 0 0 5 5 5 5") + "</Geometry>";
   EXPECT_NEAR(testing::volume(mesh("<Topology TopologyType=\"3DSMesh\" NumberOfElements=\"2 2 2\"/>" + rows)), 30,

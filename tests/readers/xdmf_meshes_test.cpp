@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// XDMF whose grids share one mesh: by xi:include, by Reference, or by the same numbers in a file beside.
+// XDMF whose grids share one mesh: by xi:include, by Reference, or by the same numbers in a separate file.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -68,7 +68,7 @@ class XdmfMeshes : public ::testing::Test {
                                       domain + "</Domain></Xdmf>"),
                      options);
   }
-  /// One mesh, once, with a field whose smallest value this is.
+  /// Expects one mesh with a field whose smallest value this is.
   static void expect_once(const cells::MeshFile& file, double smallest) {
     EXPECT_NEAR(testing::volume(file.mesh), volume, 1e-12);
     EXPECT_EQ(file.counts.cells_read, 2u);
@@ -79,7 +79,7 @@ class XdmfMeshes : public ::testing::Test {
 };
 
 TEST_F(XdmfMeshes, ASeriesIncludesAMeshWhoseNumbersAreInTheText) {
-  // As meshio writes it: the mesh comes last, and its series' grids have no names.
+  // As written by meshio: the mesh comes last, and its series' grids have no names.
   const std::string domain = series("TimeSeries_meshio", step(included, "phi", 0, 0) + step(included, "phi", 0.5, 10) +
                                                              step(included, "phi", 1, 20)) +
                              mesh_grid;
@@ -89,7 +89,7 @@ TEST_F(XdmfMeshes, ASeriesIncludesAMeshWhoseNumbersAreInTheText) {
 }
 
 TEST_F(XdmfMeshes, AMeshAndASeriesForEachFunctionAreOneMesh) {
-  // As FEniCS writes it.
+  // As written by FEniCS.
   const std::string domain = mesh_grid + series("u", step(included, "u", 0, 0) + step(included, "u", 1, 10)) +
                              series("v", step(included, "v", 0, 100) + step(included, "v", 1, 200));
   expect_once(read(domain, std::nullopt, "u"), 10);
@@ -103,7 +103,7 @@ TEST_F(XdmfMeshes, SeriesOfDifferentLengthsGoByTheirTimes) {
       series("v", step(included, "v", 0, 100) + step(included, "v", 1, 200) + step(included, "v", 2, 300)) + mesh_grid;
   EXPECT_EQ(read(domain).time_step.count, 3u);
   expect_once(read(domain, 1, "v"), 200);
-  expect_once(read(domain, 1, "u"), 0);  // the last before
+  expect_once(read(domain, 1, "u"), 0);  // the last one before
   expect_once(read(domain, 2, "u"), 10);
   test::expect_bad_input([&] { read(domain, 3); }, {"no time step 3", "the file has 3"});
 }
@@ -113,7 +113,7 @@ TEST_F(XdmfMeshes, ReferencesStandForWhatTheyName) {
       "<Topology Reference=\"/Xdmf/Domain/Grid[@Name='mesh']/Topology\"/>"
       "<Geometry Reference=\"XML\">/Xdmf/Domain/Grid[1]/Geometry</Geometry>";
   expect_once(read(mesh_grid + series("u", step(mesh, "u", 0, 0) + step(mesh, "u", 1, 10))), 10);
-  // Of items, and of what is one itself.
+  // To items, and to an item that is a reference itself.
   const std::string items =
       "<DataItem Name=\"places\" Dimensions=\"5 3\" Format=\"XML\">0 0 0 1 0 0 0 1 0 0 0 1 1 1 1</DataItem>"
       "<DataItem Name=\"same\" Reference=\"/Xdmf/Domain/DataItem[@Name='places']\"/>"
@@ -141,7 +141,7 @@ TEST_F(XdmfMeshes, TheSameNumbersInAFileBesideAreOneMesh) {
       item("5 3", "places.bin", "Binary") + "</Geometry>";
   const std::string domain = "<Grid Name=\"mesh\">" + mesh + "</Grid>" + series("u", step(mesh, "u", 0, 7));
   expect_once(read(domain), 7);
-  // Relative names are found where the text has to be rewritten, too.
+  // Relative names are also resolved if the text must be rewritten.
   std::string rewritten = domain;
   rewritten.replace(rewritten.find(" Center=\"Node\""), 14, "");
   expect_once(read(rewritten), 7);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// XDMF, with its numbers inline and in binary files beside it; HDF5 is in xdmf_hdf5_test.cpp.
+// XDMF with its numbers inline and in separate binary files; HDF5 is in xdmf_hdf5_test.cpp.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -140,7 +140,7 @@ TEST_F(Xdmf, GridsInSpaceAreBlocks) {
 }
 
 TEST_F(Xdmf, MixedCellsAreToldByTheirNumbers) {
-  // A unit cube, a wedge and a pyramid on its sides, and a triangle, which is no cell of volume.
+  // A unit cube, a wedge and a pyramid on its sides, and a triangle, which is not a volume cell.
   const std::string topology = "<Topology TopologyType=\"Mixed\" NumberOfElements=\"4\">\n" +
                                item("26", "9 0 1 2 3 4 5 6 7  8 1 8 5 2 9 6  7 4 5 6 7 10  4 0 1 2", "Int") +
                                "</Topology>\n";
@@ -166,7 +166,7 @@ TEST_F(Xdmf, RegularGridsAreVolumes) {
   options.field = "s";
   const VolumeFile volume = open_volume(file, options);
   EXPECT_EQ(volume.source->geometry().points, (GridIndex{4, 3, 2}));
-  // Dimensions, origin and spacing are of z, y and x.
+  // Dimensions, origin and spacing are in the order z, y, x.
   EXPECT_EQ(scene::world_of_index(volume.source->geometry(), {0, 0, 0}), glm::dvec3(10, 20, 30));
   EXPECT_EQ(scene::world_of_index(volume.source->geometry(), {3, 2, 1}), glm::dvec3(13, 24, 33));
   EXPECT_EQ(all_samples(*volume.source)[5], 5);
@@ -219,7 +219,7 @@ TEST_F(Xdmf, BinaryNumbersLieBeside) {
   std::vector<double> scalars = mesh.mesh.scalars;
   std::ranges::sort(scalars);
   EXPECT_EQ(scalars, (std::vector<double>{1, 2, 3, 4}));
-  // What lies elsewhere is not opened, and what is short is refused.
+  // Files elsewhere are not opened, and files that are too short are refused.
   const test::TemporaryFolder other;
   other.write("a.bin", test::bytes_of(points) + test::bytes_of(values));
   expect_refused(grid((other / "a.bin").string()), {"neither beside it nor below"});

@@ -11,7 +11,7 @@
 #include "reference/curved/curved_reference.hpp"
 #include "reference/curved/curved_shapes.hpp"
 
-/// Cells of every type, made from maps of their own coordinates to space.
+/// Cells of every type, created from maps of their own coordinates to space.
 namespace tessera::reference {
 
 /// A cell type with its numbers.
@@ -20,9 +20,9 @@ struct TypeCase {
   std::uint8_t type;
   std::size_t nodes;
   std::array<int, 3> orders{0, 0, 0};
-  int degree;            ///< complete to this degree in the cell's own coordinates (of a pyramid: in its true ones)
+  int degree;            ///< complete to this degree in the cell's own coordinates (for a pyramid: in its true ones)
   bool bezier = false;   ///< nodes are control points
-  bool pyramid = false;  ///< its own coordinates are a box's, collapsed
+  bool pyramid = false;  ///< its own coordinates are those of a collapsed box
 
   [[nodiscard]] CellShape shape() const { return cell_shape(type, nodes, orders, "test"); }
 };
@@ -70,8 +70,8 @@ inline std::vector<TypeCase> all_types() {
   return types;
 }
 
-/// A place of the cell's own coordinates in those in which the cell is a polytope: of pyramids of apex (1/2, 1/2, 1),
-/// over the unit square.
+/// Converts a place of the cell's own coordinates to coordinates in which the cell is a polytope: pyramids have the
+/// apex (1/2, 1/2, 1), over the unit square.
 inline glm::dvec3 polytope_place(const TypeCase& type, const glm::dvec3& place) {
   if (!type.pyramid) return place;
   return {0.5 + (place.x - 0.5) * (1 - place.z), 0.5 + (place.y - 0.5) * (1 - place.z), place.z};
@@ -94,7 +94,7 @@ struct CurvedMesh {
     return {types, offsets, connectivity, positions, association, scalars, degrees};
   }
 
-  /// A cell with points of its own at `points`.
+  /// A cell with its own points at `points`.
   void add(std::uint8_t type, const std::array<int, 3>& orders, const std::vector<glm::dvec3>& points) {
     for (const glm::dvec3& p : points) {
       connectivity.push_back(static_cast<std::uint32_t>(positions.size()));
@@ -105,8 +105,9 @@ struct CurvedMesh {
     offsets.push_back(connectivity.size());
   }
 
-  /// A cell whose nodes are where `map` takes their places (in coordinates in which it is a polytope), with the field
-  /// `scalar` of these places. Bezier cells are not given control points by this: only linear maps and fields fit them.
+  /// A cell with nodes where `map` maps their places (in coordinates in which it is a polytope), with the field
+  /// `scalar` of these places. For Bezier cells this does not compute control points: only linear maps and fields fit
+  /// them.
   void add(const TypeCase& type, const Map& map, const Scalar& scalar) {
     std::vector<glm::dvec3> points;
     for (const glm::dvec3& place : type.shape().nodes) {

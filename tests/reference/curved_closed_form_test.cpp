@@ -19,12 +19,12 @@ using scene::TransferFunction;
 
 constexpr scene::ImageSize size{18, 18};
 
-/// Lengths of order one between crossings of faces, seen from a distance of 5 (1e-15), by rays of which the flattest
-/// meet a face at a slope of a hundredth; ten times that for what the closed form rounds.
+/// Lengths of order one between crossings of faces, seen from a distance of 5 (1e-15), by rays that meet faces at a
+/// slope of at least a hundredth; ten times that for the rounding of the closed form.
 constexpr double rounding = 1e-12;
 
-/// The bend of space (x, y, z) -> (x, y, z + q(x, y)), of which every cell type that has the degree of q makes a curved
-/// cell exactly, and that is undone in closed form.
+/// The map (x, y, z) -> (x, y, z + q(x, y)), for which every cell type with the degree of q gives an exact curved cell,
+/// and which can be inverted in closed form.
 struct Bend {
   struct Term {
     int i, j;
@@ -40,10 +40,10 @@ struct Bend {
   [[nodiscard]] glm::dvec3 operator()(const glm::dvec3& p) const { return {p.x, p.y, p.z + lift(p.x, p.y)}; }
 };
 
-/// Depths are counted from here: powers of them then are of order one.
+/// Depths are relative to this: their powers are then of order one.
 constexpr double middle_depth = 5;
 
-/// A ray unbent: its coordinates by planar depth, as polynomials.
+/// A ray mapped back: its coordinates by planar depth, as polynomials.
 std::array<Polynomial, 3> unbent(const WorldRay& ray, const Bend& bend) {
   std::array<Polynomial, 3> p;
   for (int a = 0; a < 3; ++a)
@@ -74,7 +74,7 @@ std::vector<HalfSpace> polytope(const TypeCase& type) {
   }
 }
 
-/// Stretches of planar depth within all half spaces.
+/// Intervals of planar depth within all half-spaces.
 std::vector<DepthRange> inside(const std::array<Polynomial, 3>& ray, const std::vector<HalfSpace>& half_spaces) {
   constexpr double near = -4, far = 7;
   std::vector<Polynomial> constraints;
@@ -93,7 +93,8 @@ std::vector<DepthRange> inside(const std::array<Polynomial, 3>& ray, const std::
   return ranges;
 }
 
-/// A bend that the type represents exactly: of its degree; of a pyramid of 13 nodes what of second degree it has.
+/// A bend that the type represents exactly: of its degree; for a pyramid of 13 nodes, the second-degree terms that it
+/// has.
 Bend bend_of(const TypeCase& type) {
   if (type.type == 27 && type.pyramid) return {{{1, 1, 0.9}, {2, 0, 0.4}, {0, 2, -0.4}, {1, 0, -0.3}}};
   const int degree = type.type == 31 ? 2 : type.degree;  // quadratic in the triangle
@@ -118,7 +119,7 @@ Bend bend_or_shear(const TypeCase& type) {
   return bend;
 }
 
-/// Compares all pixels of one bent cell with the closed form. Says how many rays meet it, and how many twice.
+/// Compares all pixels of one bent cell with the closed form. Returns how many rays meet it, and how many twice.
 std::array<int, 2> expect_true_lengths(const TypeCase& type, const Bend& bend, const scene::Camera& camera) {
   const TransferFunction transfer_function({{0, {1, 0.5, 0.25}, 0.8}});
   CurvedMesh mesh;
@@ -161,10 +162,10 @@ TEST(CurvedReference, FindsBothStretchesWhereARayLeavesACellAndComesBack) {
   }
 }
 
-/// A field of the cell's own coordinates, linear in (x, y) and in the height before the bend, squared where the type
-/// has second degree.
+/// A field of the cell's own coordinates, linear in (x, y) and in the height before the bend, squared if the type has
+/// second degree.
 TEST(CurvedReference, IntegratesTheFieldOfEveryTypesBentCell) {
-  // Extinction and colour linear over all of the field: the optical depth is a polynomial's integral.
+  // Extinction and colour are linear over the whole range: the optical depth is a polynomial's integral.
   const TransferFunction transfer_function({{-4, {0, 1, 0.5}, 0}, {4, {1, 0, 0.5}, 3.2}});
   test::SomeCases some(4);
   for (const TypeCase& type : all_types()) {
@@ -207,10 +208,10 @@ TEST(CurvedReference, IntegratesTheFieldOfEveryTypesBentCell) {
   }
 }
 
-/// Steps and steep ramps, where the field is a cubic at most along rays: as the integral of grids has it.
+/// Steps and steep ramps, where the field is at most cubic along rays, compared with the integral for grids.
 TEST(CurvedReference, SeesTheKnotsOfTheTransferFunctionWhereTheFieldPassesThem) {
   // A step is a hundred units of extinction; the field's rounding moves it by 1e-15, and a hundred times that where the
-  // field all but turns round there.
+  // field almost has a turning point.
   constexpr double error = 1e-11;
   const TransferFunction transfer_function({{-0.5, {1, 0, 0}, 0},
                                             {-0.2, {1, 1, 0}, 2},
@@ -243,7 +244,7 @@ TEST(CurvedReference, SeesTheKnotsOfTheTransferFunctionWhereTheFieldPassesThem) 
         const Polynomial f = field(p[0], p[1], p[2]);
         GridIntegral truth(transfer_function.knots(), emission);
         for (const DepthRange& range : inside(p, polytope(type))) {
-          // As a cubic over [0, 1], by its derivatives at the front.
+          // As a cubic over [0, 1], from its derivatives at the front.
           Cubic cubic;
           Polynomial derivative = f;
           double factor = 1;
@@ -270,7 +271,7 @@ TEST(CurvedReference, SeesTheKnotsOfTheTransferFunctionWhereTheFieldPassesThem) 
   }
 }
 
-/// Cells above each other and side by side, of types that fit: what is between the outer faces is seen once.
+/// Cells on top of and next to each other, of compatible types: the space between the outer faces is counted once.
 TEST(CurvedReference, NeighboursShareACurvedFaceWithNoGapAndNoOverlap) {
   const auto types = all_types();
   const auto named = [&](const std::string& name) {
@@ -307,7 +308,7 @@ TEST(CurvedReference, NeighboursShareACurvedFaceWithNoGapAndNoOverlap) {
     for (std::size_t i = 0; i < segments.size(); ++i) {
       found += segments[i].length;
       if (i == 0) continue;
-      // No overlap, up to rounding; and what touches does to rounding.
+      // No overlap, and no gap, up to rounding.
       const double gap = segments[i].front - segments[i - 1].back;
       EXPECT_GT(gap, -1e-12);
     }
@@ -340,7 +341,7 @@ TEST(CurvedReference, OfStraightTetsIsThatOfTets) {
   const scene::TetMesh constant = with_cell_data(tets, field);
   per_cell.scalars = constant.scalars;
   for (const scene::Camera& camera : cameras()) {
-    // Orthographic vertices are rounded by 2^-33 pixel there, not here; steps make light of that.
+    // Orthographic vertices are rounded by 2^-33 pixel there, not here; steps convert that to light.
     const double error = camera.projection == ProjectionKind::perspective ? 1e-10 : 1e-8;
     const Reference truth(tets, camera, size, transfer_function), of_cells(constant, camera, size, transfer_function);
     const CurvedReference one(linear.cells(), camera, size, transfer_function),

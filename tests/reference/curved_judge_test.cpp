@@ -12,7 +12,7 @@ namespace {
 
 using scene::TransferFunction;
 
-/// A reference whose picture is moved, so that pixel centres may lie where one likes.
+/// A reference whose image is shifted, so that pixel centres can be placed anywhere.
 class Moved final : public RayReference {
  public:
   Moved(const RayReference& of, double right, double down) : of_(&of), right_(right), down_(down) {}
@@ -29,7 +29,7 @@ class Moved final : public RayReference {
   double right_, down_;
 };
 
-/// One cell with a round silhouette, dense.
+/// One dense cell with a round silhouette.
 struct RoundCell {
   CurvedMesh mesh;
   scene::ImageSize size{128, 128};
@@ -54,7 +54,7 @@ void set(scene::Image& image, PixelIndex at, const Pixel& p) {
   for (std::size_t c = 0; c < 4; ++c) image.rgba[4 * image.index(at.x, at.y) + c] = static_cast<float>(rgba[c]);
 }
 
-/// Ten rows in the middle: of a sample of so many pixels one may be excused.
+/// Ten rows in the middle: in a sample of this many pixels one may be excused.
 std::vector<PixelIndex> middle_rows() {
   std::vector<PixelIndex> pixels;
   for (int y = 60; y < 70; ++y)
@@ -91,11 +91,11 @@ TEST(CurvedJudge, ARoundSilhouetteIsExcusedWithinAThousandthOfAPixelAndNotFarthe
     const double middle = (in + out) / 2;
     (reference.pixel(middle, y).length > 0 ? in : out) = middle;
   }
-  // The edge is round there: the length grows as the root of the distance to it.
+  // The silhouette is round there: the length grows with the square root of the distance to it.
   const double near = reference.pixel(in - 1e-6, y).length, farther = reference.pixel(in - 4e-6, y).length;
   EXPECT_NEAR(farther / near, 2, 0.01);  // the edge is known to 1e-9
 
-  // The centre of the pixel lies a quarter of the excusing distance outside of the cell.
+  // The centre of the pixel is a quarter of the excusing distance outside the cell.
   constexpr double excusing = 1.0 / 1024, bound = 1e-4;
   const PixelIndex at{static_cast<int>(in), static_cast<int>(y)};
   const Moved moved(reference, in + excusing / 4 - (at.x + 0.5), y - (at.y + 0.5));

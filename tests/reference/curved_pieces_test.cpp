@@ -65,7 +65,7 @@ TEST(FacePieces, SlopesAreThoseOfFiniteDifferences) {
     };
     EXPECT_NEAR(glm::length(difference({step, 0}) - point.along_a), 0, error);
     EXPECT_NEAR(glm::length(difference({0, step}) - point.along_b), 0, error);
-    // Control vectors bound the derivatives: their first is the derivative at the corner.
+    // Control vectors bound the derivatives: the first is the derivative at the corner.
     EXPECT_NEAR(glm::length(slopes(piece).along_a.front() - point_of(piece, {0, 0}).along_a), 0, 1e-13);
     EXPECT_NEAR(glm::length(slopes(piece).along_b.front() - point_of(piece, {0, 0}).along_b), 0, 1e-13);
   }
@@ -102,7 +102,7 @@ TEST(SmoothScalar, KnowsWhereItTurns) {
   EXPECT_NEAR(turns[0], -0.5, 1e-7);
   EXPECT_NEAR(turns[1], 0.5, 1e-7);
   EXPECT_TRUE(smooth_pieces(-1, 1, 1, [](double z) { return 3 * z; })[0].turning_points().empty());
-  // Where the slope vanishes and keeps its sign, rounding may make two: nothing that counts lies between them.
+  // Where the slope vanishes without changing sign, rounding may give two turning points with a negligible distance.
   const SmoothScalar flat = smooth_pieces(-1, 1, 1, [](double z) { return z * z * z; })[0];
   const std::vector<double> none = flat.turning_points();
   ASSERT_LE(none.size(), 2u);
@@ -126,7 +126,7 @@ const std::vector<std::vector<Knot>>& transfer_functions() {
 }
 
 TEST(CurvedIntegral, OfCubicsIsThatOfGrids) {
-  constexpr double error = 2e-12;  // what both promise
+  constexpr double error = 2e-12;  // the accuracy of both
   for (const auto& knots : transfer_functions())
     for (const Emission emission : {Emission::absorption, Emission::independent}) {
       CurvedIntegral curved(knots, emission);
@@ -156,7 +156,7 @@ TEST(CurvedIntegral, OfAConstantOnAStepTakesTheUpperKnot) {
 }
 
 TEST(CurvedIntegral, OfARationalScalarIsItsClosedForm) {
-  // kappa = 1 / (1 + z): T = 1 / (1 + z), and light of colour kappa, too: (1 - 1 / (1 + z)^2) / 2.
+  // kappa = 1 / (1 + z): T = 1 / (1 + z), and light with the colour kappa: (1 - 1 / (1 + z)^2) / 2.
   const std::vector<Knot> knots{{0, {0, 0, 0}, 0}, {1, {1, 1, 1}, 1}};
   CurvedIntegral integral(knots, Emission::absorption);
   for (const SmoothScalar& piece : smooth_pieces(0, 5, 1, [](double z) { return 1 / (1 + z); }))

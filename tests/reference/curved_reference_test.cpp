@@ -20,20 +20,20 @@ using scene::ProjectionKind;
 using scene::TransferFunction;
 
 constexpr scene::ImageSize size{32, 32};
-constexpr double rounding = 1e-12;  // lengths of order one, seen from a few units away, to within flat crossings
+constexpr double rounding = 1e-12;  // lengths of order one, seen from a few units away, up to flat crossings
 
 const TypeCase& named(const std::string& name) {
   static const std::vector<TypeCase> types = all_types();
   return *std::find_if(types.begin(), types.end(), [&](const TypeCase& t) { return t.name == name; });
 }
 
-/// Smooth, not a polynomial, and near enough to the identity to be one to one.
+/// Smooth, not a polynomial, and close enough to the identity to be one-to-one.
 glm::dvec3 warped(const glm::dvec3& p) {
   return p + 0.11 * glm::dvec3(std::sin(2 * p.y + p.z), std::cos(1.5 * p.x - 2 * p.z), std::sin(2.2 * p.x + 1.7 * p.y));
 }
 double any_field(const glm::dvec3& p) { return std::sin(1.7 * p.x + p.y) + p.z * p.z; }
 
-/// A cell by brute force, apart from all the reference does with rays: points are inside if Newton's method finds their
+/// A cell by brute force, independent of the reference's ray methods: points are inside if Newton's method finds their
 /// place from some start.
 class Brute {
  public:
@@ -44,7 +44,7 @@ class Brute {
     starts_.emplace_back(0.25, 0.25, 0.25);
   }
 
-  /// Of the point of a place.
+  /// The position of a place.
   [[nodiscard]] glm::dvec3 point(const glm::dvec3& place) const {
     const std::vector<double> n = shape_functions(shape_, place);
     glm::dvec3 sum(0);
@@ -67,7 +67,7 @@ class Brute {
   [[nodiscard]] bool is_inside(const glm::dvec3& p) const { return place(p).has_value(); }
 
  private:
-  /// With derivatives by differences.
+  /// Newton's method with derivatives by differences.
   [[nodiscard]] std::optional<glm::dvec3> from(const glm::dvec3& wanted, glm::dvec3 place) const {
     constexpr double step = 1e-5;
     for (int n = 0; n < 20; ++n) {
@@ -129,7 +129,7 @@ TEST(CurvedReference, AgreesWithBruteForceInAnyCell) {
   const View view(camera, size);
   test::SomeCases some(7);
   for (const TypeCase& type : all_types()) {
-    if (type.nodes > 30 || !some.next()) continue;  // slow by force
+    if (type.nodes > 30 || !some.next()) continue;  // brute force is slow
     CurvedMesh mesh;
     mesh.add(type, warped, any_field);
     const Brute brute(type, mesh);
@@ -191,7 +191,7 @@ TEST(CurvedReference, DoesNotMindAsWhichTypeACellIsGiven) {
   expect_same(warped_as("hexahedron"), warped_as("voxel"), "linear hexahedron");
   expect_same(warped_as("wedge"), warped_as("Lagrange wedge 1"), "linear wedge");
 
-  /// A cell as one of another type that has its functions: nodes where it takes them.
+  /// Converts a cell to another type with the same functions, by evaluating it at that type's nodes.
   const auto as = [](const CurvedMesh& mesh, const TypeCase& from, const TypeCase& to) {
     CurvedMesh result;
     std::vector<glm::dvec3> points;
@@ -259,8 +259,8 @@ TEST(CurvedReference, BallsOfHigherOrderConvergeToTheSphere) {
   const TransferFunction transfer_function({{0, {1, 1, 1}, 0.8}});
   const scene::Camera camera = looking({1, 2, 4}, {0, 0, 0}, ProjectionKind::orthographic, 1.0);
   double error_before = 1;
-  // Odd orders have no node in the middle of a face, where the sphere is fullest, and are worse than the even one
-  // before.
+  // Odd orders have no node in the middle of a face, where the sphere's deviation is largest, and are worse than the
+  // previous even order.
   for (const int order : {1, 2, 4}) {
     const CurvedMesh mesh = ball_of(order);
     const CurvedReference reference(mesh.cells(), camera, size, transfer_function);
@@ -270,7 +270,7 @@ TEST(CurvedReference, BallsOfHigherOrderConvergeToTheSphere) {
         const double d = std::hypot(x - 16, y - 16) / 16;
         const Pixel found = reference.pixel(x, y);
         error = std::max(error, std::abs(found.a + std::expm1(-0.8 * 2 * std::sqrt(1 - d * d))));
-        // Along any ray the cells tile what lies between the first and the last face.
+        // Along any ray the cells tile the interval between the first and the last face.
         const std::vector<CurvedSegment> segments = reference.segments(x, y);
         for (std::size_t i = 1; i < segments.size(); ++i)
           EXPECT_NEAR(segments[i].front, segments[i - 1].back, rounding) << "order " << order;
@@ -294,7 +294,7 @@ TEST(CurvedReference, EyeInsideAndClippingCutStretches) {
   const CurvedReference clipped(mesh.cells(), camera, size, transfer_function);
   EXPECT_NEAR(clipped.pixel(x, y).length,
               all[0].length * (all[0].back - all[0].front - 0.5) / (all[0].back - all[0].front), rounding);
-  // The eye moves forward along the axis of view, and with it the ray's origin along the ray.
+  // The eye moves forward along the view axis, and with it the ray's origin along the ray.
   scene::Camera inside = looking({-3, 0.6, 0.5}, {0.5, 0.5, 0.5}, ProjectionKind::orthographic, 0.5, {0, 0, 1});
   const CurvedReference from_afar(mesh.cells(), inside, size, transfer_function);
   const std::vector<CurvedSegment> afar = from_afar.segments(x, y);
@@ -330,7 +330,7 @@ TEST(CurvedReference, CellDataIsConstantInACell) {
   mesh.add(
       named("quadratic tet"), [](const glm::dvec3& p) { return warped(p) + glm::dvec3(0, 0, 1.5); }, any_field);
   mesh.association = Association::cell;
-  mesh.scalars = {0.25, 0.5};  // the second on a step, of which it takes the upper side
+  mesh.scalars = {0.25, 0.5};  // the second is on a step and uses its upper side
   const TransferFunction transfer_function({{0, {1, 1, 1}, 0}, {0.5, {1, 1, 1}, 2}, {0.5, {1, 1, 1}, 3}});
   const scene::Camera camera = looking({0.3, -3, 1}, {0.3, 0.3, 1}, ProjectionKind::orthographic, 1.2, {0, 0, 1});
   const CurvedReference reference(mesh.cells(), camera, size, transfer_function);
@@ -346,7 +346,7 @@ TEST(CurvedReference, CellDataIsConstantInACell) {
   EXPECT_GT(std::min(hits[0], hits[1]), 10);
 }
 
-/// Rays through edges and corners and along faces, flat, collapsed and folded cells: anything finite, soon.
+/// Rays through edges and corners and along faces, flat, collapsed and folded cells: any finite result, quickly.
 TEST(CurvedReference, EndsWithFiniteNumbersWhateverTheCell) {
   const TransferFunction transfer_function(
       {{-1, {1, 0, 0}, 0}, {0.2, {0, 1, 0}, 2}, {0.2, {0, 0, 1}, 0}, {1, {1, 1, 0}, 3}});
@@ -369,7 +369,7 @@ TEST(CurvedReference, EndsWithFiniteNumbersWhateverTheCell) {
       mesh.add(type, map, any_field);
       const scene::Camera along = looking({0.5, 0.5, 4}, {0.5, 0.5, 0.5}, ProjectionKind::orthographic, 1);
       const CurvedReference reference(mesh.cells(), along, {8, 8}, transfer_function);
-      const int rays = &map == &maps.back() ? 1 : 5;  // a way, in quarters of the cell; cells of noise are slow
+      const int rays = &map == &maps.back() ? 1 : 5;  // per direction, in quarters of the cell; cells of noise are slow
       for (int j = 0; j < rays; ++j)
         for (int i = 0; i < rays; ++i) {
           const Pixel found = rays == 1 ? reference.pixel(3.9, 4.2) : reference.pixel(2 + i, 2 + j);
@@ -381,7 +381,7 @@ TEST(CurvedReference, EndsWithFiniteNumbersWhateverTheCell) {
     }
   }
   const double took = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-  EXPECT_LT(took / done, 0.1);  // seconds of the processor a ray, in any build; some milliseconds where it is optimized
+  EXPECT_LT(took / done, 0.1);  // seconds of processor time per ray, in any build; milliseconds if optimized
 }
 
 TEST(CurvedReference, RefusesArraysThatDoNotFit) {
@@ -421,7 +421,7 @@ TEST(CurvedReference, RefusesArraysThatDoNotFit) {
   mesh.types[0] = 42;
   EXPECT_THROW(render(mesh), scene::Error);
   EXPECT_THROW(CurvedReference(good.cells(), camera, size, TransferFunction()), scene::Error);
-  // What has no volume is passed over.
+  // Cells without volume are skipped.
   mesh = good;
   mesh.types[0] = 22;
   EXPECT_EQ(render(mesh).pixel(16.5, 16.5).segments, 0u);

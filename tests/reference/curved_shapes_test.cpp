@@ -13,7 +13,7 @@
 namespace tessera::reference::curved_shapes_test {
 namespace {
 
-/// Rounding in shape functions of values up to 10 (order 5) that sum up to 125 terms.
+/// Rounding in shape functions with values up to 10 (order 5) that sum up to 125 terms.
 constexpr double rounding = 1e-12;
 
 /// Places in a cell's domain.
@@ -117,7 +117,7 @@ TEST(CurvedShapes, GradientsAreThoseOfFiniteDifferences) {
         shape.basis.evaluate(before, low, unused);
         shape.basis.evaluate(after, high, unused);
         shape.basis.evaluate(place, values, gradients);
-        // Third derivatives of order five reach some hundreds: step^2 of them.
+        // Third derivatives of order five reach some hundreds: the error is step^2 times these.
         for (std::size_t i = 0; i < n; ++i)
           EXPECT_NEAR((high[i] - low[i]) / (2 * step), gradients[i][axis], 1e-7) << type.name;
       }
@@ -142,7 +142,7 @@ TEST(CurvedShapes, FacesAreTheCellsOwnOnThem) {
   }
 }
 
-/// Some nodes of each numbering, as VTK has them.
+/// Some nodes of each numbering, as in VTK.
 TEST(CurvedShapes, NodesAreInVtksOrder) {
   struct Known {
     std::uint8_t type;
@@ -200,7 +200,7 @@ TEST(CurvedShapes, NodesAreInVtksOrder) {
       {73, 21, {}, 15, {third, third, 0}},
       {73, 21, {}, 20, {third, third, half}},
       {71, 15, {}, 12, {third, third, third}},
-      // Some of the nodes of second order.
+      // Some of the second-order nodes.
       {71, 5, {}, 4, {quarter, quarter, quarter}},
       {71, 7, {}, 6, {0, half, 0}},
       {71, 8, {}, 7, {0, third, third}},
@@ -226,7 +226,7 @@ TEST(CurvedShapes, RefuseWhatIsNotACell) {
   EXPECT_THROW(cell_shape(24, 9, {}, "test"), scene::Error);
   EXPECT_THROW(cell_shape(42, 8, {}, "test"), scene::Error);
   EXPECT_THROW(cell_shape(71, 12, {}, "test"), scene::Error);
-  EXPECT_THROW(cell_shape(72, 60, {}, "test"), scene::Error);  // no cube
+  EXPECT_THROW(cell_shape(72, 60, {}, "test"), scene::Error);  // not a cube
   EXPECT_THROW(cell_shape(72, 60, {3, 2, 3}, "test"), scene::Error);
   EXPECT_THROW(cell_shape(72, 8, {-1, 3, 3}, "test"), scene::Error);
   EXPECT_THROW(cell_shape(72, 60, {2147483647, 2, 4}, "test"), scene::Error);

@@ -10,14 +10,14 @@ namespace tessera::reference::exact_determinant_test {
 namespace {
 
 TEST(ExactDeterminant, AgreesWithIntegerArithmetic) {
-  // 38-bit integers: the true value needs 116 bits, so double arithmetic would be wrong.
+  // 38-bit integers: the exact value needs 116 bits, so double arithmetic would be wrong.
   std::mt19937_64 random(7);
   const auto number = [&] { return static_cast<std::int64_t>(random() >> 26) - (std::int64_t{1} << 37); };
   for (int n = 0; n < 2000; ++n) {
     std::int64_t m[3][3];
     for (auto& row : m)
       for (auto& entry : row) entry = number();
-    // A row that is nearly a combination of the others makes the determinant small.
+    // A row that is almost a combination of the others makes the determinant small.
     for (int i = 0; i < 3; ++i) m[2][i] = m[0][i] / 2 - m[1][i] / 4 + (n % 3 == 0 ? i : 0);
     const auto term = [&](int i, int j, int k) { return static_cast<__int128>(m[0][i]) * m[1][j] * m[2][k]; };
     const __int128 truth =

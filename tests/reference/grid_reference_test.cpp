@@ -33,7 +33,7 @@ scene::GridGeometry lattice(const scene::GridIndex& points, const glm::dvec3& lo
   return g;
 }
 
-/// The field at the lattice points, or at the voxels' middles for cell data.
+/// The field at the lattice points, or at the voxels' centres for cell data.
 Source sampled(const scene::GridGeometry& geometry, const std::function<double(const glm::dvec3&)>& field) {
   scene::Grid grid;
   grid.geometry = geometry;
@@ -65,7 +65,7 @@ void expect_equal(const Pixel& a, const Pixel& b, double tolerance) {
 }
 
 constexpr scene::ImageSize window{20, 16};
-constexpr double rounding = 1e-12;  // a few hundred pieces, each right to 1e-15 or so
+constexpr double rounding = 1e-12;  // a few hundred pieces, each accurate to about 1e-15
 
 TEST(GridReference, AConstantFieldObeysBeerLambertInEveryProjection) {
   const Source source = sampled(lattice({5, 3, 4}, {-1, -1, -1}, {1, 1, 1}), [](auto&) { return 0.5; });
@@ -80,7 +80,7 @@ TEST(GridReference, AConstantFieldObeysBeerLambertInEveryProjection) {
         EXPECT_NEAR(p.b, 0.25 * p.a, rounding);
         thickest = std::max(thickest, p.length);
       }
-      EXPECT_GT(thickest, 0.7);  // an eye inside sees from itself on
+      EXPECT_GT(thickest, 0.7);  // an eye inside sees only what is in front of it
     }
 }
 
@@ -89,7 +89,7 @@ TEST(GridReference, TheLengthInTheBoxIsThatOfItsChord) {
   const scene::Camera camera = looking({0, 0, 5}, {0, 0, 0}, ProjectionKind::orthographic, 1.5);
   const GridReference reference(*source, camera, {30, 30}, bumpy);
   EXPECT_NEAR(reference.pixel(15.3, 14.2).length, 2, rounding);
-  EXPECT_EQ(reference.pixel(4.9, 15).length, 0);  // the box spans 20 of 30 pixels
+  EXPECT_EQ(reference.pixel(4.9, 15).length, 0);  // the box covers 20 of 30 pixels
 }
 
 TEST(GridReference, ALinearFieldIsTheSameAsInTetrahedra) {
@@ -139,12 +139,12 @@ TEST(GridReference, OneVoxelOfEightValuesIsTheSumOfVeryManySamples) {
       red += k.extinction * k.color.x * std::exp(-depth - k.extinction * dz / 2) * dz;
       depth += k.extinction * dz;
     }
-    EXPECT_NEAR(pixel.r, red, 5e-4);  // 2e-5 long steps at a step of the function by 5 and at both ends
+    EXPECT_NEAR(pixel.r, red, 5e-4);  // 2e-5 long steps: errors at a step of the function by 5 and at both ends
     EXPECT_NEAR(pixel.a, -std::expm1(-depth), 5e-4);
   }
 }
 
-/// Blinn-Phong as its paper has it, for a normal: what the field's colour is multiplied by, and the white added.
+/// Blinn-Phong according to its paper, for a normal: the factor on the field's colour, and the white added.
 std::array<double, 2> blinn_phong(const glm::dvec3& normal, const glm::dvec3& to_light, const glm::dvec3& to_eye,
                                   const scene::Shading& s) {
   const double angle = std::acos(std::min(1.0, std::abs(glm::dot(normal, glm::normalize(to_light + to_eye)))));
@@ -256,7 +256,7 @@ TEST(GridReference, RectilinearTurnedAndScaledGridsOfOneFieldAgree) {
       third(*b, camera, window, bumpy);
   for (const PixelIndex p : all_pixels(window)) {
     const Pixel truth = first.pixel(p.x + 0.5, p.y + 0.5);
-    expect_equal(second.pixel(p.x + 0.5, p.y + 0.5), truth, 1e-10);  // coordinates rounded otherwise, extinction 9
+    expect_equal(second.pixel(p.x + 0.5, p.y + 0.5), truth, 1e-10);  // other roundings, extinction 9
     expect_equal(third.pixel(p.x + 0.5, p.y + 0.5), truth, 1e-10);
   }
 }
@@ -272,8 +272,8 @@ TEST(GridReference, CellDataIsConstantInVoxelsAndRaysInTheirFacesAreDecided) {
   EXPECT_NEAR(reference.pixel(2, 3).a, -std::expm1(-(1 + 3)), rounding);
   EXPECT_NEAR(reference.pixel(7, 3).a, -std::expm1(-(2 + 4)), rounding);
   EXPECT_NEAR(reference.pixel(5, 5).a, -std::expm1(-(2 + 4)), rounding);  // in x = 0: the shift goes right
-  EXPECT_NEAR(reference.pixel(0, 5).a, -std::expm1(-(1 + 3)), rounding);  // in the left boundary: the shift goes in
-  EXPECT_EQ(reference.pixel(10, 5).a, 0);                                 // in the right one: out
+  EXPECT_NEAR(reference.pixel(0, 5).a, -std::expm1(-(1 + 3)), rounding);  // in the left boundary: the shift goes inside
+  EXPECT_EQ(reference.pixel(10, 5).a, 0);                                 // in the right one: outside
 }
 
 TEST(GridReference, ABlankSampleBlanksItsVoxelsAndNoMore) {

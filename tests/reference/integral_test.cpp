@@ -14,7 +14,7 @@ using scene::Knot;
 
 constexpr double rounding = 1e-14;  // sums of a few hundred terms below one, in double
 
-/// The integral over one segment by Simpson's rule with very many steps between given places, long double.
+/// The integral over one segment by Simpson's rule with very many steps between given places, in long double.
 std::array<double, 4> simpson(const std::vector<Knot>& knots, Emission emission, double length, double s0, double s1) {
   const int steps = 42000;  // 3,000 between knots 0.1 apart
   const scene::TransferFunction function(knots);
@@ -22,7 +22,7 @@ std::array<double, 4> simpson(const std::vector<Knot>& knots, Emission emission,
   long double optical_depth = 0, color[3] = {0, 0, 0};
   for (int i = 0; i < steps; ++i) {
     const auto knot = [&](double u) { return function.evaluate(s0 + (s1 - s0) * (i + u) / steps); };
-    const Knot a = knot(1e-9), m = knot(0.5), b = knot(1 - 1e-9);  // inside the step, so that jumps fall between steps
+    const Knot a = knot(1e-9), m = knot(0.5), b = knot(1 - 1e-9);  // inside the step, so that jumps are between steps
     const long double half = h / 24 * (5 * a.extinction + 8 * m.extinction - b.extinction);
     const long double whole = h / 6 * (a.extinction + 4 * m.extinction + b.extinction);
     for (int c = 0; c < 3; ++c) {
@@ -124,7 +124,7 @@ TEST(Integral, OpticallyThickSegmentsAreRightAndFast) {
     integral.add(1, s0, s1, 0, 1);
     EXPECT_EQ(integral.opacity(), 1);
     EXPECT_NEAR(integral.color()[0], 0.5, rounding);
-    EXPECT_NEAR(integral.color()[1], 0.5 + s0 / 2, 2e-12);  // seen within 1e-12 of its front
+    EXPECT_NEAR(integral.color()[1], 0.5 + s0 / 2, 2e-12);  // absorbed within 1e-12 of its front
   }
 }
 
@@ -144,7 +144,7 @@ TEST(Integral, AgreesWithSimpsonOnRandomTransferFunctions) {
     std::uniform_real_distribution<double> unit(0, 1);
     std::vector<Knot> knots;
     for (int i = 0; i < 12; ++i) {
-      // Values on a grid that the Simpson steps end on, some of them twice.
+      // Values on a grid that contains the ends of the Simpson steps, some of them twice.
       const double value = i / 2 * 0.2 - (i % 3 == 0 ? 0.1 : 0);
       knots.push_back({value, {unit(random), unit(random), unit(random)}, 8 * unit(random)});
     }

@@ -85,7 +85,7 @@ TEST(Judge, NotANumberAndInfinityAreInfinitelyWrong) {
 }
 
 TEST(Judge, TheOtherSideOfAFaceIsExcusedOnlyWithinAThousandthPixelAndOnlyRarely) {
-  // The pixel column at the window's middle is centred on the face between the materials, to `away` of a pixel.
+  // The pixel column in the window's middle is centred on the face between the materials, up to `away` of a pixel.
   const auto judged = [](double away, int width, int height, int wrong_pixels) {
     const double pixel = 1.4 / height;
     const TwoMaterials scene(width, height, away * pixel);

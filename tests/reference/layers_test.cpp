@@ -10,7 +10,7 @@
 #include "reference/reference.hpp"
 #include "reference/small_meshes.hpp"
 
-/// Layers of rays that are known in closed form: the reference of opacity peeling.
+/// Layers of rays known in closed form, for the reference of opacity peeling.
 namespace tessera::reference::layers_test {
 namespace {
 
@@ -37,7 +37,7 @@ std::unique_ptr<scene::MemorySource> grid_of(const Field& field) {
 double constant(const glm::dvec3&) { return 0.5; }
 double height(const glm::dvec3& p) { return p.z; }
 
-/// Of the box [-1, 1]^3, by mesh and by grid, through places that meet no edge.
+/// The box [-1, 1]^3 as a mesh and as a grid, at places that meet no edge.
 struct Both {
   Both(const Field& field, const scene::TransferFunction& function, const Surfaces& surfaces = {})
       : mesh(box_of_tets(3, glm::dvec3(-1), glm::dvec3(1), field)),
@@ -125,7 +125,7 @@ TEST(ReferenceLayers, ASurfaceIsTheEndOfTheLayerItFills) {
   surfaces.light = {1, 0, 0, 1};
   const Both both(height, scene::TransferFunction({{0, {1, 1, 1}, 0}}), surfaces);
   for (const auto& layers : both.layers({0.75, 4})) {
-    // From the eye on 0.5 and 0.5, which are the threshold together; 1; 0.5; none.
+    // From the eye on: 0.5 and 0.5, which together equal the threshold; 1; 0.5; none.
     const double opacities[] = {0.75, 1, 0.5, 0}, places[] = {0.65, -0.35, -0.55, 0};
     for (std::size_t n = 0; n < 4; ++n) {
       EXPECT_NEAR(layers[n].a, opacities[n], 1e-12) << n;

@@ -8,7 +8,7 @@
 
 namespace tessera::reference {
 
-/// A polynomial in one variable, c[0] + c[1] x + ..., for what tests know in closed form.
+/// A polynomial in one variable, c[0] + c[1] x + ..., for closed forms in tests.
 struct Polynomial {
   std::vector<double> c;
 

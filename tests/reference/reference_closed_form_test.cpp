@@ -18,10 +18,10 @@ using scene::TransferFunction;
 
 constexpr double rounding = 1e-13;
 
-/// How far lengths may be from the true geometry, world units. Perspective: rounding, positions of order one and up to
-/// 40 segments; wide angles stretch a unit of depth by up to five. Orthographic: by definition vertices are rounded by
-/// up to 2^-33 pixel, here at most 2e-11 units, which faces seen at a slant stretch: up to tenfold on a box, a
-/// hundredfold at the rim of a ball.
+/// Allowed deviation of lengths from the true geometry, world units. Perspective: rounding, positions of order one and
+/// up to 40 segments; wide angles stretch a unit of depth by up to five. Orthographic: by definition vertices are
+/// rounded by up to 2^-33 pixel, here at most 2e-11 units, which oblique faces magnify: up to tenfold on a box, a
+/// hundredfold at the silhouette of a ball.
 double tolerance(const scene::Camera& camera, double slant) {
   return camera.projection == ProjectionKind::perspective ? 1e-12 : 2e-11 * slant;
 }
@@ -107,14 +107,14 @@ TEST(Reference, FinerBallsConvergeToTheSphere) {
       error = std::max(error, std::abs(reference.pixel(x, 20.4).a + std::expm1(-0.8 * 2 * std::sqrt(1 - d * d))));
     }
     if (refinements > 1) {
-      EXPECT_LT(error, error_before / 2.5);  // second order: a quarter, roughly
+      EXPECT_LT(error, error_before / 2.5);  // second order: about a quarter
     }
     error_before = error;
   }
   EXPECT_LT(error_before, 1e-3);
 }
 
-/// Every kind of view of a box: what the length of each ray in it must be is known by clipping it to the slabs.
+/// Every kind of view of a box: the correct length of each ray in it follows from clipping it to the slabs.
 struct BoxView {
   const char* name;
   scene::Camera camera;
@@ -205,7 +205,7 @@ TEST(Reference, CellDataIsConstantInEachCellAndTwoMaterialsAddUp) {
   const Field material = [](const glm::dvec3& p) { return p.z > 0.5 ? 1.0 : 2.0; };
   const scene::TetMesh mesh = with_cell_data(box_of_tets(4, {-1, -1, 0}, {1, 1, 1}, material), material);
   const TransferFunction transfer_function(
-      {{1, {1, 0, 0}, 2}, {2, {1, 0, 0}, 2}, {2, {0, 0, 1}, 7}, {3, {0, 0, 1}, 7}});  // 2 lies exactly on the step
+      {{1, {1, 0, 0}, 2}, {2, {1, 0, 0}, 2}, {2, {0, 0, 1}, 7}, {3, {0, 0, 1}, 7}});  // 2 is exactly on the step
   const Reference reference(mesh, looking({0.01, 0.02, 4}, {0.01, 0.02, 0}, ProjectionKind::orthographic, 0.9), {9, 9},
                             transfer_function);
   for (const Pixel& p : reference.image()) {

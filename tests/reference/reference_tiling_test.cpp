@@ -16,7 +16,7 @@ using scene::TransferFunction;
 const TransferFunction grey({{0, {0.5, 0.5, 0.5}, 1}});
 double any_field(const glm::dvec3& p) { return p.x + 2 * p.y - 0.5 * p.z; }
 
-/// The tets that a ray is in for more than a fiftieth of a unit: those that a small shift of it adds are left out.
+/// The tets in which a ray is for more than a fiftieth of a unit: excludes those that a small shift of it adds.
 std::set<std::size_t> cells_of(const std::vector<RaySegment>& segments) {
   std::set<std::size_t> cells;
   for (const RaySegment& s : segments)
@@ -24,7 +24,7 @@ std::set<std::size_t> cells_of(const std::vector<RaySegment>& segments) {
   return cells;
 }
 
-/// The six views along an axis of the box [0, 4]^3 whose vertices lie exactly on pixel centres, every second pixel.
+/// The six views along an axis of the box [0, 4]^3 whose vertices are exactly on pixel centres, every second pixel.
 std::vector<scene::Camera> axis_views() {
   std::vector<scene::Camera> views;
   for (int axis = 0; axis < 3; ++axis)
@@ -32,7 +32,7 @@ std::vector<scene::Camera> axis_views() {
       glm::dvec3 direction(0), up(0);
       direction[axis] = side;
       up[(axis + 1) % 3] = 1;
-      // Two pixels a unit, 12 pixels high; the middle of the box a quarter unit off the middle of the window.
+      // Two pixels a unit, 12 pixels high; the middle of the box is a quarter unit away from the middle of the window.
       scene::Camera camera = looking({0, 0, 0}, direction, ProjectionKind::orthographic, 3, up);
       const scene::ViewBasis basis = scene::view_basis(camera);
       const glm::dvec3 middle = glm::dvec3(2, 2, 2) + 0.25 * basis.right + 0.25 * basis.up;
@@ -51,8 +51,8 @@ TEST(ReferenceTiling, RaysThroughVerticesEdgesAndFacesFollowTheTieRule) {
     for (const PixelIndex& p : all_pixels({12, 12})) {
       const double x = p.x + 0.5, y = p.y + 0.5;
       const std::vector<RaySegment> segments = reference.segments(x, y);
-      // The box covers pixel coordinates from 1.5 (x) and 2.5 (y) on, 8 pixels wide. The ray shifted by (e, e^2) is in
-      // it if it lies on the low sides, out of it if on the high sides.
+      // The box covers pixel coordinates from 1.5 (x) and 2.5 (y) on, 8 pixels wide. The ray shifted by (e, e^2) is
+      // inside if it is on the low sides, outside if on the high sides.
       const bool inside = x >= 1.5 && x < 9.5 && y >= 2.5 && y < 10.5;
       ASSERT_EQ(!segments.empty(), inside) << p.x << ' ' << p.y;
       if (!inside) continue;
@@ -63,7 +63,7 @@ TEST(ReferenceTiling, RaysThroughVerticesEdgesAndFacesFollowTheTieRule) {
         depth = s.back;
       }
       ASSERT_EQ(depth, 9);
-      // The cells are those of a ray that is really shifted, by little.
+      // The cells are those of a ray that is actually shifted, by a small amount.
       ASSERT_EQ(cells_of(segments), cells_of(reference.segments(x + 1e-4, y + 1e-8)));
     }
     EXPECT_EQ(hits, 64);
@@ -73,7 +73,7 @@ TEST(ReferenceTiling, RaysThroughVerticesEdgesAndFacesFollowTheTieRule) {
 TEST(ReferenceTiling, PerspectiveRayAlongALineOfEdgesIsWhole) {
   const scene::TetMesh mesh = box_of_tets(4, {-1, -1, -1}, {1, 1, 1}, any_field);
   for (const double distance : {5.0, 0.5, 0.25}) {
-    // Odd sides: the middle pixel's centre lies on the view axis, on which edges lie.
+    // Odd sides: the middle pixel's centre is on the view axis, which contains edges.
     const scene::Camera camera = looking({0, 0, distance}, {0, 0, -1}, ProjectionKind::perspective, 30);
     const Reference reference(mesh, camera, {9, 9}, grey);
     const std::vector<RaySegment> segments = reference.segments(4.5, 4.5);
@@ -119,7 +119,7 @@ TEST(ReferenceTiling, FlatCellsAreKeptWithNoLength) {
   scene::TetMesh mesh = box_of_tets(1, {0, 0, 0}, {1, 1, 1}, any_field);
   const std::size_t cells = mesh.tets.size();
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-  // A flat quadrangle of one tet across the box, and a tet with two vertices in one place.
+  // A flat quadrangle of one tet across the box, and a tet with two coincident vertices.
   for (const glm::dvec3& p : {glm::dvec3(0, 0, 0.5), {1, 0, 0.5}, {1, 1, 0.5}, {0, 1, 0.5}, {0, 0, 0.5}})
     mesh.positions.push_back(p), mesh.scalars.push_back(any_field(p));
   mesh.tets.push_back({first, first + 1, first + 2, first + 3});
@@ -142,7 +142,7 @@ TEST(ReferenceTiling, FlatCellsAreKeptWithNoLength) {
 }
 
 TEST(ReferenceTiling, WarpedAndFlattenedMeshesStillTile) {
-  // Cells flattened 10,000 : 1 and seen obliquely at a grazing angle.
+  // Cells flattened 10,000 : 1 and seen at a grazing angle.
   const glm::dvec3 low(-1, -1, -1e-4), high(1, 1, 1e-4);
   const scene::TetMesh mesh = box_of_tets(5, low, high, any_field, 0.15);
   const scene::Camera camera = looking({3, 0.7, 0.05}, {0, 0, 0}, ProjectionKind::orthographic, 0.02, {0, 0, 1});
@@ -151,7 +151,7 @@ TEST(ReferenceTiling, WarpedAndFlattenedMeshesStillTile) {
   for (const PixelIndex& p : all_pixels({64, 64})) {
     const DepthRange range = depths_in_box(world_ray(camera, {64, 64}, p.x + 0.5, p.y + 0.5), low, high);
     const Pixel found = reference.pixel(p.x + 0.5, p.y + 0.5);
-    // Vertices are rounded by 2^-33 pixel, here 7e-14 world units across, which the grazing angle (1 : 62) stretches.
+    // Vertices are rounded by 2^-33 pixel, here 7e-14 world units across, which the grazing angle (1 : 62) magnifies.
     EXPECT_NEAR(found.length, range.size(), 1e-10);
     hits += range.size() > 0;
   }

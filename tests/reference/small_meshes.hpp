@@ -19,8 +19,8 @@ namespace tessera::reference {
 
 using Field = std::function<double(const glm::dvec3&)>;
 
-/// A box of n x n x n cubes, each split into the six tets round its diagonal (Kuhn). Interior vertices are moved by up
-/// to `jitter` of a cube's side; 0.15 keeps all tets upright. Point data: the field at the vertices.
+/// A box of n x n x n cubes, each split into the six tets around its diagonal (Kuhn). Interior vertices are moved by up
+/// to `jitter` of a cube's side; with 0.15 no tet is inverted. Point data: the field at the vertices.
 inline scene::TetMesh box_of_tets(int n, const glm::dvec3& low, const glm::dvec3& high, const Field& field,
                                   double jitter = 0, unsigned seed = 1) {
   scene::TetMesh mesh;
@@ -62,7 +62,7 @@ inline scene::TetMesh with_cell_data(scene::TetMesh mesh, const Field& field) {
   return mesh;
 }
 
-/// Every tet split into four at a point inside, whose scalar is interpolated: the same linear field.
+/// Every tet split into four at an inner point, whose scalar is interpolated: the same linear field.
 inline scene::TetMesh split_in_four(const scene::TetMesh& mesh) {
   scene::TetMesh split = mesh;
   split.tets.clear();
@@ -84,7 +84,7 @@ inline scene::TetMesh split_in_four(const scene::TetMesh& mesh) {
   return split;
 }
 
-/// A world ray: where it starts at planar depth 0, and its direction per unit of planar depth.
+/// A world ray: its start at planar depth 0, and its direction per unit of planar depth.
 struct WorldRay {
   glm::dvec3 origin, direction;
 };

@@ -41,7 +41,7 @@ TEST(ChoosePixels, TakesAThirdAtRandomAndTheRestFromTheSuspectsByTurns) {
   EXPECT_EQ(chosen.size(), 300u);
   EXPECT_EQ(places(chosen).size(), 300u);  // all different
   EXPECT_EQ(count(chosen, std::nullopt), 100u);
-  EXPECT_GE(count(chosen, Suspicion::edge), 30u);  // those that chance had taken before are no more
+  EXPECT_GE(count(chosen, Suspicion::edge), 30u);  // pixels already chosen at random are not counted again
   EXPECT_EQ(count(chosen, Suspicion::edge) + count(chosen, Suspicion::tie), 200u);
   const std::vector<ChosenPixel> again = choose_pixels(size, 300, suspects);
   for (std::size_t i = 0; i < chosen.size(); ++i) EXPECT_EQ(chosen[i].at, again[i].at);
@@ -71,7 +71,7 @@ TEST(Ranked, HasTheMostSuspiciousFirstSpreadOverThePictureAndDrawsOfTheOthers) {
   const std::vector<PixelIndex> order = ranked(map, size, 60);
   EXPECT_EQ(order.size(), 60u);
   const auto place = [&](PixelIndex p) { return std::find(order.begin(), order.end(), p) - order.begin(); };
-  EXPECT_LT(place({40, 40}), 12);  // the fifth block of 8x8, every other turn
+  EXPECT_LT(place({40, 40}), 12);  // the fifth block of 8x8, on every second turn
   EXPECT_EQ(std::count_if(order.begin(), order.begin() + 8, [](PixelIndex p) { return p.y == 30; }) <= 4, true);
   EXPECT_GE(std::count_if(order.begin(), order.end(), [](PixelIndex p) { return p.y == 30; }), 1);
   EXPECT_EQ(ranked(map, size, 10000).size(), 16u * 16 + 1 + 40);
@@ -142,7 +142,7 @@ TEST(LightError, IsTheJumpWhereAStepIsTouchedAndLessTheSteeperTheFieldCrossesIt)
   const auto error = [&](std::array<double, 4> corners) { return light.per_length(corners); };
   EXPECT_EQ(error({0.1, 0.2, 0.3, 0.4}), 0);
   EXPECT_NEAR(error({0.5, 0.5, 0.5, 0.5}), 2, 1e-9);
-  EXPECT_NEAR(error({0.5, 0.3, 0.2, 0.1}), 0.5, 1e-9);  // a quarter of the corners lies on it
+  EXPECT_NEAR(error({0.5, 0.3, 0.2, 0.1}), 0.5, 1e-9);  // a quarter of the corners is on it
   EXPECT_NEAR(error({0.4, 0.6, 0.4, 0.6}), 2 * noise / 0.2, 1e-7);
   EXPECT_EQ(light.most_per_length(0.1, 0.4), 0);
   EXPECT_EQ(light.most_per_length(0.1, 0.6), 2);
@@ -172,16 +172,16 @@ TEST(EdgeWalk, FindsTheCentresOnAnEdgeAndNoOthers) {
   EXPECT_EQ(tied, 35);
 
   tie = nothing_suspicious();
-  raise_ties({3.5, 3.5, 1}, {23.5, 13.5, 1}, size, edge, tie);  // every other centre along x
+  raise_ties({3.5, 3.5, 1}, {23.5, 13.5, 1}, size, edge, tie);  // every second centre along x
   EXPECT_EQ(std::count_if(tie.begin(), tie.end(), [](float t) { return t > 0.5f; }), 11);
 
   tie = nothing_suspicious();
-  raise_ties({10.5, 5.5, 1}, {10.5, -7, -1}, size, edge, tie);  // goes behind the eye: seen from 5.5 down or up
+  raise_ties({10.5, 5.5, 1}, {10.5, -7, -1}, size, edge, tie);  // behind the eye: from 5.5 down or up
   EXPECT_GT(std::count_if(tie.begin(), tie.end(), [](float t) { return t > 0; }), 0);
   raise_ties({1, 1, -1}, {4, 1, -1}, size, edge, tie);  // behind the eye
 }
 
-/// What every ray sees: a half-plane, right of a line that runs beside the centres of a column.
+/// A reference whose rays see a half-plane, right of a line next to the centres of a column.
 class HalfPlane final : public RayReference {
  public:
   explicit HalfPlane(double x) : x_(x) {}
@@ -202,7 +202,7 @@ class HalfPlane final : public RayReference {
 };
 
 TEST(Verification, GrantsExcusesToSuspectsButNoMoreThanASampleMayHoldToRandomPixels) {
-  const HalfPlane reference(20.5 + 1.0 / 3000);  // the centres of column 20 see nothing, those of column 21 all
+  const HalfPlane reference(20.5 + 1.0 / 3000);  // the centres of column 20 see nothing, those of column 21 everything
   scene::Image image(size);
   for (int y = 0; y < size.height; ++y)
     for (int x = 20; x < size.width; ++x)  // column 20 is on the other side
@@ -217,13 +217,13 @@ TEST(Verification, GrantsExcusesToSuspectsButNoMoreThanASampleMayHoldToRandomPix
   EXPECT_EQ(found.met(), found.random.excused == 0);
   EXPECT_EQ(found.judgement.max_error_not_excused, 0);
   EXPECT_EQ(found.worst == Suspicion::tie || found.random.excused > 0, true);
-  // All pixels: 48 of 3,072 are excused, none may be.
+  // All pixels: 48 of 3,072 would be excused, which is too many.
   const Verification all = verify(image, reference, 1e-4, pixels, suspects);
   EXPECT_EQ(all.random.pixels, pixels);
   EXPECT_EQ(all.judgement.excused, 48u);
   EXPECT_FALSE(all.met());
 
-  // A column further away is not excused, whoever chose it.
+  // A column further away is not excused, however it was chosen.
   for (std::size_t c = 0; c < 4; ++c) image.rgba[4 * at(19, 7) + c] = 0.5f;
   suspects[static_cast<std::size_t>(Suspicion::edge)] = {{19, 7}};
   const Verification wrong = verify(image, reference, 1e-4, 72, suspects);

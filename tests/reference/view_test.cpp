@@ -21,7 +21,7 @@ TEST(View, OrthographicPixelsHaveYDownAndTheTopLeftAtZero) {
 }
 
 TEST(View, DecimalNoiseOfTheCameraIsRoundedAway) {
-  // 0.1 + 0.2 is not 0.3 in doubles; on the pixel grid it is.
+  // 0.1 + 0.2 is not 0.3 in doubles, but on the pixel grid it is.
   const View view(looking({0.1 + 0.2, 0, 10}, {0.1 + 0.2, 0, 0}, ProjectionKind::orthographic, 1), {100, 100});
   EXPECT_EQ(view.project({0.3, 0, 0}).homogeneous.x, 50);
 }

@@ -48,7 +48,7 @@ TEST(DefaultView, TheWiderSideLiesAcross) {
 }
 
 TEST(DefaultView, PatientsShowTheirFace) {
-  // The face looks to +y in RAS, to -y in LPS: the eye is on that side of a body that is deeper than wide too.
+  // The face points to +y in RAS, to -y in LPS: the eye is on that side even if a body is deeper than wide.
   const Box body = box_of(2, 4, 9);
   EXPECT_LT(basis_of(body, {}, BodyAxes::ras).forward.y, -0.5);
   EXPECT_GT(basis_of(body, {}, BodyAxes::lps).forward.y, 0.5);
@@ -63,7 +63,7 @@ TEST(DefaultView, NamedViewsOfAPatientShowThatSideOfTheBody) {
     expect_near(basis_of(body, named("back"), axes).forward, front);
     expect_near(basis_of(body, named("left"), axes).forward, -left);
     expect_near(basis_of(body, named("right"), axes).forward, left);
-    expect_near(basis_of(body, named("front"), axes).right, left);  // face to face, the left is to the right
+    expect_near(basis_of(body, named("front"), axes).right, left);  // facing the patient, left is to the right
     expect_near(basis_of(body, named("+y"), axes).forward, y);
     expect_near(basis_of(body, named("-x"), axes).forward, -x);
     expect_near(basis_of(body, named("top"), axes).forward, {0, 0, -1});
@@ -85,13 +85,13 @@ TEST(DefaultView, NamedViewsLookAlongTheirAxes) {
 }
 
 TEST(DefaultView, AzimuthAndElevationTurnAsVtkCamerasDo) {
-  // vtkCamera looking along +y with z up: Azimuth(90) puts the eye at +x, Elevation(30) half as high as far away.
+  // vtkCamera looking along +y with z up: Azimuth(90) puts the eye at +x, Elevation(30) half as high as it is far away.
   ViewRequest request = named("front");
   request.azimuth = 90;
   expect_near(basis_of(box_of(1, 1, 1), request).forward, {-1, 0, 0});
   request.elevation = 30;
   EXPECT_NEAR(basis_of(box_of(1, 1, 1), request).forward.z, -0.5, 1e-12);
-  request.elevation = 90;  // over the pole: up turns with it
+  request.elevation = 90;  // over the pole: up rotates with it
   expect_near(basis_of(box_of(1, 1, 1), request).forward, {0, 0, -1});
 }
 

@@ -109,7 +109,7 @@ TEST(Error, SubjectsThatAreKnownAreKeptWhole) {
   EXPECT_EQ(known.code(), error.code());
   EXPECT_EQ(parts(known), (Parts{"odd: name; 1.vtu", "line 3: is cut short", "write it again"}));
   EXPECT_EQ(parts(with_subject(bad_input("a; b: is empty"), "a; b")), (Parts{"a; b", "is empty", ""}));
-  // Another one's error stays as it is.
+  // An error with another subject is unchanged.
   for (const char* other : {"", "od", "name", "odd: name", "another.vtu"})
     EXPECT_EQ(parts(with_subject(error, other)), parts(error)) << other;
 }

@@ -28,7 +28,7 @@ TetMesh boxes(glm::dvec3 size) {
   return mesh;
 }
 
-// 2^14 samples are wanted, and one more of each tet that is due a part of one.
+// 2^14 samples are requested, plus one for each tet with a fractional share.
 std::size_t most_samples(const TetMesh& mesh) { return (1 << 14) + mesh.tets.size(); }
 
 TEST(FieldSamples, StandForTheVolumeAndTheField) {
@@ -38,14 +38,14 @@ TEST(FieldSamples, StandForTheVolumeAndTheField) {
   EXPECT_LE(of.samples.size(), most_samples(mesh));
   double volume = 0, moment = 0;
   for (const FieldSample& s : of.samples) {
-    EXPECT_NEAR(s.value, s.at[0], 1e-6);  // places are floats
+    EXPECT_NEAR(s.value, s.at[0], 1e-6);  // positions are floats
     volume += double{s.volume}, moment += double{s.volume} * s.value;
   }
   EXPECT_NEAR(volume, 1, 1e-6);             // floats, each rounded by 6e-8
-  EXPECT_NEAR(moment / volume, 0.5, 0.01);  // four times what as many random places would miss by
+  EXPECT_NEAR(moment / volume, 0.5, 0.01);  // four times the expected error of as many random positions
 }
 
-// The tets' volumes, in cubes of the longest side, are too small for volume_sum() or for what follows from it.
+// The tets' volumes, in cubes of the longest side, are too small for volume_sum() or values derived from it.
 TEST(FieldSamples, AreNoMoreInBoxesOfAnyShapeAndSize) {
   for (const glm::dvec3 size : {glm::dvec3(1, 1, 1e17),
                                 {1, 1e14, 1},

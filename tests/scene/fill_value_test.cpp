@@ -46,16 +46,16 @@ TEST(FillValues, OfSeveralAreAllFarFromTheRestTheHugeOnesFirst) {
   EXPECT_TRUE(huge->is_huge());
   EXPECT_EQ(huge->values, (std::vector<double>{-1e30, 1e20}));
   EXPECT_EQ(huge->count, 3u);
-  EXPECT_EQ(huge->others.low, -32768);  // a note has these
+  EXPECT_EQ(huge->others.low, -32768);  // for a note
   EXPECT_EQ(huge->others.high, 7);
 }
 
 TEST(FillValues, AreNoneThatOthersAreNear) {
-  EXPECT_FALSE(found_in({-999, 4000, 0, -500}));                 // by half of what the others span
-  EXPECT_FALSE(found_in({-4000, 2, 100}));                       // no usual one
-  EXPECT_FALSE(found_in({1e20, 3e19, 2e19, 5e18}));              // a quantity of that size
-  EXPECT_FALSE(found_in({-9999, -9999, -9999}));                 // nothing else
-  EXPECT_FALSE(found_in({-9999, 1, 1, 1}));                      // else a constant: a label perhaps
+  EXPECT_FALSE(found_in({-999, 4000, 0, -500}));                 // separated by half of the range of the others
+  EXPECT_FALSE(found_in({-4000, 2, 100}));                       // not a common fill value
+  EXPECT_FALSE(found_in({1e20, 3e19, 2e19, 5e18}));              // a quantity of that magnitude
+  EXPECT_FALSE(found_in({-9999, -9999, -9999}));                 // no other values
+  EXPECT_FALSE(found_in({-9999, 1, 1, 1}));                      // otherwise constant: perhaps a label
   EXPECT_FALSE(found_in({0, 1, 2, std::nextafter(9999.0, 0)}));  // 9998.99...
 }
 

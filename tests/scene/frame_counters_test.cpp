@@ -13,7 +13,7 @@
 namespace tessera::scene {
 namespace {
 
-/// Each is in its list once, and is put together as it says.
+/// Each counter is in its list once, and combined according to its declaration.
 template <class Counters, class Table>
 void expect_listed_once(const Table& list) {
   std::set<std::string_view> names;

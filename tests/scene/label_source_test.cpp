@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t side = 24;
 
-/// A cube of side^3 points with a value for each.
+/// A cube of side^3 points with one value per point.
 template <class Value>
 std::shared_ptr<const SampleSource> cube_of(const Value& value) {
   Grid grid;
@@ -62,7 +62,7 @@ TEST(LabelValues, AreNotNoiseNorQuantizedFieldsNorMasks) {
                    .are_labels);
   const auto mask = cube_of([](int i, int, int) { return i < 9 ? 0.0 : 1.0; });
   EXPECT_FALSE(label_values(*mask, false).are_labels);
-  const LabelValues stated = label_values(*mask, true);  // unless the header states it
+  const LabelValues stated = label_values(*mask, true);  // unless the header declares them
   EXPECT_TRUE(stated.are_labels);
   EXPECT_EQ(stated.values, (std::vector<double>{0, 1}));
   EXPECT_TRUE(label_values(*cube_of([&](int, int, int) { return double(random()); }), true).values.empty());

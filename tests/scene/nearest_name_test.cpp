@@ -14,7 +14,7 @@ TEST(NearestName, IsTheOneThatWasMeant) {
   EXPECT_EQ(nearest_name("PRESSURE", names), "pressure");
   EXPECT_EQ(nearest_name("temperatuer", names), "Temperature");
   EXPECT_EQ(nearest_name("internalmesh", names), "fluid/internalMesh");
-  EXPECT_EQ(nearest_name("velcoity", names), "velocity");  // swapped letters are one change
+  EXPECT_EQ(nearest_name("velcoity", names), "velocity");  // swapped letters count as one change
   EXPECT_EQ(nearest_name("P", names), "p");
 }
 

@@ -86,7 +86,7 @@ TEST(ThresholdSource, BlanksSamplesWhoseValuesAreOutsideOfTheRangeAndKeepsTheOth
   const ThresholdSource kept(MemorySource::of(grid, counting(60)), {4, 7.5}, "v");  // samples 25 to 32
   EXPECT_EQ(kept.grid().type, SampleType::float32);
   EXPECT_EQ(value_range(kept), (ValueRange{4, 7.5, 52}));
-  // Rows and slices apart, in both float types.
+  // Rows and slices with gaps, in both float types.
   const SampleBox box{{1, 0, 1}, {3, 3, 4}};
   std::vector<float> narrow(200, -1);
   kept.read(box, {SampleType::float32, 5, 40}, std::as_writable_bytes(std::span<float>(narrow)));

@@ -21,7 +21,7 @@ TEST(Trace, NoSpanOfAnyThreadIsLost) {
       workers.emplace_back([&] {
         for (int i = 0; i < each; ++i) const TraceScope scope(&trace, "project", i);
       });
-    // Reading while others write sees whole spans.
+    // A read during writes returns complete spans.
     for (const TraceSpan& span : trace.spans()) EXPECT_EQ(std::string(span.stage), "project");
   }
   std::vector<int> seen(each);
@@ -90,7 +90,7 @@ TEST(Trace, SpansOfATileCarryItsNumberThroughEveryFace) {
 }
 
 TEST(Trace, RecordingsThatFollowOrAlternateDoNotMix) {
-  // The allocator likes to give the second recording the first one's place.
+  // The allocator often reuses the first recording's address for the second.
   for (int i = 0; i < 100; ++i) {
     Trace trace;
     EXPECT_TRUE(trace.spans().empty());

@@ -35,7 +35,7 @@ TEST(TransferFunction, VisibleOnlyWhereExtinctionIsPositive) {
   const TransferFunction f({{0, {1, 1, 1}, 0}, {1, {1, 1, 1}, 0}, {2, {1, 1, 1}, 3}, {3, {1, 1, 1}, 0}});
   EXPECT_FALSE(f.visible(-5, 1));
   EXPECT_TRUE(f.visible(-5, 1.001));
-  EXPECT_TRUE(f.visible(0, 9));  // the peak lies inside
+  EXPECT_TRUE(f.visible(0, 9));  // the peak is inside
   EXPECT_FALSE(f.visible(3, 9));
   EXPECT_TRUE(f.visible(-5, 0, true));
 }
@@ -58,7 +58,7 @@ TEST(TransferFunction, RefusesNegativeUnsortedAndNotFiniteKnots) {
 }
 
 }  // namespace
-/// A field of such small values has no slopes that are numbers.
+/// A field of such small values has no finite slopes.
 TEST(TransferFunction, KnotsBelowTheSmallestNormalNumberApartAreAStep) {
   const TransferFunction f({{0, glm::dvec3(0), 0}, {1e-320, glm::dvec3(1), 2}, {2e-320, glm::dvec3(0.5), 3}});
   ASSERT_EQ(f.knots().size(), 2u);

@@ -12,7 +12,7 @@ const std::string token = "0123456789abcdef0123456789abcdef";
 
 Access at_loopback(std::vector<std::string> allowed = {}) { return {token, "127.0.0.1", std::move(allowed)}; }
 
-/// Of a request that has the token and nothing odd.
+/// Credentials of a normal request with the token.
 Credentials good() { return {"127.0.0.1:8080", "", "", "", "token=0123456789abcdef0123456789abcdef"}; }
 
 TEST(Access, TakesTheTokenFromQueryHeaderOrSubprotocolAndNothingElse) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the fuzzed sources call of the public API, without the rest of it.
+// The parts of the public API that the fuzzed sources call, without the rest.
 #include <nlohmann/json.hpp>
 
 #include "io/text/json_text.hpp"

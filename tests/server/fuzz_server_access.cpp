@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// No host, origin, subprotocol or query of any form makes a server answer who has not its token.
+// No host, origin, subprotocol or query makes a server answer a client without its token.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
        {server::Credentials{"127.0.0.1", "", text, "", ""}, server::Credentials{"127.0.0.1", "", "", text, ""},
         server::Credentials{"127.0.0.1", "", "", "", text}, server::Credentials{text, text, text, text, text}})
     test::require(access.refusal(given).has_value() || knows);
-  // With the token, but of a page of another server.
+  // With the token, but from a page of another server.
   const server::Credentials foreign{"127.0.0.1:80", text, "Bearer 0123456789abcdef0123456789abcdef", "", ""};
   test::require(access.refusal(foreign).has_value() || text.empty() ||
                 text.find("127.0.0.1") != std::string_view::npos || text.find_first_of("vV") != std::string_view::npos);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any text is a client's message or is refused in one line; a state that is taken is options of render, which a shell
-// gives back as they are.
+// Any text is parsed as a client's message or refused in one line; an accepted state becomes options of render, which
+// survive a shell unchanged.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

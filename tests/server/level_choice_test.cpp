@@ -6,7 +6,7 @@
 namespace tessera::server {
 namespace {
 
-/// A client whose pictures take `fixed` milliseconds and `full` more in full size.
+/// A client whose images take `fixed` milliseconds plus `full` at full size.
 struct Cost {
   double fixed, full;
   [[nodiscard]] double at(std::size_t shrink) const { return fixed + full / (shrinks[shrink] * shrinks[shrink]); }
@@ -47,7 +47,7 @@ TEST(LevelChoice, AsksForAStandInWhereTheDataAloneTakesTooLong) {
   move(choice, quick, 10);
   EXPECT_TRUE(choice.wants_stand_in());
   EXPECT_EQ(choice.shrink(), 0u);
-  // At rest, the data as it is may turn out to be quick after all.
+  // At rest, the full data may turn out to be fast enough.
   choice.full_took(slow.at(0));
   EXPECT_TRUE(choice.wants_stand_in());
   choice.full_took(80);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever clients send, parsers say in one sentence what is wrong with it, or take it.
+// Whatever clients send, parsers accept it or report the error in one sentence.
 
 #include <gtest/gtest.h>
 

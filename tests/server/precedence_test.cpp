@@ -42,7 +42,7 @@ TEST(Precedence, LeavesAQuarterOfTheTimeToLongWork) {
   Precedence precedence;
   Precedence::Clock::time_point now{};
   Precedence::Clock::duration held{}, free{};
-  for (int i = 0; i < 2000; ++i) {  // without a pause between two pieces of short work
+  for (int i = 0; i < 2000; ++i) {  // without a pause between two short tasks
     precedence.begin_short(now);
     (precedence.is_held() ? held : free) += milliseconds(50);
     now += milliseconds(50);

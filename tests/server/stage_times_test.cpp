@@ -11,7 +11,7 @@ TraceSpan span(const char* stage, std::uint32_t thread, double start, double wal
 }
 
 TEST(StageTimes, ShareTheFrameByTimeInNoStageInside) {
-  // Thread 0: 10 of composite, 4 of it integrate; thread 1: 6 of project.
+  // Thread 0: 10 of composite, including 4 of integrate; thread 1: 6 of project.
   const auto times = stage_times(
       {span("integrate", 0, 3, 4), span("composite", 0, 0, 10), span("project", 1, 1, 6), span("frame", 0, 0, 20)}, 32);
   EXPECT_EQ(times, (std::map<std::string, double>{{"composite", 12}, {"integrate", 8}, {"project", 12}}));

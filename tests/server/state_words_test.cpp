@@ -34,13 +34,13 @@ TEST(StateWords, StandOverThoseTheServerWasStartedWith) {
       words_of({{"field", {"p"}}, {"log", {"true"}}, {"view", {"front"}}, {"zoom", {"2"}}, {"threads", {"2"}}});
   EXPECT_EQ(arguments_of(state_words(base, Json::object())),
             (std::vector<std::string>{"--field=p", "--log", "--threads=2", "--view=front", "--zoom=2"}));
-  // A camera takes the place of what places one; null takes an option away.
+  // A camera replaces the options that place one; null removes an option.
   EXPECT_EQ(arguments_of(state_words(base, Json::parse(R"({"field":"v:mag","log":null,"camera":{}})"))),
             (std::vector<std::string>{"--camera={}", "--field=v:mag", "--threads=2"}));
   EXPECT_EQ(state_of_words(base), Json::parse(R"({"field":"p","log":true,"view":"front","zoom":"2"})"));
 }
 
-// As a bare option it would take the next one for its text.
+// As a bare option it would take the next one as its text.
 TEST(StateWords, HaveTextThatIsTrueAsText) {
   const Json state = Json::parse(R"({"annotate":["true"],"color-bar-title":"true","field":"true","surface":["true"],
     "transfer-function":"viridis","smooth":true,"scale-bar":true})");
@@ -98,7 +98,7 @@ TEST(StateWords, NameNoFilesAndNoOtherOptions) {
       EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << text;
     }
   }
-  // Blocks of the mesh and its boundary are no files.
+  // Blocks of the mesh and its boundary are not files.
   EXPECT_NO_THROW(state_words({}, Json::parse(R"({"surface":["boundary","boundary/walls:red:0.5","side set 1"]})")));
 }
 

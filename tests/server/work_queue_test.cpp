@@ -18,7 +18,7 @@ class NoChannel final : public Channel {
 
 StateMessage state(std::uint64_t number, bool moving) { return {number, moving, Json::object()}; }
 
-/// The next frame, which there has to be.
+/// The next frame, which must exist.
 FrameOrder take_frame(WorkQueue& queue) { return std::get<FrameOrder>(*queue.next()); }
 
 FrameOutcome sent(Level level) { return {FrameOutcome::Kind::sent, level, 10}; }
@@ -70,7 +70,7 @@ TEST(WorkQueue, StopsFramesOfOldStatesButThoseThatMove) {
   EXPECT_EQ(order.number, 2u);
   queue.set_state(client, state(3, true));
   EXPECT_FALSE(order.stop.stop_requested());
-  queue.set_state(client, state(2, false));  // late: of no effect
+  queue.set_state(client, state(2, false));  // late: has no effect
   queue.begin_sending(order, 1);
   queue.finish(order, sent(Level::moving));
   queue.acknowledge(client, 1);
@@ -111,7 +111,7 @@ TEST(WorkQueue, WaitsForDataUntilItComesEvenWhereItCameMeanwhile) {
   EXPECT_TRUE(is_idle(queue));
   queue.wake();
   order = take_frame(queue);
-  queue.wake();  // before it is known that the order waits
+  queue.wake();  // before the test knows that the order waits
   queue.finish(order, {FrameOutcome::Kind::waits_for_data, Level::automatic, 0});
   EXPECT_EQ(take_frame(queue).number, 1u);
 }
@@ -158,7 +158,7 @@ TEST(WorkQueue, StopsTheTaskAtHandWhenItEnds) {
   auto work = queue.next();
   queue.end();
   EXPECT_TRUE(task->stopped);
-  EXPECT_FALSE(task->abandoned);  // its turn may answer
+  EXPECT_FALSE(task->abandoned);  // in turn, it may answer
   queue.finish(std::get<std::shared_ptr<Task>>(*work), Task::Turn::again);
   EXPECT_TRUE(task->abandoned);
 }

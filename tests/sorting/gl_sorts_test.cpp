@@ -29,7 +29,7 @@ void fill(const gl::Context& context, Buffer& device, const void* from, std::siz
   device.copy_from(upload, 0, bytes);
 }
 
-/// The keys as the device sorts them, list after list.
+/// The keys as sorted by the device, list after list.
 std::vector<GlKey> sorted(const gl::Context& context, const std::vector<GlKey>& keys,
                           const std::vector<GlList>& lists) {
   GlListSort sort(context);
@@ -95,7 +95,7 @@ TEST(ListSort, NothingToSortIsNoFault) {
   EXPECT_TRUE(sorted(context, {}, {}).empty());
 }
 
-/// The places of the segments, list by list, after sorting in a texture of at most `limit` texels a side.
+/// The positions of the segments, list by list, after sorting in a texture of at most `limit` texels a side.
 std::vector<std::uint32_t> texture_order(const gl::Context& context, int limit, std::uint32_t longest, int lists,
                                          const std::vector<TextureSegment>& segments,
                                          const std::vector<TextureTie>& ties) {

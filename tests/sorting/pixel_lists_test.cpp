@@ -27,7 +27,8 @@ projection::RaySegments segments_of(const std::vector<std::pair<std::uint32_t, K
 
 TEST(PixelLists, OrdersByFrontThenBackThenTetInListsOfAnyLength) {
   std::mt19937 random(3);
-  // Pixel 0 is empty, the others get lists from one element to 20,000; depths from a few values, so that ties abound.
+  // Pixel 0 is empty, the others get lists from one element to 20,000; depths have few distinct values, so that ties
+  // are frequent.
   const std::vector<std::size_t> lengths{0, 1, 2, 47, 48, 49, 1000, 20000};
   std::vector<std::pair<std::uint32_t, Key>> given;
   std::vector<std::vector<Key>> expected(lengths.size());
@@ -68,7 +69,7 @@ TEST(PixelLists, AZeroLengthSegmentComesBeforeTheOneThatBeginsThere) {
 TEST(PixelLists, ByBackAloneEqualOnesStayInTetOrder) {
   std::mt19937 random(4);
   std::vector<std::pair<std::uint32_t, Key>> given;
-  // Fronts are noise that must not count. Tets arrive in order, as the rasterizer is given them.
+  // Fronts are noise that must be ignored. Tets arrive in order, as passed to the rasterizer.
   for (std::uint32_t i = 0; i < 3000; ++i)
     given.push_back({static_cast<std::uint32_t>(random() % 20),
                      {static_cast<double>(random() % 100), static_cast<double>(random() % 9), i}});

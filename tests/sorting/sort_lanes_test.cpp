@@ -27,8 +27,8 @@ std::size_t sort_rows(float* keys, int chunks) {
   return hn::Lanes(SortTag());
 }
 
-/// Sorts `rows` rows of depths, of which lane i has counts[i], as windows do: places[] are the rows in their order, and
-/// level[row] has bits set in lanes where that row's key does not differ from the one before.
+/// Sorts `rows` rows of depths, of which lane i has counts[i], like windows: places[] are the rows in sorted order, and
+/// level[row] has bits set in lanes where that row's key equals the previous one.
 std::size_t pack_and_sort(std::int32_t* depths, const std::int32_t* counts, std::int32_t* places, std::int32_t* level,
                           std::size_t rows) {
   const KeyTag d;
@@ -82,7 +82,7 @@ std::size_t lane_count() {
   return HWY_DYNAMIC_DISPATCH(sort_rows)(keys.data(), 1);
 }
 
-/// Sorts `keys` (row by row, `lanes` a row) and checks every lane against std::sort.
+/// Sorts `keys` (row by row, `lanes` per row) and compares every lane with std::sort.
 void expect_sorted(std::vector<float> keys, int chunks, std::size_t lanes) {
   const std::vector<float> before = keys;
   const std::size_t rows = keys.size() / lanes;
@@ -102,7 +102,7 @@ TEST(SortLanes, SortsEveryLaneForAllLengths) {
   tests::for_each_instruction_set([](const char* name) {
     SCOPED_TRACE(name);
     const std::size_t lanes = lane_count();
-    if (lanes == 0) return;  // scalars: the lattice is not used there
+    if (lanes == 0) return;  // without lanes the lattice is not used
     std::mt19937 random(3);
     for (const int chunks : {1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 31, 64})
       for (const int range : {1, 3, 40, 1 << 20})
@@ -116,7 +116,7 @@ TEST(SortLanes, SortsEveryLaneForAllLengths) {
 }
 
 /// A network that sorts all sequences of zeros and ones sorts all sequences (Knuth, The Art of Computer Programming 3,
-/// 5.3.4, the zero-one principle): 2^16 of them for the first chunk, a lane each.
+/// 5.3.4, the zero-one principle): 2^16 of them for the first chunk, one per lane.
 TEST(SortLanes, TheNetworkOfSixteenSortsAllZeroOneSequences) {
   const std::size_t lanes = lane_count();
   if (lanes == 0) GTEST_SKIP() << "no lanes on this processor";
@@ -129,7 +129,8 @@ TEST(SortLanes, TheNetworkOfSixteenSortsAllZeroOneSequences) {
   }
 }
 
-/// Depths as far apart as 32 bits hold leave no room for the row: keys drop their lowest bits then, and must say so.
+/// Depths as far apart as 32 bits allow leave no bits for the row: keys then drop their lowest bits, and must report
+/// it.
 TEST(PackedKeys, OrderDepthsOrSayThatTheyDoNot) {
   tests::for_each_instruction_set([](const char* name) {
     SCOPED_TRACE(name);
@@ -151,7 +152,7 @@ TEST(PackedKeys, OrderDepthsOrSayThatTheyDoNot) {
           std::vector<bool> seen(rows);
           for (std::size_t row = 0; row < rows; ++row) {
             const auto place = static_cast<std::size_t>(places[row * lanes + lane]);
-            ASSERT_LT(place, rows);  // a place to read from, behind the end too
+            ASSERT_LT(place, rows);  // readable positions, also after the end
             if (row >= count) continue;
             ASSERT_LT(place, count);
             ASSERT_FALSE(seen[place]);
@@ -162,7 +163,7 @@ TEST(PackedKeys, OrderDepthsOrSayThatTheyDoNot) {
             const std::int32_t here = depths[place * lanes + lane];
             const bool is_level = level[row * lanes + lane] != 0;
             ASSERT_TRUE(before < here || is_level) << before << " " << here;
-            // Up to 2^20 apart nothing is dropped: only what is equal is level.
+            // Up to 2^20 apart nothing is dropped: only equal depths are level.
             if (std::int64_t{high} - low < 1 << 20) {
               ASSERT_EQ(is_level, before == here);
             }

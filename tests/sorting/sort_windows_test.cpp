@@ -43,8 +43,8 @@ using Segment = projection::LatticeSegment;
 
 auto key(const Segment& s) { return std::tie(s.front, s.back, s.scalar_front, s.scalar_back); }
 
-/// Fills windows of 40 pixels (not a multiple of any number of lanes but 4 and 8) with up to `most` segments each whose
-/// fronts lie in [0, range], sorts each group, and compares every list with std::sort's.
+/// Fills windows of 40 pixels (a multiple only of 4 and 8 lanes) with up to `most` segments each, with fronts in [0,
+/// range], sorts each group, and compares every list with std::sort's.
 void expect_sorted(std::size_t most, std::int32_t range, std::uint32_t seed) {
   constexpr std::size_t pixels = 40;
   projection::SegmentWindows windows;
@@ -66,7 +66,7 @@ void expect_sorted(std::size_t most, std::int32_t range, std::uint32_t seed) {
   WindowOrder order;
   for (std::size_t first = 0, lanes = 1; first < pixels; first += lanes) {
     lanes = HWY_DYNAMIC_DISPATCH(sort_group)(windows, first, order);
-    if (lanes == 0) return;  // scalars: the lattice is not used there
+    if (lanes == 0) return;  // without lanes the lattice is not used
     for (std::size_t p = first; p < std::min(first + lanes, pixels); ++p)
       for (std::size_t row = 0; row < expected[p].size(); ++row) {
         const auto slot = static_cast<std::size_t>(order.slots[row * lanes + p - first]);
@@ -76,8 +76,8 @@ void expect_sorted(std::size_t most, std::int32_t range, std::uint32_t seed) {
   }
 }
 
-/// Ranges of one depth, of many ties, of more bits than keys have beside the row, and lists of all kinds of lengths: in
-/// one network, merged, and too long for networks (more than 1,024).
+/// Ranges of one depth, of many ties, of more bits than keys have besides the row, and lists of all lengths: in one
+/// network, merged, and too long for networks (more than 1,024).
 TEST(SortWindows, OrdersEveryListUnderEveryInstructionSet) {
   tests::for_each_instruction_set([](const char* name) {
     SCOPED_TRACE(name);

@@ -20,7 +20,7 @@
 namespace tessera::io::testing {
 namespace {
 
-/// Numbers as they lie in a FAB.
+/// Numbers as stored in a FAB.
 std::string bytes_of(const std::vector<double>& values, bool single, bool big_endian) {
   std::string bytes;
   for (const double value : values) {
@@ -121,7 +121,7 @@ std::filesystem::path write_vth(const test::TemporaryFolder& folder, const AmrSc
 
 namespace {
 
-/// One level's folder, and its part of the Header.
+/// One level's directory, and its part of the Header.
 std::string write_amrex_level(const std::filesystem::path& plot, int level, int shift, const AmrScene& scene,
                               const Field& at, const AmrexWish& wish) {
   std::string boxes, fabs, ends;

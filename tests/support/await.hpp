@@ -6,10 +6,10 @@
 
 namespace tessera::test {
 
-/// How long a test waits for what has to come: only a hang takes so long.
+/// How long a test waits for an expected event: only a hang takes this long.
 inline constexpr std::chrono::minutes hang{5};
 
-/// Waits until `event` holds, which it asks again after each `pause`. False: it has not come, the program hangs.
+/// Waits until `event` is true, checking after each `pause`. False: it did not occur, the program hangs.
 template <class Event>
 bool await(const Event& event, std::chrono::milliseconds pause = std::chrono::milliseconds(2)) {
   const auto end = std::chrono::steady_clock::now() + hang;

@@ -13,8 +13,8 @@
 
 namespace tessera::test {
 
-/// Writes the bytes with a few of them changed, again and again, to `name` and reads that: it must read or be refused
-/// in one line that begins with the file's name, whatever the bytes. TESSERA_TRIALS sets the number of times.
+/// Repeatedly changes a few of the bytes, writes them to `name` and reads that: it must be read or refused in one line
+/// that begins with the file's name, whatever the bytes. TESSERA_TRIALS sets the number of repetitions.
 inline void expect_no_crash_of_changes(const TemporaryFolder& folder, const std::string& name, const std::string& bytes,
                                        const std::function<void(const std::filesystem::path&)>& read) {
   const char* const wish = std::getenv("TESSERA_TRIALS");
@@ -25,7 +25,7 @@ inline void expect_no_crash_of_changes(const TemporaryFolder& folder, const std:
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     std::string changed = bytes;
-    // Every other time in the header alone.
+    // Every second time only in the header.
     const std::size_t reach = seed % 2 == 1 ? std::min<std::size_t>(bytes.size(), 600) : bytes.size();
     for (unsigned k = 0; k < 1 + seed % 4; ++k) changed[random() % reach] = static_cast<char>(random());
     const auto file = folder.write(name, changed);

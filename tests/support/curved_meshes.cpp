@@ -81,7 +81,7 @@ cells::CellBlock warped_box(const Kind& kind, int n, const Warp& warp, const Fie
   const auto add = [&](const std::function<glm::dvec3(const glm::dvec3&)>& to_box) {
     for (std::size_t k = 0; k < kind.nodes; ++k) {
       glm::dvec3 p = to_box(place_of(*lattice, k));
-      for (int x = 0; x < 3; ++x) p[x] = std::round(p[x] * 360360) / 360360;  // one point for all cells that have it
+      for (int x = 0; x < 3; ++x) p[x] = std::round(p[x] * 360360) / 360360;  // one point for all cells that share it
       p = warp(p);
       block.connectivity.push_back(static_cast<std::uint32_t>(block.positions.size()));
       block.positions.push_back(p);
@@ -108,8 +108,8 @@ cells::CellBlock warped_box(const Kind& kind, int n, const Warp& warp, const Fie
         }
         break;
       case cells::CurvedFamily::hexahedron: {
-        // Not all sides of a 24-node hexahedron have nodes in their middles, nor all edges of a 16-node one, nor one
-        // order those of different ones.
+        // Not all sides of a 24-node hexahedron have nodes in their middles, nor all edges of a 16-node one, and axes
+        // of different order cannot be exchanged.
         const bool may_turn = turned && kind.type != 33 && kind.nodes != 16 && kind.degrees[0] == kind.degrees[2];
         const int turn = may_turn ? static_cast<int>(random() % 3) : 0;
         const bool flip = turned && random() % 2 == 0;

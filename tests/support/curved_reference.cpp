@@ -30,7 +30,7 @@ double field_of_place(CellSpace space, const glm::dvec3& p) {
   return value;
 }
 
-/// The integral over a shape by Gauss's rule on the cube that collapses into it.
+/// The integral over a shape by Gauss's rule on the cube that collapses to it.
 double integral_of(cells::CurvedFamily shape, const std::function<double(const glm::dvec3&)>& density) {
   static constexpr std::array<std::pair<double, double>, 5> rule = {{{0.0, 0.5688888888888889},
                                                                      {-0.5384693101056831, 0.47862867049936647},
@@ -62,7 +62,7 @@ std::vector<glm::dvec3> places_of(const ReferenceCell& cell) {
   for (const std::vector<int>& middle : cell.middles) {
     glm::dvec3 sum(0);
     for (const int corner : middle) sum += places[static_cast<std::size_t>(corner) - 1];
-    // A pyramid's node inside is half as high as the middle of its axis.
+    // A pyramid's inner node is half as high as the middle of its axis.
     places.push_back(middle.size() == 5 ? glm::dvec3(0.375, 0.375, 0.25) : sum / static_cast<double>(middle.size()));
   }
   return places;
@@ -132,7 +132,7 @@ ReadOptions coarse_options() {
 }
 
 void expect_same(const cells::MeshFile& read, const BentCell& cell, double count) {
-  // A node out of its place changes more than a hundredth; tets of the coarse tolerance less than half of that.
+  // A misplaced node changes more than a hundredth; tets of the coarse tolerance less than half of that.
   EXPECT_NEAR(volume(read.mesh), count * cell.volume, 5e-3 * count * cell.volume);
   EXPECT_NEAR(field_integral(read.mesh), count * cell.integral, 5e-3 * count * std::abs(cell.integral));
   EXPECT_EQ(read.higher_order.by_corners, 0u);

@@ -10,9 +10,9 @@
 
 namespace tessera::tests {
 
-/// What a compositing package makes of a pixel's deep samples in front of an opaque plane of `color` at depth z
-/// (infinite: no plane), by the rules of "Interpreting OpenEXR Deep Pixels": samples are cut where the plane is, as if
-/// their density were constant, then composited front to back. Premultiplied RGBA.
+/// The result of compositing a pixel's deep samples in front of an opaque plane of `color` at depth z (infinite: no
+/// plane), by the rules of "Interpreting OpenEXR Deep Pixels": samples are cut at the plane, as if their density were
+/// constant, then composited front to back. Premultiplied RGBA.
 inline std::array<double, 4> composited(std::span<const scene::DeepImageSample> samples,
                                         double z = std::numeric_limits<double>::infinity(),
                                         const std::array<double, 3>& color = {0, 0, 0}) {

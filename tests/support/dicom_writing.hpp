@@ -31,24 +31,24 @@ inline std::string dicom_item(const std::string& elements) {
   return dicom_little(0xe000fffe, 4) + dicom_little(static_cast<std::uint32_t>(elements.size()), 4) + elements;
 }
 
-/// A sequence of one item.
+/// A sequence with one item.
 inline std::string dicom_group(std::uint32_t group, std::uint32_t number, const std::string& elements) {
   return dicom_element(group, number, "SQ", dicom_item(elements));
 }
 
-/// A file of several frames; what is empty is left out.
+/// A multi-frame file; empty members are left out.
 struct DicomFrames {
   std::string storage = "1.2.840.10008.5.1.4.1.1.2.1", modality = "CT";
   int columns = 4, rows = 3;
-  std::string above{};              ///< elements of groups below 0028, in their order
-  std::string spacing{};            ///< between rows and columns, of the file as a whole
+  std::string above{};              ///< elements of groups below 0028, in order
+  std::string spacing{};            ///< between rows and columns, for the whole file
   std::string below{};              ///< elements of groups 0054 to 3004
   std::string shared{};             ///< functional groups of all frames
-  std::vector<std::string> each{};  ///< and of each
-  std::size_t frames = 0;           ///< of samples
+  std::vector<std::string> each{};  ///< functional groups per frame
+  std::size_t frames = 0;           ///< frames of samples
   std::vector<std::int16_t> samples{};
-  std::uint32_t bits = 16;  ///< of a sample; signed if 16
-  std::string packed{};     ///< samples of other bits, as they are stored
+  std::uint32_t bits = 16;  ///< per sample; signed if 16
+  std::string packed{};     ///< samples of other bit depths, in stored form
 };
 
 inline std::string dicom_orientation(const std::string& cosines) {

@@ -16,7 +16,7 @@
 /// Cubes, and OpenFOAM cases of them as text.
 namespace tessera::io::testing {
 
-/// [0, n]^3 in cubes.
+/// [0, n]^3 divided into cubes.
 struct Cubes {
   explicit Cubes(int side) : n(side) {
     for (int k = 0; k <= n; ++k)
@@ -42,8 +42,8 @@ inline std::string foam_head(const char* kind, const std::string& object) {
       kind, object);
 }
 
-/// Cells of one part of the cubes (all where `keep` says so) as an OpenFOAM mesh with fields at the times 0 and 1: `p`
-/// is the number of the cell among all, and 1000 at time 1.
+/// Cells of one part of the cubes (those for which `keep` is true) as an OpenFOAM mesh with fields at the times 0 and
+/// 1: `p` is the number of the cell among all, and 1000 at time 1.
 inline void write_foam(const std::filesystem::path& folder, const Cubes& cubes, const std::function<bool(int)>& keep) {
   const int n = cubes.n;
   std::vector<int> local(cubes.cells.size(), -1), kept;
@@ -62,7 +62,7 @@ inline void write_foam(const std::filesystem::path& folder, const Cubes& cubes, 
       const std::size_t axis = side % 3;
       const bool inside = side < 3 ? at[axis] + 1 < n : at[axis] > 0;
       const int other = inside ? local[static_cast<std::size_t>(c + steps[side])] : -1;
-      if (side >= 3 && other >= 0) continue;  // the other cell's
+      if (side >= 3 && other >= 0) continue;  // belongs to the other cell
       Face face{local[static_cast<std::size_t>(c)], other, {}};
       for (std::size_t k = 0; k < 4; ++k)
         face.corners[k] = cubes.cells[static_cast<std::size_t>(c)][static_cast<std::size_t>(sides[side][k])];
@@ -113,7 +113,7 @@ inline void write_control(const std::filesystem::path& folder) {
   std::ofstream(folder / "system" / "controlDict")
       << foam_head("dictionary", "controlDict")
       << "startFrom startTime;\nstartTime 0;\nendTime 1;\ndeltaT 1;\nwriteControl timeStep;\nwriteInterval 1;\n";
-  std::ofstream(folder / "case.foam").flush();  // empty, as users make it
+  std::ofstream(folder / "case.foam").flush();  // empty, as users create it
 }
 
 }  // namespace tessera::io::testing

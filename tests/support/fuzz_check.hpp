@@ -8,8 +8,8 @@
 
 namespace tessera::test {
 
-/// Runs a parser on foreign bytes. It may refuse them by Error(bad_input) in one printable line; anything else it
-/// throws, or a message that is none, ends the process, which libFuzzer reports.
+/// Runs a parser on arbitrary bytes. It may refuse them by Error(bad_input) with one printable line; any other
+/// exception, or an invalid message, ends the process, which libFuzzer reports.
 template <class Parse>
 void parse_or_refuse(const Parse& parse) {
   try {
@@ -21,7 +21,7 @@ void parse_or_refuse(const Parse& parse) {
   }
 }
 
-/// What must hold of a value that was parsed.
+/// A condition that must hold for a parsed value.
 inline void require(bool holds) {
   if (!holds) std::abort();
 }

@@ -11,10 +11,10 @@
 
 namespace tessera::test {
 
-/// The bytes under test as a file, in memory where the system has a place for that, for readers that take files.
+/// The bytes under test as a file, in memory if the system supports it, for readers that take files.
 class FuzzFile {
  public:
-  /// The name's end counts where the beginning does not determine the format.
+  /// The extension matters if the beginning does not determine the format.
   explicit FuzzFile(const std::string& extension) {
     const std::filesystem::path memory = "/dev/shm";
     const auto folder = std::filesystem::exists(memory) ? memory : std::filesystem::temp_directory_path();

@@ -10,7 +10,7 @@
 
 namespace tessera::tests {
 
-/// A context of Mesa in software, or null where the library is not installed.
+/// A context of Mesa in software, or null if the library is not installed.
 inline std::unique_ptr<gl::Context> osmesa_or_none() {
   try {
     return gl::open_context(gl::Platform::osmesa);
@@ -21,7 +21,7 @@ inline std::unique_ptr<gl::Context> osmesa_or_none() {
 
 }  // namespace tessera::tests
 
-/// Names `context`, or skips the test.
+/// Defines `context`, or skips the test.
 #define TESSERA_OSMESA_OR_SKIP(context)                                      \
   const auto context##_owner = tessera::tests::osmesa_or_none();             \
   if (context##_owner == nullptr) GTEST_SKIP() << "OSMesa cannot be opened"; \

@@ -18,12 +18,12 @@
 #include "support/some_cases.hpp"
 #include "support/volume_checks.hpp"
 
-/// A volume of a patient with one bright sample, in any of the 48 orientations: where does a reader put it?
+/// A volume of a patient with one bright sample, in any of the 48 orientations, to test where a reader places it.
 namespace tessera::test {
 
-/// In right-anterior-superior, whatever the format's own frame. Marker at index {5, 1, 3} of 7 x 6 x 5 samples.
+/// In right-anterior-superior, whatever the format's own frame. The marker is at index {5, 1, 3} of 7 x 6 x 5 samples.
 struct MarkedVolume {
-  glm::dmat3 axes{1.0};  ///< column a: where the file's axis a leads, a unit vector
+  glm::dmat3 axes{1.0};  ///< column a: direction of the file's axis a, a unit vector
   glm::dvec3 spacing{3, 4, 5}, origin{-20, 12, 31};
   static constexpr std::array<int, 3> size{7, 6, 5}, marker{5, 1, 3};
 
@@ -34,7 +34,7 @@ struct MarkedVolume {
     values[static_cast<std::size_t>(marker[0] + size[0] * (marker[1] + size[1] * marker[2]))] = 1000;
     return values;
   }
-  /// The letters of where the axes lead: "RAS", "LPI", ...
+  /// The letters of the axes' directions: "RAS", "LPI", ...
   [[nodiscard]] std::string letters() const {
     std::string text;
     for (int a = 0; a < 3; ++a)
@@ -57,10 +57,10 @@ inline std::vector<MarkedVolume> all_orientations() {
   return volumes;
 }
 
-/// From right-anterior-superior to left-posterior-superior, and back.
+/// Converts from right-anterior-superior to left-posterior-superior, or back.
 inline glm::dvec3 turned_to_lps(const glm::dvec3& v) { return {-v.x, -v.y, v.z}; }
 
-/// Where the brightest sample is, in right-anterior-superior; NaN where the file states no patient.
+/// Position of the brightest sample, in right-anterior-superior; NaN if the file has no anatomical axes.
 inline glm::dvec3 found_marker(const io::VolumeFile& volume) {
   const std::vector<double> samples = all_samples(*volume.source);
   const auto at = static_cast<std::int64_t>(std::max_element(samples.begin(), samples.end()) - samples.begin());
@@ -74,11 +74,11 @@ inline glm::dvec3 found_marker(const io::VolumeFile& volume) {
 
 struct MarkedFormat {
   std::string name;
-  /// Writes the volume and returns the file's name; empty: the format cannot have this orientation.
+  /// Writes the volume and returns the file's name; empty: the format does not support this orientation.
   std::function<std::filesystem::path(const MarkedVolume&)> write;
 };
 
-/// Reads every orientation of every format, expects the marker where it is, and prints the table.
+/// Reads every orientation in every format, expects the marker at its position, and prints the table.
 inline void expect_markers(const std::vector<MarkedFormat>& formats) {
   std::cout << "axes  marker (R, A, S)  ";
   for (const MarkedFormat& format : formats) std::cout << "| " << format.name << ' ';

@@ -44,7 +44,7 @@ struct Cell {
 
 using Corners = std::array<std::uint32_t, 8>;  // VTK's order of a hexahedron
 
-/// Another numbering of the same hexahedron: turned about its axis, tipped over, mirrored.
+/// Another numbering of the same hexahedron: rotated about its axis, tipped over, mirrored.
 Corners renumbered(Corners c, std::mt19937& random) {
   for (unsigned turns = random() % 4; turns > 0; --turns) c = {c[1], c[2], c[3], c[0], c[5], c[6], c[7], c[4]};
   for (unsigned tips = random() % 4; tips > 0; --tips) c = {c[3], c[2], c[6], c[7], c[0], c[1], c[5], c[4]};
@@ -55,7 +55,7 @@ Corners renumbered(Corners c, std::mt19937& random) {
 }  // namespace
 
 std::vector<std::pair<TrianglePlace, int>> count_triangles(const scene::TetMesh& mesh) {
-  // Numbers of places, sorted: a map of triangles takes several times as long.
+  // Numbers of positions, sorted: a map of triangles is several times slower.
   std::vector<Point> places;
   for (const glm::dvec3& p : mesh.positions) places.push_back({p.x, p.y, p.z});
   std::sort(places.begin(), places.end());
@@ -96,7 +96,7 @@ std::string vtu_text(const cells::CellBlock& block) {
   }
   std::string faces;
   if (!block.faces.empty()) {
-    // VTK has where each cell's faces end.
+    // VTK stores the end of each cell's faces.
     std::vector<std::int64_t> face_ends;
     for (const std::int64_t location : block.face_locations) {
       std::int64_t end = location;
@@ -154,7 +154,7 @@ cells::CellBlock mixed_mesh(int n, unsigned seed, bool own_points) {
         const std::uint32_t v = i + side * (j + side * k), up = side * side;
         const Corners straight = {v,      v + 1,      v + 1 + side,      v + side,
                                   v + up, v + 1 + up, v + 1 + side + up, v + side + up};
-        if (column == 0) {  // wedges, all cut alike so that their triangles match up the column
+        if (column == 0) {  // wedges, all cut in the same way so that their triangles match along the column
           std::array<std::array<int, 3>, 2> base = {{{0, 1, 2}, {0, 2, 3}}};
           for (auto b : base) {
             std::rotate(b.begin(), b.begin() + random() % 3, b.end());

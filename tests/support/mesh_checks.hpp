@@ -12,13 +12,13 @@
 #include "scene/tet_mesh.hpp"
 #include "support/temporary_folder.hpp"
 
-/// What the mesh tests measure with and make their files with.
+/// Measurements and files for the mesh tests.
 namespace tessera::io::testing {
 
 using Point = std::array<double, 3>;
 using TrianglePlace = std::array<Point, 3>;
 
-/// How many tets have each triangle, by position and not by index.
+/// The number of tets of each triangle, identified by position, not by index.
 std::vector<std::pair<TrianglePlace, int>> count_triangles(const scene::TetMesh& mesh);
 
 inline double volume(const scene::TetMesh& mesh) {
@@ -30,7 +30,7 @@ inline double volume(const scene::TetMesh& mesh) {
   return sum / 6;
 }
 
-/// The one-line message that `work` fails with; "" if it does not fail.
+/// The one-line message of the error thrown by `work`; "" if it throws none.
 template <class Work>
 std::string message_of(const Work& work) {
   return test::fault_of(work).message;
@@ -43,8 +43,8 @@ std::string vtu_text(const cells::CellBlock& block);
 std::string pvtu_text(const cells::CellBlock& block, const std::vector<std::string>& pieces);
 
 /// [0, 1]^3 as n^3 cubes, inner points moved at random: columns along z of wedges or of hexahedra, voxels and fans of
-/// six pyramids, every cell numbered from a random corner and in either handedness. The point field "f" is x + 2 y + 3
-/// z. With `own_points` each cell has points of its own, so that only positions tell that cells touch.
+/// six pyramids, every cell numbered from a random corner and with either handedness. The point field "f" is x + 2 y +
+/// 3 z. With `own_points` each cell has its own points, so that only positions reveal that cells touch.
 cells::CellBlock mixed_mesh(int n, unsigned seed, bool own_points);
 
 }  // namespace tessera::io::testing

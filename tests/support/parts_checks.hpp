@@ -14,10 +14,10 @@
 #include "io/mesh/mesh_parts.hpp"
 #include "support/read_files.hpp"
 
-/// Meshes read in parts beside the same ones read whole.
+/// Compares meshes read in parts with the same ones read whole.
 namespace tessera::io::testing {
 
-/// Positions and scalars of the tets in their order, as bits.
+/// Positions and scalars of the tets in order, as bits.
 inline std::vector<double> content(const scene::TetMesh& mesh) {
   std::vector<double> values;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {

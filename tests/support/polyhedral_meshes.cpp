@@ -16,7 +16,7 @@ namespace {
 /// Marks walls of the box among numbers of sites.
 constexpr int wall = 1 << 20;
 
-/// A corner of a Voronoi cell: what it is equally far from, in order, the cell's own site among it.
+/// A corner of a Voronoi cell: the sorted sites and walls from which it is equally far, including the cell's own site.
 using Meeting = std::array<int, 4>;
 
 struct Corner {
@@ -24,7 +24,7 @@ struct Corner {
   glm::dvec3 place;
 };
 
-/// A convex cell by its faces, each by its corners in order, under half-spaces that are cut off one by one.
+/// A convex cell as its faces, each with its corners in order, from which half-spaces are cut off one by one.
 class ConvexCell {
  public:
   ConvexCell() {
@@ -35,7 +35,7 @@ class ConvexCell {
     for (std::size_t f = 0; f < 6; ++f) faces_.push_back({wall + static_cast<int>(f), faces[f]});
   }
 
-  /// Keeps what has dot(normal, x) <= offset.
+  /// Keeps the part with dot(normal, x) <= offset.
   void cut(int plane, const glm::dvec3& normal, double offset) {
     std::vector<double> height;
     for (const Corner& c : corners_) height.push_back(glm::dot(normal, c.place) - offset);
@@ -68,7 +68,7 @@ class ConvexCell {
       if (ends.size() == 2) rim[ends[0]].push_back(ends[1]), rim[ends[1]].push_back(ends[0]);
       if (!left.corners.empty()) kept.push_back(left);
     }
-    if (rim.empty()) return;  // only corners that are gone already were on its outer side
+    if (rim.empty()) return;  // only corners that have been removed already were on its outer side
     Face lid{plane, {rim.begin()->first}};
     while (lid.corners.size() < rim.size()) {
       const auto& next = rim[lid.corners.back()];
@@ -91,7 +91,7 @@ class ConvexCell {
   std::vector<Face> faces_;
 };
 
-/// Joins neighbours at random; returns the group of each.
+/// Merges neighbours at random; returns the group of each.
 std::vector<std::size_t> random_groups(std::size_t count, const std::vector<std::pair<std::size_t, std::size_t>>& pairs,
                                        std::size_t largest, std::mt19937& random) {
   std::vector<std::size_t> group(count), size(count, 1);
@@ -117,7 +117,7 @@ std::vector<Faces> gathered(const std::vector<std::size_t>& group, const std::ve
   return list;
 }
 
-/// Takes out the faces that two cells of one group share.
+/// Removes the faces that two cells of one group share.
 void drop_inner(Faces& faces) {
   std::map<std::vector<std::uint32_t>, int> uses;
   const auto key = [](std::vector<std::uint32_t> face) {

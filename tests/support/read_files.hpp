@@ -10,7 +10,7 @@
 #include "io/mesh/mesh_reader.hpp"
 #include "io/volume/volume_reader.hpp"
 
-/// Files identified and read by their names, as most tests do.
+/// Identifies and reads files by their names, as most tests do.
 namespace tessera::io {
 
 inline cells::MeshFile read_mesh(const std::filesystem::path& file, const ReadOptions& options = {}) {

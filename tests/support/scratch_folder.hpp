@@ -7,7 +7,7 @@
 
 namespace tessera::test {
 
-/// The folder for temporary files while this lives.
+/// Sets the directory for temporary files during its lifetime.
 class ScratchFolder {
  public:
   explicit ScratchFolder(const std::filesystem::path& folder) {

@@ -3,9 +3,9 @@
 
 namespace tessera::test {
 
-/// Which cases of a long test are tried: all of them; in quick builds (TESSERA_QUICK), which are sanitized or not
-/// optimized and take ten times as long, the first of every `of`. They differ in numbers, and hardly in the memory that
-/// they touch.
+/// Which cases of a long test are executed: all of them; in quick builds (TESSERA_QUICK), which have sanitizers or are
+/// not optimized and take ten times as long, the first of every `of`. Cases differ in numbers, and hardly in their
+/// memory accesses.
 class SomeCases {
  public:
 #ifdef TESSERA_QUICK
@@ -14,7 +14,7 @@ class SomeCases {
   explicit SomeCases(int) {}
 #endif
 
-  /// Whether the next case is tried.
+  /// Whether the next case is executed.
   bool next() { return count_++ % of_ == 0; }
 
  private:

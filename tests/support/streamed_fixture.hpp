@@ -29,14 +29,14 @@ inline std::vector<std::uint64_t> bits_of(const scene::GridGeometry& g) {
 }
 
 /// Lengths of vectors are rounded to floats where they are stored; all other samples here are floats or shorter, or
-/// whole numbers.
+/// integers.
 inline std::vector<float> floats_of(const scene::SampleSource& source) {
   std::vector<float> values(static_cast<std::size_t>(source.geometry().all_samples().count()));
   source.read(source.geometry().all_samples(), std::span<float>(values));
   return values;
 }
 
-/// Tests of volumes that are unpacked into a file of a folder of their own.
+/// Tests of volumes that are unpacked into a file in a separate directory.
 class StreamedVolumes : public ::testing::Test {
  protected:
   [[nodiscard]] std::filesystem::path zipped(const std::string& name, const std::string& content) const {
@@ -52,7 +52,8 @@ class StreamedVolumes : public ::testing::Test {
     options.memory_bytes = 1;
     return options;
   }
-  /// Samples and description of `file` must be the same unpacked into memory and into a file; whether it was.
+  /// Samples and description of `file` must be the same whether unpacked into memory or into a file; returns whether it
+  /// was unpacked into a file.
   static bool is_the_same_streamed(const std::filesystem::path& file, const std::string& field = "") {
     const io::VolumeFile whole = io::open_volume(file, {.field = field}),
                          parts = io::open_volume(file, streaming(field));

@@ -16,7 +16,7 @@
 
 namespace tessera::test {
 
-/// A fresh folder that goes with its scope.
+/// A new directory, removed at the end of its scope.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -39,7 +39,7 @@ class TemporaryFolder {
     return path_ / name;
   }
 
-  /// Names of all that lies in it, hidden files too.
+  /// Names of everything in it, including hidden files.
   [[nodiscard]] std::vector<std::string> names() const { return names_in(path_); }
   static std::vector<std::string> names_in(const std::filesystem::path& folder) {
     std::vector<std::string> names;
@@ -59,10 +59,10 @@ inline std::string contents(const std::filesystem::path& file) {
   return out.str();
 }
 
-/// The one-line message of the Error that `action` throws, and its code; "" and no code if it throws none.
+/// The one-line message and the code of the Error that `action` throws; "" and no code if it throws none.
 struct Fault {
   std::string message;
-  std::optional<scene::ErrorCode> code;  ///< none: nothing was thrown
+  std::optional<scene::ErrorCode> code;  ///< no value: nothing was thrown
 };
 template <class Action>
 Fault fault_of(const Action& action) {
@@ -74,7 +74,7 @@ Fault fault_of(const Action& action) {
   return {};
 }
 
-/// `action` must throw Error(bad_input) in one printable line that holds every one of `parts`.
+/// `action` must throw Error(bad_input) with one printable line that contains all of `parts`.
 template <class Action>
 void expect_bad_input(const Action& action, const std::vector<std::string>& parts) {
   const Fault fault = fault_of(action);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// oneTBB as packaged is not compiled for ThreadSanitizer, which so does not see that a task begins after it was
-// spawned, and that who waits goes on after all tasks ended: every parallel_for would be a race. To suppress whatever
-// runs on oneTBB's threads would hide races of ours. Instead the linker sends the calls into its library through here
-// (--wrap, see tessera_test), where TSan is told what oneTBB itself makes certain, and no more.
+// The packaged oneTBB is not compiled for ThreadSanitizer, which therefore does not know that a task begins after it
+// was spawned, and that a waiting thread continues after all tasks have ended: every parallel_for would be reported as
+// a race. Suppressing everything on oneTBB's threads would hide races of ours. Instead the linker sends the calls into
+// its library through here (--wrap, see tessera_test), which informs TSan of exactly the ordering that oneTBB
+// guarantees.
 #include <sanitizer/tsan_interface.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -58,17 +59,17 @@ void wrap_free_lines(void*) TESSERA_WRAP(TESSERA_FREE_LINES);
 
 namespace {
 
-// Threads meet on a machine of few cores too.
+// Several threads even on a machine with few cores.
 const tbb::global_control more_threads_than_cores(tbb::global_control::max_allowed_parallelism, 8);
 
-/// Runs a spawned task, on whichever thread takes it, after all that its spawner did before.
+/// Runs a spawned task, on whichever thread takes it, after everything that its spawner did before.
 class Spawned final : public task {
  public:
   explicit Spawned(task& inner) : inner_(inner) { __tsan_release(this); }
 
   task* execute(execution_data& data) override {
     __tsan_acquire(this);
-    task* next = inner_.execute(data);  // of a task that throws oneTBB calls cancel()
+    task* next = inner_.execute(data);  // if a task throws, oneTBB calls cancel()
     delete this;
     return next;
   }
@@ -83,8 +84,8 @@ class Spawned final : public task {
   task& inner_;
 };
 
-/// What all tasks did, each of which counted the context down, comes before what their waiter does next; also if an
-/// exception of theirs comes out.
+/// Everything done by tasks, each of which decremented the context's count, precedes what their waiter does next; also
+/// if one of their exceptions is rethrown.
 class AfterWait {
  public:
   explicit AfterWait(wait_context& context) : context_(context) {}
@@ -97,7 +98,7 @@ class AfterWait {
 };
 static_assert(sizeof(wait_context) == 2 * sizeof(std::uint64_t));
 
-/// A function that a thread of the arena may call in the place of the caller, who waits for it.
+/// A function that a thread of the arena may call instead of the caller, which waits for it.
 class Delegated final : public delegate_base {
  public:
   explicit Delegated(delegate_base& inner) : inner_(inner) { __tsan_release(this); }
@@ -115,7 +116,7 @@ class Delegated final : public delegate_base {
   delegate_base& inner_;
 };
 
-/// Fresh memory each time: oneTBB's pools hand a thread's memory to another one unseen.
+/// New memory each time: oneTBB's pools pass memory between threads without TSan's knowledge.
 void* allocate(std::size_t bytes) {
   constexpr std::size_t line = 128;
   void* memory = std::aligned_alloc(line, (bytes + line - 1) / line * line);

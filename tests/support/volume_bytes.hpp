@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-/// Small volume files as bytes, and numbers as bytes to make more.
+/// Small volume files as bytes, and conversion of numbers to bytes for others.
 namespace tessera::test {
 
 template <class T>
@@ -29,7 +29,7 @@ std::vector<T> counting(std::size_t count) {
   return values;
 }
 
-/// A NIfTI-1 header of 4 x 3 x 2 int16 samples with spacing 1, 2, 3, neither form set; with its 4 bytes of no
+/// A NIfTI-1 header of 4 x 3 x 2 int16 samples with spacing 1, 2, 3 and neither form set; with its 4 bytes for no
 /// extension.
 inline std::string nifti_header() {
   std::string h(352, '\0');

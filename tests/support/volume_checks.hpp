@@ -13,14 +13,14 @@
 
 namespace tessera::test {
 
-/// As they are stored, without scale and shift.
+/// Samples as stored, without scale and shift.
 inline std::vector<double> all_samples(const scene::SampleSource& source) {
   std::vector<double> values(static_cast<std::size_t>(source.geometry().all_samples().count()));
   source.read(source.geometry().all_samples(), std::span<double>(values));
   return values;
 }
 
-/// Opens the file and expects one line of refusal that holds `words`, says what to do and names no unnamed file.
+/// Opens the file and expects a one-line error that contains `words` and a remedy and does not mention an unnamed file.
 inline void expect_no_volume(const std::filesystem::path& file, const std::string& words,
                              const ReadOptions& options = {}) {
   const Fault fault = fault_of([&] { io::open_volume(file, options); });
@@ -31,7 +31,7 @@ inline void expect_no_volume(const std::filesystem::path& file, const std::strin
   EXPECT_EQ(fault.message.find("/proc/"), std::string::npos) << fault.message;
 }
 
-/// Whether one of the notes holds `words`.
+/// Whether one of the notes contains `words`.
 inline bool has_note(const io::VolumeFile& volume, const std::string& words) {
   for (const std::string& note : volume.notes)
     if (note.find(words) != std::string::npos) return true;

@@ -70,7 +70,7 @@ std::string numbers_of(const std::string& type, const std::vector<double>& value
   return bytes;
 }
 
-/// The elements of the axes; what is appended goes behind what is.
+/// The elements of the axes; adds appended data to `appended`.
 std::string coordinates_of(const VtkCase& c, std::string& appended) {
   std::string elements;
   for (const std::vector<double>& axis : c.axes->values) {
@@ -95,7 +95,7 @@ std::string coordinates_of(const VtkCase& c, std::string& appended) {
 std::string noise(std::size_t bytes) {
   std::mt19937 random(3);
   std::string text(bytes, '\0');
-  // Some bits only, so that there is something to pack.
+  // Only some bits, so that packing has an effect.
   for (char& c : text) c = static_cast<char>(random() & 15);
   return text;
 }

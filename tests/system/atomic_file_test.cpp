@@ -35,7 +35,7 @@ TEST(AtomicFile, AppearsOnlyWhenCommitted) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"out"});
 }
 
-/// Names that came to be in a folder while `work` ran.
+/// Names that appeared in a directory while `work` ran.
 template <class Work>
 std::vector<std::string> names_made_by(const TemporaryFolder& folder, const Work& work) {
   const int watch = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
@@ -65,7 +65,7 @@ TEST(AtomicFile, HasNoOtherNameBeforeItsOwnUnlessItReplacesAFile) {
   EXPECT_EQ(names_made_by(folder, write).size(), 2u);
 }
 
-// In a process of its own, which it spoils for outputs.
+// In a separate process, which cannot write outputs afterwards.
 TEST(AtomicFile, IsRemovedEvenUnderItsTemporaryNameWhenTheProgramAbandonsItsOutputs) {
   const TemporaryFolder folder;
   const pid_t child = fork();
@@ -85,7 +85,7 @@ TEST(AtomicFile, IsRemovedEvenUnderItsTemporaryNameWhenTheProgramAbandonsItsOutp
   EXPECT_EQ(folder.names(), std::vector<std::string>{"c"});
 }
 
-// A rank that its launcher ends.
+// For a rank that its launcher kills.
 TEST(AtomicFile, IsRemovedUnderItsTemporaryNameByASignalsHandlerToo) {
   const TemporaryFolder folder;
   const pid_t child = fork();
@@ -99,7 +99,7 @@ TEST(AtomicFile, IsRemovedUnderItsTemporaryNameByASignalsHandlerToo) {
     std::ofstream(done.named_part()) << "whole";
     done.commit();
     for (int k = 0; k < 200; ++k)
-      static_cast<void>(system::AtomicFile(folder / "c").named_part());  // each takes a place and gives it back
+      static_cast<void>(system::AtomicFile(folder / "c").named_part());  // each takes a slot and releases it
     [[maybe_unused]] const auto lock = system::naming_outputs();         // whatever it interrupts
     std::raise(SIGTERM);
     _exit(1);
@@ -144,7 +144,7 @@ TEST(AtomicFile, ANamedPartIsRemovedUnlessCommitted) {
     EXPECT_EQ(file.named_part().parent_path(), folder.path());
   }
   EXPECT_TRUE(folder.names().empty());
-  system::AtomicFile one(folder / "one"), two(folder / "two");  // at once, in one folder
+  system::AtomicFile one(folder / "one"), two(folder / "two");  // at once, in one directory
   EXPECT_NE(one.named_part(), two.named_part());
   std::ofstream(one.named_part()) << "1";
   std::ofstream(two.named_part()) << "2";
@@ -213,7 +213,7 @@ TEST(AtomicFile, RefusesAFolderWithoutTheRightToWrite) {
   std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
 }
 
-/// A file system of 64 KiB, for as long as the scope lasts.
+/// A file system of 64 KiB during its lifetime.
 class TinyDisk {
  public:
   explicit TinyDisk(const std::filesystem::path& at) : at_(at) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Samples that wait in files: where they lie, or in a file that others read too.
+// Samples in files: in place, or in a scratch file that others read too.
 #include "system/scratch_file.hpp"
 
 #include <gtest/gtest.h>
@@ -71,7 +71,7 @@ TEST(FileSources, ReadWhatMemoryWouldGive) {
     const scene::SampleBox boxes[] = {
         {{0, 0, 0}, n}, {{3, 1, 1}, {17, 3, 2}}, {{0, 1, 0}, {n[0], 3, 2}}, {{2, 2, 1}, n}};
     for (const scene::SampleBox& box : boxes) {
-      // Together, and with room between rows and slices.
+      // Contiguous, and with gaps between rows and slices.
       for (const std::int64_t more : {0, 5}) {
         const scene::SampleLayout layout{c.as, box.extent(0) + more, (box.extent(0) + more) * box.extent(1) + more};
         const auto room = static_cast<std::size_t>(layout.slice_pitch * box.extent(2)) * scene::size_of(c.as);
@@ -133,7 +133,7 @@ TEST(ScratchFiles, NoRoomIsSaidBeforeAnythingIsWritten) {
   EXPECT_TRUE(folder.names().empty());
 }
 
-/// Counts what is read of it.
+/// Counts the samples read.
 class CountedSource final : public scene::SampleSource {
  public:
   CountedSource(const scene::Grid& grid, std::vector<float> values)

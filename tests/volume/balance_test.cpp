@@ -18,7 +18,7 @@ namespace {
 
 constexpr scene::ImageSize image{256, 256};
 
-/// Two blobs of different size in a box, so that work is spread unevenly over the picture.
+/// Two blobs of different size in a box, so that work is not uniform over the image.
 std::unique_ptr<scene::MemorySource> blobs(std::int64_t n) {
   scene::Grid grid;
   grid.geometry.points = {n, n, n};
@@ -37,7 +37,7 @@ std::unique_ptr<scene::MemorySource> blobs(std::int64_t n) {
 
 scene::TransferFunction haze() { return scene::TransferFunction({{0.2, {1, 1, 1}, 0}, {0.6, {1, 0.5, 0.2}, 0.4}}); }
 
-/// A turn round an oblique axis, and a zoom in.
+/// A turn around an oblique axis, and a zoom in.
 std::vector<scene::Camera> animation() {
   std::vector<scene::Camera> cameras;
   scene::Camera camera;
@@ -52,7 +52,7 @@ std::vector<scene::Camera> animation() {
   return cameras;
 }
 
-/// The way of all rays of each process through what is visited, by the accurate map at full resolution.
+/// Total length of all rays of each process in visited cells, from the accurate map at full resolution.
 std::vector<double> work_of(const CostMap& full, const ImageSplit& split) {
   const SummedArea table(full);
   std::vector<double> work;
@@ -89,14 +89,14 @@ TEST(Balance, VisitedCostIsTheWayOfEachRayThroughTheCells) {
   geometry.spacing = glm::dvec3(1 / 16.0);
   scene::Camera camera;
   camera.position = {0, 0, 5};
-  // Cells of 8^3 voxels: the middle 2 x 2 x 2 of 4 x 4 x 4, and one before them.
+  // Cells of 8^3 voxels: the middle 2 x 2 x 2 of 4 x 4 x 4, and one in front of them.
   std::vector<std::uint8_t> visible(64);
   for (const int c : {1, 2})
     for (const int b : {1, 2})
       for (const int a : {1, 2}) visible[static_cast<std::size_t>(a + 4 * (b + 4 * c))] = 1;
   visible[1 + 4 * 1] = 1;
   const CostMap map = cost_map(camera, {32, 32}, geometry, {{4, 4, 4}, visible}, {}, {CostMethod::visited, 1, true});
-  // Along z, a pixel a voxel: 16 voxels behind the first box, 8 more behind the second, whose y is low: the picture's
+  // Along z, one pixel a voxel: 16 voxels behind the first box, 8 more behind the second, whose y is low: the image's
   // lower part. Pixels within two of a cell are in a packet that may meet it.
   const auto covers = [](int v, int low, int high) { return v >= low - 2 && v < high + 2; };
   const auto sure = [](int v) { return v % 8 >= 2 && v % 8 < 6; };
@@ -125,13 +125,13 @@ TEST(Balance, MethodsThatGoByBricksKeepEachBricksTotal) {
       }
   for (const scene::Camera& camera : animation()) {
     if (camera.projection == scene::ProjectionKind::perspective) continue;
-    // Way times area is volume: voxels crossed along a unit of depth, times the box's volume in pixels.
+    // Length times area is volume: voxels crossed along a unit of depth, times the box's volume in pixels.
     const glm::dvec3 slope = glm::abs(scene::view_basis(camera).forward) * 32.0;
     const double pixel = 2 * camera.parallel_scale / image.height;
     const double expected = 64 * (slope.x + slope.y + slope.z) * (24 * 24 * 16) / (32.0 * 32 * 32) / (pixel * pixel);
     for (const CostMethod method : {CostMethod::accurate, CostMethod::backface, CostMethod::splatting}) {
       const CostMap map = cost_map(camera, image, geometry, {}, bricks, {method, 1, true});
-      // Sampled at the centres of pixels: outlines of sixty pixels are known to a few percent.
+      // Sampled at the centres of pixels: outlines of sixty pixels are accurate to a few percent.
       EXPECT_NEAR(std::accumulate(map.cost.begin(), map.cost.end(), 0.0), expected, 0.05 * expected);
     }
   }
@@ -160,7 +160,7 @@ TEST(Balance, SplitsTileThePictureInProportionToTheWeights) {
       for (int y = r.y0; y < r.y1; ++y)
         for (int x = r.x0; x < r.x1; ++x)
           mine += map.cost[static_cast<std::size_t>(y / 2) * 60 + static_cast<std::size_t>(x / 2)] / 4.0;
-      // Lines lie between whole pixels: half a line of each side.
+      // Split lines are between whole pixels: half a line on each side.
       EXPECT_NEAR(mine / total, weights[static_cast<std::size_t>(p)] / all, 0.02) << p << " of " << processes;
     }
   }
@@ -174,7 +174,7 @@ TEST(Balance, TheTwoStageSearchInPartsFindsTheSplitOfOneProcess) {
   for (const scene::Camera& camera : animation()) {
     const CostMap whole = renderer.cost_map(camera, image, haze(), CostMethod::visited, 0.5);
     const ImageSplit expected = split(whole, image, std::vector<double>(6, 1.0), region_grain);
-    // As in the first frame: each process finds the cost of an even tile of the map.
+    // As in the first frame: each process computes the cost of an equal tile of the map.
     const scene::PixelRect area = footprint(camera, image, source->geometry());
     const ImageSplit tiles = even_split(6, whole.size, {area.x0 / 2, area.y0 / 2, area.x1 / 2, area.y1 / 2});
     expect_tiling(tiles, 6, whole.size);
@@ -199,7 +199,7 @@ TEST(Balance, CellsThatNoRayMetLeanOnThoseAroundThem) {
   const scene::GridIndex voxels{64, 64, 64};
   WorkTally tally(voxels);
   ASSERT_EQ(tally.cells().count(), 512u);
-  // Two samples a slab in the low half along i, none in the other; one cell is left out.
+  // Two samples per slab in the low half along i, none in the other; one cell is left out.
   const std::size_t unseen = tally.cells().number(20, 30, 30);
   for (std::int64_t k = 0; k < 64; k += 8)
     for (std::int64_t j = 0; j < 64; j += 8)
@@ -215,7 +215,7 @@ TEST(Balance, CellsThatNoRayMetLeanOnThoseAroundThem) {
   EXPECT_NEAR(rates.samples(unseen), 2, 0.1);
   EXPECT_NEAR(rates.depth(unseen), 0.5, 0.05);
   for (const std::uint64_t word : tally.take()) EXPECT_EQ(word, 0u);
-  // A volume of any size has few cells; places outside count for the nearest.
+  // A volume of any size has few cells; places outside count for the nearest cell.
   const WorkCells large({2048, 2048, 2048});
   EXPECT_EQ(large.count(), std::size_t{1} << 15);
   EXPECT_EQ(large.number(-5, 3000, 0), large.number(0, 2047, 0));
@@ -241,7 +241,7 @@ TEST(Balance, MapsOfQuarterResolutionGiveProcessesTheSameWork) {
     even += deviation(work_of(full, even_split(6, image, footprint(camera, image, source->geometry()))));
   }
   const auto frames = static_cast<double>(cameras.size());
-  // A line of 256 pixels is a percent of a sixth of the picture's work, and each side has one of its own.
+  // A line of 256 pixels is a percent of a sixth of the image's work, and each side has one of its own.
   EXPECT_LE(visited / frames, 0.05);
   EXPECT_LT(accurate, even / 2);
   EXPECT_LT(backface, even / 2);

@@ -53,7 +53,7 @@ TEST(VolumeCaster, ExactIsWithin1e5OfDoublePrecisionFromAllSides) {
 }
 
 TEST(VolumeCaster, ExactIsWithin1e5InNoise) {
-  // Every voxel's field is as far from straight as it can be.
+  // Every voxel's field is as nonlinear as possible.
   const Volume v = make_volume({21, 18, 17}, Field::noise);
   test::SomeCases some(5);
   for (const char* name : views)
@@ -64,8 +64,8 @@ TEST(VolumeCaster, ExactIsWithin1e5InNoise) {
     }
 }
 
-// A logarithm's function as `--log` makes it, over eight decades of data: most knots are within a thousandth of the
-// range.
+// The function of a logarithm, as created by `--log`, over eight decades of data: most knots are within a thousandth of
+// the range.
 TEST(VolumeCaster, LogarithmicFunctionsEndWithin1e5) {
   Volume v = make_volume({9, 8, 7}, Field::smooth);
   for (float& value : v.values) value = std::pow(10.0F, 8 * (value - 1));
@@ -118,7 +118,7 @@ TEST(VolumeCaster, WhatFloatLanesCannotTellIsCastInDoublePrecision) {
   for (const double accuracy : {1e-6, 4e-6})
     for (const auto& function : {smooth_function(), sharp_function()})
       expect_kept(accuracy, function, Emission::absorption);
-  // Light of hundreds, of which lanes keep 1e-6.
+  // Light of magnitude in the hundreds, which lanes reproduce to 1e-6.
   expect_kept(1e-4, bright_function(200), Emission::independent);
 }
 
@@ -215,7 +215,7 @@ TEST(VolumeCaster, ARegionHasThePixelsOfTheWhole) {
     }
 }
 
-// Packets many voxels wide take their samples from memory.
+// Packets many voxels wide read their samples from memory.
 TEST(VolumeCaster, PacketsManyVoxelsWideAreWithin1e5) {
   const Volume v = make_volume({56, 56, 48}, Field::smooth);
   for (const char* const from : {"oblique", "perspective"}) {
@@ -259,7 +259,7 @@ TEST(VolumeCaster, AHomogeneousBoxFollowsBeerAndLambert) {
   EXPECT_NEAR(image.depth[middle / 4], 4.4, 1e-5);
 }
 
-/// Largest error of RGBA over a coarse lattice of pixels, at falling steps.
+/// Largest error of RGBA over a coarse lattice of pixels, at decreasing steps.
 std::vector<double> errors_of(IntegratorKind method, const Volume& v, const scene::TransferFunction& function,
                               std::initializer_list<double> steps) {
   const scene::Image truth = render(v, view("perspective"), function, exact());
@@ -278,7 +278,7 @@ std::vector<double> errors_of(IntegratorKind method, const Volume& v, const scen
 TEST(VolumeCaster, SampledConvergesWithTheSquareOfTheStep) {
   const Volume v = make_volume({37, 30, 26}, Field::smooth);
   const auto e = errors_of(IntegratorKind::sampled, v, smooth_function(), {1, 0.5, 0.25, 0.125});
-  // Second order where a step crosses neither knot nor voxel face; those that do spread it a little.
+  // Second order if a step crosses neither knot nor voxel face; steps that do vary it slightly.
   for (std::size_t n = 1; n < e.size(); ++n) EXPECT_GT(e[n - 1] / e[n], 3) << e[n];
   EXPECT_LT(e.back(), 1e-4);
 }
@@ -307,7 +307,7 @@ TEST(VolumeCaster, SteppingHasTheSameBitsForAnyBricksThreadsAndCache) {
 }
 
 TEST(VolumeCaster, ShadingOfALinearFieldFollowsBlinnAndPhong) {
-  // One normal everywhere: a shaded pixel is its unshaded one times a factor, and white in proportion to its opacity.
+  // One normal everywhere: a shaded pixel is its unshaded one times a factor, plus white in proportion to its opacity.
   Volume v = make_volume({17, 14, 12}, Field::smooth);
   const glm::dvec3 gradient{0.21, 0.33, -0.17};
   const scene::GridIndex n = v.grid.geometry.samples();
@@ -346,14 +346,13 @@ TEST(VolumeCaster, ShadingOfALinearFieldFollowsBlinnAndPhong) {
                              std::abs(shaded.rgba[at + c] - (own * plain.rgba[at + c] + white * plain.rgba[at + 3])));
           worst = std::max(worst, double(std::abs(shaded.rgba[at + 3] - plain.rgba[at + 3])));
         }
-      // Gradients of samples rounded to float, one voxel apart, are right to 1e-6 of themselves; the power makes it
-      // 1e-5.
+      // Gradients of samples rounded to float, one voxel apart, have a relative error of 1e-6; the power makes it 1e-5.
       EXPECT_LT(worst, 3e-5) << name << ' ' << camera_light;
     }
 }
 
 TEST(BrickCache, TheLastBrickOf2048CubedIsFound) {
-  // Eight gibibytes of address space, of which a few pages are ever touched.
+  // Eight gibibytes of address space, of which only a few pages are accessed.
   constexpr std::int64_t side = 2048;
   constexpr auto bytes = static_cast<std::size_t>(side * side * side);
   void* const memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);

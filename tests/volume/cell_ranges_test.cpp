@@ -10,7 +10,7 @@
 namespace tessera::volume::cell_ranges_test {
 namespace {
 
-/// Noise of odd sizes, blanks among it, also on the faces that cells share.
+/// Noise of odd sizes, with blanks, also on the faces shared by cells.
 std::unique_ptr<scene::MemorySource> noise(scene::Association association, double scale) {
   scene::Grid grid;
   grid.geometry.points = {21, 70, 83};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One frame in chunks: each user of the seam that chunk_cast.hpp names, small.
+// One frame in chunks: a small version of each use of the interface listed in chunk_cast.hpp.
 #include "volume/chunk_cast.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ using volume::boxes_front_to_back;
 using volume::ChunkCast;
 using volume::VoxelBox;
 
-/// What the pixel of a sort-last process does: puts each fragment behind what has come.
+/// The pixel of a sort-last process: composites each fragment behind the previous ones.
 class Composite final : public volume::FragmentSink {
  public:
   explicit Composite(scene::ImageSize image_size) : image(image_size), back(image.depth.size(), -HUGE_VALF) {}
@@ -51,7 +51,7 @@ class Composite final : public volume::FragmentSink {
   std::atomic<std::size_t> count = 0;
 };
 
-/// Sort-last: each chunk's fragments by a cast of its own, which knows nothing of the others.
+/// Sort-last: each chunk's fragments by a separate cast, independent of the others.
 void cast_apart(const Volume& v, const volume::RenderSettings& settings, const scene::Camera& camera,
                 const scene::TransferFunction& function, const std::vector<VoxelBox>& chunks, Composite& sink) {
   for (const VoxelBox& chunk : chunks) {
@@ -62,7 +62,7 @@ void cast_apart(const Volume& v, const volume::RenderSettings& settings, const s
   }
 }
 
-/// One cast through all chunks; emits after each, or at the end only.
+/// One cast through all chunks; emits after each, or only at the end.
 void cast_on(const Volume& v, const volume::RenderSettings& settings, const scene::Camera& camera,
              const scene::TransferFunction& function, const std::vector<VoxelBox>& chunks, bool emit_each,
              volume::FragmentSink& sink) {
@@ -100,7 +100,7 @@ volume::RenderSettings with(IntegratorKind method, bool shaded = false) {
   return s;
 }
 
-/// Two chunks, and many, whose planes are no multiples of anything.
+/// Two chunks, and many, whose planes have no common multiples.
 std::vector<scene::GridIndex> chunk_sizes(const scene::GridIndex& voxels) {
   return {{(voxels[0] + 1) / 2, voxels[1], voxels[2]}, {voxels[0], voxels[1], 16}, {16, 16, 16}, {13, 7, 11}};
 }
@@ -117,7 +117,7 @@ TEST(ChunkCast, FragmentsOfChunksCompositedGiveThePicture) {
         Composite sink(size);
         cast_apart(v, with(IntegratorKind::exact), camera, function,
                    boxes_front_to_back(v.grid.geometry, sides, camera), sink);
-        // Rounding of places where rays go from chunk to chunk, and of what they let through: a few last places of 1.
+        // Rounding of positions where rays pass from chunk to chunk, and of transmittances: a few last places of 1.
         EXPECT_LT(difference(sink.image, whole), 1e-6) << name << ", chunks of " << sides[0] << ' ' << sides[1];
         EXPECT_TRUE(sink.in_order) << name << ", chunks of " << sides[0] << ' ' << sides[1];
         EXPECT_GT(sink.count, 0u);
@@ -171,8 +171,8 @@ TEST(ChunkCast, PreintegrationGoesOnFromTheRaysState) {
   };
   for (const char* name : {"oblique", "from y", "perspective"}) {
     check(name, smooth_function(), 1e-6);
-    // Places of steps are floats, counted from the first one in the chunk: 1e-6 voxel. Peaks are a fiftieth as wide as
-    // the range.
+    // Positions of steps are floats, relative to the first one in the chunk: 1e-6 voxel. Peaks are a fiftieth of the
+    // range wide.
     check(name, sharp_function(), 1e-5);
   }
 }
@@ -220,7 +220,7 @@ TEST(ChunkCast, RaysThatAreNotSureAreCastAgainWithinTheirChunk) {
     cast.emit(sink);
   }
   EXPECT_GT(cast.counters().pixels_again, 0u);
-  // Either picture may err by the method's 1e-5: other rays are the uncertain ones.
+  // Either image may have the method's error of 1e-5: different rays are uncertain.
   EXPECT_LT(difference(sink.image, whole), 2e-5);
 }
 
@@ -230,7 +230,7 @@ TEST(ChunkCast, ARayThatGoesOnHasTheBitsOfOneInOneGo) {
   test::SomeCases some(2);
   for (const auto& way : ways) {
     if (!some.next()) continue;
-    const char* const name = way.first;  // clang 14 lets no lambda have a structured binding
+    const char* const name = way.first;  // clang 14 does not allow a lambda to capture a structured binding
     const scene::Camera camera = view(name);
     scene::GridIndex sides{64, 64, 64};
     sides[way.second] = 32;
@@ -260,7 +260,7 @@ TEST(ChunkCast, AChunkOfAllIsTheDefaultFrame) {
 }
 
 TEST(ChunkCast, ClosedRaysDoNoMoreWorkAndKeepWhatTheyHave) {
-  // Occlusion: something hides the left half of the picture behind the first chunk.
+  // Occlusion: an object hides the left half of the image behind the first chunk.
   const Volume v = make_volume({37, 30, 36}, Field::smooth);
   const scene::Camera camera = view("oblique");
   const std::vector<VoxelBox> chunks = boxes_front_to_back(v.grid.geometry, {36, 29, 16}, camera);
@@ -286,7 +286,7 @@ TEST(ChunkCast, ClosedRaysDoNoMoreWorkAndKeepWhatTheyHave) {
         if (x < size.width / 2) {
           EXPECT_EQ(image.rgba[n + c], first.rgba[n + c]) << x << ' ' << y;
         } else if (x >= size.width / 2 + 4) {
-          // Lanes of a packet that others of it have left find the same light in other pieces.
+          // Lanes whose packet has been left by other lanes compute the same light in different pieces.
           EXPECT_NEAR(image.rgba[n + c], all.rgba[n + c], 1e-6) << x << ' ' << y;
         }
         differs = differs || first.rgba[n + c] != all.rgba[n + c];
@@ -334,13 +334,14 @@ TEST(ChunkCast, RaysEndEarlyInWhateverChunks) {
     // The rays that graze the volume's far edges are the last ones.
     for (int y = size.height / 2 - 9; y < size.height / 2 + 9; ++y)
       for (int x = size.width / 2 - 9; x < size.width / 2 + 9; ++x) EXPECT_FALSE(cast.open(x, y));
-    // Pieces that end at chunks' planes are more; a ray that went on to its end would have four times as many.
+    // There are more pieces, because they end at chunks' planes; a ray that continued to its end would have four times
+    // as many.
     EXPECT_LT(static_cast<double>(cast.counters().samples), 1.6 * static_cast<double>(in_one.samples)) << emit_each;
   }
 }
 
 TEST(ChunkCast, WhatGetsThroughAfterAChunkIsTheLightThatIsLeft) {
-  // Shadows: the camera is the light, and the box homogeneous, of extinction 2.
+  // Shadows: the camera is the light, and the box is homogeneous, with extinction 2.
   Volume v = make_volume({17, 17, 33}, Field::smooth);
   std::fill(v.values.begin(), v.values.end(), 0.5f);
   v.source = scene::MemorySource::of(v.grid, v.values);

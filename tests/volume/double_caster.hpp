@@ -17,12 +17,12 @@
 
 namespace tessera::tests {
 
-/// RGBA and planar depth of first light along one ray, in double precision: every voxel by itself, its stretch of the
-/// ray cut where the field crosses a knot (dense samples and bisection), Simpson's rule in between. Slow; shares no
-/// code with volume/.
+/// RGBA and planar depth of first light along one ray, in double precision: each voxel separately, with its segment of
+/// the ray cut where the field crosses a knot (dense samples and bisection), and Simpson's rule in between. Slow;
+/// shares no code with volume/.
 struct DoubleCaster {
   scene::GridGeometry geometry;
-  std::function<double(std::int64_t, std::int64_t, std::int64_t)> sample;  ///< values; NaN blanks
+  std::function<double(std::int64_t, std::int64_t, std::int64_t)> sample;  ///< values; NaN means blank
   scene::TransferFunction function;
   scene::Emission emission = scene::Emission::absorption;
 
@@ -108,7 +108,7 @@ struct DoubleCaster {
   void stretch(const Field& field, double from, double to, double length_per_depth, double& optical_depth,
                Pixel& pixel) const {
     std::vector<double> cuts{from};
-    // Between extrema, found by ternary search in parts that are not monotone, a knot is crossed once at most.
+    // Between extrema, found by ternary search in parts that are not monotone, a knot is crossed at most once.
     constexpr int parts = 32;
     std::vector<double> marks{from};
     for (int n = 0; n < parts; ++n) {
@@ -147,7 +147,7 @@ struct DoubleCaster {
       if (!(cuts[n] > cuts[n - 1])) continue;
       constexpr int steps = 12;
       const double h = (cuts[n] - cuts[n - 1]) * length_per_depth / steps;
-      // Just inside the cuts, so that a step's right side is taken.
+      // Just inside the cuts, so that the correct side of a step is used.
       const double eps = 1e-9 * (cuts[n] - cuts[n - 1]);
       const double step = (cuts[n] - cuts[n - 1] - 2 * eps) / steps;
       for (int i = 0; i < steps; ++i) {

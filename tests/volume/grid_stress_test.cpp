@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shapes, spacings, steps and transfer functions at which casters of regular grids break, against the double-precision
-// reference of reference/, which shares no code with them.
+// Shapes, spacings, steps and transfer functions at which casters of regular grids typically fail, compared with the
+// double-precision reference of reference/, which shares no code with them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -57,7 +57,7 @@ std::vector<scene::Camera> views_of(const scene::SampleSource& source) {
   return {outside, near, inside};
 }
 
-/// Over a coarse lattice of pixels; what is excused counts not.
+/// Over a coarse lattice of pixels; excused pixels do not count.
 double error_of(const scene::SampleSource& source, const scene::Camera& camera, const scene::TransferFunction& function,
                 volume::RenderSettings settings, double bound) {
   settings.threads = 2;
@@ -81,8 +81,8 @@ volume::RenderSettings automatic(double accuracy) {
   return settings;
 }
 
-/// Extinction is the same everywhere, and colour is not: what lies in front of a voxel's field hides what is behind, so
-/// the field's bend counts, though optical depth knows nothing of it.
+/// Extinction is the same everywhere, but colour is not: the front of a voxel's field hides its back, so the field's
+/// curvature matters, although it does not affect the optical depth.
 TEST(GridStress, ColourThatBendsInThickVoxelsIsRight) {
   const auto source = volume_of({5, 6, 4}, glm::dvec3(1), noise());
   for (const double thickness : {3.0, 30.0, 1000.0, 1e5})
@@ -96,8 +96,8 @@ TEST(GridStress, ColourThatBendsInThickVoxelsIsRight) {
     }
 }
 
-/// Where the surfaces of a step meet in every voxel, some rays all but touch them: float lanes leave these to double
-/// precision, without which errors of 2.5e-4 and 4.7e-4 come out here.
+/// Where the surfaces of a step meet in every voxel, some rays almost touch them: float lanes leave these to double
+/// precision, without which errors of 2.5e-4 and 4.7e-4 occur here.
 TEST(GridStress, RaysThatTouchAStepAreCastAgain) {
   const auto source =
       volume_of({8, 8, 8}, glm::dvec3(2.0 / 7), [](double i, double j, double k) { return std::fmod(i + j + k, 2); });
@@ -165,8 +165,8 @@ TEST(GridStress, BricksOfTwoVoxelsInACacheOfFewAreRight) {
       EXPECT_LE(error_of(*source, camera, function_of(knots, *source), settings, 1e-4), 1e-4);
 }
 
-/// Along a ray through a linear field the scalar is linear, whatever the step: a table over both ends of a step has all
-/// there is to know, and steps may be longer than voxels, bricks and volumes, with no seam between them.
+/// Along a ray through a linear field the scalar is linear, whatever the step: a table over both ends of a step is
+/// complete, and steps may be longer than voxels, bricks and volumes, without seams between them.
 TEST(GridStress, PreintegratedStepsOfTenVoxelsSeeALinearFieldAsItIs) {
   const auto source =
       volume_of({33, 29, 31}, {1, 1.2, 0.9}, [](double i, double j, double k) { return (i + j + k) / 90; });
@@ -178,13 +178,13 @@ TEST(GridStress, PreintegratedStepsOfTenVoxelsSeeALinearFieldAsItIs) {
         settings.integrator.kind = IntegratorKind::preintegrated;
         settings.grid.step = step;
         settings.grid.brick_size = 4;
-        // What the table's own resolution leaves: linear between its entries.
+        // The error of the table's own resolution: linear between its entries.
         EXPECT_LE(error_of(*source, camera, function, settings, 4e-3), 4e-3) << step;
       }
     }
 }
 
-/// The midpoint rule is exact where nothing changes: steps of any length, the last cut at the volume's end.
+/// The midpoint rule is exact for a constant field: steps of any length, the last cut at the volume's end.
 TEST(GridStress, SampledStepsOfTenVoxelsSeeAConstantFieldAsItIs) {
   const auto source = volume_of({13, 9, 11}, {1, 1.2, 0.9}, [](double, double, double) { return 0.4; });
   const auto function = function_of({{0, {0.9, 0.4, 0.2}, 3}, {1, {0.9, 0.4, 0.2}, 3}}, *source);

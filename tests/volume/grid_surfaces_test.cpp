@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Iso-surfaces of grids, against places and colours in closed form and against the double-precision reference.
+// Iso-surfaces of grids, compared with positions and colours in closed form and with the double-precision reference.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -161,7 +161,7 @@ TEST(GridSurface, FewRaysThatMeetThemAreCastAgainInDoublePrecision) {
   const Volume volume = make_volume({45, 37, 41}, Field::smooth);
   Surfaces surfaces;
   for (int n = 1; n < 10; ++n)
-    surfaces.iso.push_back({0.1 * n + 0.037, std::nullopt, 0.3});  // of no side of the volume
+    surfaces.iso.push_back({0.1 * n + 0.037, std::nullopt, 0.3});  // not at a side of the volume
   for (const char* name : {"oblique", "perspective"}) {
     volume::RenderStatistics statistics;
     volume::Renderer(*volume.source, exact_with(surfaces)).render(view(name), size, smooth_function(), &statistics);
@@ -169,7 +169,7 @@ TEST(GridSurface, FewRaysThatMeetThemAreCastAgainInDoublePrecision) {
   }
 }
 
-/// Whole numbers, many of which are a surface's value: sides of voxels, edges and whole voxels of it.
+/// Integers, many of which equal a surface's value: sides of voxels, edges and whole voxels have it.
 TEST(GridSurface, OfWholeNumbersAreFoundInLanesWhereSidesOfVoxelsHaveTheirValue) {
   scene::Grid grid;
   grid.geometry.points = {33, 29, 31};
@@ -290,7 +290,7 @@ Case random_case(unsigned number) {
   scene::Grid grid;
   grid.geometry = random_geometry(random);
   const scene::GridIndex n = grid.geometry.samples();
-  const int steps = random.chance(0.4) ? 1 + random.below(4) : 0;  // few values: level edges, sides and voxels
+  const int steps = random.chance(0.4) ? 1 + random.below(4) : 0;  // few values: constant edges, sides and voxels
   const bool blanks = random.chance(0.2), smooth = random.chance(0.4);
   std::vector<float> values;
   const glm::dvec3 wave = random.uniform(0.2, 1.5) * random.direction();
@@ -367,7 +367,7 @@ TEST(GridSurface, RandomOnesKeepThePromise) {
               pixels);
 }
 
-/// Vectors of four and eight lanes look values of surfaces up in memory, those of sixteen hold some.
+/// Vectors of four and eight lanes look up surface values in memory, those of sixteen hold some.
 TEST(GridSurface, RandomOnesKeepThePromiseOnEveryInstructionSet) {
   const scene::ImageSize small{24, 20};
   for_each_instruction_set([&](const std::string& name) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every kernel of volume/ under every instruction set, against the double-precision reference.
+// Every kernel of volume/ under every instruction set, compared with the double-precision reference.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ namespace {
 
 using namespace tests;  // small volumes and views
 
-/// Renders with every instruction set; no pixel of a random choice may err more than `bound`, none of those excused.
+/// Renders with every instruction set; no random pixel may have an error above `bound`, without excuses.
 void expect_right(const std::string& what, const scene::SampleSource& source, const scene::TransferFunction& function,
                   volume::RenderSettings settings, double bound) {
   settings.threads = 2;
@@ -42,8 +42,8 @@ void expect_right(const std::string& what, const scene::SampleSource& source, co
   }
 }
 
-// Bounds are what is promised of one process (docs/ACCURACY.md): exact 1e-5 in float32, automatic its accuracy, 1e-4
-// by default.
+// Bounds are those promised for one process (docs/ACCURACY.md): exact 1e-5 in float32, automatic its accuracy, 1e-4 by
+// default.
 volume::RenderSettings by(IntegratorKind method) {
   volume::RenderSettings s;
   s.integrator.kind = method;
@@ -79,7 +79,7 @@ TEST(VolumeKernels, CellDataBlanksShadingAndOtherLight) {
 }
 
 TEST(VolumeKernels, ErrorBoundsOfStepsAndRamps) {
-  // Surfaces of a step, and flanks of a peak, in every voxel: where bounds were too small, so would errors be large.
+  // Surfaces of a step, and flanks of a peak, in every voxel: if bounds were too small, errors would be large.
   const Volume v = make_volume({21, 18, 17}, Field::noise);
   expect_right("a step", *v.source, scene::TransferFunction({{0.5, {0.1, 0.3, 0.9}, 0}, {0.5, {1, 0.5, 0.2}, 40}}),
                exact(), 1e-5);
@@ -105,7 +105,7 @@ TEST(VolumeKernels, SamplesOfEveryType) {
   const auto check = [&](const char* type, const std::unique_ptr<scene::MemorySource>& source) {
     if (!some.next()) return;
     expect_right(type, *source, smooth_function(), exact(), 1e-5);
-    // Most is hidden: samples are taken in runs, not by whole rows.
+    // Most samples are hidden: they are read in runs, not by whole rows.
     expect_right(std::string(type) + ", sharp", *source, sharp_function(), exact(), 1e-5);
   };
   check("int8", as<std::int8_t>(v, 120));
@@ -119,7 +119,8 @@ TEST(VolumeKernels, SamplesOfEveryType) {
 }
 
 TEST(VolumeKernels, Steps) {
-  // The method errs far more than lanes do; at a tenth of a voxel by less than 2e-3, which a wrong step would not.
+  // The method's error is far larger than that of lanes; at a tenth of a voxel it is below 2e-3, which would detect a
+  // wrong step.
   const Volume v = make_volume({37, 30, 36}, Field::smooth), cells = make_volume({19, 17, 20}, Field::noise, true);
   volume::RenderSettings sampled = by(IntegratorKind::sampled), table = by(IntegratorKind::preintegrated);
   sampled.grid.step = table.grid.step = 0.1;

@@ -120,14 +120,14 @@ TEST(BrickCache, ProximityThrowsOutTheFarthestAndLoadsTheNearestAhead) {
   EXPECT_GT(counts.evict_ns, 0u);
 }
 
-/// Views from the middle of a turn: bricks come into view at one side all the time.
+/// Views from the middle of a turn: bricks continually enter the view at one side.
 scene::Camera turned(int frame) {
   scene::Camera camera = view("perspective");
   camera.view_angle = 5;
   return scene::orbit(camera, 0.01 * frame);
 }
 
-/// The volume's samples, a while after they were asked for.
+/// The volume's samples, with a delay after each request.
 class SlowSource final : public scene::SampleSource {
  public:
   explicit SlowSource(const scene::SampleSource& source) : SampleSource(source.grid(), "slow"), source_(source) {}
@@ -158,7 +158,7 @@ TEST(LookAhead, GoesOnFromFrameToFrameAndChangesNoBit) {
     volume::RenderStatistics with, without;
     const scene::Image image = ahead.render(turned(frame), size, smooth_function(), &with);
     EXPECT_TRUE(same_bits(image, by_need.render(turned(frame), size, smooth_function(), &without))) << frame;
-    // The limit holds for a frame; what was planned for the one before may have been under way.
+    // The limit applies to a frame; bricks planned for the previous one may have been in flight.
     EXPECT_LE(with.bricks_preloaded, 2u * 60 + 1);
     if (++frame <= 2) return false;
     loads += with.bricks_loaded, loads_ahead += with.bricks_preloaded, loads_by_need += without.bricks_loaded;
@@ -176,7 +176,7 @@ TEST(LookAhead, LoadsWhileFramesFollowEachOtherAtOnce) {
   s.grid.cache = CachePolicy::proximity;
   s.grid.preload_limit = 12;
   volume::Renderer renderer(*v.source, s);
-  // Some frame of a turn without an end finds the loading thread at work.
+  // Some frame of an endless turn finds the loading thread busy.
   int frame = 0;
   EXPECT_TRUE(test::await(
       [&] {
@@ -216,7 +216,7 @@ TEST(VolumeCaster, AVolumeFourTimesTheBudgetStaysWithinItAndPreloadsBetweenFrame
       EXPECT_GT(statistics.bricks_loaded, 0u);
       EXPECT_GT(statistics.bricks_evicted, 0u);
     }
-    // The last frame's preloading may still go on: the renderer ends it.
+    // The last frame's preloading may still continue: the renderer ends it.
   }
 }
 

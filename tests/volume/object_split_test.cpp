@@ -28,7 +28,7 @@ bool overlap(const VoxelBox& a, const VoxelBox& b) {
   return true;
 }
 
-/// Cells of which each shows with the chance of its octant.
+/// Cells that are visible with the probability of their octant.
 std::vector<std::uint8_t> random_cells(const scene::GridIndex& voxels, std::mt19937& random) {
   std::uniform_real_distribution<double> uniform(0, 1);
   double chance[8];
@@ -67,7 +67,7 @@ TEST(ObjectSplit, BoxesMakeUpTheVolumeForAnyNumberOfProcesses) {
 }
 
 TEST(ObjectSplit, SharesTheCellsThatShow) {
-  // All that shows is in one corner, an eighth of the volume.
+  // Everything visible is in one corner, an eighth of the volume.
   const scene::GridIndex voxels{256, 256, 256};
   std::vector<std::uint8_t> visible(32 * 32 * 32, 0);
   for (std::size_t c = 0; c < 16; ++c)
@@ -85,7 +85,7 @@ TEST(ObjectSplit, SharesTheCellsThatShow) {
   }
 }
 
-/// Boxes that a ray meets, from the eye on, by walking it in small steps.
+/// Boxes that a ray meets, from the eye on, found by small steps along it.
 std::vector<int> boxes_on(const glm::dvec3& origin, const glm::dvec3& direction, const scene::GridGeometry& geometry,
                           const ObjectSplit& split) {
   std::vector<int> met;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Blank samples, constant volumes, and plateaus of the field at the value of a step of the transfer function: what
-// lanes of floats round must not move a sample, or a voxel, to the wrong side. Every pixel against the reference in
+// Blank samples, constant volumes, and plateaus of the field at the value of a step of the transfer function: rounding
+// in float lanes must not move a sample, or a voxel, to the wrong side. Compares every pixel with the reference in
 // double precision.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -76,7 +76,8 @@ void expect_right(const scene::SampleSource& source, const std::vector<scene::Kn
   }
 }
 
-/// Two slabs at once are a line only where both have a field; a maximum that drops NaN took whole packets for it.
+/// Two slabs at once form a line only where both have a field; a maximum that drops NaN once treated whole packets as
+/// one.
 TEST(PlateauGrid, BlankSamplesHideNothingButTheirOwnVoxels) {
   const auto ball = volume_of<float>(grid_of(48), [](double x, double y, double z) {
     const double r = std::sqrt(x * x + y * y + z * z);
@@ -116,7 +117,7 @@ TEST(PlateauGrid, RegionsHaveTheBitsOfTheWhole) {
   }
 }
 
-/// One value has no range to take a unit from: knots on both sides of it were one.
+/// A single value has no range from which to derive a unit: knots on both sides of it once became one.
 TEST(PlateauGrid, ConstantVolumesAreTheFunctionAtTheirValue) {
   const scene::ImageSize size{24, 20};
   for (const auto association : {scene::Association::point, scene::Association::cell})
@@ -134,7 +135,7 @@ TEST(PlateauGrid, ConstantVolumesAreTheFunctionAtTheirValue) {
     }
 }
 
-/// Samples at, and a few last places beside, a step's value, and all voxels that interpolate them.
+/// Samples at, and a few last places away from, a step's value, and all voxels that interpolate them.
 TEST(PlateauGrid, PlateausStayOnTheirSideOfAStep) {
   const auto saturated = [](double x, double y, double z) {
     return 0.5 + 0.5 * std::tanh(8 * (std::sqrt(x * x + y * y + z * z) - 0.5));
@@ -170,13 +171,13 @@ TEST(PlateauGrid, PlateausStayOnTheirSideOfAStep) {
   expect_right(*cells, sides(1), size, "cells of doubles");
 }
 
-/// The cell of a number, 0 to n - 1, at random but always the same.
+/// Hash of a position, 0 to n - 1, always the same.
 int hashed(double x, double y, double z, int n) {
   return static_cast<int>(std::fmod(std::abs(std::sin(12.9898 * x + 78.233 * y + 37.719 * z)) * 43758.5453, n));
 }
 
-/// Doubles that are last places apart, and knots as near: the picture is that of the same field in units of such a
-/// place, counted from 1. Interpolated as they stand, they round to whole places.
+/// Doubles that are last places apart, and knots equally close: the image equals that of the same field in units of a
+/// last place, relative to 1. Interpolated directly, they would round to whole places.
 TEST(PlateauGrid, LastPlacesOfDoublesAreNumbersLikeOthers) {
   const double place = 0x1p-52;
   const scene::ImageSize size{24, 20};
@@ -204,7 +205,7 @@ TEST(PlateauGrid, LastPlacesOfDoublesAreNumbersLikeOthers) {
       EXPECT_LE(judgement.max_error, 1e-5) << judgement.worst_x << ' ' << judgement.worst_y;
       for (int y = 0; y < size.height; y += 3)
         for (int x = 0; x < size.width; x += 3) {
-          // Both integrate the same numbers; only the grid's own coordinates round, alike.
+          // Both integrate the same numbers; only the grid's own coordinates are rounded, in the same way.
           const auto one = near_truth.pixel(x + 0.5, y + 0.5), other = truth.pixel(x + 0.5, y + 0.5);
           EXPECT_NEAR(one.a, other.a, 1e-11) << x << ' ' << y;
           EXPECT_NEAR(one.r, other.r, 1e-11) << x << ' ' << y;
@@ -213,8 +214,8 @@ TEST(PlateauGrid, LastPlacesOfDoublesAreNumbersLikeOthers) {
   }
 }
 
-/// Knots that lanes do not tell apart: what the function is between them, and on either side, is seen where samples
-/// are.
+/// Knots that lanes cannot distinguish: the function's values between them, and on either side, are visible where
+/// samples are.
 TEST(PlateauGrid, KnotsWithinALanesUnitAreAllSeen) {
   const float value = -0.0113818934f;
   const double place = 0x1p-59;
@@ -245,7 +246,7 @@ TEST(PlateauGrid, KnotsWithinALanesUnitAreAllSeen) {
     }
 }
 
-/// A step of colour alone between ramps: what it errs was taken for the ramps', which are as good as level.
+/// A step of only colour between ramps: its error was once attributed to the ramps, which are almost level.
 TEST(PlateauGrid, StepsOfColourAloneAreSteps) {
   const double step = 2.0000038146972656, place = 0x1p-22;
   const auto source = volume_of<float>(grid_of(17), [&](double x, double y, double z) {
@@ -256,8 +257,8 @@ TEST(PlateauGrid, StepsOfColourAloneAreSteps) {
                {46, 35}, "colours");
 }
 
-/// Where a field of doubles crosses a step that it is only last places away from: lanes give such rays up, and doubles
-/// keep the place only as differences to the step.
+/// Where a field of doubles crosses a step from which it differs by only last places: lanes leave such rays to double
+/// precision, and doubles keep the position only as differences to the step.
 TEST(PlateauGrid, CrossingsOnAFrayedPlateauKeepTheirPlaces) {
   const double step = 0.21390244162149247, place = 0x1p-55;
   const scene::ImageSize size{40, 32};
@@ -272,7 +273,7 @@ TEST(PlateauGrid, CrossingsOnAFrayedPlateauKeepTheirPlaces) {
   }
 }
 
-/// The field is continuous: a ray in a plane of the lattice has the plane's values, whatever lies beside it.
+/// The field is continuous: a ray in a plane of the lattice has the plane's values, whatever is next to it.
 TEST(PlateauGrid, RaysInALatticePlaneHaveItsValues) {
   const scene::ImageSize size{9, 9};
   const auto source = volume_of<std::uint16_t>(grid_of(13), [](double x, double y, double z) {
@@ -294,14 +295,13 @@ TEST(PlateauGrid, RaysInALatticePlaneHaveItsValues) {
       settings.integrator.kind = IntegratorKind::exact;
       const scene::Image image = volume::Renderer(*source, settings).render(camera, size, function);
       const std::size_t middle = image.index(4, 4);
-      const double alpha =
-          1 - std::exp(-2 * extinction);  // the middle pixel's ray goes along x through all of the grid
+      const double alpha = 1 - std::exp(-2 * extinction);  // the middle pixel's ray goes along x through the whole grid
       EXPECT_NEAR(image.rgba[4 * middle + 3], alpha, 1e-5);
       EXPECT_NEAR(truth.pixel(4.5, 4.5).a, alpha, 1e-12);
     }
 }
 
-/// Rays that run in a plane of the lattice, with blanks on one side of it here and on the other there.
+/// Rays in a plane of the lattice, with blanks on one side of it in some voxels and on the other side in others.
 TEST(PlateauGrid, RaysInALatticePlaneStayOnOneSide) {
   const scene::ImageSize size{17, 17};
   const auto source = volume_of<double>(grid_of(13), [](double x, double y, double z) {
@@ -309,7 +309,7 @@ TEST(PlateauGrid, RaysInALatticePlaneStayOnOneSide) {
   });
   std::vector<scene::Knot> many;
   for (int n = 0; n <= 200; ++n) many.push_back({n / 200.0, {0.3, 0.5, 0.9}, n % 3 == 0 ? 6.0 : 0});
-  // Doubles for the first, lanes for the second; steep, so that a shift by what is excused changes more than the bound.
+  // Doubles for the first, lanes for the second; steep, so that an excusable shift changes more than the bound.
   for (const scene::TransferFunction& function :
        {scene::TransferFunction(many), scene::TransferFunction({{0, {1, 0.5, 0}, 0}, {1, {0, 0.5, 1}, 900}})})
     for (int axis = 0; axis < 3; ++axis)
@@ -333,7 +333,8 @@ TEST(PlateauGrid, RaysInALatticePlaneStayOnOneSide) {
           }
 }
 
-/// Light goes by the direction of the gradient, however small that is: differences of values that floats do not hold.
+/// Lighting depends on the direction of the gradient, however small it is: differences of values that floats cannot
+/// represent.
 void expect_lit_right(const scene::SampleSource& source, const std::string& what) {
   const scene::TransferFunction grey({{0, {0.6, 0.2, 0.4}, 1}, {1, {0.6, 0.2, 0.4}, 1}});
   const scene::ImageSize size{24, 24};
@@ -367,7 +368,7 @@ TEST(PlateauGrid, IsLitByTheDirectionOfSmallGradients) {
     if (differences > 1e-7)
       expect_lit_right(*volume_of<float>(grid_of(6), level), fmt::format("floats, {}", differences));
   }
-  // Whole numbers whose scale makes fractions of them, as medical files have.
+  // Integers with a scale that makes them fractions, as in medical files.
   scene::Grid grid = grid_of(6);
   grid.scale = 1 / 65535.0, grid.shift = 0.1;
   expect_lit_right(*volume_of<std::uint16_t>(grid,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What pre-integration may leave out: a step shows what lies between its ends, which neither end need show.
+// What pre-integration may skip: a step shows values between its ends, even if neither end is visible.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace tests;
 
-/// Mostly nothing: two blobs, one smooth, one with a steep side.
+/// Mostly empty: two blobs, one smooth, one with a steep side.
 Volume blobs(bool cell_data, bool blanks) {
   Volume v = make_volume({71, 60, 65}, Field::smooth, cell_data);
   const scene::GridIndex n = v.grid.geometry.samples();
@@ -31,7 +31,7 @@ Volume blobs(bool cell_data, bool blanks) {
   return v;
 }
 
-/// Neither of the steep side's two values shows, what is between them does.
+/// Neither of the steep side's two values is visible, but values between them are.
 scene::TransferFunction between() {
   return scene::TransferFunction(
       {{0.3, {0, 0, 0}, 0}, {0.4, {0.2, 0.9, 0.3}, 20}, {0.6, {0.9, 0.3, 0.1}, 20}, {0.7, {1, 1, 1}, 0}});

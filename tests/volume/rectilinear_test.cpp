@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Grids whose planes lie at any distances, against the double-precision reference.
+// Grids with planes at arbitrary distances, compared with the double-precision reference.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr scene::ImageSize size{61, 53};
 
-/// Spacings grow from end to end by `ratio` along x, fall along y, and jump in the middle of z.
+/// Spacings increase from end to end by `ratio` along x, decrease along y, and jump in the middle of z.
 std::unique_ptr<scene::MemorySource> graded(double ratio, scene::Association association, bool smooth) {
   scene::Grid grid;
   grid.geometry.points = {19, 14, 22};
@@ -91,8 +91,8 @@ TEST(Rectilinear, PicturesKeepTheirPromiseHoweverUnequalTheSpacings) {
       }
 }
 
-/// Where the field turns just inside a steep interval, the line that stands for it would reach beyond the interval's
-/// end; cut off there and nothing more, errors were up to 2.6e-5 here.
+/// If the field has a turning point just inside a steep interval, its linear approximation would exceed the interval's
+/// end; when it was only cut off there, errors were up to 2.6e-5 here.
 TEST(Rectilinear, PeaksAHundredthOfTheRangeWideKeepThePromise) {
   std::vector<scene::Knot> knots;
   for (int n = 0; n < 12; ++n)
@@ -135,7 +135,7 @@ TEST(Rectilinear, EqualSpacingsGiveTheRegularGridsPicture) {
     int both = 0;
     for (std::size_t n = 0; n < a.depth.size(); ++n) {
       if (!std::isfinite(a.depth[n]) || !std::isfinite(b.depth[n])) continue;
-      EXPECT_NEAR(a.depth[n], b.depth[n], 0.2);  // the caster says in which voxel light begins
+      EXPECT_NEAR(a.depth[n], b.depth[n], 0.2);  // the caster only determines the voxel in which light begins
       ++both;
     }
     EXPECT_GT(both, 500);
@@ -172,7 +172,7 @@ TEST(Rectilinear, CostIsWhereVoxelsAre) {
       renderer.cost_map(view(false, {0, 0, 5}), size, steep(), volume::CostMethod::visited, 0.5);
   const auto at = [&](int x, int y) { return map.cost[static_cast<std::size_t>(y * map.size.width + x)]; };
   EXPECT_EQ(at(0, 0), 0u);
-  EXPECT_GE(at(map.size.width / 2, map.size.height / 2), 64u * 20);  // all planes of z but the first
+  EXPECT_GE(at(map.size.width / 2, map.size.height / 2), 64u * 20);  // all planes of z except the first
 }
 
 }  // namespace

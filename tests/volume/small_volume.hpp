@@ -18,7 +18,7 @@ namespace tessera::tests {
 
 inline constexpr scene::ImageSize size{96, 80};
 
-/// A small volume of samples in [0, 1], with its values at hand.
+/// A small volume of samples in [0, 1], with access to its values.
 struct Volume {
   scene::Grid grid;
   std::vector<float> values;
@@ -65,7 +65,7 @@ inline scene::TransferFunction smooth_function() {
                                   {1, {1, 1, 1}, 8}});
 }
 
-/// Peaks a fiftieth of the range wide, and nothing between them.
+/// Peaks a fiftieth of the range wide, with nothing between them.
 inline scene::TransferFunction sharp_function() {
   return scene::TransferFunction({{0.5, {0.1, 0.3, 0.9}, 0},
                                   {0.51, {0.2, 0.9, 0.3}, 60},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Transfer functions so steep, and matter so dense, that what float lanes round shows: every pixel against the
-// double-precision reference of reference/, which shares no code with casters.
+// Transfer functions so steep, and matter so dense, that rounding in float lanes is visible: compares every pixel with
+// the double-precision reference of reference/, which shares no code with casters.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,7 +40,7 @@ Field noise() {
   };
 }
 
-/// From `direction` times `away`, voxels, at the volume's middle.
+/// From `direction` times `away`, in voxels, looking at the volume's middle.
 scene::Camera camera_of(const scene::SampleSource& source, double away,
                         const glm::dvec3& direction = glm::dvec3(1, 0.7, 1.9)) {
   const scene::Box box = scene::bounds(source.geometry());
@@ -52,7 +52,7 @@ scene::Camera camera_of(const scene::SampleSource& source, double away,
 }
 
 struct Outcome {
-  double error;             ///< of what is promised
+  double error;             ///< relative to the promised one
   std::uint64_t in_double;  ///< pixels
 };
 
@@ -83,8 +83,8 @@ Outcome outcome_of(const scene::SampleSource& source, const scene::Camera& camer
   return worst;
 }
 
-/// Knots are rounded as samples are. Where a peak is a three-thousandth of the range wide, its optical depth is then
-/// off by 1e-4 of itself at every crossing, and errors seen through it were weighed by what it lets through.
+/// Knots are rounded like samples. If a peak is a three-thousandth of the range wide, its optical depth has a relative
+/// error of 1e-4 at every crossing; errors seen through it were once weighted by its transmittance.
 TEST(SteepFunction, APeaksRoundedKnotsAreNotTakenForItsOwn) {
   const auto source = volume_of({3, 3, 5}, [](double i, double j, double k) {
     return 0.0014568 - 0.00072842 * i + 0.00299022 * (j * 0.28 + k * 0.54);
@@ -102,7 +102,7 @@ TEST(SteepFunction, APeaksRoundedKnotsAreNotTakenForItsOwn) {
   }
 }
 
-/// Rays that begin in dense matter, at a near plane or a side of the volume, do so at a rounded place.
+/// Rays that begin in dense matter, at a near plane or a side of the volume, begin at a rounded position.
 TEST(SteepFunction, RaysThatBeginInDenseMatterBeginWhereTheyDo) {
   const auto source = volume_of({8, 31, 9}, noise());
   scene::Camera camera = camera_of(*source, 20, glm::dvec3(0.31, -1.9, 0.43));
@@ -136,7 +136,7 @@ TEST(SteepFunction, ErrorsInFrontOfDenseMatterAreSeen) {
   }
 }
 
-/// A ray that cuts a corner of a dense voxel sees it for a length that is the difference of two rounded places.
+/// A ray that cuts a corner of a dense voxel has a length there that is the difference of two rounded positions.
 TEST(SteepFunction, CornersOfDenseCellsAreAsLongAsTheyAre) {
   const auto source = volume_of({12, 33, 11}, noise(), scene::Association::cell);
   scene::Camera camera = camera_of(*source, 20, glm::dvec3(0.31, -1.9, 0.43));
@@ -150,7 +150,7 @@ TEST(SteepFunction, CornersOfDenseCellsAreAsLongAsTheyAre) {
   }
 }
 
-/// Matter of one colour that hides what is behind needs no second cast, however dense.
+/// Matter of one colour that hides everything behind needs no second cast, however dense it is.
 TEST(SteepFunction, SurfacesOfOneColourStayInFloatLanes) {
   const auto source = volume_of(
       {24, 24, 24}, [](double i, double j, double k) { return std::hypot(i - 11.3, j - 11.9, k - 11.6) / 12; });

@@ -24,7 +24,7 @@ scene::Camera straight() {
   return camera;
 }
 
-/// Every tile of a picture, with what it took.
+/// Every tile of an image, with its time.
 template <class Microseconds>
 std::vector<TileTime> tiles_of(scene::ImageSize size, const Microseconds& microseconds) {
   std::vector<TileTime> times;
@@ -35,7 +35,7 @@ std::vector<TileTime> tiles_of(scene::ImageSize size, const Microseconds& micros
   return times;
 }
 
-/// A hill off the middle.
+/// A hill away from the middle.
 double hill(double x, double y) {
   const double u = (x - 200) / 120, v = (y - 150) / 90;
   return 20 + 2000 * std::exp(-u * u - v * v);
@@ -51,7 +51,7 @@ TEST(TileCosts, WhatTilesTookIsWhatTheyAreSaidToCost) {
   double all = 0;
   for (const auto& [pixels, microseconds] : times) {
     all += 1e3 * static_cast<double>(microseconds);
-    // Floats of about a hundred squares are added up.
+    // Floats of about a hundred squares are summed.
     EXPECT_NEAR(costs.of(pixels), 1e3 * static_cast<double>(microseconds), 1e-4 * 5e6);
   }
   EXPECT_NEAR(costs.of({0, 0, size.width, size.height}), all, 1e-5 * all);
@@ -81,7 +81,7 @@ TEST(TileCosts, FollowThePicturesOfThePlaneThroughTheMiddle) {
   const scene::PixelRect there{160, 96, 288, 224};
   const double before = costs.of(there);
 
-  // 384 pixels are 4 units high: 64 pixels to the right move the picture to the left.
+  // 384 pixels are 4 units high: 64 pixels to the right move the image to the left.
   TileCosts panned = costs;
   scene::Camera camera = straight();
   camera.position.x += 64 * 4.0 / 384, camera.focal_point.x = camera.position.x;
@@ -92,7 +92,7 @@ TEST(TileCosts, FollowThePicturesOfThePlaneThroughTheMiddle) {
   panned.sum();
   EXPECT_NEAR(panned.of(there), before, 0.01 * before);
 
-  // Twice as near, in both projections: four times the pixels, each of the cost it had.
+  // Twice as near, in both projections: four times the pixels, each with the same cost as before.
   for (const auto kind : {scene::ProjectionKind::orthographic, scene::ProjectionKind::perspective}) {
     scene::Camera from = straight(), to = straight();
     from.projection = to.projection = kind;
@@ -107,7 +107,7 @@ TEST(TileCosts, FollowThePicturesOfThePlaneThroughTheMiddle) {
   }
 }
 
-/// Every pixel in one process's parts, of which no two share a tile.
+/// Every pixel is in one process's parts, which share no tile.
 void expect_whole(const ImageSplit& split, scene::ImageSize size, int processes) {
   ASSERT_EQ(split.processes(), processes);
   std::vector<int> owners(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height), 0);
@@ -143,8 +143,8 @@ TEST(BalancedSplit, SharesOutWhatIsThereAndWhatProcessesDoBeside) {
     expect_whole(split, size, processes);
     const std::vector<double> loads = loads_of(split, costs, beside);
     const double mean = std::accumulate(loads.begin(), loads.end(), 0.0) / processes;
-    // A row's edge lies on every fourth line of pixels. Four lines have up to 2.5 % of the hill, or 30 % of what one of
-    // twelve gets, and four share them.
+    // A row's edge is on every fourth line of pixels. Four lines have up to 2.5 % of the hill, or 30 % of one of twelve
+    // shares, and four processes share them.
     EXPECT_LT(*std::max_element(loads.begin(), loads.end()), 1.075 * mean) << processes;
     EXPECT_GT(*std::min_element(loads.begin(), loads.end()), 0.9 * mean) << processes;
   }

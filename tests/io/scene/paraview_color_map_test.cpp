@@ -30,7 +30,7 @@ struct Color {
   double x, r, g, b;
 };
 
-/// The map read back at places between its knots, encoded again, against display colours.
+/// Compares the map, read back at values between its knots and encoded again, with display colours.
 void expect_colors(const scene::TransferFunction& f, const std::vector<Color>& truths, double tolerance,
                    const std::string& space) {
   for (const Color& truth : truths) {
@@ -41,10 +41,10 @@ void expect_colors(const scene::TransferFunction& f, const std::vector<Color>& t
   }
 }
 
-// Truths by VTK 9.1's vtkColorTransferFunction::GetColor(x) through its Python wrapping: AddRGBPoint for each point of
-// map(), SetColorSpaceTo<space>(), and SetHSVWrap(0 or 1) for HSV.
-// Tolerance: a knotted curve may stand 1e-4 of linear light off, which in dark colours is up to 1.3e-3 of display value
-// (slope 12.92 at black); VTK's own XYZ matrices are rounded so that colours come back 1.3e-4 off.
+// Reference values from VTK 9.1's vtkColorTransferFunction::GetColor(x) through its Python wrapping: AddRGBPoint for
+// each point of map(), SetColorSpaceTo<space>(), and SetHSVWrap(0 or 1) for HSV.
+// Tolerance: a curve of knots may deviate by 1e-4 of linear light, which in dark colours is up to 1.3e-3 of display
+// value (slope 12.92 at black); VTK's own XYZ matrices are rounded so that a round trip changes colours by 1.3e-4.
 constexpr double tolerance = 1.5e-3;
 
 TEST(ParaViewColorMap, MixesColoursLikeVtkInRgb) {
@@ -139,7 +139,7 @@ TEST(ParaViewColorMap, ColoursBetweenKnotsAreRightTo1e4OfLinearLight) {
           colormaps::decode_srgb(colormaps::mix_colors(a, b, t, space, wraps)) - f.evaluate(t).color;
       worst = std::max({worst, std::abs(miss.x), std::abs(miss.y), std::abs(miss.z)});
     }
-    // Chords are tested at 15 places; a gamut edge or hue's corner between two of them can hide 2 % of the bound.
+    // Chords are tested at 15 points; a gamut edge or a corner of hue between two of them can hide 2 % of the bound.
     EXPECT_LE(worst, 1.02e-4) << name;
     EXPECT_LE(f.knots().size(), 400u) << name;
   }
@@ -147,7 +147,7 @@ TEST(ParaViewColorMap, ColoursBetweenKnotsAreRightTo1e4OfLinearLight) {
 
 TEST(ParaViewColorMap, OpacityIsMadeExtinctionAfterInterpolation) {
   const auto loaded = parse(map("RGB", ", \"Points\": [0, 0, 0.5, 0, 2, 0.9, 0.5, 0]"));
-  // Half way from 0 to 0.9 opacity is 0.45 and extinction 0.598, not half of 2.303.
+  // Halfway from 0 to 0.9 opacity is 0.45 and extinction 0.598, not half of 2.303.
   EXPECT_NEAR(loaded.function.evaluate(1).extinction, -std::log(0.55), 1e-4 * 0.6);
   for (int i = 0; i <= 1000; ++i) {
     const double exact = -std::log1p(-0.9 * i / 1000.0);
@@ -164,7 +164,8 @@ TEST(ParaViewColorMap, AnOpacityOfOneStaysFinite) {
 }
 
 TEST(ParaViewColorMap, MidpointAndSharpnessAreVtks) {
-  // Truths by VTK 9.1's vtkPiecewiseFunction::GetValue(x): AddPoint(x, y, midpoint, sharpness) for the points below.
+  // Reference values from VTK 9.1's vtkPiecewiseFunction::GetValue(x): AddPoint(x, y, midpoint, sharpness) for the
+  // points below.
   const std::string points =
       ", \"Points\": [0, 0.1, 0.3, 0.4,  1, 0.9, 0.7, 0,  3, 0.2, 0.25, 1,  4, 0.6, 0.5, 0.8,  5, 0, 0.5, 0]";
   const auto f = parse(map("RGB", points)).function;
@@ -242,7 +243,7 @@ TEST(ParaViewColorMap, ValuesStandUnlessRescaled) {
   EXPECT_NEAR(colormaps::encode_srgb(rescaled.function.evaluate(200).color.x), 0.5, 1e-3);
   EXPECT_NEAR(rescaled.function.evaluate(200).extinction, -std::log(0.75), 1e-4);
 
-  // A constant field takes the map's middle.
+  // A constant field gets the map's middle.
   options.field_range = {7, 7};
   const auto constant = parse(text, options);
   EXPECT_NEAR(constant.function.evaluate(7).extinction, -std::log(0.75), 1e-12);

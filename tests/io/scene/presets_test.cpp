@@ -59,7 +59,7 @@ TEST(Presets, HaveThePublishedColours) {
                    middle = colormaps::encode_srgb(f.evaluate(0.5).color),
                    high = colormaps::encode_srgb(f.evaluate(1).color);
   const auto expect_near = [](const glm::dvec3& c, double r, double g, double b) {
-    EXPECT_NEAR(c.x, r, 2e-3);  // the stops are rounded to 1e-4; knots may stand 5e-4 of linear light off
+    EXPECT_NEAR(c.x, r, 2e-3);  // the stops are rounded to 1e-4; knots may deviate by 5e-4 of linear light
     EXPECT_NEAR(c.y, g, 2e-3);
     EXPECT_NEAR(c.z, b, 2e-3);
   };

@@ -51,7 +51,7 @@ TEST(TextTransferFunction, OpacityScaleMultipliesExtinction) {
 }
 
 TEST(TextTransferFunction, RefusesWhatIsNotFiveNumbersNamingFileAndLine) {
-  const std::string_view good = "0 0 0 0 1\n\n# c\n";  // the fault stands in line 4
+  const std::string_view good = "0 0 0 0 1\n\n# c\n";  // the error is in line 4
   const struct {
     const char* line;
     std::vector<std::string> parts;

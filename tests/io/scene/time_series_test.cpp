@@ -45,7 +45,7 @@ TEST(TimeSeries, WhatIsOneIsSeenByTheName) {
   EXPECT_TRUE(is_time_series("film.PVD"));
   for (const char* name : {"m.vtu", "100%.vtu", "m_%s.vtu", "m_%0d.vtu", "%4d.vtu", "a%d/m.vtu"})
     EXPECT_FALSE(is_time_series(name)) << name;
-  EXPECT_FALSE(is_time_series(folder.write("real_%d.vtu", "x")));  // a file of that very name
+  EXPECT_FALSE(is_time_series(folder.write("real_%d.vtu", "x")));  // a file with exactly this name
 }
 
 TEST(TimeSeries, AFileSeriesGivesTimesInOrder) {
@@ -119,7 +119,7 @@ TEST(TimeSeries, MalformedPvdsAreToldInOneLine) {
   refused("<!DOCTYPE a [<!ENTITY b \"bbbbbbbbbbbbbbbbbbbb\"><!ENTITY c \"&b;&b;&b;\">]>" + head + "&c;</x>", "line 1");
   test::expect_bad_input([&] { read_time_series(folder / "none.pvd"); }, {"there is no such file"});
   const auto huge = folder.write("huge.pvd", head);
-  std::filesystem::resize_file(huge, std::uintmax_t{1} << 33);  // sparse: it takes no room
+  std::filesystem::resize_file(huge, std::uintmax_t{1} << 33);  // sparse: it takes no space
   test::expect_bad_input([&] { read_time_series(huge); }, {"huge.pvd: "});
 }
 

@@ -37,7 +37,7 @@ TEST(JsonText, HasALimitOfLevelsAndOfValues) {
   expect_bad_input([] { parse_json(R"([1, {"a": []}])", "f", 3); }, {"f: has more than 3 values"});
 }
 
-// In quadratic time this would take hours.
+// Quadratic time would be hours.
 TEST(JsonText, OfManyMembersIsReadInLinearTime) {
   std::string list = "[{}", object = "{\"0\":{}";
   constexpr std::size_t count = 1'000'000;

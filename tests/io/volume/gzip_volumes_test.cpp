@@ -72,7 +72,7 @@ TEST_F(GzipVolumes, DamagedOnesAreRefusedByTheirOwnName) {
   const std::string whole = test::contents(write("a.nrrd.gz", nrrd));
   expect_no_volume(folder.write("cut.nrrd.gz", whole.substr(0, whole.size() - 12)), "cut.nrrd.gz: ");
   std::string broken = whole;
-  broken[whole.size() - 6] = static_cast<char>(~broken[whole.size() - 6]);  // of the check sum
+  broken[whole.size() - 6] = static_cast<char>(~broken[whole.size() - 6]);  // of the checksum
   expect_no_volume(folder.write("sum.nrrd.gz", broken), "end or break");
   expect_no_volume(write("short.nrrd.gz", nrrd.substr(0, nrrd.size() - 1)), "short.nrrd.gz: 4x3x2 samples of 1 int16");
   expect_no_volume(write("a_4x3x2_int16.raw.gz", "abc"), "48 bytes, the file has 3");
@@ -80,7 +80,7 @@ TEST_F(GzipVolumes, DamagedOnesAreRefusedByTheirOwnName) {
 }
 
 TEST_F(GzipVolumes, NothingIsInflatedBehindTheSamplesThatTheHeaderStates) {
-  // What follows them takes no memory: a damaged stream there is not even noticed.
+  // Data after them takes no memory: a damaged stream there is not even detected.
   const std::string header = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n\n";
   for (const auto& [name, begin] :
        {std::pair{"b.nrrd.gz", header},
@@ -102,7 +102,7 @@ TEST_F(GzipVolumes, WhatIsOutOfProportionToItsFileIsRefused) {
     test::expect_bad_input([this, &zeros, name = name, begin = begin] { read_mesh(write(name, begin + zeros(100))); },
                            {name, "hold more than", "gunzip"});
   expect_no_volume(write("b_4x4x4_uint8.raw.gz", zeros(170)), "hold more than");
-  // A mask compresses hundreds of times.
+  // A mask compresses by a factor of hundreds.
   const auto mask = write("m_256x256x1000_uint8.raw.gz", std::string(256 * 256 * 1000, '\1'));
   EXPECT_EQ(open_volume(mask).source->geometry().points, (scene::GridIndex{256, 256, 1000}));
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What `convert` keeps besides samples and places: a patient's axes, modality, units and what values are.
+// What `convert` keeps in addition to samples and positions: a patient's axes, modality, units and the meaning of
+// values.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -54,7 +55,8 @@ TEST(KeptTags, WordsOfAHeaderWithControlCharactersDoNoHarm) {
   }
 }
 
-/// A patient by the header or by values of CT; else its frame is just a frame.
+/// Anatomical axes apply if the header describes a patient or the values are those of CT; otherwise the frame has no
+/// meaning.
 TEST(KeptTags, ANiftiIsAPatientIfItsHeaderOrValuesSaySo) {
   const test::TemporaryFolder folder;
   const auto axes = [&](int code, char unit, std::int16_t low, std::int16_t high) {
@@ -71,7 +73,7 @@ TEST(KeptTags, ANiftiIsAPatientIfItsHeaderOrValuesSaySo) {
     EXPECT_EQ(axes(code, 0, 0, 100), BodyAxes::none) << code;
     EXPECT_EQ(axes(code, 2, 0, 100), BodyAxes::ras) << code;        // millimetres
     EXPECT_EQ(axes(code, 2 + 8, 0, 100), BodyAxes::ras) << code;    // and seconds
-    EXPECT_EQ(axes(code, 0, -1024, 1500), BodyAxes::ras) << code;   // Hounsfield's
+    EXPECT_EQ(axes(code, 0, -1024, 1500), BodyAxes::ras) << code;   // Hounsfield units
     EXPECT_EQ(axes(code, 0, -9999, 1500), BodyAxes::none) << code;  // a fill value
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The 48 orientations of every medical format that this test can write: left is left.
+// The 48 orientations of every medical format that this test can write: left stays left.
 #include "support/marker.hpp"
 
 #include <fmt/format.h>
@@ -43,7 +43,7 @@ std::string nifti_by_sform(const MarkedVolume& v) {
   return file;
 }
 
-/// The unit quaternion (a, b, c, d), a >= 0, of a rotation: the largest of its parts from the diagonal, the others from
+/// The unit quaternion (a, b, c, d), a >= 0, of a rotation: the largest component from the diagonal, the others from
 /// sums and differences across it.
 std::array<double, 4> quaternion_of(const glm::dmat3& columns) {
   const auto r = [&](int row, int column) { return columns[column][row]; };
@@ -79,7 +79,7 @@ std::string nifti_by_qform(const MarkedVolume& v) {
 
 std::string comma_vector(const glm::dvec3& v) { return fmt::format("({},{},{})", v.x, v.y, v.z); }
 
-/// `signs` of x, y and z of the file's space to right-anterior-superior.
+/// `signs`: from x, y and z of the file's space to right-anterior-superior.
 std::string nrrd_of(const MarkedVolume& v, const char* space, const glm::dvec3& signs) {
   std::string head = fmt::format(
       "NRRD0005\ntype: short\ndimension: 3\nsizes: {} {} {}\nencoding: raw\nendian: little\nspace: {}\n"
@@ -89,7 +89,7 @@ std::string nrrd_of(const MarkedVolume& v, const char* space, const glm::dvec3& 
   return head + "\nspace origin: " + comma_vector(signs * v.origin) + "\n\n" + test::bytes_of(v.samples());
 }
 
-/// As ITK writes them: coordinates left, posterior, superior, and letters of where the axes come from.
+/// As written by ITK: coordinates left, posterior, superior, and letters for where the axes start.
 std::string meta_of(const MarkedVolume& v) {
   std::string matrix, letters = v.letters();
   for (int a = 0; a < 3; ++a) {
@@ -123,7 +123,7 @@ std::string dicom_frames_of(const MarkedVolume& v) {
   return test::dicom_file(file);
 }
 
-/// A file each slice, named against their order.
+/// One file per slice, named in reverse order.
 std::filesystem::path write_slices(const std::filesystem::path& folder, const MarkedVolume& v) {
   std::filesystem::create_directories(folder);
   const std::vector<std::int16_t> all = v.samples();
@@ -160,7 +160,7 @@ TEST(Marker, LeftIsLeftInAllOrientationsOfFilesReadHere) {
                         {"MetaImage", in("m.mha", meta_of)}});
 }
 
-/// The slices' normal is row x column, so that half of the orientations are those of files in another order.
+/// The slices' normal is row x column, so that half of the orientations need files in another order.
 TEST(Marker, LeftIsLeftInAllOrientationsOfDicom) {
   if (!has_reader(Reader::dicom)) GTEST_SKIP() << "tessera-read-dicom is not installed";
   const test::TemporaryFolder folder;

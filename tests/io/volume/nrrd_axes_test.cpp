@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// NRRD headers: spaces, places of samples, and axes that are none of space.
+// NRRD headers: spaces, positions of samples, and axes that are not spatial.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ TEST_F(NrrdAxes, EveryNameOfASpaceLeadsWhereItSays) {
   struct Space {
     const char* name;
     BodyAxes axes;
-    glm::dvec3 first;  ///< of the world, where the file says (1, 0, 0), ...
+    glm::dvec3 first;  ///< in the world, for (1, 0, 0) in the file, ...
     glm::dvec3 second, third;
   };
   const glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
@@ -140,7 +140,7 @@ TEST_F(NrrdAxes, KindsAndDirectionsTellListsComponentsAndTimeApartWhereverTheyAr
   const std::string first = "dimension: 4\nsizes: 2 4 3 2\nkinds: ";
   EXPECT_EQ(open(first + "list domain domain domain").time_step.count, 2);
   EXPECT_EQ(open(first + "2-vector space space space").fields.front().components, 2);
-  // One of one sample is nothing, even between the others.
+  // An axis of one sample has no role, even between the others.
   EXPECT_EQ(open("dimension: 4\nsizes: 4 1 6 2\nkinds: domain list domain domain").source->geometry().points,
             (GridIndex{4, 6, 2}));
   expect_no_volume(write("dimension: 4\nsizes: 4 2 3 2\nkinds: domain list domain domain"),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Volumes that are unpacked a part at a time into a file without a name, instead of into memory.
+// Volumes that are unpacked a part at a time into an unnamed file instead of into memory.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -38,7 +38,7 @@ TEST_F(StreamedVolumes, OfGzipAreWhatMemoryWouldHold) {
   EXPECT_TRUE(is_the_same_streamed(zipped("bytes.nii.gz", nifti_of(2, 1))));
   EXPECT_TRUE(is_the_same_streamed(zipped("doubles.nii.gz", nifti_of(64, 8))));
   EXPECT_TRUE(is_the_same_streamed(zipped("steps.nii.gz", nifti_of(4, 2, 3))));
-  // In members, and with zeros behind the last one.
+  // In several members, and with zeros after the last one.
   const std::string whole = nifti_of(2, 1);
   const std::string first = test::contents(zipped("1.gz", whole.substr(0, 100'000))),
                     second = test::contents(zipped("2.gz", whole.substr(100'000)));
@@ -57,7 +57,7 @@ TEST_F(StreamedVolumes, OfVectorsHaveOneNumberOfEachOrTheirLengths) {
 
 TEST_F(StreamedVolumes, ThatComeInOneOrderOnlyStayInMemory) {
   std::string header = test::nifti_header();
-  const std::int16_t dim[] = {5, nx, ny, nz, 1, 3, 1, 1};  // all of a component together
+  const std::int16_t dim[] = {5, nx, ny, nz, 1, 3, 1, 1};  // each component contiguous
   std::memcpy(header.data() + 40, dim, sizeof dim);
   const auto file = zipped("planes.nii.gz", header + noise(samples * 6));
   const VolumeFile volume = open_volume(file, streaming());

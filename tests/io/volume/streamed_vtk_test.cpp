@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Large .vti and .vtr of one array, which are read without VTK, as VTK reads them.
+// Large .vti and .vtr of one array, read without VTK, give the same result as VTK.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -155,7 +155,7 @@ TEST_F(StreamedVtk, WithOddCoordinatesAreLeftToIt) {
   c.axes->text = true;
   EXPECT_TRUE(is_plain(vtk_file(c, bytes)));
   for (const char* words : {"-17.5 ", "99999999999 "}) EXPECT_FALSE(is_plain(with("-17 ", words))) << words;
-  // Behind the samples.
+  // After the samples.
   c = {false, true, true, true, false, "UInt8"};
   c.axes = axes_of("Float64", 1e-3);
   const std::string whole = vtk_file(c, bytes);
@@ -180,7 +180,7 @@ TEST_F(StreamedVtk, ThatOthersReadComeThroughTheirHelper) {
   TESSERA_VTK_OR_SKIP();
   const VtkCase plain{true, false, false, false, false};
   std::string text = vtk_file(plain, noise(samples * 2));
-  // An array more than this program reads itself.
+  // One more array than this program reads itself.
   text.replace(text.find("</PointData>"), 0,
                "<DataArray type=\"UInt16\" Name=\"b\" format=\"appended\" offset=\"0\"/>");
   EXPECT_TRUE(is_the_same_streamed(folder.write("two.vti", text), "rho"));
@@ -188,7 +188,7 @@ TEST_F(StreamedVtk, ThatOthersReadComeThroughTheirHelper) {
 }
 
 TEST_F(StreamedVtk, ThatAreDamagedAreRefusedInOneLine) {
-  TESSERA_VTK_OR_SKIP();  // what does not fit is VTK's to refuse
+  TESSERA_VTK_OR_SKIP();  // VTK refuses what does not fit
   const auto refused = [&](const std::string& name, const std::string& content) {
     const auto file = folder.write(name, content);
     SCOPED_TRACE(name + " of " + std::to_string(content.size()));
@@ -222,7 +222,7 @@ TEST_F(StreamedVtk, ThatAreDamagedAnywhereAreReadOrRefused) {
     if (trial % 5 < 2) c.axes = axes_of(trial % 5 == 0 ? "Float32" : "Float64", trial % 7 * 1e-4);
     if (trial % 10 == 0) c.axes->text = true;
     std::string text = vtk_file(c, noise(samples));
-    // Half of them where numbers of the array may be.
+    // Half of the changes are where numbers of the array may be.
     const std::size_t from = trial % 2 == 0 ? 0 : text.find("<DataArray"),
                       room = trial % 3 == 0 ? text.size() - from : 700;
     for (int k = 0; k < 3; ++k) text[from + random() % room] = static_cast<char>(random());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Volumes of colours are never drawn as their length without a word.
+// Volumes of colours are never silently rendered by the length of their tuples.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -32,7 +32,7 @@ using test::put;
 
 const std::filesystem::path volumes = std::filesystem::path(TESSERA_SOURCE_DIR) / ".." / "shared" / "data" / "volumes";
 
-/// Files in every format that is written, and that this build reads again.
+/// Names of files in every format that is written and that this build reads.
 std::vector<std::string> names_written() {
   std::vector<std::string> names = {"a.nrrd", "a.bricks", "a_21x10x17_float32.raw"};
   if (has_reader(Reader::vtk)) names.insert(names.end(), {"a.vti", "a.vtr"});
@@ -41,7 +41,7 @@ std::vector<std::string> names_written() {
 
 class VolumeFiles : public ::testing::Test {
  protected:
-  /// Opens the file and expects one line of refusal that holds `words`.
+  /// Opens the file and expects a one-line error that contains `words`.
   void expect_refused(const std::filesystem::path& file, const std::string& words, const ReadOptions& options = {}) {
     const test::Fault fault = test::fault_of([&] { open_volume(file, options); });
     EXPECT_EQ(fault.code, scene::ErrorCode::bad_input) << fault.message;
@@ -70,7 +70,7 @@ TEST_F(VolumeFiles, TheFourPublicVolumesAreReadAsDescribed) {
   EXPECT_EQ(carotid.source->geometry().points, (GridIndex{76, 49, 45}));
   EXPECT_EQ(carotid.source->geometry().origin, glm::dvec3(100, 80, 1));
   EXPECT_EQ(carotid.source->grid().field_name, "scalars");
-  EXPECT_NEAR(carotid.range.high, 580, 1);  // as the data's README says, in whole numbers
+  EXPECT_NEAR(carotid.range.high, 580, 1);  // as stated in the data's README, in integers
   const VolumeFile speed = open_volume(volumes / "carotid.vtk", {.field = "vectors"});
   EXPECT_EQ(speed.source->grid().field_name, "vectors:mag");
   const VolumeFile x = open_volume(volumes / "carotid.vtk", {.field = "vectors:x"});
@@ -81,7 +81,7 @@ TEST_F(VolumeFiles, TheFourPublicVolumesAreReadAsDescribed) {
   speed.source->read(box, std::span(s)), x.source->read(box, std::span(a)), y.source->read(box, std::span(b));
   z.source->read(box, std::span(c));
   for (std::size_t k = 0; k < 8; ++k)
-    EXPECT_NEAR(s[k], std::sqrt(a[k] * a[k] + b[k] * b[k] + c[k] * c[k]), 1e-6 * s[k]);  // a float's rounding
+    EXPECT_NEAR(s[k], std::sqrt(a[k] * a[k] + b[k] * b[k] + c[k] * c[k]), 1e-6 * s[k]);  // rounding of floats
 }
 
 TEST_F(VolumeFiles, MeshOrVolumeIsToldByContentNotByName) {
@@ -105,7 +105,7 @@ TEST_F(VolumeFiles, NiftiPlacesByItsSpacingThenQformThenSform) {
   EXPECT_EQ(volume.source->geometry().origin, glm::dvec3(0));
   EXPECT_EQ(all_samples(*volume.source)[23], 23);
 
-  put<std::int16_t>(file, 252, 1);  // qform: a quarter turn round z (d = sin 45 degrees), then the third axis mirrored
+  put<std::int16_t>(file, 252, 1);  // qform: a quarter turn around z (d = sin 45 degrees), then the third axis mirrored
   put<float>(file, 264, static_cast<float>(std::sqrt(0.5)));
   put<float>(file, 268, 10), put<float>(file, 272, 20), put<float>(file, 276, 30);
   put<float>(file, 76, -1);
@@ -113,7 +113,7 @@ TEST_F(VolumeFiles, NiftiPlacesByItsSpacingThenQformThenSform) {
   const glm::dvec3 corner = scene::world_of_index(volume.source->geometry(), {3, 2, 1});
   EXPECT_LT(glm::length(corner - glm::dvec3(10 - 4, 20 + 3, 30 - 3)), 1e-5);  // the quaternion is a float
 
-  put<std::int16_t>(file, 254, 2);  // sform wins
+  put<std::int16_t>(file, 254, 2);  // sform takes precedence
   const float rows[] = {0, 0, 2, 5, 3, 0, 0, 6, 0, 4, 0, 7};
   std::memcpy(file.data() + 280, rows, sizeof rows);
   volume = open_volume(folder.write("c.nii", file));
@@ -147,7 +147,7 @@ TEST_F(VolumeFiles, NiftiOfMoreDimensionsTooManySamplesOrTooFewBytesIsRefused) {
   put<std::int16_t>(file, 40, 6), put<std::int16_t>(file, 52, 3);
   expect_refused(folder.write("six.nii", file), "6 dimensions");
   file = test::nifti();
-  put<std::int16_t>(file, 40, 5);  // of one each: still a volume
+  put<std::int16_t>(file, 40, 5);  // of length one each: still a volume
   EXPECT_NO_THROW(open_volume(folder.write("ones.nii", file)));
   for (const std::size_t at : {42, 44, 46}) put<std::int16_t>(file, at, 30000);
   expect_refused(folder.write("huge.nii", file), "the file has 48");
@@ -339,7 +339,7 @@ TEST_F(VolumeFiles, ImagesInPiecesAreOneAndGapsOrHugeExtentsAreRefused) {
   const VolumeFile volume = open_volume(folder.write("p.pvti", whole("0 2 0 1 0 1", second)));
   EXPECT_EQ(all_samples(*volume.source), counting<double>(12));
   EXPECT_EQ(volume.source->geometry().origin, glm::dvec3(1, 2, 3));
-  EXPECT_EQ(volume.source->geometry().direction[0], glm::dvec3(0, 1, 0));  // the pieces', which VTK's reader loses
+  EXPECT_EQ(volume.source->geometry().direction[0], glm::dvec3(0, 1, 0));  // the pieces', dropped by VTK's reader
   expect_refused(folder.write("gap.pvti", whole("0 2 0 1 0 1", "")), "1 of its 2 cells");
   expect_refused(folder.write("huge.pvti", whole("0 1000 0 1000 0 1000", second)), "cells");
   expect_refused(folder.write("gone.pvti", whole("0 2 0 1 0 1", "<Piece Extent=\"1 2 0 1 0 1\" Source=\"no.vti\"/>")),
@@ -403,7 +403,7 @@ TEST_F(VolumeFiles, RectilinearGridsInPiecesAreOneVolumeAndBadPiecesAreNamed) {
   EXPECT_EQ(all_samples(*volume.source), counting<double>(16));
   EXPECT_EQ(volume.source->geometry().coordinates[0], (std::vector<double>{0.1, 1, 3, 9}));
   EXPECT_EQ(volume.source->geometry().points, (GridIndex{4, 2, 2}));
-  EXPECT_EQ(read_mesh(file).counts.cells_read, 3u);  // and the mesh of cells that it is for convert
+  EXPECT_EQ(read_mesh(file).counts.cells_read, 3u);  // and the mesh of its cells for convert
 
   const auto with = [&](const std::string& name) { return whole(all, first + part(right, name)); };
   expect_refused(folder.write("gap.pvtr", whole(all, first)), "1 of its 3 cells");
@@ -440,7 +440,7 @@ TEST_F(VolumeFiles, RectilinearCoordinatesThatFallAreTurnedOver) {
   EXPECT_EQ(scene::bounds(g), (scene::Box{{0, 0, 1}, {4, 2, 9}}));
 }
 
-/// A volume of odd sizes with everything that formats may lose.
+/// A volume of odd sizes with every property that formats may lose.
 scene::Grid wavy_grid() {
   scene::Grid grid;
   grid.geometry.points = {21, 10, 17};
@@ -561,17 +561,17 @@ TEST_F(VolumeFiles, RectilinearCoordinatesThatAreEvenButForRoundingMakeARegularG
       EXPECT_NEAR(scene::world_of_index(even, {0, 0, 0})[a], first, place) << type;
       EXPECT_NEAR(scene::world_of_index(even, {3, 3, 3})[a], last, place) << type;
     }
-    // Turned over.
+    // Reversed.
     const scene::GridGeometry falling = geometry(type, whole ? "14 11 8 5" : "-0.4 -0.5 -0.6 -0.7");
     EXPECT_FALSE(falling.rectilinear()) << type;
     EXPECT_NEAR(scene::world_of_index(falling, {0, 0, 0}).x, last, place) << type;
     EXPECT_NEAR(scene::world_of_index(falling, {3, 0, 0}).x, first, place) << type;
   }
-  // Off by more than their type rounds.
+  // The deviation exceeds the rounding of their type.
   EXPECT_TRUE(geometry("Float32", "-0.7 -0.6 -0.500001 -0.4").rectilinear());
   EXPECT_TRUE(geometry("Float64", "-0.7 -0.6 -0.50000001 -0.4").rectilinear());
   EXPECT_TRUE(geometry("Int32", "5 8 12 14").rectilinear());
-  // So far from zero that rounding is much of a step.
+  // So far from zero that rounding is a large part of a step.
   EXPECT_TRUE(geometry("Float32", "1e6 1000000.125 1000000.1875 1000000.375").rectilinear());
 }
 
@@ -585,7 +585,7 @@ TEST_F(VolumeFiles, FormatsRefuseWhatTheyCannotSay) {
   grid.geometry.points = {22, 11, 18};
   EXPECT_THROW(write_volume(*scene::MemorySource::of(grid, wavy_values()), folder / "a.nrrd"), scene::Error);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
-  // What a message proposes can be written.
+  // Formats suggested by a message can be written.
   for (const bool cell : {false, true})
     for (const bool is_rectilinear : {false, true})
       for (const bool is_turned : {false, true}) {
@@ -609,7 +609,7 @@ TEST_F(VolumeFiles, FormatsRefuseWhatTheyCannotSay) {
       }
 }
 
-/// Every format, cut short and with bytes changed: opened, or refused in one line, never a crash.
+/// Every format, truncated and with bytes changed: opened, or refused in one line, never a crash.
 TEST_F(VolumeFiles, DamagedFilesAreRefusedOrReadButNeverCrash) {
   const auto source = scene::MemorySource::of(wavy_grid(), wavy_values());
   for (const std::string& name : names_written()) write_volume(*source, folder / name, 8);
@@ -632,7 +632,7 @@ TEST_F(VolumeFiles, DamagedFilesAreRefusedOrReadButNeverCrash) {
     };
     ASSERT_TRUE(opened(original));
     for (std::size_t k = 0; k < 24; ++k) {
-      const std::size_t size = (original.size() - 12) * k / 24 + 1;  // text may do without its last line end
+      const std::size_t size = (original.size() - 12) * k / 24 + 1;  // text may lack its last line end
       EXPECT_FALSE(opened(original.substr(0, size))) << size << " of " << original.size() << " bytes";
     }
     for (unsigned seed = 1; seed <= 40; ++seed) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Volumes of several steps, in several files, and with a header of their own.
+// Volumes of several steps, in several files, and with a separate header.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -87,7 +87,7 @@ TEST_F(VolumeSteps, NiftiStatesTimesInItsUnit) {
     std::int8_t code;
     std::vector<double> times;
   };
-  // Seconds, milliseconds, hertz, and nothing but millimetres.
+  // Seconds, milliseconds, hertz, and only millimetres.
   for (const Unit& unit : {Unit{8 + 2, {1, 3.5, 6}}, Unit{16, {0.001, 0.0035, 0.006}}, Unit{32, {}}, Unit{2, {}}}) {
     std::string file = three_steps();
     put<float>(file, 92, 2.5f);
@@ -121,7 +121,7 @@ TEST_F(VolumeSteps, NiftiVectorsAreInPlanes) {
   file += bytes_of(counting<std::int16_t>(72));
   const auto named = folder.write("warp.nii", file);
   for (int c = 0; c < 3; ++c) EXPECT_EQ(samples(named, {.field = fmt::format("samples:{}", c)}), from(24.0 * c));
-  EXPECT_NEAR(samples(named)[1], std::sqrt(1.0 + 25.0 * 25 + 49.0 * 49), 1e-5);  // held as floats
+  EXPECT_NEAR(samples(named)[1], std::sqrt(1.0 + 25.0 * 25 + 49.0 * 49), 1e-5);  // stored as floats
   put<std::int16_t>(file, 48, 2);
   expect_no_volume(folder.write("both.nii", file), "beside 2 steps");
 }
@@ -141,7 +141,7 @@ TEST_F(VolumeSteps, HeaderAndSamplesMayBeTwoFiles) {
     EXPECT_EQ(volume.range, (scene::ValueRange{0, 46, 0}));
     EXPECT_EQ(volume.format, "NIfTI-1");
   }
-  // Analyze: no magic word; here of the other byte order, the samples packed.
+  // Analyze: no magic word; here in the other byte order, with packed samples.
   header.resize(348);
   std::fill(header.begin() + 80, header.end(), '\0');
   put<std::int32_t>(header, 0, 348);
@@ -198,7 +198,7 @@ TEST_F(VolumeSteps, SlicesInFilesAreOneVolume) {
   EXPECT_EQ(samples(folder.write("p.mhd", meta + "HeaderSize = 4\nElementDataFile = s%03d.raw 7 8 1\n")), from(0));
   EXPECT_EQ(samples(folder.write("l.mhd", meta + "HeaderSize = -1\nElementDataFile = LIST 2D\ns007.raw\ns008.raw\n")),
             from(0));
-  // The other way round.
+  // In reverse order.
   EXPECT_EQ(samples(folder.write("r.mhd", meta + "HeaderSize = 4\nElementDataFile = s%03d.raw 8 7 -1\n")).front(), 12);
   expect_no_volume(folder.write("absent.mhd", meta + "ElementDataFile = s%03d.raw 7 9 1\n"), "s009.raw");
   expect_no_volume(folder.write("none.mhd", meta + "ElementDataFile = LIST\n"), "no names follow");
