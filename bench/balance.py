@@ -34,7 +34,7 @@ METHODS = ("learned", "accurate", "splatting", "backface")
 RESOLUTIONS = {"full": 1, "a quarter": 0.5}
 PRINTED_4 = {("rotation", "full"): (13.7, 10.8, 17.3), ("rotation", "a quarter"): (14.0, 10.9, 17.4), ("zoom", "full"): (10.3, 9.1, 14.7)}
 PRINTED_5 = {0: ("17.0 ± 12.7", "22.8 ± 23.3"), 2: ("17.6 ± 13.0", "46.9 ± 34.0"), 4: ("18.2 ± 13.6", "60.6 ± 34.2")}
-DEGREES = 2  # a frame of the turn
+DEGREES = 2  # per frame of the turn
 
 
 def run(words):
@@ -136,7 +136,7 @@ def map_ms(bench, method, processes, brick, map_side, resolution=1.0):
     (bench.folder / "path.json").write_text(json.dumps(list(views("rotation", bench.box, 7))))
     report = bench.folder / "report.json"
     side = round(map_side / resolution)
-    # One process has nothing to split, but shows what it would go by.
+    # A single process has nothing to split, but reports the data for a split.
     run(["mpirun", "--oversubscribe", "-n", processes, bench.args.tessera, "render", bench.volume, "-o", bench.folder / "f%d.pfm", "--camera",
          bench.folder / "path.json", "--size", f"{side}x{side}", "--threads", "1", "--transfer-function", bench.args.transfer_function, "--brick-size", brick,
          "--balance", method, "--balance-resolution", resolution, *(["--show", "balance"] if processes == 1 else []), "--quiet", "--report", report])

@@ -23,12 +23,12 @@ import results_file
 from balance import bounds_of, run
 
 VOLUMES = ("head", "radial", "turbulence")
-FUNCTIONS = {"high opacity": 60, "low opacity": 1.5}  # extinction of the highest value, a world unit
+FUNCTIONS = {"high opacity": 60, "low opacity": 1.5}  # extinction of the highest value, per world unit
 SIZES = {"1": "1024x1024", "2": "1792x1170"}
 AXES = ((1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1))
 ZOOMS = ((1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1), (-1, 1, 1), (1, -1, 1), (1, 1, -1))
 BRICK = 32
-AHEAD = int(7.5e6 / (BRICK + 1) ** 3)  # bricks of bytes, with the samples that they share
+AHEAD = int(7.5e6 / (BRICK + 1) ** 3)  # bricks of bytes, including shared samples
 STAGES = {"load balancing": ("partition",), "loading": ("read",), "culling": ("cull",), "rendering": ("project",), "gather": ("pack", "assemble")}
 
 

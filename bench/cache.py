@@ -32,7 +32,7 @@ PRINTED_2 = {8: (42.24, 80.15, 79.53, 6.2), 16: (57.85, 79.89, 79.89, 15.4), 32:
 PRINTED_ALL = 104.04  # millions of samples of 510 x 510 x 400
 PRINTED_3 = {5: (11.65, 2.25, 10.53, 1.54), 10: (6.52, 0.59, 5.67, 0.37), 15: (4.38, 0.09, 3.33, 0.09), 20: (2.96, 0.06, 2.25, 0.05)}
 READ_US = 570
-SPEEDS = (0.5, 1, 2, 4, 7, 14)  # degrees a frame
+SPEEDS = (0.5, 1, 2, 4, 7, 14)  # degrees per frame
 
 
 def frames_of(args, runs):

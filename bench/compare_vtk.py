@@ -39,8 +39,8 @@ FILES = {
     "notch": ("notch/notch_stress_fixed.vtk", None),
     "unisim": ("unisim/UNISIM-II-D.vtu", None),
 }
-# Along the field's range: value, linear colour, extinction times the default picture's unit distance. Two humps and a
-# bright end, so that every part of the range shows and the order of cells matters.
+# Along the field's range: value, linear colour, extinction times the default image's unit distance. Two humps and a
+# bright end, so that every part of the range is visible and the order of cells matters.
 SHAPE = [(0.0, 0.05, 0.10, 0.50, 0.02), (0.2, 0.05, 0.45, 0.60, 0.06), (0.45, 0.20, 0.80, 0.20, 0.30),
          (0.55, 0.90, 0.80, 0.10, 0.06), (0.8, 0.95, 0.35, 0.05, 0.25), (1.0, 1.00, 0.95, 0.90, 0.60)]
 
@@ -52,7 +52,7 @@ def tessera(args, *words):
     return done.stderr.strip()
 
 
-# ---- VTK's own reading ----------------------------------------------------------------------------------------------
+# ---- VTK's own reader -----------------------------------------------------------------------------------------------
 
 def first_leaf(blocks):
     iterator = blocks.NewIterator()
@@ -101,7 +101,7 @@ def drop_hidden(grid):
     ids = vtk.vtkIdList()
     for i in keep:
         ids.InsertNextId(int(i))
-    grid.GetCellData().RemoveArray("vtkGhostType")  # else the filter blanks by it again
+    grid.GetCellData().RemoveArray("vtkGhostType")  # otherwise the filter blanks by it again
     extract = vtk.vtkExtractCells()
     extract.SetInputData(grid)
     extract.SetCellList(ids)
@@ -208,7 +208,7 @@ def difference(ours, theirs):
     largest = d.max(-1)
     y, x = np.unravel_index(largest.argmax(), largest.shape)
     outside = (theirs.max(-1) > 0) & (ours.max(-1) == 0)
-    missed = (ours.max(-1) > 1.5 / 255) & (theirs.max(-1) == 0)  # what 8 bits surely show
+    missed = (ours.max(-1) > 1.5 / 255) & (theirs.max(-1) == 0)  # certainly visible in 8 bits
     return {"max": float(d.max()), "max_inside": float(largest[~outside].max()),
             "only_vtk": int(outside.sum()), "only_tessera": int(missed.sum()), "rms": float(np.sqrt((d ** 2).mean())), "over_0.02": float((largest > 0.02).mean()),
             "p99.9": float(np.quantile(largest, 0.999)),

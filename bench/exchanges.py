@@ -66,7 +66,7 @@ def meshes(args, folder):
         files[f"`{name}`"] = (f"mesh={converted}",)
     for name, words in {**MESHES, **files}.items():
         for ranks, of in run(args, *words, f"size={args.size // 2}", f"views={args.views // 2}", f"ranks={args.mesh_ranks}").items():
-            # One of the compositors, all of which get as many tiles, is in the same process.
+            # One of the compositors, all of which get the same number of tiles, is in the same process.
             sent = of["runs"]["bytes"] * (ranks - 1) / ranks
             cells = [f"{of['runs']['runs_a_part']:.3f}", f"{sent / ranks / 1e6:.2f}"]
             cells += [f"{of[exchange]['bytes'] / ranks / 1e6:.2f}" for exchange in ("direct-send", "radix-k")]

@@ -57,7 +57,7 @@ def main():
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         function, mesh = os.path.join(folder, "tf.txt"), os.path.join(folder, "m.tets")
-        # Colour and extinction vary; a ray through two units sees an optical depth of about two.
+        # Colour and extinction vary; a ray through two units has an optical depth of about two.
         open(function, "w").write("0 0.9 0.2 0.1 0.6\n0.5 0.2 0.9 0.3 1\n1 0.1 0.3 0.9 1.4\n")
         for kind, parameters, size in (
             [("cube", [f"n={n}"], "24x24") for n in (1, 2, 4, 8, 16, 32, 64)] +
@@ -75,7 +75,7 @@ def main():
             frame = json.load(open(report))["frames"][0]
             depth = frame["counters"].get("most_segments_of_a_pixel")
             if not depth:
-                depth = int(parameters[0].split("=")[1]) * (2 if kind == "stack" else 3)  # a voxel's six tets: about three on a ray
+                depth = int(parameters[0].split("=")[1]) * (2 if kind == "stack" else 3)  # a voxel's six tets: about three per ray
             errors = [max(abs(a - b) for a, b in zip(pictures[0], p)) for p in pictures[1:]]
             rows.append((depth, *errors))
     print("| ray segments of the deepest pixel, about | 16-bit framebuffer | 32-bit framebuffer |\n|---|---|---|")

@@ -30,8 +30,8 @@ import zlib
 import results_file
 
 SMALL_BUDGET, LARGE_BUDGET = "64M", "1G"
-RANKS = 4  # of sort-last
-PATH = 4  # views once round
+RANKS = 4  # for sort-last
+PATH = 4  # views of one turn
 
 
 def run(words):
@@ -135,7 +135,7 @@ def of_processes(bench):
 def of_sort_last(bench):
     n, memory = bench.args.large, bench.args.memory
     volume, function = bench.converted(bench.generated("radial", n), f"radial_{n}.bricks"), bench.folder / "all.txt"
-    # Nothing is clear and nothing opaque, so that every brick is seen; a raw file's voxels are of length one.
+    # Nothing is clear and nothing opaque, so that every brick is visible; a raw file's voxels have length one.
     function.write_text(f"0 0.1 0.2 0.8 {0.2 / n}\n128 0.9 0.8 0.3 {0.6 / n}\n255 1 0.3 0.1 {1.5 / n}\n")
     lines = ["| way | bricks loaded, by frame | thrown out again, by frame | bricks in memory at the end, all processes | largest resident set of each, MiB |",
              "|---|---|---|---:|---|"]

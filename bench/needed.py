@@ -64,7 +64,7 @@ def measure(args, name, words, folder):
             "opaque": (["--opacity-scale", "50"], ["termination"])}
     out = {"name": name, "volume": is_volume, "counters": counters}
     for function, (more, mechanisms) in plan.items():
-        # All in turn, three times, so that another program's bursts fall on all.
+        # All in turn, three times, so that load bursts of other programs affect all.
         rounds = [{m: run(args, folder, [*words, *more, *(["--without", m] if m != "default" else [])], repeat=2)[1:]
                    for m in ("default", *mechanisms)} for _ in range(3)]
         out[function] = {m: (rounds[0][m][0], min(r[m][1] for r in rounds)) for m in rounds[0]}

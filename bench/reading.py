@@ -67,7 +67,7 @@ class Watch(threading.Thread):
                     its_own, its_shared = in_use(child)
                     self.reader_peak = max(self.reader_peak, its_own + its_shared)
                     self.reader_seconds = max(self.reader_seconds, int(open(f"/proc/{child}/schedstat").read().split()[0]) / 1e9)
-                    own, shared = own + its_own, max(shared, its_shared)  # what both see is the same
+                    own, shared = own + its_own, max(shared, its_shared)  # both report the same
                 self.peak = max(self.peak, own + shared)
             except (OSError, ValueError):
                 pass  # one has ended
@@ -102,7 +102,7 @@ def read_by_vtk(name, file):
         reader.SetDirectoryName(file)
     elif name == "vtkGenericEnSightReader":
         reader.SetCaseFileName(file)
-    elif name == "vtkNrrdReader":  # the parallel one takes its place
+    elif name == "vtkNrrdReader":  # the parallel one replaces it
         reader.SetController(vtk.vtkDummyController())
         reader.SetFileName(file)
     elif name == "vtkMultiBlockPLOT3DReader":
@@ -118,7 +118,7 @@ def read_by_vtk(name, file):
     def memory(what):
         return next(1024 * int(line.split()[1]) for line in open("/proc/self/status") if line.startswith(what))
 
-    pathlib.Path("/proc/self/clear_refs").write_text("5")  # the peak begins anew
+    pathlib.Path("/proc/self/clear_refs").write_text("5")  # resets the peak
     before, begin, used = memory("VmRSS"), time.monotonic(), resource.getrusage(resource.RUSAGE_SELF)
     reader.UpdateInformation()
     for enable in ("EnableAllCellArrays", "EnableAllPointArrays", "EnableAllBases", "ReadAllVariablesOn"):

@@ -419,7 +419,7 @@ def xml(kind, make, writer, settings):
     return lambda folder, n: written(writer(), make(n), folder / f"m.{kind}", **settings)
 
 
-# Name, points along an edge, what writes it, VTK's reader; the last part of a name in brackets is how it is stored.
+# Name, points along an edge, writer, VTK's reader; the last part of a name in brackets is the storage format.
 UG, SG, RG, IM = (getattr(vtk, f"vtkXML{k}Writer") for k in ("UnstructuredGrid", "StructuredGrid", "RectilinearGrid", "ImageData"))
 FORMATS = [
     (".vtu, raw", 65, xml("vtu", tets, UG, APPENDED), "vtkXMLUnstructuredGridReader"),

@@ -34,7 +34,7 @@ MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 MESHES = [("cube", "n=10"), ("cube", "n=9", "cell_data=1"), ("regular", "nx=12", "ny=8", "nz=10"), ("graded", "n=12", "volume_ratio=1e8"),
           ("slivers", "n=6", "aspect=1e6"), ("annulus", "n=32", "seam=1"), ("shells", "count=3"), ("bars", "n=12", "inverted=2"),
           ("ball", "levels=3")]
-VIEWS = 14  # of each mesh
+VIEWS = 14  # per mesh
 MESH_METHODS = [["--integrator", "exact"], [], ["--integrator", "exact"], ["--accuracy", "1e-6"], ["--integrator", "sampled:4"],
                 ["--without", "lattice"], ["--integrator", "partial"]]
 GRID_METHODS = [["--integrator", "exact"], [], ["--accuracy", "1e-6"], ["--integrator", "sampled"], ["--integrator", "preintegrated"], ["--shade"]]
@@ -91,7 +91,7 @@ class Comparison:
         old, _ = self.draw(self.args.old, "old", words, ranks)
         new, command = self.draw(self.args.new, "new", words, ranks)
         if isinstance(old, str) or isinstance(new, str):
-            # A scene that both refuse is no picture to compare, and none is meant to be refused.
+            # A scene that both versions refuse cannot be compared; scenes are made so that none is refused.
             said = f"old: {old if isinstance(old, str) else 'drawn'}; new: {new if isinstance(new, str) else 'drawn'}"
         elif all(a.read_bytes() == b.read_bytes() for a, b in zip(old, new)):
             return
@@ -136,7 +136,7 @@ class Comparison:
             for view in range(10):
                 method = GRID_METHODS[view % len(GRID_METHODS)]
                 if path.suffix == ".vtr" and method in (["--shade"], ["--integrator", "sampled"], ["--integrator", "preintegrated"]):
-                    method = []  # what rectilinear grids have not
+                    method = []  # not supported for rectilinear grids
                 self.compare(f"grid {path.name}, view {view}", self.grid_view(inputs, grid, view) + method)
 
     def large(self):

@@ -29,7 +29,7 @@ import results_file
 
 PRINTED = {15.7: {2: (878, 1.0), 4: (1572, 0.89), 8: (2533, 0.72)}, 51.1: {2: (1021, 1.0), 4: (1861, 0.91), 8: (3406, 0.83)}}  # kTets/s, efficiency
 SIZE = 1024
-LINK = 1.25e9  # bytes a second and direction: 10 Gbit
+LINK = 1.25e9  # bytes per second and direction: 10 Gbit
 STAGES = {"projector": ("transform", "cull", "bin", "project", "sort", "integrate", "composite", "pack", "send", "other"),
           "compositor": ("receive", "sort", "integrate", "composite", "assemble", "write", "send", "other")}
 COLOURS = ("#4e79a7", "#f28e2b", "#e15759", "#76b7b2", "#59a14f", "#edc948", "#b07aa1", "#ff9da7", "#9c755f", "#bab0ac", "#1b9e77", "#a6761d", "#7570b3")
@@ -69,7 +69,7 @@ def figures_of(trace, ranks):
             of_rank[rank]["role"] = args.get("role", "") or of_rank[rank]["role"]
             stage = span["name"]
             if stage in ("read", "partition", "prepare") or (stage == "send" and "frame" not in args):
-                continue  # once a mesh
+                continue  # once per mesh
             frame = of_rank[rank]["frames"][args.get("frame", 0)]
             if stage != "wait":
                 frame[stage if stage in STAGES[args["role"]] else "other"] += max(seconds, 0)

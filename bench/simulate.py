@@ -31,23 +31,23 @@ from simulate_assembly import Assembler
 from simulate_engine import Clock, Cores, Links
 from simulate_work import balanced, work_of
 
-BATCH, TILES_BATCH, EAGER = 256 << 10, 128 << 10, 64 << 10  # bytes of a message; what is larger asks first
-LOOK_WORKING, LOOK_MOVING, LOOK_IDLE = 1e-3, 0.25e-3, 1e-3  # seconds until a rank looks for messages, on average: half of its nap
-LOOK_CPU = 25e-6 / 2.5e-3  # cores that a rank's looks take
-IDLE_CREDIT = 20e-3  # credit that has not come together is given back after so long
-GOODPUT = 1448 / 1538  # of a link: TCP's part of an Ethernet frame, its preamble and gap counted
+BATCH, TILES_BATCH, EAGER = 256 << 10, 128 << 10, 64 << 10  # bytes per message; larger messages are announced first
+LOOK_WORKING, LOOK_MOVING, LOOK_IDLE = 1e-3, 0.25e-3, 1e-3  # seconds until a rank checks for messages, on average: half of its sleep
+LOOK_CPU = 25e-6 / 2.5e-3  # cores used by a rank's polling
+IDLE_CREDIT = 20e-3  # partly collected credit is returned after this time
+GOODPUT = 1448 / 1538  # of a link: TCP's share of an Ethernet frame, including preamble and gap
 
 
 class Settings:
     def __init__(self, **words):
-        self.bytes_per_second = None  # of a link, one direction; None: endless
+        self.bytes_per_second = None  # of a link, one direction; None: unlimited
         self.latency = 0.0
-        self.cores, self.shared = 2.0, False  # of a node; of all nodes together
-        self.others = 0.0  # threads of other programs that want these cores
-        self.threads = 1  # of a rank
+        self.cores, self.shared = 2.0, False  # per node; in total for all nodes
+        self.others = 0.0  # threads of other programs that compete for these cores
+        self.threads = 1  # per rank
         self.in_flight = 2
         self.memory = 4 << 30
-        self.byte_cpu = 0.0  # seconds that the system takes at each end for a byte on the wire, beyond what the traces have
+        self.byte_cpu = 0.0  # seconds of system time at each end per byte on the wire, in addition to the traces
         self.assembly = self.compositing = True
         self.look = True
         self.__dict__.update(words)
@@ -66,14 +66,14 @@ class Model:
         else:
             self.cores = [Cores(self.clock, max(0.1, settings.cores - looks / self.nodes), settings.others) for _ in range(self.nodes)]
         self.links = Links(self.clock, settings.bytes_per_second)
-        self.inbox = collections.defaultdict(collections.deque)  # of a sender and a receiver
+        self.inbox = collections.defaultdict(collections.deque)  # by sender and receiver
         self.window = min(max(settings.memory // 8 // work.projectors, 256 << 10), 8 << 20)
         self.backlog = min(settings.memory // 16, 64 << 20)
         self.contributors = work.contributors()
         self.tiles_of = [[[] for _ in range(work.compositors)] for _ in range(work.frames)]  # with fragments, in order
         for frame, tile in sorted(self.contributors):
             self.tiles_of[frame][work.owner[tile]].append(tile)
-        self.controls = collections.defaultdict(list)  # begins and ends of a frame: when they came
+        self.controls = collections.defaultdict(list)  # begins and ends of a frame: arrival times
         self.compositors = [Compositor(self, c) for c in range(work.compositors)]
         self.assembler = Assembler(self)
         self.projectors = [Projector(self, p) for p in range(work.projectors)]
@@ -284,13 +284,13 @@ class Compositor:
         self.model, self.number, self.rank = model, number, model.work.projectors + number
         self.heard = set()
         self.unread, self.reading = collections.deque(), False
-        self.ended = collections.Counter()  # parts of (frame, tile) that are here
+        self.ended = collections.Counter()  # parts of (frame, tile) that have arrived
         self.todo, self.running = collections.deque(), 0
-        self.done, self.frame, self.first = set(), 0, 0  # frame and place of the first unfinished tile
+        self.done, self.frame, self.first = set(), 0, 0  # frame and index of the first unfinished tile
         self.debts = collections.defaultdict(list)
         self.owed = collections.Counter()  # credit by projector
         self.paying = False
-        self.outgoing = collections.Counter()  # tiles by frame
+        self.outgoing = collections.Counter()  # tiles per frame
 
     def receive(self, projector, frame, parts, size):
         self.unread.append((projector, frame, parts, size))

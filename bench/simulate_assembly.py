@@ -2,7 +2,7 @@
 """The rank that puts pictures together and writes them, in the model of bench/simulate.py."""
 import collections
 
-ASSEMBLING = 8  # threads at most that put a picture together (frame/ranks/compositor_role.cpp)
+ASSEMBLING = 8  # largest number of threads that assemble an image (frame/ranks/compositor_role.cpp)
 
 
 class Assembler:
@@ -11,9 +11,9 @@ class Assembler:
     def __init__(self, model):
         self.model, self.rank = model, model.work.projectors
         self.unread, self.reading = collections.deque(), False
-        self.todo, self.running = collections.deque(), 0  # messages whose tiles are to be placed: of which frame, how many
+        self.todo, self.running = collections.deque(), 0  # messages whose tiles are to be placed: (frame, count)
         self.placing = collections.Counter()  # such messages of a frame
-        self.ends, self.left, self.pictures = 0, [], []  # when frames left, and their pictures were written
+        self.ends, self.left, self.pictures = 0, [], []  # times when frames left, and when their images were written
         self.writing, self.waiting, self.blocked, self.complete = False, 0, False, None
 
     def send(self, source, frame, tiles, size):
@@ -68,7 +68,7 @@ class Assembler:
         self.model.compute(self.rank, self.model.work.send[0] * len(self.model.projectors) if self.model.set.assembly else 0.0, self.tell)
         self.waiting += 1
         self.write()
-        if self.waiting > 1:  # one may wait; with more, who assembles does
+        if self.waiting > 1:  # one may wait; with more, the assembling thread waits
             self.blocked, self.reading = True, False
             return
         self.read()

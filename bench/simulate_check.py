@@ -59,7 +59,7 @@ def network(nodes, mbit):
             call("ip", "-n", name, "address", "add", f"10.77.0.{n + 1}/24", "dev", "eth0")
             call("ip", "-n", name, "link", "set", "eth0", "up")
             if mbit:
-                burst = max(128, round(mbit * 1e6 / 8 * 1e-3 / 1024))  # KiB; with less tc cuts what TCP hands over, up to 64 KiB, into frames
+                burst = max(128, round(mbit * 1e6 / 8 * 1e-3 / 1024))  # KiB; with less, tc cuts TCP's segments of up to 64 KiB into frames
                 for space, device in ((name, "eth0"), (switch, f"port{n}")):  # out of the node, and into it
                     call("tc", "-n", space, "qdisc", "add", "dev", device, "root", "tbf", "rate", f"{mbit}mbit", "burst", f"{burst}kb", "latency", "20ms")
         yield names
@@ -95,7 +95,7 @@ def words_of(args, nodes, out):
     mesh = args.work / f"cube-{args.side}.tets"
     if not mesh.exists():
         call(args.tessera, "generate", "cube", mesh, f"n={args.side}", "--quiet")
-    # Nodes share no memory. A session each: the kernel shares cores among sessions first.
+    # Nodes share no memory. Each has its own session, because the kernel shares cores among sessions first.
     return ["setsid", "--wait", args.tessera, "render", mesh, "--size", f"{args.size}x{args.size}", "--orbit", args.frames, "-o", args.work / "frame_%04d.png",
             "--threads", "1", "--without", "sharing", "--projectors", nodes, "--compositors", nodes, "--report", out.with_suffix(".report.json"),
             "--timing", out.with_suffix(".trace.json"), "--quiet"]
@@ -174,7 +174,7 @@ def main():
     args = parser.parse_args()
     args.tessera, args.work = args.tessera.resolve(), args.work.resolve()
     args.work.mkdir(parents=True, exist_ok=True)
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that namespaces go
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that namespaces are removed
     load = os.getloadavg()[0]
     byte, speed = byte_cost()
     print(f"{1e9 * byte:.2f} ns of a core for a byte at either end; {8e-9 * speed:.1f} Gbit/s without limit", flush=True)

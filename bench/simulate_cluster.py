@@ -34,8 +34,8 @@ SIZE, TILE, BASE_NODES = 1024, 32, 8
 STRIPS = 12  # io/image/picture_strips.hpp: rows of 256 KiB, of 3 bytes a pixel
 PARTS = ("projection", "imbalance", "last tile", "compositing", "assembly", "wire")
 MILLIONS = (15.7, 51.1, 1e3, 1e4)
-MANY = 512  # nodes: a run of the model takes so long that only the least and the most tets are
-MACHINES = ((32, 10), (2, 10), (32, 1))  # cores a node, Gbit/s
+MANY = 512  # nodes: a simulation takes so long that only the smallest and the largest meshes are run
+MACHINES = ((32, 10), (2, 10), (32, 1))  # cores per node, Gbit/s
 
 
 class Base:
@@ -43,7 +43,7 @@ class Base:
 
     def __init__(self, work, side):
         self.work, self.millions = work, 6e-6 * side ** 3
-        self.depth = collections.Counter()  # seconds of a tile, over all projectors
+        self.depth = collections.Counter()  # seconds per tile, over all projectors
         self.merge = collections.Counter()
         own = collections.Counter()
         self.setup, self.bytes, self.pairs = sum(work.setup.values()) / work.frames, 0.0, 0.0
@@ -127,7 +127,7 @@ def foretell(small, large, frames, case):
     cores, gbit, millions, nodes = case
     settings = Settings(bytes_per_second=gbit * 1e9 / 8 * GOODPUT, latency=20e-6, cores=cores, threads=max(1, cores - 2))
     work = scaled(small, large, millions, nodes, frames)
-    work.write /= min(settings.threads, STRIPS)  # its CPU time was measured, on one thread
+    work.write /= min(settings.threads, STRIPS)  # its CPU time was measured on one thread
     return losses(work, settings)
 
 

@@ -36,9 +36,9 @@ class Cores:
 
     def __init__(self, clock, count, others=0.0):
         self.clock, self.count, self.others = clock, count, others
-        self.tasks, self.order = [], itertools.count()  # by the virtual time of their ends
+        self.tasks, self.order = [], itertools.count()  # sorted by the virtual time of their ends
         self.virtual, self.last, self.version = 0.0, 0.0, 0
-        self.busy = 0.0  # core seconds spent
+        self.busy = 0.0  # core seconds used
 
     def rate(self):
         return min(1.0, self.count / (len(self.tasks) + self.others)) if self.tasks else 0.0
@@ -87,8 +87,8 @@ class Connection:
 class Links:
     def __init__(self, clock, bytes_per_second):
         self.clock, self.speed = clock, bytes_per_second
-        self.connections, self.shared = {}, {}  # how many shared a link when their rates were set
-        self.leaving, self.entering = collections.defaultdict(dict), collections.defaultdict(dict)  # active ones of a node, in order
+        self.connections, self.shared = {}, {}  # number sharing a link when their rates were set
+        self.leaving, self.entering = collections.defaultdict(dict), collections.defaultdict(dict)  # active ones per node, in order
 
     def send(self, ranks, nodes, size, done, *args):
         """Calls done(*args) when the message's last byte has left the wire. Within a node, or on endless links, at once."""

@@ -6,7 +6,7 @@ import pathlib
 
 from scaling import exclusive
 
-END = 1024  # bytes: more than the message that ends a frame
+END = 1024  # bytes: larger than the message that ends a frame
 
 
 class Work:
@@ -15,14 +15,14 @@ class Work:
     def __init__(self, projectors, compositors):
         self.projectors, self.compositors = projectors, compositors
         self.frames = 0
-        self.setup = {}  # of (frame, projector)
-        self.tiles = {}  # of (frame, projector): [tile, seconds, bytes] in order
-        self.merge = {}  # of (frame, tile)
-        self.owner = {}  # compositor of a tile
-        self.tile_bytes = 0.0  # of a finished tile on its way to another rank
-        self.send, self.receive = (0.0, 0.0), (0.0, 0.0)  # seconds a message and a byte
-        self.assemble = 0.0, 0.0  # seconds a message and a tile
-        self.write = 0.0  # of a picture
+        self.setup = {}  # by (frame, projector)
+        self.tiles = {}  # by (frame, projector): [tile, seconds, bytes] in order
+        self.merge = {}  # by (frame, tile)
+        self.owner = {}  # compositor of each tile
+        self.tile_bytes = 0.0  # of a finished tile sent to another rank
+        self.send, self.receive = (0.0, 0.0), (0.0, 0.0)  # seconds per message and per byte
+        self.assemble = 0.0, 0.0  # seconds per message and per tile
+        self.write = 0.0  # per image
 
     def contributors(self):
         found = collections.Counter()
@@ -52,7 +52,7 @@ def work_of(trace):
             threads[event["pid"], event["tid"]].append(event)
     setup, tiles = collections.Counter(), collections.defaultdict(dict)
     merge, moved, writes, frames = collections.Counter(), collections.defaultdict(list), [], set()
-    finished = 0  # bytes of tiles that went to the first compositor
+    finished = 0  # bytes of tiles sent to the first compositor
     for (rank, _), spans in threads.items():
         for span, seconds in exclusive(spans):
             args, stage, seconds = span["args"], span["name"], max(seconds, 0.0)
@@ -85,11 +85,11 @@ def work_of(trace):
         work.tiles[number[frame], rank] = [of[t] for t in sorted(of)]
     work.merge = {(number[f], t): s for (f, t), s in merge.items()}
     for f, t in set((f, t) for (f, _), of in work.tiles.items() for t, _, _ in of):
-        work.owner.setdefault(t, t % compositors)  # of a tile that got nothing
+        work.owner.setdefault(t, t % compositors)  # for tiles without data
     work.send, work.receive = line(moved["send"]), line(moved["receive"])
     elsewhere = sum(work.owner[t] != 0 for _, t in work.merge)
     work.tile_bytes = finished / elsewhere if elsewhere else 0.0
-    # Who reads messages also makes a film's first pictures, of fresh memory: the few long spans do not count.
+    # The rank that reads messages also allocates a film's first images: the few long spans are excluded.
     messages = sorted(moved["assemble"])
     work.assemble = messages[len(messages) // 2] if messages else 0.0, sum(moved["place"]) / max(1, len(work.merge))
     work.write = sum(writes[1:]) / max(1, len(writes) - 1)

@@ -29,7 +29,7 @@ import results_file
 from balance import run
 
 UNITS = (1, 2, 3, 4, 5, 6)
-BANDWIDTH = 95e6  # bytes a second
+BANDWIDTH = 95e6  # bytes per second
 
 
 class Bench:

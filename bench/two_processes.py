@@ -26,7 +26,7 @@ import time
 import results_file
 from balance import run
 
-FILMS = {"turn": 2, "orbit": 36}  # degrees a frame
+FILMS = {"turn": 2, "orbit": 36}  # degrees per frame
 WAYS = {"sort-first": [], "sort-last": ["--distribution", "sort-last"]}
 
 

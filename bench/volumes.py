@@ -104,7 +104,7 @@ def mechanisms(args, folder):
         for v in VARIATIONS:
             print(f"| {name} | {'`' + ' '.join(v) + '`' if v else 'all, unshaded'} | {least[v]:.0f} | {least[v] / least[()]:.2f} | "
                   f"{1e-6 * counters[v]['voxels_visited']:.1f} | {1e-6 * counters[v]['samples']:.1f} | {loads[v]} | {errors[v]:.1e} |", flush=True)
-        shown = [(), ("--without", "termination"), ("--shade",)]  # culling and skipping change no count but that of bricks
+        shown = [(), ("--without", "termination"), ("--shade",)]  # culling and skipping only change the count of bricks
         ratios = " | ".join(f"{least[v] / least[()]:.2f}" for v in VARIATIONS[1:])
         millions = lambda x: f"{1e-6 * x:.1f}" if x < 1e8 else f"{1e-6 * x:.0f}"
         count = lambda key: " / ".join(millions(counters[v][key]) for v in shown)

@@ -69,7 +69,7 @@ def measured(render, seconds, picture):
         rgb, first, rest = render()
         vtk_raycast.write_pfm(picture, rgb)
         there.send([1e3 * s for s in rest or [first]])
-        os._exit(0)  # VTK's destructors of windows have nothing to give back
+        os._exit(0)  # skips the destructors of VTK's windows
 
     child = multiprocessing.get_context("fork").Process(target=work)
     child.start()

@@ -112,7 +112,8 @@ def render_grid(image, camera, knots, step, repeat=0, threads=None, seconds=None
     opacity.AllowDuplicateScalarsOn()
     for value, r, g, b, kappa in knots:
         color.AddRGBPoint(value, r, g, b)
-    # Opacity is 1 - exp(-kappa d), which is no line between knots: knots in between keep VTK's function the same as ours.
+    # Opacity is 1 - exp(-kappa d), which is not linear between knots: intermediate knots keep VTK's function equal to
+    # ours.
     for (v0, *_, k0), (v1, *_, k1) in zip(knots, knots[1:]):
         for u in np.linspace(0, 1, 33) if v1 > v0 else ():
             opacity.AddPoint(v0 + (v1 - v0) * u, -np.expm1(-(k0 + (k1 - k0) * u) * distance))
@@ -193,11 +194,11 @@ def straighten(renderer, volume, width, height):
     mapper = volume.GetMapper()
     straight = vtk.vtkTransform()
     if mapper.IsA("vtkUnstructuredGridVolumeRayCastMapper"):
-        # Its texture is the window, and its rays go through the pixels' lower left corners (measured: 0.50 pixel).
+        # Its texture is the window, and its rays pass through the pixels' lower left corners (measured: 0.50 pixel).
         straight.Translate(-1.0 / width, -1.0 / height, 0)
         straight.Scale(1 - 1.0 / width, 1 - 1.0 / height, 1)
     elif mapper.IsA("vtkFixedPointVolumeRayCastMapper"):
-        # Its texture is the window of the volume's box and two pixels about it.
+        # Its texture is the window of the volume's box plus two pixels on each side.
         low, high = [width, height], [0, 0]
         bounds = volume.GetBounds()
         for corner in range(8):

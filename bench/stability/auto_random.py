@@ -114,7 +114,7 @@ def time_case(tessera, seed, number, folder, args):
     if not auto or min(auto) < 50:
         return None
     repeat = 3 if min(auto) < 300 else 1
-    # Only what is faster needs to be judged, the fastest first.
+    # Only faster methods must be judged, the fastest first.
     rivals = []
     for method in GRID if words.split()[0] in ("ripples", "checker") else MESH:
         other = [*command[:at], *method, *command[at + 2:]]
@@ -124,7 +124,7 @@ def time_case(tessera, seed, number, folder, args):
     if best is None:
         return 1.0, f"{words}, accuracy {accuracy:.2g}: auto {min(auto):.0f} ms, best auto"
     rounds = []
-    for _ in range(5):  # in turn, so that whatever else the machine does falls on both
+    for _ in range(5):  # alternately, so that other load affects both
         rounds.append((min(timed(command, folder, repeat)), min(timed(best[1], folder, repeat))))
     mine, other = (min(times) for times in zip(*rounds))
     return min(mine / other, statistics.median(a / b for a, b in rounds)), (
@@ -196,7 +196,7 @@ def main():
                 print(f"BROKEN: seed {args.seed} case {number}: {words}, accuracy {accuracy:.3g}: {said}", flush=True)
     print(f"seed {args.seed}, cases {args.first} to {args.first + args.cases - 1}: {len(broken)} broken; "
           f"largest error {worst:.3g} of what was asked; {excused} of {pixels} pixels excused")
-    # Three standard deviations of a share of 1e-4.
+    # Three standard deviations of a fraction of 1e-4.
     sys.exit(1 if broken or excused > 1e-4 * pixels + 3 * math.sqrt(1e-4 * pixels) else 0)
 
 

@@ -28,7 +28,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 CASES = pathlib.Path(__file__).resolve().parent / "promise_cases"
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-LIMIT = 300  # seconds, for pictures of a few hundred pixels
+LIMIT = 300  # seconds, for images of a few hundred pixels
 METHODS = [["--integrator", "exact"], ["--accuracy", "1e-4"], ["--accuracy", "1e-5"]]
 
 

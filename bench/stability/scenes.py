@@ -140,7 +140,7 @@ def mesh_stresses(m):
         path = m.generated("stack", layers=int(layers), width=width, thickness=float(thickness))
         knots = scaled(KNOTS, extinction=extinction)
         look = m.camera("stack", (0.003, 0.001, 5), (0.003, 0.001, 0), scale=0.2)
-        # The reference takes a quarter of a minute at 1e5 cells a ray, too long to ask it of every method.
+        # The reference takes a quarter of a minute at 1e5 cells per ray, too long to run it for every method.
         deep = layers > 3e4
         return scene(path, "--transfer-function", m.function(f"stack-{extinction:g}", knots), "--camera", look,
                      verify=1 if deep else verify, size="16x16", methods=("default",) if deep else None)
@@ -175,7 +175,7 @@ def mesh_stresses(m):
         return scene(cube(), "--transfer-function", m.function(name, knots))
 
     def angle(degrees):
-        # So near that the widest angle still has a hundred pixels of it; the middle pixel looks straight on.
+        # So near that it covers a hundred pixels even at the widest angle; the middle pixel looks straight ahead.
         return scene(cube(), *tf(), "--camera", m.camera(f"angle-{degrees:g}", (0.1, 0.2, 1.05), (0, 0, 0), angle=degrees),
                      size="65x65", verify=4225)
 
@@ -191,7 +191,7 @@ def mesh_stresses(m):
 
     def subpixel(pixels):
         n = 12  # cells of 2 / n, window of 64 pixels
-        # The smallest mesh is a hundredth of a pixel, in the middle of the one in the middle.
+        # The smallest mesh is a hundredth of a pixel, in the middle of the central pixel.
         return scene(cube(n), *tf(), "--camera", m.camera(f"sub-{pixels:g}", (1.3, 0.9, 5), (0.001, 0.002, 0),
                                                           scale=32.5 * (2 / n) / pixels), size="65x65", verify=4225)
 
@@ -286,7 +286,7 @@ def printed_stresses(m):
     def edges(ratio):
         path = m.generated("graded", n=8, volume_ratio=ratio)
         knots = m.function("edges", scaled(KNOTS, extinction=3))
-        span = min(1.0, 4 * ratio ** (-1 / 3))  # the view follows the smallest cells
+        span = min(1.0, 4 * ratio ** (-1 / 3))  # the view adapts to the smallest cells
         eye = (0.3 * span, 0.2 * span, 4.0)
         return scene(path, "--transfer-function", knots, "--camera", m.camera(f"edges-{ratio:g}", eye, (0, 0, 0), scale=span),
                      methods=("default", "scanline, exact"))

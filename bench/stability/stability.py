@@ -68,7 +68,7 @@ class Runner:
         judged = json.loads(report.read_text())["frames"][0]
         verify = judged["verify"]
         error = verify["max_error"] if verify["max_error"] is not None else math.inf
-        # Without a bound none is looked at for an excuse.
+        # Without a bound no pixel is examined for an excuse.
         bound = verify.get("bound")
         return {"error": verify["max_error_not_excused"] if bound else error, "met": verify["met"], "excused": verify["excused"],
                 "pixels": verify["pixels"], "bound": bound, "ms": min(judged["frame_ms"]),
@@ -333,7 +333,7 @@ def main():
             print(f"nothing to see: {s['name']} at {', '.join(empty)}")
     print(f"{len(stresses)} stresses and {len(rows)} partitions in {time.monotonic() - start:.0f} s, default broken in "
           f"{len(broken)} places; {excused} of {pixels} pixels excused")
-    # Three standard deviations of a share of 1e-4.
+    # Three standard deviations of a fraction of 1e-4.
     sys.exit(1 if broken or excused > 1e-4 * pixels + 3 * math.sqrt(1e-4 * pixels) else 0)
 
 

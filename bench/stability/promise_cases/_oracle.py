@@ -71,7 +71,7 @@ class Light:
         own, white = lit
         ends = [0.0, *(function.between(s_0, s_1) if s_0 != s_1 else []), 1.0]
         for a, b in zip(ends, ends[1:]):
-            # Within an interval of the function: parts of at most half an optical depth, by Gauss and Legendre.
+            # Within an interval of the function: parts of at most half an optical depth, by Gauss-Legendre quadrature.
             scalar = lambda u: s_0 + (s_1 - s_0) * u
             inside = (lambda u: min(max(u, a + 1e-12 * (b - a)), b - 1e-12 * (b - a)))
             kappa = lambda u: function.at(scalar(inside(u)))[3]
@@ -221,7 +221,7 @@ def mesh_pixel(mesh, function, camera, pixel, iso=(), boundary=None, planes=(), 
         lit = (1.0, 0.0)
         if shade and any(gradient):
             cosine = cosine_of(gradient, camera.forward if camera.angle is None else direction)
-            toward = [-x for x in camera.forward]  # the light is at the camera, its direction the view's
+            toward = [-x for x in camera.forward]  # the light is at the camera, in the view direction
             normal = unit(gradient)
             half = plus(toward, (-1, direction))
             n_h = abs(dot(normal, unit(half)))
@@ -347,7 +347,7 @@ def grid_pixel(grid, function, camera, pixel, iso=(), planes=(), shade=False, li
 def check(case, methods, tally, exact, pixel):
     """Whether a picture keeps its promise (`exact`: of that integrator) by the reference, and some of its pixels by
     `pixel(number)`, an oracle's; on as many ranks as the case has."""
-    import promises  # the script that runs this
+    import promises  # the script that imports this module
 
     made = case.made
     status, _, said, _ = case.render(methods[0], verify=False)

@@ -14,7 +14,7 @@ from promise_cases import files
 from promise_cases.mesh_scenes import any_camera
 
 ACCURACY = 0.01
-CUTS = 40  # of each edge; pixels that 20 change by a quarter of what is stated are no truth, and count as excused
+CUTS = 40  # per edge; a pixel for which 20 cuts differ by a quarter of the stated error is excused
 EXCUSABLE = 3e-3
 
 
@@ -45,7 +45,7 @@ def superlinear(p):
 
 
 SIDES = [(0, 3, 7, 4), (1, 2, 6, 5), (0, 1, 5, 4), (2, 3, 7, 6)]
-# VTK's number: nodes in VTK's order, the monomials of the type, the part of the cube that the cell is (see pieces()).
+# VTK's number: nodes in VTK's order, the monomials of the type, the part of the cube that the cell fills (pieces()).
 TYPES = {
     24: (nodes(TET, TET_EDGES), [p for p in powers(2, 2, 2) if sum(p) <= 2], "tet"),
     25: (nodes(HEX, HEX_EDGES), [p for p in powers(2, 2, 2) if superlinear(p) <= 2], "cube"),
@@ -133,7 +133,7 @@ def case(r, folder, tessera):
         matrix = [[math.prod(x ** n for x, n in zip(p, powers_of)) for powers_of in monomials] for p in places]
         coefficients = solved(matrix, [[*p, v] for p, v in zip(points, values)])
         some = [determinants(p, coefficients, monomials) for p in even[::5]]
-        if min(some) > 0.1 * max(some):  # else folded, or nearly so
+        if min(some) > 0.1 * max(some):  # otherwise folded, or almost
             break
     truth = []
     for even, tets in EVEN[part]:
@@ -178,7 +178,7 @@ def check(case, methods, tally):
         tally["frames"] += 1
         tally["worst"] = max(tally["worst"], error / stated if stated else math.inf if error > 1e-6 else 0.0)
         tally.setdefault("stated", []).append(stated / max(pixels[0]) if any(pixels[0]) else math.inf)
-        if not error <= stated or not (stated <= float(words[1]) or mesh["warnings"]):  # of too few tets
+        if not error <= stated or not (stated <= float(words[1]) or mesh["warnings"]):  # with too few tets
             broken.append(f"{' '.join(words)}: off by {error:.3g}, stated {stated:.3g}")
     return not broken, "; ".join(broken)
 

@@ -55,7 +55,7 @@ def check(case, methods, tally):
         if any(a > b for a, b in places) or any(p[1] > q[0] for p, q in zip(places, places[1:])):
             broken.append(f"pixel {n}: samples overlap or are not in order")
         off = max(abs(a - whole[c][n][0]) for a, c in zip(composited(samples, n, float("inf")), "RGBA"))
-        if not off <= 2 * FLAT:  # each is right to that
+        if not off <= 2 * FLAT:  # the accuracy of each
             broken.append(f"pixel {n}: {off:.3g} from the picture")
     view, scene = made["view"], made["scene"]
     is_grid = made["input"][0].suffix == ".vti"
@@ -63,7 +63,7 @@ def check(case, methods, tally):
         if not samples["Z"][n]:
             continue
         low, high = samples["Z"][n][0], samples["ZBack"][n][-1]
-        if low == high:  # one surface: before it or behind goes by the depth's rounding
+        if low == high:  # one surface: rounding of depth decides whether it is in front or behind
             continue
         end = low + cut * (high - low)
         planes = [*scene.get("planes", []), (plus(view.eye, (end, view.forward)), [-x for x in view.forward])]

@@ -33,7 +33,7 @@ def case(r, folder, tessera):
     counts, low, high = [side] * 3, [-1.0] * 3, [1.0] * 3
     counts[axis], low[axis], high[axis] = layers, 0.0, thickness
     points, tets = files.split_box(counts, low, high)
-    if r.random() < 0.4:  # some way other than along the axes
+    if r.random() < 0.4:  # some direction other than the axes
         a, b = r.uniform(-1, 1), r.uniform(-1, 1)
         turn = lambda p: (p[0] * math.cos(a) - p[1] * math.sin(a), p[0] * math.sin(a) + p[1] * math.cos(a), p[2])
         lean = lambda p: (p[0], p[1] * math.cos(b) - p[2] * math.sin(b), p[1] * math.sin(b) + p[2] * math.cos(b))

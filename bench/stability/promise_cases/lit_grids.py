@@ -94,7 +94,7 @@ def oracle(made, number):
 
 
 def check(case, methods, tally):
-    import promises  # the script that runs this
+    import promises  # the script that imports this module
 
     broken = promises.judged(case, methods, tally)
     made = case.made

@@ -27,7 +27,7 @@ def blanks(r, n):
         share = 10 ** r.uniform(-3, -0.3)
         return kind, lambda x, i: r.random() < share
     if kind == "plane":
-        # Mostly between two cells of 8^3 voxels, or two bricks.
+        # Usually between two cells of 8^3 voxels, or two bricks.
         axis, place = r.randrange(3), r.choice([8, 8, 16, 4, r.randint(0, 12)])
         return f"plane {place} of axis {axis}", lambda x, i: i[axis] == place
     if kind == "cells":
@@ -66,7 +66,7 @@ def case(r, folder, tessera):
     cells, places = _volumes.sites(n, association)
     shape, f = _volumes.smooth(r)
     if r.random() < 0.2:
-        # Clear or not on either side of a blank layer: nothing of what lies between the two values may show.
+        # Clear or not on either side of a blank layer: no value between the two may be visible.
         inner, axis, level = f, r.randrange(3), r.uniform(0.3, 0.7)
         shape, f = "two levels", lambda x: 0.05 * inner(x) + (1 if x[axis] > level else 0)
     scale, shift = 10 ** r.uniform(-3, 3), r.choice([0, 0, -0.5, 3])
@@ -78,7 +78,7 @@ def case(r, folder, tessera):
     index = lambda m: (m % cells[0], m // cells[0] % cells[1], m // cells[0] // cells[1])
     values = [math.nan if blank(x, index(m)) else v for m, (x, v) in enumerate(zip(places, values))]
     if all(math.isnan(v) for v in values):
-        values[r.randrange(len(values))] = low  # a volume of blanks alone has no range
+        values[r.randrange(len(values))] = low  # a volume with only blanks has no range
     words = ""
 
     def made_function(size):

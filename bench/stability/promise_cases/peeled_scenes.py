@@ -57,13 +57,14 @@ def check(case, methods, tally):
             flat = [a + through * b for a, b in zip(flat, values)]
             through *= 1 - values[3]
         worst = max(worst, *(abs(a - whole[c][n][0]) for a, c in zip(flat, "RGBA")))
-    if not worst <= (count + 1) * TOLERANCE:  # each layer's bound, and the picture's own
+    if not worst <= (count + 1) * TOLERANCE:  # each layer's bound, plus the image's own
         broken.append(f"layers composited are {worst:.3g} from the picture")
     for n in made["pixels"]:
         for k, (rgb, opacity) in enumerate(layers_of(made, n)):
             got = [layers[k][c][n][0] for c in "RGBA"]
             off = max(abs(a - b) for a, b in zip((*rgb, opacity), got))
-            # The oracle's grids are lines, off by 1e-7; light behind a cut is stretched by what the layer let through.
+            # The oracle's grids are linear, with an error of 1e-7; light behind a cut is amplified by the inverse of
+            # the layer's transmittance.
             bound = TOLERANCE + (1e-7 / (1 - threshold) ** k if made["input"][0].suffix == ".vti" else 0)
             tally["worst"] = max(tally["worst"], off / bound)
             if not off <= bound:

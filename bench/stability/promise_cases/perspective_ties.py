@@ -11,11 +11,12 @@ import math
 
 from promise_cases.files import split_box, write_vtu
 
-# Pixels to the right; down a thousandth of it, no edge here is that steep. Edges that pass a centre by less than the last are
-# taken to go through it; 1e-4 was not enough for that: faces through the eye pass whole rows of centres by 1e-6.
+# Pixels to the right; down a thousandth of that, because no edge here is that steep. Edges that pass a centre by less
+# than the last shift count as passing through it; 1e-4 was not small enough: faces through the eye pass whole rows of
+# centres by 1e-6.
 SHIFTS = (0.0, 1e-3, 1e-7)
 METHODS = [["--integrator", "exact"], ["--integrator", "exact", "--without", "lattice"]]
-# A pixel has no limit yet if the two shifted pictures differ by this: an edge runs beside its centre.
+# A pixel has no limit yet if the two shifted images differ by this: an edge is next to its centre.
 NO_LIMIT = 1e-2
 TOLERANCE = 5e-5
 
@@ -131,12 +132,12 @@ def box_in_plane(r, view):
             start_u = -r.randint(0, counts[0]) * size
         if where == "on a vertex":
             start_v = -r.randint(0, counts[1]) * size
-    layer = r.randint(0, counts[2])  # the plane of faces that holds the eye
+    layer = r.randint(0, counts[2])  # the plane of faces that contains the eye
     flip = r.choice((-1, 1))
     local, tets = split_box(counts, (0, 0, 0), counts)
     points = [plus(view.eye, (start_u + size * i, u), (start_v + size * j, v), (flip * size * (k - layer), normal))
               for i, j, k in local]
-    # A vertex at the eye is there, not beside it by a rounding, which would be anywhere in the picture.
+    # A vertex at the eye must be exactly there: after rounding it could be anywhere in the image.
     points = [list(view.eye) if math.dist(p, view.eye) < 1e-9 else p for p in points]
     return points, tets, where
 

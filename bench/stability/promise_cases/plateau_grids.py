@@ -14,7 +14,7 @@ def levels(r):
     center, sharp = r.uniform(0.35, 0.65), r.choice([3, 10, 40, 200])
     kind = r.choice(["tanh", "tanh", "clamp", "fraction", "terraces"])
     if kind == "tanh":
-        # Saturates once the float's or the integer's last place is passed.
+        # Saturates beyond the last place of the float or integer.
         return f"tanh of {name}", lambda x: math.tanh(sharp * (f(x) - center)), [-1.0, 1.0]
     if kind == "clamp":
         low, high = center - 0.1, center + 0.1
@@ -43,7 +43,7 @@ def case(r, folder, tessera):
     plateaus = sorted({stored(p) for p in plateaus} & set(values)) or [max(values)]
     ulps = 0
     if kind.startswith("Float") and r.random() < 0.6:
-        # Frayed: on the plateau's far side, near side, or both.
+        # Noisy: on the plateau's far side, near side, or both.
         step = files.next_float32 if kind == "Float32" else files.next_float64
         ulps, side = r.choice([1, 1, 2, 16, 256, 10000]), r.choice([-1, 0, 1])
         share, rests = r.choice([0.02, 0.5, 1]), set(plateaus) - {0.0}

@@ -59,7 +59,7 @@ def knots_with_steps(r, steps, low, high):
         if count == 1:
             knots.append((value, *optics()))
             continue
-        # Between two steps some last places apart the function is flat: a ramp has no more values there than they.
+        # Between two steps some last places apart the function is constant: a ramp has no other values there.
         near = knots and value - knots[-1][0] < 1e-6 * (high - low)
         knots += [(value, *(knots[-1][1:] if near else optics())), (value, *optics())]
     return knots
