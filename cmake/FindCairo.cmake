@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Cairo::cairo: the library, which programs link by its run-time name (Debian: libcairo2), and its headers (libcairo2-dev, or
-# those alone, as scripts/install_packages.sh unpacks them).
+# Cairo::cairo: the library, which programs link by its run-time name (Debian: libcairo2), and its headers
+# (libcairo2-dev, or only those unpacked by scripts/install_packages.sh).
 find_library(CAIRO_LIBRARY libcairo.so.2)
 find_path(CAIRO_INCLUDE_DIR cairo.h PATH_SUFFIXES cairo HINTS ${TESSERA_UNPACKED_HEADERS})
 include(FindPackageHandleStandardArgs)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Gdcm::gdcm, what reads files (Debian: libgdcm-dev). Its own CMake package wants all that it can be built with.
+# Gdcm::gdcm, the libraries that read files (Debian: libgdcm-dev). Its own CMake package requires every optional
+# dependency.
 find_path(GDCM_INCLUDE_DIR gdcmImageReader.h PATH_SUFFIXES gdcm-3.0 gdcm-3.1 gdcm)
 find_library(GDCM_FILES_LIBRARY gdcmMSFF)
 find_library(GDCM_ELEMENTS_LIBRARY gdcmDSED)

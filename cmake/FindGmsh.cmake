@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Gmsh::gmsh, the library of Gmsh (Debian: libgmsh-dev), which has no CMake package of its own.
+# Gmsh::gmsh, Gmsh's library (Debian: libgmsh-dev), which has no CMake package of its own.
 find_path(GMSH_INCLUDE_DIR gmsh.h)
 find_library(GMSH_LIBRARY gmsh)
 include(FindPackageHandleStandardArgs)

@@ -5,7 +5,7 @@ find_path(MED_HDF5_INCLUDE_DIR hdf5.h PATH_SUFFIXES hdf5/openmpi hdf5/mpich)
 find_path(MED_MPI_INCLUDE_DIR mpi.h PATH_SUFFIXES ${CMAKE_LIBRARY_ARCHITECTURE}/openmpi ${CMAKE_LIBRARY_ARCHITECTURE}/mpi
           HINTS /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/openmpi/include)
 find_library(MED_LIBRARY medC)
-find_library(MED_HDF5_LIBRARY NAMES hdf5_openmpi hdf5_mpich)  # which tests write files of old versions by
+find_library(MED_HDF5_LIBRARY NAMES hdf5_openmpi hdf5_mpich)  # tests write files of old versions with it
 include(FindPackageHandleStandardArgs)
 find_package_handle_standard_args(Med REQUIRED_VARS MED_LIBRARY MED_INCLUDE_DIR MED_HDF5_INCLUDE_DIR MED_MPI_INCLUDE_DIR)
 if(Med_FOUND AND NOT TARGET Med::med)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Minc::minc, MINC's library (Debian: libminc-dev), whose own CMake package wants what programs of its project need.
+# Minc::minc, MINC's library (Debian: libminc-dev), whose own CMake package requires the dependencies of its programs.
 find_path(MINC_INCLUDE_DIR minc2.h)
 find_library(MINC_LIBRARY minc2)
 include(FindPackageHandleStandardArgs)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# TetGen::tet, the library of TetGen (Debian: libtet1.5-dev), which has no CMake package of its own.
+# TetGen::tet, TetGen's library (Debian: libtet1.5-dev), which has no CMake package of its own.
 find_path(TETGEN_INCLUDE_DIR tetgen.h)
 find_library(TETGEN_LIBRARY tet)
 include(FindPackageHandleStandardArgs)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Xdmf::xdmf, XDMF's own library, and what its headers take (Debian: libxdmf-dev, libxml2-dev, libboost-dev). Its own CMake package
-# names files that Debian puts elsewhere; there the library lies in a folder of the HDF5 that it is built with.
+# Xdmf::xdmf, XDMF's own library, and the dependencies of its headers (Debian: libxdmf-dev, libxml2-dev, libboost-dev).
+# Its own CMake package names files that Debian puts elsewhere: there the library is in a directory of its HDF5 build.
 find_path(XDMF_INCLUDE_DIR XdmfReader.hpp)
 find_path(XDMF_BOOST_INCLUDE_DIR boost/shared_ptr.hpp)
 find_path(XDMF_LIBXML_INCLUDE_DIR libxml/xmlexports.h PATH_SUFFIXES libxml2)

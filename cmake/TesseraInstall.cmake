@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# cmake --install: libraries, headers, CMake and pkg-config packages, program, licence. The tree may be moved afterwards.
+# cmake --install: libraries, headers, CMake and pkg-config packages, program, licence. The tree may be moved
+# afterwards.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -12,7 +13,7 @@ if(TESSERA_APPS)
   install(TARGETS tessera_program)
 endif()
 
-# Where the library looks for it, from wherever it lies itself.
+# Where the library searches for it, relative to its own location.
 get_property(helpers GLOBAL PROPERTY tessera_helper_programs)
 if(helpers)
   install(TARGETS ${helpers} RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/tessera)
@@ -22,7 +23,8 @@ if(NOT TARGET tessera::tessera)
   return()
 endif()
 
-# What there is, in the words of find_package(tessera COMPONENTS ...); reader programs are looked for when it is called.
+# The available components, with the names of find_package(tessera COMPONENTS ...); that call searches for reader
+# programs.
 set(tessera_components)
 foreach(part shared static mpi gl cairo apps)
   string(TOUPPER TESSERA_${part} option)
@@ -31,7 +33,7 @@ foreach(part shared static mpi gl cairo apps)
   endif()
 endforeach()
 
-# A file of targets for each kind: who wants the shared library needs none of what the static one links.
+# One file of targets per kind: users of the shared library need no dependency of the static one.
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/tessera)
 foreach(kind shared static)
   if(TARGET tessera_${kind})
@@ -46,7 +48,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/tesseraConfigVers
 install(FILES ${PROJECT_BINARY_DIR}/package/tesseraConfig.cmake ${PROJECT_BINARY_DIR}/package/tesseraConfigVersion.cmake
         DESTINATION ${package})
 
-# tessera.pc. Its libraries are told by -lNAME, taken from the files that CMake's targets stand for.
+# tessera.pc. Its libraries are given by -lNAME, derived from the files of CMake's targets.
 function(tessera_link_flags result)
   set(flags)
   foreach(item ${ARGN})

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Tells Highway which instruction sets kernels are compiled for: TESSERA_INSTRUCTION_SETS. Quick sanitized builds, and
-# ThreadSanitizer's, where threads are watched and not lanes, have AVX2 alone.
+# Sets the instruction sets for which Highway compiles kernels: TESSERA_INSTRUCTION_SETS. Quick sanitizer builds, and
+# those with ThreadSanitizer, which check threads and not lanes, have only AVX2.
 if((TESSERA_QUICK AND TESSERA_SANITIZE) OR TESSERA_SANITIZE MATCHES thread)
   set(sets AVX2)
 elseif(TESSERA_INSTRUCTION_SETS STREQUAL native)

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The whole library, of the very objects that the folders' targets compile: libtessera.so, which shows what TESSERA_EXPORT
-# marks, and libtessera.a. In this build and installed: tessera::shared, tessera::static, and tessera::tessera, the shared
-# one where both are. tessera::mpi: what tessera/mpi.hpp needs beside.
+# The whole library, made of the objects that the directories' targets compile: libtessera.so, which exports the symbols
+# marked TESSERA_EXPORT, and libtessera.a. In this build and installed: tessera::shared, tessera::static, and
+# tessera::tessera, the shared one if both exist. tessera::mpi: additional dependencies of tessera/mpi.hpp.
 set(folders scene system colormaps cells io integrals exchange projection gl sorting compositor volume reference frame api datasets annotation)
 if(TESSERA_CAIRO)
   list(APPEND folders analysis)
 endif()
 
-# What the objects link: all that the folders link but each other, and what is headers only.
+# Dependencies of the objects: everything that the directories link except each other, and header-only targets.
 set(objects)
 set(links)
 foreach(folder ${folders})
@@ -39,13 +39,13 @@ endfunction()
 
 if(TESSERA_SHARED)
   tessera_whole_library(shared)
-  # Instances of templates of the standard library and oneTBB stay inside too.
+  # Instances of templates of the standard library and oneTBB are not exported either.
   set(exports ${CMAKE_CURRENT_LIST_DIR}/tessera.map)
   set_target_properties(
     tessera_shared
     PROPERTIES LINK_DEPENDS ${exports}
                VERSION ${PROJECT_VERSION}
-               # Until 1.0 each minor version has an interface of its own.
+               # Until 1.0 each minor version has its own interface.
                SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_link_options(tessera_shared PRIVATE -Wl,--version-script=${exports} -Wl,--as-needed)
 endif()
@@ -61,7 +61,7 @@ endif()
 if(TESSERA_MPI AND TARGET tessera::tessera)
   add_library(tessera_mpi INTERFACE)
   add_library(tessera::mpi ALIAS tessera_mpi)
-  # MPI's C interface only: its old C++ one wants another library.
+  # Only MPI's C interface: its old C++ one requires another library.
   target_compile_definitions(tessera_mpi INTERFACE OMPI_SKIP_MPICXX MPICH_SKIP_MPICXX)
   target_link_libraries(tessera_mpi INTERFACE tessera::tessera MPI::MPI_C)
 endif()

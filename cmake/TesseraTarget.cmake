@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# One library a folder: tessera_library(NAME SOURCES ... LINK ... PRIVATE_LINK ...), alias tessera::NAME. Without SOURCES
-# it is headers only.
-# Each target sees only the folders it links to: headers are staged per folder as include/<folder>, so that an include
-# which the links do not allow fails to compile.
+# One library per directory: tessera_library(NAME SOURCES ... LINK ... PRIVATE_LINK ...), alias tessera::NAME. Without
+# SOURCES it is header-only.
+# Each target sees only the directories that it links: headers are staged per directory as include/<directory>, so that
+# an include which the links do not allow fails to compile.
 
 add_library(tessera_warnings INTERFACE)
-# -pthread: MPI's targets have it, and all that share precompiled headers must agree.
+# -pthread: MPI's targets use it, and all targets that share precompiled headers must agree.
 target_compile_options(tessera_warnings INTERFACE -Wall -Wextra -Werror -pthread)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  # g++ spends a tenth of its time collecting the garbage of heaps beyond 128 MB.
+  # g++ spends a tenth of its time on garbage collection of heaps beyond 128 MB.
   target_compile_options(tessera_warnings INTERFACE --param=ggc-min-heapsize=1500000)
 endif()
 if(TESSERA_SANITIZE)
@@ -17,22 +17,22 @@ if(TESSERA_SANITIZE)
   target_link_options(tessera_warnings INTERFACE -fsanitize=${TESSERA_SANITIZE})
 endif()
 if(TESSERA_SANITIZE MATCHES address)
-  # Scopes of vectors in registers: a kernel compiles four times as long with them watched.
-  # g++ 12 with ASan warns falsely inside std::regex; the release build keeps the warning.
+  # Checks of scopes of vectors in registers make compiling a kernel four times as slow.
+  # g++ 12 with ASan has a false warning inside std::regex; the release build keeps the warning.
   target_compile_options(tessera_warnings INTERFACE -fno-sanitize-address-use-after-scope
                                                     $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endif()
 if(TESSERA_QUICK AND TESSERA_SANITIZE)
-  # Checks at every pointer take two fifths of the time to compile, and what they find ASan mostly finds as it is used. The
+  # Checks at every pointer take two fifths of the compile time, and ASan detects most of the same errors on use. The
   # parsers' fuzz targets have them.
   target_compile_options(tessera_warnings INTERFACE -fno-sanitize=null,alignment,vptr,object-size)
-  # The sanitizers' descriptions take a million relocations at each start, which is a quarter of a short command.
+  # The sanitizers' descriptions need a million relocations at each start, a quarter of the time of a short command.
   target_link_options(tessera_warnings INTERFACE $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:-no-pie>)
 endif()
-# For code whose speed no user notices, which compiles in two thirds of the time: tests, the command line, reports.
+# For code whose speed users do not notice, which compiles in two thirds of the time: tests, the command line, reports.
 add_library(tessera_optimize_1 INTERFACE)
 if(TESSERA_QUICK)
-  # clang compiles tests so in half the time, g++ in five sixths of it.
+  # clang compiles tests in half the time with it, g++ in five sixths.
   target_compile_options(tessera_optimize_1 INTERFACE -O0)
 else()
   target_compile_options(tessera_optimize_1 INTERFACE $<$<CONFIG:Release>:-O1>)
@@ -40,7 +40,7 @@ endif()
 # For code around the kernels: readers, writers, frames, the reference.
 add_library(tessera_optimize_2 INTERFACE)
 target_compile_options(tessera_optimize_2 INTERFACE $<$<CONFIG:Release>:-O2>)
-# For the tests' own code. Linked after tessera_warnings, whose options it takes back.
+# For the tests' own code. Linked after tessera_warnings, whose options it overrides.
 add_library(tessera_test_options INTERFACE)
 if(TESSERA_QUICK)
   target_compile_definitions(tessera_test_options INTERFACE TESSERA_QUICK)
@@ -49,15 +49,15 @@ if(TESSERA_QUICK AND TESSERA_SANITIZE)
   target_compile_options(tessera_test_options INTERFACE -fno-sanitize=undefined)
 endif()
 if(TESSERA_SANITIZE MATCHES thread AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  # oneTBB's headers have fences, which TSan does not follow; g++ says so at each.
+  # oneTBB's headers contain fences, which TSan does not support; g++ warns at each.
   target_compile_options(tessera_warnings INTERFACE -Wno-tsan)
 endif()
 
-# The headers that most sources include, parsed once: tessera_precompiled for libraries, tessera_unoptimized_precompiled for
-# those that quick builds do not optimize, tessera_test_precompiled for the tests' programs, whose code is position
-# independent in another form. Sources include what they use all the same; CMAKE_DISABLE_PRECOMPILE_HEADERS=ON shows what
-# one lacks. A source with an option of its own for code (-ffp-contract) skips them: g++ would take that option from the
-# headers in silence, and clang refuses them.
+# The headers that most sources include, parsed once: tessera_precompiled for libraries, tessera_unoptimized_precompiled
+# for those that quick builds do not optimize, tessera_test_precompiled for the tests' programs, which have another kind
+# of position-independent code. Sources still include what they use; CMAKE_DISABLE_PRECOMPILE_HEADERS=ON shows missing
+# includes. A source with its own code generation option (-ffp-contract) skips them: g++ would silently use the headers'
+# option, and clang refuses them.
 set(tessera_common_headers
     <algorithm> <array> <atomic> <bit> <chrono> <cmath> <condition_variable> <cstddef> <cstdint> <cstring> <exception>
     <filesystem> <functional> <limits> <map> <memory> <mutex> <numeric> <optional> <ranges> <span> <stop_token> <string>
@@ -96,8 +96,8 @@ function(tessera_library name)
   add_library(tessera::${name} ALIAS tessera_${name})
 endfunction()
 
-# tessera_shaders(NAME FILES ...): the GLSL files of a folder as strings in <NAME>/shader_files.hpp, each named after its
-# file: merge_lists.comp is tessera::NAME::shader_files::merge_lists_comp.
+# tessera_shaders(NAME FILES ...): the GLSL files of a directory as strings in <NAME>/shader_files.hpp, each named after
+# its file: merge_lists.comp is tessera::NAME::shader_files::merge_lists_comp.
 function(tessera_shaders name)
   set(header "#pragma once\n\n#include \"gl/shader.hpp\"\n\nnamespace tessera::${name}::shader_files {\n")
   foreach(file ${ARGN})
@@ -113,9 +113,10 @@ function(tessera_shaders name)
 endfunction()
 
 # tessera_test(NAME [SLOW] [PROCESSES PATTERN] SOURCES ... LINK ...): a GoogleTest program, registered test by test. Its
-# sources name their helpers differently, or keep them in a namespace named after the file, since a unity build compiles
-# several at once. All but SLOW ones are labelled fast, and built by the target fast_tests. Tests of the GoogleTest pattern PROCESSES, which start
-# processes, are labelled so too: `ctest -L processes --repeat until-fail:20` shows whether their outcome is a fact.
+# sources use different names for helpers, or a namespace named after the file, because a unity build compiles several
+# together. All but SLOW ones are labelled fast, and built by the target fast_tests. Tests that match the GoogleTest
+# pattern PROCESSES start processes and get that label: `ctest -L processes --repeat until-fail:20` shows whether their
+# outcome depends on timing.
 function(tessera_test name)
   cmake_parse_arguments(ARG "SLOW" "PROCESSES" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
@@ -137,7 +138,7 @@ function(tessera_test name)
     set(label fast)
     add_dependencies(fast_tests ${name})
   endif()
-  # Limits of time are for hangs alone.
+  # Time limits only detect hangs.
   set(others "*")
   if(ARG_PROCESSES)
     set(others "-${ARG_PROCESSES}")
@@ -146,7 +147,7 @@ function(tessera_test name)
   if(ARG_PROCESSES)
     gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST TEST_FILTER "${ARG_PROCESSES}" TEST_LIST ${name}_processes
                          PROPERTIES TIMEOUT 1200)
-    # gtest_discover_tests() takes no list of labels.
+    # gtest_discover_tests() does not accept a list of labels.
     set(labels ${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake)
     file(WRITE ${labels} "if(${name}_processes)
   set_tests_properties(\${${name}_processes} PROPERTIES LABELS \"${label};processes\")

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Writes OUTPUT, which defines TESSERA_COMMIT, if the commit of SOURCE has changed since: run at each build, so that a
-# program states the commit it was built from and nothing is compiled again while that stays the same.
+# Writes OUTPUT, which defines TESSERA_COMMIT, if the commit of SOURCE has changed: run at each build, so that a program
+# reports the commit from which it was built, and nothing is recompiled while that stays the same.
 set(commit unknown) # sources outside a repository
 find_program(git git)
 if(git)
-  # safe.directory: the sources may belong to another user, as in containers.
+  # safe.directory: the sources may belong to another user, for example in containers.
   execute_process(COMMAND ${git} -c safe.directory=* -C ${SOURCE} describe --always --dirty --abbrev=8 --exclude=*
                   OUTPUT_VARIABLE found OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE result ERROR_QUIET)
-  # A repository around an unpacked archive is not that of the sources.
+  # A repository around an unpacked archive is not the repository of the sources.
   if(result EQUAL 0 AND EXISTS ${SOURCE}/.git)
     set(commit ${found})
   endif()
