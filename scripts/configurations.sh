@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Builds the library with parts of it left out, by other compilers, and runs its fast tests: what is optional stays so.
-# Usage: scripts/configurations.sh [NAME...], all of them by default. Each lies in build/NAME.
-#   no-mpi no-gl   without reader programs and that
-#   least          with no part that is an option, by clang 14
+# Builds the library without optional parts and with other compilers, and runs its fast tests, so that optional parts
+# stay optional. Usage: scripts/configurations.sh [NAME...], all of them by default. Each is in build/NAME.
+#   no-mpi no-gl   without reader programs and that part
+#   least          without any optional part, by clang 14
 #   clang          without VTK, by clang 14
 #   installed      what scripts/demo.sh builds on a machine without MPI, installed
-# With CI=true nothing is optimized, and only the tests run whose results depend on which parts are built.
+# With CI=true nothing is optimized, and only tests run whose results depend on which parts are built.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# From a fresh Debian 12 machine to a picture: installs what is missing, builds the program, makes a mesh and renders
-# it to build/demo.png. Needs the network only for packages. Programs that read formats by other people's libraries are
-# left to scripts/readers.sh; MPI is used if the machine has one.
+# From a new Debian 12 machine to an image: installs missing packages, builds the program, generates a mesh and renders
+# it to build/demo.png. Needs the network only for packages. scripts/readers.sh builds the programs that read formats
+# with third-party libraries; MPI is used if the machine has it.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/install_packages.sh build
-# Kernels for this machine alone compile in half the time.
+# Kernels for only this machine compile in half the time.
 options=(-DTESSERA_TESTS=OFF -DTESSERA_INSTRUCTION_SETS=native)
 mpi=OFF
 if command -v mpicc >/dev/null; then mpi=ON; fi
 if [ ! -f build/demo/CMakeCache.txt ]; then options+=(-DTESSERA_READERS=OFF); fi # else as scripts/readers.sh left it
-# All of it is what `cmake --install build/demo` installs.
+# `cmake --install build/demo` installs everything.
 cmake --preset release "${options[@]}" -DTESSERA_MPI=$mpi -B build/demo
 cmake --build build/demo -j"$(nproc)"
 

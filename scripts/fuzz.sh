@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Fuzzes each parser of our own for SECONDS (default 60), as many at once as there are cores, from a small corpus of good
-# files. Fails on any crash, leak, undefined behaviour, hang or more than 2 GiB of memory; the input that did it stays in
-# build/fuzz/crashes.
+# Fuzzes each of our own parsers for SECONDS (default 60), as many at once as there are cores, from a small corpus of
+# valid files. Fails on any crash, leak, undefined behaviour, hang or more than 2 GiB of memory; the input that caused
+# it is kept in build/fuzz/crashes.
 # Usage: scripts/fuzz.sh [SECONDS] [TARGET...]
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -19,7 +19,7 @@ fuzz_one() {  # fuzz_one TARGET
   local name=$1 seeds program
   seeds=$(echo tests/*/fuzz_seeds/"$1") program=$(echo $build/tests/*/"$1")
   mkdir -p "$build/corpus/$name"
-  # New finds go to the build's corpus; the seeds in the repository are only read.
+  # New inputs go to the build's corpus; the seeds in the repository are only read.
   [ -d "$seeds" ] || seeds=
   if ! "$program" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 \
     -print_final_stats=1 -artifact_prefix="$build/crashes/$name-" "$build/corpus/$name" $seeds 2>"$build/$name.log"; then
@@ -27,7 +27,7 @@ fuzz_one() {  # fuzz_one TARGET
     echo "$name: failed; see $build/$name.log and $build/crashes"
     return 1
   fi
-  # What all runs have tried so far, beside the corpus that they share.
+  # Number of inputs tried by all runs so far, stored with the corpus that they share.
   awk '/number_of_executed_units/ {print $2}' "$build/$name.log" >>"$build/$name.inputs"
   echo "$name: $seconds s, $(awk '/number_of_executed_units/ {n = $2} /peak_rss/ {m = $2} END {print n " inputs, " m " MiB"}' \
     "$build/$name.log"), $(awk '{n += $1} END {print n}' "$build/$name.inputs") inputs in all"

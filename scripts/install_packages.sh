@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs what scripts/packages.txt lists for the scopes given, e.g. `install_packages.sh build test`, and with build
-# unpacks into build/headers the headers that are not on the machine.
-# Does nothing, and needs no rights, when all of it is there already.
+# Installs the packages of scripts/packages.txt for the given scopes, e.g. `install_packages.sh build test`, and with
+# build unpacks headers missing on the machine into build/headers.
+# Does nothing, and needs no privileges, if everything is there already.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -11,7 +11,7 @@ packages_of() { awk -v scope="$1" '$1 == scope { print $2, $3 }' scripts/package
 missing=() headers=()
 for scope in "$@"; do
   while read -r package _; do
-    # Node.js often comes from elsewhere, npm with it; Debian's would not go beside it.
+    # Node.js and npm often come from another source; Debian's packages conflict with it.
     case $package in nodejs) command -v node >/dev/null && continue ;; npm) command -v npm >/dev/null && continue ;; esac
     status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null) || status=none
     [ "$status" = installed ] || missing+=("$package")

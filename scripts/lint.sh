@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# lint.sh format   says which sources clang-format would change (lint.sh fix changes them)
-# lint.sh tidy     runs clang-tidy (.clang-tidy) over the sources, headers included by way of them, as build/tidy
-#                  is configured. Tests are left out, and readers/, which include VTK: its headers take minutes and the
+# lint.sh format   lists the sources that clang-format would change (lint.sh fix changes them)
+# lint.sh tidy     runs clang-tidy (.clang-tidy) on the sources, including headers through them, as configured in
+#                  build/tidy. Excludes tests, and readers/, which include VTK: its headers take minutes and their
 #                  warnings are not ours.
-# lint.sh changed  tidies only what differs from where this branch left the main one (with nothing of its own: what the
-#                  last commit changed), for at most 6 minutes: it names what it did not come to
+# lint.sh changed  tidies only what differs from the main branch at the branch point (if nothing does: what the last
+#                  commit changed), for at most 6 minutes; lists what it did not reach
 # lint.sh          format and tidy
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-# With what -inl.h files hold: kernels, compiled once per instruction set.
+# Includes -inl.h files: kernels, compiled once per instruction set.
 sources() { git ls-files --cached --others --exclude-standard -- '*.cpp' '*.hpp' '*.h'; }
 ours='^(scene|system|colormaps|cells|io|integrals|exchange|projection|sorting|compositor|frame|api|reference|volume|analysis|annotation|server|apps|gl|datasets)/.*'
 
@@ -18,11 +18,11 @@ format() { sources | xargs -r clang-format-14 --style=file "$@"; }
 
 # Kernels once, as AVX2, instead of once per instruction set.
 one_set=(--extra-arg=-march=haswell --extra-arg=-DHWY_COMPILE_ONLY_STATIC)
-# Options that only g++ knows are no fault of the sources.
+# Options supported only by g++ are not errors of the sources.
 one_set+=(--extra-arg=-Wno-unused-command-line-argument)
 
-tidy_files() {  # tidy_files < LIST: as many at once as there are cores; says on stdout which it has finished
-  # Each source by itself; the compiler's precompiled headers are not clang's.
+tidy_files() {  # tidy_files < LIST: one per core at a time; prints each finished file on stdout
+  # Each source separately; clang cannot use the compiler's precompiled headers.
   cmake --preset release -B build/tidy -DCMAKE_UNITY_BUILD=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >&2
   cmake --build build/tidy --target tessera_commit >&2
   xargs -r -P "$(nproc)" -I{} sh -c 'clang-tidy-14 -p build/tidy --quiet "$@" {} >&2 || exit 1; echo {}' \
@@ -31,8 +31,8 @@ tidy_files() {  # tidy_files < LIST: as many at once as there are cores; says on
 
 tidy() { sources | grep -E "$ours\.cpp\$" | tidy_files >/dev/null; }
 
-# The source through which a changed file is seen: itself, or for a header a source that includes it, the one of its
-# name if that does; by way of other headers if need be.
+# The source that checks a changed file: itself, or for a header a source that includes it, if possible the one with the
+# same name, or else through other headers.
 seen_through() {  # seen_through FILE [DEPTH]
   local file=$1 depth=${2:-0} includers own includer
   case $file in

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Adds the programs that read formats by other people's libraries (VTK, Gmsh, GDCM, ...) to what scripts/demo.sh built, or
-# to another build: scripts/readers.sh [BUILD_FOLDER]. Installs what they need; `tessera` itself stays as it is.
+# Adds the programs that read formats with third-party libraries (VTK, Gmsh, GDCM, ...) to the build of scripts/demo.sh,
+# or to another build: scripts/readers.sh [BUILD_FOLDER]. Installs their dependencies; `tessera` itself does not change.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

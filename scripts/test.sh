@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# test.sh        installs what is missing, checks the format, builds and runs all tests as released
-# test.sh --all  also under ASan and UBSan and TSan, without the parts that are options, fuzzes, and runs clang-tidy
-# With CI=true, as .ci/run calls it, all but TSan and most of the configurations; the sanitized build and the configuration
-# are quick ones (TESSERA_QUICK), the former without tests that wait for stalls; clang-tidy sees what changed, for some
-# minutes at most. What has not begun after 65 minutes is left out. Goes on after a failed stage; the end says which, and
-# what was left out.
+# test.sh        installs missing packages, checks the format, builds and runs all tests of the release build
+# test.sh --all  also under ASan, UBSan and TSan, without optional parts, fuzzes, and runs clang-tidy
+# With CI=true, as called by .ci/run, everything except TSan and most of the configurations; the sanitizer build and the
+# configuration are quick ones (TESSERA_QUICK), the former without tests that wait for stalls; clang-tidy checks changed
+# files for at most some minutes. Stages that have not begun after 65 minutes are left out. Continues after a failed
+# stage; the summary lists failed and omitted stages.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -19,11 +19,12 @@ case "${1:-}" in
 esac
 
 scripts/install_packages.sh build mpi readers test
-# mpirun's hwloc looks for X servers at localhost:1 to :9; where nothing resolves that name, each start may wait 5 s for it.
+# mpirun's hwloc searches for X servers at localhost:1 to :9; if that name does not resolve, each start may wait 5 s for
+# it.
 export HWLOC_COMPONENTS=-gl
 
 failed=() left_out=()
-stage() {  # stage NAME COMMAND...: runs it, remembers a failure
+stage() {  # stage NAME COMMAND...: runs it, records a failure
   local name=$1 start=$SECONDS
   shift
   if [ "$extent" = ci ] && [ "$start" -gt $((65 * 60)) ]; then
@@ -35,11 +36,11 @@ stage() {  # stage NAME COMMAND...: runs it, remembers a failure
   echo "== $name: $((SECONDS - start)) s"
 }
 
-# --all compiles each source by itself, which finds a missing #include.
+# --all compiles each source separately, which detects a missing #include.
 options=()
 if [ "$extent" = all ]; then options=(-DCMAKE_UNITY_BUILD=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON); fi
 
-# More than there are cores: many tests wait for processes.
+# More than the number of cores: many tests wait for processes.
 tests_at_once=$((2 * $(nproc)))
 
 build_and_test() {  # build_and_test PRESET [CTEST_ARGUMENT...]
@@ -73,7 +74,7 @@ if [ "$extent" = all ]; then
   stage tidy scripts/lint.sh tidy
 fi
 
-# What failed tests printed, and ctest's own closing lines, once more and last, where they are found.
+# Output of failed tests, and ctest's own summary, printed again at the end, where they are easy to find.
 for preset in "${presets[@]}"; do
   echo "$preset:"
   log=build/$preset/ctest.log
