@@ -154,9 +154,9 @@ def follow(tessera, data: Path, folder: Path, row):
     wrong = []
     faults = [line for line in errors.splitlines() if line.startswith("tessera: ") and "warning: " not in line]
     is_line = failed.returncode in (2, 3) and len(faults) == 1
-    # What a picture does not show is a warning.
+    # An image that does not show everything is a warning.
     said = "\n".join((errors, re.sub(r"\n +", " ", errors), re.sub(r"\n +", "; ", errors), output))  # lines are wrapped
-    # A reader, or a part of one, that this build lacks; one that is installed on this machine.
+    # A reader, or a part of one, that is not in this build; or one that is installed on this machine.
     is_lacking = re.search("which (is not installed|this build leaves out)", said) and not row.alone
     if is_lacking or (row.alone and failed.returncode == 0):
         return [], None
@@ -209,7 +209,7 @@ def unread_formats(tessera, said):
         for each in listed
         if each["holds"] == "not read"
         and f"({each['name']}) is not read; {each['remark']}" not in said
-        and each["name"] != "Fluent HDF5"  # which the reader of HDF5 refuses, in its own words
+        and each["name"] != "Fluent HDF5"  # the reader of HDF5 refuses it with its own message
     ]
 
 

@@ -17,7 +17,7 @@ def tet(size):
     return unstructured(points=f"0 0 0 1 0 0 0.5 {size} 0 0.5 0 {size}", fields=field)
 
 
-# Two tets a long way from each other, in whose middle is nothing.
+# Two tets far from each other, with nothing in the middle.
 SPECKS = unstructured(
     points="0 0 0 1 0 0 0 1 0 0 0 1 1e7 1e7 1e7 10000001 1e7 1e7 1e7 10000001 1e7 1e7 1e7 10000001",
     cells="0 1 2 3 4 5 6 7",
@@ -38,13 +38,13 @@ FAINT = {"f.txt": "0 1 1 1 1e-6\n1 1 1 1 1e-6\n"}
 DARK = {"f.txt": "0 1e-9 0 0 0\n1 1e-9 0 0 0\n"}
 SEEN = {"f.txt": "0 1 1 1 2\n1 1 1 1 3\n"}
 
-# Every other sample of one field is not a number, so that no voxel has all of its corners.
+# Every second sample of one field is NaN, so that no voxel has all of its corners.
 HOLES = image_data(values="0.5 nan nan 1.5 nan 2.5 3.5 nan").replace(
     "</PointData>", '<DataArray type="Float64" Name="g" format="ascii">0 1 2 3 4 5 6 7</DataArray>\n</PointData>'
 )
 EVERY_OTHER = {"a_2x2x2_uint8.raw": bytes([0, 5, 5, 1, 5, 1, 0, 5])}
 OF_RAW = "render a_2x2x2_uint8.raw -o a.png --size 16x16 "
-# A single sample, in a corner, that shows.
+# A single visible sample, in a corner.
 CORNER = {"a_8x8x8_float32.raw": struct.pack("<512f", 9, *[0] * 511), "f.txt": "1 1 1 1 0\n9 1 1 1 9\n"}
 SPOT = {**CORNER, "f.txt": "8 1 1 1 0\n9 1 1 1 9\n"}
 OF_CORNER = "render a_8x8x8_float32.raw -o a.png --size 16x16 --transfer-function f.txt "

@@ -82,7 +82,7 @@ EXCEPTIONS = {
     r"points in one block; split it$|^system/gzip\.cpp:\d+: it holds more than": (2, HUGE),
 }
 
-# Descriptions of options and formats, lines of reports and tables, and notes that only say what was done.
+# Descriptions of options and formats, lines of reports and tables, and notes that only report what was done.
 NO_ADVICE = [
     r"api/options/option_table\.cpp",
     r"apps/commands/chart_command\.cpp:\d+: errors: largest",

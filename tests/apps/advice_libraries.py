@@ -363,7 +363,7 @@ ROWS = [
     ct("bits, which are not read; write 8, 16 or 32", **{str(k): dicom(k, bits=4) for k in (1, 2, 3)}),
     row("info a.dcm", "GDCM finds no pictures in it; give a folder or a file of slices", "info ct", {**SLICES, "a.dcm": "text"}),
     ct("there is no time step 5", "info ct --time-step 5", "info ct"),
-    # formats that are not read, and solvers'
+    # formats that are not supported, and those of solvers
     row("info a.nek5000", "save it as .vtu in ParaView", "info m.vtu", {"a.nek5000": "nothing"}),
     row("info a.vol", "convert it to .vtu with meshio", "info m.vtu", {"a.vol": "mesh3d\ndimension\n3\n"}),
     row("info a.cdb", "convert it to .vtu with meshio", "info m.vtu", {"a.cdb": "*HEADING\n*NODE\n"}),

@@ -183,7 +183,7 @@ def dicom_frames(positions):
     return whole[:rows] + count + whole[rows:pixels] + frames + whole[pixels:]
 
 
-# One of no bytes, and the end.
+# One fragment of zero bytes, and the end.
 FRAGMENTS = b"\xfe\xff\0\xe0\0\0\0\0\xfe\xff\xdd\xe0\0\0\0\0"
 
 

@@ -16,7 +16,7 @@ TOKEN = re.compile(
 VERBS = """add allow build check choose close correct count did end export free give have inflate install keep lay leave make
            move name please put raise read run save see set split start try unpack use write""".split()
 ADVICE = re.compile(r"; [a-z`(]|, (?:write|give) |(?:^|\n)(?:" + "|".join(VERBS) + r") ")
-# What takes words that nobody is told.
+# Calls whose strings are not shown to users.
 ASKING = set(
     """if while for switch find rfind contains starts_with ends_with substr count at attribute child get find_first_of
        find_last_of find_first_not_of begins_with word words given""".split()
@@ -33,7 +33,7 @@ class Message:
         pieces = []
         for part in parts:
             pieces += [re.escape(piece) for piece in re.split(r"\{[^}]*\}|`\w+`|\n", part) if piece]
-        # Advice goes no further than its words, but for what is in brackets.
+        # Advice ends with its text, except for text in brackets.
         end = "" if re.search(r"[}`\s]$", parts[-1]) else r"(?=$|[.,;:)?]| \()"
         self.pattern = re.compile(".*?".join(pieces) + end, re.MULTILINE)
 

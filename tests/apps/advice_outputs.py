@@ -9,7 +9,7 @@ from advice_row import row
 R = "render m.vtu -o a.png --size 16x16 "
 V = "render v.vti -o a.png --size 16x16 "
 
-# A stand-in for ffmpeg in the folder, which keeps what comes, and what its shell needs.
+# A fake ffmpeg in the directory, which stores its input, and the commands that its shell needs.
 FFMPEG = {"PATH": ".:/usr/bin:/bin"}
 STAND_IN = {"ffmpeg": ("program", '#!/bin/sh\nfor last; do :; done\ncat > "$last"\n')}
 VIEW = (
@@ -17,7 +17,7 @@ VIEW = (
 )
 CAMERAS = f"[{VIEW.format(16)}, {VIEW.format(32)}]"
 
-# As --report writes it, with what --like looks at.
+# As written by --report, with the entries that --like reads.
 REPORT = (
     '{"method": {"blend": "linear", "emission": "absorption", "shade": false},'
     ' "mesh": {"field": {"name": "f", "association": "point"}, "fields": []},'
@@ -29,7 +29,7 @@ REPORT = (
 BROKEN = "#!/bin/sh\nexit 1\n"
 
 ROWS = [
-    # what is written
+    # output files
     row("render m.vtu -o a.bmp", "end it in .exr, .png", R),
     row(
         "render m.vtu -o nowhere/a.png",
@@ -92,7 +92,7 @@ ROWS = [
         "render m.vtu -o a_%04d.png --peel 0.5 --size 16x16",
     ),
     row("render m.vtu -o - --peel 0.5 --size 16x16", "name a file with -o", "render m.vtu -o a.png --peel 0.5 --size 9x9"),
-    # a film where no ffmpeg is: pictures in its place
+    # a film without ffmpeg: an image sequence instead
     row("render m.vtu -o a.mp4 --size 16x16", "write a_%04d.png", "render m.vtu -o a_%04d.png --size 16x16"),
     row("render m.vtu -o a_%04d.mp4 --size 16x16", "write a_%04d.png", "render m.vtu -o a_%04d.png --size 16x16"),
     row(
@@ -130,7 +130,7 @@ ROWS = [
     row("render m.vtu -o a.deep.exr --size 16x16 --integrator sampled:4 --outline", "name an .exr", R + "--outline"),
     row(f"render m.vtu -o {'n' * 300}.png --size 16x16", "give a shorter name", R),
     row("render m.vtu -o /sys/a.png --size 16x16", "name a folder you may write in", R),
-    # disks, folders and films
+    # disks, directories and films
     row("render m.vtu -o loop/a.png --size 16x16", "check the disk and the file system", R, {"loop": ("link", "loop")}),
     row(
         "convert m.tets b.tets",

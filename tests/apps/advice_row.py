@@ -8,16 +8,17 @@ from dataclasses import dataclass, field
 @dataclass
 class Row:
     command: str
-    advice: str  # what the message has to say
-    mended: str  # the command with the advice followed
-    # Files by their names, which may end in / for a folder: text, bytes, ("program", text), ("link", target), None: away.
+    advice: str  # text that the message must contain
+    mended: str  # the command after following the advice
+    # Files by name, which may end in / for a directory: text, bytes, ("program", text), ("link", target), None:
+    # removed.
     before: dict = field(default_factory=dict)  # for the first command
-    after: dict = field(default_factory=dict)  # what the advice makes of them
+    after: dict = field(default_factory=dict)  # files changed by following the advice
     stdin: str = ""  # file that both commands read
     env: dict = field(default_factory=dict)
-    terminal: str = ""  # what the first command has for a terminal: stdin or stdout; full: its output has no room
-    limits: str = ""  # what a shell does before it becomes the first command
-    alone: bool = False  # whether the first command is of a program without its helpers
+    terminal: str = ""  # stream of the first command that is a terminal: stdin or stdout; full: its output is full
+    limits: str = ""  # shell commands executed before the first command
+    alone: bool = False  # whether the first command is a program without its helpers
     line: str = ""
 
 

@@ -43,7 +43,7 @@ def without(files, name):
 
 
 ROWS = [
-    # known, and not read
+    # known, but not supported
     not_read("a.k", "export Nastran .bdf from LS-PrePost", "$ made\n*KEYWORD\n*NODE\n"),
     not_read("d3plot", "save it as .vtm"),
     not_read("a.inp", "convert it to .vtu with meshio", "*Part, name=a\n*Node\n1, 0, 0, 0\n"),
@@ -96,7 +96,7 @@ ROWS = [
         {**ENSIGHT, "m.f": ENSIGHT["m.f"][:-13]}, ENSIGHT),
     row("info of", "and there is no such file; put it there", None, without(CASE, "of/constant/polyMesh/faces"), CASE),
     row("info a.vtm", "q.vtu: there is no such file, which a.vtm lists; put it there", None, {"a.vtm": VTM, "p.vtu": TET}, {"q.vtu": TET}),
-    # what is there is not what is needed
+    # files of another kind than needed
     row("info a.vtm", "or one of the files itself", "info p.vtp",
         {"a.vtm": VTM.replace(".vtu", ".vtp"), "p.vtp": VTP, "q.vtp": VTP}),
     row("info a.msh", "has no volume to render; give one of 3", "info m.vtu", {"a.msh": FLUENT.format(2, 2, "")}),

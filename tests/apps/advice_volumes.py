@@ -39,7 +39,7 @@ def nrrd_axes(axes, advice):
 DETACHED = NRRD.replace(b"encoding: raw\n\n" + SAMPLES, b"encoding: raw\ndata file: a%d.raw 0 1 1\n")
 PARTS = {"a0.raw": SAMPLES[:4], "a1.raw": SAMPLES[4:]}
 META_TEXT = META.replace(b"BinaryData = True", b"BinaryData = False").replace(SAMPLES, b"1 2 3 4 5 6 7 8")
-ROOMY = TETRAHEDRON.replace("</VTKFile>", " " * (100 << 20) + "</VTKFile>")  # blanks that gzip makes nothing of
+ROOMY = TETRAHEDRON.replace("</VTKFile>", " " * (100 << 20) + "</VTKFile>")  # blanks that gzip compresses to nothing
 PACKED = NRRD.replace(b"raw", b"gzip").replace(SAMPLES, gzip.compress(SAMPLES, mtime=0))
 TEXT = NRRD.replace(b"raw", b"ascii").replace(SAMPLES, b"1 2 3 4 5 6 7 8")
 HEX = NRRD.replace(b"raw", b"hex").replace(SAMPLES, SAMPLES.hex().encode())

@@ -109,10 +109,10 @@ def main():
         folder = Path(name)
         make_data(folder, options.source)
         make_programs(folder, options.tessera)
-        # Root, and more processes than cores, are what mpirun wants to be told of.
+        # mpirun must be allowed to run as root, and with more processes than cores.
         environment = {**os.environ, "PATH": f"{folder}/bin:{os.environ['PATH']}", "OMPI_ALLOW_RUN_AS_ROOT": "1",
                        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
-        # Files that other sections make, or that stand for many.
+        # Files that other sections create, or that represent many.
         todo = [("here", k, text) for k, text in enumerate(
             ["tessera generate cube cube.vtu n=4", "tessera generate cube mesh_0000.vtu n=4",
              "tessera generate cube mesh_0001.vtu n=4 offset=0.5"])]
@@ -131,7 +131,7 @@ def main():
                 status, said = done.returncode, done.stderr.decode(errors="replace")
             except subprocess.TimeoutExpired:
                 status, said = "none", "takes longer than 900 s"
-            # A part that this build has not says so.
+            # Parts that are missing in this build are reported as such.
             if status == 2 and "this build" in said:
                 left += 1
                 continue

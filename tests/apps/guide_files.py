@@ -31,7 +31,7 @@ class Cubes:
 
 def foam_case(folder: Path, cubes: Cubes):
     """An OpenFOAM case of two times with a pressure in its cells."""
-    faces = {}  # by corners: as its owner lists it, owner, neighbour
+    faces = {}  # by corners: in its owner's order, owner, neighbour
     for number, cell in enumerate(cubes.cells):
         for side in SIDES:
             corners = [cell[k] for k in side]
@@ -123,7 +123,7 @@ class NetCDF:
         fixed = [v for v in self.variables if v[2][0] != "time_step"]
         moving = [v for v in self.variables if v[2][0] == "time_step"]
 
-        def part(variable):  # bytes of a record, or of all
+        def part(variable):  # bytes per record, or in total
             count = 1
             for name in variable[2]:
                 count *= max(1, self.dimensions[name])

@@ -30,9 +30,9 @@ TOKEN = re.compile(
       | (?<![0-9A-Za-z_])'(?:[^'\\\n]|\\.)+'""",
     re.DOTALL | re.VERBOSE,
 )
-OPTION = re.compile(r"(?<![\w-])(?<!tessera render )--([a-z][a-z-]*)")  # a whole command may be named
+OPTION = re.compile(r"(?<![\w-])(?<!tessera render )--([a-z][a-z-]*)")  # a complete command may be named
 SETTING = re.compile(r"`([a-z][a-z0-9_]*)`")
-COLUMNS = {"wait", "other", "cpu", "send"}  # of the timing table, which is no message
+COLUMNS = {"wait", "other", "cpu", "send"}  # of the timing table, which is not a message
 
 
 def in_literals(pattern, source):

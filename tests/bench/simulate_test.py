@@ -71,7 +71,7 @@ class Sharing(unittest.TestCase):
         links = Links(clock, 100.0)
         for _ in range(3):
             links.send((0, 1), (0, 1), 100, lambda: ends.append(clock.now))
-        links.send((2, 2), (2, 2), 100, lambda: ends.append(clock.now))  # within a node: no wire
+        links.send((2, 2), (2, 2), 100, lambda: ends.append(clock.now))  # within a node: no network
         clock.run()
         self.assertEqual([round(e, 6) for e in ends], [0, 1, 2, 3])
 
@@ -92,18 +92,19 @@ class Frames(unittest.TestCase):
         self.assertAlmostEqual(Model(uniform(1, 1, 5, 8, 0.1), ideal(threads=4)).run(), 0.2)
 
     def test_ranks_of_shared_cores_take_as_long_as_all_their_work(self):
-        # 4 projectors of 0.4 s on two cores: 0.8 s a frame
+        # 4 projectors of 0.4 s on two cores: 0.8 s per frame
         self.assertAlmostEqual(Model(uniform(4, 1, 6, 4, 0.1), ideal(cores=2, shared=True)).run(), 0.8)
 
     def test_a_slow_link_sets_the_pace(self):
-        # Each projector has 1,000,000 bytes of tiles for either compositor, the other node's cross the link.
+        # Each projector has 1,000,000 bytes of tiles for each compositor; those for the other node use the link.
         work = uniform(2, 2, 40, 2, 0.001, 1_000_000)
         work.tile_bytes = 0
         model = Model(work, ideal(bytes_per_second=1e6, in_flight=4))
         model.run()
         left = model.assembler.left
         self.assertAlmostEqual((left[-5] - left[4]) / (len(left) - 9), (1_000_000 + 32) / 1e6, places=3)
-        # The other compositor's small message does not wait for the next frame's large one, which was announced before it.
+        # The other compositor's small message does not wait for the next frame's large one, which was announced
+        # earlier.
         self.assertAlmostEqual(left[0], 1, places=2)
 
     def test_with_one_frame_in_flight_the_last_tile_is_waited_for(self):
@@ -118,10 +119,10 @@ class Frames(unittest.TestCase):
         work.write = 0.5
         model = Model(work, ideal())
         self.assertAlmostEqual(model.run(), 0.5)
-        self.assertAlmostEqual(model.assembler.left[-1] - model.assembler.left[-2], 0.5)  # one is written, one waits, one is held
+        self.assertAlmostEqual(model.assembler.left[-1] - model.assembler.left[-2], 0.5)  # one is being written, one waits, one is held
 
     def test_threads_share_the_tiles_of_a_picture(self):
-        # Two compositors' messages of 4 tiles each: 0.4 s of work one after the other, 0.2 s at once.
+        # Two compositors' messages of 4 tiles each: 0.4 s of work sequentially, 0.2 s in parallel.
         work = uniform(2, 2, 8, 8, 0.001)
         work.assemble, work.tile_bytes = (0.0, 0.05), 100.0
         self.assertAlmostEqual(Model(work, ideal()).run(), 0.4, places=2)
@@ -136,7 +137,7 @@ class Frames(unittest.TestCase):
         self.assertAlmostEqual(Model(work, ideal(memory=4 << 20, in_flight=1)).run(), 0.64, delta=0.05)
 
     def test_latency_is_paid_by_who_asks_first(self):
-        # Asking there, the answer, the message; end; frame left: the begin is long there.
+        # Announcement, reply, message; end; frame left: the begin is long there.
         work = uniform(1, 1, 6, 1, 0.1, 100_000)
         self.assertAlmostEqual(Model(work, ideal(in_flight=1, latency=0.01)).run(), 0.1 + 0.03 + 0.01, places=3)
 

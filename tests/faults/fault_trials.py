@@ -31,8 +31,8 @@ import threading
 import time
 from pathlib import Path
 
-HANG = 300.0  # seconds that only a hang takes
-ALONE = 30.0  # after which a launcher whose ranks have ended is given up, which is no failure
+HANG = 300.0  # seconds, reached only by a hang
+ALONE = 30.0  # then a launcher whose ranks have ended is killed, which is not a failure
 
 
 def processes_of(token):
@@ -112,7 +112,7 @@ class Film:
 
 def environment():
     return dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                ASAN_OPTIONS="detect_leaks=0")  # Open MPI's own leaks
+                ASAN_OPTIONS="detect_leaks=0")  # leaks of Open MPI itself
 
 
 def send(pid, number):
@@ -141,7 +141,7 @@ def stop_in_midst(film, run, token, folder, random_source):
         time.sleep(0.002)
     ranks = ranks_of(film, token)
     if not ranks:
-        return True  # a rank of a busy machine has been taken for a stopped one
+        return True  # on a busy machine, a running rank was reported as stopped
     victim = random_source.choice(ranks)
     send(victim, signal.SIGSTOP)
     if len(pictures_of(folder)) <= film.frames - 8:
@@ -233,16 +233,17 @@ def trial(film, kind, random_source, number):
 
     lines = [line for line in errors.splitlines() if line.startswith("tessera: ")]
     finished = run.returncode == 0 and len(list(folder.iterdir())) == film.frames
-    began = bool(pictures_of(folder))  # else MPI may not have started when it broke
+    began = bool(pictures_of(folder))  # otherwise MPI may not have started when it broke
     launcher_crashes = kind in ("kill", "term") and not began and run.returncode == -signal.SIGSEGV
     if not finished and not launcher_hangs:
-        # A rank that dies before MPI has started leaves that to mpirun, and one that is told to end as it ends is quiet.
+        # A rank that dies before MPI has started leaves the report to mpirun; one that is killed while it ends prints
+        # nothing.
         midst = began and len(pictures_of(folder)) < film.frames
         speaks = kind in ("disk", "piece") or (kind in ("term", "stall", "folder") and midst)
         if len(lines) > (1 if began else film.ranks) or (speaks and len(lines) != 1):
             problems.append(f"{len(lines)} lines of ours: {lines}")
         wanted = {"launcher": {-9}, "disk": {3}, "piece": {2}, "pause": {0}, "folder": {3} if began else {3, 2}}
-        if began:  # else MPI has statuses of its own
+        if began:  # otherwise MPI has its own status codes
             wanted |= {"kill": {137, 3}, "term": {3}, "stall": {3}}
         failed = run.returncode not in wanted[kind] if kind in wanted else run.returncode == 0
         if failed and not launcher_crashes:

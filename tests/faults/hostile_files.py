@@ -162,7 +162,7 @@ def write_cases(folder):
             ("plt", "plt/Level_0/Cell_H", "Cell_D")]
 
 
-# By their names alone: what is given to the program, and the files that it looks for beside that.
+# By their names alone: the file passed to the program, and the files that it searches for next to it.
 BY_NAME = [("tet.ele", "tet.node"), ("tet.node", "tet.ele"), ("plt", "plt/Level_0/Cell_H"), ("plt", "plt/Header"),
            ("case", "case/constant/polyMesh/points"), ("case", "case/constant/polyMesh/faces"), ("case", "case/0/p"),
            ("m.vtu", "m.vtu"), ("v.nrrd", "v.nrrd"), ("m.su2", "m.su2"), ("s.stl", "s.stl"), ("m.msh", "m.msh")]

@@ -96,7 +96,7 @@ class Trials:
         self.faults += 1
         print(f"{name}: {what}", flush=True)
 
-    # -- what good files must give
+    # -- expectations for valid files
 
     def check_good(self, case):
         file = self.path(case.name)
@@ -142,7 +142,7 @@ class Trials:
             first, second = self.folder / "first.pfm", self.folder / "second.pfm"
             report = self.folder / "report.json"
             one = self.run("render", file, "-o", first, "--verify", 480, "--report", report, *case.words, *words)
-            # At a step one pixel of 480 may be excused, which is more than an image may have.
+            # At a step one pixel of 480 may be excused, which is more than a whole image may have.
             judged = json.loads(report.read_text())["frames"][0]["verify"] if one.returncode in (0, 4) else {}
             if not judged or judged["max_error_not_excused"] > judged["bound"] or judged["excused"] > 2:
                 return self.fault(case.name, f"view {number}: {one.returncode} {one.stderr.strip()} {one.stdout.strip()}")
@@ -154,11 +154,11 @@ class Trials:
             a, b = (np.frombuffer(f.read_bytes()[-24 * 20 * 12:], "<f4") for f in (first, second))
             if number == 0 and not np.abs(a).max() > 0.05:
                 return self.fault(case.name, "the picture is empty")
-            # Twice the accuracy; a step's edge may fall on either side of a pixel's centre.
+            # Twice the accuracy; a step's edge may be on either side of a pixel's centre.
             if np.count_nonzero(np.abs(a - b) > 2.1e-4) > (0 if function == smooth else 12):
                 return self.fault(case.name, f"view {number}: {np.abs(a - b).max():.2g} off the plain copy")
 
-    # -- what broken ones must give
+    # -- expectations for damaged files
 
     def check_bad(self, name, words, options, command="render", ranks=0):
         output = self.folder / "out.png"
@@ -186,7 +186,7 @@ class Trials:
                 path.write_bytes(whole[:part])
                 run = self.run("info", self.path(case.name), *case.words)
                 lines = len(run.stderr.splitlines())
-                # The last byte may be a newline that nothing needs, or part of a checksum.
+                # The last byte may be a newline that is not needed, or part of a checksum.
                 if run.returncode not in ((0, 2) if part >= len(whole) - 30 else (2,)) or lines != (run.returncode == 2):
                     self.fault(case.name, f"{name} cut to {part} of {len(whole)}: {run.returncode} {run.stderr.strip()[:200]}")
             path.write_bytes(whole)
@@ -354,7 +354,7 @@ def add_nifti(t):
     for version in (1, 2):
         t.add(f"nifti{version}_sform.nii", nifti_bytes(v, 4, version, rows=shear), v, origin=shear[:, 3], spacing=lengths,
               direction=shear[:, :3] / lengths)
-        half = np.sqrt(0.1)  # (0.8, 0.6) turned by atan2(.6, .8) about z: half its angle's sine
+        half = np.sqrt(0.1)  # (0.8, 0.6) is a rotation by atan2(.6, .8) about z: sine of half its angle
         turned = TURN.copy()
         turned[:, 2] *= -1
         t.add(f"nifti{version}_qform.nii", nifti_bytes(v, 4, version, quaternion=(0, 0, half), offset=(1, 2, 3), qfac=-1,
@@ -370,7 +370,7 @@ def add_nifti(t):
     for name in ("nifti_vtk.nii", "nifti_vtk.nii.gz"):
         writer.SetFileName(str(t.path(name)))
         writer.Write()
-        # Its own qform holds the origin's and the axes' signs; only the samples and the spacing are compared.
+        # Its own qform stores the origin's and the axes' signs; only the samples and the spacing are compared.
         told = json.loads(t.run("info", t.path(name), "--json").stdout or "{}")
         t.add(name, None, field("f4"), origin=told.get("origin", 0), spacing=(.5, 1, 2),
               direction=np.array(told.get("direction", EYE)).T)
@@ -505,7 +505,7 @@ def add_vtk(t):
     line = dict(origin=(1.5, -2, 3), spacing=(0.5, 1, 2))
     codes = ["i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", "f4", "f8"]
     def write(image, name, mode="appended", packed="zlib", **more):
-        # A new one each time: VTK 9.1's writes raw bytes between tags after it has appended raw bytes once.
+        # A new one each time: VTK 9.1's writes raw bytes between tags after it has once appended raw bytes.
         writer = more.get("writer", vtk.vtkXMLImageDataWriter)()
         writer.SetInputData(image)
         writer.SetFileName(str(t.path(name)))
@@ -557,7 +557,8 @@ def add_vtk(t):
         parallel.Write()
         parts = sorted(p.name for p in t.folder.glob(f"pvti_{pieces}_*.vti"))
         t.add(f"pvti_{pieces}.pvti", None, v, files=parts, **geometry)
-    # Pieces of their own extents, which VTK's parallel writers make of a pipeline that can be asked for parts only.
+    # Pieces with their own extents, which VTK's parallel writers create from a pipeline that supports requests for
+    # parts.
     v, c = field("f4"), field("i2")[:-1, :-1, :-1]
     for word, grid in (("vti", vtk_image(v, cell=c, **geometry)), ("vtr", even_grid(v, cell=c, **line))):
         parts = {}
@@ -635,7 +636,7 @@ def add_vtk(t):
     t.refuse("pvti_itself.pvti", t.path("pvti_2.pvti").read_text().replace("pvti_2_1.vti", "pvti_itself.pvti"))
 
 
-# -- raw files, and what is not a volume at all
+# -- raw files, and files that are not volumes
 
 def add_others(t):
     for code, name in {"i1": "int8", "u1": "uint8", "i2": "int16", "u2": "uint16", "i4": "int32", "u4": "uint32", "f4": "float32",

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs the build into a folder of its own, builds examples/ and a file by pkg-config against it, moves it, and uses it
+# Installs the build into a separate directory, builds examples/ and a file by pkg-config with it, moves it, and uses it
 # again. CMakeLists.txt sets the environment.
 set -euo pipefail
 
@@ -17,13 +17,13 @@ mkdir -p "$SCRATCH"
 first=$SCRATCH/first moved=$SCRATCH/elsewhere/tessera
 quietly "$CMAKE" --install "$BUILD" --prefix "$first"
 
-# No path of the machine that built it.
+# No path of the build machine.
 if grep -rlaF -e "$BUILD" -e "$SOURCE" "$first"; then failed "the files above name the build's folders"; fi
 for header in "$SOURCE"/include/tessera/*.hpp; do
   [ -f "$first/include/tessera/$(basename "$header")" ] || failed "$header is not installed"
 done
 
-# The shared library shows the public API, and that alone, and links neither VTK nor TetGen.
+# The shared library exports exactly the public API, and links neither VTK nor TetGen.
 if [ "$SHARED" = 1 ]; then
   shown=$(nm -DC --defined-only "$first/$LIBDIR/libtessera.so" | sed 's/^[0-9a-f]* . //')
   others=$(grep -vE '^(typeinfo (name )?for |vtable for |VTT for )?tessera::' <<<"$shown" || true)
@@ -44,7 +44,7 @@ build_examples() {  # build_examples FOLDER PREFIX [OPTION...]
     -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF "$@"
   grep -q "^tessera_DIR:.*=$prefix/" "$folder/CMakeCache.txt" || failed "another Tessera than $prefix was found"
   quietly "$CMAKE" --build "$folder"
-  # Each draws its picture.
+  # Each renders its image.
   (cd "$folder" && quietly ./mesh_from_arrays && [ -s mesh.png ]) || failed "$folder/mesh_from_arrays"
   { # a format that needs no other library
     printf '%s\n' NRRD0004 'type: float' 'dimension: 3' 'sizes: 9 9 9' 'encoding: ascii' ''
@@ -109,11 +109,11 @@ TEXT
   quietly "$CMAKE" --build "$SCRATCH/whole/build"
 fi
 
-# pkg-config, as a line in a Makefile would.
+# pkg-config, as used by a line in a Makefile.
 from_pkg_config() {  # from_pkg_config PREFIX [--static]
   local flags
   flags=$(PKG_CONFIG_PATH=$1/$LIBDIR/pkgconfig pkg-config --cflags --libs "${@:2}" tessera)
-  # All of the archive, so that all that it needs has to be named.
+  # The complete archive, so that all dependencies must be listed.
   if [ "${2:-}" = --static ]; then
     flags=${flags/-ltessera/-Wl,--whole-archive -l:libtessera.a -Wl,--no-whole-archive}
   fi
@@ -124,7 +124,7 @@ from_pkg_config() {  # from_pkg_config PREFIX [--static]
 from_pkg_config "$first"
 if [ "$STATIC" = 1 ]; then from_pkg_config "$first" --static; fi
 
-# The README's program, by its command.
+# The README's program, built by its command.
 awk '/^```cpp/ { on = 1; next } /^```/ && on { exit } on' "$SOURCE/README.md" >"$SCRATCH/snippet"
 { grep '^#' "$SCRATCH/snippet" && echo 'int main() {' && grep -v '^#' "$SCRATCH/snippet" && echo '}'; } >"$SCRATCH/readme.cpp"
 (
@@ -138,7 +138,7 @@ if [ "$APPS" = 1 ]; then
   (cd "$SCRATCH" && quietly ./readme && [ -s mesh.png ]) || failed "the README's program"
 fi
 
-# Other minor versions are not taken for this one.
+# Other minor versions are not accepted.
 mkdir "$SCRATCH/versions"
 IFS=. read -r major minor _ <<<"$VERSION"
 find_version() {  # find_version VERSION
@@ -152,7 +152,7 @@ for other in "$major.$((minor + 1))" "$((major + 1)).$minor"; do
   if find_version "$other"; then failed "$VERSION is taken for $other"; fi
 done
 
-# What is not there is said.
+# Missing components are reported.
 mkdir "$SCRATCH/lacking"
 cat >"$SCRATCH/lacking/CMakeLists.txt" <<'TEXT'
 cmake_minimum_required(VERSION 3.25)
@@ -168,7 +168,7 @@ fi
   failed "the message of a component that is not there"
 }
 
-# Elsewhere.
+# At another location.
 mkdir -p "$(dirname "$moved")"
 mv "$first" "$moved"
 if [ "$SHARED" = 1 ]; then
@@ -179,7 +179,7 @@ fi
 from_pkg_config "$moved"
 if [ "$APPS" = 1 ]; then [ "$("$moved/bin/tessera" --version | head -1)" = "tessera $VERSION" ] || failed "bin/tessera --version"; fi
 
-# As a folder of another project: configured only.
+# As a subdirectory of another project: only configured.
 mkdir "$SCRATCH/parent"
 cat >"$SCRATCH/parent/CMakeLists.txt" <<TEXT
 cmake_minimum_required(VERSION 3.25)
@@ -195,7 +195,7 @@ target_link_libraries(program PRIVATE tessera::tessera \$<TARGET_NAME_IF_EXISTS:
 add_executable(static_program "$SOURCE/tests/package/version.cpp")
 target_link_libraries(static_program PRIVATE tessera::static)
 TEXT
-# The same parts as this build has: others may lack their packages here.
+# The same parts as in this build: packages of others may be missing here.
 mapfile -t options < <(sed -nE 's/^(TESSERA_(READERS|VTK|MPI|GL|CAIRO|TETGEN)):BOOL=(.*)$/-D\1=\3/p' "$BUILD/CMakeCache.txt")
 quietly "$CMAKE" -S "$SCRATCH/parent" -B "$SCRATCH/parent/build" -G "$GENERATOR" -DCMAKE_CXX_COMPILER="$CXX" \
   -DCMAKE_C_COMPILER="$CC" "${options[@]}"

@@ -181,7 +181,7 @@ def frame_of(rng, payload):
         head += bytes([masked | 126]) + struct.pack(">H", length)
     else:
         head += bytes([masked | 127]) + struct.pack(">Q", length)
-    return head + (bytes(4) + payload if masked else payload)  # a mask of zeros leaves it as it is
+    return head + (bytes(4) + payload if masked else payload)  # a mask of zeros does not change it
 
 
 class Hostile:
@@ -241,7 +241,7 @@ class Hostile:
                 stream.shutdown(socket.SHUT_WR)
                 stream.recv(1 << 12)
         except OSError:
-            pass  # closed before all of it was sent
+            pass  # closed before everything was sent
         return data
 
     def by_request(self):

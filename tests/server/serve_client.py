@@ -15,7 +15,7 @@ import time
 import urllib.parse
 
 
-HANG = 300  # seconds that only a hang takes
+HANG = 300  # seconds, reached only by a hang
 
 
 class Server:

@@ -62,7 +62,7 @@ def rendered(command, launcher=(), output="picture.png"):
     words[-1] = output
     path = folder / output
     path.unlink(missing_ok=True)
-    # The file as the server was given it.
+    # The file as it was passed to the server.
     tessera(*words[1:], launcher=launcher)
     return path.read_bytes()
 
@@ -104,7 +104,7 @@ def pictures_of(file, launcher=()):
             check(status == 200 and picture == image, "picture is not the frame")
             check("attachment" in headers["Content-Disposition"], headers)
             query = urllib.parse.urlencode({"state": json.dumps(exact), "format": "exr"})
-            if len(query) < 15000:  # else it is not an address any more
+            if len(query) < 15000:  # otherwise the URL is too long
                 status, _, picture = server.ask("GET", "/picture?" + query)
             else:
                 status, _, picture = server.ask("POST", "/picture", {"state": exact, "format": "exr"})
@@ -136,7 +136,7 @@ def defaults_hold_the_start(file):
             base = client.receive()["base"]
         check(base["background"] == "navy" and base["color-bar"] == "left" and base["view"] == "front", base)
         for state in ({"size": "90x90"}, {"size": "90x90", "color-bar": None, "clip": ["0,0,0,0,1,0"]}):
-            _, _, unsaid = server.ask("POST", "/picture", {"state": state})  # which waits for the data
+            _, _, unsaid = server.ask("POST", "/picture", {"state": state})  # it waits for the data
             defaults = server.json("POST", "/api/data", {"state": state})["defaults"]
             for word in set(base) - {"view"}:
                 check(defaults[word] == state.get(word, base[word]), f"{word}: {defaults}")
@@ -223,7 +223,7 @@ def stand_in_of(file, launcher=()):
             client.state(number, dict(state, azimuth=str(number % 360)), moving=True)
             header, image = client.frame(acknowledge=False)
             check(number > 1 or not header["stand_in"], f"{file.name}: a stand-in where nothing was measured yet")
-            time.sleep(0.01)  # with what it takes a client to paint it, no frame is there in a millisecond
+            time.sleep(0.01)  # including the client's time to paint it, no frame arrives within a millisecond
             client.send({"type": "ack", "frame": header["frame"]})
         check(image.startswith(b"\xff\xd8"), "a stand-in that is not a JPEG")
         number += 1
@@ -305,7 +305,7 @@ def part_pictures():
         pictures_of(file)
         defaults_are_the_first_picture(file)
         moving_frames_are_bare(file)
-        if file.name != "cells.vtu":  # which has no iso-surface
+        if file.name != "cells.vtu":  # it has no iso-surface
             defaults_hold_the_start(file)
         answers(file)
         if not options.without_mpi and file.name != "cells.vtu":
@@ -393,7 +393,8 @@ def part_tls():
         check(server.ask("GET", "/api/data", token=False)[0] == 403, "without the token")
         check(server.socket(headers={"Origin": f"https://127.0.0.1:{server.port}"}).status == 101, "our own page")
         check(server.socket(headers={"Origin": f"https://127.0.0.1:{server.port ^ 1}"}).status == 403, "another page")
-        # Nothing is answered in the clear, nor by an old protocol, nor to who does not trust it; and it goes on.
+        # Nothing is answered without TLS, with an old protocol, or to a client that does not trust it; and the server
+        # continues.
         with socket.create_connection((server.host, server.port), timeout=HANG) as plain:
             plain.sendall(f"GET /?token={server.token} HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".encode())
             check(b"HTTP/" not in plain.recv(100), "an answer in the clear")
@@ -408,7 +409,7 @@ def part_tls():
                 raise AssertionError(f"{change}: a connection")
             except ssl.SSLError:
                 pass
-        # Of TLS 1.2 none without forward secrecy or with a block cipher.
+        # In TLS 1.2, nothing without forward secrecy or with a block cipher.
         for ciphers, is_taken in (("AES128-SHA", False), ("AES256-GCM-SHA384", False), ("ECDHE-RSA-AES128-SHA", False),
                                   ("ECDHE-RSA-AES128-SHA256", False), ("ECDHE-RSA-AES128-GCM-SHA256", True),
                                   ("ECDHE-RSA-CHACHA20-POLY1305", True)):
@@ -499,7 +500,7 @@ def send_mutated(server, state, count):
                 client.send_bytes(mutated(rng, rng.choice(originals)), rng.choice([1, 1, 1, 1, 2]))
                 sent += 1
         except OSError:
-            pass  # closed for a frame that is not a UTF-8, or because it did not read
+            pass  # closed because of a frame that is not UTF-8, or because the client did not read
         stop.set()
         try:
             client.stream.shutdown(socket.SHUT_RDWR)
@@ -544,12 +545,12 @@ def part_hostile():
         status, _, _ = server.ask("GET", "/api/data", headers={"X-Long": "a" * 20000})
         check(status == 431, f"a long header: {status}")
 
-        # Half-open connections are closed, and others served meanwhile.
+        # Half-open connections are closed, and others are served in parallel.
         half_open = [socket.create_connection((server.host, server.port)) for _ in range(60)]
         for number, stream in enumerate(half_open):
             stream.sendall([b"", b"GET / HT", b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n"][number % 3])
         check(is_served(server, state), "not served beside half-open connections")
-        # A reader that does not read its frame.
+        # A client that does not read its frame.
         slow = server.socket()
         slow.state(1, dict(state, size="1500x1500"))
         # 200 clients at once.
@@ -576,7 +577,7 @@ def part_hostile():
         for number in range(1, 501):
             client.state(number, dict(state, opacity=1 + number / 1000), moving=number < 500)
         header, _ = client.frame(acknowledge=False)
-        for _ in range(2):  # between two pictures for others it would have its turn
+        for _ in range(2):  # between two images for others it would get its turn
             check(server.ask("POST", "/picture", {"state": state})[0] == 200, "no picture beside a client that waits")
         client.send_bytes(b"", 9)
         while (message := client.receive()) != {"type": "pong"}:
@@ -608,7 +609,7 @@ def memory_stays(server, state):
     client = admitted(server)
     client.receive()
     position = list(state["camera"]["position"])
-    rounds = 1 if options.sanitized else 6  # whose quarantine grows
+    rounds = 1 if options.sanitized else 6  # its quarantine grows
     number = 0
     for _ in range(rounds):
         sizes = []
@@ -634,7 +635,7 @@ def part_ends():
             server.data()
             client = server.socket()
             client.receive()
-            client.begin_long_frame(1, {})  # which it is in the midst of
+            client.begin_long_frame(1, {})  # it is in progress
             status, errors = server.stop(how)
             check(status == 0 and errors == "", f"{how}: ended with {status}: {errors}")
             try:
@@ -675,7 +676,7 @@ def ranks_end():
         error = server.json("POST", "/picture", {"state": dict(state, threshold="7,8")}, expect=400)["error"]
         client = server.socket()
         client.receive()
-        # Stale frames stop on all ranks. One that is through before it is known to be stale is none: then again.
+        # Stale frames stop on all ranks. One that is finished before it becomes stale does not count: try again.
         stale, given_up = 1, time.monotonic() + HANG
         while True:
             stale = client.begin_long_frame(stale, state)
@@ -689,7 +690,7 @@ def ranks_end():
             stale += 2
         _, errors = server.stop()
         check("tessera:" not in errors, errors)
-    # Else Open MPI kills ranks a second after it has told them to end, whatever else the machine has to do.
+    # Otherwise Open MPI kills ranks one second after it has asked them to end, however busy the machine is.
     patient = dict(MPI, OMPI_MCA_odls_base_sigkill_timeout="10")
     with Server(options.tessera, file, launcher=MPIRUN, environment=patient) as server:
         server.data()

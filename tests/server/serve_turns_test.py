@@ -27,7 +27,7 @@ MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 MPIRUN = ["mpirun", "--oversubscribe", "-n", "2"]
 
 options = None
-with_stand_in = None  # an environment with a stand-in of ffmpeg, whose film is the pictures as they come
+with_stand_in = None  # an environment with a fake ffmpeg, whose film is the sequence of images received
 
 
 def check(holds, words):
@@ -97,7 +97,7 @@ def views_go_on(file):
 
         check(any(shown_meanwhile(lambda: picture_in_work(server, state)) for _ in range(20)), "no view during a picture")
         check(shown_meanwhile(lambda: film_in_work(server, state)), "no view during a film")
-        for name in ("picture", "film"):  # whose client has gone
+        for name in ("picture", "film"):  # its client has disconnected
             await_that(lambda of=name: server.json("GET", "/api/progress")[of] is None, f"the end of a {name}")
         check(server.stop() == (0, ""), "it does not end well")
 
@@ -114,7 +114,7 @@ def ends_at_any_time(file):
     for how in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
         check(any(is_cut_short(picture_in_work, how) for _ in range(10)), "pictures are made to their end")
 
-    # What cannot be stopped does not keep it.
+    # A task that cannot be stopped does not keep the server running.
     def verify(server, defaults):
         state = dict(defaults, size="2000x2000")
         verified = Long(server, "/api/verify", {"state": state, "pixels": 100_000})
@@ -122,7 +122,7 @@ def ends_at_any_time(file):
         return verified
 
     check(any(is_cut_short(verify, signal.SIGTERM) for _ in range(10)), "verifications are made to their end")
-    # Two signals: both are there before it can answer one.
+    # Two signals: both arrive before it can respond to one.
     with Server(options.tessera, file) as server:
         server.data()
         server.process.send_signal(signal.SIGSTOP)
@@ -157,7 +157,7 @@ def films_leave_nothing(file):
                 check(status == expected, f"a film of rate {rate}: {status}")
             client = server.socket()
             client.receive()
-            in_work = film_in_work(server, state)  # held, for it stops with its connection
+            in_work = film_in_work(server, state)  # kept referenced, because it stops with its connection
             children = []
 
             def has_begun(parent=server.process.pid, found=children):
@@ -193,13 +193,13 @@ def strangers_keep_nobody_out(file):
         check(client.receive() == {"type": "pong"}, "a client lost its socket to strangers")
         for stream in strangers:
             stream.close()
-        # Clients over the limit are told.
+        # Clients over the limit are informed.
         clients = [client]
         while (last := server.socket()).status == 101:
             clients.append(last)
             check(len(clients) <= 256, "more clients than it takes")
         check(last.status == 503 and len(clients) == 256, f"{last.status} after {len(clients)} clients")
-        # A request whose second Host a proxy may go by.
+        # A request with a second Host, which a proxy may use.
         clients.pop().close()
         await_that(lambda: server.ask("GET", "/api/progress")[0] == 200, "room for a request")
         with socket.create_connection((server.host, server.port), timeout=HANG) as stream:

@@ -18,7 +18,7 @@ import sys
 from collections import Counter, defaultdict
 from pathlib import Path, PurePosixPath
 
-# None: anything.
+# None: any.
 MAY_INCLUDE = {
     "include": set(),
     "scene": set(),
@@ -78,7 +78,7 @@ MAY_INCLUDE = {
     "bench": None,
     "tests": None,
 }
-# These may include neither scene/ nor system/, unless their row says so.
+# These may include neither scene/ nor system/, unless their row allows it.
 PUBLIC_ONLY = {"include", "examples", "annotation", "analysis", "server", "apps"}
 # These may not include headers that are not installed (tessera/program/).
 INSTALLED = {"examples"}
@@ -101,7 +101,7 @@ ONLY_IN = [
 ]
 
 SUFFIXES = {".cpp", ".hpp", ".h", ".in"}
-# Highway includes the file of this name itself, once per instruction set.
+# Highway itself includes the file named in this way, once per instruction set.
 INCLUDE = re.compile(r'^\s*#\s*(?:include|define\s+HWY_TARGET_INCLUDE)\s*[<"]([^>"]+)[>"]')
 
 

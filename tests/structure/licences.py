@@ -12,7 +12,7 @@ from pathlib import Path
 
 SUFFIXES = {".cpp", ".hpp", ".h", ".in", ".glsl", ".comp", ".frag", ".vert", ".js", ".mjs", ".css", ".py", ".sh", ".cmake"}
 LICENCE = "SPDX-License-Identifier: BSD-3-Clause"
-# Templates that are not sources.
+# Templates that are not sources, and third-party files.
 EXCEPT = {"cmake/tessera.pc.in", "cmake/tesseraConfig.cmake.in"}
 BUILT = {"build", ".git", "node_modules"}
 

@@ -56,7 +56,7 @@ def functions(text):
     open_at = None
     for match in re.finditer(r"[{};:]", text):
         i, mark = match.start(), match[0]
-        if open_at is not None:  # inside a function, or another pair of braces
+        if open_at is not None:  # inside a function, or a brace that is not one
             depth_in += {"{": 1, "}": -1}.get(mark, 0)
             if depth_in == 0:
                 begin, is_function = open_at
