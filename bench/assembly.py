@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What it takes to put a picture together on one rank: bytes that come, and CPU time of the stage `assemble`.
+"""The cost of assembling an image on one rank: bytes received, and CPU time of the stage `assemble`.
 
     bench/assembly.py --tessera PROGRAM [--tessera BEFORE ...] --work FOLDER [--results docs/RESULTS.md] [--nodes 8] [--frames 20] [--repeat 3]
                       [--packing PROGRAM]
 
-Each program renders the same films of 1024 x 1024 pixels, in turn with the others, with a projector and a compositor process of one thread
-a node: a cube, which fills half of the picture, the wake of `tessera generate demo`, with much empty about it, and a cube of cell data,
-whose pixels are noisy. Bytes are those of all messages of tiles that other ranks send to the first compositor; CPU time is that of its
-stage `assemble`. Both are of the frames behind the first four, whose memory is fresh. Medians of the runs.
+Each program renders the same films of 1024 x 1024 pixels, alternating with the others, with a projector and a compositor process of one thread
+per node: a cube, which fills half of the image, the wake of `tessera generate demo`, which has much empty space around it, and a cube of cell
+data, whose pixels are noisy. Bytes are those of all messages of tiles that other ranks send to the first compositor; CPU time is that of its
+stage `assemble`. Both exclude the first four frames, whose memory is new. Medians of the runs.
 
-With --packing, the build's bench/pixel_packing, a second table says what one picture of each takes to pack and unpack. Only Python's standard library.
+With --packing, the build's bench/pixel_packing, a second table has the cost of packing and unpacking one image of each. Needs only Python's
+standard library.
 """
 import argparse
 import json
@@ -29,7 +30,7 @@ MESHES = {"cube": ("cube", "cube.tets", "n=69"), "wake": ("demo", "demo.tets"), 
 
 
 def figures(trace, nodes):
-    """Milliseconds and megabytes a frame: see above."""
+    """Milliseconds and megabytes per frame: see above."""
     spans = {}
     for event in json.loads(trace.read_text())["traceEvents"]:
         if event["ph"] == "X" and event["name"] != "frame" and event["pid"] >= nodes:

@@ -1,20 +1,21 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Moloney, Ray Coherence in Parallel Volume Rendering (2008), Tables 6.4 and 6.5, Figures 6.8 to 6.10: how evenly processes share a picture.
+"""Moloney, Ray Coherence in Parallel Volume Rendering (2008), Tables 6.4 and 6.5, Figures 6.8 to 6.10: how evenly an image is divided among processes.
 
     bench/balance.py --tessera PROGRAM [--document docs/RESULTS.md] [--only "table 6.4"] [--processes 6] [--size 1024x1024] [--brick-size 64] [--volume FILE]
                      [--transfer-function NAME] [--frames 60] [--runs 1]
 
-Two smooth recorded animations: a turn of two degrees a frame round an oblique axis, which shows all of the volume, and a zoom from
-outside to the middle. A frame's *deviation* is the thesis's: what the process that took longest took more than the one that took least,
-over their mean. Where it says time, this says a process's CPU time, of finding the split and of rendering together: on fewer cores than processes
-nothing else says what each had to do. Tables have the mean over frames but a run's first, in which nothing is known yet, and the standard deviation.
+Two smooth recorded animations: a turn of two degrees per frame around an oblique axis, which shows all of the volume, and a zoom from
+outside to the middle. A frame's *deviation* is defined as in the thesis: the difference between the longest and the shortest time of a process,
+divided by their mean. Where the thesis uses time, this uses a process's CPU time, for finding the split and rendering together: with fewer cores
+than processes, wall time does not measure the work of each. Tables have the mean over frames except a run's first, in which nothing is known yet,
+and the standard deviation.
 
-    Table 6.4  --balance learned, accurate, splatting, backface; cost maps of as many pixels as the picture, and of a quarter
-    Table 6.5  the cost map (backface, a quarter; ours: learned) against the frame before, with 0, 2 and 4 frames of the turn left out
+    Table 6.4  --balance learned, accurate, splatting, backface; cost maps with as many pixels as the image, and with a quarter
+    Table 6.5  the cost map (backface, a quarter; ours: learned) compared with the previous frame, with 0, 2 and 4 frames of the turn left out
     Figure 6.8   CPU time of the cost map, by number of bricks, for 128 x 128 map pixels, on one process
-    Figure 6.9   the same of 729 bricks, by map pixels
-    Figure 6.10  of 10,648 bricks and 1024 x 1024 map pixels, by number of processes: of the process that took longest, with the search for the split
+    Figure 6.9   the same for 729 bricks, by map pixels
+    Figure 6.10  for 10,648 bricks and 1024 x 1024 map pixels, by number of processes: of the slowest process, including the search for the split
 
 Needs mpirun and Python's standard library.
 """
@@ -75,7 +76,7 @@ class Bench:
         self.box = bounds_of(args.tessera, self.volume)
 
     def frames(self, kind, method, resolution, left_out):
-        """What reports say of the balance of all frames but each run's first."""
+        """The reports' balance data of all frames except each run's first."""
         path = list(views(kind, self.box, self.args.frames))[::left_out + 1]
         (self.folder / "path.json").write_text(json.dumps(path))
         report = self.folder / "report.json"
@@ -94,7 +95,7 @@ def deviation(frames):
 
 
 def split_share(frames):
-    """CPU time of finding the split over that of rendering, of all processes [%]."""
+    """CPU time of finding the split relative to that of rendering, over all processes [%]."""
     split, render = (sum(p[part] for f in frames for p in f["processes"]) for part in ("split_cpu_ms", "cpu_ms"))
     return 100 * split / render
 
@@ -132,7 +133,7 @@ BRICKS = {128: 8, 64: 64, 32: 512, 16: 4096, 12: 10648, 8: 32768}  # of 255 voxe
 
 
 def map_ms(bench, method, processes, brick, map_side, resolution=1.0):
-    """CPU milliseconds of finding the split, of the process that took longest; median over frames."""
+    """CPU milliseconds of finding the split in the slowest process; median over frames."""
     (bench.folder / "path.json").write_text(json.dumps(list(views("rotation", bench.box, 7))))
     report = bench.folder / "report.json"
     side = round(map_side / resolution)

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Moloney, Ray Coherence in Parallel Volume Rendering (2008), Figures 1.1, 1.2, 4.1 and 4.4: who renders what, and what it is thought to cost.
+"""Moloney, Ray Coherence in Parallel Volume Rendering (2008), Figures 1.1, 1.2, 4.1 and 4.4: which process renders what, and its estimated cost.
 
     bench/balance_pictures.py --tessera PROGRAM [--images docs/images]
 
-    Figure 1.1  figure-1-1-1.png, -2.png: the parts of four processes of sort-last, and the bricks in their colours, from outside and from within;
+    Figure 1.1  figure-1-1-1.png, -2.png: the parts of four processes of sort-last, and the bricks in their colours, from outside and from inside;
                 prints the CPU time of each
     Figure 1.2  figure-1-2-1.png, -2.png: the rectangles of four processes, and the bricks in their colours, in two views
     Figure 4.1  figure-4-1-METHOD.png: the cost map of one brick
-    Figure 4.4  figure-4-4-METHOD.png: those of `head` for eight processes; figure-4-4.png the picture, figure-4-4-bricks.png with bricks
+    Figure 4.4  figure-4-4-METHOD.png: those of `head` for eight processes; figure-4-4.png the image, figure-4-4-bricks.png with bricks
 
 Needs mpirun and Python's standard library.
 """
@@ -39,7 +39,7 @@ def main():
         everything.write_text("0 1 1 1 1\n255 1 1 1 1\n")
 
         def render(processes, volume, colours, output, *words):
-            """output.png; with --show balance output.cost.png too."""
+            """Creates output.png; with --show balance also output.cost.png."""
             run(["mpirun", "--oversubscribe", "-n", processes, args.tessera, "render", volume, "-o", output, "--transfer-function", colours, "--size",
                  "220x220", "--threads", "1", "--background", "black", "--quiet", *words])
 

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Moloney, Ray Coherence in Parallel Volume Rendering (2008), Figure 6.24: what a frame's time goes to, stage by stage.
+"""Moloney, Ray Coherence in Parallel Volume Rendering (2008), Figure 6.24: the time of a frame by stages.
 
     bench/breakdown.py --tessera PROGRAM [--document docs/RESULTS.md] [--processes 6] [--samples 400] [--frames 13] [--zoom 8]
 
-Three volumes of `tessera generate` in place of the thesis's, two transfer functions that hide the same bricks, of which one is opaque, and pictures of
-1 and 2 megapixels (1024x1024 and 1792x1170): four rotations, about three axes and the diagonal, of seven degrees a frame, and seven zooms, along three
-axes and four diagonals, from three radii of the volume to eight tenths of one; up to 7.5 MB of bricks of 32^3 loaded ahead a frame. Figures are CPU
-milliseconds a frame and process (of `render --timing`), as two cores cannot show what six have; *gather* is process 0's, waiting left out.
+Three volumes of `tessera generate` instead of the thesis's, two transfer functions that hide the same bricks, one of which is opaque, and images of
+1 and 2 megapixels (1024x1024 and 1792x1170): four rotations, about three axes and the diagonal, of seven degrees per frame, and seven zooms, along three
+axes and four diagonals, from three radii of the volume to eight tenths of one; up to 7.5 MB of bricks of 32^3 preloaded per frame. Figures are CPU
+milliseconds per frame and process (of `render --timing`), because two cores cannot show the wall time of six; *gather* is process 0's, without waiting.
 
 Needs mpirun and Python's standard library.
 """

@@ -4,16 +4,16 @@
 
     bench/cache.py --tessera PROGRAM --frames-program build/release/bench/cache_frames [--document docs/RESULTS.md] [--only "table 6.3"]
 
-    Table 6.2    brick sizes: samples in visible bricks, samples stored with edge bricks of fixed and of variable size, frames a second
-    Table 6.3    frames in which a unit waits for more bricks than the threshold: lru, and proximity that loads as many ahead
-    Figure 6.21  frames a second by the speed of a turn and of a zoom
-    Figure 6.22, 6.23  most bricks that any unit loads in a frame, waited for and ahead; two turns round the x axis at three speeds
+    Table 6.2    brick sizes: samples in visible bricks, samples stored with edge bricks of fixed and of variable size, frames per second
+    Table 6.3    frames in which a unit waits for more bricks than the threshold: lru, and proximity that preloads the same number
+    Figure 6.21  frames per second by the speed of a turn and of a zoom
+    Figure 6.22, 6.23  largest number of bricks that any unit loads in a frame, waited for and ahead; two turns around the x axis at three speeds
 
-Volumes are those of `tessera generate` that have the printed share of visible bricks, of 128 samples a side in bricks of 8: about as many
-bricks as printed, small ones. But for Table 6.2 units are threads of one process (bench/cache_frames.cpp) with caches and rectangles of
-their own, 512 x 512 pixels, the volume in memory; a brick takes them 0.57 ms where the text says so, the printed way of 64^3 bytes to
-texture memory at 458.5 MB/s. Limits of bricks loaded ahead are the printed ones, scaled by visible bricks here over printed. Steps along
-rays are of eight samples, which loads do not depend on (of one where frames are timed), and the first frame, before which nothing is
+Volumes are those of `tessera generate` that have the printed fraction of visible bricks, of 128 samples a side in bricks of 8: about as many
+bricks as printed, but small ones. Except for Table 6.2, units are threads of one process (bench/cache_frames.cpp) with their own caches and
+rectangles, 512 x 512 pixels, and the volume in memory; where stated, loading a brick takes them 0.57 ms, the printed transfer of 64^3 bytes to
+texture memory at 458.5 MB/s. Limits of bricks loaded ahead are the printed ones, scaled by the ratio of visible bricks here to those printed. Steps
+along rays are eight samples long, which does not affect loads (one where frames are timed), and the first frame, before which nothing is
 loaded, does not count.
 """
 import argparse
@@ -36,7 +36,7 @@ SPEEDS = (0.5, 1, 2, 4, 7, 14)  # degrees per frame
 
 
 def frames_of(args, runs):
-    """What cache_frames prints of each run."""
+    """The output of cache_frames for each run."""
     words = []
     for run in runs:
         words += ["then"] * bool(words) + [f"{name}={value}" for name, value in run.items()]
@@ -59,7 +59,7 @@ def table_2(args, folder):
     everything = 225 ** 3
 
     def render(brick, *words):
-        """Samples stored, and frames a second of CPU time: the least of three runs."""
+        """Samples stored, and frames per second of CPU time: the minimum of three runs."""
         cpu = []
         for _ in range(3):
             subprocess.run([args.tessera, "render", volume, "-o", folder / "f.pfm", "--transfer-function", function, "--size", "512x512", "--integrator",
@@ -82,7 +82,7 @@ def table_2(args, folder):
 
 
 def spikes(run, threshold):
-    """Per cent of frames in which a unit waits for more bricks, over units."""
+    """Percentage of frames in which a unit waits for more bricks, over units."""
     over = [loaded > threshold for frame in run["frames"][1:] for loaded, _, _ in frame["units"]]
     return f"{100 * statistics.mean(over):.2f}"
 

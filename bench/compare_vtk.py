@@ -121,7 +121,7 @@ def own_tets(path, q, field, on_cells):
 
 
 def without_flat(grid, on_cells):
-    """The grid without tets of exactly no volume (collapsed cells): VTK 9.1's ray caster may crash on them."""
+    """The grid without tets of exactly zero volume (collapsed cells): VTK 9.1's ray caster may crash on them."""
     p = vtk_to_numpy(grid.GetPoints().GetData()).astype(np.float64)
     c = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4)
     a, b, d = (p[c[:, i]] - p[c[:, 0]] for i in (1, 2, 3))
@@ -131,7 +131,7 @@ def without_flat(grid, on_cells):
 
 
 def choose_field(grid, label, on_cells):
-    """Makes the array that Tessera names `label` (NAME or NAME:mag, NAME:x ...) the only one, as float64."""
+    """Makes the array that Tessera calls `label` (NAME or NAME:mag, NAME:x ...) the only one, as float64."""
     attributes = grid.GetCellData() if on_cells else grid.GetPointData()
     array, component = attributes.GetArray(label), None
     if array is None and ":" in label:
@@ -182,7 +182,7 @@ def read_png(path):
 
 
 def looks(path):
-    """What can be wrong with a default picture, as numbers: of the pixels where anything shows."""
+    """Possible faults of a default image, as numbers over the pixels where anything is visible."""
     rgba = read_png(path)
     alpha, shown = rgba[..., 3], rgba[..., 3] > 0
     rgb = rgba[..., :3]
@@ -194,7 +194,7 @@ def looks(path):
 
 
 def in_child(render, path):
-    """The array `render()` returns, made in a process of its own: VTK's ray caster may crash. None if it does."""
+    """The array `render()` returns, computed in a separate process: VTK's ray caster may crash. None if it does."""
     child = os.fork()
     if child == 0:
         np.save(path, render())

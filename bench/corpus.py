@@ -1,22 +1,22 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tries every file of a folder, `tessera info` and a 256 x 256 `tessera render`, within limits, and sorts what comes of it.
+"""Runs `tessera info` and a 256 x 256 `tessera render` on every file of a directory, within limits, and sorts the results.
 
     bench/corpus.py --tessera PROGRAM FOLDER [--seconds 60] [--mebibytes 8192] [--jobs 2] [--pictures FOLDER] [--json FILE]
 
 Outcomes, worst first:
 
-  signal    it ended by a signal, or with a status that is none of 0, 2, 3 and 4
+  signal    it was ended by a signal, or with a status other than 0, 2, 3 and 4
   hang      it took longer than --seconds of wall time
-  silent    status 2 or 3 and not one line on stderr that begins with `tessera: ` and the file's name
-  half      info and render disagree: one takes the file, the other refuses it
+  silent    status 2 or 3 without a line on stderr that begins with `tessera: ` and the file's name
+  half      info and render disagree: one accepts the file, the other refuses it
   failed    status 3 or 4, or memory over --mebibytes
   refused   status 2 and one line
-  rendered  both take it
+  rendered  both accept it
 
-Prints a table of counts by the name's extension, then each line that a refusal or fault gave, with how many files gave it and one of
-them: what to judge. Ends with status 1 if anything is a signal, a hang or silent. --pictures keeps the pictures (.png), to look at.
-Only Python's standard library.
+Prints a table of counts by extension, then each distinct line of refusals and faults, with the number of files and one of them,
+for review. Exits with status 1 if anything is a signal, a hang or silent. --pictures keeps the images (.png) for inspection.
+Needs only Python's standard library.
 """
 import argparse
 import collections
@@ -36,7 +36,7 @@ ORDER = ("signal", "hang", "silent", "half", "failed", "refused", "rendered")
 
 
 def run(command, seconds, mebibytes):
-    """(status, stderr, seconds, MiB): a negative status is a signal's, None a hang."""
+    """(status, stderr, seconds, MiB): a negative status is a signal, None a hang."""
 
     def limit():
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
@@ -94,7 +94,7 @@ def try_file(file, args):
 
 
 def judged(line, file):
-    """A refusal without what is this file's own, so that like ones fall together."""
+    """A refusal without parts specific to this file, so that similar ones are grouped."""
     line = re.sub(r"^tessera: ", "", line).replace(file, "FILE")
     line = re.sub(r"\S*" + re.escape(pathlib.Path(file).name), "FILE", line)
     return re.sub(r"-?\d+(\.\d+)?", "N", line)[:160]

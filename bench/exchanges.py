@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which exchange composites the parts of a picture with the fewest bytes, messages and CPU time: direct send, binary swap, radix-k, and of meshes runs.
+"""Which exchange composites the parts of an image with the fewest bytes, messages and CPU time: direct send, binary swap, radix-k, and for meshes runs.
 
     bench/exchanges.py --program build/release/bench/compositing_exchanges [--document docs/RESULTS.md] [--only volumes]
                        [--data ../shared/data --tessera PROGRAM]
 
-    volumes  parts of a k-d tree, as `--distribution sort-last` has them
-    meshes   parts of a space-filling curve, as `--partition curve` has them: runs as they are sent to other machines, beside pictures of the parts
-             composited in the order of their centres, which is right only where no part lies both in front of and behind another
+    volumes  parts of a k-d tree, as for `--distribution sort-last`
+    meshes   parts of a space-filling curve, as for `--partition curve`: runs as sent to other machines, compared with images of the parts
+             composited in the order of their centres, which is correct only if no part is both in front of and behind another
 
 What is counted bench/compositing_exchanges.cpp says; figures are means over views. A process's time is modelled: its CPU time, and what it sends over
 95 MB/s (the thesis's bandwidth); waiting for others is left out.
 
-Needs Python's standard library. Meshes of files need --data, and --tessera to convert them; they are left out without.
+Needs Python's standard library. Meshes of files need --data, and --tessera to convert them; otherwise they are left out.
 """
 import argparse
 import json

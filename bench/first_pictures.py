@@ -1,23 +1,23 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""First pictures: what `tessera render FILE -o OUT` shows with no other option, in numbers and on contact sheets.
+"""First images: the result of `tessera render FILE -o OUT` without other options, in numbers and on contact sheets.
 
     bench/first_pictures.py --tessera PROGRAM [--before PROGRAM] [--data FOLDER] [--generated 40] [--sheets FOLDER] [--work FOLDER]
                             [--results bench/RESULTS.md]
 
-Data sets: those of FOLDER (the layout of its README: one file each, named in DATA below), and as many generated ones: meshes and
-volumes of `tessera generate`, and volumes that this script writes (scans in Hounsfield units, an MR-like head, labels, signed and
-heavy-tailed fields, noise). Pictures are 1024 x 1024, the program's own size.
+Data sets: those of FOLDER (in the layout of its README: one file each, named in DATA below), and the same number of generated ones: meshes
+and volumes of `tessera generate`, and volumes that this script writes (scans in Hounsfield units, an MR-like head, labels, signed and
+heavy-tailed fields, noise). Images are 1024 x 1024, the program's default size.
 
-Of each picture, without background, before it is put over one:
+For each image, before it is composited over a background:
 
-  covered    pixels of alpha >= 1/255
-  alpha      their mean; wanted: 0.05 to 0.6
-  saturated  those of alpha >= 0.98, of the covered; wanted: at most 2 %
-  colours    of covered pixels over their alpha, sRGB to CIE L*a*b*, put in cells of 10 units a side: cells with at least 1 % of the
-             pixels, taken largest first, each at least 15 (CIE76) from those taken before; wanted: 3
+  covered    pixels with alpha >= 1/255
+  alpha      their mean; target: 0.05 to 0.6
+  saturated  fraction of covered pixels with alpha >= 0.98; target: at most 2 %
+  colours    of covered pixels divided by alpha, converted from sRGB to CIE L*a*b*, in cells of 10 units a side: cells with at least 1 % of
+             the pixels, taken largest first, each at least 15 (CIE76) from those taken before; target: 3
 
-Shapes (meshes without a field that varies) are solids and held to none of these. --sheets writes before.png and after.png there:
+Shapes (meshes without a varying field) are solids without these targets. --sheets writes before.png and after.png there:
 thumbnails over dark grey with their names. Needs python3-numpy and python3-pil.
 """
 import argparse
@@ -73,7 +73,7 @@ def nrrd(path, values):
 
 
 def written(folder):
-    """Volumes made here; each with what it stands for."""
+    """Volumes made here, each with a description of what it represents."""
     random = np.random.default_rng(5)
     n = 72
     z, y, x = np.meshgrid(*[np.linspace(-1, 1, n)] * 3, indexing="ij")
@@ -128,7 +128,7 @@ def lab(srgb):
 
 
 def measured(picture):
-    """covered share of the picture, mean alpha, saturated share, distinguishable colours"""
+    """covered fraction of the image, mean alpha, saturated fraction, distinguishable colours"""
     rgba = np.asarray(Image.open(picture).convert("RGBA"), np.float64) / 255
     covered = rgba[rgba[..., 3] >= 1 / 255 - 1e-9]
     if len(covered) == 0:

@@ -4,8 +4,8 @@
 gl-fragment.
 
 Every compositor renders the same image from the same ray segments; stages are self times of its trace (device stages
-by the device's own clock, CPU stages summed over threads and divided by them; cells are rasterized by the CPU but
-where it says otherwise). gl-fragment is the paper's, and left out where the integrator is not sampled:N. Prints a
+by the device's own clock, CPU stages summed over threads and divided by their number; the CPU rasterizes cells unless
+stated otherwise). gl-fragment is the paper's, and is left out unless the integrator is sampled:N. Prints a
 markdown table.
 """
 import argparse

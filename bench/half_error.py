@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Error of --compositor gl-fragment against depth complexity: 16-bit framebuffer (as printed) beside 32-bit.
+"""Error of --compositor gl-fragment by depth complexity: 16-bit framebuffer (as printed) and 32-bit.
 
-Cubes of more and more cells along the ray, and one pile of 20,000; all of one optical depth. The error is the maximum
-over pixels and channels against the CPU's `sampled` of the same number of samples. Prints a markdown table and writes an
-SVG if asked.
+Cubes of more and more cells along the ray, and one stack of 20,000; all with the same optical depth. The error is the maximum
+over pixels and channels compared with the CPU's `sampled` with the same number of samples. Prints a markdown table and writes an
+SVG if requested.
 """
 import argparse
 import array

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The hot loops of a frame: how much of its time each takes, how many instructions it is, and in how many cycles the
-processor's ports alone could do them.
+"""The hot loops of a frame: their share of its time, their number of instructions, and the minimum number of cycles by the
+processor's ports alone.
 
     bench/loops.py --tessera build/release/apps/tessera MESH [-- MORE ARGUMENTS OF tessera render]
 
-Samples come from `perf record` over repeated frames, loops from the machine code (innermost: a jump back with none
-inside; of it what samples fell in), cycles from llvm-mca, whose model of the ports knows nothing of caches, of
-mispredicted jumps, or of a jump inside the loop that is taken in some rounds only. A loop that takes about what
-llvm-mca says is bound by its instructions. Needs perf, binutils and llvm-mca; a build with -g1
-(-DCMAKE_CXX_FLAGS=-g1) names source lines.
+Samples come from `perf record` over repeated frames, loops from the machine code (innermost: a backward jump without another
+inside; only instructions with samples), cycles from llvm-mca, whose port model ignores caches, mispredicted jumps, and jumps
+inside the loop that are taken only in some iterations. A loop whose time is about that of llvm-mca is bound by its
+instructions. Needs perf, binutils and llvm-mca; a build with -g1
+(-DCMAKE_CXX_FLAGS=-g1) adds source lines.
 """
 import argparse
 import collections
@@ -31,7 +31,7 @@ def output(*command, text=None):
 
 
 def function_of(symbol):
-    """namespace::function<arguments> without parameters: what perf and nm both say of it."""
+    """namespace::function<arguments> without parameters: the common part of the names in perf and nm."""
     symbol = re.sub(r"\((?:\w+::)*TableForm\)", "", symbol)
     found = re.search(r"N_\w+::\w+(<[^(]*?>)?(?=\(|$|\+)", symbol)
     return found[0] if found else None
@@ -53,7 +53,7 @@ def sample(args, more, folder):
 
 
 def innermost_loops(code, samples):
-    """(first, last) of instructions; of loops that share some, the one with the most samples."""
+    """(first, last) of instructions; among overlapping loops, the one with the most samples."""
     at = {address: i for i, (address, _) in enumerate(code)}
     loops = set()
     for i, (address, text) in enumerate(code):
@@ -69,7 +69,7 @@ def innermost_loops(code, samples):
 
 
 def taken(body, samples):
-    """The instructions of those basic blocks in which some sample fell."""
+    """The instructions of those basic blocks that contain samples."""
     ends = [i for i, (_, text) in enumerate(body) if text.startswith("j")]
     targets = {int(m[1], 16) for _, text in body if (m := re.match(r"j\w+\s+([0-9a-f]+)", text))}
     starts = sorted({0, *(i + 1 for i in ends), *(i for i, (address, _) in enumerate(body) if address in targets)})

@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What memory processes take that render volumes, and what they read again where a volume is larger than that.
+"""Memory of processes that render volumes, and the bytes that they read again if a volume is larger than that.
 
     bench/memory.py --tessera PROGRAM [--document docs/RESULTS.md] [--only "of processes"] [--samples 512] [--large 2048] [--folder FOLDER]
 
     of processes   the largest resident set of each rank, by volume, format, budget and number of ranks, sort-first and sort-last
-    of sort-last   a volume that no rank may hold and all together may: bricks loaded and thrown out by frame, in both ways
+    of sort-last   a volume that fits into the memory of all ranks together, not of one: bricks loaded and evicted per frame, in both modes
 
-A rank's largest resident set is what the system says of it when it has ended (wait4), the program, its libraries, MPI's and any helper process it
-had included. Volumes are of 8 bits: `tessera generate head` of --samples a side, as raw, as .vti and .vtr by `tessera convert`, and packed by this script
-(.nii.gz; .vti of zlib blocks in base64), and `radial` of --large a side. They are kept in --folder, if it is given, for the next run; --large
-2048 takes 8.6 GB there, and the page cache as much of it as the machine has.
+A rank's largest resident set is reported by the system at its end (wait4), including the program, its libraries, MPI's and any helper process.
+Volumes have 8 bits: `tessera generate head` of --samples a side, as raw, as .vti and .vtr by `tessera convert`, and packed by this script
+(.nii.gz; .vti of zlib blocks in base64), and `radial` of --large a side. They are kept in --folder, if given, for the next run; --large
+2048 takes 8.6 GB there, and as much of the page cache as the machine has.
 
 Needs mpirun and Python's standard library.
 """
@@ -41,7 +41,7 @@ def run(words):
 
 
 def watch(output, words):
-    """Runs a rank, and writes its largest resident set in KiB into a file of its own."""
+    """Runs a rank, and writes its largest resident set in KiB to a file of its own."""
     rank = os.environ.get("OMPI_COMM_WORLD_RANK") or os.environ.get("PMI_RANK", "0")
     child = os.posix_spawnp(words[0], words, os.environ)
     _, status, usage = os.wait4(child, 0)
@@ -54,7 +54,7 @@ class Bench:
         self.args, self.folder = args, folder
 
     def made(self, name, make):
-        """A file of the folder, made once."""
+        """A file in the directory, created once."""
         file = self.folder / name
         if not file.exists():
             with tempfile.TemporaryDirectory(dir=self.folder) as unfinished:

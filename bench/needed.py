@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the default skips, and what each mechanism that skips it saves: a table a data set, from the program's own counters.
+"""What the default skips, and what each mechanism that skips it saves: a table per data set, from the program's own counters.
 
     bench/needed.py --data FOLDER [--tessera build/release/apps/tessera] [--only NAME,...] [--document docs/ACCURACY.md]
 
-Each data set with its default transfer function, with a sparse one (the upper fifth of the field's range shows) and
-with an opaque one (50 times the default's extinction), and each time without one of the mechanisms that count there
-(`tessera render --without`). A cell is ms with it / ms without it, and how much less work that was by the counters (ray
-segments of meshes, pieces integrated of volumes). Times are the fastest of six frames, in three rounds of all in turn.
-Bytes: of bricks in memory, and of runs beside raw segments (`--without merging`), two ranks, where mpirun is.
+Each data set with its default transfer function, with a sparse one (shows the upper fifth of the field's range) and
+with an opaque one (50 times the default's extinction), and each time without one of the relevant mechanisms
+(`tessera render --without`). A cell is ms with it / ms without it, and the reduction of work by the counters (ray
+segments of meshes, pieces integrated of volumes). Times are the fastest of six frames, in three rounds over all.
+Bytes: of bricks in memory, and of runs compared with raw segments (`--without merging`), two ranks, if mpirun exists.
 """
 import argparse
 import json

@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What ranks cost: the same frames by one process and by several, in pairs, old program and new.
+"""The cost of ranks: the same frames by one process and by several, in pairs, old program and new.
 
     bench/ranks.py --tessera PROGRAM [--old PROGRAM] [--pairs 10] [--repeat 8] [--work FOLDER] [--results FILE]
 
-Cube 64 (1.57 million tets), view and transfer function of all speed figures, 1024 x 1024, `exact`. A pair is one process of two threads, then
+Cube 64 (1.57 million tets), view and transfer function of all performance figures, 1024 x 1024, `exact`. A pair is one process of two threads, then
 two ranks of one thread, then 8 projectors and 8 compositors of one thread. *Time* is the median of the pair's frames, each alone
-(`--repeat`), in memory. *CPU* is that of a frame: all processes, mpirun included, of a run of REPEAT frames more than another run,
-so without starting and reading, over that number. The table has medians of the pairs' ratios to the one process, and the least and largest ratio;
-`--old` adds the same of another program, its pairs in turn with the others. *Serial* is of one process: what of a frame no thread is in any stage
-for (`other`), and waiting, as a share of the frame's CPU time.
+(`--repeat`), in memory. *CPU* is that of a frame: the difference between a run of REPEAT more frames and another run, over all processes
+including mpirun, so without starting and reading, divided by that number. The table has medians of the pairs' ratios to the one process, and the smallest and
+largest ratio; `--old` adds the same for another program, with alternating pairs. *Serial* is for one process: the parts of a frame in which no thread is in a
+stage (`other`), and waiting, as a fraction of the frame's CPU time.
 
-Ratios of time on two cores that others use too say more of the neighbours than of the program where their range is wide. Needs mpirun and Python's
+On two cores shared with other programs, ratios of time with a wide range depend more on the other load than on the program. Needs mpirun and Python's
 standard library.
 """
 import argparse
@@ -49,7 +49,7 @@ def measure(program, mesh, work, arrangement, repeat):
 
 
 def serial(program, mesh, work, repeat):
-    """(serial milliseconds of a frame of one process, its CPU milliseconds); all but the last frame, which is written."""
+    """(serial milliseconds of a frame of one process, its CPU milliseconds); all except the last frame, which is written."""
     trace, table = work / "trace.json", work / "stages.csv"
     frames(program, mesh, work, ONE, repeat, "--timing", trace)
     run([program, "timing", trace, "--csv", table])

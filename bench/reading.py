@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Times reading: `tessera info` beside VTK's own reader, every format that VTK's Python module reads as a volume.
+"""Times reading: `tessera info` compared with VTK's own reader, for every format that VTK's Python module reads as a volume.
 
     bench/reading.py --tessera PROGRAM [--work FOLDER] [--repeat 5] [--only TEXT] [--results bench/RESULTS.md]
 
-    bench/reading.py --tessera PROGRAM --old PROGRAM ...    the two programs beside each other instead: `tessera render`, 8 x 8 pixels with
-                                                            a function given, so that neither looks for a first picture
+    bench/reading.py --tessera PROGRAM --old PROGRAM ...    compares the two programs instead: `tessera render`, 8 x 8 pixels with
+                                                            a given function, so that neither computes a default one
 
-Files are generated (reading_files.py) and kept in --work. Runs alternate; figures are the least of --repeat. Of Tessera they are of the
-whole program, making tets and looking at them included: CPU and wall time, and the largest sum of the memory of both processes, looked at
-every few milliseconds; and of its reading program alone. Of VTK they are of the reader's Update() with all arrays, in a process of its own, without the time and memory
-of starting Python and loading VTK. Needs python3-vtk9, python3-numpy, and python3-h5py for CGNS and VTKHDF.
+Files are generated (reading_files.py) and kept in --work. Runs alternate; figures are the minimum of --repeat. For Tessera they cover the
+whole program, including making and examining tets: CPU and wall time, and the largest sum of the memory of both processes, sampled
+every few milliseconds; and its reader program alone. For VTK they cover the reader's Update() with all arrays, in a separate process, without the time
+and memory of starting Python and loading VTK. Needs python3-vtk9, python3-numpy, and python3-h5py for CGNS and VTKHDF.
 """
 import argparse
 import json
@@ -34,7 +34,7 @@ def children_of(process):
 
 
 def in_use(process):
-    """Bytes of a process that no file on a disk holds: its own memory, and files without a name that it has open or mapped."""
+    """Bytes of a process that no file on a disk backs: its own memory, and unnamed files that it has open or mapped."""
     own = shared = 0
     for line in open(f"/proc/{process}/status"):
         if line.startswith("RssAnon:"):
@@ -51,7 +51,7 @@ def in_use(process):
 
 
 class Watch(threading.Thread):
-    """Looks at a process and the one that it started: the largest sum of their memory, and of the started one what it used."""
+    """Samples a process and the one that it started: the largest sum of their memory, and the resources of the started one."""
 
     def __init__(self, process):
         super().__init__()
@@ -78,7 +78,7 @@ class Watch(threading.Thread):
 
 
 def run_tessera(program, *words):
-    """Seconds of wall and CPU, bytes; of the reading program seconds of CPU and bytes."""
+    """Seconds of wall and CPU time, bytes; for the reader program seconds of CPU time and bytes."""
     begin = time.monotonic()
     process = subprocess.Popen([str(program), *map(str, words)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
     watch = Watch(process.pid)
@@ -93,7 +93,7 @@ def run_tessera(program, *words):
 
 
 def read_by_vtk(name, file):
-    """In a process of its own: prints what run_tessera() gives."""
+    """In a separate process: prints the same values as run_tessera()."""
     import vtk
 
     vtk.vtkObject.GlobalWarningDisplayOff()
@@ -154,7 +154,7 @@ def least(runs):
 
 
 def measure(args, work):
-    """A row a format: name, MB, and for both readers wall, CPU and memory, the least of each."""
+    """A row per format: name, MB, and for both readers wall time, CPU time and memory, the minimum of each."""
     import reading_files
 
     for name, n, write, reader in reading_files.FORMATS:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files that bench/reading.py reads: one cube of tets, hexahedra or samples in every format that VTK's packaged readers know.
+"""Files for bench/reading.py: one cube of tets, hexahedra or samples in every format that VTK's packaged readers support.
 
-Each function writes into a folder and returns the file to open; `FORMATS` names them, with VTK's reader. Written by VTK's writers, or
-here where it has none. HDF5 by h5py.
+Each function writes into a directory and returns the file to open; `FORMATS` lists them, with VTK's reader. Written by VTK's writers, or
+here if it has none. HDF5 by h5py.
 """
 import struct
 
@@ -12,14 +12,14 @@ from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
 
 def lattice(n):
-    """n^3 points of a cube, x fastest, moved off a regular grid, and a field."""
+    """n^3 points of a cube, x fastest, displaced from a regular grid, and a field."""
     z, y, x = np.meshgrid(*[np.linspace(-1, 1, n)] * 3, indexing="ij")
     points = np.stack([x + 0.02 * y * z, y + 0.01 * x * x, z], -1).reshape(-1, 3).astype(np.float32)
     return points, np.sin(3 * x + 2 * y).ravel().astype(np.float32) * np.cos(2 * z).ravel().astype(np.float32)
 
 
 def hexahedra(n):
-    """Corners of the (n - 1)^3 cells, as VTK numbers them."""
+    """Corners of the (n - 1)^3 cells, in VTK's order."""
     k, j, i = np.meshgrid(*[np.arange(n - 1)] * 3, indexing="ij")
     first = (i + n * (j + n * k)).reshape(-1, 1)
     return first + np.array([0, 1, 1 + n, n, n * n, 1 + n * n, 1 + n + n * n, n + n * n])
@@ -346,7 +346,7 @@ def nrrd(folder, n):
 
 
 def dicom(folder, n):
-    """A file a slice: explicit, little endian, 16 bits."""
+    """One file per slice: explicit, little endian, 16 bits."""
     values = (lattice(n)[1].reshape(n, n, n) * 1000).astype("<i2")
 
     def element(group, number, kind, data):
@@ -381,7 +381,7 @@ def hyper_trees(folder, n):
 
 
 def levels(folder, n):
-    """A coarse block, and one twice as fine over its middle."""
+    """A coarse block, and one of twice the resolution over its middle."""
     amr = vtk.vtkOverlappingAMR()
     amr.Initialize(2, [1, 1])
     amr.SetOrigin([0, 0, 0])

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Sections of docs/RESULTS.md and bench/RESULTS.md: a table, with commit, machine and command.
 
-A section lies between two marks, `<!-- NAME begin -->` and `<!-- NAME end -->`, and is replaced whole by the next run of
-the script it is named after; what stands outside the marks is kept. A section that is new goes to the end of the file.
+A section is between two marks, `<!-- NAME begin -->` and `<!-- NAME end -->`, and is replaced completely by the next run of
+the script after which it is named; text outside the marks is kept. A new section goes to the end of the file.
 """
 import datetime
 import os
@@ -24,7 +24,7 @@ def commit():
 
 
 def processor():
-    """The processor's name and how many cores it has."""
+    """The processor's name and number of cores."""
     names = (line.split(":", 1)[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name"))
     return next(names, "unknown CPU"), os.cpu_count()
 
@@ -49,7 +49,7 @@ def command(script):
 
 
 def error(x):
-    """1.2e-7: two digits, no more columns than they need."""
+    """1.2e-7: two digits in the fewest columns."""
     return f"{x:.1e}".replace("e-0", "e-")
 
 

@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws the same scenes with two programs and compares the pictures to the bit: colours, opacity and depth.
+"""Renders the same scenes with two programs and compares the images to the bit: colours, opacity and depth.
 
     bench/same_bits.py --old PROGRAM --new PROGRAM [--seed 1] [--only meshes,grids,large,ranks,device] [--threads 2]
         [--keep FOLDER]
 
-For changes that must not change a picture. Scenes come from a seed, so that anybody draws the same ones:
+For changes that must not change an image. Scenes are derived from a seed, so that they can be reproduced:
 
-  meshes  126 random views and transfer functions of nine meshes, point and cell data, `exact`, `auto` and others in turn
-  grids   60 random views of six grids (8, 16, 32 bits, point and cell data, rectilinear), every method in turn
-  large   ten pictures of 1024 x 1024: few, many and opaque knots, perspective, independent emission, small cells
+  meshes  126 random views and transfer functions of nine meshes, point and cell data, alternating `exact`, `auto` and others
+  grids   60 random views of six grids (8, 16, 32 bits, point and cell data, rectilinear), alternating every method
+  large   ten images of 1024 x 1024: few, many and opaque knots, perspective, independent emission, small cells
   ranks   18 of the meshes' views, and 6 of the grids', on two and three ranks (`--exchange segments`); needs mpirun
   device  6 of the meshes' views through `--compositor gl-compute` and gl-fragment on OSMesa
 
-Prints what differs, with the number of pixels and the largest difference, and ends with status 1 if anything does. The
+Prints differences, with the number of pixels and the largest difference, and exits with status 1 if there are any. The
 old program reads the same files as the new one; both take their threads from `--threads`. Needs Python's standard library.
 """
 import argparse
@@ -103,7 +103,7 @@ class Comparison:
         print(f"DIFFERENT: {what}: {said}\n  {' '.join(map(str, command))}", flush=True)
 
     def mesh_view(self, mesh, view):
-        """Words of `tessera render` for one view of a mesh."""
+        """Arguments of `tessera render` for one view of a mesh."""
         kind, *parameters = MESHES[mesh]
         r = random.Random(f"{self.args.seed}/mesh/{mesh}/{view}")
         return [self.generate(kind, parameters, ".vtu"), "--transfer-function", self.function(auto_random.transfer_function(r, 0.0, 1.0)),

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Times the same frames with two programs in turn, and compares time, CPU time and memory.
+"""Times the same frames with two programs alternately, and compares time, CPU time and memory.
 
     bench/same_speed.py --old PROGRAM --new PROGRAM [--rounds 5] [--repeat 5] [--only TEXT] [--work FOLDER] [--json FILE]
 
-For changes that must not cost speed: the frames of bench/targets.py and bench/volumes.py that are made of generated
-data, view and transfer function those of all speed figures, 1024 x 1024, two threads. A round renders each row by both programs, the
-old one first in every second; times are of single frames in memory (`frame_ms`), without reading and writing. A row says the ratio of the
-lower quartiles of all rounds' frames, new over old, the same for the processes' CPU time, and of their largest resident memory.
-Last, the size of the programs. Needs Python's standard library, mpirun for the rows of ranks.
+For changes that must not cost performance: the frames of bench/targets.py and bench/volumes.py made of generated
+data, view and transfer function of all performance figures, 1024 x 1024, two threads. A round renders each row by both programs, the
+old one first in every second round; times are of single frames in memory (`frame_ms`), without reading and writing. A row has the ratio of the
+lower quartiles of all rounds' frames, new over old, the same for the processes' CPU time, and for their largest resident memory.
+Last, the size of the programs. Needs Python's standard library, and mpirun for the rows of ranks.
 """
 import argparse
 import json
@@ -47,7 +47,7 @@ ROWS = [
 
 
 def run(command):
-    """(seconds of CPU, KiB of memory) of a command; of mpirun, of it and the ranks it waited for."""
+    """(seconds of CPU, KiB of memory) of a command; for mpirun, including the ranks for which it waited."""
     process = subprocess.Popen([str(c) for c in command], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=os.environ | MPI)
     message = process.stderr.read()
     _, status, usage = os.wait4(process.pid, 0)

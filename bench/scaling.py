@@ -4,15 +4,15 @@
 
     bench/scaling.py --tessera PROGRAM --work FOLDER [--results docs/RESULTS.md] [--frames 50] [--nodes 2,4,8] [--millions 15.7,51.1]
 
-Cubes of as many tetrahedra are generated and kept in --work; each node has a projector and a compositor process, as printed, of one
-thread each. Every run leaves a file of figures in --work, and what is there is not run again: so a run that was ended goes on, and
-a later commit needs a new folder.
+Cubes with these numbers of tetrahedra are generated and kept in --work; each node has a projector and a compositor process, as printed, of one
+thread each. Every run leaves a file of figures in --work, and is not repeated if that exists: so an interrupted run can be continued, and
+a later commit needs a new directory.
 
-What is measured, from the traces of all ranks (`render --timing`): CPU time a rank and stage, bytes and messages, the largest memory of a
-rank, imbalance. Where there is a core for each rank, wall time too. Where there are fewer, the time of a frame is a *stated model's*
-(model_of): processes have a core each, and work on several frames at once, so a frame takes as long as whatever is slowest: a projector, a
-compositor, or what a node's link carries in one direction. What it leaves out (contention, waiting, the last tile) makes it a lower bound.
-Only Python's standard library.
+Measured from the traces of all ranks (`render --timing`): CPU time per rank and stage, bytes and messages, the largest memory of a
+rank, imbalance. With a core for each rank, wall time too. With fewer, the time of a frame is that of a *stated model*
+(model_of): processes have a core each, and work on several frames at once, so a frame takes as long as the slowest resource: a projector, a
+compositor, or the data on a node's link in one direction. Effects that it ignores (contention, waiting, the last tile) make it a lower bound.
+Needs only Python's standard library.
 """
 import argparse
 import collections
@@ -36,7 +36,7 @@ COLOURS = ("#4e79a7", "#f28e2b", "#e15759", "#76b7b2", "#59a14f", "#edc948", "#b
 
 
 def as_rank(folder, command):
-    """Runs a rank and notes the most memory that it held."""
+    """Runs a rank and records its largest memory."""
     status = subprocess.run(command, check=False).returncode
     peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024
     (pathlib.Path(folder) / f"memory-{os.environ['OMPI_COMM_WORLD_RANK']}").write_text(str(peak))
@@ -44,7 +44,7 @@ def as_rank(folder, command):
 
 
 def exclusive(spans):
-    """Of spans that nest, each with the CPU time of itself alone: (span, seconds)."""
+    """For nested spans, the CPU time of each without those inside: (span, seconds)."""
     found, open_spans = [], []
     for span in sorted(spans, key=lambda s: (s["ts"], -s["dur"])):
         while open_spans and span["ts"] >= open_spans[-1][0]["ts"] + open_spans[-1][0]["dur"]:
@@ -57,7 +57,7 @@ def exclusive(spans):
 
 
 def figures_of(trace, ranks):
-    """Of each rank: its role, and by frame the CPU seconds of its stages, bytes and messages sent and received."""
+    """For each rank: its role, and per frame the CPU seconds of its stages, bytes and messages sent and received."""
     threads = collections.defaultdict(list)
     for event in json.loads(trace.read_text())["traceEvents"]:
         if event["ph"] == "X" and event["name"] != "frame":
@@ -80,7 +80,7 @@ def figures_of(trace, ranks):
 
 
 def run(args, million, nodes):
-    """One run's figures, from its file where it has been run."""
+    """One run's figures, from its file if it exists."""
     kept = args.work / f"{million}-{nodes}.json"
     if kept.exists():
         return json.loads(kept.read_text())
@@ -116,7 +116,7 @@ def busy(frame):
 
 
 def model_of(figures):
-    """Seconds of a frame, and what it is that takes so long: see above. The first frame, which also makes ready, does not count."""
+    """Seconds of a frame, and the resource that limits it: see above. The first frame, which includes initialization, does not count."""
     ranks = figures["ranks"]
     frames = range(1, figures["frames"])
     parts = collections.Counter()
@@ -193,7 +193,7 @@ def traffic(runs):
 
 
 def draw(runs, path):
-    """Figure 9 as stacked bars: for each role a group of nodes."""
+    """Figure 9 as stacked bars: a group of nodes for each role."""
     million = min(r["million"] for r in runs)
     bar, gap, height, top = 34, 14, 220, 40
     parts, x = [], 20

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Latency of `tessera serve` on the server's side: from the moment a state is sent to the moment its frame has come.
+"""Latency of `tessera serve` on the server's side: from sending a state to receiving its frame.
 
     serve_latency.py --tessera PROGRAM FILE [--size 1024x768] [--frames 200] [--latency 100] [--ranks N]
 
-A client turns the data, each time by a degree, and says of each frame at once that it is painted. Prints median and 95 %
-while moving, after a warm-up of 20 frames, how large the pictures were and how many showed a stand-in, and how long the
-exact picture at rest takes beside what `tessera render` says of the same picture.
+A client rotates the data by one degree at a time, and acknowledges each frame at once as painted. Prints median and 95 %
+while moving, after a warm-up of 20 frames, the size of the images and how many showed a preview, and the time of the
+exact image at rest compared with `tessera render` for the same image.
 """
 
 import argparse
@@ -28,7 +28,7 @@ WARM_UP = 20
 
 
 def turned(camera, degrees):
-    """The camera, turned round the z axis through its focal point."""
+    """The camera, rotated around the z axis through its focal point."""
     angle = math.radians(degrees)
     focus, eye = camera["focal_point"], camera["position"]
     x, y = eye[0] - focus[0], eye[1] - focus[1]
@@ -37,7 +37,7 @@ def turned(camera, degrees):
 
 
 def render_ms(tessera, command, file, launcher):
-    """What `tessera render` takes for a frame by a server's command line: the least of five."""
+    """Time of `tessera render` for a frame, with a server's command line: the minimum of five."""
     words = shlex.split(command)
     words[0], words[2] = tessera, str(file)
     with tempfile.TemporaryDirectory() as folder:

@@ -1,27 +1,27 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""How long a frame takes on N nodes, and where it is lost: the stages of a real run, replayed on modelled cores and links.
+"""How long a frame takes on N nodes, and where time is lost: the stages of a real run, replayed on modelled cores and links.
 
     bench/simulate.py TRACE.json [--gbit 1] [--latency-us 50] [--cores 2 [--shared]] [--threads 1] [--frames-in-flight 2] [--memory-mib 4096]
 
-TRACE.json: of `mpirun -n 2N tessera render ... --projectors N --compositors N --timing TRACE.json`: node i has projector i and compositor i.
-Of it come, by rank, frame and tile: CPU time of projection and of compositing (packing of finished tiles included), bytes of fragments, which
-compositor makes which tile; the mean bytes of a finished tile on its way; and the CPU time of sending, receiving, assembling (unpacking included, but
-not the faults of a film's first, fresh pictures) and writing. What happens when is the model's; it does as the program does:
+TRACE.json: from `mpirun -n 2N tessera render ... --projectors N --compositors N --timing TRACE.json`: node i has projector i and compositor i.
+It supplies, by rank, frame and tile: CPU time of projection and of compositing (including packing of finished tiles), bytes of fragments, the
+compositor of each tile; the mean bytes of a finished tile sent; and the CPU time of sending, receiving, assembling (including unpacking, but not
+the page faults of a film's first images) and writing. The model determines when each happens, following the program:
 
 - a projector culls and bins, announces the frame to all compositors, projects its tiles in order, and hands the fragments of each to the
-  lane of its compositor; a lane sends messages of 256 KiB while the compositor has given it credit, and a thread that finds too much
+  lane of its compositor; a lane sends messages of 256 KiB while it has credit from the compositor, and a thread that finds too much
   waiting stops (exchange/outbox.cpp);
-- a compositor merges a tile when all parts are there, and gives the credit of its first unfinished tile and of those before it back, an
+- a compositor merges a tile when all parts have arrived, and returns the credit of its first unfinished tile and of those before it, an
   eighth of the window at a time (frame/ranks/compositor_role.cpp);
-- tiles go to the first compositor, whose threads, 8 at most, put a message's tiles into the picture each; it tells all projectors that a frame has left, and writes the picture while one
-  more may wait; a projector is at most F frames ahead of the last one that left;
-- a message of more than 64 KiB asks first (Open MPI's TCP); each rank looks for messages now and then, seldom while it projects
-  (exchange/mpi/mpi_transport.cpp), and takes up those of one sender in their order.
+- tiles go to the first compositor, whose threads, 8 at most, each place a message's tiles in the image; it informs all projectors that a frame
+  has left, and writes the image while one more may wait; a projector is at most F frames ahead of the last one that left;
+- a message of more than 64 KiB is announced first (Open MPI's TCP); each rank checks for messages now and then, rarely while it projects
+  (exchange/mpi/mpi_transport.cpp), and processes those of one sender in order.
 
-A frame's losses are differences of runs of the model: the whole; without time on the wire; then without assembly and writing; then without
-compositing; then without the last tile (so many frames in flight that the end of one is always behind the next); then with projectors that
-have equal work. What is left is projection. Only Python's standard library.
+A frame's losses are differences between runs of the model: the whole; without time on the network; then without assembly and writing; then without
+compositing; then without the last tile (so many frames in flight that the end of one always overlaps the next); then with projectors that
+have equal work. The remaining time is projection. Needs only Python's standard library.
 """
 import argparse
 import collections
@@ -79,7 +79,7 @@ class Model:
         self.projectors = [Projector(self, p) for p in range(work.projectors)]
 
     def run(self):
-        """Seconds a frame: from the first picture that is written to the last."""
+        """Seconds per frame: from the first image written to the last."""
         for projector in self.projectors:
             projector.start()
         self.clock.run()
@@ -95,7 +95,7 @@ class Model:
         self.cores[self.node(rank)].run(seconds, done, *args)
 
     def look(self, rank):
-        """Seconds until the rank looks for messages."""
+        """Seconds until the rank checks for messages."""
         if not self.set.look:
             return 0.0
         if rank < self.work.projectors:
@@ -138,7 +138,7 @@ class Model:
             done(*args)
 
     def control(self, kind, frame, projector, sent):
-        """`begin` from a projector to all compositors, `end` to one (exchange/wire.hpp); they act when they have all that come to them."""
+        """`begin` from a projector to all compositors, `end` to one (exchange/wire.hpp); these act when they have all that they expect."""
         compositors, awaited = self.compositors, self.work.projectors
         if kind == "end":
             compositors = [self.compositors[projector % len(self.compositors)]]
@@ -159,7 +159,7 @@ class Model:
         self.compute(projector, self.work.send[0] * len(compositors), gone)
 
     def share(self, compositor):
-        """Projectors whose ends come to the compositor."""
+        """Projectors whose end messages go to the compositor."""
         return len(range(compositor, self.work.projectors, self.work.compositors))
 
 
@@ -350,7 +350,7 @@ class Compositor:
             self.model.assembler.send(self.rank, frame, tiles, tiles * self.model.work.tile_bytes)
 
     def settle(self):
-        """Goes on to the first unfinished tile, whose credit is due, and ends frames."""
+        """Advances to the first unfinished tile, returns due credit, and ends frames."""
         while self.frame < self.model.work.frames:
             tiles = self.model.tiles_of[self.frame][self.number]
             while self.first < len(tiles) and (self.frame, tiles[self.first]) in self.done:
@@ -386,7 +386,7 @@ class Compositor:
 
 
 def losses(work, settings):
-    """Seconds a frame, and the parts that they are made of: see above."""
+    """Seconds per frame, and their components: see above."""
     steps = [("wire", {"bytes_per_second": None, "latency": 0.0, "byte_cpu": 0.0, "look": False}), ("assembly", {"assembly": False}),
              ("compositing", {"compositing": False}), ("last tile", {"in_flight": 64}), ("imbalance", {})]
     now = whole = Model(work, settings).run()

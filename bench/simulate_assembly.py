@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The rank that puts pictures together and writes them, in the model of bench/simulate.py."""
+"""The rank that assembles images and writes them, in the model of bench/simulate.py."""
 import collections
 
 ASSEMBLING = 8  # largest number of threads that assemble an image (frame/ranks/compositor_role.cpp)
 
 
 class Assembler:
-    """The first compositor's: puts pictures together and writes them."""
+    """The first compositor's role: assembles images and writes them."""
 
     def __init__(self, model):
         self.model, self.rank = model, model.work.projectors
@@ -17,7 +17,7 @@ class Assembler:
         self.writing, self.waiting, self.blocked, self.complete = False, 0, False, None
 
     def send(self, source, frame, tiles, size):
-        """A message of finished tiles; of none, the end of the frame."""
+        """A message of finished tiles; an empty one is the end of the frame."""
         if self.model.set.assembly:
             self.model.post(source, self.rank, size, self.receive, frame, tiles)
         else:
@@ -60,7 +60,7 @@ class Assembler:
         self.leave()
 
     def leave(self):
-        """A frame that has ended leaves once its last tiles are in place; who reads messages waits for that."""
+        """A frame that has ended leaves once its last tiles are in place; the thread that reads messages waits for that."""
         if self.complete is None or self.placing[self.complete] > 0:
             return
         self.complete = None
@@ -74,7 +74,7 @@ class Assembler:
         self.read()
 
     def tell(self):
-        """The projectors, that a frame has left."""
+        """Informs the projectors that a frame has left."""
         for projector in self.model.projectors:
             self.model.clock.after(self.model.set.latency + self.model.look(projector.rank), projector.frame_left)
 

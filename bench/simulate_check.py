@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""bench/simulate.py against real runs: nodes that are network namespaces, on a bridge, with links limited by tc.
+"""bench/simulate.py compared with real runs: nodes are network namespaces, on a bridge, with links limited by tc.
 
     bench/simulate_check.py --tessera PROGRAM --work FOLDER [--results docs/RESULTS.md] [--nodes 2,4,8] [--mbit 100,1000] [--side 48]
                             [--size 512] [--frames 14] [--repeat 3]
 
 Needs root, ip, tc and Open MPI. For each number of nodes the same film is traced once without namespaces, over the loopback device: the model
-gets that trace alone, and foretells the film on limited links. All nodes share this machine's cores, and the model knows it: also what other
-programs want of them, measured just before and just after the run that it is compared with, and what the system takes to move a byte between namespaces (measured first, with two plain sockets). Every namespace is removed at the end,
-whatever ends the program. Only Python's standard library.
+gets only that trace, and predicts the film on limited links. All nodes share this machine's cores, which the model takes into account: also the load of other
+programs, measured just before and just after the run that it is compared with, and the system time per byte moved between namespaces (measured first, with
+two plain sockets). Every namespace is removed at the end, however the program ends. Needs only Python's standard library.
 """
 import argparse
 import contextlib
@@ -44,7 +44,7 @@ def call(*words):
 
 @contextlib.contextmanager
 def network(nodes, mbit):
-    """Names of the nodes' namespaces; node i is 10.77.0.(i+1). The switch has one of its own, so that nothing else sees it."""
+    """Names of the nodes' namespaces; node i is 10.77.0.(i+1). The switch has its own, so that nothing else can access it."""
     prefix = f"tessera-{os.getpid()}"
     switch, names = f"{prefix}-switch", [f"{prefix}-{n + 1}" for n in range(nodes)]
     try:
@@ -69,15 +69,15 @@ def network(nodes, mbit):
 
 
 def others():
-    """As how many threads other programs share the cores with ours: from what greedy processes, a session each as our ranks, get of them.
-    The kernel shares cores among sessions first, so that neither how many threads the others have nor how nice they are says it."""
+    """The load of other programs, in threads that share the cores with ours: derived from the share that busy processes get, each in its own session like
+    our ranks. The kernel shares cores among sessions first, so neither the number of the others' threads nor their nice values determine it."""
     greedy = [subprocess.Popen([sys.executable, "-c", GREEDY], start_new_session=True, stdout=subprocess.PIPE, text=True) for _ in range(GREEDY_COUNT)]
     got = sum(float(one.communicate()[0]) for one in greedy)
     return max(0.0, GREEDY_COUNT * os.cpu_count() / got - GREEDY_COUNT)
 
 
 def byte_cost():
-    """Seconds of a core that a byte between namespaces takes at either end."""
+    """Core seconds per byte between namespaces at either end."""
     count = 1200
     with network(2, None) as names:
         before = os.times()
@@ -102,7 +102,7 @@ def words_of(args, nodes, out):
 
 
 def mpirun(prefix, words, patience=300):
-    """Runs until it ends, or is ended with all that it has started."""
+    """Runs until it ends, or kills it with all that it has started."""
     process = subprocess.Popen([str(w) for w in [*prefix, *words]], env=ENVIRONMENT, stdin=subprocess.DEVNULL, start_new_session=True)
     try:
         if process.wait(patience) != 0:
@@ -114,7 +114,7 @@ def mpirun(prefix, words, patience=300):
 
 
 def frame_seconds(out):
-    """Mean of the frames that the model counts: it has no first one, and needs one to count from."""
+    """Mean of the frames that the model counts: it has no first one, and needs one as a start."""
     frames = json.loads(out.with_suffix(".report.json").read_text())["frames"]
     return statistics.mean(f["frame_ms"][0] for f in frames[2:]) * 1e-3
 
@@ -136,7 +136,7 @@ exec ip netns exec PREFIX-$node unshare --uts sh -c "hostname tessera-node-$node
 
 
 def measure(args, nodes, mbit):
-    """A run on limited links: seconds a frame, as how many threads others shared the cores, and its own trace's work."""
+    """A run on limited links: seconds per frame, the load of others in threads, and its own trace's work."""
     out = args.work / f"real-{nodes}-{mbit}"
     with network(nodes, mbit) as names:
         agent = args.work / "agent.sh"
@@ -152,7 +152,7 @@ def measure(args, nodes, mbit):
 
 
 def row(nodes, mbit, found):
-    """A line of the table: of each run (measured, others, predicted, replayed)."""
+    """A line of the table: for each run (measured, others, predicted, replayed)."""
     def cells(at):
         errors = [100 * (one[at] / one[0] - 1) for one in found]
         return f"{statistics.median(errors):+.0f} (" + ", ".join(f"{e:+.0f}" for e in errors) + ")"

@@ -1,19 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What bench/simulate.py foretells for machines that are not here: 8, 64 and 1024 nodes, 15.7 million to 10^10 tetrahedra.
+"""Predictions of bench/simulate.py for machines that are not available: 8, 64 and 1024 nodes, 15.7 million to 10^10 tetrahedra.
 
     bench/simulate_cluster.py --tessera PROGRAM --work FOLDER [--results docs/RESULTS.md] [--sides 69,138] [--frames 4] [--jobs 1]
 
 Traces cubes of two sizes on 8 nodes (1024 x 1024 pixels), and scales their work to M tets and N nodes by these rules:
 
-- Culling and binning: as M, from the larger cube, divided evenly.
-- Tiles' CPU time on projectors: a M + b M^(1/3), cells and ray segments, through both cubes. Nothing is saved where cells are smaller than pixels.
-- A projector's part of the mesh covers N^(-2/3) of the picture, and all tiles that this touches: a square of side s+1 tiles where its own is
-  s. The bytes of all fragments and their compositing go as N^(1/3) and as the power of M that both cubes show, not above 1/3.
-- How projectors differ in work, how tiles differ in depth, and what a message, a byte, assembly and writing take: as measured with the larger cube on 8
-  nodes.
-- Threads of a rank share its work without loss; of a picture that is put together at most 8, of one that is written at most 12, the strips in which a .png of this size is compressed.
-Only Python's standard library.
+- Culling and binning: proportional to M, from the larger cube, divided evenly.
+- Tiles' CPU time on projectors: a M + b M^(1/3), cells and ray segments, fitted to both cubes. Cells smaller than pixels save nothing.
+- A projector's part of the mesh covers N^(-2/3) of the image, and all tiles that this touches: a square of side s+1 tiles if its own side is
+  s. The bytes of all fragments and their compositing grow as N^(1/3) and as the power of M given by both cubes, at most 1/3.
+- Imbalance of projectors, variation of depth among tiles, and the costs of a message, a byte, assembly and writing: as measured with the larger cube
+  on 8 nodes.
+- Threads of a rank share its work without loss; at most 8 in assembling an image, at most 12 in writing one, the number of compressed strips of a .png
+  of this size.
+Needs only Python's standard library.
 """
 import argparse
 import collections
@@ -39,7 +40,7 @@ MACHINES = ((32, 10), (2, 10), (32, 1))  # cores per node, Gbit/s
 
 
 class Base:
-    """Sums over a trace's frames, a frame each."""
+    """Sums over a trace's frames, per frame."""
 
     def __init__(self, work, side):
         self.work, self.millions = work, 6e-6 * side ** 3
@@ -62,7 +63,7 @@ class Base:
 
 
 def cells_and_segments(small, large):
-    """(a, b) of a M + b M^(1/3), neither below 0."""
+    """(a, b) of a M + b M^(1/3), both non-negative."""
     m, n = small.millions, large.millions
     a = (large.project - small.project * (n / m) ** (1 / 3)) / (n - m * (n / m) ** (1 / 3))
     a = min(max(a, 0.0), large.project / n)
@@ -100,7 +101,7 @@ def scaled(small, large, millions, nodes, frames):
 
 
 def window(depth, quantile, side, across):
-    """The tiles of a square about the tile up to which that part of all depth lies; those that have any."""
+    """The tiles of a square around the tile at which the cumulative depth reaches that fraction; only those with any depth."""
     left = quantile * sum(depth.values())
     for centre in sorted(depth):
         left -= depth[centre]

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Time, cores and links of bench/simulate.py: what runs when several things share something. Knows nothing of rendering.
+"""Time, cores and links of bench/simulate.py: scheduling of shared resources, independent of rendering.
 
 Cores    processor sharing: of n running threads on C cores each advances at min(1, C/n).
-Links    every node has one full-duplex link to a switch that never blocks. Messages between two ranks go one after the other (a TCP
-         connection); the connections of a node share its link evenly in each direction, and one that crosses two links gets the lesser
-         share. What the lesser share leaves of the other link stays unused: below the max-min fair share, at most.
+Links    every node has one full-duplex link to a switch that never blocks. Messages between two ranks are sequential (a TCP
+         connection); the connections of a node share its link evenly in each direction, and one that crosses two links gets the smaller
+         share. The remaining share of the other link stays unused: at most the max-min fair share is used.
 """
 import collections
 import heapq
@@ -12,7 +12,7 @@ import itertools
 
 
 class Clock:
-    """What is to happen, in order of time; at one time, in the order of asking."""
+    """Future events, in order of time; events at one time in the order of requests."""
 
     def __init__(self):
         self.now = 0.0
@@ -32,7 +32,7 @@ class Clock:
 
 
 class Cores:
-    """Cores that threads share with so many threads of `others`, which may be a fraction: of the time, or of a thread's weight."""
+    """Cores that threads share with `others` other threads, which may be a fraction: of the time, or of a thread's weight."""
 
     def __init__(self, clock, count, others=0.0):
         self.clock, self.count, self.others = clock, count, others
@@ -50,7 +50,7 @@ class Cores:
         self.last = self.clock.now
 
     def run(self, seconds, done, *args):
-        """Calls done(*args) when a thread has had so many seconds of a core."""
+        """Calls done(*args) when a thread has had so many core seconds."""
         if seconds <= 0:
             self.clock.after(0, done, *args)
             return
@@ -91,7 +91,7 @@ class Links:
         self.leaving, self.entering = collections.defaultdict(dict), collections.defaultdict(dict)  # active ones per node, in order
 
     def send(self, ranks, nodes, size, done, *args):
-        """Calls done(*args) when the message's last byte has left the wire. Within a node, or on endless links, at once."""
+        """Calls done(*args) when the message's last byte has left the network; at once within a node, or on unlimited links."""
         if nodes[0] == nodes[1] or self.speed is None:
             self.clock.after(0, done, *args)
             return
@@ -105,7 +105,7 @@ class Links:
             self.share(at)
 
     def share(self, changed):
-        """New rates of all that use the links of `changed`. Where few of many come or go, theirs stay: 4 % at most."""
+        """New rates of all that use the links of `changed`. If only few of many change, rates are kept: an error of 4 % at most."""
         for key, active in ((("out", changed.source), self.leaving[changed.source]), (("in", changed.target), self.entering[changed.target])):
             if abs(len(active) - self.shared.get(key, 0)) > 0.04 * len(active):
                 self.shared[key] = len(active)

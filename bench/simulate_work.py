@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What bench/simulate.py replays: the work of a traced run, by rank, frame and tile."""
+"""The input of bench/simulate.py: the work of a traced run, by rank, frame and tile."""
 import collections
 import json
 import pathlib
@@ -10,7 +10,7 @@ END = 1024  # bytes: larger than the message that ends a frame
 
 
 class Work:
-    """What a run did: see above. Times in CPU seconds; frames without the first, which also makes ready."""
+    """The work of a run: see above. Times in CPU seconds; frames without the first, which includes initialization."""
 
     def __init__(self, projectors, compositors):
         self.projectors, self.compositors = projectors, compositors
@@ -32,7 +32,7 @@ class Work:
 
 
 def line(points):
-    """(seconds a message, seconds a byte) through (bytes, seconds): small messages give the first, all of them the second."""
+    """(seconds per message, seconds per byte) fitted to (bytes, seconds): small messages give the first, all of them the second."""
     small = sorted(s for b, s in points if b < 1024)
     message = small[len(small) // 2] if small else 0.0
     size = sum(b for b, _ in points)
@@ -97,7 +97,7 @@ def work_of(trace):
 
 
 def balanced(work):
-    """The same work, with projectors that have as much each."""
+    """The same work, distributed equally over projectors."""
     even = Work(work.projectors, work.compositors)
     even.__dict__.update(work.__dict__)
     totals = {key: work.setup.get(key, 0.0) + sum(t[1] for t in tiles) for key, tiles in work.tiles.items()}

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Long runs: 2,000 frames each of a mesh, a grid, a series and a server. Resident memory and open descriptors are read
-again and again; from the first tenth of the frames to the last their peaks may grow by 3 MiB and by none.
+"""Long runs: 2,000 frames each of a mesh, a grid, a series and a server. Resident memory and open descriptors are sampled;
+from the first tenth of the frames to the last their peaks may grow by 3 MiB and by none, respectively.
 
     bench/soak.py --tessera build/release/apps/tessera [--frames 2000]
 
-Prints a line a run; ends with 1 if one grows."""
+Prints a line per run; exits with 1 if one grows."""
 
 import argparse
 import json
@@ -32,7 +32,7 @@ def descriptors(process):
 
 
 class Watch(threading.Thread):
-    """Samples of a process, each with the frames that are done by then."""
+    """Samples of a process, each with the number of frames completed by then."""
 
     def __init__(self, process, frames_done):
         super().__init__(daemon=True)

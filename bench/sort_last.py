@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Moloney, Ray Coherence in Parallel Volume Rendering (2008), Figures 1.1, 6.6, 6.7 and 6.15: rays in one place, or in pieces.
+"""Moloney, Ray Coherence in Parallel Volume Rendering (2008), Figures 1.1, 6.6, 6.7 and 6.15: rays in one process, or in pieces.
 
     bench/sort_last.py --tessera PROGRAM [--document docs/RESULTS.md] [--only "figure 6.15"] [--size 512x512] [--samples 192] [--frames 5]
 
     Figure 6.15  sort-first and sort-last by number of processes, with and without early termination; bricks of 32^3, nothing culled, rotation about y,
-                 sort-first split by the frame before as printed, and by our default
-    Figure 1.1   CPU time of the process that has most, over the mean, while a view goes into the volume
+                 sort-first split by the previous frame as printed, and by our default
+    Figure 1.1   CPU time of the slowest process, relative to the mean, while a view moves into the volume
     Figure 6.6   direct send, asynchronous and synchronous, by number of processes
-    Figure 6.7   asynchronous direct send of six processes by the picture's size
+    Figure 6.7   asynchronous direct send of six processes by the image's size
 
-Volumes are ripples (`tessera generate ripples`), opaque for Figure 6.15. Where the thesis says frames a second, 6.15 says 1 s over the CPU time of the
-process that took longest, as two cores cannot show what six have: messages are not in it. Figures 6.6 and 6.7 say what a process sends, and the time
-from a process's last ray to its last composited pixel (of the slowest, which waits for the others' rays too), beside what the bytes alone take at
-95 MB/s, the thesis's bandwidth. Medians over frames but the first.
+Volumes are ripples (`tessera generate ripples`), opaque for Figure 6.15. Where the thesis has frames per second, 6.15 has 1 s divided by the CPU time of the
+slowest process, because two cores cannot show the wall time of six: messages are not included. Figures 6.6 and 6.7 have the data sent by a process, and the
+time from a process's last ray to its last composited pixel (of the slowest, which also waits for the others' rays), compared with the time of the bytes alone at
+95 MB/s, the thesis's bandwidth. Medians over frames except the first.
 
 Needs mpirun and Python's standard library.
 """
@@ -42,7 +42,7 @@ class Bench:
         self.thin.write_text("0 0.1 0.2 0.8 0.1\n128 0.9 0.8 0.3 0.4\n255 1 0.3 0.1 1\n")
 
     def frames(self, units, size, function, path, *words):
-        """What the report says of all frames but the first."""
+        """The report's data of all frames except the first."""
         (self.folder / "path.json").write_text(json.dumps(path))
         report = self.folder / "report.json"
         run(["mpirun", "--oversubscribe", "-n", units, self.args.tessera, "render", self.volume, "-o", self.folder / "f%d.pfm", "--camera",
@@ -52,14 +52,14 @@ class Bench:
 
 
 def rotation(frames, distance=6.5, angle=30):
-    """About the y axis; ripples lie in [-1, 1]^3."""
+    """About the y axis; ripples are in [-1, 1]^3."""
     for n in range(frames):
         a = 2 * math.pi * n / frames + 0.3
         yield {"position": [distance * math.cos(a), 0.4, distance * math.sin(a)], "focal_point": [0, 0, 0], "view_up": [0, 1, 0], "view_angle": angle}
 
 
 def slowest(frames):
-    """CPU milliseconds of the process that took longest, median over frames."""
+    """CPU milliseconds of the slowest process, median over frames."""
     return statistics.median(max(p["cpu_ms"] + p["split_cpu_ms"] for p in frame["balance"]["processes"]) for frame in frames)
 
 
@@ -101,7 +101,7 @@ def figure_1(bench):
 
 
 def sent(frames):
-    """Bytes and messages a process and frame, and the slowest's milliseconds of compositing."""
+    """Bytes and messages per process and frame, and the slowest process's milliseconds of compositing."""
     middle = lambda name: statistics.median(frame["counters"][name] for frame in frames)
     return middle("exchange_bytes"), middle("exchange_messages"), middle("composite_us") / 1e3
 

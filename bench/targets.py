@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The speed of meshes where it was asked for: one table of what was wanted, what is reached, and by which command.
+"""The speed of meshes where a target was set: one table of target, result, and command.
 
     bench/targets.py [--tessera build/release/apps/tessera] [--work FOLDER] [--data FOLDER] [--repeat 5]
                      [--json FILE] [--results bench/RESULTS.md] [--only cube,large,real,parallel,modes]
 
 Makes its meshes in FOLDER (kept, so that a second run starts at once): cubes, a TetGen filling of a box, graded meshes
-of 15.8 and 51.1 M tets, and with --data (a folder with oxygen-post/ and bracket/) those, cut into eight. View and
-transfer function are those of all speed figures unless a row says otherwise; 1024 x 1024, `exact`, two threads. A time
-is the least of the repeats, its median beside it. Ratios are of lower quartiles of runs made in turn, as the machine's
+of 15.8 and 51.1 M tets, and with --data (a directory with oxygen-post/ and bracket/) those, cut into eight. View and
+transfer function are those of all performance figures unless a row states otherwise; 1024 x 1024, `exact`, two threads. A time
+is the minimum of the repeats, followed by its median. Ratios are of lower quartiles of alternating runs, because the machine's
 speed changes from minute to minute. The section between the script's marks in the results file is
-replaced; what stands outside is kept.
+replaced; text outside is kept.
 """
 import argparse
 import json
@@ -52,7 +52,7 @@ class Bench:
         args.work.mkdir(parents=True, exist_ok=True)
 
     def mesh(self, name, *command):
-        """A mesh made by a tessera command that ends with its file's place, if it is not there yet."""
+        """A mesh made by a tessera command that ends with its file's path, if it does not exist yet."""
         file = self.args.work / name
         if not file.exists():
             run([self.args.tessera] + [file if c == "OUT" else c for c in command])
@@ -80,7 +80,7 @@ class Bench:
         return frame
 
     def in_turn(self, mesh, *variants, rounds=4):
-        """A frame of each variant, (arguments, keywords) of render(), their times those of all rounds."""
+        """A frame of each variant, (arguments, keywords) of render(), with the times of all rounds."""
         frames, times = [None] * len(variants), [[] for _ in variants]
         for _ in range(rounds):
             for i, (extra, options) in enumerate(variants):
@@ -165,7 +165,7 @@ def parallel(b):
         return table.read_text()
 
     def cpu_of(table):
-        """CPU [ms] of all stages of a frame, of all processes, but waiting and what a file costs."""
+        """CPU [ms] of all stages of a frame, of all processes, without waiting and file output."""
         lines = [line.split(",") for line in table.strip().splitlines()]
         rows = [dict(zip(lines[0], line)) for line in lines[1:]]
         return sum(float(r["cpu_ms"]) * int(r["role_processes"]) for r in rows

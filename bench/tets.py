@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Times `tessera render` beside VTK's unstructured-grid ray caster: same mesh, view, transfer function, machine, run.
+"""Times `tessera render` compared with VTK's unstructured-grid ray caster: same mesh, view, transfer function, machine, run.
 
     bench/tets.py [--tessera build/release/apps/tessera] [--cubes 32,64] [--repeat 7] [--vtk-repeat 2]
                   [--verify 200] [--json bench/tets.json] [--results bench/RESULTS.md]
@@ -8,8 +8,8 @@
 Makes `tessera generate cube` meshes, renders each with the integrators `exact` and `auto` and with VTK's full and
 partial pre-integration (bench/peers/vtk_raycast.py under xvfb-run), and writes a table of times, ratios and errors.
 Errors: Tessera's against the double-precision reference at `--verify` random pixels; VTK's against Tessera's `exact`
-image, all pixels, linear RGB. `--no-vtk` leaves VTK out. The results file gets a section of its own, replaced by the
-next run; what stands outside its marks is kept.
+image, all pixels, linear RGB. `--no-vtk` leaves VTK out. The results file gets its own section, replaced by the
+next run; text outside its marks is kept.
 """
 import argparse
 import datetime
@@ -37,7 +37,7 @@ def run(command, **options):
 
 
 def machine(tessera):
-    """What a figure means nothing without."""
+    """The context without which a figure has no meaning."""
     cpu, cores = results_file.processor()
     facts = {"cpu": cpu, "cores": cores, "date": datetime.date.today().isoformat(), "commit": results_file.commit()}
     for folder in tessera.resolve().parents:
@@ -75,7 +75,7 @@ def time_vtk(args, mesh, integrator, folder):
 
 
 def vtk_errors(args, vtk, exact):
-    """Maximum and RMS of the difference of two pictures; numpy lives in VTK's Python."""
+    """Maximum and RMS of the difference of two images; numpy is only in VTK's Python."""
     script = ("import sys; sys.path.insert(0, sys.argv[1]); from vtk_raycast import *; "
               "d = np.abs(read_pfm(sys.argv[2]) - read_pfm(sys.argv[3])); print(d.max(), np.sqrt((d.astype(float) ** 2).mean()))")
     words = run([args.vtk_python, "-c", script, HERE / "peers", vtk["picture"], exact["picture"]]).split()
@@ -83,7 +83,7 @@ def vtk_errors(args, vtk, exact):
 
 
 def table(runs):
-    """A row a mesh, a cell a renderer: median (least) of its frames, how many times as long as the first, errors."""
+    """A row per mesh, a cell per renderer: median (minimum) of its frames, ratio to the first, errors."""
     names = [r["renderer"] for r in runs[0]["renderers"]]
     lines = ["| mesh | " + " | ".join(names) + " |", "|---" * (len(names) + 1) + "|"]
     for mesh in runs:

@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What two processes cost: films of a volume by two processes of one thread, beside one process of two threads.
+"""The cost of two processes: films of a volume by two processes of one thread, compared with one process of two threads.
 
     bench/two_processes.py --tessera PROGRAM [--old PROGRAM] [--repeats 5] [--frames 12] [--samples 256] [--size 1024x1024] [--results FILE]
 
-`ripples` of SAMPLES^3 floats from five half sides off: a turn of 2 degrees a frame, whose splits go by the times of the frame before, and an orbit of
-36 degrees a frame, where each view is new; sort-first by `--balance learned`, and sort-last. Each film is rendered by one process, then by two in both
-ways, and so on REPEATS times. A *frame* is the median over the film's frames but the first, the median of that over repetitions; *whole* the time of
-the whole run, of starting, reading and writing pictures too. Ratios are medians over repetitions of two processes' time to that of the one beside them,
-with the least and largest; *CPU* is the same of the run's processor time, mpirun included. *Finding* is what finding the splits took of the processor
-time of rendering, *uneven* what the process that took longest took more than the mean, in processor time, both of frames but the first.
+`ripples` of SAMPLES^3 floats from a distance of five half sides: a turn of 2 degrees per frame, whose splits use the times of the previous frame, and an orbit of
+36 degrees per frame, where each view is new; sort-first by `--balance learned`, and sort-last. Each film is rendered by one process, then by two in both
+modes, and so on REPEATS times. A *frame* is the median over the film's frames except the first, the median of that over repetitions; *whole* the time of
+the whole run, including starting, reading and writing images. Ratios are medians over repetitions of two processes' time to that of the one,
+with the smallest and largest; *CPU* is the same for the run's processor time, including mpirun. *Finding* is the share of finding the splits in the processor
+time of rendering, *uneven* the excess of the slowest process over the mean, in processor time, both for frames except the first.
 
-Ratios of time on two cores that others use too say more of the neighbours than of the program. Needs mpirun and Python's standard library.
+On two cores shared with other programs, ratios of time depend more on the other load than on the program. Needs mpirun and Python's standard library.
 """
 import argparse
 import json
@@ -31,14 +31,14 @@ WAYS = {"sort-first": [], "sort-last": ["--distribution", "sort-last"]}
 
 
 def path(degrees, frames):
-    """About the y axis; ripples lie in [-1, 1]^3."""
+    """About the y axis; ripples are in [-1, 1]^3."""
     for n in range(frames):
         a = math.radians(degrees * n) + 0.3
         yield {"position": [5 * math.cos(a), 1, 5 * math.sin(a)], "focal_point": [0, 0, 0], "view_up": [0, 1, 0], "view_angle": 40}
 
 
 def render(args, program, folder, film, processes, words):
-    """Of a run: milliseconds of a frame and of all, CPU milliseconds, and the balance of its frames but the first."""
+    """For a run: milliseconds of a frame and in total, CPU milliseconds, and the balance of its frames except the first."""
     report = folder / "report.json"
     launch = ["mpirun", "--oversubscribe", "-n", processes] if processes > 1 else []
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -54,7 +54,7 @@ def render(args, program, folder, film, processes, words):
 
 
 def shares(runs):
-    """(CPU time of finding splits over that of rendering, longest process's over the mean less one), percent."""
+    """(CPU time of finding splits relative to that of rendering, the slowest process's relative to the mean minus one), percent."""
     frames = [processes for made in runs for processes in made["balance"]]
     finding = sum(p["split_cpu_ms"] for f in frames for p in f) / sum(p["cpu_ms"] for f in frames for p in f)
     uneven = statistics.mean(max(p["cpu_ms"] for p in f) / statistics.mean(p["cpu_ms"] for p in f) - 1 for f in frames)

@@ -4,7 +4,7 @@
 
     bench/volume_convergence.py --tessera build/release/apps/tessera [--volume FILE] [--size 200x200] [--pixels 2000]
 
-Renders ripples (128^3 samples) with the transfer function of all speed figures and with one of narrow peaks, and
+Renders ripples (128^3 samples) with the transfer function of all performance figures and with one of narrow peaks, and
 compares random pixels with the double-precision reference (--verify). `order` is log2 of the ratio of two RMS errors.
 """
 import argparse

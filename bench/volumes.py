@@ -1,21 +1,21 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Times `tessera render` of regular grids beside VTK's fixed-point ray caster: same volume, view, transfer function, run.
+"""Times `tessera render` of regular grids compared with VTK's fixed-point ray caster: same volume, view, transfer function, run.
 
     bench/volumes.py [--tessera build/release/apps/tessera] [--data FOLDER] [--rounds 3] [--repeat 5] [--threads 2]
                      [--size N] [--verify 100] [--no-vtk] [--mechanisms] [--only NAME] [--results bench/RESULTS.md]
 
-Makes `tessera generate ripples n=256` in float and 8-bit samples (view and transfer function of all speed figures);
-FOLDER of --data may hold heptane.nii.gz and LIDC2.vti, which get their default view and a function that shows the top
-of their range alone. Rounds go through all renderers in turn, so that all see the same machine; a time is the least of
-all rounds' frames, the median beside it. Errors: Tessera's against the double-precision reference at --verify random
-pixels, VTK's against Tessera's `exact` image, all pixels, linear RGB. VTK (python3-vtk9, under xvfb-run) takes steps
-of one voxel. A row a measurement goes to standard output; the results file gets a row a volume, in a section of its own,
+Makes `tessera generate ripples n=256` in float and 8-bit samples (view and transfer function of all performance figures);
+FOLDER of --data may contain heptane.nii.gz and LIDC2.vti, which get their default view and a function that shows only the top
+of their range. Rounds alternate over all renderers, so that all have the same conditions; a time is the minimum of
+all rounds' frames, followed by the median. Errors: Tessera's against the double-precision reference at --verify random
+pixels, VTK's against Tessera's `exact` image, all pixels, linear RGB. VTK (python3-vtk9, under xvfb-run) uses steps
+of one voxel. A row per measurement goes to standard output; the results file gets a row per volume, in its own section,
 replaced by the next run.
 
 With --mechanisms, instead: what culling of bricks, skipping of empty space and early termination save at the default
-accuracy (each left out by `--without`, and all of them), and what `--shade` costs, with the functions as they are and 50
-times as opaque. CPU time of all threads is the least of the rounds' last frames: other work on the machine counts little. No VTK.
+accuracy (each disabled by `--without`, and all of them), and what `--shade` costs, with the functions unchanged and 50
+times as opaque. CPU time of all threads is the minimum of the rounds' last frames: other load on the machine has little effect. No VTK.
 """
 import argparse
 import json
@@ -42,7 +42,7 @@ def run(command):
 
 
 def peer(volume, view, knots, threads, repeat, exact):
-    """The VTK side, in a process of its own under xvfb-run."""
+    """The VTK side, in a separate process under xvfb-run."""
     sys.path.insert(0, str(HERE / "peers"))
     import vtk_chart
     import vtk_raycast
@@ -53,7 +53,7 @@ def peer(volume, view, knots, threads, repeat, exact):
 
 
 def volumes(args, folder):
-    """Name, file, words of view and transfer function."""
+    """Name, file, arguments for view and transfer function."""
     for kind, bits in (("float", 32), ("8-bit", 8)):
         path = folder / f"ripples{bits}.nrrd"
         run([args.tessera, "generate", "ripples", path, f"n={args.size}", f"bits={bits}"])
@@ -81,7 +81,7 @@ def volumes(args, folder):
 
 
 def mechanisms(args, folder):
-    """Lines of a table, one a volume; every variation in turn, so that all see the same machine. Prints a line each."""
+    """Lines of a table, one per volume; every variation in turn, so that all have the same conditions. Prints a line each."""
     rows = []
     print("| volume | mechanisms | CPU, least [ms] | of the default | voxels visited [millions] | pieces [millions] | bricks to load | "
           "max error |\n|---|---|---|---|---|---|---|---|", flush=True)

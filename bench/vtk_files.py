@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes one small data set by each of VTK's own writers, in every encoding they have: files that a corpus begins with.
+"""Writes one small data set by each of VTK's own writers, in every supported encoding: initial files of a corpus.
 
     bench/vtk_files.py FOLDER
 

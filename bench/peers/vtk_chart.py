@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""`tessera chart` with VTK's ray casters on it: the same data, view and transfer function, timed and judged alike.
+"""`tessera chart` with VTK's ray casters in it: the same data, view and transfer function, timed and judged in the same way.
 
     xvfb-run -a /usr/bin/python3 bench/peers/vtk_chart.py INPUT [words of tessera chart] [--tessera PROGRAM]
         [--peer-seconds 60] [--peer-threads T] [--keep FOLDER]
 
-Asks Tessera for the view and the knots that the words mean, has it write INPUT as plain tets (.vtu) or samples (.vti),
-renders these with VTK (vtk_raycast.py), and ends with `tessera chart` and all its words, the peers beside. Meshes:
+Asks Tessera for the view and the knots specified by the arguments, makes it write INPUT as plain tets (.vtu) or samples (.vti),
+renders these with VTK (vtk_raycast.py), and finally runs `tessera chart` with all arguments and the peers. Meshes:
 vtkUnstructuredGridVolumeRayCastMapper (Bunyk) with each of its integrators, and vtkUnstructuredGridVolumeZSweepMapper.
-Grids: vtkFixedPointVolumeRayCastMapper at steps of 2 to 1/8 voxel. Each in a process of its own, as VTK may crash or
-take very long: what does not end within its share of --peer-seconds (or five times that, for its first frame) is named
+Grids: vtkFixedPointVolumeRayCastMapper at steps of 2 to 1/8 voxel. Each in a separate process, because VTK may crash or
+take very long: a run that does not end within its share of --peer-seconds (or five times that, for its first frame) is reported
 as left out. Needs python3-vtk9, python3-numpy and a display (xvfb-run).
 """
 import argparse
@@ -40,7 +40,7 @@ def tessera(args, *words):
 
 
 def mesh_of(path, on_cells):
-    """The tets without those of no volume, on which VTK 9.1's caster may crash; they show nothing."""
+    """The tets except those with zero volume, on which VTK 9.1's caster may crash; they are invisible."""
     grid = vtk_raycast.read_mesh(str(path))
     p = vtk_to_numpy(grid.GetPoints().GetData()).astype(np.float64)
     c = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4)
@@ -62,7 +62,7 @@ def image_of(path):
 
 
 def measured(render, seconds, picture):
-    """frame_ms of render(), its picture written; or why there is none."""
+    """frame_ms of render(), after writing its image; or why there is none."""
     here, there = multiprocessing.get_context("fork").Pipe(duplex=False)
 
     def work():

@@ -6,16 +6,15 @@
         [--integrator full|partial|linear|homogeneous] [--repeat K] [--threads T] [--output OUT.pfm] [--json OUT.json]
 
 MESH is .tets or .vtu (linear tets only); camera and transfer function are Tessera's text files. Needs python3-vtk9,
-python3-numpy and a display (xvfb-run). Also a module: `render` and `render_grid` are what compare_vtk.py and
-vtk_chart.py call.
+python3-numpy and a display (xvfb-run). Also a module: compare_vtk.py and vtk_chart.py call `render` and `render_grid`.
 
-What VTK does differently, and is measured as it is: the picture is 8-bit. With `full` the integral comes from a table
+Differences of VTK, which are measured as they are: the image is 8-bit. With `full` the integral comes from a table
 (vtkUnstructuredGridPreIntegration), with `partial` from Moreland and Angel's formula and tables for opacity
 (vtkUnstructuredGridPartialPreIntegration), with `linear` from a formula for colour and opacity that are linear along a
-segment, with `homogeneous` from their means. VTK's unstructured mappers read "opacity" as extinction per unit distance,
-so extinctions pass unchanged. The fixed-point caster of grids keeps opacity and colour in 15 bits, and of 8-bit samples
-takes the transfer function at whole values alone. A frame is the time of vtkRenderWindow::Render() after a change of
-the camera, so that nothing is reused but what VTK keeps by itself (the faces' neighbours, built in the first frame).
+segment, with `homogeneous` from their means. VTK's unstructured mappers interpret "opacity" as extinction per unit distance,
+so extinctions are passed unchanged. The fixed-point caster of grids has opacity and colour in 15 bits, and for 8-bit samples
+evaluates the transfer function only at integers. A frame is the time of vtkRenderWindow::Render() after a change of
+the camera, so that nothing is reused except what VTK caches by itself (the faces' neighbours, built in the first frame).
 """
 import argparse
 import json
@@ -104,7 +103,7 @@ def render(grid, camera, knots, integrator="partial", repeat=0, threads=None, ce
 
 
 def render_grid(image, camera, knots, step, repeat=0, threads=None, seconds=None):
-    """As render(), of a vtkImageData with vtkFixedPointVolumeRayCastMapper. `step` in voxels (cube root of a voxel's
+    """Like render(), for a vtkImageData with vtkFixedPointVolumeRayCastMapper. `step` in voxels (cube root of a voxel's
     volume)."""
     distance = step * float(np.prod(image.GetSpacing())) ** (1 / 3)
     color, opacity = vtk.vtkColorTransferFunction(), vtk.vtkPiecewiseFunction()
@@ -183,12 +182,12 @@ def frames(mapper, color, opacity, unit_distance, camera, repeat, budget):
 
 
 def straighten(renderer, volume, width, height):
-    """Moves the view so that VTK's rays go through the middles of the window's pixels.
+    """Moves the view so that VTK's rays pass through the centres of the window's pixels.
 
     VTK 9.1 draws the n pixels' rays of its ray casters as a linearly interpolated texture whose first and last texel's
-    middles lie on the edges of n pixels: n rays over n - 1 pixels (measured on meshes by least squares: 1.0 pixel along
-    both axes). The opposite transform after the projection puts the rays where they are shown. What the interpolation
-    itself smears, half a pixel near the edges of the volume's window and nothing in its middle, stays.
+    centres are on the edges of n pixels: n rays over n - 1 pixels (measured on meshes by least squares: 1.0 pixel along
+    both axes). The opposite transform after the projection places the rays where they are shown. The blur by the interpolation
+    itself, half a pixel near the edges of the volume's window and zero in its middle, remains.
     """
     view = renderer.GetActiveCamera()
     mapper = volume.GetMapper()

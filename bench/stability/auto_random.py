@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Random scenes against the promise of `--accuracy`: no pixel may be further off than asked.
+"""Random scenes against the promise of `--accuracy`: no pixel may have a larger error than requested.
 
     bench/stability/auto_random.py [--tessera build/release/apps/tessera] [--cases 1000] [--seed 1] [--first 0] [--times]
 
-Case i of a seed is the same everywhere: a random mesh or grid, transfer function, view and accuracy (1e-2 to 1e-5), and
-`--verify` on random pixels. A pixel that is excused (docs/ACCURACY.md) breaks no case, since one of 400 is more than an
-image may have on the whole: they are counted over all cases, of which they must stay below 1e-4. Prints each case that
-breaks with the command that makes it again (`--first i --cases 1 --keep FOLDER` keeps its files), and ends with status 1
-if any did. Needs Python's standard library alone.
+Case i of a seed is always the same: a random mesh or grid, transfer function, view and accuracy (1e-2 to 1e-5), and
+`--verify` on random pixels. An excused pixel (docs/ACCURACY.md) does not break a case, because one of 400 is more than a whole
+image may have: they are counted over all cases, of which they must stay below 1e-4. Prints each case that
+breaks with the command that reproduces it (`--first i --cases 1 --keep FOLDER` keeps its files), and exits with status 1
+if any did. Needs only Python's standard library.
 
-With `--times` the pictures are `--larger` times as wide and high, and `auto` is compared with the fastest single method
-that keeps the accuracy in 400 random pixels. Cases of less than 50 ms are left out. The two are rendered in turn, five
-times three frames each (one from 300 ms on): a case is slow if `auto` takes more than 1.1 times as long by the fastest frames of all and by
-the median of the rounds, so that another program's bursts decide nothing.
+With `--times` the images are `--larger` times as wide and high, and `auto` is compared with the fastest single method
+that keeps the accuracy in 400 random pixels. Cases of less than 50 ms are left out. The two are rendered alternately, five
+times three frames each (one from 300 ms on): a case is slow if `auto` takes more than 1.1 times as long, both by the fastest frames
+and by the median of the rounds, so that load bursts of other programs do not decide.
 """
 import argparse
 import json
@@ -29,7 +29,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
 
 def transfer_function(r, low, high):
-    """Knots over (about) a field's range: ramps, steps, clear stretches, extinctions of 1e-3 to 1e4 a world size."""
+    """Knots over (about) a field's range: ramps, steps, clear intervals, extinctions of 1e-3 to 1e4 per world size."""
     count = r.choice([1, 2, 3, 5, 8, 14, 15, 20, 40, 200])
     strength = 10 ** r.uniform(-3, 4) if r.random() < 0.3 else 10 ** r.uniform(-1, 1.5)
     wide = r.choice([0.6, 1.0, 1.0, 2.0])
@@ -66,7 +66,7 @@ def camera(r, size):
 
 
 def random_input(r, tessera, folder):
-    """(file, options): a generated mesh or grid whose field lies in about [0, 1]."""
+    """(file, options): a generated mesh or grid whose field is about in [0, 1]."""
     if r.random() < 0.35:
         kind, words = r.choice([("ripples", [f"n={r.randint(2, 40)}", f"bits={r.choice([8, 16, 32])}"]),
                                 ("checker", [f"n={r.randint(2, 9)}"])])
@@ -93,7 +93,7 @@ GRID = [["--integrator", "exact"]] + [["--integrator", m, "--step", s] for m in 
 
 
 def timed(command, folder, repeat):
-    """The frames' times in ms; none if there is no picture."""
+    """The frames' times in ms; empty if there is no image."""
     done = subprocess.run([*command, "--repeat", str(repeat)], capture_output=True, text=True, timeout=600)
     return json.loads((folder / "r.json").read_text())["frames"][0]["frame_ms"] if done.returncode == 0 else []
 
@@ -105,7 +105,7 @@ def error_of(command, folder):
 
 
 def time_case(tessera, seed, number, folder, args):
-    """(ratio of auto to the best, words); none below 50 ms."""
+    """(ratio of auto to the best, words); empty below 50 ms."""
     command, words, accuracy = case_of(tessera, seed, number, folder, args.threads, args.larger)
     verify = command.index("--verify")
     del command[verify:verify + 2]
@@ -132,7 +132,7 @@ def time_case(tessera, seed, number, folder, args):
 
 
 def case_of(tessera, seed, number, folder, threads, larger=1):
-    """(command, the input's words, accuracy); its files are in `folder`, the report is to be r.json."""
+    """(command, the input's description, accuracy); its files are in `folder`, the report will be r.json."""
     r = random.Random(f"{seed}/{number}")
     path, extra, words = random_input(r, tessera, folder)
     knots = transfer_function(r, 0.0, 1.0)

@@ -5,9 +5,9 @@
     bench/stability/finding.py CLASS... [--tessera build/release/apps/tessera] [--cases 100] [--seed 1] [--first 0]
         [--size 256x256] [--pixels 1000]
 
-Takes the random cases of promises.py, makes their pictures larger, has every pixel judged, and where a promise is broken
-asks whether `--verify K` says so too. Beside it stands the chance that K pixels at random would have. A program that
-keeps its promises has nothing to find: give one that does not.
+Takes the random cases of promises.py, makes their images larger, judges every pixel, and where a promise is broken
+checks whether `--verify K` also reports it, compared with the probability for K random pixels. A program that
+keeps its promises has nothing to find: use one that does not.
 """
 import argparse
 import importlib
@@ -24,7 +24,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
 
 def chance(broken, pixels, looked_at):
-    """That `looked_at` of `pixels` pixels, taken at random, have one of the broken ones among them."""
+    """Probability that `looked_at` random pixels of `pixels` include one of the broken ones."""
     missed = 0.0
     for i in range(broken):
         if pixels - looked_at - i <= 0:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Partitions that nobody would choose, over MPI, against one process: the same bits, or the difference.
+"""Unreasonable partitions over MPI, compared with one process: the same bits, or the difference.
 
-Each partition is a .pvtu whose pieces hold what it says, rendered by ranks of one thread; `--exchange segments` promises
+Each partition is a .pvtu with the stated pieces, rendered by ranks of one thread; `--exchange segments` promises
 the bits of one process with the whole mesh, `runs` a difference of 2e-6 at most.
 """
 import array
@@ -15,7 +15,7 @@ RANKS = 3
 
 
 def write_vtu(path, points, cells, scalars, ghosts=None):
-    """Points that no cell uses are left out; so do partitioners."""
+    """Points that no cell uses are left out, as by partitioners."""
     used = sorted({v for c in cells for v in c})
     number = {v: i for i, v in enumerate(used)}
     join = lambda values: " ".join(values)
@@ -60,7 +60,7 @@ def dealt(cells, count, piece_of):
 
 
 def with_ghosts(pieces):
-    """Every piece with its neighbours' cells that touch it, marked as ghosts (vtkGhostType 1)."""
+    """Every piece with its neighbours' touching cells, marked as ghosts (vtkGhostType 1)."""
     out = []
     for i, piece in enumerate(pieces):
         mine = {v for cell, _ in piece for v in cell}
@@ -82,7 +82,7 @@ def partitions(cells):
 
 
 def measure(program, maker, folder):
-    """[{partition, ranks, same_bits, runs_difference}]; empty without mpirun. A picture that is not made is `failed`."""
+    """[{partition, ranks, same_bits, runs_difference}]; empty without mpirun. A missing image is `failed`."""
     if shutil.which("mpirun") is None:
         return []
     points, cells, scalars = maker.loaded(maker.generated("cube", ".tets", n=6))

@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Random cases of one class against what `exact` and `auto` promise, every pixel judged.
+"""Random cases of one class against the promises of `exact` and `auto`, with every pixel judged.
 
     bench/stability/promises.py CLASS... [--tessera build/release/apps/tessera] [--cases 100] [--seed 1] [--first 0]
         [--method WORDS]... [--keep FOLDER] [--json FILE]
 
-A class is a module of promise_cases/: scenes that have something in common which once broke a promise. Case i of a seed is
-the same everywhere. Each is rendered with `--integrator exact`, `--accuracy 1e-4` and `--accuracy 1e-5` (or the class's own
+A class is a module of promise_cases/: scenes with a common property that once broke a promise. Case i of a seed is
+always the same. Each is rendered with `--integrator exact`, `--accuracy 1e-4` and `--accuracy 1e-5` (or the class's own
 methods, or `--method`), and every pixel is judged against the double-precision reference. A case is broken if a pixel that
-is not excused (docs/ACCURACY.md) is further off than promised, or if there is no picture, or none in five minutes. Excused pixels are counted over
-all cases of a class and must stay below 1e-4 of all pixels, unless the class says why it has more (EXCUSABLE, a share).
-Prints each case that breaks (`--first i --cases 1 --keep FOLDER` makes it again and keeps its files) and a line for each
-class; ends with status 1 if any broke. Needs Python's standard library alone.
+is not excused (docs/ACCURACY.md) has a larger error than promised, or if there is no image within five minutes. Excused pixels are
+counted over all cases of a class and must stay below 1e-4 of all pixels, unless the class justifies more (EXCUSABLE, a fraction).
+Prints each case that breaks (`--first i --cases 1 --keep FOLDER` reproduces it and keeps its files) and a line for each
+class; exits with status 1 if any broke. Needs only Python's standard library.
 """
 import argparse
 import array
@@ -57,7 +57,7 @@ class Case:
             (folder / "camera.txt").write_text(made["camera"])
 
     def render(self, words, verify=True, name="picture.pfm", ranks=1):
-        """(status, the frame's report or None, what the program said, the picture's path)."""
+        """(status, the frame's report or None, the program's output, the image's path)."""
         picture, report = self.folder / name, self.folder / "report.json"
         report.unlink(missing_ok=True)
         command = [self.tessera, "render", *map(str, self.made["input"]), "--transfer-function", self.folder / "function.txt"]
@@ -78,7 +78,7 @@ class Case:
 
 
 def judged(case, methods, tally):
-    """Words on what broke, or none."""
+    """Description of what broke, or empty."""
     broken = []
     for words in methods:
         status, frame, said, _ = case.render(words)

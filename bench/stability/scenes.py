@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The stresses: each turns one parameter until something breaks. `stresses()` lists them.
+"""The stresses: each varies one parameter until something breaks. `stresses()` lists them.
 
-A stress is a name, what its parameter is, its values from harmless to hopeless, and a function from a value to a scene:
+A stress is a name, a description of its parameter, its values from harmless to extreme, and a function from a value to a scene:
 {"input": file, "args": words of `tessera render`, "verify": pixels, "methods": None for all, or those it is for}. Scenes
-are generated, so that anybody can make them.
+are generated, so that they can be reproduced.
 """
 import array
 import math
@@ -14,7 +14,7 @@ KNOTS = [(0.0, 0.05, 0.1, 0.6, 0.0), (0.2, 0.1, 0.4, 0.9, 0.3), (0.4, 0.2, 0.8, 
 
 
 class Maker:
-    """Makes inputs in a folder, each once."""
+    """Makes inputs in a directory, each once."""
 
     def __init__(self, folder, tessera):
         self.folder, self.tessera, self.made = folder, tessera, set()
@@ -68,7 +68,7 @@ def scene(path, *args, verify=300, size="64x64", methods=None):
 
 
 def seen_across(m, size):
-    """A world of [-1, 1]^3 across the longer side of the picture, in the middle of the shorter."""
+    """A world of [-1, 1]^3 across the longer side of the image, in the middle of the shorter."""
     w, h = map(int, size.split("x"))
     return m.camera(f"across-{size}", (2, 1.5, 4), (0, 0, 0), scale=1.5 * h / max(w, h))
 
@@ -116,7 +116,7 @@ def mesh_stresses(m):
         return scene(s, "--camera", m.camera(f"edge-{angle:g}", eye, (1 + 1 / 64, 1 + 1 / 64, 0), scale=1), *tf(), verify=4096)
 
     def beside_plane(offset):
-        """The eye beside a plane of faces that a column of pixel centres lies in, and cell data, which has two sides there."""
+        """The eye close to a plane of faces that contains a column of pixel centres, and cell data, which differs on the two sides."""
         s = m.generated("regular", nx=8, ny=8, nz=8, cell_data=1)
         eye = (1 + 0.25 * offset, 0.9, 5)
         turn = math.atan((40.5 - 32) / 32 * math.tan(math.radians(15)))  # column 40 of 64
@@ -200,7 +200,7 @@ def mesh_stresses(m):
                      m.camera(f"zoom-{pixels:g}", (0.25, 0.2, 5), (0.25, 0.2, 0), scale=32 / pixels))
 
     def plateau(places):
-        """A saturated field: half of the mesh lies at a step's value, or up to so many last places of a float below it."""
+        """A saturated field: half of the mesh has a step's value, or is up to so many last places of a float below it."""
         points, cells, scalars = m.loaded(m.generated("cube", ".tets", n=6))
         values = [1 - int(3 * hashed(i)) * places * 2.0 ** -24 if p[0] + 0.3 * p[1] > 0 else 0.9 * s
                   for i, (p, s) in enumerate(zip(points, scalars))]
@@ -208,7 +208,7 @@ def mesh_stresses(m):
         return scene(m.tets(f"plateau-{places:g}", points, cells, values), "--transfer-function", m.function("plateau", knots))
 
     def lengthwise(extinction):
-        """A wide view along a thin sheet beside the eye: depth is its length, rays at the edge go through its thickness."""
+        """A wide view along a thin sheet next to the eye: depth is its length, rays at the edge pass through its thickness."""
         across, down = (-2.0, 0.0, 2.0), (-2.12, -1.12, -0.12)
         points = [(x, y, z) for z in down for y in (-3e-4, 0.0) for x in across]
         at = lambda i, j, k: i + 3 * j + 6 * k
@@ -258,7 +258,7 @@ def mesh_stresses(m):
 
 
 def large_stresses(m):
-    """What needs 6 GB and minutes."""
+    """Stresses that need 6 GB and minutes."""
     tf = m.function("plain", KNOTS)
     return [("large image", "pixels", ["4096x4096", "16384x16384"],
              lambda v: {**scene(m.generated("cube", n=6), "--transfer-function", tf, size=v, verify=100, methods=("default",)),
@@ -273,7 +273,7 @@ PRINTED = {"default": [], "sampled:4": ["--integrator", "sampled:4"], "preintegr
 
 
 def printed_stresses(m):
-    """The limits of the published methods, each with the methods that have it, and the default beside them."""
+    """The limits of the published methods, each with the methods concerned and the default."""
     cube = lambda: m.generated("cube", n=4)
     look = lambda scale=0.2: m.camera(f"deep-{scale:g}", (0.003, 0.001, 5), (0.003, 0.001, 0), scale=scale)
 

@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Turns one parameter after the other until a method breaks.
+"""Varies one parameter after the other until a method breaks.
 
     bench/stability/stability.py [--tessera build/release/apps/tessera] [--only WORD,...] [--methods WORD,...] [--reduced]
         [--large] [--json FILE [--resume]] [--document docs/RESULTS.md] [--figure docs/images/stability.svg]
 
-Each picture is judged by `--verify` against the double-precision reference of that very scene. For every method: the
-first value at which its error passes 1e-3, and the first at which it fails outright (no picture, NaN, a crash). Partitions
-over MPI are compared with one process (partitions.py). Ends with status 1 if the default breaks its promise anywhere: 1e-4,
-but for excused pixels, which may be 1e-4 of all that were looked at. `--reduced`: the first and last value of each
-stress, the default method alone; what the tests run. `--large`: pictures of 16384 x 16384 too (6 GB, minutes). Needs
-Python's standard library alone. `--resume`: what `--json FILE` already holds is not run again, and all of it goes into the
-document; so a run that was interrupted, or one stress that changed (taken out of FILE), needs no whole run.
+Each image is judged by `--verify` against the double-precision reference of the same scene. For every method: the
+first value at which its error exceeds 1e-3, and the first at which it fails completely (no image, NaN, a crash). Partitions
+over MPI are compared with one process (partitions.py). Exits with status 1 if the default breaks its promise anywhere: 1e-4,
+except for excused pixels, which may be 1e-4 of all that were examined. `--reduced`: the first and last value of each
+stress, only the default method; used by the tests. `--large`: also images of 16384 x 16384 (6 GB, minutes). Needs
+only Python's standard library. `--resume`: results already in the file of `--json` are not computed again, and all of it goes into
+the document; so an interrupted run, or a single changed stress (removed from FILE), needs no complete run.
 """
 import argparse
 import json
@@ -39,7 +39,7 @@ BAD = 1e-3
 
 
 def shows(picture):
-    """Whether there is anything in a .pfm; None of one that is too large to look through."""
+    """Whether anything is visible in a .pfm; None for one that is too large to check."""
     if picture.stat().st_size > 1e8:
         return None
     body = picture.read_bytes().split(b"\n", 3)[3]
@@ -253,7 +253,7 @@ COLORS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f
 
 
 def chart(s, x0, y0, width, height, color):
-    """One stress, its plot's upper left corner at (x0, y0)."""
+    """One stress, with its plot's upper left corner at (x0, y0)."""
     low, high = -9, 1
     y = lambda e: y0 + height * (high - min(max(math.log10(max(e, 1e-300)), low), high)) / (high - low)
     out = [f'<text x="{x0}" y="{y0 - 5}" font-size="10.5">{s["name"]}</text>']
@@ -279,8 +279,8 @@ def chart(s, x0, y0, width, height, color):
 
 
 def figure(path, stresses):
-    """Small charts: error (logarithmic, 1e-9 and below at the foot) by the parameter's values, in their order; a cross on
-    top is a failure. Colours are of their section."""
+    """Small charts: error (logarithmic, 1e-9 and below at the bottom) by the parameter's values, in order; a cross at the
+    top is a failure. Colours depend on the section."""
     columns, w, h, top, out = 4, 235, 150, 10, []
     for kind, title in (("mesh", "Meshes"), ("grid", "Regular grids"), ("printed", "The printed methods' own limits")):
         mine = [s for s in stresses if s["kind"] == kind]

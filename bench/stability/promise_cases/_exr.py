@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads the float channels of OpenEXR pictures as Tessera writes them: scan lines, flat or deep, zip or zips."""
+"""Reads the float channels of OpenEXR images as written by Tessera: scan lines, flat or deep, zip or zips."""
 import struct
 import zlib
 
 
 def unpacked(data, size):
-    """What the zip compressions pack: the bytes' differences, even and odd ones apart."""
+    """Undoes the preprocessing of the zip compressions: byte differences, with even and odd bytes separated."""
     if len(data) == size:
         return data
     packed = bytearray(zlib.decompress(data))
@@ -18,7 +18,7 @@ def unpacked(data, size):
 
 
 def header(data):
-    """({name: value bytes}, where it ends)."""
+    """({name: value bytes}, end position)."""
     at, attributes = 8, {}
     while data[at]:
         name, kind, rest = data[at:].split(b"\0", 2)
@@ -30,7 +30,7 @@ def header(data):
 
 
 def read(path):
-    """(width, height, {channel: a list of each pixel's samples, row by row}); a flat picture has one sample a pixel."""
+    """(width, height, {channel: a list of each pixel's samples, row by row}); a flat image has one sample per pixel."""
     data = path.read_bytes()
     attributes, at = header(data)
     x_0, y_0, x_1, y_1 = struct.unpack("<4i", attributes["dataWindow"])

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rays through tetrahedra and voxels in double precision, for classes whose pictures are not judged by the program's reference
-alone: written for being read, from docs/ACCURACY.md. Places are parameters along a ray o + t d with d of length one."""
+"""Rays through tetrahedra and voxels in double precision, for classes whose images are not judged only by the program's own
+reference: written for readability, from docs/ACCURACY.md. Places are parameters along a ray o + t d with unit d."""
 import bisect
 import math
 
@@ -54,20 +54,20 @@ class Function:
         return [p + (q - p) * u for p, q in zip(a[1:], b[1:])]
 
     def between(self, s_0, s_1):
-        """Parts of the way from one value to another at which knots are passed, ascending."""
+        """Positions between two values, as fractions, at which knots are passed, ascending."""
         low, high = min(s_0, s_1), max(s_0, s_1)
         inside = [v for v in self.values if low < v < high]
         return sorted((v - s_0) / (s_1 - s_0) for v in inside)
 
 
 class Light:
-    """What a ray has gathered, front to back."""
+    """The light accumulated by a ray, front to back."""
 
     def __init__(self):
         self.rgb, self.through = [0.0, 0.0, 0.0], 1.0
 
     def add_matter(self, function, s_0, s_1, length, lit=(1.0, 0.0)):
-        """A stretch along which the scalar is linear; `lit`: what colors are multiplied by, and white added."""
+        """Adds an interval along which the scalar is linear; `lit`: factor on colors, and white added."""
         own, white = lit
         ends = [0.0, *(function.between(s_0, s_1) if s_0 != s_1 else []), 1.0]
         for a, b in zip(ends, ends[1:]):
@@ -97,7 +97,7 @@ class Light:
 
 
 class LayeredLight(Light):
-    """Light in layers: a ray is cut where its opacity, from the last cut on, reaches a threshold."""
+    """Light in layers: a ray is cut where its opacity since the last cut reaches a threshold."""
 
     def __init__(self, threshold, layers):
         super().__init__()
@@ -137,7 +137,7 @@ class LayeredLight(Light):
 
 
 def gradient_of(points, scalars):
-    """Of a field linear in a tet."""
+    """For a field that is linear in a tet."""
     e = [plus(p, (-1, points[0])) for p in points[1:]]
     volume = dot(e[0], cross(e[1], e[2]))
     change = [s - scalars[0] for s in scalars[1:]]
@@ -149,7 +149,7 @@ def cosine_of(normal, direction):
 
 
 class Mesh:
-    """Tets of positive volume that do not overlap, with one scalar a point or a cell."""
+    """Tets of positive volume that do not overlap, with one scalar per point or cell."""
 
     def __init__(self, points, tets, scalars, association):
         self.points, self.tets, self.scalars, self.association = points, tets, scalars, association
@@ -165,14 +165,14 @@ class Mesh:
         self.open = {where[0] for where in faces.values() if len(where) == 1}
 
     def normal(self, n, face):
-        """Of the face opposite a corner, of any length."""
+        """Of the face opposite to a corner, of any length."""
         return self.inverse[n][face - 1] if face > 0 else [sum(row[i] for row in self.inverse[n]) for i in range(3)]
 
     def corners(self, n):
         return [self.scalars[n]] * 4 if self.association == "cell" else [self.scalars[v] for v in self.tets[n]]
 
     def stretches(self, origin, direction, nearest=0.0):
-        """(front, back, tet, face that is entered, face that is left, its barycentric coordinates as lines) by front."""
+        """(front, back, tet, entered face, exited face, its barycentric coordinates as linear functions) sorted by front."""
         found = []
         for n, tet in enumerate(self.tets):
             start = plus(origin, (-1, self.points[tet[0]]))
@@ -197,8 +197,8 @@ class Mesh:
 
 
 def mesh_pixel(mesh, function, camera, pixel, iso=(), boundary=None, planes=(), shade=False, light=None):
-    """RGB, also in `light`. `iso`: (value, color, opacity) each; `boundary`: (color, opacity); `planes`: (point, normal) each, of which the
-    side that the normal points to is kept."""
+    """RGB, also in `light`. `iso`: (value, color, opacity) each; `boundary`: (color, opacity); `planes`: (point, normal) each; the side to
+    which the normal points is kept."""
     origin, direction = camera.ray(pixel)
     light = light or Light()
     near, far, near_normal, far_normal = 0.0, math.inf, None, None
@@ -228,7 +228,7 @@ def mesh_pixel(mesh, function, camera, pixel, iso=(), boundary=None, planes=(), 
             lit = (AMBIENT + DIFFUSE * abs(dot(normal, toward)), SPECULAR * n_h ** SHININESS)
 
         def add_boundary(cut_by, face):
-            """Where the ray enters or leaves what is kept of the tet: a plane's cut, or a face that no other tet has."""
+            """Where the ray enters or leaves the kept part of the tet: a plane's cut, or a face that no other tet has."""
             normal = cut_by or (mesh.normal(n, face) if (n, face) in mesh.open else None)
             if boundary is not None and normal is not None:
                 light.add_surface(*boundary, cosine_of(normal, direction))
@@ -273,7 +273,7 @@ class Grid:
             yield front, back, [min(max(int(m), 0), n - 2) for m, n in zip(middle, self.counts)]
 
     def field(self, voxel, place):
-        """(value, gradient) of the trilinear field at a place in the world."""
+        """(value, gradient) of the trilinear field at a world position."""
         x, y, z = ((p - o) / s - v for p, o, s, v in zip(place, self.origin, self.spacing, voxel))
         nx, ny, _ = self.counts
         v = [self.values[voxel[0] + i + nx * (voxel[1] + j + ny * (voxel[2] + k))] for k in (0, 1) for j in (0, 1) for i in (0, 1)]
@@ -285,7 +285,7 @@ class Grid:
 
 
 def bracketed(f, a, b):
-    """The root of a function between two places at which it has other signs."""
+    """The root of a function between two positions at which it has different signs."""
     rises = f(b) > 0
     for _ in range(80):
         middle = (a + b) / 2
@@ -294,7 +294,7 @@ def bracketed(f, a, b):
 
 
 def monotone_parts(f):
-    """[0, 1] cut where a cubic turns."""
+    """[0, 1] cut at the turning points of a cubic."""
     at = [f(u) for u in (0, 1 / 3, 2 / 3, 1)]
     c3 = 4.5 * (at[3] - 3 * at[2] + 3 * at[1] - at[0])
     c2 = 4.5 * (at[0] - 2 * at[1] + at[2]) - c3
@@ -308,7 +308,7 @@ def monotone_parts(f):
 
 
 def grid_pixel(grid, function, camera, pixel, iso=(), planes=(), shade=False, light=None):
-    """RGB, as mesh_pixel(). The matter of a stretch in a voxel has the light of the gradient in its middle, between surfaces."""
+    """RGB, like mesh_pixel(). The matter of an interval in a voxel is lit by the gradient in its middle, between surfaces."""
     origin, direction = camera.ray(pixel)
     light = light or Light()
     near, far = 0.0, math.inf
@@ -345,7 +345,7 @@ def grid_pixel(grid, function, camera, pixel, iso=(), planes=(), shade=False, li
 
 
 def check(case, methods, tally, exact, pixel):
-    """Whether a picture keeps its promise (`exact`: of that integrator) by the reference, and some of its pixels by
+    """Whether an image keeps its promise (`exact`: of that integrator) by the reference, and some of its pixels by
     `pixel(number)`, an oracle's; on as many ranks as the case has."""
     import promises  # the script that imports this module
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the random grids of several classes have in common: shapes of fields, geometries, views and options."""
+"""Common parts of the random grids of several classes: shapes of fields, geometries, views and options."""
 import math
 
 from . import files
@@ -10,7 +10,7 @@ METHODS = [["--integrator", "exact"], ["--accuracy", "1e-4"], ["--accuracy", "1e
 
 
 def counts(r, association, most=24):
-    """Points along each axis; now and then across a cell of 8^3 voxels or a chunk of 32 slabs."""
+    """Points along each axis; sometimes across a cell of 8^3 voxels or a chunk of 32 slabs."""
     n = [r.choice([r.randint(2, most), 9, 17]) for _ in range(3)]
     if r.random() < 0.15:
         n[r.randrange(3)] = r.choice([33, 34, 40, 65])
@@ -18,7 +18,7 @@ def counts(r, association, most=24):
 
 
 def sites(n, association):
-    """Samples along each axis, and their places in [0, 1]^3, x fastest."""
+    """Samples along each axis, and their positions in [0, 1]^3, x fastest."""
     cells = [c - 1 for c in n] if association == "cell" else n
     half = lambda i, m: (i + 0.5) / m
     return cells, [(half(i, cells[0]), half(j, cells[1]), half(k, cells[2]))
@@ -26,7 +26,7 @@ def sites(n, association):
 
 
 def smooth(r):
-    """(words, f): a smooth field over [0, 1]^3, values of about [0, 1]."""
+    """(words, f): a smooth field over [0, 1]^3, with values of about [0, 1]."""
     kind = r.choice(["ball", "waves", "ramp", "sheet"])
     at = [r.uniform(0.2, 0.8) for _ in range(3)]
     a, b, c, p = r.uniform(1, 9), r.uniform(1, 9), r.uniform(1, 9), r.uniform(0, 6)
@@ -85,7 +85,7 @@ def camera(r, corner, most=48):
 
 
 def options(r):
-    """Words that should change no picture: brick size, what is left out."""
+    """Options that must not change an image: brick size, omitted mechanisms."""
     words = []
     if r.random() < 0.6:
         words += ["--brick-size", str(r.choice([2, 4, 8, 13, 16, 64]))]
@@ -103,7 +103,7 @@ def color(r):
 
 
 def made(r, folder, n, values, association, kind, function, words, args=()):
-    """`function(size)` gives the knots."""
+    """`function(size)` returns the knots."""
     form, path, corner = write(r, folder, n, values, association, kind)
     view, text = camera(r, corner)
     extra = options(r) + list(args)

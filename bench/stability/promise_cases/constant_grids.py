@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Grids of one value, and of few values within some ulps: of all sample types, also with blanks, also a single voxel;
-under functions with knots near the value, far from it, at it, and steps there; extinctions of all sizes.
+with functions that have knots near the value, far from it, at it, and steps there; extinctions of all magnitudes.
 """
 import math
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Single cells of second order, bent at random: how far the picture of their tets is off, against what `render` states.
+"""Single cells of second order, bent at random: the error of the image of their tets, compared with the value that `render` states.
 
-The truth is the same cell cut evenly into tets by this file: positions and field by the polynomials of each type, from its
-monomials and nodes. A case is broken if a pixel is further off than stated, or if more is stated than was asked for, without
+The exact result is the same cell cut uniformly into tets by this file: positions and field by the polynomials of each type, from its
+monomials and nodes. A case is broken if a pixel has a larger error than stated, or if more is stated than requested, without
 a warning.
 """
 import itertools
@@ -58,7 +58,7 @@ TYPES = {
 
 
 def solved(matrix, right):
-    """The x of matrix x = right, whose rows may have several columns: by Gauss, with the largest pivot of a column."""
+    """The x of matrix x = right, whose rows may have several columns: Gaussian elimination, with the largest pivot of a column."""
     rows = [list(a) + list(b) for a, b in zip(matrix, right)]
     n = len(rows)
     for k in range(n):
@@ -72,8 +72,8 @@ def solved(matrix, right):
 
 
 def pieces(part, cuts):
-    """Places and tets of the cell's own coordinates: the cube cut evenly, each small one into six along one diagonal. Of it the
-    wedge is what has x >= y, the tet what has x >= y >= z, which such tets fill to the bit."""
+    """Places and tets in the cell's own coordinates: the cube cut uniformly, each small cube into six along one diagonal. The wedge is
+    its part with x >= y, the tet that with x >= y >= z, which such tets fill exactly."""
     holds = {"cube": lambda x, y, z: True, "wedge": lambda x, y, z: x >= y, "tet": lambda x, y, z: x >= y >= z}[part]
     own = {"cube": lambda x, y, z: (x, y, z), "wedge": lambda x, y, z: (x - y, y, z), "tet": lambda x, y, z: (x - y, y - z, z)}[part]
     number, places, tets = {}, [], []
@@ -96,7 +96,7 @@ EVEN = {}
 
 
 def determinants(place, coefficients, monomials):
-    """Of the map's derivatives at a place of the cell's own coordinates."""
+    """Of the map's derivatives at a place in the cell's own coordinates."""
     rows = []
     for axis in range(3):
         change = [0.0, 0.0, 0.0]

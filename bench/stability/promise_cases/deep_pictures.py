@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Deep pictures of meshes and grids, surfaces, clips and ranks in some: samples in order that do not overlap, flattened the
-picture; cut anywhere in depth, as OpenEXR interprets deep pixels, they are the picture that ends there, which _oracle.py
-makes of the scene with one more clip.
+"""Deep images of meshes and grids, some with surfaces, clips and ranks: samples are sorted and do not overlap, and flattened equal the
+image; cut anywhere in depth, as OpenEXR interprets deep pixels, they equal the image that ends there, which _oracle.py
+computes from the scene with one more clip.
 """
 from promise_cases import _exr, _oracle, grid_scenes, mesh_scenes
 from promise_cases.perspective_ties import plus

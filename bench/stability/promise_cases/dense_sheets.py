@@ -8,7 +8,7 @@ from .plateau_meshes import direction
 
 
 def lengthwise(r, folder):
-    """A wide view along a sheet beside the eye: depth is the sheet's length, and rays at the window's edge go through its
+    """A wide view along a sheet next to the eye: depth is the sheet's length, and rays at the window's edge pass through its
     thickness."""
     thickness, ahead, length = 10 ** r.uniform(-6, -1), 10 ** r.uniform(-1.5, 0.3), r.uniform(1, 4)
     counts = r.choice([(1, 1, 1), (2, 1, 2), (1, 2, 1), (2, 5, 3)])

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writers of small inputs for random cases: meshes as .vtu, grids as .vti and .vtr, all to the bit.
+"""Writers of small inputs for random cases: meshes as .vtu, grids as .vti and .vtr, all exact to the bit.
 
-Shapes: a grid's values are a flat list, x fastest, then y, then z. `kind` names an array's type as VTK does ("Float32",
+Shapes: a grid's values are a flat list, x fastest, then y, then z. `kind` names an array's type as in VTK ("Float32",
 "Float64", "UInt8", "UInt16", "Int16", "Int32"). """
 import array as numbers
 import base64
@@ -20,7 +20,7 @@ def next_float32(value, steps):
 
 
 def next_float64(value, steps):
-    """The double `steps` places above `value` (below if negative); `value` may not be 0."""
+    """The double `steps` places above `value` (below if negative); `value` must not be 0."""
     bits = struct.unpack("<q", struct.pack("<d", value))[0]
     return struct.unpack("<d", struct.pack("<q", bits + (steps if value > 0 else -steps)))[0]
 
@@ -29,7 +29,7 @@ CODES = {"Float32": "f", "Float64": "d", "UInt8": "B", "Int8": "b", "UInt16": "H
 
 
 def array(name, kind, values, components=1):
-    """A DataArray of bytes, so that NaN too is read as it stands."""
+    """A DataArray of bytes, so that NaN too is read unchanged."""
     data = numbers.array(CODES[kind], values if kind.startswith("Float") else [int(v) for v in values]).tobytes()
     words = base64.b64encode(struct.pack("<Q", len(data)) + data).decode()
     more = f' NumberOfComponents="{components}"' if components != 1 else ""
@@ -47,7 +47,7 @@ def field(association, kind, values):
 
 
 def write_vtu(path, points, tets, scalars, association="point", kind="Float64"):
-    """Tetrahedra: `points` triples, `tets` quadruples of indices, one scalar a point or a cell. Points are doubles."""
+    """Tetrahedra: `points` triples, `tets` quadruples of indices, one scalar per point or cell. Points are doubles."""
     body = (f'>\n<Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(tets)}">\n' + field(association, kind, scalars) +
             "<Points>" + array("Points", "Float64", [x for p in points for x in p], 3) + "</Points>\n<Cells>" +
             array("connectivity", "Int64", [v for t in tets for v in t]) +
@@ -72,7 +72,7 @@ def write_vti(path, counts, values, association="point", kind="Float32", spacing
 
 
 def write_vtr(path, axes, values, association="point", kind="Float32"):
-    """A rectilinear grid: `axes` three growing lists of coordinates."""
+    """A rectilinear grid: `axes` three increasing lists of coordinates."""
     whole = extent([len(a) for a in axes])
     coordinates = "".join(array(name, "Float64", a) for name, a in zip("xyz", axes))
     body = (f' WholeExtent="{whole}">\n<Piece Extent="{whole}">\n' + field(association, kind, values) +
@@ -82,7 +82,7 @@ def write_vtr(path, axes, values, association="point", kind="Float32"):
 
 
 def split_box(counts, low=(-1, -1, -1), high=(1, 1, 1)):
-    """(points, tets) of a box of counts = (x, y, z) hexahedra, each split into six tets round the same diagonal, so
+    """(points, tets) of a box of counts = (x, y, z) hexahedra, each split into six tets around the same diagonal, so
     that neighbours match."""
     nx, ny, nz = counts
     place = lambda n, i, a: low[a] + (high[a] - low[a]) * i / n

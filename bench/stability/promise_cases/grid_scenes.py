@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Grids with everything that is drawn in them, at random: iso-surfaces, clips, light on the matter, any view, some on
-two or three ranks. Some pixels are held against _oracle.py, which knows nothing of the program's reference.
+"""Grids with everything that can be drawn in them, at random: iso-surfaces, clips, light on the matter, any view, some on
+two or three ranks. Some pixels are compared with _oracle.py, which is independent of the program's reference.
 """
 import math
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Grids with --shade or --iso, of which neighbouring values differ by little beside the range: light goes by the direction of
+"""Grids with --shade or --iso, whose neighbouring values differ little compared with the range: lighting depends on the direction of
 the gradient, however small that is.
 
-The picture is judged by --verify, and some pixels by an oracle of its own: along the ray, voxel by voxel, the trilinear field's
-gradient in the middle of each stretch lights what a constant function sends from it (the light's formula is in
-docs/ACCURACY.md). Values are 64-bit and 32-bit floats and whole numbers of a scale.
+The image is judged by --verify, and some pixels by a separate oracle: along the ray, voxel by voxel, the trilinear field's
+gradient in the middle of each interval lights what a constant function emits there (the light's formula is in
+docs/ACCURACY.md). Values are 64-bit and 32-bit floats and integers with a scale.
 """
 import math
 
@@ -51,7 +51,7 @@ def case(r, folder, tessera):
 
 
 def oracle(made, number):
-    """RGB of a pixel: along its ray the voxels, each with the light of its own gradient."""
+    """RGB of a pixel: the voxels along its ray, each with the light of its own gradient."""
     (nx, ny, nz), spacing, values = made["grid"]
     view = made["view"]
     right = unit(cross(view["forward"], (0, 0, 1)))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Functions of up to some hundred knots that are spaced by logarithm, on meshes and grids whose values go over up to thirty
-decades, of any size from 1e-30 to 1e30: most knots lie in a very small part of the range.
+"""Functions of up to some hundred knots that are spaced logarithmically, on meshes and grids whose values span up to thirty
+decades, of any magnitude from 1e-30 to 1e30: most knots are in a very small part of the range.
 
-Besides the promise a picture has to end in time: `promises.py` gives each a limit.
+In addition to the promise an image must be finished in time: `promises.py` gives each a limit.
 """
 import math
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Meshes with everything that is drawn in them, at random: iso-surfaces, the boundary, clips, a threshold, light on the matter,
-point and cell data, any view, some on two or three ranks. Some pixels are held against _oracle.py, which knows nothing
+"""Meshes with everything that can be drawn in them, at random: iso-surfaces, the boundary, clips, a threshold, light on the matter,
+point and cell data, any view, some on two or three ranks. Some pixels are compared with _oracle.py, which is independent
 of the program's reference.
 """
 from promise_cases import _oracle, files

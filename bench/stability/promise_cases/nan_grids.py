@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Grids with blank (NaN) samples: outside a ball, in a slab, at random single places, on whole lattice planes, in
-whole cells of 8^3 voxels, nearly everywhere; under functions of few knots that show nothing at one end, both or in
+"""Grids with blank (NaN) samples: outside a ball, in a slab, at random single positions, on whole lattice planes, in
+whole cells of 8^3 voxels, almost everywhere; with functions of few knots that are invisible at one end, both or in
 the middle, and of many knots; float fields, point and cell data, regular and rectilinear.
 """
 import math
@@ -9,7 +9,7 @@ from . import _volumes, files
 
 
 def blanks(r, n):
-    """(words, f): whether the sample at place x of [0, 1]^3 and at index i is blank."""
+    """(words, f): whether the sample at position x of [0, 1]^3 and index i is blank."""
     kind = r.choice(["outside", "outside", "inside", "slab", "half", "random", "plane", "cells", "most"])
     at, radius = [r.uniform(0.3, 0.7) for _ in range(3)], r.uniform(0.2, 0.6)
     normal = [r.gauss(0, 1) for _ in range(3)] if r.random() < 0.6 else r.choice([[1, 0, 0], [0, 1, 0], [0, 0, 1]])

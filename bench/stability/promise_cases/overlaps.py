@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Cells that overlap, on several ranks: the picture is one process's, whatever the partition.
+"""Cells that overlap, on several ranks: the image equals one process's, whatever the partition.
 
-What overlapping cells show is a convention, that of the nearer entry first; where entries are at one depth to a rounding the
-reference may see them in another order, so it is not asked here.
+The result for overlapping cells is a convention, the nearer entry first; if entries are at one depth up to rounding, the
+reference may use another order, so it is not used here.
 """
 from promise_cases.files import split_box, write_vtu
 from promise_cases.plateau_meshes import camera

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Meshes and grids with everything that is drawn in them, in layers of --peel. Every layer is held against the reference by
---verify; composited they are the picture; and some pixels' layers are held against _oracle.py, which cuts rays itself.
+"""Meshes and grids with everything that can be drawn in them, in layers of --peel. Every layer is compared with the reference by
+--verify; composited they equal the image; and some pixels' layers are compared with _oracle.py, which cuts rays itself.
 """
 from promise_cases import _exr, _oracle, grid_scenes, mesh_scenes
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Perspective rays that go along a mesh's faces, edges and vertices: the tie rule, held against what it says.
+"""Perspective rays along a mesh's faces, edges and vertices: the tie rule, checked against its definition.
 
 A ray in a face belongs to the cells that a ray shifted by (e, e^2) pixel meets, e infinitely small (docs/ACCURACY.md). So
-the picture must be the limit of pictures of the scene shifted by less and less. Here: boxes and lattices with faces in
-planes through the eye and a column or row of pixel centres, before the eye, round it and behind it, under any camera; with
-cell data, so that the wrong side shows. The reference is not asked which side is right, but must agree (--verify).
+the image must be the limit of images of the scene shifted by less and less. Here: boxes and lattices with faces in
+planes through the eye and a column or row of pixel centres, in front of the eye, around it and behind it, with any camera; with
+cell data, so that the wrong side is visible. The reference does not decide which side is right, but must agree (--verify).
 """
 import array
 import math
@@ -82,7 +82,7 @@ class View:
         return plus(self.eye, (depth, self.forward), (depth * tx, self.right), (depth * ty, self.up))
 
     def shifted(self, p, shift):
-        """The point moved so that it shows `shift` pixels further left, and a thousandth of that further up."""
+        """The point moved so that it appears `shift` pixels further left, and a thousandth of that further up."""
         depth = dot(self.forward, plus(p, (-1, self.eye)))
         part = shift * depth / self.per_tangent
         return plus(p, (-part, self.right), (part * 1e-3, self.up)) if shift else p
@@ -93,7 +93,7 @@ def centres(r, size, count):
 
 
 def projective_lattice(r, view):
-    """All of its upright and level faces are in planes through the eye and pixel centres: frusta, split like boxes."""
+    """All of its vertical and horizontal faces are in planes through the eye and pixel centres: frusta, split like boxes."""
     columns, rows = (centres(r, side, r.randint(2, 5)) for side in (view.width, view.height))
     near = r.uniform(0.5, 3)
     depths = [near + r.uniform(0.5, 4) * k for k in range(r.randint(2, 4))]
@@ -104,7 +104,7 @@ def projective_lattice(r, view):
 
 
 def box_in_plane(r, view):
-    """A box of cubes with one plane of faces in that of the eye and a column or row; the eye is where it may be."""
+    """A box of cubes with one plane of faces in that of the eye and a column or row; the eye is at a random position."""
     column = r.random() < 0.5
     place = r.randrange(view.width if column else view.height) + 0.5
     if column:

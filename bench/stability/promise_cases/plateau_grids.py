@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Grids with plateaus at, or some ulps beside, the value of a step of the transfer function: saturated fields (tanh,
-clamped distances, volume fractions of 0 and 1, terraces), their plateaus sharp or frayed by 1 to 1e4 ulps; steps at the
-least or largest value, between, and at several plateaus; boxes, single steps and stairs; all sample types.
+"""Grids with plateaus at, or some ulps away from, the value of a step of the transfer function: saturated fields (tanh,
+clamped distances, volume fractions of 0 and 1, terraces), their plateaus exact or noisy by 1 to 1e4 ulps; steps at the
+smallest or largest value, between, and at several plateaus; boxes, single steps and stairs; all sample types.
 """
 import math
 
@@ -9,7 +9,7 @@ from . import _volumes, files
 
 
 def levels(r):
-    """(words, f, plateaus): a field over [0, 1]^3 that rests at the plateaus' values."""
+    """(words, f, plateaus): a field over [0, 1]^3 that is constant at the plateaus' values."""
     name, f = _volumes.smooth(r)
     center, sharp = r.uniform(0.35, 0.65), r.choice([3, 10, 40, 200])
     kind = r.choice(["tanh", "tanh", "clamp", "fraction", "terraces"])

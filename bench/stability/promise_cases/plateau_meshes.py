@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Meshes whose field lies within some last places of a step's value over whole regions: saturated fields (tanh, volume of
-fluid), noise of the last places round a step, point and cell data, 32-bit and 64-bit; one step or several, up and down, some
+"""Meshes whose field is within some last places of a step's value over whole regions: saturated fields (tanh, volume of
+fluid), noise of the last places around a step, point and cell data, 32-bit and 64-bit; one step or several, up and down, some
 last places apart, in the middle of the range or at its ends; any view."""
 import math
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Grids under steep transfer functions: narrow peaks, steps, staircases and noise of a few or many knots, extinctions of 1
+"""Grids with steep transfer functions: narrow peaks, steps, staircases and noise of a few or many knots, extinctions of 1
 to 1e6 times the volume's size, some in thin fog; smooth, noisy, checkered and thin fields of all sample types; point
 and cell data; regular, anisotropic and rectilinear grids; seen from outside and inside, orthographic and perspective,
 some through near planes.
 
-Knots lie at random places: a plateau of samples at a step's very value is another class. Fields vary.
+Knots are at random values: a plateau of samples at exactly a step's value is another class. Fields vary.
 """
 import math
 

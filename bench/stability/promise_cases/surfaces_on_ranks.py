@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Surfaces on several ranks, of which each composites its own runs: they lie in one process's order, whoever has them.
+"""Surfaces on several ranks, each of which composites its own runs: their order is that of one process, whichever rank has them.
 
-Some tets of a lattice, each with its boundary's triangles once more as a surface from a file, in either direction, and of
-other colors; seen from anywhere. Every rank's share of cells and triangles is another one's, so the order at one depth is
-that of several processes. The picture must be one process's, to what the rounding of runs may change.
+Some tets of a lattice, each with its boundary's triangles again as a surface from a file, in either direction, and with
+other colors; seen from anywhere. Each rank has a different share of cells and triangles, so the order at one depth is determined
+by several processes. The image must equal one process's, up to the rounding of runs.
 """
 import array
 import itertools
@@ -54,7 +54,7 @@ def case(r, folder, tessera):
 
 
 def check(case, methods, tally):
-    """One process's picture against the reference, and that of ranks against it."""
+    """Compares one process's image with the reference, and the ranks' image with that."""
     made, broken = case.made, []
     for words in methods:
         status, frame, said, path = case.render(words)

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Boundaries that touch themselves in edges and corners, and rays along these: which of the faces at one depth is met first.
+"""Boundaries that touch themselves in edges and corners, and rays along these: the order of faces at one depth.
 
-The order is that of a ray shifted by (e, e^2) pixel, e infinitely small (docs/ACCURACY.md): so the picture must be the limit
-of pictures of the scene shifted by less and less. Here: some of the tets of a lattice whose edges and corners lie on pixel
-centres, seen along an axis or in perspective, with a boundary of any opacity, matter or none, and a clip in some. The
-reference is not asked which order is right, but must agree (--verify).
+The order is that of a ray shifted by (e, e^2) pixel, e infinitely small (docs/ACCURACY.md): so the image must be the limit
+of images of the scene shifted by less and less. Here: some of the tets of a lattice whose edges and corners are on pixel
+centres, seen along an axis or in perspective, with a boundary of any opacity, matter or none, and sometimes a clip. The
+reference does not decide which order is right, but must agree (--verify).
 """
 from promise_cases.files import split_box, write_vtu
 from promise_cases.perspective_ties import METHODS, SHIFTS, View, box_in_plane, check, dot, plus, projective_lattice  # noqa: F401
 
 
 class Along:
-    """An orthographic camera along an axis, of which pixels are a whole part of a lattice's cell."""
+    """An orthographic camera along an axis, whose pixels are an integer fraction of a lattice's cell."""
 
     def __init__(self, r):
         self.size, self.axis = r.choice((9, 15, 21)), r.randrange(3)
@@ -39,8 +39,8 @@ def some_tets(r, tets):
 
 
 def in_perspective(r):
-    """A view, with points and tets that meet its pixels' centres: a boundary through the eye, and points so near to it that their
-    coordinates' rounding shows, are left out, since the ray is on either side of them."""
+    """A view, with points and tets that meet its pixels' centres. Boundaries through the eye, and points so near to it that the rounding of
+    their coordinates is visible, are left out, because the ray may be on either side of them."""
     while True:
         view = View(r)
         points, tets, where = (*projective_lattice(r, view), "before") if r.random() < 0.5 else box_in_plane(r, view)
