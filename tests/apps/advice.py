@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Messages that give advice: the advice, followed, works.
+"""Messages that give advice: following the advice works.
 
-Each row (advice_row.py) is a command that fails or warns, the advice that its message has to give, and the command with
-that advice followed, which has to succeed and to write what it says. Data are generated; most files are damaged on the
-spot. Each message of apps/ and io/ that gives advice has to come out of a row, or to stand among the exceptions
-(advice_exceptions.py) with the reason why no command provokes it. Says each row and each message that is otherwise;
+Each row (advice_row.py) is a command that fails or warns, the advice that its message must give, and the command after
+following that advice, which must succeed and write the stated output. Data are generated; most files are damaged on the
+spot. Each message of apps/ and io/ that gives advice must come from a row, or be listed among the exceptions
+(advice_exceptions.py) with the reason why no command provokes it. Reports each row and each message that violates this;
 exit status 1 if there is one.
 
     advice.py --tessera PROGRAM --source SOURCE_TREE [--only WORDS]
@@ -51,7 +51,7 @@ TOPICS = (
 
 
 def make_data(tessera, folder: Path):
-    """What rows share."""
+    """Data shared by rows."""
     folder.mkdir()
     for command in ("generate cube m.vtu n=3", "generate ripples v.vti n=8", "convert v.vti v.raw"):
         done = subprocess.run([tessera, *shlex.split(command)], cwd=folder, capture_output=True, errors="replace")
@@ -98,7 +98,7 @@ def has_said(done):
 
 
 def copy_of(tessera, folder: Path):
-    """The program in a folder without its helpers."""
+    """The program in a directory without its helpers."""
     copy = folder / "alone/bin/tessera"
     copy.parent.mkdir(parents=True)
     try:
@@ -119,7 +119,7 @@ def no_terminal():
 
 
 def follow(tessera, data: Path, folder: Path, row):
-    """Runs a row: what is wrong with it, and all that its first command said; None if this build or machine cannot."""
+    """Runs a row: its fault, and the output of its first command; None if this build or machine does not support it."""
     if row.terminal in ("stdin", "stdout") and (reason := no_terminal()):
         print(f"{row.line}: skipped: {reason}", flush=True)
         return [], None
@@ -179,7 +179,7 @@ def follow_in_time(tessera, data, folder, row):
 
 
 def uncovered(source, said, is_partial):
-    """Messages that no row made and that are not excepted; exceptions of no use. `is_partial`: not all rows ran."""
+    """Messages that no row produced and that are not excepted; unused exceptions. `is_partial`: not all rows ran."""
     every = messages_of(source, ("api/options", "apps", "cells", "io", "readers", "system"))
     messages = [message for message in every if not any(re.search(known, str(message)) for known in NO_ADVICE)]
     followed = [message for message in messages if message.pattern.search(said)]
@@ -202,7 +202,7 @@ def uncovered(source, said, is_partial):
 
 
 def unread_formats(tessera, said):
-    """Formats that are known but not read, of which no row followed what their row of the table advises."""
+    """Formats that are known but not supported, for which no row follows the advice in the table of formats."""
     listed = json.loads(subprocess.run([tessera, "formats", "--json"], check=True, capture_output=True).stdout)
     return [
         f"no row: {each['name']}: {each['remark']}"

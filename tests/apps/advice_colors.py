@@ -31,7 +31,7 @@ def traced(old, new, advice):
 
 
 def knots(text, advice):
-    """Knots on the command line, then two that are right."""
+    """Knots on the command line, then two valid ones."""
     command = R + "--transfer-function '{}'"
     return row(command.format(text), advice, command.format('{"knots": [[0, 1, 0, 0, 1], [1, 0, 0, 1, 1]]}'))
 

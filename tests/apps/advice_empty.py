@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rows of advice about pictures that show nothing, and about axes that do not go together."""
+"""Rows of advice about images that show nothing, and about axes that are out of proportion."""
 
 import struct
 
@@ -12,7 +12,7 @@ V = "render v.vti -o a.png --size 64x64 "
 
 
 def tet(size):
-    """One that is so thin that it may be between pixels."""
+    """A tet so thin that it may be between pixels."""
     field = '<PointData>\n<DataArray type="Float64" Name="f" format="ascii">0 1 2 3</DataArray>\n</PointData>\n'
     return unstructured(points=f"0 0 0 1 0 0 0.5 {size} 0 0.5 0 {size}", fields=field)
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Messages with advice that no row provokes, each with the reason; and statements that look like advice and are none.
+"""Messages with advice that no row provokes, each with the reason; and statements that look like advice but are not.
 
-Patterns are looked for in `FILE:LINE: PARTS .. OF THE MESSAGE` (advice_messages.py). One that is not found, or whose
-messages rows make, fails the test, and so does one that is found more often than it says: a new message needs a row or
-a reason of its own.
+Patterns are searched for in `FILE:LINE: PARTS .. OF THE MESSAGE` (advice_messages.py). One that is not found, or whose
+messages rows produce, fails the test, and so does one that is found more often than it states: a new message needs a row or
+its own reason.
 """
 
 OTHER_BUILD = "only a build without the library says so; scripts/configurations.sh makes one"

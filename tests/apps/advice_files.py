@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whole files for the test of advice, which rows damage: each the smallest that is read."""
+"""Valid files for the test of advice, which rows damage: each the smallest that is read."""
 
 import struct
 
@@ -64,7 +64,7 @@ META = (
 
 
 def nifti(dimensions=(3, 2, 2, 2), datatype=2, bits=8, offset=352, magic=b"n+1\0", slope=1.0, spacing=1.0):
-    """A NIfTI-1 header of these dimensions, as nifti1.h has it."""
+    """A NIfTI-1 header with these dimensions, according to nifti1.h."""
     dimensions = tuple(dimensions) + (1,) * (8 - len(dimensions))
     return (
         struct.pack("<i36x8h14x", 348, *dimensions)
@@ -187,7 +187,7 @@ VTM = (
 
 
 def in_pieces(kind, pieces, extent="0 2 0 1 0 1"):
-    """A grid's pieces, each a name and the points that it has."""
+    """A grid's pieces, each given by a name and its points."""
     geometry = ' Origin="0 0 0" Spacing="1 1 1"' if kind == "ImageData" else ""
     listed = "".join(f'<Piece Extent="{points}" Source="{name}"/>\n' for name, points in pieces)
     return (
@@ -197,7 +197,7 @@ def in_pieces(kind, pieces, extent="0 2 0 1 0 1"):
 
 
 def block(cells="0 2 0 2 0 2", origin="0 0 0", spacing="1 1 1", more="", values=None):
-    """Image data with a value a cell, as lists of AMR blocks have."""
+    """Image data with one value per cell, as in lists of AMR blocks."""
     ends = [int(word) for word in cells.split()]
     count = (ends[1] - ends[0]) * (ends[3] - ends[2]) * (ends[5] - ends[4])
     values = " ".join(map(str, range(count))) if values is None else values

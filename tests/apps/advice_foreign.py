@@ -37,7 +37,7 @@ def mesh(whole, advice, good=TET):
 
 
 def binary_legacy(order):
-    """Legacy VTK of one tetrahedron in binary numbers of a byte order, which is to be big-endian."""
+    """Legacy VTK of one tetrahedron in binary numbers of a byte order; the format requires big-endian."""
     numbers = struct.Struct(f"{order}12f").pack(*[x for p in CORNERS for x in p])
     return (
         b"# vtk DataFile Version 3.0\none\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n"
@@ -80,7 +80,7 @@ def pieces(kind, extension, advice, p, q, good):
 
 
 def second(text):
-    """The same grid, one further along x."""
+    """The same grid, shifted along x."""
     return text.replace("0 1 0 1 0 1", "1 2 0 1 0 1")
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rows of advice about files that libraries other than VTK's XML and legacy readers read."""
+"""Rows of advice about files read by libraries other than VTK's XML and legacy readers."""
 
 import gzip
 import struct

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whole files of other libraries' formats for the test of advice, each the smallest that is read."""
+"""Valid files of other libraries' formats for the test of advice, each the smallest that is read."""
 
 import struct
 
@@ -116,7 +116,7 @@ FOAM = foam_case()
 def dicom(
     instance, samples=1, bits=16, series="1.2.3.4", pixels=None, position=None, orientation="1\\0\\0\\0\\1\\0", about=""
 ):
-    """A slice of 2x2 pixels, explicit little endian, as part 5 of the DICOM standard has it."""
+    """A slice of 2x2 pixels, explicit little endian, according to part 5 of the DICOM standard."""
 
     def element(group, number, kind, value):
         if isinstance(value, int):
@@ -188,7 +188,7 @@ FRAGMENTS = b"\xfe\xff\0\xe0\0\0\0\0\xfe\xff\xdd\xe0\0\0\0\0"
 
 
 def packed(slices):
-    """As of RLE."""
+    """As compressed by RLE."""
     return slices.replace(b"1.2.840.10008.1.2.1\0", b"1.2.840.10008.1.2.5\0")
 
 
@@ -201,8 +201,8 @@ SLICES = {f"ct/{k}.dcm": dicom(k) for k in (1, 2, 3)}
 
 
 def netcdf(dimensions, variables, attributes=()):
-    """NetCDF's classic format: lengths of dimensions by their names, 0 the unlimited one; (name, type, dimensions,
-    values, attributes) of variables, where types are those of struct, "c" a str's."""
+    """NetCDF's classic format: lengths of dimensions by name, 0 for the unlimited one; (name, type, dimensions,
+    values, attributes) of variables, with the types of struct, "c" for a str."""
     codes = {"c": 2, "i": 4, "f": 5, "d": 6, "b": 1}
 
     def padded(data):
@@ -264,7 +264,7 @@ def netcdf_grid(along=("z", "y", "x")):
 
 
 def exodus(dimension=3, corners=(1, 2, 3, 4), kind="TETRA4", set_element=1, sides=False):
-    """An Exodus file of one tetrahedron and an element set, with a node set and a side set if asked for."""
+    """An Exodus file of one tetrahedron and an element set, with a node set and a side set if requested."""
     dimensions = {
         "len_string": 33,
         "len_line": 81,

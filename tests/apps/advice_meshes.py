@@ -14,7 +14,7 @@ def su2(old, new, advice):
 
 
 def surface(name, whole, old, new, advice):
-    """Of a file that `--surface` takes."""
+    """For a file that `--surface` accepts."""
     return damaged(name, whole, old, new, advice, R + "--surface")
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Messages of the sources that give advice, each as the pattern of the lines that it can write.
+"""Messages in the sources that give advice, each as the pattern of the lines that it can write.
 
-A message is what one statement says with its literals, `{}` and names between them standing for anything; of
-`a ? b : c` each of the two is a message of its own. Settings in backquotes stand for anything too: the program writes
+A message consists of the literals of one statement, with `{}` and names between them matching anything; each branch of
+`a ? b : c` is a message of its own. Settings in backquotes match anything too: the program writes
 options.
 """
 
@@ -25,7 +25,7 @@ DECLARING = set("add_option add_flag add_option_function add_flag_function add_s
 
 
 class Message:
-    """One message: where it stands, its parts, and whether a line is one of it."""
+    """One message: its location, its parts, and whether a line matches it."""
 
     def __init__(self, place, parts):
         self.place = place
@@ -46,7 +46,7 @@ def literal(token):
 
 
 def closing(tokens, begin):
-    """The index of what closes the bracket at `begin`."""
+    """The index of the bracket that closes the one at `begin`."""
     depth = 0
     for index in range(begin, len(tokens)):
         depth += (tokens[index] in "([") - (tokens[index] in ")]")
@@ -66,7 +66,7 @@ def top_level(tokens, marks):
 
 
 def formatted(tokens):
-    """The ways of fmt::format(): what its arguments say stands where its string has them."""
+    """The variants of fmt::format(): its arguments are inserted at their places in its string."""
     edges = [-1, *top_level(tokens, {","}), len(tokens)]
     arguments = [alternatives(tokens[a + 1 : b]) for a, b in zip(edges, edges[1:])]
     ways = []
@@ -77,7 +77,7 @@ def formatted(tokens):
 
 
 def alternatives(tokens):
-    """What these tokens say: a list of ways, each a list of literals."""
+    """The texts of these tokens: a list of variants, each a list of literals."""
     commas = list(top_level(tokens, {","}))
     if commas:
         edges = [-1, *commas, len(tokens)]
@@ -137,7 +137,7 @@ def statements(text):
 
 
 def messages_of(source: Path, parts):
-    """The messages that give advice in these folders."""
+    """The messages that give advice in these directories."""
     found = []
     for file in sorted(file for part in parts for file in (source / part).rglob("*.[ch]pp")):
         for line, tokens in statements(file.read_text()):

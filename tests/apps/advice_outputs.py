@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rows of advice about what is written."""
+"""Rows of advice about outputs."""
 
 import gzip
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A row of the test of advice: a command that a message answers, and what to do then."""
+"""A row of the test of advice: a command that causes a message, and how to follow its advice."""
 
 import sys
 from dataclasses import dataclass, field
@@ -39,5 +39,5 @@ def damaged(name, whole, old, new, advice, command="info", beside=None):
 
 
 def cut(name, whole, size, advice, command="info", beside=None):
-    """The same for a file that ends early."""
+    """The same for a truncated file."""
     return row(f"{command} {name}", advice, None, {**(beside or {}), name: whole[:size]}, {name: whole})

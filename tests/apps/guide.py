@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every command of docs/GUIDE.md and docs/REFERENCE.md does what it says: it ends with status 0, on data made here.
+"""Every command of docs/GUIDE.md and docs/REFERENCE.md works as described: it ends with status 0, on data made here.
 
-Commands are the indented lines of these pages that begin with a program's name (and Python between fences), run as they
-stand by a shell, page after page in one folder. Only the mesh that they begin with and the pictures are small, and
-charts get little time. What needs what is not here is left out, with the reason. Says each that fails; exit status 1 if
+Commands are the indented lines of these pages that begin with a program's name (and Python between fences), executed by a
+shell without changes, page after page in one directory. Only the initial mesh and the images are small, and
+charts get little time. Commands that need missing programs are left out, with the reason. Reports each that fails; exit status 1 if
 one does.
 
     guide.py --tessera PROGRAM --source SOURCE_TREE [--whole] [--without-mpi] [--page GUIDE.md]
 
---whole makes mesh, pictures and charts as the pages say.
+--whole makes mesh, images and charts as stated in the pages.
 """
 
 import argparse
@@ -55,7 +55,7 @@ def make_data(folder: Path, source: Path):
 
 
 def make_programs(folder: Path, tessera: str):
-    """A folder for PATH; with ffmpeg's place taken, where it is not installed, by what takes the pictures."""
+    """A directory for PATH; if ffmpeg is not installed, with a replacement that accepts the images."""
     (folder / "bin").mkdir()
     (folder / "bin/tessera").symlink_to(tessera)
     if shutil.which("ffmpeg") is None:
@@ -65,7 +65,7 @@ def make_programs(folder: Path, tessera: str):
 
 
 def commands(page: Path):
-    """Line number and text of each; Python as such a text."""
+    """Line number and text of each; Python also as such a text."""
     fenced = None
     for number, line in enumerate(page.read_text().splitlines(), 1):
         if fenced is not None:

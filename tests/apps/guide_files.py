@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Small files of other programs' formats, for the commands of the guide: what `tessera generate` does not write.
+"""Small files of other programs' formats, for the commands of the guide: formats that `tessera generate` does not write.
 
-All meshes are [0, n]^3 in cubes, with a field that is the distance from a corner.
+All meshes are [0, n]^3 divided into cubes, with a field that is the distance from a corner.
 """
 
 import gzip
@@ -92,7 +92,7 @@ class NetCDF:
         self.dimensions, self.records, self.variables = dimensions, records, []
 
     def add(self, name, kind, over, values, attributes=None):
-        """`values` in order, of one record after the other; text as bytes of the full length."""
+        """`values` in order, one record after the other; text as bytes of the full length."""
         self.variables.append((name, kind, over.split(), values, attributes or {}))
 
     @staticmethod
@@ -185,7 +185,7 @@ def nifti_volume(path: Path, n, times=1):
 
 
 def dicom_series(folder: Path, n):
-    """CT slices, a file each: explicit, little endian."""
+    """CT slices, one file each: explicit, little endian."""
     folder.mkdir()
 
     def element(group, number, kind, value):

@@ -17,7 +17,7 @@ from simulate_work import Work, balanced, work_of  # noqa: E402
 
 
 def uniform(projectors, compositors, frames, tiles, seconds, size=0, merge=0.0):
-    """Every projector has every tile, of the same cost."""
+    """Every projector has every tile, with equal cost."""
     work = Work(projectors, compositors)
     work.frames = frames
     for f in range(frames):
@@ -30,7 +30,7 @@ def uniform(projectors, compositors, frames, tiles, seconds, size=0, merge=0.0):
 
 
 def ideal(**words):
-    """Nodes of many cores on endless links, looking always."""
+    """Nodes with many cores on unlimited links, polling continuously."""
     return Settings(**{"cores": 64, "look": False, **words})
 
 

@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Damages real files and has the whole program read them: no signal, no hang, one line, status 0 or 2, memory in proportion.
+"""Damages real files and reads them with the whole program: no signal, no hang, one line, status 0 or 2, memory in proportion.
 
     tests/faults/damaged_files.py --tessera PROGRAM [--runs 1000] [--seed 1] [--jobs 2] [--keep FOLDER] FILE_OR_FOLDER...
 
 Each run takes a file, changes it in one of these ways, and calls `tessera info` (every eighth time `tessera render` at 64 x 64):
 
-  bits      1 to 16 bits anywhere           cut       the end is missing, or a stretch in the middle
+  bits      1 to 16 bits anywhere           cut       the end is missing, or an interval in the middle
   header    the same in the first 2 KiB     number    a number in the text, by another: 0, -1, large, with a sign, off by one
-  block     8 bytes at the beginning of     swap      two stretches change places
+  block     8 bytes at the beginning of     swap      two intervals are exchanged
             the appended data
-A run is a fault if it ends by a signal or with another status than 0 or 2, takes over 20 s, prints anything but one line on stderr
-with status 2, uses more than twice the memory of the intact file and 256 MiB, or leaves an output where it failed. The 20 s are of
-processor time, whatever else the machine does; after 300 s of the clock it hangs. Faults are printed with what makes the file
-again, and kept with --keep. Ends with status 1 if there are any. Standard library only.
+A run is a fault if it ends by a signal or with a status other than 0 or 2, takes over 20 s, prints anything but one line on stderr
+with status 2, uses more than twice the memory of the intact file plus 256 MiB, or leaves an output after a failure. The 20 s are
+processor time, whatever else the machine does; after 300 s of wall time it counts as a hang. Faults are printed with the command that
+creates the file again, and kept with --keep. Exits with status 1 if there are any. Standard library only.
 """
 import argparse
 import concurrent.futures
@@ -65,7 +65,7 @@ def damage(data, rng):
 
 
 def run(command, folder):
-    """Status, stderr, words if it took too long, and MiB of memory, the most of it and its helpers, of a command."""
+    """Status, stderr, a message if it took too long, and the peak memory (MiB) of a command and its helpers."""
     begin = time.monotonic()
     with tempfile.TemporaryFile() as err:
         process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=err, cwd=folder)

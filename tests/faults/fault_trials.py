@@ -4,17 +4,17 @@
 
     fault_trials.py --tessera PROGRAM [--trials N] [--seed S] [--ranks R] [--volume [--sort-last|--mixed]] [--only KIND,...]
 
-Each trial renders a short film on R ranks and breaks it: a rank is killed or told to end at a random time, mpirun is
-told to end or is killed itself, a rank is stopped and goes on or (once a random number of pictures is there) does not,
-the folder of the pictures is moved away, the disk is full (a small tmpfs, where this user may mount one), or one rank's
+Each trial renders a short film on R ranks and breaks it: a rank is killed or terminated at a random time, mpirun is
+terminated or killed itself, a rank is stopped and continues or (once a random number of images exists) does not,
+the directory of the images is moved away, the disk is full (a small tmpfs, if this user may mount one), or one rank's
 piece of the mesh is damaged. Checked after each, whatever the time of the fault and the load of the machine: the run
-ends; no process of it is left; one line of ours says what happened; the status is what it should be; the folder holds
-whole pictures only, each with the bytes of an undisturbed run. Every fourth trial then runs the same command with
---resume, which must complete the film. --volume films a volume, by --sort-last in parts of it, by --mixed in parts of it
-and of the picture in turn. A launcher that hangs or crashes alone after a rank died as MPI started is Open MPI's fault
-(4.1.4, as it ends PMIx's server), and counted separately.
+ends; no process of it remains; one line of ours reports what happened; the status is correct; the directory contains
+only complete images, each with the bytes of an undisturbed run. Every fourth trial then runs the same command with
+--resume, which must complete the film. --volume films a volume, with --sort-last in parts of it, with --mixed alternately in parts of it
+and of the image. A launcher that hangs or crashes alone after a rank died while MPI started is Open MPI's fault
+(4.1.4, when it ends PMIx's server), and counted separately.
 
-Prints a line a trial, with the seconds from the fault to the end, and a table of the stages that were reached. Exit
+Prints a line per trial, with the seconds from the fault to the end, and a table of the stages that were reached. Exit
 status 1 if any check failed.
 """
 import argparse
@@ -56,7 +56,7 @@ def ranks_of(film, token):
 
 
 class Film:
-    """The command that every trial runs, and what it gives when nobody disturbs it."""
+    """The command of every trial, and its result without a fault."""
 
     def __init__(self, tessera, ranks, root, volume=False, sort_last=False):
         root.mkdir()
@@ -95,7 +95,7 @@ class Film:
                 "--quiet", *self.how]
 
     def random_time(self, source):
-        """When to break the run: at any time, or while some stage is under way, each as likely, however short it is."""
+        """When to break the run: at any time, or while some stage is active, each with equal probability, however short it is."""
         if source.random() < 0.5:
             return source.uniform(0, self.seconds)
         stage = source.choice(sorted({e["name"] for e in self.events}))
@@ -104,7 +104,7 @@ class Film:
         return max(0.01, self.seconds - self.traced_seconds + at)
 
     def stages_at(self, seconds):
-        """What ranks of the undisturbed run did this long before its end."""
+        """The ranks' stages in the undisturbed run at this time before its end."""
         at = (self.traced_seconds - (self.seconds - seconds)) * 1e6
         names = {e["name"] for e in self.events if e["ts"] <= at < e["ts"] + e["dur"]}
         return names or {"start or end"}
@@ -135,7 +135,7 @@ def check_folder(film, folder, problems):
 
 
 def stop_in_midst(film, run, token, folder, random_source):
-    """Stops a rank once some pictures are there; whether so many were left that every rank had a part in them."""
+    """Stops a rank once some images exist; returns whether so many were left that every rank took part in them."""
     wanted = random_source.randrange(1, film.frames // 2)
     while len(pictures_of(folder)) < wanted and run.poll() is None:
         time.sleep(0.002)
@@ -151,7 +151,7 @@ def stop_in_midst(film, run, token, folder, random_source):
 
 
 def end_of(film, run, token, folder, kind):
-    """What the run has said, and whether its launcher was left alone and given up."""
+    """The output of the run, and whether its launcher remained alone and was killed."""
     until, alone_since = time.monotonic() + HANG, None
     errors = []
     reader = threading.Thread(target=lambda: errors.append(run.communicate()[1]))

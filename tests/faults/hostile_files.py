@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Small files of many formats, damaged, and redirected to what no data are: the program reads or refuses each.
+"""Small files of many formats, damaged, or redirected to things that are not data: the program reads or refuses each.
 
     tests/faults/hostile_files.py --tessera PROGRAM [--runs 1000] [--seed 1] [--jobs 2]
 
 The files are made here, 200 bytes to 20 KB each. Most runs damage one, in the ways of damaged_files.py. In the others a name
-that a file holds (of a piece, a step, samples, a mesh of EnSight's, an include) becomes that of something else: a named pipe,
-/dev/zero, a folder, the file itself, its folder, a file that is not there or has no end, one of a megabyte of letters or of
-control characters. `tessera info` has to end with status 0, or with 2 or 3 and one line of at most 8 KB without control
-characters; without a signal, in 20 s of processor time, and with no more than 256 MiB above the intact file's memory. Prints
-what fails, and how to run it again; then how many runs ended how. Status 1 if any fails. Standard library only.
+that a file contains (of a piece, a step, samples, an EnSight mesh, an include) is replaced by that of something else: a named pipe,
+/dev/zero, a directory, the file itself, its directory, a missing or endless file, one of a megabyte of letters or of
+control characters. `tessera info` must end with status 0, or with 2 or 3 and one line of at most 8 KB without control
+characters; without a signal, in 20 s of processor time, and with at most 256 MiB above the intact file's memory. Prints
+each failure, and how to reproduce it; then a summary of how runs ended. Status 1 if any fails. Standard library only.
 """
 import argparse
 import concurrent.futures
@@ -46,7 +46,7 @@ def piece(name):
 
 
 def texts():
-    """Name -> content of files that stand alone."""
+    """Name -> content of files that do not refer to others."""
     scalars = "".join(f"{k % 5}\n" for k in range(8))
     vtk = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET "
     files = {
@@ -99,7 +99,7 @@ def texts():
 
 
 def write_cases(folder):
-    """Files that name others: name -> a list of (file, the name that it holds)."""
+    """Files that name others: name -> a list of (file, the name that it contains)."""
     (folder / "tet.node").write_text(f"8 3 0 0\n{numbered(POINTS)}")
     (folder / "tet.ele").write_text("6 4 0\n" + numbered(TETS, shift=1))
     (folder / "d.raw").write_bytes(SAMPLES)
@@ -169,7 +169,7 @@ BY_NAME = [("tet.ele", "tet.node"), ("tet.node", "tet.ele"), ("plt", "plt/Level_
 
 
 def targets(folder, itself):
-    """What names are made to lead to."""
+    """The targets to which names are redirected."""
     os.mkfifo(folder / "pipe")
     (folder / "empty").touch()
     (folder / "gone-link").symlink_to("nowhere")

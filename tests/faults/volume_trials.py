@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Volume files as other programs write them, and broken ones: does `tessera` read what they say, and refuse the rest?
+"""Volume files as written by other programs, and damaged ones: does `tessera` read them correctly, and refuse the rest?
 
     volume_trials.py --tessera PROGRAM [--only WORDS] [--keep FOLDER] [--mpi RANKS]
 
 Files come from VTK's own writers (.vti .vtk .mha .nii) and from this script's (NRRD, NIfTI, MetaImage in all their types,
-encodings and geometries). Of each good one: `info --json` gives the values' range, the blanks and the geometry that were
-written; its picture is that of the same numbers in a plain double .nrrd, through sharp and smooth transfer functions,
-orthographic, perspective and from inside; `--verify` holds. Of each broken one, and of every good one cut short: status 2,
-one line on stderr, nothing written; under mpirun the same.
+encodings and geometries). For each valid one: `info --json` reports the range of values, the blanks and the geometry that were
+written; its image equals that of the same numbers in a plain double .nrrd, with sharp and smooth transfer functions,
+orthographic, perspective and from inside; `--verify` passes. For each damaged one, and for every valid one truncated: status 2,
+one line on stderr, nothing written; the same under mpirun.
 
-Prints a line a fault and a count; status 1 if anything was wrong. Needs NumPy and VTK's Python package.
+Prints a line per fault and a count; status 1 if anything was wrong. Needs NumPy and VTK's Python package.
 """
 import argparse
 import bz2
@@ -38,7 +38,7 @@ TURN = np.array([[0.8, -0.6, 0.0], [0.6, 0.8, 0.0], [0.0, 0.0, 1.0]])  # columns
 
 
 def field(dtype=np.float64, components=1):
-    """Smooth numbers that fit a signed byte; no axis or component like another."""
+    """Smooth numbers that fit into a signed byte; no two axes or components are equal."""
     k, j, i = np.meshgrid(*(np.arange(n) for n in SHAPE), indexing="ij")
     parts = [60 * np.sin(0.9 * i + 0.4 * j * k + c) + 10 * (k - j) + c for c in range(components)]
     values = np.stack(parts, axis=-1) if components > 1 else parts[0]
@@ -57,7 +57,7 @@ def nrrd_header(values, origin, spacing, direction, type_name, encoding="raw", e
 
 
 class Good:
-    """A file and what it holds: values (k, j, i) of the chosen field, geometry of the samples."""
+    """A file and its contents: values (k, j, i) of the chosen field, geometry of the samples."""
 
     def __init__(self, name, values, origin=(0, 0, 0), spacing=(1, 1, 1), direction=EYE, cell=False, words=(), files=()):
         self.name, self.values, self.cell = name, np.asarray(values, np.float64), cell
@@ -119,7 +119,7 @@ class Trials:
         self.check_pictures(case, file, told, finite)
 
     def check_pictures(self, case, file, told, finite):
-        """Against the same numbers in the plainest file; cell data is checked by --verify alone."""
+        """Compares with the same numbers in the plainest file; cell data is checked only by --verify."""
         low, high = float(finite.min()), float(finite.max())
         size = float(np.max(case.spacing * np.array(case.values.shape[::-1])))
         smooth = self.folder / "smooth.txt"
@@ -176,7 +176,7 @@ class Trials:
             output.unlink()
 
     def check_cut(self, case):
-        """The file, and then the files that belong to it, cut short anywhere."""
+        """Truncates the file, and then the files that belong to it, anywhere."""
         for name in [case.name, *case.files]:
             path = self.path(name)
             whole = path.read_bytes()
@@ -470,7 +470,7 @@ def vtk_image(values, origin=(0, 0, 0), spacing=(1, 1, 1), direction=EYE, cell=N
 
 
 def even_grid(values, origin, spacing, cell=None):
-    """A rectilinear grid whose coordinates are even, so that the plain copy may say them."""
+    """A rectilinear grid with uniform coordinates, so that the plain copy can represent them."""
     grid = vtk.vtkRectilinearGrid()
     grid.SetExtent(0, SHAPE[2] - 1, 0, SHAPE[1] - 1, 0, SHAPE[0] - 1)
     for a, axis in enumerate("XYZ"):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Hostile messages to `tessera serve`, of a seeded generator: after each one the server answers an honest request, and
-at the end it ends in order, without a word on stderr.
+"""Hostile messages to `tessera serve`, from a seeded generator: after each one the server answers an honest request, and
+at the end it exits normally, without any output on stderr.
 
     hostile_test.py --tessera PROGRAM [--seed N] [--count 800] [--least-scale 1e-310]
 """
@@ -29,7 +29,7 @@ def check(holds, words):
 
 
 class Honest:
-    """A client that behaves, by one connection for as long as the server keeps it."""
+    """A well-behaved client, with one connection for as long as the server keeps it."""
 
     def __init__(self, server):
         self.server = server
@@ -97,7 +97,7 @@ def camera(rng):
 
 
 def plain_camera(rng):
-    """One that is taken, but for its scale."""
+    """A camera that is accepted, except for its scale."""
     view = rng.choice(["[0.3,0.4,5]", "[3,-4,2]", "[0,0,-1e6]", "[1e300,0,0]"])
     return f'{{"position":{view},"focal_point":[0,0,0],"view_up":[0,0.1,1],"parallel_scale":{scale(rng)}}}'
 
@@ -151,7 +151,7 @@ def nested(rng):
 
 
 def message(rng):
-    """Text of a socket."""
+    """A text message for a socket."""
     kind = rng.randrange(10)
     if kind < 4:
         return f'{{"type":"state","number":{rng.choice(["1", "2", number(rng)])},"moving":{rng.choice(["true", "false"])},"state":{state(rng)}}}'
@@ -171,7 +171,7 @@ def message(rng):
 
 
 def frame_of(rng, payload):
-    """A WebSocket frame, as it should be or broken."""
+    """A WebSocket frame, valid or damaged."""
     head = bytes([rng.choice([0x81] * 12 + [0x82, 0x80, 0x01, 0x83, 0x8f, 0xf1, 0x88, 0x89])])
     length = rng.choice([len(payload)] * 15 + [0, len(payload) + 9, (1 << 63) - 1, 1 << 21])
     masked = 0x80 if rng.randrange(15) else 0
@@ -190,7 +190,7 @@ class Hostile:
         self.client = None
 
     def over_socket(self):
-        """Several to a socket, until one of them has it closed."""
+        """Several per socket, until one of them makes the server close it."""
         rng = self.rng
         payload = message(rng).encode()
         if rng.randrange(12) == 0:
@@ -208,7 +208,7 @@ class Hostile:
         return payload
 
     def over_http(self):
-        """Bytes to the port, as they come."""
+        """Sends bytes to the port unchanged."""
         rng, token = self.rng, self.server.token
         host = f"Host: 127.0.0.1:{self.server.port}\r\n"
         ours = f"Authorization: Bearer {token}\r\n"
@@ -245,7 +245,7 @@ class Hostile:
         return data
 
     def by_request(self):
-        """A state that is asked about in order: it is answered, with what is wrong of it or without."""
+        """A state in a valid request: it is answered, with or without an error."""
         rng = self.rng
         body = f'{{"state":{state(rng)}}}'
         path = rng.choice(["picture"] * 5 + ["api/camera", "api/function", "api/histogram", "api/command", "api/data", "film",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A client of `tessera serve` by the standard library alone: starts a server, speaks HTTP and WebSocket with it."""
+"""A client of `tessera serve` that uses only the standard library: starts a server, and talks to it by HTTP and WebSocket."""
 
 import base64
 import http.client
@@ -19,8 +19,8 @@ HANG = 300  # seconds, reached only by a hang
 
 
 class Server:
-    """`tessera serve`, from here on until stop(). `launcher`: what it is started by, like mpirun. `trusted`: the
-    certificate that it shows, over https then."""
+    """`tessera serve`, running until stop(). `launcher`: the command that starts it, like mpirun. `trusted`: the
+    server's certificate; then uses https."""
 
     def __init__(self, tessera, file, *words, launcher=(), environment=None, trusted=None):
         self.context = ssl.create_default_context(cafile=str(trusted)) if trusted else None
@@ -174,7 +174,7 @@ class WebSocket:
                 return {"type": "pong"}
 
     def frame(self, acknowledge=True):
-        """The next frame; messages that are none are passed over, errors raised."""
+        """The next frame; other messages are skipped, errors raised."""
         while True:
             message = self.receive()
             if isinstance(message, tuple):
@@ -185,7 +185,7 @@ class WebSocket:
                 raise RuntimeError(message["error"])
 
     def begin_long_frame(self, number, state):
-        """Asks for frames, larger and larger ones, until the server says how far it is with one: that state's number."""
+        """Requests larger and larger frames until the server reports progress of one; returns that state's number."""
         for size in ("3000x3000", "5000x5000", "8000x8000"):
             self.state(number, dict(state, size=size))
             while True:

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests of `tessera serve` through the program: pictures are those of `tessera render`, whoever may not is refused,
-hostile clients harm nobody, and it ends in order.
+"""Tests of `tessera serve` through the program: images equal those of `tessera render`, unauthorized clients are refused,
+hostile clients do no harm, and it exits normally.
 
     serve_test.py --tessera PROGRAM [--part pictures|refusals|tls|hostile|ends] [--without-mpi]
                   [--without-tls] [--sanitized] [--every N]
 
-TESSERA_SERVE_MESSAGES: how many mutated messages are sent (30000), TESSERA_SERVE_FRAMES: over how many small frames
-memory is watched (500).
+TESSERA_SERVE_MESSAGES: number of mutated messages sent (30000), TESSERA_SERVE_FRAMES: number of small frames over which
+memory is checked (500).
 """
 
 import argparse
@@ -56,7 +56,7 @@ def files():
 
 
 def rendered(command, launcher=(), output="picture.png"):
-    """The bytes that a command line, which a server has stated, writes."""
+    """The bytes written by a command line that a server has reported."""
     words = shlex.split(command)
     check(words[:2] == ["tessera", "render"] and words[-2:] == ["-o", "picture.png"], command)
     words[-1] = output
@@ -68,7 +68,7 @@ def rendered(command, launcher=(), output="picture.png"):
 
 
 def states_of(server, is_grid, is_points):
-    """States that differ in all that a page can change."""
+    """States that differ in everything that a page can change."""
     defaults = dict(server.data()["defaults"], size="160x120")
     turned = dict(defaults, camera=server.json("POST", "/api/camera", {"state": defaults, "view": "iso",
                                                                        "projection": "perspective"}))
@@ -118,7 +118,7 @@ def pictures_of(file, launcher=()):
 
 
 def defaults_are_the_first_picture(file):
-    """What the data's defaults say is what is shown when nothing is said."""
+    """The data's reported defaults are those shown when nothing is specified."""
     with Server(options.tessera, file) as server:
         defaults = server.data()["defaults"]
         _, _, said = server.ask("POST", "/picture", {"state": dict(defaults, size="90x90")})
@@ -127,7 +127,7 @@ def defaults_are_the_first_picture(file):
 
 
 def defaults_hold_the_start(file):
-    """What the server was started with is in the first picture's state, whoever asks for it, and in the welcome."""
+    """The options with which the server was started are in the first image's state, whichever client asks, and in the welcome."""
     words = ["--transfer-function", "viridis:rise", "--range", "0.2,0.9", "--opacity", "2", "--log", "--clip", "0,0,0,1,0,0",
              "--iso", "0.5", "--background", "navy", "--color-bar=left", "--axes=both", "--outline", "--view", "front"]
     with Server(options.tessera, file, *words) as server:
@@ -150,7 +150,7 @@ def defaults_hold_the_start(file):
 
 
 def moving_frames_are_bare(file):
-    """What moves is shown small and enlarged, which nothing that explains the picture should be."""
+    """Moving frames are shown small and enlarged, so they have no annotation."""
     with Server(options.tessera, file) as server:
         state = dict(server.data()["defaults"], size="300x200")
         shown = {"color-bar": True, "axes": "both", "outline": True, "scale-bar": True, "annotate": ["text"]}
@@ -211,7 +211,7 @@ def answers(file):
 
 
 def stand_in_of(file, launcher=()):
-    """What moves is shown by a stand-in where nothing else is in time; what rests never is."""
+    """A preview is shown while moving if nothing else is fast enough; never at rest."""
     with Server(options.tessera, file, "--latency", "1", launcher=launcher, environment=MPI if launcher else None) as server:
         state = dict(server.data()["defaults"], size="200x150")
         client = server.socket()
@@ -234,7 +234,7 @@ def stand_in_of(file, launcher=()):
 
 
 def row_of_cubes(step):
-    """Five cubes with `still`, `conc`, which is 0 at step 0 and is 2 at the end of step 1, and `depth`."""
+    """Five cubes with `still`, `conc`, which is 0 at step 0 and 2 at the end of step 1, and `depth`."""
     points = [(i, int(k in (1, 2)), k // 2) for i in range(6) for k in range(4)]
     factors = {"still": 0, "conc": (0, 2, 1)[step], "depth": 3}
     arrays = [("Float64", name, 1, [factor * x / 5 for x, _, _ in points]) for name, factor in factors.items()]
@@ -252,7 +252,7 @@ def row_of_cubes(step):
 
 
 def series_starts_as_a_film(launcher=()):
-    """Of a series, field and colors are those of `render`, which go by all steps; commands state them."""
+    """For a series, field and colors are those of `render`, which depend on all steps; commands specify them."""
     for step in range(3):
         (folder / f"row_{step}.vtu").write_text(row_of_cubes(step))
     words = ["--size", "90x60", "--integrator", "exact"]
@@ -367,7 +367,7 @@ def part_refusals():
 
 
 def certificate(name):
-    """(certificate, key): one that signs itself, for this machine."""
+    """(certificate, key): a self-signed one for this machine."""
     files = folder / f"{name}.pem", folder / f"{name}-key.pem"
     subprocess.run(["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", files[1], "-out", files[0],
                     "-days", "2", "-subj", "/CN=localhost", "-addext", "subjectAltName=IP:127.0.0.1,DNS:localhost"],
@@ -452,7 +452,7 @@ def mutated(rng, text):
 
 
 def is_served(server, state):
-    """Whether a client that behaves gets its picture."""
+    """Whether a well-behaved client gets its image."""
     client = admitted(server)
     client.state(1, state)
     header, image = client.last_frame(1)
@@ -461,7 +461,7 @@ def is_served(server, state):
 
 
 def admitted(server):
-    """A client, once there is room for it: the server sees that others have gone in its own time."""
+    """A client, once there is room for it: the server notices disconnections with a delay."""
     given_up = time.monotonic() + HANG
     while True:
         try:
@@ -597,14 +597,14 @@ def part_hostile():
 
 
 def socket_or_none(server):
-    """A client, or nothing where the server has as many as it takes."""
+    """A client, or None if the server has reached its limit."""
     client = server.socket()
     return client if client.status == 101 else None
 
 
 def memory_stays(server, state):
-    """Frames leave no memory behind: of several rounds of them one takes none. A leak grows in each, threads and caches
-    begin once."""
+    """Frames leave no memory behind: in at least one of several rounds memory does not grow. A leak grows in each; threads and caches
+    are created once."""
     frames = int(os.environ.get("TESSERA_SERVE_FRAMES", "150" if options.sanitized else "500"))
     client = admitted(server)
     client.receive()

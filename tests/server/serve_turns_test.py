@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests of `tessera serve` while it is busy: views have their turn beside pictures and films, it ends soon whatever it
-does, and leaves nothing; who has no token keeps nobody out.
+"""Tests of `tessera serve` while it is busy: views get their turn among images and films, it ends soon whatever it
+is doing, and leaves nothing behind; clients without a token do not block others.
 
     serve_turns_test.py --tessera PROGRAM [--without-mpi]
 """
@@ -43,7 +43,7 @@ def await_that(holds, words):
 
 
 class Long:
-    """A request that takes long, from here on until it is answered."""
+    """A long request, running until it is answered."""
 
     def __init__(self, server, path, body):
         self.connection = http.client.HTTPConnection(server.host, server.port, timeout=HANG)
@@ -61,7 +61,7 @@ class Long:
 
 
 def picture_in_work(server, state):
-    """A picture that is being made, large enough for that to be seen."""
+    """An image in progress, large enough for that to be observed."""
     for size in ("2000x2000", "4000x4000", "8000x8000"):
         picture = Long(server, "/picture", {"state": dict(state, size=size)})
         while not picture.answered():
@@ -85,7 +85,7 @@ def views_go_on(file):
         number = 0
 
         def shown_meanwhile(begin):
-            """Whether a view that was asked for after that began is there before it is over; else with the next try."""
+            """Whether a view requested after that began arrives before it is finished; otherwise tries again."""
             nonlocal number
             long = begin()
             number += 1
@@ -104,7 +104,7 @@ def views_go_on(file):
 
 def ends_at_any_time(file):
     def is_cut_short(begin, how):
-        """Whether the request at hand was ended with the server; it may be done by the time the signal comes."""
+        """Whether the current request was ended with the server; it may be finished before the signal arrives."""
         with Server(options.tessera, file) as server:
             at_hand = begin(server, server.data()["defaults"])
             status, errors = server.stop(how)
@@ -161,7 +161,7 @@ def films_leave_nothing(file):
             children = []
 
             def has_begun(parent=server.process.pid, found=children):
-                """Its name is there a moment after it."""
+                """Its name appears a moment later."""
                 found[:] = subprocess.run(["pgrep", "-P", str(parent), "ffmpeg"], capture_output=True, text=True,
                                           check=False).stdout.split()
                 return len(found) == 1

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Checks the layout: which directory includes which, and how many modules one holds.
+"""Checks the layout: which directory includes which, and how many modules one contains.
 
 MAY_INCLUDE is the table. A row applies to its directory and all below it; a row of a subdirectory adds to its parent's.
 Every directory may include its own headers, the public ones (tessera/), scene/ and system/. A directory and its
-subdirectories may include each other: they are one library. Subdirectories side by side may not, unless a row says so.
+subdirectories may include each other: they are one library. Sibling subdirectories may not, unless a row allows it.
 The table has no cycle. The compiler enforces the same between libraries (cmake/TesseraTarget.cmake).
 
 Reports every include that the table does not allow as file:line, and directories of more than 40 modules; exit status 1
-if there is one. Also reports, without failing, which allowances are not used.
+if there is one. Also reports, without failing, unused allowances.
 
     include_rules.py SOURCE_TREE [--count]    --count: prints the number of includes from directory to directory instead
 """
@@ -184,7 +184,7 @@ def cycle_in_table():
 
 
 def module(file):
-    """The name that a header and its source share."""
+    """The common name of a header and its source."""
     return re.sub(r"\.(cpp|hpp|h)(\.in)?$", "", file.as_posix())
 
 
