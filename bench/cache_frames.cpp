@@ -3,8 +3,7 @@
 // printed in 6.2.2 and 6.7.2 of Moloney, "Ray Coherence in Parallel Volume Rendering" (SFU 2008).
 //
 //   cache_frames [NAME=VALUE ...] [then NAME=VALUE ...]      prints a JSON object per run: bricks, and for each frame
-//   its
-//                                                            ms and each unit's [waited for, ahead, us waited]
+//                                                            its ms and each unit's [waited for, ahead, us waited]
 //
 // Units are ranks of one process, each with a cache, a share of the image and a thread of its own, and frames follow
 // each other at once. The volume is in memory; `read_us` is how long a unit waits for each brick, one after the other:

@@ -4,18 +4,15 @@
 //
 //   direct-send   exchange/direct/direct_send.hpp, as used by `--distribution sort-last`
 //   binary-swap   Ma, Painter, Hansen, Krogh, "Parallel Volume Rendering Using Binary-Swap Compositing" (1994): rounds
-//   of
-//                 pairs that exchange halves of what they have; for numbers of ranks that are not a power of two, the
-//                 rounds use their prime factors
+//                 of pairs that exchange halves of what they have; for numbers of ranks that are not a power of two,
+//                 the rounds use their prime factors
 //   radix-k       Peterka, Goodell, Ross, Shen, Thakur, "A Configurable Algorithm for Parallel Image-Compositing
 //                 Applications" (2009): rounds of four if the number of ranks allows, direct send within a round
 //   runs          meshes: composited runs of touching ray segments from N projectors to N compositors of tiles, each
-//   rank
-//                 as if on its own machine
+//                 rank as if on its own machine
 //
 //   compositing_exchanges [NAME=VALUE ...]     prints a JSON object per number of ranks and exchange; names and
-//   defaults
-//                                              are those of `Run`
+//                                              defaults are those of `Run`
 //
 // Ranks are threads of one process; bytes and messages are exact, CPU time is that of the rank with most, the minimum
 // of three repetitions. All exchanges pack pixels losslessly and send of each packet only the rectangle in which a part

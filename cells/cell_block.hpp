@@ -42,9 +42,8 @@ BlockField field_of_values(std::string name, std::string type, scene::Associatio
 /// Shape   cell c has type types[c] (VTK's cell type number) and points connectivity[offsets[c]] up to
 ///         connectivity[offsets[c + 1]]. If all cells are tetrahedra they may be in `tets`, with the other three empty.
 ///         The points of a polyhedron are those of its faces: at face_locations[c], `faces` contains the number of
-///         faces
-///         and, for each face, its number of points and these points. For other cells it is no_faces; without polyhedra
-///         both are empty. Ghost arrays hold vtkGhostType bits for each point or cell, or are empty.
+///         faces and, for each face, its number of points and these points. For other cells it is no_faces; without
+///         polyhedra both are empty. Ghost arrays hold vtkGhostType bits for each point or cell, or are empty.
 /// Holds   the reader has checked that offsets do not decrease and end at connectivity.size(), and that every index is
 ///         < positions.size(); require_faces() checks faces. Positions and fields may hold NaN.
 struct CellBlock {

@@ -19,8 +19,7 @@ using CornerTriangle = std::array<std::uint32_t, 3>;
 /// Not convex   ears are cut off, the one with the shortest cut first, as seen along the face's area vector.
 /// Degenerate   collinear corners are kept, if necessary in triangles without an area, so that no edge is lost.
 /// Cost         quadratic in the corners if ears are cut; faces of more than `most_ears` corners are fans whatever
-/// their
-///              shape.
+///              their shape.
 class FaceCutter {
  public:
   static constexpr std::size_t most_ears = 512;

@@ -20,8 +20,7 @@ std::vector<std::vector<CornerTriangle>> parts_on_edges(std::span<const CornerTr
 /// surface, and contains nothing else of it.
 ///
 /// Limits   not every surface has an ear (Schoenhardt's polyhedron has none), and cutting may end with a surface that
-/// has
-///          none. The total work on one surface over all attempts is bounded; after that no more ears are found.
+///          has none. The total work on one surface over all attempts is bounded; after that no more ears are found.
 class SurfaceEars {
  public:
   static constexpr std::size_t most_triangles = 200;

@@ -39,8 +39,7 @@ struct FacePatch {
 /// convex hull that contains it, and in which faces have those control points of the cell that are on them.
 ///
 /// Order   k outermost, i innermost; i, j and k are the degrees in r, s and t. For a box up to the degree in each, for
-/// a
-///         prism i + j up to that of the triangle, for a tet i + j + k up to its own.
+///         a prism i + j up to that of the triangle, for a tet i + j + k up to its own.
 /// Source  Farin, "Curves and Surfaces for Computer-Aided Geometric Design", 1997, chapters 4, 15 and 17.
 class BernsteinBasis {
  public:

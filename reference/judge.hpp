@@ -51,9 +51,8 @@ std::size_t most_excused(std::size_t pixels, bool sample);
 ///          rays within 1/1024 pixel of its centre, widened by the bound: 41 rays, on a grid over that disc and on its
 ///          circumference. Nothing else is excused.
 /// Passed   at most 1e-4 of the pixels are excused. If only some pixels of the image are checked, a sample may have
-/// more
-///          than its share: three standard deviations are allowed, so one in a thousand pixels still passes.
-///          Once so many are over the bound that the image has failed anyway, only a hundred more are examined for an
+///          more than its share: three standard deviations are allowed, so one in a thousand pixels still passes. Once
+///          so many are over the bound that the image has failed anyway, only a hundred more are examined for an
 ///          excuse.
 /// NaN      or infinity in the image counts as an infinite error and is never excused.
 /// Throws   scene::Error(bad_input) if the sizes differ, or a pixel is outside.

@@ -41,15 +41,13 @@ struct RaySegment {
 /// Order    (front, back, tet index).
 /// Error    about 1e-13 in linear RGBA. Cell data is constant in a tet, point data linear between the two hits.
 /// Surfaces Iso-surfaces are crossed where the scalar changes from below a value to the value or above, or back,
-/// between
-///          the ends of a segment; several at one depth have the order along the segment. They are lit by the tet's
-///          gradient. Surfaces of triangles are met where the ray intersects one; a boundary is met where a segment
-///          ends
-///          at a face that only one cell has, or where a half-space's plane cuts a cell. Segments are cut there, so
-///          that
-///          they have their true depth also in cells that overlap. At one depth the order is: what a cell has at its
-///          back end, its boundary, triangles, cells of length zero, the next cell's boundary, and what that has at its
-///          front end. Depths count as equal if a shift of the ray by 2^-32 pixel may exchange them (shaded_ray.cpp).
+///          between the ends of a segment; several at one depth have the order along the segment. They are lit by the
+///          tet's gradient. Surfaces of triangles are met where the ray intersects one; a boundary is met where a
+///          segment ends at a face that only one cell has, or where a half-space's plane cuts a cell. Segments are cut
+///          there, so that they have their true depth also in cells that overlap. At one depth the order is: what a
+///          cell has at its back end, its boundary, triangles, cells of length zero, the next cell's boundary, and what
+///          that has at its front end. Depths count as equal if a shift of the ray by 2^-32 pixel may exchange them
+///          (shaded_ray.cpp).
 /// Shading  of point data by each tet's own gradient (scene/shading.hpp).
 /// Threads  const functions may be called from several threads; `pixels` and `image` use all cores themselves.
 /// Cost     256x256 pixels over 0.5 M tets: seconds to a minute. One point query is a pass over all tets' boxes.

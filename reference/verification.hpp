@@ -22,10 +22,8 @@ struct Tally {
 /// Whether an image keeps its method's promise, according to a sample of its pixels.
 ///
 /// Passed  only excused pixels are over the bound, and among those chosen at random no more are excused than a sample
-/// may
-///         contain (most_excused()). All pixels chosen as suspicious may be excused, because they were chosen where
-///         that
-///         is likely.
+///         may contain (most_excused()). All pixels chosen as suspicious may be excused, because they were chosen where
+///         that is likely.
 struct Verification {
   Judgement judgement;                     ///< of all checked pixels; rms_error of the random ones (an estimate)
   std::optional<double> bound;             ///< no value: errors are reported, nothing is promised

@@ -19,8 +19,7 @@ struct AmrCube {
 /// Cubes that fill a part of space, with values at their corners.
 ///
 /// Invariant  cubes of a lattice that are adjacent like the leaves of a tree: a cube with finer neighbours at a face
-/// has
-///            n x n of them there, each of which may be divided further.
+///            has n x n of them there, each of which may be divided further.
 struct AmrCubes {
   AmrVertices corners;  ///< of all cubes
   std::vector<AmrCube> cubes;

@@ -13,8 +13,7 @@ namespace tessera::cells {
 /// A basis of a pyramid's functions, one per node; they are rational in (r, s, t).
 ///
 /// 13 nodes  the serendipity hexahedron's with one face collapsed to a point, corrected to be quadratic on the
-/// triangles
-///           (Felippa, "Advanced Finite Element Methods", University of Colorado, chapter on pyramids)
+///           triangles (Felippa, "Advanced Finite Element Methods", University of Colorado, chapter on pyramids)
 /// 19 nodes  VTK's: quadratic with a cubic bubble on triangles, biquadratic on the base
 /// 18 nodes  the same without the last function, because there is no inner node
 /// others    Lagrange's on the lattice: all polynomials of the order, and functions that complete them on the base

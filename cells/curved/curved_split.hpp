@@ -47,9 +47,9 @@ double cost_of_tet(const CurvedLattice& lattice);
 /// Weights The deviation is a fraction, bounded by the coefficients of its numerator over the least coefficient of its
 ///         denominator. The slopes in CurvedError are then those of the numerator over that number.
 /// Limits  Bounds hold up to rounding for polynomials of a degree of 12 at most: tets up to order 12, hexahedra up to
-/// 4,
-///         wedges up to 6; with weights one degree less. Others, and pyramids inside, are approximated by interpolating
-///         polynomials. No edge is halved more than 20 times; a deviation that remains is included in the error.
+///         4, wedges up to 6; with weights one degree less. Others, and pyramids inside, are approximated by
+///         interpolating polynomials. No edge is halved more than 20 times; a deviation that remains is included in the
+///         error.
 ///
 /// Source  Halving by edges, so that faces agree without comparing their tets: Ruprecht, Mueller, "A scheme for
 ///         edge-based adaptive tetrahedron subdivision" (Mathematical Visualization, 1998).

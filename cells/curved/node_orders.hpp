@@ -19,8 +19,7 @@ namespace tessera::cells {
 ///         that the library returns (ex_get_side_set_node_list, and Ioss_Tet16, Wedge24, Hex32 and Hex64). Names may
 ///         vary, as for linear cells: `HEX`, `hex27`.
 /// med     "MED File Format", reference elements (MED_TETRA4 ... MED_HEXA27). The corners of its cells have the
-/// opposite
-///         orientation to VTK's, which mirrors the cell and changes no order; only faces' middles differ.
+///         opposite orientation to VTK's, which mirrors the cell and changes no order; only faces' middles differ.
 /// nastran "Quick Reference Guide", CTETRA, CPYRAM, CPENTA and CHEXA: the edges between base and top precede the top's.
 ///         Any mid-edge node may be blank.
 /// cgns    SIDS, section 3.3 "Unstructured Grid Element Numbering Conventions". CGNS's own library reads cells of

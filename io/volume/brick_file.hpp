@@ -21,8 +21,7 @@ namespace tessera::io {
 ///   bytes 8..15    uint64 length H of the header
 ///   bytes 16..     H bytes of JSON, padded with blanks: points [3], association, origin [3], direction [9, column by
 ///                  column], spacing [3], coordinates [3 lists, empty where regular], type, scale, shift, field, block
-///                  (a
-///                  side, in samples), low, high, blanks (of all values); if stated, the entries of tag_words()
+///                  (a side, in samples), low, high, blanks (of all values); if stated, the entries of tag_words()
 ///                  (volume_tags.hpp): space, modality, unit, length unit, intent
 ///   then           for each block, i fastest: float64 low, float64 high, uint64 blanks (24 bytes)
 ///   then           the samples of each block in the same order, i fastest in it, without padding; blocks at the upper

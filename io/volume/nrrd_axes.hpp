@@ -45,8 +45,7 @@ std::optional<bool> has_color_axis(const NrrdFields& fields, const NrrdAxes& axe
 ///
 /// space     right-anterior-superior and left-posterior-superior are kept; any other order or direction of anatomical
 ///           axes, for example left-anterior-superior, becomes right-anterior-superior. 3D-left-handed is mirrored
-///           along
-///           x. The variants with `-time` mean the same.
+///           along x. The variants with `-time` mean the same.
 /// spacing   `space directions`, else `spacings`, else (axis max - axis min) over the steps between samples; an axis
 ///           with `centers: cell` extends half a step further at both ends.
 void set_nrrd_geometry(const NrrdFields& fields, const NrrdAxes& axes, const std::vector<std::int64_t>& sizes,

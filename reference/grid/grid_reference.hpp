@@ -27,11 +27,9 @@ namespace tessera::reference {
 ///          in each voxel. A voxel with a blank corner (cell data: a blank sample) is a gap.
 /// Domain   the box between the first and last lattice points.
 /// Ties     a ray in a plane of the lattice (to 1e-9 of a voxel) belongs to the voxels that an infinitesimal shift of
-/// the
-///          ray by (e, e^2) in (x, y) selects, as in ray_tet.hpp. The same applies at the volume's boundary.
+///          the ray by (e, e^2) in (x, y) selects, as in ray_tet.hpp. The same applies at the volume's boundary.
 /// Shading  as defined by scene/shading.hpp: a segment is between two crossings of lattice planes, the eye, the
-/// clipping
-///          planes and surfaces. A gradient below 1e-12 of the voxel's samples is zero.
+///          clipping planes and surfaces. A gradient below 1e-12 of the voxel's samples is zero.
 /// Surfaces of point data: crossed in each voxel as in grid_surface.hpp, lit by the trilinear field's gradient. The
 ///          sides of a gap are not surfaces.
 /// Error    about 1e-12 in linear RGBA.

@@ -15,8 +15,7 @@ namespace tessera::reference {
 /// Noise   the field is assumed to be rounded to 2^-23 of its range: 32-bit floats.
 /// Hidden  parts far behind the first visible sample of an opaque pixel count little.
 /// Cost    a pass over the samples, in blocks of 8^3 voxels; if there are more than 8,192 blocks, over that many,
-/// evenly
-///         distributed.
+///         evenly distributed.
 struct GridSuspicion {
   SuspicionMap step;    ///< possible error of light by the field's rounding in one voxel, at some of its pixels
   SuspicionMap border;  ///< light of voxels that have blank and other samples, or are adjacent to blank ones

@@ -13,11 +13,9 @@ namespace tessera::reference {
 /// Where a mesh is difficult to render correctly.
 ///
 /// Noise   scalars and depths are assumed to be rounded to 2^-30 of their range over the mesh. The ranking of suspects
-/// is
-///         the same for a renderer that rounds more or less.
+///         is the same for a renderer that rounds more or less.
 /// Cost    a pass over the tets and over their edges' pixels; if there are more than 262,144 tets, over that many,
-/// evenly
-///         distributed, and the edges of 65,536.
+///         evenly distributed, and the edges of 65,536.
 struct MeshSuspicion {
   SuspicionMap step;   ///< possible error of light by the scalars' rounding in one cell, at some of its pixels
   SuspicionMap tie;    ///< nearness of an edge to the pixel's centre (1e-3 pixel at most), times the image's contrast

@@ -48,17 +48,15 @@ struct ForeignArray {
 ///
 /// unstructured  points, connectivity (uint32; its largest value replaces indices that do not fit); if all cells are
 ///               tets, tuples of four; otherwise types (uint8, VTK's) and offsets (cells + 1); for polyhedra faces
-///               (uint32
-///               like connectivity) and the position of each cell in it (int64, -1 for other cells), see CellBlock
+///               (uint32 like connectivity) and the position of each cell in it (int64, -1 for other cells), see
+///               CellBlock
 /// surface       points; offsets and connectivity of its polygons
 /// structured    points, extent
 /// rectilinear   three arrays of coordinates, extent
 /// image         extent, origin of index 0, spacing, direction (row by row)
 /// trees         leaves of cells that are repeatedly divided into branching^3: extent and three arrays of coordinates
-/// of
-///               the root cells; points (int32), the lowest corners of the leaves, counted from 0 in cells of the
-///               finest
-///               of `levels`; types (uint8), the levels of the leaves; cell fields of the leaves
+///               of the root cells; points (int32), the lowest corners of the leaves, counted from 0 in cells of the
+///               finest of `levels`; types (uint8), the levels of the leaves; cell fields of the leaves
 struct ForeignPart {
   enum class Kind : std::uint8_t { unstructured, surface, structured, rectilinear, image, trees };
 
