@@ -37,7 +37,7 @@ struct Segment {
   float length, front, back;
 };
 
-/// Segments of which a fraction crosses one knot; the others stay within an interval.
+/// A fraction of the segments crosses one knot; the others stay within an interval.
 std::vector<Segment> segments_of(int knots, double share, bool smooth) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> uniform(0, 1);

@@ -2,7 +2,7 @@
 /// The cost of sending finished pixels to the rank that assembles the image (exchange/packed_pixels.hpp): bytes per
 /// pixel, and nanoseconds per pixel of one core to pack and unpack them, compared with copying them unpacked.
 ///
-/// Usage: pixel_packing PICTURE.exr ...; prints one Markdown row per image. Times are processor time, the minimum of
+/// Usage: pixel_packing IMAGE.exr ...; prints one Markdown row per image. Times are processor time, the minimum of
 /// some repetitions. Tiles of 32 x 32 pixels as in a run, in random order, as they arrive; empty tiles count with their
 /// pixels but without bytes or time, because compositors do not send them.
 #include <fmt/format.h>

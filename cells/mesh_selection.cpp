@@ -96,7 +96,7 @@ class HalfSpaceCut {
     }
   }
 
-  /// Cuts the mesh; appends each cell of which something is removed, once.
+  /// Cuts the mesh; appends each cell that loses a part, once.
   void apply(std::vector<std::uint64_t>& changed) {
     KeptTets kept;
     for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {

@@ -28,7 +28,7 @@ class SurfaceTets {
   /// A point of the tets inside the surface.
   struct Inside {
     glm::dvec3 place;
-    std::vector<std::uint32_t> seen;  ///< the corners of which it is a combination
+    std::vector<std::uint32_t> seen;  ///< the corners that it is a combination of
   };
 
   /// `triangles` are oriented outward, with corners `p`; every edge is used equally often in both directions. Costs

@@ -40,8 +40,8 @@ struct PixelJudgement {
 std::vector<PixelJudgement> judge_each(const scene::Image& image, const RayReference& reference, double bound,
                                        std::span<const PixelIndex> pixels, int threads, std::size_t most_examined);
 
-/// The number of excused pixels allowed in an image, or in a random sample of so many pixels: 1e-4 of them, plus three
-/// standard deviations for a sample.
+/// The number of excused pixels allowed in an image of `pixels` pixels, or in a random sample of that size: 1e-4 of
+/// them, plus three standard deviations for a sample.
 std::size_t most_excused(std::size_t pixels, bool sample);
 
 /// Compares an image with the reference in `pixels`, or everywhere if none are named.
@@ -51,9 +51,8 @@ std::size_t most_excused(std::size_t pixels, bool sample);
 ///          rays within 1/1024 pixel of its centre, widened by the bound: 41 rays, on a grid over that disc and on its
 ///          circumference. Nothing else is excused.
 /// Passed   at most 1e-4 of the pixels are excused. If only some pixels of the image are checked, a sample may have
-///          more than its share: three standard deviations are allowed, so one in a thousand pixels still passes. Once
-///          so many are over the bound that the image has failed anyway, only a hundred more are examined for an
-///          excuse.
+///          more than its share: three standard deviations are allowed, so one in a thousand pixels still passes. At
+///          most a hundred pixels more than may be excused are examined.
 /// NaN      or infinity in the image counts as an infinite error and is never excused.
 /// Throws   scene::Error(bad_input) if the sizes differ, or a pixel is outside.
 Judgement judge(const scene::Image& image, const RayReference& reference, double bound,

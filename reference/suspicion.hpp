@@ -56,7 +56,7 @@ struct ChosenPixel {
 /// `most` different suspects, taken from all kinds in turn.
 std::vector<ChosenPixel> by_turns(const Suspects& suspects, std::size_t most);
 
-/// Pixels of an image to be judged, `count` different ones (all if there are no more): a third at random, the rest from
+/// Pixels of an image to be judged, `count` different ones (all if there are fewer): a third at random, the rest from
 /// the suspects of each kind in turn, or at random if there are too few. Random pixels come first. The same in every
 /// run.
 std::vector<ChosenPixel> choose_pixels(scene::ImageSize size, std::size_t count, const Suspects& suspects);

@@ -29,10 +29,10 @@ class View {
   /// pixel centres, or in the plane of the eye and a row or column of them, are exactly there despite decimal noise in
   /// the camera. In perspective that unit is too fine far outside the image or for very long lenses. There the unit is
   /// at least 2^(n-46) pixels, where 2^n is the power of two at or below the largest of |x|, |y| and the pixels per
-  /// unit of tangent (of which at most 2^22 count). From 2^46 pixels on, a vertex counts as in the plane of the eye;
-  /// the unit for X and Y is then 2^(n-40), where 2^n is the power of two at or below the larger of |X| and |Y|.
-  /// Computed in long double, so that the rounded value has no noise of its own. `homogeneous` is rounded only in
-  /// orthographic projection.
+  /// unit of tangent (at most 2^22). From 2^46 pixels on, a vertex counts as in the plane of the eye; the unit for X
+  /// and Y is then 2^(n-40), where 2^n is the power of two at or below the larger of |X| and |Y|. Computed in long
+  /// double, so that the rounded value has no noise of its own. `homogeneous` is rounded only in orthographic
+  /// projection.
   [[nodiscard]] ProjectedVertex project(const glm::dvec3& p_world) const;
 
   /// The ray through (x, y): at planar depth z it is at `origin` + z * `step`. Not rounded.

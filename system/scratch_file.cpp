@@ -28,7 +28,7 @@ int nameless_file(const std::filesystem::path& folder) {
   return named;
 }
 
-/// 0, or the reason why there is no space for so many bytes, as far as can be known before writing.
+/// 0, or the errno if there is no space for `bytes` bytes, as far as can be known before writing.
 int room_for(int file, std::uint64_t bytes) {
   // Beyond this limit the process would be killed by a signal.
   rlimit most{};

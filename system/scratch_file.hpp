@@ -18,7 +18,7 @@ class ScratchFile {
   /// directory is missing or full: with `subject`, the input that is stored there, the reason and a remedy.
   ScratchFile(std::string subject, std::uint64_t bytes);
   ~ScratchFile();
-  /// Whether there is space for so many bytes and some more, as far as can be known before writing.
+  /// Whether there is space for `bytes` bytes and some more, as far as can be known before writing.
   static bool has_room(std::uint64_t bytes);
   ScratchFile(const ScratchFile&) = delete;
   ScratchFile& operator=(const ScratchFile&) = delete;

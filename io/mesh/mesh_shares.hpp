@@ -6,7 +6,7 @@
 
 #include "io/mesh/mesh_formats.hpp"
 
-/// Meshes of other programs in pieces, of which several processes read a share each: a decomposed OpenFOAM case (one
+/// Meshes of other programs in pieces; each of several processes reads a share: a decomposed OpenFOAM case (one
 /// directory per processor), the zones of a CGNS file, and a mesh in several Exodus files (NAME.ex2.4.0 to
 /// NAME.ex2.4.3).
 namespace tessera::io {

@@ -15,7 +15,7 @@ namespace tessera::io {
 struct TecplotNumbers {
   std::vector<std::vector<double>> values;                       ///< per variable, for each node or element
   std::vector<std::size_t> connectivity;                         ///< nodes from 1, 4 or 8 per element
-  std::vector<std::size_t> face_sizes, face_nodes, left, right;  ///< of polyhedra; from 1, 0 is none
+  std::vector<std::size_t> face_sizes, face_nodes, left, right;  ///< of polyhedra; from 1, 0 means none
 };
 
 /// Reads a zone's numbers. Throws Error(bad_input) with file, line and remedy.

@@ -60,7 +60,7 @@ constexpr std::uint64_t base_bytes = 256ull << 20;
 // Slow readers parse 2 MB/s of text; compressed files take ten times as long.
 constexpr double base_seconds = 8, text_bytes_a_second = 2e6;
 
-/// Allows memory and time for so many bytes of files.
+/// Allows memory and time for files of `size` bytes.
 void allow_for_bytes(std::uint64_t size, bool is_compressed) {
   const double bytes = static_cast<double>(size) * (is_compressed ? packed_factor : text_factor);
   allow(base_bytes + static_cast<std::uint64_t>(bytes),

@@ -89,7 +89,7 @@ void allow_for_files(std::span<const std::filesystem::path> files);
 /// The same for all files in a directory tree, for formats of many files.
 void allow_for_folder(const std::filesystem::path& folder, bool is_compressed = false);
 
-/// The same for filling a surface of so many facets with about so many tets; more if the user has `chosen` them.
+/// The same for filling a surface of `facets` facets with about `tets` tets; more if the user chose their number.
 void allow_filling(std::size_t facets, double tets, bool is_chosen);
 
 /// The error if memory runs out: the file's counts may be wrong if it had all memory that its size can explain;

@@ -23,8 +23,9 @@ struct DicomVolume {
   scene::TimeStepRead time_step{};
 };
 
-/// The series of the named file, otherwise the one with the most slices; of several times the chosen one, otherwise the
-/// last. Slices of another size or direction than the majority are left out, with a note. Throws Error(bad_input).
+/// The series of the named file, otherwise the one with the most slices. If there are several times: the chosen one,
+/// otherwise the last. Slices of another size or direction than the majority are left out, with a note. Throws
+/// Error(bad_input).
 DicomVolume volume_of(std::vector<DicomSlice> slices, const std::filesystem::path& named,
                       std::optional<std::size_t> time_step, const std::string& source);
 

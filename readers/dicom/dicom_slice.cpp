@@ -99,7 +99,7 @@ std::optional<NumberType> number_type_of(const gdcm::PixelFormat& format) {
   return std::nullopt;
 }
 
-/// A sample of which only `bits` bits are used.
+/// A sample that uses only `bits` bits.
 template <class T>
 T sample_at(const char* bytes, int bits) {
   T sample;

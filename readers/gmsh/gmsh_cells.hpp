@@ -17,8 +17,8 @@ struct GmshCell {
 };
 
 /// Nodes are matched by their positions in the reference cell: `places` are Gmsh's, u v w per node (tetrahedra in the
-/// unit one, hexahedra in [-1, 1]^3, prisms between w = -1 and 1, pyramids over [-1, 1]^2), of which the first
-/// `corners` are the corners.
+/// unit one, hexahedra in [-1, 1]^3, prisms between w = -1 and 1, pyramids over [-1, 1]^2). The first `corners` nodes
+/// are the corners.
 GmshCell gmsh_cell(int order, std::size_t corners, std::span<const double> places);
 
 /// The node positions of a complete prism of third or higher order, which Gmsh's library 4.8 does not report. They

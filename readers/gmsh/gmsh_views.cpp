@@ -81,7 +81,7 @@ std::optional<GmshView> view_of(const KnownView& known, std::size_t step) {
   return view;
 }
 
-/// Times of the steps of the first view with so many steps.
+/// Times of the steps of the first view with `steps` steps.
 std::vector<double> times_of(const std::vector<KnownView>& views, std::size_t steps) {
   std::vector<double> times;
   const auto longest = std::ranges::find(views, steps, &KnownView::steps);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// VTK's copy of the CGNS library, whose names are macros, two of which conflict with ours. Include it first.
+// VTK's copy of the CGNS library. Its names are macros, and two of them conflict with ours. Include it first.
 #include <vtk_cgns.h>
 
 #include VTK_CGNS(cgnslib.h)

@@ -13,7 +13,7 @@ namespace tessera::readers {
 /// The function with which rewritten_xdmf() makes points from one array each for x, y and z.
 constexpr const char* interleaved = "interleaved";
 
-/// The arrays of which one is a selection (HyperSlab) or an interleaving; empty if it has its own numbers. Throws
+/// The arrays that `array` selects from (HyperSlab) or interleaves; empty if it has its own numbers. Throws
 /// Error(bad_input) for numbers that must be computed, and for selections outside their array.
 std::vector<XdmfArray*> referenced_arrays(XdmfArray& array, const std::string& source);
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::int64_t side = 8, most_blocks = 8192;
 constexpr double nothing = 1e-12;
-/// Marked pixels of a voxel: one in so many, at most so many. Boundaries may be small.
+/// Marked pixels of a voxel: one in `pixels_per_mark`, at most `most_marks`. Boundaries may be small.
 constexpr double pixels_per_mark = 16, border_pixels_per_mark = 4, most_marks = 16;
 /// Distance along a ray, in voxel sizes, behind the first visible sample within which nothing counts as hidden.
 constexpr double skin = 4;

@@ -22,7 +22,7 @@ constexpr double nothing = 1e-12;    // lower scores are ignored
 /// Of larger meshes this many tets are examined, and the edges of fewer.
 constexpr std::size_t most_tets = 1 << 18, most_tets_with_edges = 1 << 16;
 
-/// Marked pixels of a cell: one in so many, at most so many.
+/// Marked pixels of a cell: one in `pixels_per_mark`, at most `most_marks`.
 constexpr double pixels_per_mark = 32, most_marks = 64;
 
 class MeshSuspects {

@@ -17,7 +17,7 @@
 namespace tessera::fill_values_test {
 namespace {
 
-/// 64 samples 0 to 63, the first 4 of which are the fill value.
+/// 64 samples 0 to 63, but the first 4 are the fill value.
 std::filesystem::path volume_with(const test::TemporaryFolder& folder, float fill) {
   std::vector<float> samples = test::counting<float>(64);
   std::fill_n(samples.begin(), 4, fill);

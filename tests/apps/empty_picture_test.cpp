@@ -171,7 +171,7 @@ TEST_F(EmptyPicture, OfAFunctionThatMissesTheDataNamesWhatMeetsThem) {
 }
 
 TEST_F(EmptyPicture, OfAPartWithoutVisibleValuesSaysSo) {
-  // One cell, with values from 0 to 1 of which the view shows only those that the function hides.
+  // One cell, with values from 0 to 1. The view shows only values that the function hides.
   const std::string volume = folder.file("v_2x2x2_uint8.raw", std::string("\0\1\0\1\0\1\0\1", 8));
   const std::string mesh = folder.file("thick.vtu", bar(1));
   const std::string function = folder.file("end.txt", "0.95 1 1 1 0\n1 1 1 1 9\n");

@@ -257,7 +257,7 @@ TEST(Convert, PiecesThatCannotBeWrittenLeaveNothing) {
     EXPECT_EQ(run.error_lines(), 1u) << run.err;
     EXPECT_EQ(folder.names(), names);
   }
-  // A directory in place of a piece: detected when pieces are renamed.
+  // A directory instead of a piece: detected when pieces are renamed.
   std::filesystem::create_directory(folder / "o_0002.vtu");
   const auto run = tessera({"convert", mesh, folder / "o.pvtu", "--pieces", "4"});
   EXPECT_NE(run.status, 0);

@@ -22,7 +22,7 @@ TEST_F(RankFaults, AnOutputFolderRemovedInMidRunIsTheSystemsFault) {
     for (const int ranks : {0, 1, 2, 3}) {
       if (ranks > 0 && !has_mpirun()) continue;
       Outcome outcome;
-      bool in_time = false;  // before the last picture
+      bool in_time = false;  // before the last image
       for (int frames = 500; !in_time; frames *= 2) {
         std::filesystem::create_directory(pictures_);
         Running running(command(ranks, film(input, {}, frames)));

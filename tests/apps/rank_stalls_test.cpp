@@ -28,7 +28,7 @@ class RankStalls : public FilmRuns {
     if (!all.contains(stopped)) return 0;
     const pid_t process = all.at(stopped);
     kill(process, SIGSTOP);
-    // Two frames are in flight at a time: with so many left, every rank takes part in the remaining work.
+    // Two frames are in flight at a time: with more than 8 left, every rank takes part in the remaining work.
     const bool in_time = pictures() + 8 < static_cast<std::size_t>(frames);
     const std::string name = "rank " + std::to_string(stopped) + " of " + std::to_string(ranks) + " (process " +
                              std::to_string(process) + " on ";

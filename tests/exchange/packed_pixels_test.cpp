@@ -51,7 +51,7 @@ void half_empty(scene::Image& image, std::mt19937& random) {
     }
 }
 
-/// Values that differ in so many bits that the word boundaries are random.
+/// Values that differ in a random number of bits, so the word boundaries are random too.
 void slightly_noisy(scene::Image& image, std::mt19937& random) {
   const float noise = std::ldexp(1.0f, -10 - static_cast<int>(random() % 13));
   std::uniform_real_distribution<float> uniform(0.5f, 0.5f + noise);

@@ -2,15 +2,15 @@
 /// Damages files and opens them with the library, many in one process: third-party readers run in a helper program,
 /// which may die, but this process may not.
 ///
-///     opening_trials RUNS SEED FOLDER [LARGEST]
+///     `opening_trials RUNS SEED FOLDER [LARGEST]`
 ///
-/// FOLDER contains files of at most LARGEST bytes (default 262144); those that cannot be opened are left out. Each run
-/// damages one and opens it. A fault is: an exception other than Error(bad_input), a message of more than one line or
-/// without the file's name, over 20 s, or more than twice the memory of the intact file plus 256 MiB, in this process
-/// or the helper. The 20 s are processor time, whatever else the machine does; after 300 s of wall time it counts as a
-/// hang. A process's peak memory never decreases, so a run that stays below an earlier peak is not checked. The file of
-/// a fault is kept in the working directory as opening_trial_RUN_NAME. Prints the faults and the counts; exits with
-/// status 1 if there are any, with 2 if nothing can be tried.
+/// `FOLDER` contains files of at most LARGEST bytes (default 262144); those that cannot be opened are left out. Each
+/// run damages one and opens it. A fault is: an exception other than Error(bad_input), a message of more than one line
+/// or without the file's name, over 20 s, or more than twice the memory of the intact file plus 256 MiB, in this
+/// process or the helper. The 20 s are processor time, whatever else the machine does; after 300 s of wall time it
+/// counts as a hang. A process's peak memory never decreases, so a run that stays below an earlier peak is not checked.
+/// The file of a fault is kept in the working directory as opening_trial_RUN_NAME. Prints the faults and the counts;
+/// exits with status 1 if there are any, with 2 if nothing can be tried.
 #include <fmt/format.h>
 #include <malloc.h>
 #include <sys/resource.h>

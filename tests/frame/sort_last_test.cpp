@@ -207,7 +207,7 @@ TEST(SortLast, EachProcessReadsItsOwnBricksAlone) {
   exchange::run_ranks(c.ranks, [&](exchange::Transport& transport) {
     const PartOfVolume part(*c.source, split.boxes()[static_cast<std::size_t>(transport.rank())]);
     volume::RenderSettings render = c.render;
-    // A quarter of the bricks and no more.
+    // Only a quarter of the bricks.
     render.memory_bytes = 17 * 17 * 17 * 4 * (64 / 4 + 4);
     // Nor are others preloaded.
     if (transport.rank() % 2 == 0) render.grid.cache = CachePolicy::proximity, render.grid.preload_limit = 8;

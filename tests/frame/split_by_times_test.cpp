@@ -23,7 +23,7 @@ const VolumeJob job = [] {
   return VolumeJob{camera, {side, side}};
 }();
 
-/// Two ranks, each with the left or right half, with 50 ms of tile work each, and so many milliseconds of other work.
+/// Two ranks, each with the left or right half, with 50 ms of tile work each, and the given milliseconds of other work.
 std::vector<CastTimes> times(double beside_first, double beside_second) {
   constexpr double half_ms = 50;
   std::vector<CastTimes> ranks(2);

@@ -124,7 +124,8 @@ std::filesystem::path write_flash(const test::TemporaryFolder& folder, const Amr
   return name;
 }
 
-/// One block; its eight children, the first of which has eight, the last of which, in the middle, has eight again.
+/// One block and its eight children. The first child has eight too, and the last of those, in the middle, has eight
+/// more.
 AmrScene oct_tree() {
   AmrScene scene{{{0, 1, {0, 0, 0}, {3, 3, 3}}}};
   const auto add_children = [&](int level, int parts, std::array<int, 3> first) {

@@ -27,7 +27,7 @@ std::size_t sort_rows(float* keys, int chunks) {
   return hn::Lanes(SortTag());
 }
 
-/// Sorts `rows` rows of depths, of which lane i has counts[i], like windows: places[] are the rows in sorted order, and
+/// Sorts `rows` rows of depths, counts[i] of them in lane i, like windows: places[] are the rows in sorted order, and
 /// level[row] has bits set in lanes where that row's key equals the previous one.
 std::size_t pack_and_sort(std::int32_t* depths, const std::int32_t* counts, std::int32_t* places, std::int32_t* level,
                           std::size_t rows) {

@@ -352,7 +352,7 @@ TEST(VolumeCaster, ShadingOfALinearFieldFollowsBlinnAndPhong) {
 }
 
 TEST(BrickCache, TheLastBrickOf2048CubedIsFound) {
-  // Eight gibibytes of address space, of which only a few pages are accessed.
+  // Eight gibibytes of address space, but only a few pages are accessed.
   constexpr std::int64_t side = 2048;
   constexpr auto bytes = static_cast<std::size_t>(side * side * side);
   void* const memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);

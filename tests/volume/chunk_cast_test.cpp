@@ -363,7 +363,7 @@ TEST(ChunkCast, WhatGetsThroughAfterAChunkIsTheLightThatIsLeft) {
   }
 }
 
-/// A volume of which a process has a part.
+/// A volume that is only partly in this process.
 class PartOfVolume final : public scene::SampleSource {
  public:
   PartOfVolume(const scene::SampleSource& all, const scene::SampleBox& part)

@@ -23,7 +23,7 @@ struct FilledMesh {
 struct FillSize {
   double max_volume;       ///< largest volume of a tet, world units cubed
   double tets;             ///< estimated number of tets: the enclosed volume divided by `max_volume`
-  bool is_chosen = false;  ///< set by the user, who expects a long run: allows 40 times the time and 8 times the memory
+  bool is_chosen = false;  ///< set by the user for a long run: allows 40 times the time and 8 times the memory
 };
 
 /// A surface as JSON for the reader program. surface_of() is the inverse and throws std::exception for other JSON.

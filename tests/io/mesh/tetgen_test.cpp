@@ -304,8 +304,8 @@ TEST_F(Filled, WhatNoFewFacetsNeedIsRefusedWithARemedy) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "the helper has address space without a limit, for the sanitizer's sake";
 #endif
-  // Well-shaped tets are no wider than the plate is thick, so there would be 10^12 of them. Half a percent is feasible:
-  // some 10^5.
+  // Well-shaped tets are at most as wide as the plate is thick, so there would be 10^12 of them. Half a percent is
+  // feasible: some 10^5.
   EXPECT_NEAR(testing::volume(read_mesh(folder.write("thick.poly", box_poly(1, 1, 0.005))).mesh), 0.005, 1e-9);
   rusage before{}, after{};
   ::getrusage(RUSAGE_CHILDREN, &before);
