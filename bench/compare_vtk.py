@@ -5,12 +5,12 @@
     xvfb-run -a /usr/bin/python3 bench/compare_vtk.py --data FOLDER --output FOLDER
         [--tessera build/release/apps/tessera] [--only bracket,notch] [--document docs/RESULTS.md] [--images docs/images]
 
-FOLDER of --data holds oxygen-post, bluntfin, bracket, disk-out, notch and unisim (docs/RESULTS.md says what they are).
-For each: Tessera's default picture (looked at for coverage, darkness, saturation), then at the default view, with a
-text transfer function made here, Tessera's `exact` picture, and VTK's twice: of the tets `tessera convert` writes (the
-difference is the rendering) and of the tets VTK's own reader and vtkDataSetTriangleFilter make (the difference is also
-the reading, and where the cells are not tets, how they are cut). Writes NAME.png (a row for each: Tessera, VTK, eight
-times their difference) and figures.json to --output; tables between marks in --document; small default pictures in
+FOLDER of --data contains oxygen-post, bluntfin, bracket, disk-out, notch and unisim (described in docs/RESULTS.md).
+For each: Tessera's default image (checked for coverage, darkness, saturation), then at the default view, with a
+text transfer function made here, Tessera's `exact` image, and VTK's twice: of the tets written by `tessera convert` (the
+difference is the rendering) and of the tets made by VTK's own reader and vtkDataSetTriangleFilter (the difference also
+includes reading, and where the cells are not tets, how they are cut). Writes NAME.png (a row for each: Tessera, VTK, eight
+times their difference) and figures.json to --output; tables between marks in --document; small default images in
 --images.
 """
 import argparse
@@ -151,7 +151,7 @@ def choose_field(grid, label, on_cells):
     attributes.SetScalars(scalars)
 
 
-# ---- pictures --------------------------------------------------------------------------------------------------------
+# ---- images ----------------------------------------------------------------------------------------------------------
 
 def encode_srgb(x):
     x = np.clip(x, 0, 1)

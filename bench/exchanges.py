@@ -9,8 +9,8 @@
     meshes   parts of a space-filling curve, as for `--partition curve`: runs as sent to other machines, compared with images of the parts
              composited in the order of their centres, which is correct only if no part is both in front of and behind another
 
-What is counted bench/compositing_exchanges.cpp says; figures are means over views. A process's time is modelled: its CPU time, and what it sends over
-95 MB/s (the thesis's bandwidth); waiting for others is left out.
+bench/compositing_exchanges.cpp defines what is counted; figures are means over views. A process's time is modelled: its CPU time, plus its sent bytes
+at 95 MB/s (the thesis's bandwidth); waiting for others is not included.
 
 Needs Python's standard library. Meshes of files need --data, and --tessera to convert them; otherwise they are left out.
 """

@@ -15,7 +15,7 @@ import textwrap
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 WIDTH = 160  # columns of a line of Markdown
 PLACES = ("--tessera", "--program", "--frames-program", "--packing", "--work", "--folder", "--output", "--document", "--results", "--json", "--figure",
-          "--images")  # options that name programs, folders and outputs: they are one machine's
+          "--images")  # options with paths of programs, directories and outputs on this machine
 
 
 def commit():
@@ -37,7 +37,7 @@ def made(load_before):
 
 
 def command(script):
-    """The command line of this run without PLACES and without the folders of absolute paths."""
+    """The command line of this run without PLACES and without the directories of absolute paths."""
     words, rest = [], iter(sys.argv[1:])
     for word in rest:
         name, has_value, _ = word.partition("=")

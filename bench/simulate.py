@@ -20,7 +20,7 @@ the page faults of a film's first images) and writing. The model determines when
   (exchange/mpi/mpi_transport.cpp), and processes those of one sender in order.
 
 A frame's losses are differences between runs of the model: the whole; without time on the network; then without assembly and writing; then without
-compositing; then without the last tile (so many frames in flight that the end of one always overlaps the next); then with projectors that
+compositing; then without the last tile (enough frames in flight that the end of one always overlaps the next); then with projectors that
 have equal work. The remaining time is projection. Needs only Python's standard library.
 """
 import argparse

@@ -50,7 +50,7 @@ class Cores:
         self.last = self.clock.now
 
     def run(self, seconds, done, *args):
-        """Calls done(*args) when a thread has had so many core seconds."""
+        """Calls done(*args) when a thread has had that many `seconds` of a core."""
         if seconds <= 0:
             self.clock.after(0, done, *args)
             return

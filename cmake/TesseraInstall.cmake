@@ -68,7 +68,7 @@ function(tessera_link_flags result)
       endforeach()
       if(file)
         list(APPEND flags ${file})
-      else() # a name for others
+      else() # an interface target: the libraries behind it
         foreach(property INTERFACE_LINK_LIBRARIES INTERFACE_LINK_OPTIONS)
           get_target_property(inner ${item} ${property})
           if(inner)

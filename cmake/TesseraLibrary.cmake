@@ -28,7 +28,7 @@ function(tessera_whole_library kind)
   set_target_properties(tessera_${kind} PROPERTIES OUTPUT_NAME tessera EXPORT_NAME ${kind} LINKER_LANGUAGE CXX)
   target_compile_features(tessera_${kind} INTERFACE cxx_std_20)
   get_property(helpers GLOBAL PROPERTY tessera_helper_programs)
-  if(helpers) # which it starts
+  if(helpers) # programs that the library starts
     add_dependencies(tessera_${kind} ${helpers})
   endif()
   target_include_directories(

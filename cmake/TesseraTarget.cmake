@@ -85,7 +85,7 @@ function(tessera_library name)
     target_link_libraries(tessera_${name} PUBLIC ${ARG_LINK} PRIVATE tessera_warnings fmt::fmt ${ARG_PRIVATE_LINK})
     set(precompiled tessera_precompiled)
     if(TESSERA_QUICK AND "tessera_optimize_1" IN_LIST ARG_PRIVATE_LINK)
-      set(precompiled tessera_unoptimized_precompiled) # compilers refuse headers of another optimization
+      set(precompiled tessera_unoptimized_precompiled) # compilers reject headers precompiled at another level
     endif()
     target_precompile_headers(tessera_${name} REUSE_FROM ${precompiled})
   else() # headers only

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Writes OUTPUT, which defines TESSERA_COMMIT, if the commit of SOURCE has changed: run at each build, so that a program
 # reports the commit from which it was built, and nothing is recompiled while that stays the same.
-set(commit unknown) # sources outside a repository
+set(commit unknown) # if the sources are not in a repository
 find_program(git git)
 if(git)
   # safe.directory: the sources may belong to another user, for example in containers.
@@ -11,7 +11,7 @@ if(git)
   if(result EQUAL 0 AND EXISTS ${SOURCE}/.git)
     set(commit ${found})
   endif()
-elseif(EXISTS ${SOURCE}/.git/HEAD) # a machine without git: whether the sources differ is not known
+elseif(EXISTS ${SOURCE}/.git/HEAD) # no git here: local changes cannot be detected
   file(STRINGS ${SOURCE}/.git/HEAD found LIMIT_COUNT 1)
   if(found MATCHES "^ref: (.+)$")
     set(branch ${CMAKE_MATCH_1})

@@ -30,7 +30,7 @@ options_of() {  # options_of NAME
     least)
       echo -DTESSERA_READERS=OFF -DTESSERA_MPI=OFF -DTESSERA_JPEG=OFF -DTESSERA_TIFF=OFF -DTESSERA_GL=OFF -DTESSERA_CAIRO=OFF \
         -DTESSERA_INSTRUCTION_SETS=native "${clang[@]}" \
-        -DCMAKE_DISABLE_FIND_PACKAGE_{VTK,MPI,TetGen,CLI11}=ON # as if they were not there
+        -DCMAKE_DISABLE_FIND_PACKAGE_{VTK,MPI,TetGen,CLI11}=ON # as if they were not installed
       ;;
     clang) echo -DTESSERA_VTK=OFF "${clang[@]}" ;;
     *)

@@ -11,7 +11,7 @@ scripts/install_packages.sh build
 options=(-DTESSERA_TESTS=OFF -DTESSERA_INSTRUCTION_SETS=native)
 mpi=OFF
 if command -v mpicc >/dev/null; then mpi=ON; fi
-if [ ! -f build/demo/CMakeCache.txt ]; then options+=(-DTESSERA_READERS=OFF); fi # else as scripts/readers.sh left it
+if [ ! -f build/demo/CMakeCache.txt ]; then options+=(-DTESSERA_READERS=OFF); fi # otherwise as scripts/readers.sh set it
 # `cmake --install build/demo` installs everything.
 cmake --preset release "${options[@]}" -DTESSERA_MPI=$mpi -B build/demo
 cmake --build build/demo -j"$(nproc)"

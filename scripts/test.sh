@@ -68,7 +68,7 @@ if [ -n "$extent" ]; then
 fi
 if [ "$extent" = ci ]; then stage tidy scripts/lint.sh changed; fi
 if [ "$extent" = all ]; then
-  options=() # as the preset has it
+  options=() # those of the preset
   stage threads build_and_test threads
   presets=(threads "${presets[@]}")
   stage tidy scripts/lint.sh tidy

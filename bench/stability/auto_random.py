@@ -6,9 +6,9 @@
 
 Case i of a seed is always the same: a random mesh or grid, transfer function, view and accuracy (1e-2 to 1e-5), and
 `--verify` on random pixels. An excused pixel (docs/ACCURACY.md) does not break a case, because one of 400 is more than a whole
-image may have: they are counted over all cases, of which they must stay below 1e-4. Prints each case that
-breaks with the command that reproduces it (`--first i --cases 1 --keep FOLDER` keeps its files), and exits with status 1
-if any did. Needs only Python's standard library.
+image may have. Over all cases, at most 1e-4 of the pixels, plus three standard deviations, may be excused. Prints each
+case that breaks with the command that reproduces it (`--first i --cases 1 --keep FOLDER` keeps its files), and exits with
+status 1 if any did or too many pixels were excused. Needs only Python's standard library.
 
 With `--times` the images are `--larger` times as wide and high, and `auto` is compared with the fastest single method
 that keeps the accuracy in 400 random pixels. Cases of less than 50 ms are left out. The two are rendered alternately, five

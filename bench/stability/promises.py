@@ -46,7 +46,7 @@ def pixels_of(path):
 
 
 class Case:
-    """One case's files in a folder, and how to render it."""
+    """One case's files in a directory, and how to render it."""
 
     def __init__(self, tessera, made, folder, threads):
         self.tessera, self.made, self.folder, self.threads = tessera, made, folder, threads

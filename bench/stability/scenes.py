@@ -200,7 +200,7 @@ def mesh_stresses(m):
                      m.camera(f"zoom-{pixels:g}", (0.25, 0.2, 5), (0.25, 0.2, 0), scale=32 / pixels))
 
     def plateau(places):
-        """A saturated field: half of the mesh has a step's value, or is up to so many last places of a float below it."""
+        """A saturated field: half of the mesh has a step's value, or is up to `places` last places of a float below it."""
         points, cells, scalars = m.loaded(m.generated("cube", ".tets", n=6))
         values = [1 - int(3 * hashed(i)) * places * 2.0 ** -24 if p[0] + 0.3 * p[1] > 0 else 0.9 * s
                   for i, (p, s) in enumerate(zip(points, scalars))]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rows of advice about files that are not supported, or of which something is missing."""
+"""Rows of advice about files that are not supported or are incomplete."""
 
 import gzip
 import struct

@@ -131,7 +131,7 @@ def main():
                 status, said = done.returncode, done.stderr.decode(errors="replace")
             except subprocess.TimeoutExpired:
                 status, said = "none", "takes longer than 900 s"
-            # Parts that are missing in this build are reported as such.
+            # The program reports which parts this build lacks.
             if status == 2 and "this build" in said:
                 left += 1
                 continue

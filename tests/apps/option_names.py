@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The option table, api/options/option_table.cpp, agrees with the libraries' messages and with docs/REFERENCE.md.
 
-A library's message names the setting, `tile_size`, of which apps/ makes --tile-size. Looks at every string literal of the
-library folders' C++ sources, comments left aside, and reports file:line of each that contains an option, or a name in
-backquotes that is not an option's, which the program would print as it is. The list of options in docs/REFERENCE.md has
+A library's message names the setting, `tile_size`, from which apps/ makes --tile-size. Checks every string literal of the
+library directories' C++ sources, without comments. Reports file:line of each that contains an option, or a name in
+backquotes that does not belong to an option, which the program would print unchanged. The list of options in docs/REFERENCE.md has
 to be the one that --write writes there, between two marker lines. Exit status 1 if there is a fault.
 
     option_names.py SOURCE_TREE [--write]

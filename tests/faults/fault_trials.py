@@ -135,7 +135,7 @@ def check_folder(film, folder, problems):
 
 
 def stop_in_midst(film, run, token, folder, random_source):
-    """Stops a rank once some images exist; returns whether so many were left that every rank took part in them."""
+    """Stops a rank once some images exist; returns whether enough were left for every rank to take part in them."""
     wanted = random_source.randrange(1, film.frames // 2)
     while len(pictures_of(folder)) < wanted and run.poll() is None:
         time.sleep(0.002)

@@ -46,7 +46,7 @@ build_examples() {  # build_examples FOLDER PREFIX [OPTION...]
   quietly "$CMAKE" --build "$folder"
   # Each renders its image.
   (cd "$folder" && quietly ./mesh_from_arrays && [ -s mesh.png ]) || failed "$folder/mesh_from_arrays"
-  { # a format that needs no other library
+  { # a format that does not need another library
     printf '%s\n' NRRD0004 'type: float' 'dimension: 3' 'sizes: 9 9 9' 'encoding: ascii' ''
     seq 729
   } >"$SCRATCH/grid.nrrd"
@@ -55,7 +55,7 @@ build_examples() {  # build_examples FOLDER PREFIX [OPTION...]
   printf '%s' '{"size": "64x48", "view": "front", "transfer-function": "viridis:rise", "iso": [300, "500:red:0.5"]}' \
     >"$SCRATCH/state.json"
   (cd "$folder" && quietly ./picture_of_state "$SCRATCH/grid.nrrd" "$SCRATCH/state.json") || failed "$folder/picture_of_state"
-  if [ "$APPS" = 1 ]; then # the picture of the program, from the other form of the same state
+  if [ "$APPS" = 1 ]; then # must be the program's image of the same state in TOML
     printf '%s\n' 'size = "64x48"' 'view = "front"' 'transfer-function = "viridis:rise"' 'iso = [300, "500:red:0.5"]' \
       >"$SCRATCH/state.toml"
     quietly "$first/bin/tessera" render "$SCRATCH/grid.nrrd" --config "$SCRATCH/state.toml" -o "$SCRATCH/picture.png" --quiet
@@ -64,13 +64,13 @@ build_examples() {  # build_examples FOLDER PREFIX [OPTION...]
   if [ "$CAIRO" = 1 ]; then
     (cd "$folder" && quietly ./annotated_picture "$SCRATCH/grid.nrrd" && [ -s annotated.png ] && [ -s layer.png ]) ||
       failed "$folder/annotated_picture"
-  else # it says why it does not
+  else # it must report the reason
     if (cd "$folder" && ./annotated_picture "$SCRATCH/grid.nrrd" >"$SCRATCH/log" 2>&1); then
       failed "$folder/annotated_picture drew without Cairo"
     fi
     [[ $(<"$SCRATCH/log") == *'needs Cairo'* ]] || failed "$folder/annotated_picture: $(cat "$SCRATCH/log")"
   fi
-  if [ "$VTK" = 1 ]; then # one that a reader program reads, which has to be found from wherever the library lies
+  if [ "$VTK" = 1 ]; then # needs a reader program, which must be found relative to the library
     { printf '%s\n' '# vtk DataFile Version 3.0' grid ASCII 'DATASET STRUCTURED_POINTS' 'DIMENSIONS 9 9 9' 'ORIGIN 0 0 0' \
       'SPACING 1 1 1' 'POINT_DATA 729' 'SCALARS s float 1' 'LOOKUP_TABLE default'; seq 729; } >"$SCRATCH/grid.vtk"
     quietly "$folder/tiles_and_stop" "$SCRATCH/grid.vtk"
@@ -89,7 +89,7 @@ if [ "$STATIC" = 1 ]; then
   [[ $(readelf -d "$SCRATCH/static/mesh_from_arrays") != *libtessera* ]] || failed "it is not linked statically"
 fi
 
-if [ "$STATIC" = 1 ]; then # all of the archive, so that all that it needs has to be found
+if [ "$STATIC" = 1 ]; then # the complete archive, so that all its dependencies must be found
   mkdir "$SCRATCH/whole"
   cat >"$SCRATCH/whole/CMakeLists.txt" <<TEXT
 cmake_minimum_required(VERSION 3.25)
