@@ -3,7 +3,7 @@
 """First images: the result of `tessera render FILE -o OUT` without other options, in numbers and on contact sheets.
 
     bench/first_pictures.py --tessera PROGRAM [--before PROGRAM] [--data FOLDER] [--generated 40] [--sheets FOLDER] [--work FOLDER]
-                            [--results bench/RESULTS.md]
+                            [--results docs/RESULTS.md]
 
 Data sets: those of FOLDER (in the layout of its README: one file each, named in DATA below), and the same number of generated ones: meshes
 and volumes of `tessera generate`, and volumes that this script writes (scans in Hounsfield units, an MR-like head, labels, signed and
@@ -18,7 +18,8 @@ For each image, before it is composited over a background:
              the pixels, taken largest first, each at least 15 (CIE76) from those taken before; target: 3
 
 Shapes (meshes without a varying field) are solids without these targets. --sheets writes before.png and after.png there:
-thumbnails over dark grey with their names. Needs python3-numpy and python3-pil.
+thumbnails over dark grey with their names. The results have a row
+for each data set outside the targets. Needs python3-numpy and python3-pil.
 """
 import argparse
 import gzip
@@ -196,26 +197,26 @@ def main():
         print(file.name, *(f"{which}: " + " ".join(f"{x:.3g}" for x in rows[file.name][which]) for which in programs), flush=True)
     table = ["| data set | " + " | ".join(f"{which}: alpha | saturated [%] | colours" for which in reversed(list(programs))) + " |",
              "|---" * (1 + 3 * len(programs)) + "|"]
-    for name, row in rows.items():
+    outside = {name: row for name, row in rows.items() if not right(row["after"], row["after"][4])}
+    for name, row in outside.items():
         cells = [f"{row[w][1]:.2f} | {100 * row[w][2]:.1f} | {row[w][3]}{' (shape)' if row[w][4] else ''}" for w in reversed(list(programs))]
         table.append(f"| {name} | " + " | ".join(cells) + " |")
     good = {w: sum(right(row[w], row[w][4]) for row in rows.values()) for w in programs}
     for which in reversed(list(programs)):
         print(f"{which}: {good[which]} of {len(rows)} within all three bounds")
-    for name, row in rows.items():
-        if not right(row["after"], row["after"][4]):
-            print("outside:", name, row["after"])
+    for name, row in outside.items():
+        print("outside:", name, row["after"])
     if arguments.sheets:
         arguments.sheets.mkdir(parents=True, exist_ok=True)
         for which, some in pictures.items():
             sheet(some, arguments.sheets / f"{which}.png")
     if arguments.results:
-        counts = ", ".join(f"{which} {good[which]}" for which in reversed(list(programs)))
+        counts = ", ".join((f"{which} " if arguments.before else "") + str(good[which]) for which in reversed(list(programs)))
         caption = (f"{results_file.made(load)} `{results_file.command('first_pictures.py')}`: `tessera render FILE -o OUT`, no other option, "
                    "1024 x 1024. Of pixels with alpha of 1/255 or more: mean alpha (wanted 0.05 to 0.6), share with 0.98 or more (wanted at "
                    f"most 2 %), distinguishable colours (wanted 3); of {len(rows)} data sets within all three: {counts}; shapes, meshes without "
                    "a field, are solids and count as within")
-        results_file.put(arguments.results, "first_pictures.py", caption, table)
+        results_file.put(arguments.results, "first_pictures.py", caption, table if outside else [])
 
 
 if __name__ == "__main__":

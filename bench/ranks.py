@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The cost of ranks: the same frames by one process and by several, in pairs, old program and new.
 
-    bench/ranks.py --tessera PROGRAM [--old PROGRAM] [--pairs 10] [--repeat 8] [--work FOLDER] [--results FILE]
+    bench/ranks.py --tessera PROGRAM [--old PROGRAM] [--pairs 10] [--repeat 8] [--work FOLDER] [--results docs/RESULTS.md]
 
 Cube 64 (1.57 million tets), view and transfer function of all performance figures, 1024 x 1024, `exact`. A pair is one process of two threads, then
 two ranks of one thread, then 8 projectors and 8 compositors of one thread. *Time* is the median of the pair's frames, each alone
@@ -87,16 +87,19 @@ def main():
     def words(values, of):
         return f"{statistics.median(values):.2f} ({min(values):.2f} to {max(values):.2f}); {of:.0f} ms"
 
-    table = ["| program | arrangement | time beside one process: median (range); a frame | CPU beside one process: median (range); a frame |", "|---|---|---|---|"]
+    which_column = len(programs) > 1  # else all rows are of one program
+    table = ["| program " * which_column + "| arrangement | time over that of one process: median (range); a frame | CPU over that of one process: median "
+             "(range); a frame |", "|---" * (3 + which_column) + "|"]
     for which in programs:
+        first = f"| {which} " * which_column
         one = figures[which][ONE]
         for arrangement in ARRANGEMENTS:
             mine = figures[which][arrangement]
             time, cpu = ([m[i] / o[i] for m, o in zip(mine, one)] for i in (0, 1))
             middle = [statistics.median(m[i] for m in mine) for i in (0, 1)]
-            table.append(f"| {which} | {arrangement} | {words(time, middle[0])} | {words(cpu, middle[1])} |")
+            table.append(f"{first}| {arrangement} | {words(time, middle[0])} | {words(cpu, middle[1])} |")
         ms, of = alone[which]
-        table.append(f"| {which} | serial in {ONE} | {ms:.1f} ms | {100 * ms / of:.2f} % of {of:.0f} ms |")
+        table.append(f"{first}| serial in {ONE} | {ms:.1f} ms | {100 * ms / of:.2f} % of {of:.0f} ms |")
     print("\n".join(table))
     if args.results:
         caption = f"{results_file.made(load)} `{results_file.command('ranks.py')}`: what ranks cost, pairs in turn"

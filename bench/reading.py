@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Times reading: `tessera info` compared with VTK's own reader, for every format that VTK's Python module reads as a volume.
 
-    bench/reading.py --tessera PROGRAM [--work FOLDER] [--repeat 5] [--only TEXT] [--results bench/RESULTS.md]
+    bench/reading.py --tessera PROGRAM [--work FOLDER] [--repeat 5] [--only TEXT] [--results docs/RESULTS.md]
 
     bench/reading.py --tessera PROGRAM --old PROGRAM ...    compares the two programs instead: `tessera render`, 8 x 8 pixels with
                                                             a given function, so that neither computes a default one
@@ -205,8 +205,8 @@ def main():
             table.append(f"| {name} | {size:.0f} | {others[1]:.2f}, {others[2] / 2**20:.0f} | {reader} | {cpu:.2f}x, {memory:.2f}x, {wall:.2f}x |")
             print(table[-1], flush=True)
     if args.results:
-        what = ("`tessera render` of 8 x 8 pixels with view and function given, beside an older program" if args.old else
-                "`tessera info`, the whole program, beside VTK 9.1's reader alone, without loading it")
+        what = ("`tessera render` of 8 x 8 pixels with view and function given, and an older program" if args.old else
+                "`tessera info`, the whole program, and VTK 9.1's reader alone, without loading it")
         caption = (f"{results_file.made(load)} `{results_file.command('reading.py')}`: {what}; the least of {args.repeat} runs; CPU and wall time and peak "
                    f"memory as multiples of the others'")
         results_file.put(args.results, "reading.py old" if args.old else "reading.py", caption, table)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sections of docs/RESULTS.md and bench/RESULTS.md: a table, with commit, machine and command.
+"""Sections of docs/RESULTS.md: a table, with commit, machine and command.
 
 A section is between two marks, `<!-- NAME begin -->` and `<!-- NAME end -->`, and is replaced completely by the next run of
 the script after which it is named; text outside the marks is kept. A new section goes to the end of the file.
@@ -14,8 +14,13 @@ import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 WIDTH = 160  # columns of a line of Markdown
+<<<<<<< HEAD
 PLACES = ("--tessera", "--program", "--frames-program", "--packing", "--work", "--folder", "--output", "--document", "--results", "--json", "--figure",
           "--images")  # options with paths of programs, directories and outputs on this machine
+=======
+PLACES = ("--tessera", "--old", "--before", "--program", "--frames-program", "--packing", "--data", "--work", "--folder", "--output", "--document", "--results",
+          "--json", "--figure", "--images", "--sheets")  # options that name programs, folders and outputs: they are one machine's
+>>>>>>> e4b17fa5 (Merge the tables on speed into the page of results)
 
 
 def commit():

@@ -3,7 +3,7 @@
 """The speed of meshes where a target was set: one table of target, result, and command.
 
     bench/targets.py [--tessera build/release/apps/tessera] [--work FOLDER] [--data FOLDER] [--repeat 5]
-                     [--json FILE] [--results bench/RESULTS.md] [--only cube,large,real,parallel,modes]
+                     [--json FILE] [--results docs/RESULTS.md] [--only cube,large,real,parallel,modes]
 
 Makes its meshes in FOLDER (kept, so that a second run starts at once): cubes, a TetGen filling of a box, graded meshes
 of 15.8 and 51.1 M tets, and with --data (a directory with oxygen-post/ and bracket/) those, cut into eight. View and

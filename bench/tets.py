@@ -3,7 +3,7 @@
 """Times `tessera render` compared with VTK's unstructured-grid ray caster: same mesh, view, transfer function, machine, run.
 
     bench/tets.py [--tessera build/release/apps/tessera] [--cubes 32,64] [--repeat 7] [--vtk-repeat 2]
-                  [--verify 200] [--json bench/tets.json] [--results bench/RESULTS.md]
+                  [--verify 200] [--json bench/tets.json] [--results docs/RESULTS.md]
 
 Makes `tessera generate cube` meshes, renders each with the integrators `exact` and `auto` and with VTK's full and
 partial pre-integration (bench/peers/vtk_raycast.py under xvfb-run), and writes a table of times, ratios and errors.

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The cost of two processes: films of a volume by two processes of one thread, compared with one process of two threads.
 
-    bench/two_processes.py --tessera PROGRAM [--old PROGRAM] [--repeats 5] [--frames 12] [--samples 256] [--size 1024x1024] [--results FILE]
+    bench/two_processes.py --tessera PROGRAM [--old PROGRAM] [--repeats 5] [--frames 12] [--samples 256] [--size 1024x1024] [--results docs/RESULTS.md]
 
 `ripples` of SAMPLES^3 floats from a distance of five half sides: a turn of 2 degrees per frame, whose splits use the times of the previous frame, and an orbit of
 36 degrees per frame, where each view is new; sort-first by `--balance learned`, and sort-last. Each film is rendered by one process, then by two in both
@@ -90,23 +90,26 @@ def main():
                     for way, processes, words in [("one", 1, []), *((way, 2, words) for way, words in WAYS.items())]:
                         made.setdefault((film, which, way), []).append(render(args, program, folder, film, processes, words))
 
-    table = ["| film | program | two processes | a frame: one / two, ms | ratio (range) | whole run: one / two, s | ratio (range) | CPU (range) | finding | uneven |",
-             "|---|---|---|---:|---|---:|---|---|---:|---:|"]
+    which_column = len(programs) > 1  # else all rows are of one program
+    table = ["| film " + "| program " * which_column + "| two processes | a frame: one / two, ms | ratio (range) | whole run: one / two, s | "
+             "ratio (range) | CPU (range) | finding | uneven |",
+             "|---" * (2 + which_column) + "|---:|---|---:|---|---|---:|---:|"]
     for film, degrees in FILMS.items():
         for which in programs:
+            first = f"| {film}, {degrees} degrees a frame " + f"| {which} " * which_column
             one = made[film, which, "one"]
             for way in WAYS:
                 two = made[film, which, way]
                 middle = {what: [statistics.median(m[what] for m in runs) for runs in (one, two)] for what in ("frame", "whole")}
                 finding, uneven = shares(two)
-                table.append(f"| {film}, {degrees} degrees a frame | {which} | {way} | {middle['frame'][0]:.0f} / {middle['frame'][1]:.0f} | "
+                table.append(f"{first}| {way} | {middle['frame'][0]:.0f} / {middle['frame'][1]:.0f} | "
                              f"{ratios(two, one, 'frame')} | {middle['whole'][0] / 1e3:.1f} / {middle['whole'][1] / 1e3:.1f} | {ratios(two, one, 'whole')} | "
                              f"{ratios(two, one, 'cpu')} | {finding:.1f} % | {uneven:.1f} % |")
     print("\n".join(table))
     caption = f"{results_file.made(load)} `{results_file.command('two_processes.py')}`"
     print(caption)
     if args.results:
-        results_file.put(args.results, "two_processes.py", f"{caption}: what two processes cost beside one of two threads", table)
+        results_file.put(args.results, "two_processes.py", f"{caption}: what two processes cost, compared with one of two threads", table)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 """Times `tessera render` of regular grids compared with VTK's fixed-point ray caster: same volume, view, transfer function, run.
 
     bench/volumes.py [--tessera build/release/apps/tessera] [--data FOLDER] [--rounds 3] [--repeat 5] [--threads 2]
-                     [--size N] [--verify 100] [--no-vtk] [--mechanisms] [--only NAME] [--results bench/RESULTS.md]
+                     [--size N] [--verify 100] [--no-vtk] [--mechanisms] [--only NAME] [--results docs/RESULTS.md]
 
 Makes `tessera generate ripples n=256` in float and 8-bit samples (view and transfer function of all performance figures);
 FOLDER of --data may contain heptane.nii.gz and LIDC2.vti, which get their default view and a function that shows only the top

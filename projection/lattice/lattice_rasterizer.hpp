@@ -71,7 +71,7 @@ using OpenPixels = std::array<std::uint32_t, SegmentWindows::side>;
 /// rounding depends on block or lane, so neighbours compute the same bits for their common face. A gradient is rounded
 /// to a whole step a pixel: at most 16 steps of error within the square. Under perspective 1/depth and its products are
 /// the planes; a quotient of two gives what lies behind a vertex of the face, so precision is relative to the face.
-/// Measured on cube 64 (31 pixels a cell): bench/RESULTS.md.
+/// Measured on cube 64 (31 pixels a cell): docs/RESULTS.md.
 ///
 /// Irregular cells go through rasterize_planes: those that cross the eye plane or the clipping range, have a corner
 /// within a 16th of the others' distance of the eye, have a face edge-on to 2^-9 of a pixel (but for orthographic views
