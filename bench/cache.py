@@ -125,19 +125,17 @@ def figure_21(args, folder):
 
 def most_loaded(args, volume, share, limit):
     """Rows by cache and speed: quantiles over frames of the most bricks that any unit loads."""
-    lines = ["| degrees a frame | cache | bricks loaded, most of a unit: median | largest | waited for alone: median | largest | "
-             f"frames over {limit} [%] |", "|---:|---|---|---|---|---|---|"]
+    lines = [f"| degrees a frame | cache | bricks loaded, most of a unit: median | largest | frames over {limit} [%] |", "|---:|---|---|---|---|"]
     kinds = {"lru": dict(cache="lru", read_us=READ_US), "proximity": dict(cache="proximity", read_us=READ_US),
              f"proximity, {limit} ahead": dict(cache="proximity", preload=limit, read_us=READ_US)}
     for degrees in (2, 7, 14):
         runs = frames_of(args, [dict(volume=volume, animation="turn", degrees=degrees, units=6, frames=min(args.frames, 720 // degrees), share=share, **words)
                                 for words in kinds.values()])
         for name, run in zip(kinds, runs):
-            every = [[max(loaded + ahead for loaded, ahead, _ in frame["units"]), max(loaded for loaded, _, _ in frame["units"])] for frame in run["frames"][1:]]
-            cells = []
-            for loads in zip(*every):
-                cells += [f"{statistics.median(loads):g}", str(max(loads))]
-            cells.append(f"{100 * statistics.mean(waited > limit for _, waited in every):.1f}")
+            frames = [frame["units"] for frame in run["frames"][1:]]
+            most = [max(loaded + ahead for loaded, ahead, _ in units) for units in frames]
+            over = statistics.mean(max(loaded for loaded, _, _ in units) > limit for units in frames)  # waited for, not loaded ahead
+            cells = [f"{statistics.median(most):g}", str(max(most)), f"{100 * over:.1f}"]
             lines.append(f"| {degrees} | {name} | " + " | ".join(cells) + " |")
             print(lines[-1], flush=True)
     return lines
