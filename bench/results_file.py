@@ -31,13 +31,13 @@ def commit():
 def processor():
     """The processor's name and number of cores."""
     names = (line.split(":", 1)[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name"))
-    return next(names, "unknown CPU"), os.cpu_count()
+    return next(names, "unknown CPU").replace("(R)", "").removesuffix(" Processor"), os.cpu_count()
 
 
 def made(load_before):
     """Date, commit, machine, and the load average from before to after."""
     name, cores = processor()
-    return (f"{datetime.date.today().isoformat()}, commit {commit()}: {name}, {cores} cores, load {load_before:.1f} to "
+    return (f"{datetime.date.today().isoformat()}, commit {commit()}: {name}, {cores} cores, load {load_before:.1f}/"
             f"{os.getloadavg()[0]:.1f}.")
 
 
