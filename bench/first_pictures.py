@@ -215,7 +215,7 @@ def main():
         caption = (f"{results_file.made(load)} `{results_file.command('first_pictures.py')}`: `tessera render FILE -o OUT`, no other option, "
                    "1024 x 1024. Of pixels with alpha of 1/255 or more: mean alpha (wanted 0.05 to 0.6), share with 0.98 or more (wanted at "
                    f"most 2 %), distinguishable colours (wanted 3); of {len(rows)} data sets within all three: {counts}; shapes, meshes without "
-                   "a field, are solids and count as within")
+                   "a field, count as within")
         results_file.put(arguments.results, "first_pictures.py", caption, table if outside else [])
 
 
