@@ -102,7 +102,7 @@ def main():
         table.append(f"{first}| serial in {ONE} | {ms:.1f} ms | {100 * ms / of:.2f} % of {of:.0f} ms |")
     print("\n".join(table))
     if args.results:
-        caption = f"{results_file.made(load)} `{results_file.command('ranks.py')}`: what ranks cost, pairs in turn"
+        caption = f"{results_file.made(load)} `{results_file.command('ranks.py')}`: what ranks cost with cube 64, pairs in turn"
         results_file.put(args.results, "ranks.py", caption, table)
 
 

@@ -35,7 +35,7 @@ def processor():
 
 
 def made(load_before):
-    """Date, commit, machine, and the load average from before to after."""
+    """Date, commit, machine, and the load average before/after."""
     name, cores = processor()
     return (f"{datetime.date.today().isoformat()}, commit {commit()}: {name}, {cores} cores, load {load_before:.1f}/"
             f"{os.getloadavg()[0]:.1f}.")

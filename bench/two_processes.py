@@ -109,7 +109,7 @@ def main():
     caption = f"{results_file.made(load)} `{results_file.command('two_processes.py')}`"
     print(caption)
     if args.results:
-        results_file.put(args.results, "two_processes.py", f"{caption}: what two processes cost, compared with one of two threads", table)
+        results_file.put(args.results, "two_processes.py", f"{caption}: `ripples` of {args.samples}^3 by two processes, compared with one of two threads", table)
 
 
 if __name__ == "__main__":
