@@ -14,13 +14,8 @@ import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 WIDTH = 160  # columns of a line of Markdown
-<<<<<<< HEAD
-PLACES = ("--tessera", "--program", "--frames-program", "--packing", "--work", "--folder", "--output", "--document", "--results", "--json", "--figure",
-          "--images")  # options with paths of programs, directories and outputs on this machine
-=======
 PLACES = ("--tessera", "--old", "--before", "--program", "--frames-program", "--packing", "--data", "--work", "--folder", "--output", "--document", "--results",
-          "--json", "--figure", "--images", "--sheets")  # options that name programs, folders and outputs: they are one machine's
->>>>>>> e4b17fa5 (Merge the tables on speed into the page of results)
+          "--json", "--figure", "--images", "--sheets")  # options with paths on this machine
 
 
 def commit():
