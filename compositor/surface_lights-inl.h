@@ -23,10 +23,10 @@ namespace tessera::compositor {
 namespace HWY_NAMESPACE {
 
 using namespace integrals::HWY_NAMESPACE;  // vectors, and the integral of a segment a lane
-using DD = HN::ScalableTag<double>;
-using VD = HN::Vec<DD>;
-using HalfF = HN::Half<DF>;
-constexpr std::size_t most_lanes = HN::MaxLanes(DI());
+using DD = hn::ScalableTag<double>;
+using VD = hn::Vec<DD>;
+using HalfF = hn::Half<DF>;
+constexpr std::size_t most_lanes = hn::MaxLanes(DI());
 
 /// Lane values in double: two vectors.
 struct Doubles {
@@ -34,33 +34,33 @@ struct Doubles {
 };
 HWY_INLINE Doubles load(const double* from) {
   const DD d;
-  return {HN::Load(d, from), HN::Load(d, from + HN::Lanes(d))};
+  return {hn::Load(d, from), hn::Load(d, from + hn::Lanes(d))};
 }
 HWY_INLINE void store(Doubles v, double* to) {
   const DD d;
-  HN::Store(v.low, d, to);
-  HN::Store(v.high, d, to + HN::Lanes(d));
+  hn::Store(v.low, d, to);
+  hn::Store(v.high, d, to + hn::Lanes(d));
 }
 HWY_INLINE Doubles load(const float* from) {
   const DD d;
   const HalfF half;
-  return {HN::PromoteTo(d, HN::Load(half, from)), HN::PromoteTo(d, HN::Load(half, from + HN::Lanes(half)))};
+  return {hn::PromoteTo(d, hn::Load(half, from)), hn::PromoteTo(d, hn::Load(half, from + hn::Lanes(half)))};
 }
 HWY_INLINE Doubles promote(VF v) {
   const DD d;
   const HalfF half;
-  return {HN::PromoteTo(d, HN::LowerHalf(half, v)), HN::PromoteTo(d, HN::UpperHalf(half, v))};
+  return {hn::PromoteTo(d, hn::LowerHalf(half, v)), hn::PromoteTo(d, hn::UpperHalf(half, v))};
 }
 HWY_INLINE VF demote(Doubles v) {
   const HalfF half;
-  return HN::Combine(DF(), HN::DemoteTo(half, v.high), HN::DemoteTo(half, v.low));
+  return hn::Combine(DF(), hn::DemoteTo(half, v.high), hn::DemoteTo(half, v.low));
 }
 /// The crossings' numbers, of marks.
 HWY_INLINE VI number_of(VF mark) {
   using Mark = projection::LatticeMark;
   const DI d;
-  return HN::ShiftRight<Mark::cosine_bits>(
-      HN::Sub(HN::BitCast(d, mark), HN::Set(d, static_cast<std::int32_t>(Mark::first_bits))));
+  return hn::ShiftRight<Mark::cosine_bits>(hn::BitCast(d, mark) -
+                                           hn::Set(d, static_cast<std::int32_t>(Mark::first_bits)));
 }
 
 /// scene::SurfaceSet::light() of marks, a crossing a lane.
@@ -73,49 +73,45 @@ class SurfaceLights {
     const DF d;
     const DI di;
     const auto& paint = surfaces.paint_by_number();
-    const VI nothing = HN::Set(di, static_cast<std::int32_t>(paint.opacity.size()) - 1);
-    const VI number = HN::Min(number_of(mark), nothing);
-    const VI code = HN::And(HN::BitCast(di, mark), HN::Set(di, static_cast<std::int32_t>(Mark::cosines)));
-    const Doubles cosine = promote(HN::Div(HN::ConvertTo(d, code), HN::Set(d, static_cast<float>(Mark::cosines))));
+    const VI nothing = hn::Set(di, static_cast<std::int32_t>(paint.opacity.size()) - 1);
+    const VI number = hn::Min(number_of(mark), nothing);
+    const VI code = hn::And(hn::BitCast(di, mark), hn::Set(di, static_cast<std::int32_t>(Mark::cosines)));
+    const Doubles cosine = promote(hn::ConvertTo(d, code) / hn::Set(d, static_cast<float>(Mark::cosines)));
     const auto& parts = surfaces.parts_of_light();
     const Doubles power = shine(surfaces, cosine);
-    const auto matte = [&](VD c) HWY_ATTR {
-      return HN::Add(HN::Set(DD(), parts.ambient), HN::Mul(HN::Set(DD(), parts.diffuse), c));
-    };
-    const VD specular = HN::Set(DD(), parts.specular);
+    const auto matte = [&](VD c) HWY_ATTR { return hn::Set(DD(), parts.ambient) + hn::Set(DD(), parts.diffuse) * c; };
+    const VD specular = hn::Set(DD(), parts.specular);
     const Doubles dull{matte(cosine.low), matte(cosine.high)};
-    const Doubles bright{HN::Mul(specular, power.low), HN::Mul(specular, power.high)};
+    const Doubles bright{specular * power.low, specular * power.high};
     opacity = of_numbers(paint.opacity, number);
     const auto light = [&](const std::vector<double>& own) HWY_ATTR {
       const Doubles c = of_numbers(own, number);
-      return Doubles{HN::Mul(HN::Add(HN::Mul(c.low, dull.low), bright.low), opacity.low),
-                     HN::Mul(HN::Add(HN::Mul(c.high, dull.high), bright.high), opacity.high)};
+      return Doubles{(c.low * dull.low + bright.low) * opacity.low, (c.high * dull.high + bright.high) * opacity.high};
     };
     red = light(paint.red), green = light(paint.green), blue = light(paint.blue);
   }
 
   /// What is seen of a surface and of `behind` it.
   [[nodiscard]] HWY_INLINE Doubles before(const Doubles& of_surface, const Doubles& behind) const {
-    const VD one = HN::Set(DD(), 1);
-    return {HN::Add(of_surface.low, HN::Mul(HN::Sub(one, opacity.low), behind.low)),
-            HN::Add(of_surface.high, HN::Mul(HN::Sub(one, opacity.high), behind.high))};
+    const VD one = hn::Set(DD(), 1);
+    return {of_surface.low + (one - opacity.low) * behind.low, of_surface.high + (one - opacity.high) * behind.high};
   }
 
  private:
   static HWY_INLINE Doubles of_numbers(const std::vector<double>& column, VI number) {
     const DD d;
-    const HN::RebindToSigned<DD> di;
-    const HN::Half<DI> half;
-    return {HN::GatherIndex(d, column.data(), HN::PromoteTo(di, HN::LowerHalf(half, number))),
-            HN::GatherIndex(d, column.data(), HN::PromoteTo(di, HN::UpperHalf(half, number)))};
+    const hn::RebindToSigned<DD> di;
+    const hn::Half<DI> half;
+    return {hn::GatherIndex(d, column.data(), hn::PromoteTo(di, hn::LowerHalf(half, number))),
+            hn::GatherIndex(d, column.data(), hn::PromoteTo(di, hn::UpperHalf(half, number)))};
   }
   static HWY_INLINE Doubles shine(const scene::SurfaceSet& surfaces, const Doubles& cosine) {
     const DD d;
     if (surfaces.whole_shininess() < 0) return any_shine(surfaces, cosine);
-    Doubles base = cosine, power{HN::Set(d, 1), HN::Set(d, 1)};
+    Doubles base = cosine, power{hn::Set(d, 1), hn::Set(d, 1)};
     for (int exponent = surfaces.whole_shininess(); exponent > 0; exponent /= 2) {
-      if (exponent % 2 != 0) power = {HN::Mul(power.low, base.low), HN::Mul(power.high, base.high)};
-      base = {HN::Mul(base.low, base.low), HN::Mul(base.high, base.high)};
+      if (exponent % 2 != 0) power = {power.low * base.low, power.high * base.high};
+      base = {base.low * base.low, base.high * base.high};
     }
     return power;
   }

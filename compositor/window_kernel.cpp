@@ -34,27 +34,27 @@ struct Fields {
 };
 HWY_INLINE Fields transposed(VI v0, VI v1, VI v2, VI v3) {
   const DI d;
-  const HN::RepartitionToWide<DI> wide;
-  const auto pairs = [&](VI v) HWY_ATTR { return HN::BitCast(wide, v); };
-  const auto low01 = pairs(HN::InterleaveLower(d, v0, v1)), high01 = pairs(HN::InterleaveUpper(d, v0, v1));
-  const auto low23 = pairs(HN::InterleaveLower(d, v2, v3)), high23 = pairs(HN::InterleaveUpper(d, v2, v3));
+  const hn::RepartitionToWide<DI> wide;
+  const auto pairs = [&](VI v) HWY_ATTR { return hn::BitCast(wide, v); };
+  const auto low01 = pairs(hn::InterleaveLower(d, v0, v1)), high01 = pairs(hn::InterleaveUpper(d, v0, v1));
+  const auto low23 = pairs(hn::InterleaveLower(d, v2, v3)), high23 = pairs(hn::InterleaveUpper(d, v2, v3));
   const DF df;
-  return {HN::BitCast(d, HN::InterleaveLower(wide, low01, low23)),
-          HN::BitCast(d, HN::InterleaveUpper(wide, low01, low23)),
-          HN::BitCast(df, HN::InterleaveLower(wide, high01, high23)),
-          HN::BitCast(df, HN::InterleaveUpper(wide, high01, high23))};
+  return {hn::BitCast(d, hn::InterleaveLower(wide, low01, low23)),
+          hn::BitCast(d, hn::InterleaveUpper(wide, low01, low23)),
+          hn::BitCast(df, hn::InterleaveLower(wide, high01, high23)),
+          hn::BitCast(df, hn::InterleaveUpper(wide, high01, high23))};
 }
 
 /// Those of load_fields(), `lanes` / 4 of them: lanes first, first + 4, first + 8...
 template <std::size_t lanes>
 HWY_INLINE auto load_every_fourth(const projection::LatticeSegment* list, const std::int32_t* slots, int first) {
   if constexpr (lanes == 4) {
-    return HN::Load(HN::FixedTag<std::int32_t, 4>(),
+    return hn::Load(hn::FixedTag<std::int32_t, 4>(),
                     reinterpret_cast<const std::int32_t*>(&segment_at(list + first, slots[first])));
   } else {
     const auto low = load_every_fourth<lanes / 2>(list, slots, first);
     const auto high = load_every_fourth<lanes / 2>(list, slots, first + static_cast<int>(lanes) / 2);
-    return HN::Combine(HN::FixedTag<std::int32_t, lanes>(), high, low);
+    return hn::Combine(hn::FixedTag<std::int32_t, lanes>(), high, low);
   }
 }
 
@@ -89,43 +89,43 @@ class PixelGroup {
                               const scene::SurfaceSet* surfaces) {
     const DI d;
     const DF df;
-    const std::size_t lanes = HN::Lanes(d);
-    const VF length_per_step = HN::Load(df, &state_.length_per_step[pixel_]);
-    const auto open = HN::Lt(HN::Load(d, &state_.open[pixel_]), HN::Zero(d));
-    const VI end = HN::Set(d, final_step), none = HN::Set(d, no_key);
+    const std::size_t lanes = hn::Lanes(d);
+    const VF length_per_step = hn::Load(df, &state_.length_per_step[pixel_]);
+    const auto open = hn::Load(d, &state_.open[pixel_]) < hn::Zero(d);
+    const VI end = hn::Set(d, final_step), none = hn::Set(d, no_key);
     VI run_back = none;
-    VI widest = HN::Zero(d);
+    VI widest = hn::Zero(d);
     const VI count = this->count();
-    if constexpr (runs) run_back = HN::Load(d, &state_.back[pixel_]);
+    if constexpr (runs) run_back = hn::Load(d, &state_.back[pixel_]);
     for (std::size_t row = from; row < to; ++row) {
       const Fields s = load_fields(list_, state_.order.slots.data() + row * lanes);
       const VI front = s.front;
-      const auto is_final = HN::And(HN::Lt(front, end), has_row(row, count));
-      if (HN::AllFalse(d, is_final)) {
+      const auto is_final = hn::And(front < end, has_row(row, count));
+      if (hn::AllFalse(d, is_final)) {
         to = row;
         break;
       }
-      done_ = count_if(HN::RebindMask(df, is_final), done_);
+      done_ = count_if(hn::RebindMask(df, is_final), done_);
       VF scalar_front = s.scalar_front;
       if constexpr (with_surfaces)
         scalar_front =
             light_.set_aside_surfaces(surfaces->on_lattice_by_number(), is_final, open, scalar_front, row - from);
-      const VF length = HN::Mul(HN::ConvertTo(df, HN::Sub(s.back, front)), length_per_step);
-      const auto takes = HN::And(is_final, open);
-      light_.put_segment(HN::IfThenElseZero(HN::RebindMask(df, takes), length), HN::IfThenElse(takes, front, none),
+      const VF length = hn::ConvertTo(df, s.back - front) * length_per_step;
+      const auto takes = hn::And(is_final, open);
+      light_.put_segment(hn::IfThenElseZero(hn::RebindMask(df, takes), length), hn::IfThenElse(takes, front, none),
                          s.back, scalar_front, s.scalar_back,
-                         table_.locate(scalar_front, HN::Ge(s.scalar_back, scalar_front)), (row - from) * lanes);
+                         table_.locate(scalar_front, s.scalar_back >= scalar_front), (row - from) * lanes);
       if constexpr (runs) {
         // A lane in no run begins one in the first of these rows, or takes nothing from any: its list has no holes.
-        if (row == from) run_back = HN::IfThenElse(HN::And(takes, HN::Eq(run_back, none)), front, run_back);
-        widest = HN::Max(widest, HN::Abs(HN::IfThenElseZero(takes, HN::Sub(front, run_back))));
+        if (row == from) run_back = hn::IfThenElse(hn::And(takes, run_back == none), front, run_back);
+        widest = hn::Max(widest, hn::Abs(hn::IfThenElseZero(takes, front - run_back)));
         // Irregular cells' depths are a few steps off: a run does not go back.
-        run_back = HN::IfThenElse(takes, HN::Max(run_back, s.back), run_back);
+        run_back = hn::IfThenElse(takes, hn::Max(run_back, s.back), run_back);
       }
     }
     if constexpr (runs) {
-      HN::Store(run_back, d, light_.run_back);
-      light_.touching = HN::AllFalse(d, HN::Gt(widest, HN::Set(d, touching_steps)));
+      hn::Store(run_back, d, light_.run_back);
+      light_.touching = hn::AllFalse(d, widest > hn::Set(d, touching_steps));
     }
     return to;
   }
@@ -138,7 +138,7 @@ class PixelGroup {
 
   /// Composites what lies before `final_step`; returns how many segments are done with.
   HWY_INLINE std::uint64_t composite(std::size_t rows, std::int32_t final_step, const WindowRules& rules) {
-    done_ = HN::Zero(DI());
+    done_ = hn::Zero(DI());
     for (std::size_t from = 0, to; from < rows; from = to) {
       const std::size_t most = std::min(rows, from + LightRows::most);
       // In three passes, each of chains short enough for a processor to work on several rows at once.
@@ -154,30 +154,30 @@ class PixelGroup {
   /// Whether some lane has shown nothing yet.
   HWY_INLINE bool some_unseen() const {
     const DI d;
-    return !HN::AllFalse(d, HN::Eq(HN::Load(d, &state_.first_back[pixel_]), HN::Set(d, no_key)));
+    return !hn::AllFalse(d, hn::Load(d, &state_.first_back[pixel_]) == hn::Set(d, no_key));
   }
 
   HWY_INLINE VI count() const {
-    return HN::LoadU(DI(), reinterpret_cast<const std::int32_t*>(windows_.counts() + pixel_));
+    return hn::LoadU(DI(), reinterpret_cast<const std::int32_t*>(windows_.counts() + pixel_));
   }
 
   /// Leaves in the windows what of the sorted rows was not final, in order. Returns how many segments are gone.
   HWY_INLINE std::uint64_t keep_rest(std::size_t rows) {
     const DI d;
     // Lanes beyond the last pixel share their memory with other lists.
-    const std::size_t lanes = HN::Lanes(d), own = std::min(lanes, windows_.pixels() - pixel_);
+    const std::size_t lanes = hn::Lanes(d), own = std::min(lanes, windows_.pixels() - pixel_);
     std::uint32_t* counts = windows_.counts() + pixel_;
     const VI count = this->count();
-    const auto open = HN::Lt(HN::Load(d, &state_.open[pixel_]), HN::Zero(d));
-    const VI left = HN::IfThenElseZero(open, HN::Sub(count, done_));
-    HN::StoreU(left, d, reinterpret_cast<std::int32_t*>(counts));
-    const auto most = static_cast<std::size_t>(HN::GetLane(HN::MaxOfLanes(d, left)));
+    const auto open = hn::Load(d, &state_.open[pixel_]) < hn::Zero(d);
+    const VI left = hn::IfThenElseZero(open, count - done_);
+    hn::StoreU(left, d, reinterpret_cast<std::int32_t*>(counts));
+    const auto most = static_cast<std::size_t>(hn::GetLane(hn::MaxOfLanes(d, left)));
     state_.rest_rows[pixel_ / lanes] = static_cast<std::int32_t>(most);
-    const auto gone = static_cast<std::uint64_t>(HN::GetLane(HN::SumOfLanes(d, HN::Sub(count, left))));
+    const auto gone = static_cast<std::uint64_t>(hn::GetLane(hn::SumOfLanes(d, count - left)));
     if (most == 0) return gone;
     // As many of each lane, so that no branch depends on one: what is not a lane's own is behind its list's end.
     alignas(64) std::int32_t first[most_lanes];
-    HN::Store(done_, d, first);
+    hn::Store(done_, d, first);
     if (state_.rest.size() < most * lanes) state_.rest.resize(most * lanes);
     for (std::size_t k = 0; k < most; ++k)
       for (std::size_t lane = 0; lane < own; ++lane) {
@@ -194,7 +194,7 @@ class PixelGroup {
   LightRows& light_;
   std::size_t pixel_;
   projection::LatticeSegment* list_;
-  VI done_ = HN::Zero(DI());  ///< segments of each lane that were final
+  VI done_ = hn::Zero(DI());  ///< segments of each lane that were final
 };
 
 template <TableForm form>
@@ -205,11 +205,11 @@ std::uint64_t composite_form(const WindowRules& rules, projection::SegmentWindow
   LightRows light;
   const DI d;
   const auto full = static_cast<std::int32_t>(windows.capacity());
-  for (std::size_t pixel = 0; pixel < windows.pixels(); pixel += HN::Lanes(d)) {
-    const VI count = HN::LoadU(d, reinterpret_cast<const std::int32_t*>(windows.counts() + pixel));
+  for (std::size_t pixel = 0; pixel < windows.pixels(); pixel += hn::Lanes(d)) {
+    const VI count = hn::LoadU(d, reinterpret_cast<const std::int32_t*>(windows.counts() + pixel));
     const std::int32_t worthwhile =
-        at_least == 1 ? 1 : std::max(at_least, std::min(2 * state.rest_rows[pixel / HN::Lanes(d)], full));
-    if (HN::AllFalse(d, HN::Gt(count, HN::Set(d, worthwhile - 1)))) continue;
+        at_least == 1 ? 1 : std::max(at_least, std::min(2 * state.rest_rows[pixel / hn::Lanes(d)], full));
+    if (hn::AllFalse(d, count > hn::Set(d, worthwhile - 1))) continue;
     PixelGroup<form> group(lookup, windows, pixel, state, light);
     const std::size_t rows = group.sort();
     timer.record("sort");

@@ -26,9 +26,9 @@ namespace HWY_NAMESPACE {
 constexpr std::int32_t no_key = WindowState::not_yet;  // behind all keys
 
 /// -1 where the mask is set, else 0.
-HWY_INLINE VI lanes_of(HN::Mask<DD> low, HN::Mask<DD> high) {
-  const VD yes = HN::Set(DD(), -1);
-  return HN::ConvertTo(DI(), demote({HN::IfThenElseZero(low, yes), HN::IfThenElseZero(high, yes)}));
+HWY_INLINE VI lanes_of(hn::Mask<DD> low, hn::Mask<DD> high) {
+  const VD yes = hn::Set(DD(), -1);
+  return hn::ConvertTo(DI(), demote({hn::IfThenElseZero(low, yes), hn::IfThenElseZero(high, yes)}));
 }
 
 /// What a block of rows, a segment of every pixel in each, sends to the eye: numbers [row * lanes + lane].
@@ -55,48 +55,48 @@ struct LightRows {
 
   /// Of a row, whose lanes that are final and open take a segment. Returns its front scalars, with the surfaces' values
   /// where they are marks.
-  HWY_INLINE VF set_aside_surfaces(std::span<const float> by_number, HN::Mask<DI> is_final, HN::Mask<DI> open,
+  HWY_INLINE VF set_aside_surfaces(std::span<const float> by_number, hn::Mask<DI> is_final, hn::Mask<DI> open,
                                    VF scalar_from, std::size_t row) {
     using Mark = projection::LatticeMark;
     const DF d;
     const DI di;
-    const MF is_mark = HN::And(HN::RebindMask(d, is_final), HN::Ge(scalar_from, HN::Set(d, Mark::first)));
-    if (HN::AllFalse(d, is_mark)) return scalar_from;
-    const auto takes = HN::And(HN::RebindMask(di, is_mark), open);
+    const MF is_mark = hn::And(hn::RebindMask(d, is_final), scalar_from >= hn::Set(d, Mark::first));
+    if (hn::AllFalse(d, is_mark)) return scalar_from;
+    const auto takes = hn::And(hn::RebindMask(di, is_mark), open);
     const projection::HWY_NAMESPACE::LanePacker pack(takes);
     if (pack.count() > 0) {
-      HN::StoreU(pack(HN::Add(HN::Iota(di, 0), HN::Set(di, static_cast<std::int32_t>(row * HN::Lanes(d))))), di,
+      hn::StoreU(pack(hn::Iota(di, 0) + hn::Set(di, static_cast<std::int32_t>(row * hn::Lanes(d)))), di,
                  marked_at + marked);
-      HN::StoreU(pack(scalar_from), d, mark + marked);
+      hn::StoreU(pack(scalar_from), d, mark + marked);
       marked += pack.count();
       marked_rows |= 1u << row;
     }
-    const VI last = HN::Set(di, static_cast<std::int32_t>(by_number.size()) - 1);
-    const VI number = HN::IfThenElseZero(HN::RebindMask(di, is_mark), HN::Min(number_of(scalar_from), last));
-    return HN::IfThenElse(is_mark, HN::GatherIndex(d, by_number.data(), number), scalar_from);
+    const VI last = hn::Set(di, static_cast<std::int32_t>(by_number.size()) - 1);
+    const VI number = hn::IfThenElseZero(hn::RebindMask(di, is_mark), hn::Min(number_of(scalar_from), last));
+    return hn::IfThenElse(is_mark, hn::GatherIndex(d, by_number.data(), number), scalar_from);
   }
   /// After integrate(): puts the surfaces before what is behind them. `show_first`: where lanes begin to show may still
   /// be asked.
   HWY_NOINLINE void put_surfaces(const scene::SurfaceSet& surfaces, bool show_first) {
     const DF d;
     const DI di;
-    for (std::size_t i = 0; i < marked; i += HN::Lanes(d)) {
+    for (std::size_t i = 0; i < marked; i += hn::Lanes(d)) {
       // Lanes beyond the last do as the first does.
-      const auto here = HN::FirstN(d, marked - i);
-      const VI at = HN::IfThenElse(HN::RebindMask(di, here), HN::Load(di, marked_at + i), HN::Set(di, marked_at[i]));
-      const VF marks = HN::IfThenElse(here, HN::Load(d, mark + i), HN::Set(d, mark[i]));
+      const auto here = hn::FirstN(d, marked - i);
+      const VI at = hn::IfThenElse(hn::RebindMask(di, here), hn::Load(di, marked_at + i), hn::Set(di, marked_at[i]));
+      const VF marks = hn::IfThenElse(here, hn::Load(d, mark + i), hn::Set(d, mark[i]));
       const SurfaceLights light(surfaces, marks);
       const auto put = [&](const Doubles& of_surface, float* to) HWY_ATTR {
-        const VF sum = demote(light.before(of_surface, promote(HN::GatherIndex(d, to, at))));
-        HN::ScatterIndex(sum, d, to, at);
+        const VF sum = demote(light.before(of_surface, promote(hn::GatherIndex(d, to, at))));
+        hn::ScatterIndex(sum, d, to, at);
         return sum;
       };
       put(light.red, red), put(light.green, green), put(light.blue, blue);
       const VF hidden = put(light.opacity, alpha);
       if (!show_first) continue;
       // Of the optical depth is only asked whether there is some.
-      HN::ScatterIndex(hidden, d, optical_depth, at);
-      HN::ScatterIndex(marks, d, scalar_front, at);
+      hn::ScatterIndex(hidden, d, optical_depth, at);
+      hn::ScatterIndex(marks, d, scalar_front, at);
     }
     for (; marked_rows != 0; marked_rows &= marked_rows - 1) lit[__builtin_ctz(marked_rows)] = true;
     marked = 0;
@@ -105,19 +105,19 @@ struct LightRows {
   HWY_INLINE void put_segment(VF l, VI from, VI to, VF scalar_from, VF scalar_to, VI scalar_interval, std::size_t at) {
     const DF d;
     const DI di;
-    HN::Store(l, d, length + at);
-    HN::Store(scalar_from, d, scalar_front + at), HN::Store(scalar_to, d, scalar_back + at);
-    HN::Store(from, di, front + at), HN::Store(to, di, back + at), HN::Store(scalar_interval, di, interval + at);
+    hn::Store(l, d, length + at);
+    hn::Store(scalar_from, d, scalar_front + at), hn::Store(scalar_to, d, scalar_back + at);
+    hn::Store(from, di, front + at), hn::Store(to, di, back + at), hn::Store(scalar_interval, di, interval + at);
   }
   HWY_INLINE void put(const Light& light, std::size_t at) {
     const DF d;
-    HN::Store(light.alpha, d, alpha + at), HN::Store(light.optical_depth, d, optical_depth + at);
-    HN::Store(light.red, d, red + at), HN::Store(light.green, d, green + at), HN::Store(light.blue, d, blue + at);
+    hn::Store(light.alpha, d, alpha + at), hn::Store(light.optical_depth, d, optical_depth + at);
+    hn::Store(light.red, d, red + at), hn::Store(light.green, d, green + at), hn::Store(light.blue, d, blue + at);
   }
   HWY_INLINE void defer(MF more, VI places) {
     const DI d;
-    const projection::HWY_NAMESPACE::LanePacker pack(HN::RebindMask(d, more));
-    HN::StoreU(pack(places), d, waiting_at + waiting);
+    const projection::HWY_NAMESPACE::LanePacker pack(hn::RebindMask(d, more));
+    hn::StoreU(pack(places), d, waiting_at + waiting);
     waiting += pack.count();
   }
   template <TableForm form>
@@ -125,14 +125,14 @@ struct LightRows {
     const DF d;
     const DI di;
     alignas(64) float now[5][most_lanes];
-    HN::StoreU(HN::Zero(di), di, waiting_at + waiting);  // lanes beyond the last read some place, too
-    for (std::size_t i = 0; i < waiting; i += HN::Lanes(d)) {
-      const std::size_t here = std::min(HN::Lanes(d), waiting - i);
-      const VI at = HN::Load(di, waiting_at + i);
-      const Light light = integrate_lanes(table, HN::GatherIndex(d, length, at), HN::GatherIndex(d, scalar_front, at),
-                                          HN::GatherIndex(d, scalar_back, at), HN::FirstN(d, here));
-      HN::Store(light.alpha, d, now[0]), HN::Store(light.optical_depth, d, now[1]);
-      HN::Store(light.red, d, now[2]), HN::Store(light.green, d, now[3]), HN::Store(light.blue, d, now[4]);
+    hn::StoreU(hn::Zero(di), di, waiting_at + waiting);  // lanes beyond the last read some place, too
+    for (std::size_t i = 0; i < waiting; i += hn::Lanes(d)) {
+      const std::size_t here = std::min(hn::Lanes(d), waiting - i);
+      const VI at = hn::Load(di, waiting_at + i);
+      const Light light = integrate_lanes(table, hn::GatherIndex(d, length, at), hn::GatherIndex(d, scalar_front, at),
+                                          hn::GatherIndex(d, scalar_back, at), hn::FirstN(d, here));
+      hn::Store(light.alpha, d, now[0]), hn::Store(light.optical_depth, d, now[1]);
+      hn::Store(light.red, d, now[2]), hn::Store(light.green, d, now[3]), hn::Store(light.blue, d, now[4]);
       for (std::size_t k = 0; k < here; ++k) {
         const auto to = static_cast<std::size_t>(waiting_at[i + k]);
         alpha[to] = now[0][k], optical_depth[to] = now[1][k];
@@ -154,21 +154,20 @@ struct LightRows {
   HWY_INLINE void integrate_rows(const Lookup<form>& table, std::size_t count) {
     const DI d;
     const DF df;
-    const std::size_t lanes = HN::Lanes(d);
-    VI places = HN::Iota(d, 0);
+    const std::size_t lanes = hn::Lanes(d);
+    VI places = hn::Iota(d, 0);
     for (std::size_t row = 0; row < count; ++row) {
       const std::size_t at = row * lanes;
-      const VF l = HN::Load(df, length + at), from = HN::Load(df, scalar_front + at),
-               to = HN::Load(df, scalar_back + at);
+      const VF l = hn::Load(df, length + at), from = hn::Load(df, scalar_front + at),
+               to = hn::Load(df, scalar_back + at);
       MF more;
-      const Light light = integrate_simple<independent>(table, HN::Load(d, interval + at), l, from, to, more);
+      const Light light = integrate_simple<independent>(table, hn::Load(d, interval + at), l, from, to, more);
       put(light, at);
-      MF shows = HN::Or(more, HN::Gt(light.optical_depth, HN::Zero(df)));
-      if constexpr (independent)
-        shows = HN::Or(shows, HN::Gt(HN::Add(light.red, HN::Add(light.green, light.blue)), HN::Zero(df)));
-      lit[row] = !HN::AllFalse(df, shows);
-      if (!HN::AllFalse(df, more)) defer(more, places);
-      places = HN::Add(places, HN::Set(d, static_cast<std::int32_t>(lanes)));
+      MF shows = hn::Or(more, light.optical_depth > hn::Zero(df));
+      if constexpr (independent) shows = hn::Or(shows, light.red + (light.green + light.blue) > hn::Zero(df));
+      lit[row] = !hn::AllFalse(df, shows);
+      if (!hn::AllFalse(df, more)) defer(more, places);
+      places = places + hn::Set(d, static_cast<std::int32_t>(lanes));
     }
   }
 };
@@ -198,26 +197,26 @@ class GroupLight {
     Doubles transmittance = load(&state_.transmittance[p]);
     const Doubles least = runs
                               ? least_of_runs(rules)
-                              : Doubles{HN::Set(dd, rules.least_transmittance), HN::Set(dd, rules.least_transmittance)};
+                              : Doubles{hn::Set(dd, rules.least_transmittance), hn::Set(dd, rules.least_transmittance)};
     // A pixel that closes takes no more: it has no weight.
     Open open = load_open();
     for (std::size_t row = 0; row < count; ++row) {
       if (!light_.lit[row]) continue;
-      const std::size_t at = row * HN::Lanes(df);
-      const Doubles weight{HN::IfThenElseZero(open.low, transmittance.low),
-                           HN::IfThenElseZero(open.high, transmittance.high)};
+      const std::size_t at = row * hn::Lanes(df);
+      const Doubles weight{hn::IfThenElseZero(open.low, transmittance.low),
+                           hn::IfThenElseZero(open.high, transmittance.high)};
       add(weight, light_.red + at, red), add(weight, light_.green + at, green), add(weight, light_.blue + at, blue);
       take(weight, light_.alpha + at, transmittance);
       // After each segment, not each window: where a ray ends must not depend on how its segments were cut.
-      open.low = HN::And(open.low, HN::Ge(transmittance.low, least.low));
-      open.high = HN::And(open.high, HN::Ge(transmittance.high, least.high));
+      open.low = hn::And(open.low, transmittance.low >= least.low);
+      open.high = hn::And(open.high, transmittance.high >= least.high);
     }
     store(red, &state_.red[p]), store(green, &state_.green[p]), store(blue, &state_.blue[p]);
     store(transmittance, &state_.transmittance[p]);
     note_first<runs>(count);
-    if constexpr (runs) HN::Store(HN::Load(DI(), light_.run_back), DI(), &state_.back[p]);
+    if constexpr (runs) hn::Store(hn::Load(DI(), light_.run_back), DI(), &state_.back[p]);
     const VI open_lanes = store_open(open);
-    return !HN::AllFalse(DI(), HN::Lt(open_lanes, HN::Zero(DI())));
+    return !hn::AllFalse(DI(), open_lanes < hn::Zero(DI()));
   }
 
   /// Where lanes that have shown nothing yet begin to, and, of runs, whether more than that segment shows. (Lanes
@@ -226,30 +225,30 @@ class GroupLight {
   HWY_INLINE void note_first(std::size_t count) {
     const DI d;
     const DF df;
-    auto unseen = HN::Eq(HN::Load(d, &state_.first_back[pixel_]), HN::Set(d, no_key));
+    auto unseen = hn::Load(d, &state_.first_back[pixel_]) == hn::Set(d, no_key);
     auto single = unseen;
-    if constexpr (runs) single = HN::Eq(HN::Load(d, &state_.several[pixel_]), HN::Zero(d));
-    for (std::size_t row = 0; row < count && !HN::AllFalse(d, single); ++row) {
+    if constexpr (runs) single = hn::Load(d, &state_.several[pixel_]) == hn::Zero(d);
+    for (std::size_t row = 0; row < count && !hn::AllFalse(d, single); ++row) {
       if (!light_.lit[row]) continue;
-      const VF depth = HN::Load(df, light_.optical_depth + row * HN::Lanes(d));
-      const auto shows = HN::RebindMask(d, HN::Gt(depth, HN::Zero(df)));
-      const auto appears = HN::And(unseen, shows);
-      if constexpr (runs) single = HN::AndNot(HN::AndNot(unseen, shows), single);
-      if (HN::AllFalse(d, appears)) continue;
+      const VF depth = hn::Load(df, light_.optical_depth + row * hn::Lanes(d));
+      const auto shows = hn::RebindMask(d, depth > hn::Zero(df));
+      const auto appears = hn::And(unseen, shows);
+      if constexpr (runs) single = hn::AndNot(hn::AndNot(unseen, shows), single);
+      if (hn::AllFalse(d, appears)) continue;
       keep_first(appears, row);
-      unseen = HN::AndNot(appears, unseen);
+      unseen = hn::AndNot(appears, unseen);
       if constexpr (!runs) single = unseen;
     }
-    if constexpr (runs) HN::Store(HN::VecFromMask(d, HN::Not(single)), d, &state_.several[pixel_]);
+    if constexpr (runs) hn::Store(hn::VecFromMask(d, hn::Not(single)), d, &state_.several[pixel_]);
   }
 
   /// What the lanes' runs must let through to stay open, behind the runs before them.
   HWY_INLINE Doubles least_of_runs(const WindowRules& rules) const {
     const DD d;
-    if (rules.least_transmittance == 0) return {HN::Zero(d), HN::Zero(d)};
+    if (rules.least_transmittance == 0) return {hn::Zero(d), hn::Zero(d)};
     const Doubles before = load(&state_.ray_transmittance[pixel_]);
-    const VD most = HN::Set(d, rules.least_transmittance);
-    return {HN::Div(most, before.low), HN::Div(most, before.high)};
+    const VD most = hn::Set(d, rules.least_transmittance);
+    return {most / before.low, most / before.high};
   }
 
   /// The same in runs, a lane's run in registers while it goes on. Whether some pixel stays open may change only where
@@ -261,131 +260,130 @@ class GroupLight {
     const DF df;
     const DD dd;
     const std::size_t p = pixel_;
-    const VI none = HN::Set(d, no_key), no_run = HN::Set(d, -no_key), zero = HN::Zero(d);
+    const VI none = hn::Set(d, no_key), no_run = hn::Set(d, -no_key), zero = hn::Zero(d);
     Doubles red, green, blue, transmittance, least;
     VI run_back;  // no_run: no run
-    HN::Mask<DI> seen, several;
+    hn::Mask<DI> seen, several;
     const auto resume = [&]() HWY_ATTR {
       red = load(&state_.red[p]), green = load(&state_.green[p]), blue = load(&state_.blue[p]);
       transmittance = load(&state_.transmittance[p]);
       if constexpr (closes) least = least_of_runs(rules);
-      run_back = HN::Load(d, &state_.back[p]);
-      run_back = HN::IfThenElse(HN::Eq(run_back, none), no_run, run_back);
-      several = HN::Ne(HN::Load(d, &state_.several[p]), zero);
-      seen = HN::Ne(HN::Load(d, &state_.first_back[p]), none);
+      run_back = hn::Load(d, &state_.back[p]);
+      run_back = hn::IfThenElse(run_back == none, no_run, run_back);
+      several = hn::Load(d, &state_.several[p]) != zero;
+      seen = hn::Load(d, &state_.first_back[p]) != none;
     };
     const auto save = [&]() HWY_ATTR {
       store(red, &state_.red[p]), store(green, &state_.green[p]), store(blue, &state_.blue[p]);
       store(transmittance, &state_.transmittance[p]);
-      HN::Store(HN::IfThenElse(HN::Eq(run_back, no_run), none, run_back), d, &state_.back[p]);
-      HN::Store(HN::VecFromMask(d, several), d, &state_.several[p]);
+      hn::Store(hn::IfThenElse(run_back == no_run, none, run_back), d, &state_.back[p]);
+      hn::Store(hn::VecFromMask(d, several), d, &state_.several[p]);
     };
     Open open = load_open();
-    auto open_lanes = HN::Lt(HN::Load(d, &state_.open[p]), zero);
+    auto open_lanes = hn::Load(d, &state_.open[p]) < zero;
     resume();
     for (std::size_t row = 0; row < count; ++row) {
-      const std::size_t at = row * HN::Lanes(d);
-      const VI front = HN::Load(d, light_.front + at);
-      const auto takes = HN::And(HN::Ne(front, none), open_lanes);
-      const auto absorbs =
-          HN::And(takes, HN::RebindMask(d, HN::Gt(HN::Load(df, light_.optical_depth + at), HN::Zero(df))));
+      const std::size_t at = row * hn::Lanes(d);
+      const VI front = hn::Load(d, light_.front + at);
+      const auto takes = hn::And(front != none, open_lanes);
+      const auto absorbs = hn::And(takes, hn::RebindMask(d, hn::Load(df, light_.optical_depth + at) > hn::Zero(df)));
       // Runs end where the next segment does not touch.
-      const auto in_run = HN::And(takes, HN::Ne(run_back, no_run));
-      auto ends = HN::And(in_run, HN::Gt(HN::Abs(HN::Sub(front, run_back)), HN::Set(d, touching_steps)));
+      const auto in_run = hn::And(takes, run_back != no_run);
+      auto ends = hn::And(in_run, hn::Abs(front - run_back) > hn::Set(d, touching_steps));
       if (independent_) {
         // Light without extinction does not share a run with what absorbs behind it either: a run's front is where
         // absorption begins.
-        const VD one = HN::Set(dd, 1);
-        const auto clear = HN::Ne(lanes_of(HN::Ge(transmittance.low, one), HN::Ge(transmittance.high, one)), zero);
-        ends = HN::Or(ends, HN::And(HN::And(in_run, absorbs), HN::And(seen, clear)));
+        const VD one = hn::Set(dd, 1);
+        const auto clear = lanes_of(transmittance.low >= one, transmittance.high >= one) != zero;
+        ends = hn::Or(ends, hn::And(hn::And(in_run, absorbs), hn::And(seen, clear)));
       }
-      if (HWY_UNLIKELY(!HN::AllFalse(d, ends))) {
+      if (HWY_UNLIKELY(!hn::AllFalse(d, ends))) {
         save();
         end_runs(ends);
         resume();
       }
       // All that take one are in a run up to its back. Irregular cells' depths are a few steps off: a run does not go
       // back.
-      run_back = HN::IfThenElse(takes, HN::Max(run_back, HN::Load(d, light_.back + at)), run_back);
+      run_back = hn::IfThenElse(takes, hn::Max(run_back, hn::Load(d, light_.back + at)), run_back);
       if (!light_.lit[row]) continue;
 
       auto shows = absorbs;
       if (independent_) {
         // A run begins where it shows, if only by light.
-        const auto color = [&](const float* c) HWY_ATTR { return HN::Abs(HN::Load(df, c + at)); };
-        const VF colors = HN::Add(color(light_.red), HN::Add(color(light_.green), color(light_.blue)));
-        shows = HN::Or(shows, HN::And(takes, HN::RebindMask(d, HN::Gt(colors, HN::Zero(df)))));
+        const auto color = [&](const float* c) HWY_ATTR { return hn::Abs(hn::Load(df, c + at)); };
+        const VF colors = color(light_.red) + (color(light_.green) + color(light_.blue));
+        shows = hn::Or(shows, hn::And(takes, hn::RebindMask(d, colors > hn::Zero(df))));
       }
-      several = HN::Or(several, HN::And(shows, seen));
-      const auto appears = HN::AndNot(seen, shows);
-      if (!HN::AllFalse(d, appears)) keep_first(appears, row);
-      seen = HN::Or(seen, appears);
+      several = hn::Or(several, hn::And(shows, seen));
+      const auto appears = hn::AndNot(seen, shows);
+      if (!hn::AllFalse(d, appears)) keep_first(appears, row);
+      seen = hn::Or(seen, appears);
       // Lanes that took nothing from the start have no light; lanes that have closed since have.
       Doubles weight = transmittance;
       if constexpr (closes)
-        weight = {HN::IfThenElseZero(open.low, weight.low), HN::IfThenElseZero(open.high, weight.high)};
+        weight = {hn::IfThenElseZero(open.low, weight.low), hn::IfThenElseZero(open.high, weight.high)};
       add(weight, light_.red + at, red), add(weight, light_.green + at, green), add(weight, light_.blue + at, blue);
       take(weight, light_.alpha + at, transmittance);
       if constexpr (closes) {
-        const auto dark_low = HN::AndNot(HN::Ge(transmittance.low, least.low), open.low);
-        const auto dark_high = HN::AndNot(HN::Ge(transmittance.high, least.high), open.high);
-        if (HWY_UNLIKELY(!HN::AllFalse(dd, HN::Or(dark_low, dark_high)))) {
-          open = {HN::AndNot(dark_low, open.low), HN::AndNot(dark_high, open.high)};
-          open_lanes = HN::Lt(store_open(open), zero);
+        const auto dark_low = hn::AndNot(transmittance.low >= least.low, open.low);
+        const auto dark_high = hn::AndNot(transmittance.high >= least.high, open.high);
+        if (HWY_UNLIKELY(!hn::AllFalse(dd, hn::Or(dark_low, dark_high)))) {
+          open = {hn::AndNot(dark_low, open.low), hn::AndNot(dark_high, open.high)};
+          open_lanes = store_open(open) < zero;
         }
       }
     }
     save();
-    return !HN::AllFalse(d, open_lanes);
+    return !hn::AllFalse(d, open_lanes);
   }
 
-  HWY_NOINLINE void end_runs(HN::Mask<DI> lanes) {
+  HWY_NOINLINE void end_runs(hn::Mask<DI> lanes) {
     std::uint8_t bits[8] = {0};
-    HN::StoreMaskBits(DI(), lanes, bits);
+    hn::StoreMaskBits(DI(), lanes, bits);
     for (std::uint64_t left = bits[0] | static_cast<std::uint64_t>(bits[1]) << 8; left != 0; left &= left - 1)
       state_.end_run(pixel_ + static_cast<std::size_t>(__builtin_ctzll(left)));
   }
 
   /// Notes the row's segments as those in which lanes begin to show.
-  HWY_NOINLINE void keep_first(HN::Mask<DI> appears, std::size_t row) {
+  HWY_NOINLINE void keep_first(hn::Mask<DI> appears, std::size_t row) {
     const DI d;
     const DF df;
-    const std::size_t at = row * HN::Lanes(d), p = pixel_;
-    HN::BlendedStore(HN::Load(d, light_.front + at), appears, d, &state_.first_front[p]);
-    HN::BlendedStore(HN::Load(d, light_.back + at), appears, d, &state_.first_back[p]);
-    const auto scalars = HN::RebindMask(df, appears);
-    HN::BlendedStore(HN::Load(df, light_.scalar_front + at), scalars, df, &state_.first_scalar_front[p]);
-    HN::BlendedStore(HN::Load(df, light_.scalar_back + at), scalars, df, &state_.first_scalar_back[p]);
+    const std::size_t at = row * hn::Lanes(d), p = pixel_;
+    hn::BlendedStore(hn::Load(d, light_.front + at), appears, d, &state_.first_front[p]);
+    hn::BlendedStore(hn::Load(d, light_.back + at), appears, d, &state_.first_back[p]);
+    const auto scalars = hn::RebindMask(df, appears);
+    hn::BlendedStore(hn::Load(df, light_.scalar_front + at), scalars, df, &state_.first_scalar_front[p]);
+    hn::BlendedStore(hn::Load(df, light_.scalar_back + at), scalars, df, &state_.first_scalar_back[p]);
   }
 
-  using HalfMask = HN::Mask<DD>;
+  using HalfMask = hn::Mask<DD>;
   struct Open {
     HalfMask low, high;
   };
   HWY_INLINE Open load_open() const {
-    const HN::Rebind<std::int32_t, DD> di32;
+    const hn::Rebind<std::int32_t, DD> di32;
     const DD dd;
     const auto half = [&](std::size_t from) HWY_ATTR {
-      return HN::Lt(HN::PromoteTo(dd, HN::LoadU(di32, &state_.open[pixel_ + from])), HN::Zero(dd));
+      return hn::PromoteTo(dd, hn::LoadU(di32, &state_.open[pixel_ + from])) < hn::Zero(dd);
     };
-    return {half(0), half(HN::Lanes(dd))};
+    return {half(0), half(hn::Lanes(dd))};
   }
   /// Returns what is stored: -1 or 0.
   HWY_INLINE VI store_open(const Open& open) {
     const DI d;
     const VI lanes = lanes_of(open.low, open.high);
-    HN::Store(lanes, d, &state_.open[pixel_]);
+    hn::Store(lanes, d, &state_.open[pixel_]);
     return lanes;
   }
   /// sum += weight * v, transmittance -= weight * alpha.
   HWY_INLINE static void add(Doubles weight, const float* v, Doubles& sum) {
     const Doubles x = load(v);
-    sum = {HN::MulAdd(weight.low, x.low, sum.low), HN::MulAdd(weight.high, x.high, sum.high)};
+    sum = {hn::MulAdd(weight.low, x.low, sum.low), hn::MulAdd(weight.high, x.high, sum.high)};
   }
   HWY_INLINE static void take(Doubles weight, const float* alpha, Doubles& transmittance) {
     const Doubles x = load(alpha);
-    transmittance = {HN::NegMulAdd(weight.low, x.low, transmittance.low),
-                     HN::NegMulAdd(weight.high, x.high, transmittance.high)};
+    transmittance = {hn::NegMulAdd(weight.low, x.low, transmittance.low),
+                     hn::NegMulAdd(weight.high, x.high, transmittance.high)};
   }
 
   WindowState& state_;

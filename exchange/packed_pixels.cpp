@@ -44,12 +44,12 @@ struct Streams {
 HWY_BEFORE_NAMESPACE();
 namespace tessera::exchange {
 namespace HWY_NAMESPACE {
-namespace HN = hwy::HWY_NAMESPACE;
+namespace hn = hwy::HWY_NAMESPACE;
 
-using DU = HN::CappedTag<std::uint32_t, columns>;
-using DI = HN::RebindToSigned<DU>;
-using DF = HN::RebindToFloat<DU>;
-using U = HN::Vec<DU>;
+using DU = hn::CappedTag<std::uint32_t, columns>;
+using DI = hn::RebindToSigned<DU>;
+using DF = hn::RebindToFloat<DU>;
+using U = hn::Vec<DU>;
 
 /// Of each channel, one value a column.
 struct Rows {
@@ -61,19 +61,19 @@ struct Rows {
 HWY_INLINE U load_words(const std::byte* from) {
   std::uint32_t word;
   std::memcpy(&word, from, sizeof word);
-  return HN::Set(DU(), word);
+  return hn::Set(DU(), word);
 }
 HWY_INLINE void store_words(U words, std::byte* to) {
-  const std::uint32_t word = HN::GetLane(words);
+  const std::uint32_t word = hn::GetLane(words);
   std::memcpy(to, &word, sizeof word);
 }
 #else
-using DB = HN::Repartition<std::uint8_t, DU>;
+using DB = hn::Repartition<std::uint8_t, DU>;
 HWY_INLINE U load_words(const std::byte* from) {
-  return HN::BitCast(DU(), HN::LoadU(DB(), reinterpret_cast<const std::uint8_t*>(from)));
+  return hn::BitCast(DU(), hn::LoadU(DB(), reinterpret_cast<const std::uint8_t*>(from)));
 }
 HWY_INLINE void store_words(U words, std::byte* to) {
-  HN::StoreU(HN::BitCast(DB(), words), DB(), reinterpret_cast<std::uint8_t*>(to));
+  hn::StoreU(hn::BitCast(DB(), words), DB(), reinterpret_cast<std::uint8_t*>(to));
 }
 #endif
 
@@ -81,26 +81,26 @@ HWY_INLINE void store_words(U words, std::byte* to) {
 HWY_INLINE void split_channels(const float* rgba, const float* depth, Rows& rows) {
   const DU du;
   const DF df;
-  const std::size_t lanes = HN::Lanes(du);
+  const std::size_t lanes = hn::Lanes(du);
   for (std::size_t c = 0; c < columns; c += lanes) {
-    HN::Vec<DF> red, green, blue, alpha;
-    HN::LoadInterleaved4(df, rgba + color_channels * c, red, green, blue, alpha);
-    HN::Store(HN::BitCast(du, red), du, &rows.of[0][c]);
-    HN::Store(HN::BitCast(du, green), du, &rows.of[1][c]);
-    HN::Store(HN::BitCast(du, blue), du, &rows.of[2][c]);
-    HN::Store(HN::BitCast(du, alpha), du, &rows.of[3][c]);
-    HN::Store(HN::BitCast(du, HN::LoadU(df, depth + c)), du, &rows.of[4][c]);
+    hn::Vec<DF> red, green, blue, alpha;
+    hn::LoadInterleaved4(df, rgba + color_channels * c, red, green, blue, alpha);
+    hn::Store(hn::BitCast(du, red), du, &rows.of[0][c]);
+    hn::Store(hn::BitCast(du, green), du, &rows.of[1][c]);
+    hn::Store(hn::BitCast(du, blue), du, &rows.of[2][c]);
+    hn::Store(hn::BitCast(du, alpha), du, &rows.of[3][c]);
+    hn::Store(hn::BitCast(du, hn::LoadU(df, depth + c)), du, &rows.of[4][c]);
   }
 }
 
 HWY_INLINE void join_channels(const Rows& rows, float* rgba, float* depth) {
   const DU du;
   const DF df;
-  const std::size_t lanes = HN::Lanes(du);
+  const std::size_t lanes = hn::Lanes(du);
   for (std::size_t c = 0; c < columns; c += lanes) {
-    const auto channel = [&](std::size_t k) { return HN::BitCast(df, HN::Load(du, &rows.of[k][c])); };
-    HN::StoreInterleaved4(channel(0), channel(1), channel(2), channel(3), df, rgba + color_channels * c);
-    HN::StoreU(channel(4), df, depth + c);
+    const auto channel = [&](std::size_t k) { return hn::BitCast(df, hn::Load(du, &rows.of[k][c])); };
+    hn::StoreInterleaved4(channel(0), channel(1), channel(2), channel(3), df, rgba + color_channels * c);
+    hn::StoreU(channel(4), df, depth + c);
   }
 }
 
@@ -110,20 +110,20 @@ HWY_INLINE unsigned differ(const std::uint32_t* HWY_RESTRICT next, std::uint32_t
                            std::uint32_t* HWY_RESTRICT step, std::uint32_t* HWY_RESTRICT differences) {
   const DU du;
   const DI di;
-  const std::size_t lanes = HN::Lanes(du);
-  U all = HN::Zero(du);
+  const std::size_t lanes = hn::Lanes(du);
+  U all = hn::Zero(du);
   for (std::size_t c = 0; c < columns; c += lanes) {
-    const U value = HN::Load(du, next + c);
-    const U now = HN::Sub(value, HN::Load(du, above + c));
-    const U off = HN::Sub(now, HN::Load(du, step + c));
-    const U sign = HN::BitCast(du, HN::ShiftRight<31>(HN::BitCast(di, off)));
-    const U difference = HN::Xor(HN::ShiftLeft<1>(off), sign);
-    HN::Store(value, du, above + c);
-    HN::Store(now, du, step + c);
-    HN::Store(difference, du, differences + c);
-    all = HN::Or(all, difference);
+    const U value = hn::Load(du, next + c);
+    const U now = value - hn::Load(du, above + c);
+    const U off = now - hn::Load(du, step + c);
+    const U sign = hn::BitCast(du, hn::ShiftRight<31>(hn::BitCast(di, off)));
+    const U difference = hn::Xor(hn::ShiftLeft<1>(off), sign);
+    hn::Store(value, du, above + c);
+    hn::Store(now, du, step + c);
+    hn::Store(difference, du, differences + c);
+    all = hn::Or(all, difference);
   }
-  return 32u - static_cast<unsigned>(std::countl_zero(HN::GetLane(HN::MaxOfLanes(du, all))));
+  return 32u - static_cast<unsigned>(std::countl_zero(hn::GetLane(hn::MaxOfLanes(du, all))));
 }
 
 // Widths are as good as random: neither of these branches on one.
@@ -131,16 +131,16 @@ HWY_INLINE unsigned differ(const std::uint32_t* HWY_RESTRICT next, std::uint32_t
 HWY_INLINE void put(const std::uint32_t* HWY_RESTRICT differences, unsigned width, Streams<std::byte>& to,
                     std::uint32_t* HWY_RESTRICT unfinished) {
   const DU du;
-  const std::size_t lanes = HN::Lanes(du);
+  const std::size_t lanes = hn::Lanes(du);
   const int shift = to.shift();
   std::byte* word = to.word();
-  const U finishes = HN::Set(du, static_cast<unsigned>(shift) + width >= 32 ? ~std::uint32_t{0} : 0);
+  const U finishes = hn::Set(du, static_cast<unsigned>(shift) + width >= 32 ? ~std::uint32_t{0} : 0);
   for (std::size_t c = 0; c < columns; c += lanes, word += lanes * sizeof(std::uint32_t)) {
-    const U difference = HN::Load(du, differences + c);
-    const U all = HN::Or(HN::Load(du, unfinished + c), HN::ShiftLeftSame(difference, shift));
+    const U difference = hn::Load(du, differences + c);
+    const U all = hn::Or(hn::Load(du, unfinished + c), hn::ShiftLeftSame(difference, shift));
     store_words(all, word);
-    const U rest = HN::ShiftRightSame(HN::ShiftRight<1>(difference), 31 - shift);
-    HN::Store(HN::Or(HN::And(finishes, rest), HN::AndNot(finishes, all)), du, unfinished + c);
+    const U rest = hn::ShiftRightSame(hn::ShiftRight<1>(difference), 31 - shift);
+    hn::Store(hn::Or(hn::And(finishes, rest), hn::AndNot(finishes, all)), du, unfinished + c);
   }
   to.bits += width;
 }
@@ -150,19 +150,19 @@ HWY_INLINE void get(unsigned width, Streams<const std::byte>& from, std::uint32_
                     std::uint32_t* HWY_RESTRICT step) {
   const DU du;
   const DI di;
-  const std::size_t lanes = HN::Lanes(du);
+  const std::size_t lanes = hn::Lanes(du);
   const int shift = from.shift();
   const std::byte *word = from.word(), *next = std::min(word + word_bytes, from.last);
   word = std::min(word, from.last);
-  const U mask = HN::Set(du, static_cast<std::uint32_t>((std::uint64_t{1} << width) - 1));
+  const U mask = hn::Set(du, static_cast<std::uint32_t>((std::uint64_t{1} << width) - 1));
   for (std::size_t c = 0; c < columns; c += lanes) {
-    const U low = HN::ShiftRightSame(load_words(word + c * sizeof(std::uint32_t)), shift);
-    const U high = HN::ShiftLeftSame(HN::ShiftLeft<1>(load_words(next + c * sizeof(std::uint32_t))), 31 - shift);
-    const U difference = HN::And(HN::Or(low, high), mask);
-    const U sign = HN::BitCast(du, HN::Neg(HN::BitCast(di, HN::And(difference, HN::Set(du, 1)))));
-    const U now = HN::Add(HN::Load(du, step + c), HN::Xor(HN::ShiftRight<1>(difference), sign));
-    HN::Store(now, du, step + c);
-    HN::Store(HN::Add(HN::Load(du, value + c), now), du, value + c);
+    const U low = hn::ShiftRightSame(load_words(word + c * sizeof(std::uint32_t)), shift);
+    const U high = hn::ShiftLeftSame(hn::ShiftLeft<1>(load_words(next + c * sizeof(std::uint32_t))), 31 - shift);
+    const U difference = hn::And(hn::Or(low, high), mask);
+    const U sign = hn::BitCast(du, hn::Neg(hn::BitCast(di, hn::And(difference, hn::Set(du, 1)))));
+    const U now = hn::Load(du, step + c) + hn::Xor(hn::ShiftRight<1>(difference), sign);
+    hn::Store(now, du, step + c);
+    hn::Store(hn::Load(du, value + c) + now, du, value + c);
   }
   from.bits += width;
 }

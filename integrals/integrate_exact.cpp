@@ -35,9 +35,9 @@ HWY_INLINE Moments moments(V linear, V quadratic, const double (&nodes)[count], 
   Moments m{hn::Zero(d), hn::Zero(d)};
   for (int i = 0; i < count; ++i) {
     const V u = hn::Set(d, nodes[i]);
-    const V q = hn::Mul(u, hn::MulAdd(quadratic, u, linear));
-    const V light = hn::Mul(hn::Set(d, weights[i]), hn::Exp(d, hn::Neg(q)));
-    m.zeroth = hn::Add(m.zeroth, light);
+    const V q = u * hn::MulAdd(quadratic, u, linear);
+    const V light = hn::Set(d, weights[i]) * hn::Exp(d, hn::Neg(q));
+    m.zeroth = m.zeroth + light;
     m.first = hn::MulAdd(light, u, m.first);
   }
   return m;
@@ -57,16 +57,15 @@ HWY_INLINE V thin_exp(V x) {
 HWY_INLINE V thin_zeroth(V a, V b) {
   const D d;
   const auto number = [&](double value) HWY_ATTR { return hn::Set(d, value); };
-  const V ab = hn::Mul(a, b), a2 = hn::Mul(a, a), b2 = hn::Mul(b, b);
-  const V q1 = hn::MulAdd(a, number(1.0 / 2), hn::Mul(b, number(1.0 / 3)));
-  const V q2 = hn::MulAdd(a2, number(1.0 / 3), hn::MulAdd(ab, number(1.0 / 2), hn::Mul(b2, number(1.0 / 5))));
-  const V q3 = hn::MulAdd(a, hn::MulAdd(a2, number(1.0 / 4), hn::Mul(ab, number(3.0 / 5))),
-                          hn::Mul(b, hn::MulAdd(ab, number(1.0 / 2), hn::Mul(b2, number(1.0 / 7)))));
-  const V q4 =
-      hn::MulAdd(a2, hn::MulAdd(a2, number(1.0 / 5), hn::MulAdd(ab, number(2.0 / 3), hn::Mul(b2, number(6.0 / 7)))),
-                 hn::Mul(b2, hn::MulAdd(ab, number(1.0 / 2), hn::Mul(b2, number(1.0 / 9)))));
+  const V ab = a * b, a2 = a * a, b2 = b * b;
+  const V q1 = hn::MulAdd(a, number(1.0 / 2), b * number(1.0 / 3));
+  const V q2 = hn::MulAdd(a2, number(1.0 / 3), hn::MulAdd(ab, number(1.0 / 2), b2 * number(1.0 / 5)));
+  const V q3 = hn::MulAdd(a, hn::MulAdd(a2, number(1.0 / 4), ab * number(3.0 / 5)),
+                          b * hn::MulAdd(ab, number(1.0 / 2), b2 * number(1.0 / 7)));
+  const V q4 = hn::MulAdd(a2, hn::MulAdd(a2, number(1.0 / 5), hn::MulAdd(ab, number(2.0 / 3), b2 * number(6.0 / 7))),
+                          b2 * hn::MulAdd(ab, number(1.0 / 2), b2 * number(1.0 / 9)));
   return hn::MulAdd(q4, number(1.0 / 24),
-                    hn::MulAdd(q3, number(-1.0 / 6), hn::MulAdd(q2, number(0.5), hn::Sub(number(1.0), q1))));
+                    hn::MulAdd(q3, number(-1.0 / 6), hn::MulAdd(q2, number(0.5), number(1.0) - q1)));
 }
 
 /// Upper bound of the pieces of a segment: one for each interval, and those that thick ones are cut into. Each of these
@@ -90,10 +89,10 @@ HWY_INLINE V lookup(const std::vector<double>& table, VI interval) {
 HWY_INLINE V part_of_depth(V kappa0, V kappa1, V piece, V twice_most_depth, hn::Mask<D> thick) {
   const D d;
   const V one = hn::Set(d, 1.0);
-  const V linear = hn::Mul(kappa0, piece);
-  const V root = hn::Sqrt(hn::Max(
-      hn::Zero(d), hn::MulAdd(linear, linear, hn::Mul(twice_most_depth, hn::Mul(hn::Sub(kappa1, kappa0), piece)))));
-  return hn::IfThenElse(thick, hn::Min(one, hn::Div(twice_most_depth, hn::Add(linear, root))), one);
+  const V linear = kappa0 * piece;
+  const V root =
+      hn::Sqrt(hn::Max(hn::Zero(d), hn::MulAdd(linear, linear, twice_most_depth * ((kappa1 - kappa0) * piece))));
+  return hn::IfThenElse(thick, hn::Min(one, twice_most_depth / (linear + root)), one);
 }
 
 /// What comes through a piece, and its moments where they are needed.
@@ -107,12 +106,12 @@ struct Passage {
 HWY_INLINE Passage pass(V kappa0, V kappa1, V piece, V depth, hn::Mask<D> varies, hn::Mask<D> active,
                         bool emits_by_extinction) {
   const D d;
-  const auto thin = hn::Lt(depth, hn::Set(d, 0.05));
+  const auto thin = depth < hn::Set(d, 0.05);
   const auto needs_exp = hn::AndNot(thin, active);
   const bool some_thin = !hn::AllTrue(d, needs_exp), some_thick = !hn::AllFalse(d, needs_exp);
   const bool some_vary = !emits_by_extinction || !hn::AllFalse(d, hn::And(varies, active));
-  const V linear = hn::Mul(kappa0, piece);
-  const V quadratic = hn::Mul(hn::Set(d, 0.5), hn::Mul(hn::Sub(kappa1, kappa0), piece));
+  const V linear = kappa0 * piece;
+  const V quadratic = hn::Set(d, 0.5) * ((kappa1 - kappa0) * piece);
   Passage p{hn::Set(d, 1.0), {hn::Zero(d), hn::Zero(d)}};
   if (some_thin) {
     p.through = thin_exp(depth);
@@ -136,10 +135,10 @@ HWY_INLINE Passage pass(V kappa0, V kappa1, V piece, V depth, hn::Mask<D> varies
 /// the second term left out where the colour is constant.
 HWY_INLINE V light_of(V color0, V color1, V piece, const Passage& p, hn::Mask<D> varies, bool emits_by_extinction) {
   const D d;
-  const V change = hn::Sub(color1, color0);
-  if (!emits_by_extinction) return hn::Mul(piece, hn::MulAdd(change, p.m.first, hn::Mul(color0, p.m.zeroth)));
-  const V light = hn::Mul(color0, hn::Sub(hn::Set(d, 1.0), p.through));
-  return hn::IfThenElse(varies, hn::MulAdd(change, hn::Sub(p.m.zeroth, p.through), light), light);
+  const V change = color1 - color0;
+  if (!emits_by_extinction) return piece * hn::MulAdd(change, p.m.first, color0 * p.m.zeroth);
+  const V light = color0 * (hn::Set(d, 1.0) - p.through);
+  return hn::IfThenElse(varies, hn::MulAdd(change, p.m.zeroth - p.through, light), light);
 }
 
 template <bool in_register>
@@ -154,29 +153,29 @@ void exact(const PiecewiseTable& table, scene::Emission emission, const ExactPie
   const bool emits_by_extinction = emission == scene::Emission::absorption;
 
   for (std::size_t i = 0; i < batch.size; i += lanes) {
-    const auto in_batch = hn::Lt(hn::Iota(d, 0), hn::Set(d, static_cast<double>(batch.size - i)));
+    const auto in_batch = hn::Iota(d, 0) < hn::Set(d, static_cast<double>(batch.size - i));
     const V length = hn::IfThenElseZero(in_batch, hn::LoadU(d, &batch.length[i]));
     const V front = hn::IfThenElseZero(in_batch, hn::LoadU(d, &batch.scalar_front[i]));
     const V back = hn::IfThenElseZero(in_batch, hn::LoadU(d, &batch.scalar_back[i]));
-    const auto constant = hn::Eq(front, back);
-    const auto up = hn::Ge(back, front);
-    const V length_per_scalar = hn::Div(length, hn::IfThenElse(constant, one, hn::Sub(back, front)));
+    const auto constant = front == back;
+    const auto up = back >= front;
+    const V length_per_scalar = length / hn::IfThenElse(constant, one, back - front);
 
     VI interval = locate(table, front, up);
     V scalar = front, left = length;
     V color[3] = {zero, zero, zero}, transmittance = one, optical_depth = zero;
-    auto active = hn::Gt(length, zero);
+    auto active = length > zero;
     for (std::size_t pieces = most_pieces(table); pieces > 0 && !hn::AllFalse(d, active); --pieces) {
       const V knot =
           hn::IfThenElse(up, lookup<in_register>(table.above, interval), lookup<in_register>(table.below, interval));
       V target = hn::IfThenElse(up, hn::Min(knot, back), hn::Max(knot, back));
       target = hn::IfThenElse(constant, back, target);
-      auto last = hn::Eq(target, back);
-      V piece = hn::IfThenElse(last, left, hn::Min(left, hn::Mul(hn::Sub(target, scalar), length_per_scalar)));
+      auto last = target == back;
+      V piece = hn::IfThenElse(last, left, hn::Min(left, (target - scalar) * length_per_scalar));
 
       const V base = lookup<in_register>(table.base, interval);
-      const V from = hn::Sub(scalar, base);
-      V to = hn::Sub(target, base);
+      const V from = scalar - base;
+      V to = target - base;
       const auto channel = [&](int c, V& at_from, V& at_to) HWY_ATTR {
         const V start = lookup<in_register>(table.channels[c].start, interval);
         const V slope = lookup<in_register>(table.channels[c].slope, interval);
@@ -185,35 +184,35 @@ void exact(const PiecewiseTable& table, scene::Emission emission, const ExactPie
       };
       V kappa0, kappa1;
       channel(0, kappa0, kappa1);
-      V depth = hn::Mul(piece, hn::Mul(half, hn::Add(kappa0, kappa1)));
-      const auto thick = hn::Gt(depth, most_depth);
+      V depth = piece * (half * (kappa0 + kappa1));
+      const auto thick = depth > most_depth;
       if (!hn::AllFalse(d, thick)) {
         const V u = part_of_depth(kappa0, kappa1, piece, twice_most_depth, thick);
-        piece = hn::Mul(piece, u);
-        kappa1 = hn::IfThenElse(thick, hn::MulAdd(hn::Sub(kappa1, kappa0), u, kappa0), kappa1);
-        target = hn::IfThenElse(thick, hn::MulAdd(hn::Sub(target, scalar), u, scalar), target);
-        to = hn::Sub(target, base);
-        depth = hn::Mul(piece, hn::Mul(half, hn::Add(kappa0, kappa1)));
+        piece = piece * u;
+        kappa1 = hn::IfThenElse(thick, hn::MulAdd(kappa1 - kappa0, u, kappa0), kappa1);
+        target = hn::IfThenElse(thick, hn::MulAdd(target - scalar, u, scalar), target);
+        to = target - base;
+        depth = piece * (half * (kappa0 + kappa1));
         last = hn::AndNot(thick, last);
       }
       V color0[3], color1[3];
-      auto varies = hn::Lt(zero, zero);
+      auto varies = zero < zero;
       for (int c = 0; c < 3; ++c) {
         channel(c + 1, color0[c], color1[c]);
-        varies = hn::Or(varies, hn::Ne(color0[c], color1[c]));
+        varies = hn::Or(varies, color0[c] != color1[c]);
       }
       const Passage passage = pass(kappa0, kappa1, piece, depth, varies, active, emits_by_extinction);
       for (int c = 0; c < 3; ++c) {
         const V light = light_of(color0[c], color1[c], piece, passage, varies, emits_by_extinction);
         color[c] = hn::IfThenElse(active, hn::MulAdd(transmittance, light, color[c]), color[c]);
       }
-      optical_depth = hn::IfThenElse(active, hn::Add(optical_depth, depth), optical_depth);
-      transmittance = hn::IfThenElse(active, hn::Mul(transmittance, passage.through), transmittance);
-      left = hn::Sub(left, piece);
+      optical_depth = hn::IfThenElse(active, optical_depth + depth, optical_depth);
+      transmittance = hn::IfThenElse(active, transmittance * passage.through, transmittance);
+      left = left - piece;
       scalar = target;
-      active = hn::AndNot(hn::Or(last, hn::Lt(transmittance, least_transmittance)), active);
+      active = hn::AndNot(hn::Or(last, transmittance < least_transmittance), active);
       const auto on = hn::RebindMask(di, hn::AndNot(thick, active));
-      interval = hn::Add(interval, hn::IfThenElseZero(on, hn::IfThenElse(hn::RebindMask(di, up), step_up, step_down)));
+      interval = interval + hn::IfThenElseZero(on, hn::IfThenElse(hn::RebindMask(di, up), step_up, step_down));
     }
     hn::StoreU(color[0], d, &batch.red[i]);
     hn::StoreU(color[1], d, &batch.green[i]);

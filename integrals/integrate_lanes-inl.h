@@ -54,8 +54,8 @@ constexpr int pieces_a_fold = 16;
 template <std::size_t count>
 HWY_INLINE VF polynomial(VF x, const float (&c)[count]) {
   const DF d;
-  VF sum = HN::Set(d, c[count - 1]);
-  for (std::size_t i = count - 1; i-- > 0;) sum = HN::MulAdd(sum, x, HN::Set(d, c[i]));
+  VF sum = hn::Set(d, c[count - 1]);
+  for (std::size_t i = count - 1; i-- > 0;) sum = hn::MulAdd(sum, x, hn::Set(d, c[i]));
   return sum;
 }
 
@@ -84,26 +84,26 @@ constexpr float o_h4 = 1.864437097e-5f;
 
 HWY_INLINE StretchLight stretch_light(const Stretch& s, bool independent) {
   const DF d;
-  const VF half = HN::Set(d, 0.5f), one = HN::Set(d, 1.0f);
-  const VF h = HN::Add(s.depth_front, s.depth_back), b = HN::Sub(s.depth_back, s.depth_front);
-  const VF h2 = HN::Mul(h, h);
-  const VF fade = HN::Mul(h, polynomial(h, e_1)), through_half = HN::Sub(one, fade);
-  const VF g_h4 = polynomial(b, g_bh4), g_h2 = HN::MulAdd(h2, g_h4, polynomial(b, g_bh2));
-  const VF g = HN::MulAdd(h2, g_h2, HN::Mul(b, polynomial(b, g_b)));
+  const VF half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f);
+  const VF h = s.depth_front + s.depth_back, b = s.depth_back - s.depth_front;
+  const VF h2 = h * h;
+  const VF fade = h * polynomial(h, e_1), through_half = one - fade;
+  const VF g_h4 = polynomial(b, g_bh4), g_h2 = hn::MulAdd(h2, g_h4, polynomial(b, g_bh2));
+  const VF g = hn::MulAdd(h2, g_h2, b * polynomial(b, g_b));
   StretchLight light;
-  light.alpha = HN::Mul(fade, HN::Sub(HN::Set(d, 2.0f), fade));
+  light.alpha = fade * (hn::Set(d, 2.0f) - fade);
   if (HWY_UNLIKELY(independent)) {
     // int c T dt = l (start M + slope (x_0 M + (x_1 - x_0) F)), F = int u exp(-q) du = exp(-h/2) ((1 + g) / 2 - h o).
-    const VF mean = HN::MulAdd(through_half, g, through_half);
-    const VF o = HN::MulAdd(h2, HN::MulAdd(h2, HN::Set(d, o_h4), polynomial(b, o_bh2)), polynomial(b, o_b));
-    const VF first = HN::Mul(through_half, HN::MulAdd(half, g, HN::NegMulAdd(h, o, half)));
-    light.weight = HN::Mul(s.length, mean);
-    light.moment = HN::MulAdd(HN::Mul(s.length, s.span), first, HN::Mul(s.from, light.weight));
+    const VF mean = hn::MulAdd(through_half, g, through_half);
+    const VF o = hn::MulAdd(h2, hn::MulAdd(h2, hn::Set(d, o_h4), polynomial(b, o_bh2)), polynomial(b, o_b));
+    const VF first = through_half * hn::MulAdd(half, g, hn::NegMulAdd(h, o, half));
+    light.weight = s.length * mean;
+    light.moment = hn::MulAdd(s.length * s.span, first, s.from * light.weight);
     return light;
   }
-  const VF late = HN::Mul(through_half, HN::Add(g, fade));
+  const VF late = through_half * (g + fade);
   light.weight = light.alpha;
-  light.moment = HN::MulAdd(s.span, late, HN::Mul(s.from, light.alpha));
+  light.moment = hn::MulAdd(s.span, late, s.from * light.alpha);
   return light;
 }
 
@@ -120,46 +120,46 @@ struct Passage {
 
 HWY_INLINE void add_stretch(bool independent, Passage& p) {
   const StretchLight light = stretch_light(p.rest, independent);
-  p.weight = HN::MulAdd(p.transmittance, light.weight, p.weight);
-  p.moment = HN::MulAdd(p.transmittance, light.moment, p.moment);
-  const VF hidden = HN::Mul(p.transmittance, light.alpha);
-  p.alpha = HN::Add(p.alpha, hidden);
-  p.transmittance = HN::Sub(p.transmittance, hidden);
+  p.weight = hn::MulAdd(p.transmittance, light.weight, p.weight);
+  p.moment = hn::MulAdd(p.transmittance, light.moment, p.moment);
+  const VF hidden = p.transmittance * light.alpha;
+  p.alpha = p.alpha + hidden;
+  p.transmittance = p.transmittance - hidden;
 }
 
 /// Takes steps of one optical depth off the front of thick lanes until no more than one is left, or nothing that shows.
 /// The other lanes stay as they are. By value: a reference would keep the caller's numbers in memory.
 HWY_NOINLINE inline Passage take_thick_steps(MF thick, bool independent, Passage p) {
   const DF d;
-  const VF one = HN::Set(d, 1.0f), zero = HN::Zero(d), bound = HN::Set(d, step_depth), most = HN::Set(d, most_depth);
-  const VF transmittance_left = HN::Set(d, 2e-9f);
-  const auto cut = [&](VF& x, VF rest) HWY_ATTR { x = HN::IfThenElse(thick, rest, x); };
-  cut(p.rest.depth_front, HN::Min(p.rest.depth_front, most));
-  cut(p.rest.depth_back, HN::Min(p.rest.depth_back, most));
+  const VF one = hn::Set(d, 1.0f), zero = hn::Zero(d), bound = hn::Set(d, step_depth), most = hn::Set(d, most_depth);
+  const VF transmittance_left = hn::Set(d, 2e-9f);
+  const auto cut = [&](VF& x, VF rest) HWY_ATTR { x = hn::IfThenElse(thick, rest, x); };
+  cut(p.rest.depth_front, hn::Min(p.rest.depth_front, most));
+  cut(p.rest.depth_back, hn::Min(p.rest.depth_back, most));
   constexpr int most_steps = 64;  // each lets exp(-1) through at most, so that 21 leave nothing
-  for (int n = 0; n < most_steps && !HN::AllFalse(d, thick); ++n) {
+  for (int n = 0; n < most_steps && !hn::AllFalse(d, thick); ++n) {
     // With depths halved q(u) = 2 a u + (e - a) u^2; the root u of q(u) = bound in the form without cancellation.
     Stretch& s = p.rest;
-    const VF a = s.depth_front, rise = HN::Sub(s.depth_back, a);
-    const VF root = HN::Sqrt(HN::Max(zero, HN::MulAdd(a, a, HN::Mul(bound, rise))));
-    const VF u = HN::Min(one, HN::Div(bound, HN::Add(a, root)));
-    const VF left = HN::Sub(one, u), depth_cut = HN::MulAdd(rise, u, a);
+    const VF a = s.depth_front, rise = s.depth_back - a;
+    const VF root = hn::Sqrt(hn::Max(zero, hn::MulAdd(a, a, bound * rise)));
+    const VF u = hn::Min(one, bound / (a + root));
+    const VF left = one - u, depth_cut = hn::MulAdd(rise, u, a);
     Passage step = p;
-    step.rest = {HN::Mul(a, u), HN::Mul(depth_cut, u), s.from, HN::Mul(s.span, u), HN::Mul(s.length, u)};
+    step.rest = {a * u, depth_cut * u, s.from, s.span * u, s.length * u};
     add_stretch(independent, step);
     cut(p.alpha, step.alpha);
     cut(p.transmittance, step.transmittance);
     cut(p.weight, step.weight);
     cut(p.moment, step.moment);
-    cut(s.depth_front, HN::Mul(depth_cut, left));
-    cut(s.depth_back, HN::Mul(s.depth_back, left));
-    cut(s.from, HN::Add(s.from, step.rest.span));
-    cut(s.span, HN::Mul(s.span, left));
-    cut(s.length, HN::Mul(s.length, left));
+    cut(s.depth_front, depth_cut * left);
+    cut(s.depth_back, s.depth_back * left);
+    cut(s.from, s.from + step.rest.span);
+    cut(s.span, s.span * left);
+    cut(s.length, s.length * left);
     // A lane that nothing shows through any more is done: an empty stretch adds nothing.
-    const MF dark = HN::And(thick, HN::Lt(p.transmittance, transmittance_left));
-    for (VF* x : {&s.depth_front, &s.depth_back, &s.length}) *x = HN::IfThenElse(dark, zero, *x);
-    thick = HN::And(thick, HN::Gt(HN::Add(s.depth_front, s.depth_back), bound));
+    const MF dark = hn::And(thick, p.transmittance < transmittance_left);
+    for (VF* x : {&s.depth_front, &s.depth_back, &s.length}) *x = hn::IfThenElse(dark, zero, *x);
+    thick = hn::And(thick, s.depth_front + s.depth_back > bound);
   }
   return p;
 }
@@ -171,19 +171,19 @@ template <bool first, class Lookup>
 HWY_INLINE void add_piece(const Lookup& table, const typename Lookup::Index& index, VF scalar, VF target, VF span,
                           VF length, Progress& so_far) {
   const DF d;
-  const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f);
+  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
   const VF start = table.at(LaneTable::half_extinction, index),
            slope = table.at(LaneTable::half_extinction_slope, index);
   const VF base = table.at(LaneTable::base, index);
-  const VF from = HN::Sub(scalar, base), to = HN::Sub(target, base);
-  const Stretch whole{HN::Mul(HN::MulAdd(slope, from, start), length), HN::Mul(HN::MulAdd(slope, to, start), length),
-                      from, span, length};
-  const VF depth = HN::Add(whole.depth_front, whole.depth_back);
-  if (table.has_clear && HN::AllFalse(d, HN::Gt(depth, zero))) return;
+  const VF from = scalar - base, to = target - base;
+  const Stretch whole{hn::MulAdd(slope, from, start) * length, hn::MulAdd(slope, to, start) * length, from, span,
+                      length};
+  const VF depth = whole.depth_front + whole.depth_back;
+  if (table.has_clear && hn::AllFalse(d, depth > zero)) return;
 
   VF weight, moment;
-  const MF thick = HN::Gt(depth, HN::Set(d, step_depth));
-  if (HWY_UNLIKELY(!HN::AllFalse(d, thick))) {
+  const MF thick = depth > hn::Set(d, step_depth);
+  if (HWY_UNLIKELY(!hn::AllFalse(d, thick))) {
     Passage passage{whole, zero, one, zero, zero};
     if (!first) passage.alpha = so_far.alpha, passage.transmittance = so_far.transmittance;
     passage = take_thick_steps(thick, table.independent, passage);
@@ -195,19 +195,19 @@ HWY_INLINE void add_piece(const Lookup& table, const typename Lookup::Index& ind
     if (first) {
       weight = light.weight, moment = light.moment;
       so_far.alpha = light.alpha;
-      so_far.transmittance = HN::Sub(one, light.alpha);
+      so_far.transmittance = one - light.alpha;
     } else {
-      weight = HN::Mul(so_far.transmittance, light.weight);
-      moment = HN::Mul(so_far.transmittance, light.moment);
-      const VF hidden = HN::Mul(so_far.transmittance, light.alpha);
-      so_far.alpha = HN::Add(so_far.alpha, hidden);
-      so_far.transmittance = HN::Sub(so_far.transmittance, hidden);
+      weight = so_far.transmittance * light.weight;
+      moment = so_far.transmittance * light.moment;
+      const VF hidden = so_far.transmittance * light.alpha;
+      so_far.alpha = so_far.alpha + hidden;
+      so_far.transmittance = so_far.transmittance - hidden;
     }
   }
-  so_far.optical_depth = first ? depth : HN::Add(so_far.optical_depth, depth);
+  so_far.optical_depth = first ? depth : so_far.optical_depth + depth;
   const auto add_color = [&](int c, VF& sum) HWY_ATTR {
-    sum = first ? HN::Mul(table.at(c, index), weight) : HN::MulAdd(table.at(c, index), weight, sum);
-    sum = HN::MulAdd(table.at(c + 1, index), moment, sum);
+    sum = first ? table.at(c, index) * weight : hn::MulAdd(table.at(c, index), weight, sum);
+    sum = hn::MulAdd(table.at(c + 1, index), moment, sum);
   };
   add_color(LaneTable::red, so_far.red);
   add_color(LaneTable::green, so_far.green);
@@ -224,7 +224,7 @@ struct Walk {
   template <class Lookup>
   HWY_INLINE VF target(const Lookup& table, const typename Lookup::Index& index) const {
     const VF knot = table.edge(interval, index, up);
-    return HN::IfThenElse(up, HN::Min(knot, back), HN::Max(knot, back));
+    return hn::IfThenElse(up, hn::Min(knot, back), hn::Max(knot, back));
   }
 
   /// The pieces behind the knot at `scalar`, at most `most` of them.
@@ -232,17 +232,17 @@ struct Walk {
   HWY_INLINE void go_on(const Lookup& table, int most, Progress& so_far) {
     const DF d;
     const DI di;
-    const VI step = HN::IfThenElse(HN::RebindMask(di, up), HN::Set(di, 1), HN::Set(di, -1));
+    const VI step = hn::IfThenElse(hn::RebindMask(di, up), hn::Set(di, 1), hn::Set(di, -1));
     for (int pieces = 0; pieces < most; ++pieces) {
-      interval = HN::Add(interval, HN::IfThenElseZero(HN::RebindMask(di, active), step));
+      interval = interval + hn::IfThenElseZero(hn::RebindMask(di, active), step);
       const auto index = table.index(interval, active);
-      const VF end = target(table, index), span = HN::Sub(end, scalar);
-      const VF length = HN::IfThenElseZero(active, HN::Mul(span, length_per_scalar));
-      active = HN::And(active, HN::Ne(end, back));
+      const VF end = target(table, index), span = end - scalar;
+      const VF length = hn::IfThenElseZero(active, span * length_per_scalar);
+      active = hn::And(active, end != back);
       add_piece<false>(table, index, scalar, end, span, length, so_far);
       scalar = end;
-      active = HN::And(active, HN::Lt(so_far.optical_depth, HN::Set(d, opaque_depth)));
-      if (HN::AllFalse(d, active)) break;
+      active = hn::And(active, so_far.optical_depth < hn::Set(d, opaque_depth));
+      if (hn::AllFalse(d, active)) break;
     }
   }
 };
@@ -251,15 +251,15 @@ struct Walk {
 template <class Lookup>
 HWY_NOINLINE Progress go_far(const Lookup& table, Walk walk, Progress so_far) {
   const DF d;
-  const VF zero = HN::Zero(d);
-  for (std::size_t pieces = 0; pieces <= table.most_pieces && !HN::AllFalse(d, walk.active); pieces += pieces_a_fold) {
-    Progress since{zero, HN::Set(d, 1.0f), zero, zero, zero, zero};
+  const VF zero = hn::Zero(d);
+  for (std::size_t pieces = 0; pieces <= table.most_pieces && !hn::AllFalse(d, walk.active); pieces += pieces_a_fold) {
+    Progress since{zero, hn::Set(d, 1.0f), zero, zero, zero, zero};
     walk.go_on(table, pieces_a_fold, since);
     const VF t = so_far.transmittance;
-    so_far = {HN::MulAdd(t, since.alpha, so_far.alpha),           HN::Mul(t, since.transmittance),
-              HN::Add(so_far.optical_depth, since.optical_depth), HN::MulAdd(t, since.red, so_far.red),
-              HN::MulAdd(t, since.green, so_far.green),           HN::MulAdd(t, since.blue, so_far.blue)};
-    walk.active = HN::And(walk.active, HN::Lt(so_far.optical_depth, HN::Set(d, opaque_depth)));
+    so_far = {hn::MulAdd(t, since.alpha, so_far.alpha),   t * since.transmittance,
+              so_far.optical_depth + since.optical_depth, hn::MulAdd(t, since.red, so_far.red),
+              hn::MulAdd(t, since.green, so_far.green),   hn::MulAdd(t, since.blue, so_far.blue)};
+    walk.active = hn::And(walk.active, so_far.optical_depth < hn::Set(d, opaque_depth));
   }
   return so_far;
 }
@@ -272,22 +272,22 @@ HWY_NOINLINE Progress go_far(const Lookup& table, Walk walk, Progress so_far) {
 template <bool independent, TableForm form>
 HWY_INLINE Light integrate_simple(const Lookup<form>& table, VI interval, VF length, VF front, VF back, MF& more) {
   const DF d;
-  const MF active = HN::Gt(length, HN::Zero(d)), up = HN::Ge(back, front);
-  length = HN::Min(length, HN::Set(d, lanes::most_length));
+  const MF active = length > hn::Zero(d), up = back >= front;
+  length = hn::Min(length, hn::Set(d, lanes::most_length));
   const auto index = table.index(interval, active);
   const VF knot = table.edge(interval, index, up);
-  const VF end = HN::IfThenElse(up, HN::Min(knot, back), HN::Max(knot, back));
+  const VF end = hn::IfThenElse(up, hn::Min(knot, back), hn::Max(knot, back));
   const VF start = table.at(LaneTable::half_extinction, index),
            slope = table.at(LaneTable::half_extinction_slope, index);
   const VF base = table.at(LaneTable::base, index);
-  const VF from = HN::Sub(front, base), to = HN::Sub(back, base);
-  const lanes::Stretch whole{HN::Mul(HN::MulAdd(slope, from, start), length),
-                             HN::Mul(HN::MulAdd(slope, to, start), length), from, HN::Sub(back, front), length};
-  const VF depth = HN::Add(whole.depth_front, whole.depth_back);
-  more = HN::And(active, HN::Or(HN::Ne(end, back), HN::Gt(depth, HN::Set(d, lanes::step_depth))));
+  const VF from = front - base, to = back - base;
+  const lanes::Stretch whole{hn::MulAdd(slope, from, start) * length, hn::MulAdd(slope, to, start) * length, from,
+                             back - front, length};
+  const VF depth = whole.depth_front + whole.depth_back;
+  more = hn::And(active, hn::Or(end != back, depth > hn::Set(d, lanes::step_depth)));
   const lanes::StretchLight light = lanes::stretch_light(whole, independent);
   const auto color = [&](int c) HWY_ATTR {
-    return HN::MulAdd(table.at(c + 1, index), light.moment, HN::Mul(table.at(c, index), light.weight));
+    return hn::MulAdd(table.at(c + 1, index), light.moment, table.at(c, index) * light.weight);
   };
   return {light.alpha, depth, color(LaneTable::red), color(LaneTable::green), color(LaneTable::blue)};
 }
@@ -297,29 +297,29 @@ HWY_INLINE Light integrate_simple(const Lookup<form>& table, VI interval, VF len
 template <TableForm form>
 HWY_INLINE Light integrate_lanes(const Lookup<form>& table, VF length, VF front, VF back, MF active) {
   const DF d;
-  const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f);
-  active = HN::And(active, HN::Gt(length, zero));
-  length = HN::IfThenElseZero(active, HN::Min(length, HN::Set(d, lanes::most_length)));
-  front = HN::IfThenElseZero(active, front);
-  back = HN::IfThenElseZero(active, back);
+  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  active = hn::And(active, length > zero);
+  length = hn::IfThenElseZero(active, hn::Min(length, hn::Set(d, lanes::most_length)));
+  front = hn::IfThenElseZero(active, front);
+  back = hn::IfThenElseZero(active, back);
   lanes::Progress so_far{zero, one, zero, zero, zero, zero};
 
   lanes::Walk walk;
-  walk.up = HN::Ge(back, front);
+  walk.up = back >= front;
   walk.interval = table.locate(front, walk.up);
   walk.back = back;
   const auto index = table.index(walk.interval, active);
-  const VF end = walk.target(table, index), span = HN::Sub(end, front);
-  walk.active = HN::And(active, HN::Ne(end, back));
+  const VF end = walk.target(table, index), span = end - front;
+  walk.active = hn::And(active, end != back);
   // What a level segment's division gives is not used.
-  walk.length_per_scalar = HN::Div(length, HN::Sub(back, front));
-  const VF piece = HN::IfThenElse(walk.active, HN::Mul(span, walk.length_per_scalar), length);
+  walk.length_per_scalar = length / (back - front);
+  const VF piece = hn::IfThenElse(walk.active, span * walk.length_per_scalar, length);
   lanes::add_piece<true>(table, index, front, end, span, piece, so_far);
-  if (!HN::AllFalse(d, walk.active)) {
+  if (!hn::AllFalse(d, walk.active)) {
     walk.scalar = end;
-    walk.active = HN::And(walk.active, HN::Lt(so_far.optical_depth, HN::Set(d, lanes::opaque_depth)));
+    walk.active = hn::And(walk.active, so_far.optical_depth < hn::Set(d, lanes::opaque_depth));
     walk.go_on(table, lanes::pieces_a_fold, so_far);
-    if (HWY_UNLIKELY(!HN::AllFalse(d, walk.active))) so_far = lanes::go_far(table, walk, so_far);
+    if (HWY_UNLIKELY(!hn::AllFalse(d, walk.active))) so_far = lanes::go_far(table, walk, so_far);
   }
   return {so_far.alpha, so_far.optical_depth, so_far.red, so_far.green, so_far.blue};
 }

@@ -16,15 +16,15 @@ template <TableForm form>
 HWY_NOINLINE void integrate_batch(const LaneTable& table, FloatBatch& batch) {
   const DF d;
   const Lookup<form> lookup(table);
-  const std::size_t lanes = HN::Lanes(d);
+  const std::size_t lanes = hn::Lanes(d);
   for (std::size_t i = 0; i < batch.size; i += lanes) {
-    const Light light = integrate_lanes(lookup, HN::LoadU(d, &batch.length[i]), HN::LoadU(d, &batch.scalar_front[i]),
-                                        HN::LoadU(d, &batch.scalar_back[i]), HN::FirstN(d, batch.size - i));
-    HN::StoreU(light.alpha, d, &batch.alpha[i]);
-    HN::StoreU(light.optical_depth, d, &batch.optical_depth[i]);
-    HN::StoreU(light.red, d, &batch.red[i]);
-    HN::StoreU(light.green, d, &batch.green[i]);
-    HN::StoreU(light.blue, d, &batch.blue[i]);
+    const Light light = integrate_lanes(lookup, hn::LoadU(d, &batch.length[i]), hn::LoadU(d, &batch.scalar_front[i]),
+                                        hn::LoadU(d, &batch.scalar_back[i]), hn::FirstN(d, batch.size - i));
+    hn::StoreU(light.alpha, d, &batch.alpha[i]);
+    hn::StoreU(light.optical_depth, d, &batch.optical_depth[i]);
+    hn::StoreU(light.red, d, &batch.red[i]);
+    hn::StoreU(light.green, d, &batch.green[i]);
+    hn::StoreU(light.blue, d, &batch.blue[i]);
   }
 }
 

@@ -19,18 +19,18 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::integrals {
 namespace HWY_NAMESPACE {
 
-namespace HN = hwy::HWY_NAMESPACE;
-using DF = HN::ScalableTag<float>;
-using DI = HN::RebindToSigned<DF>;
-using VF = HN::Vec<DF>;
-using VI = HN::Vec<DI>;
-using MF = HN::Mask<DF>;
+namespace hn = hwy::HWY_NAMESPACE;
+using DF = hn::ScalableTag<float>;
+using DI = hn::RebindToSigned<DF>;
+using VF = hn::Vec<DF>;
+using VI = hn::Vec<DI>;
+using MF = hn::Mask<DF>;
 
 /// Where the table's rows are: each in one vector, each in two, or in memory.
 enum class TableForm { one_vector, two_vectors, many };
 
 HWY_INLINE TableForm form_of(const LaneTable& table) {
-  const std::size_t edges = table.knot_count + 2, lanes = HN::Lanes(DF());
+  const std::size_t edges = table.knot_count + 2, lanes = hn::Lanes(DF());
   return edges <= lanes ? TableForm::one_vector : edges <= 2 * lanes ? TableForm::two_vectors : TableForm::many;
 }
 
@@ -41,10 +41,10 @@ HWY_INLINE VF two_table_lookup(VF low, VF high, VI i) {
   return VF{_mm512_permutex2var_ps(low.raw, i.raw, high.raw)};
 #else
   const DI di;
-  const auto lanes = HN::Set(di, static_cast<std::int32_t>(HN::Lanes(di)));
-  const auto in_row = HN::IndicesFromVec(d, HN::And(i, HN::Sub(lanes, HN::Set(di, 1))));
-  return HN::IfThenElse(HN::RebindMask(d, HN::Lt(i, lanes)), HN::TableLookupLanes(low, in_row),
-                        HN::TableLookupLanes(high, in_row));
+  const auto lanes = hn::Set(di, static_cast<std::int32_t>(hn::Lanes(di)));
+  const auto in_row = hn::IndicesFromVec(d, hn::And(i, lanes - hn::Set(di, 1)));
+  return hn::IfThenElse(hn::RebindMask(d, i < lanes), hn::TableLookupLanes(low, in_row),
+                        hn::TableLookupLanes(high, in_row));
 #endif
 }
 
@@ -55,7 +55,7 @@ HWY_INLINE VI truncated(VF v) {
 #elif HWY_TARGET <= HWY_AVX2
   return VI{_mm256_cvttps_epi32(v.raw)};
 #else
-  return HN::ConvertTo(DI(), v);
+  return hn::ConvertTo(DI(), v);
 #endif
 }
 
@@ -71,9 +71,9 @@ class Lookup;
 HWY_INLINE VI count_if(MF mask, VI count) {
   const DI di;
 #if HWY_TARGET <= HWY_AVX3
-  return HN::IfThenElse(HN::RebindMask(di, mask), HN::Add(count, HN::Set(di, 1)), count);
+  return hn::IfThenElse(hn::RebindMask(di, mask), count + hn::Set(di, 1), count);
 #else
-  return HN::Sub(count, HN::VecFromMask(di, HN::RebindMask(di, mask)));
+  return count - hn::VecFromMask(di, hn::RebindMask(di, mask));
 #endif
 }
 
@@ -81,9 +81,9 @@ HWY_INLINE VI count_if(MF mask, VI count) {
 HWY_INLINE VF past(VF s, MF up) {
   const DF d;
   const DI di;
-  const VI bits = HN::BitCast(di, HN::Add(s, HN::Zero(d)));  // -0 has no neighbour in its bits
-  const VI away = HN::Or(HN::ShiftRight<31>(bits), HN::Set(di, 1));
-  return HN::BitCast(d, HN::IfThenElse(HN::RebindMask(di, up), HN::Add(bits, away), bits));
+  const VI bits = hn::BitCast(di, s + hn::Zero(d));  // -0 has no neighbour in its bits
+  const VI away = hn::Or(hn::ShiftRight<31>(bits), hn::Set(di, 1));
+  return hn::BitCast(d, hn::IfThenElse(hn::RebindMask(di, up), bits + away, bits));
 }
 
 /// Further knots below s, of those after the first `passed`, by a binary search of the edges: edge_at finds edge[i].
@@ -91,8 +91,8 @@ template <class EdgeAt>
 HWY_INLINE VI search(VI passed, std::size_t first_step, VF s, const EdgeAt& edge_at) {
   const DI di;
   for (std::size_t step = first_step; step > 0; step /= 2) {
-    const VI further = HN::Add(passed, HN::Set(di, static_cast<std::int32_t>(step)));
-    passed = HN::IfThenElse(HN::RebindMask(di, HN::Lt(edge_at(further), s)), further, passed);
+    const VI further = passed + hn::Set(di, static_cast<std::int32_t>(step));
+    passed = hn::IfThenElse(hn::RebindMask(di, edge_at(further) < s), further, passed);
   }
   return passed;
 }
@@ -109,13 +109,13 @@ struct Landmarks {
   }
   HWY_INLINE VI passed(VF s) const {
     const DF d;
-    VI even = HN::Zero(DI()), odd = even;
+    VI even = hn::Zero(DI()), odd = even;
     for (std::size_t i = 0; i < count; i += 2) {
-      even = count_if(HN::Lt(HN::Set(d, value[i]), s), even);
-      odd = count_if(HN::Lt(HN::Set(d, value[i + 1]), s), odd);
+      even = count_if(hn::Set(d, value[i]) < s, even);
+      odd = count_if(hn::Set(d, value[i + 1]) < s, odd);
     }
-    const VI landmarks = HN::Add(even, odd);
-    return first_step > 0 ? HN::ShiftLeftSame(landmarks, stride_bits) : landmarks;
+    const VI landmarks = even + odd;
+    return first_step > 0 ? hn::ShiftLeftSame(landmarks, stride_bits) : landmarks;
   }
   float value[count];
   int stride_bits;
@@ -125,7 +125,7 @@ struct Landmarks {
 template <>
 class Lookup<TableForm::one_vector> {
  public:
-  using Index = HN::Vec<DI>;
+  using Index = hn::Vec<DI>;
   explicit HWY_INLINE Lookup(const LaneTable& table)
       : independent(table.emission == scene::Emission::independent),
         has_clear(table.has_clear),
@@ -133,26 +133,26 @@ class Lookup<TableForm::one_vector> {
         landmarks_(table) {
     const DF d;
     const DI di;
-    for (int c = 0; c < LaneTable::column_count; ++c) rows_[c] = HN::LoadU(d, table.column(c));
+    for (int c = 0; c < LaneTable::column_count; ++c) rows_[c] = hn::LoadU(d, table.column(c));
     // A grid of few cells, no two knots in one, goes into registers too: half the work of comparing knot by knot.
-    const std::size_t lanes = HN::Lanes(di), cells = table.knots_before.size();
+    const std::size_t lanes = hn::Lanes(di), cells = table.knots_before.size();
     in_registers_ = cells <= 2 * lanes && table.largest_step <= 1;
     if (!in_registers_) return;
-    HWY_ALIGN std::int32_t before[2 * HN::MaxLanes(DI())] = {};
+    HWY_ALIGN std::int32_t before[2 * hn::MaxLanes(DI())] = {};
     std::copy(table.knots_before.begin(), table.knots_before.end(), before);
-    low_cells_ = HN::BitCast(d, HN::Load(di, before)), high_cells_ = HN::BitCast(d, HN::Load(di, before + lanes));
-    grid_origin_ = HN::Set(d, table.grid_origin), grid_scale_ = HN::Set(d, table.grid_scale);
-    last_cell_ = HN::Set(d, table.last_cell);
+    low_cells_ = hn::BitCast(d, hn::Load(di, before)), high_cells_ = hn::BitCast(d, hn::Load(di, before + lanes));
+    grid_origin_ = hn::Set(d, table.grid_origin), grid_scale_ = hn::Set(d, table.grid_scale);
+    last_cell_ = hn::Set(d, table.last_cell);
   }
   HWY_INLINE VI locate(VF s, MF up) const {
     const DF d;
     const DI di;
     if (HWY_LIKELY(in_registers_)) {
-      const VF place = HN::Mul(HN::Sub(s, grid_origin_), grid_scale_);
-      const VI cell = truncated(HN::Min(HN::Max(place, HN::Zero(d)), last_cell_));
-      const VI before = HN::BitCast(di, two_table_lookup(low_cells_, high_cells_, cell));
-      const VF next = at(LaneTable::edge, HN::Add(before, HN::Set(di, 1)));
-      return count_if(HN::Or(HN::Lt(next, s), HN::And(up, HN::Eq(next, s))), before);
+      const VF place = (s - grid_origin_) * grid_scale_;
+      const VI cell = truncated(hn::Min(hn::Max(place, hn::Zero(d)), last_cell_));
+      const VI before = hn::BitCast(di, two_table_lookup(low_cells_, high_cells_, cell));
+      const VF next = at(LaneTable::edge, before + hn::Set(di, 1));
+      return count_if(hn::Or(next < s, hn::And(up, next == s)), before);
     }
     const VF passing = past(s, up);
     return search(landmarks_.passed(passing), landmarks_.first_step, passing,
@@ -160,9 +160,9 @@ class Lookup<TableForm::one_vector> {
   }
   HWY_INLINE Index index(VI interval, MF) const { return interval; }
   HWY_INLINE VF at(int column, const Index& i) const {
-    return HN::TableLookupLanes(rows_[column], HN::IndicesFromVec(DF(), i));
+    return hn::TableLookupLanes(rows_[column], hn::IndicesFromVec(DF(), i));
   }
-  HWY_INLINE VF edge(VI, const Index& i, VI upper) const { return at(LaneTable::edge, HN::Add(i, upper)); }
+  HWY_INLINE VF edge(VI, const Index& i, VI upper) const { return at(LaneTable::edge, i + upper); }
   HWY_INLINE VF edge(VI, const Index& i, MF upper) const { return at(LaneTable::edge, count_if(upper, i)); }
 
   bool independent, has_clear;
@@ -179,7 +179,7 @@ class Lookup<TableForm::one_vector> {
 template <>
 class Lookup<TableForm::two_vectors> {
  public:
-  using Index = HN::Vec<DI>;
+  using Index = hn::Vec<DI>;
   explicit HWY_INLINE Lookup(const LaneTable& table)
       : independent(table.emission == scene::Emission::independent),
         has_clear(table.has_clear),
@@ -187,8 +187,8 @@ class Lookup<TableForm::two_vectors> {
         landmarks_(table) {
     const DF d;
     for (int c = 0; c < LaneTable::column_count; ++c) {
-      low_[c] = HN::LoadU(d, table.column(c));
-      high_[c] = HN::LoadU(d, table.column(c) + HN::Lanes(d));
+      low_[c] = hn::LoadU(d, table.column(c));
+      high_[c] = hn::LoadU(d, table.column(c) + hn::Lanes(d));
     }
   }
   HWY_INLINE VI locate(VF s, MF up) const {
@@ -198,7 +198,7 @@ class Lookup<TableForm::two_vectors> {
   }
   HWY_INLINE Index index(VI interval, MF) const { return interval; }
   HWY_INLINE VF at(int column, const Index& i) const { return two_table_lookup(low_[column], high_[column], i); }
-  HWY_INLINE VF edge(VI, const Index& i, VI upper) const { return at(LaneTable::edge, HN::Add(i, upper)); }
+  HWY_INLINE VF edge(VI, const Index& i, VI upper) const { return at(LaneTable::edge, i + upper); }
   HWY_INLINE VF edge(VI, const Index& i, MF upper) const { return at(LaneTable::edge, count_if(upper, i)); }
 
   bool independent, has_clear;
@@ -228,34 +228,33 @@ class Lookup<TableForm::many> {
   HWY_INLINE VI locate(VF s, MF up) const {
     const DF d;
     const DI di;
-    const VF place = HN::Mul(HN::Sub(s, HN::Set(d, table_.grid_origin)), HN::Set(d, table_.grid_scale));
-    const VI cell = truncated(HN::Min(HN::Max(place, HN::Zero(d)), HN::Set(d, table_.last_cell)));
-    return search(HN::GatherIndex(di, table_.knots_before.data(), cell), table_.largest_step, past(s, up),
-                  [&](VI i) HWY_ATTR { return HN::GatherIndex(DF(), table_.column(LaneTable::edge), i); });
+    const VF place = (s - hn::Set(d, table_.grid_origin)) * hn::Set(d, table_.grid_scale);
+    const VI cell = truncated(hn::Min(hn::Max(place, hn::Zero(d)), hn::Set(d, table_.last_cell)));
+    return search(hn::GatherIndex(di, table_.knots_before.data(), cell), table_.largest_step, past(s, up),
+                  [&](VI i) HWY_ATTR { return hn::GatherIndex(DF(), table_.column(LaneTable::edge), i); });
   }
   HWY_INLINE Index index(VI interval, MF active) const {
     const DF d;
     const DI di;
-    constexpr std::size_t most = HN::MaxLanes(DF());
+    constexpr std::size_t most = hn::MaxLanes(DF());
     HWY_ALIGN std::int32_t intervals[most];
-    HN::Store(interval, di, intervals);
-    const auto lanes = static_cast<std::int32_t>(HN::Lanes(di));
-    const auto first = std::max<std::intptr_t>(0, HN::FindFirstTrue(d, active));
+    hn::Store(interval, di, intervals);
+    const auto lanes = static_cast<std::int32_t>(hn::Lanes(di));
+    const auto first = std::max<std::intptr_t>(0, hn::FindFirstTrue(d, active));
     const std::int32_t window = std::max(0, intervals[first] - lanes);
     Index index;
     index.interval = interval;
     index.window = static_cast<std::size_t>(window);
-    const VI in_window = HN::Sub(interval, HN::Set(di, window));
+    const VI in_window = interval - hn::Set(di, window);
     // Bits above 2 lanes are set where a lane is out of the window, on either side; one place is kept for the far edge.
-    const auto outside =
-        HN::RebindMask(d, HN::Or(HN::Lt(in_window, HN::Zero(di)), HN::Gt(in_window, HN::Set(di, 2 * lanes - 2))));
-    index.windowed = HN::AllFalse(d, HN::And(active, outside));
-    index.in_window = HN::IfThenZeroElse(HN::RebindMask(di, outside), in_window);
+    const auto outside = hn::RebindMask(d, hn::Or(in_window<hn::Zero(di), in_window> hn::Set(di, 2 * lanes - 2)));
+    index.windowed = hn::AllFalse(d, hn::And(active, outside));
+    index.in_window = hn::IfThenZeroElse(hn::RebindMask(di, outside), in_window);
     return index;
   }
   HWY_INLINE VF at(int column, const Index& i) const { return look_up(column, i, i.interval, i.in_window); }
   HWY_INLINE VF edge(VI interval, const Index& i, VI upper) const {
-    return look_up(LaneTable::edge, i, HN::Add(interval, upper), HN::Add(i.in_window, upper));
+    return look_up(LaneTable::edge, i, interval + upper, i.in_window + upper);
   }
   HWY_INLINE VF edge(VI interval, const Index& i, MF upper) const {
     return look_up(LaneTable::edge, i, count_if(upper, interval), count_if(upper, i.in_window));
@@ -270,9 +269,9 @@ class Lookup<TableForm::many> {
     const float* const row = table_.column(column);
     if (HWY_LIKELY(i.windowed)) {
       const float* const window = row + i.window;
-      return two_table_lookup(HN::LoadU(d, window), HN::LoadU(d, window + HN::Lanes(d)), in_window);
+      return two_table_lookup(hn::LoadU(d, window), hn::LoadU(d, window + hn::Lanes(d)), in_window);
     }
-    return HN::GatherIndex(d, row, interval);
+    return hn::GatherIndex(d, row, interval);
   }
 
   const LaneTable& table_;

@@ -27,15 +27,15 @@ struct Place {
 HWY_INLINE Place place_in(V x, int size) {
   namespace hn = hwy::HWY_NAMESPACE;
   const D d;
-  const V inside = hn::Min(hn::IfThenElseZero(hn::Gt(x, hn::Zero(d)), x), hn::Set(d, size - 1));
+  const V inside = hn::Min(hn::IfThenElseZero(x > hn::Zero(d), x), hn::Set(d, size - 1));
   const V below = hn::Min(hn::Floor(inside), hn::Set(d, size - 2));
-  return {below, hn::Sub(inside, below)};
+  return {below, inside - below};
 }
 
 /// Linear between two entries.
 HWY_INLINE V mixed(V at_0, V at_1, V part) {
   namespace hn = hwy::HWY_NAMESPACE;
-  return hn::MulAdd(part, hn::Sub(at_1, at_0), at_0);
+  return hn::MulAdd(part, at_1 - at_0, at_0);
 }
 
 /// Indices below 2^31.

@@ -72,11 +72,10 @@ void make_vertices(const PixelVertex* vertices, const double* scalars, std::size
   for (; v + lanes <= count; v += lanes) {
     hn::Vec<decltype(dd)> x, y, w, depth;
     hn::LoadInterleaved4(dd, &vertices[v].x, x, y, w, depth);
-    const auto offset =
-        hn::Sub(hn::Sub(depth, origin), hn::Mul(hn::Add(hn::Abs(depth), origin_size), hn::Set(dd, 4e-16)));
-    const auto lower = hn::Sub(hn::Sub(offset, hn::Mul(hn::Abs(offset), hn::Set(dd, 0x1p-23))), hn::Set(dd, 0x1p-149));
+    const auto offset = depth - origin - (hn::Abs(depth) + origin_size) * hn::Set(dd, 4e-16);
+    const auto lower = offset - hn::Abs(offset) * hn::Set(dd, 0x1p-23) - hn::Set(dd, 0x1p-149);
     const auto scalar = scalars != nullptr ? hn::LoadU(dd, scalars + v) : hn::Zero(dd);
-    hn::StoreInterleaved4(hn::DemoteTo(df, hn::Div(x, w)), hn::DemoteTo(df, hn::Div(y, w)),
+    hn::StoreInterleaved4(hn::DemoteTo(df, x / w), hn::DemoteTo(df, y / w),
                           hn::DemoteTo(df, hn::Min(lower, hn::Set(dd, 3e38))), hn::DemoteTo(df, scalar), df, &out[v].x);
   }
   for (; v < count; ++v) out[v] = cull_vertex(vertices[v], scalars != nullptr ? scalars[v] : 0, depth_origin);
@@ -105,12 +104,12 @@ HWY_INLINE Covered covered(V least, V most, V side) {
   const D d;
   const V half = hn::Set(d, 0.5f), zero = hn::Zero(d);
   const auto in_window = [&](V v) HWY_ATTR { return hn::Min(hn::Max(v, zero), side); };
-  const V from = hn::Sub(least, half), from_slack = slack_of(least);
-  const V to = hn::Add(most, half), to_slack = slack_of(most);  // floor(most - 1/2) + 1
-  const V first = in_window(hn::Ceil(hn::Sub(from, from_slack))), last = in_window(hn::Floor(hn::Add(to, to_slack)));
-  const M first_sure = hn::Eq(first, in_window(hn::Ceil(hn::Add(from, from_slack))));
-  const M last_sure = hn::Eq(last, in_window(hn::Floor(hn::Sub(to, to_slack))));
-  return {first, last, hn::Ge(first, last), hn::And(first_sure, last_sure)};
+  const V from = least - half, from_slack = slack_of(least);
+  const V to = most + half, to_slack = slack_of(most);  // floor(most - 1/2) + 1
+  const V first = in_window(hn::Ceil(from - from_slack)), last = in_window(hn::Floor(to + to_slack));
+  const M first_sure = first == in_window(hn::Ceil(from + from_slack));
+  const M last_sure = last == in_window(hn::Floor(to - to_slack));
+  return {first, last, first >= last, hn::And(first_sure, last_sure)};
 }
 
 /// Boxes of cells, a cell after the other: smallest and largest of x, y, depth, scalar.
@@ -142,12 +141,12 @@ struct Hidden {
 
   HWY_INLINE Hidden(const Boxes& boxes, const ClearFloats* clear, std::size_t clear_count) {
     const D d;
-    surely = maybe = hn::Lt(hn::Zero(d), hn::Zero(d));
+    surely = maybe = hn::Zero(d) < hn::Zero(d);
     for (std::size_t i = 0; i < clear_count; ++i) {
-      surely = hn::Or(surely, hn::And(hn::Ge(boxes.scalar_low, hn::Set(d, clear[i].sure_low)),
-                                      hn::Le(boxes.scalar_high, hn::Set(d, clear[i].sure_high))));
-      maybe = hn::Or(maybe, hn::And(hn::Ge(boxes.scalar_low, hn::Set(d, clear[i].maybe_low)),
-                                    hn::Le(boxes.scalar_high, hn::Set(d, clear[i].maybe_high))));
+      surely = hn::Or(surely, hn::And(boxes.scalar_low >= hn::Set(d, clear[i].sure_low),
+                                      boxes.scalar_high <= hn::Set(d, clear[i].sure_high)));
+      maybe = hn::Or(maybe, hn::And(boxes.scalar_low >= hn::Set(d, clear[i].maybe_low),
+                                    boxes.scalar_high <= hn::Set(d, clear[i].maybe_high)));
     }
   }
 };
@@ -161,26 +160,23 @@ struct Placed {
     const D d;
     // The farthest that a vertex of this CullVertex::depth may lie.
     const auto at_most = [&](V v) HWY_ATTR {
-      return hn::Add(hn::MulAdd(hn::Abs(v), hn::Set(d, 4e-7f), v), hn::Set(d, view.depth_slack));
+      return hn::MulAdd(hn::Abs(v), hn::Set(d, 4e-7f), v) + hn::Set(d, view.depth_slack);
     };
-    too_near = hn::Lt(at_most(b.depth_high), hn::Set(d, view.near_low));
-    too_far = hn::Gt(b.depth_low, hn::Set(d, view.far_high));
-    in_depth = hn::And(hn::Gt(b.depth_low, hn::Set(d, view.near_high)),
-                       hn::Lt(at_most(b.depth_low), hn::Set(d, view.far_low)));
+    too_near = at_most(b.depth_high) < hn::Set(d, view.near_low);
+    too_far = b.depth_low > hn::Set(d, view.far_high);
+    in_depth = hn::And(b.depth_low > hn::Set(d, view.near_high), at_most(b.depth_low) < hn::Set(d, view.far_low));
 
     const V width = hn::Set(d, view.width), height = hn::Set(d, view.height);
     columns = covered(b.x_low, b.x_high, width), rows = covered(b.y_low, b.y_high, height);
     // A sum, which is no number where one of them is none.
-    const V widest =
-        hn::Add(hn::Add(hn::Abs(b.x_low), hn::Abs(b.x_high)), hn::Add(hn::Abs(b.y_low), hn::Abs(b.y_high)));
-    tame = hn::Lt(widest, hn::Set(d, 1e30f));
+    const V widest = hn::Abs(b.x_low) + hn::Abs(b.x_high) + (hn::Abs(b.y_low) + hn::Abs(b.y_high));
+    tame = widest < hn::Set(d, 1e30f);
     empty = hn::Or(columns.empty, rows.empty);
     covers = hn::AndNot(empty, hn::And(columns.sure, rows.sure));
-    const auto within = [&](V least, V most, V side) HWY_ATTR {
-      return hn::And(hn::Gt(least, slack_of(least)), hn::Lt(hn::Add(most, slack_of(most)), side));
-    };
+    const auto within = [&](V least, V most, V side)
+                            HWY_ATTR { return hn::And(least > slack_of(least), most + slack_of(most) < side); };
     const auto beyond = [&](V least, V most, V side) HWY_ATTR {
-      return hn::Or(hn::Lt(hn::Add(most, slack_of(most)), hn::Zero(d)), hn::Gt(hn::Sub(least, slack_of(least)), side));
+      return hn::Or(most + slack_of(most) < hn::Zero(d), least - slack_of(least) > side);
     };
     inside = hn::And(within(b.x_low, b.x_high, width), within(b.y_low, b.y_high, height));
     outside = hn::Or(beyond(b.x_low, b.x_high, width), beyond(b.y_low, b.y_high, height));
@@ -193,17 +189,17 @@ HWY_INLINE std::uint64_t store_places(const CullView& view, const Placed& placed
   const hn::RebindToSigned<D> di;
   // Whole numbers up to 65536 plus a half, over the tile's size: floats are off by less than half a pixel.
   const V inverse = hn::Set(d, view.inverse_tile_size), half = hn::Set(d, 0.5f);
-  const auto tile = [&](V pixel) HWY_ATTR { return hn::Floor(hn::Mul(pixel, inverse)); };
-  const V column0 = tile(hn::Add(placed.columns.low, half)), column1 = tile(hn::Sub(placed.columns.high, half));
-  const V row0 = tile(hn::Add(placed.rows.low, half)), row1 = tile(hn::Sub(placed.rows.high, half));
+  const auto tile = [&](V pixel) HWY_ATTR { return hn::Floor(pixel * inverse); };
+  const V column0 = tile(placed.columns.low + half), column1 = tile(placed.columns.high - half);
+  const V row0 = tile(placed.rows.low + half), row1 = tile(placed.rows.high - half);
   const auto first = hn::ConvertTo(di, hn::MulAdd(row0, hn::Set(d, view.columns), column0));
-  const auto more_columns = hn::ConvertTo(di, hn::Sub(column1, column0));
-  const auto more_rows = hn::ConvertTo(di, hn::Sub(row1, row0));
+  const auto more_columns = hn::ConvertTo(di, column1 - column0);
+  const auto more_rows = hn::ConvertTo(di, row1 - row0);
   const auto place = hn::Or(first, hn::Or(hn::ShiftLeft<24>(more_columns), hn::ShiftLeft<28>(more_rows)));
-  const auto wide = hn::Gt(hn::Max(more_columns, more_rows), hn::Set(di, largest_place_span));
+  const auto wide = hn::Max(more_columns, more_rows) > hn::Set(di, largest_place_span);
   hn::StoreU(hn::IfThenElse(wide, hn::Set(di, static_cast<std::int32_t>(wide_place)), place), di,
              reinterpret_cast<std::int32_t*>(places));
-  return bits_of(hn::RebindMask(d, hn::Eq(hn::Or(more_columns, more_rows), hn::Zero(di))));
+  return bits_of(hn::RebindMask(d, hn::Or(more_columns, more_rows) == hn::Zero(di)));
 }
 
 CulledBlock cull(const CullView& view, const CullVertex* vertices, const scene::Tet* tets, std::size_t count,

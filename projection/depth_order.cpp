@@ -100,9 +100,7 @@ DepthOrder order(TileEntry* entries, TileEntry* other, std::uint32_t* steps, std
   if (!(scale > 0 && scale < HUGE_VALF)) return radix_sort(entries, other, n);
   // Rounding is monotonic, so steps are in order as depths are.
   for (i = 0; i + 2 * lanes <= n; i += 2 * lanes) {
-    const auto step_of = [&](V v) HWY_ATTR {
-      return hn::ConvertTo(di, hn::Mul(hn::Sub(v, hn::Set(d, least)), hn::Set(d, scale)));
-    };
+    const auto step_of = [&](V v) HWY_ATTR { return hn::ConvertTo(di, (v - hn::Set(d, least)) * hn::Set(d, scale)); };
     const auto a = step_of(hn::LoadU(d, lanes_of(entries + i)));
     const auto b = step_of(hn::LoadU(d, lanes_of(entries + i + lanes)));
     hn::StoreU(hn::ConcatEven(di, b, a), di, reinterpret_cast<std::int32_t*>(steps + i));

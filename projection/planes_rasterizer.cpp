@@ -182,8 +182,8 @@ struct CellLanes {
   HWY_INLINE Pixels pixels_from(int base) const {
     const D d;
     const V k = hn::Iota(d, base);
-    const V row = hn::Floor(hn::Mul(hn::Add(k, hn::Set(d, 0.5)), inverse_width));  // k < 2^20: exact
-    return {hn::Add(hn::NegMulAdd(row, width, k), left), hn::Add(row, top), hn::Lt(k, count)};
+    const V row = hn::Floor((k + hn::Set(d, 0.5)) * inverse_width);  // k < 2^20: exact
+    return {hn::NegMulAdd(row, width, k) + left, row + top, k < count};
   }
 };
 
@@ -201,10 +201,10 @@ HWY_INLINE void edge_functions(const Cell<values>& cell, const CellLanes& lanes,
   V least = hn::Set(d, HUGE_VAL);
   for (int e = 0; e < 6; ++e) {
     const int a = edge_from[e], b = edge_to[e];
-    edge[e] = hn::MulSub(qx[a], qy[b], hn::Mul(qx[b], qy[a]));
-    least = hn::Min(least, hn::Add(hn::Abs(edge[e]), hn::Set(d, cell.certainty[e])));
+    edge[e] = hn::MulSub(qx[a], qy[b], qx[b] * qy[a]);
+    least = hn::Min(least, hn::Abs(edge[e]) + hn::Set(d, cell.certainty[e]));
   }
-  const auto uncertain = hn::And(pixels.in_box, hn::Le(least, lanes.bound));
+  const auto uncertain = hn::And(pixels.in_box, least <= lanes.bound);
   if (HWY_UNLIKELY(!hn::AllFalse(d, uncertain))) {
     alignas(64) double x[8], y[8], settled[6][8];
     std::uint8_t bits[8] = {0};
@@ -228,7 +228,7 @@ struct Crossed {
     depth_sum = depth_c = zero;
     for (int v = 0; v < values; ++v) value_sum[v] = value_c[v] = zero;
     weight = hn::Set(D(), 1.0);
-    any = hn::Lt(zero, zero);
+    any = zero < zero;
   }
   HWY_INLINE void gather(hn::Mask<D> pierced, const Crossed& face) {
     depth_sum = hn::IfThenElse(pierced, face.depth_sum, depth_sum);
@@ -244,7 +244,7 @@ struct Crossed {
 
 /// a * (at_a - at_c) + b * (at_b - at_c).
 HWY_INLINE V weighted(V a, V b, double at_a, double at_b, double at_c) {
-  return hn::MulAdd(a, hn::Set(D(), at_a - at_c), hn::Mul(b, hn::Set(D(), at_b - at_c)));
+  return hn::MulAdd(a, hn::Set(D(), at_a - at_c), b * hn::Set(D(), at_b - at_c));
 }
 
 /// The cell's faces that rays pierce from one side (`plus`) and the other.
@@ -256,8 +256,8 @@ HWY_INLINE void cross_faces(const Cell<values>& cell, const V (&edge)[6], Crosse
   hn::Mask<D> positive[6], negative[6];
   V weight[6];
   for (int e = 0; e < 6; ++e) {
-    positive[e] = hn::Gt(edge[e], zero);
-    negative[e] = hn::Lt(edge[e], zero);
+    positive[e] = edge[e] > zero;
+    negative[e] = edge[e] < zero;
     weight[e] = hn::Abs(edge[e]);
   }
   for (int f = 0; f < 4; ++f) {
@@ -277,7 +277,7 @@ HWY_INLINE void cross_faces(const Cell<values>& cell, const V (&edge)[6], Crosse
       here.value_c[v] = hn::Set(d, value[face.c]);
       here.value_sum[v] = weighted(a, b, value[face.a], value[face.b], value[face.c]);
     }
-    here.weight = hn::Add(hn::Add(weight[face.bc], weight[face.ac]), weight[face.ab]);
+    here.weight = weight[face.bc] + weight[face.ac] + weight[face.ab];
     plus.gather(is_plus, here);
     minus.gather(is_minus, here);
   }
@@ -296,10 +296,10 @@ HWY_INLINE Segments<values> segments_between(const CellLanes& lanes, hn::Mask<D>
                                              const Crossed<values>& minus) {
   const D d;
   const V near_depth = lanes.near_depth, far_depth = lanes.far_depth;
-  const V plus_inverse = hn::Div(hn::Set(d, 1.0), plus.weight), minus_inverse = hn::Div(hn::Set(d, 1.0), minus.weight);
+  const V plus_inverse = hn::Set(d, 1.0) / plus.weight, minus_inverse = hn::Set(d, 1.0) / minus.weight;
   const V plus_depth = hn::MulAdd(plus.depth_sum, plus_inverse, plus.depth_c);
   const V minus_depth = hn::MulAdd(minus.depth_sum, minus_inverse, minus.depth_c);
-  const auto plus_first = hn::Le(plus_depth, minus_depth);
+  const auto plus_first = plus_depth <= minus_depth;
   Segments<values> s;
   s.front = hn::Min(plus_depth, minus_depth);
   s.back = hn::Max(plus_depth, minus_depth);
@@ -309,17 +309,15 @@ HWY_INLINE Segments<values> segments_between(const CellLanes& lanes, hn::Mask<D>
     s.value_front[v] = hn::IfThenElse(plus_first, at_plus, at_minus);
     s.value_back[v] = hn::IfThenElse(plus_first, at_minus, at_plus);
   }
-  s.hit = hn::And(hit, hn::And(hn::Gt(s.back, near_depth), hn::Lt(s.front, far_depth)));
-  const auto clipped = hn::And(s.hit, hn::Or(hn::Lt(s.front, near_depth), hn::Gt(s.back, far_depth)));
+  s.hit = hn::And(hit, hn::And(s.back > near_depth, s.front < far_depth));
+  const auto clipped = hn::And(s.hit, hn::Or(s.front<near_depth, s.back> far_depth));
   if (HWY_UNLIKELY(!hn::AllFalse(d, clipped))) {
     const V front = hn::Max(s.front, near_depth), back = hn::Min(s.back, far_depth);
     for (int v = 0; v < values; ++v) {
-      const V slope = hn::Div(hn::Sub(s.value_back[v], s.value_front[v]), hn::Sub(s.back, s.front));
+      const V slope = (s.value_back[v] - s.value_front[v]) / (s.back - s.front);
       const V from = s.value_front[v];
-      s.value_front[v] =
-          hn::IfThenElse(hn::Lt(s.front, near_depth), hn::MulAdd(hn::Sub(front, s.front), slope, from), from);
-      s.value_back[v] =
-          hn::IfThenElse(hn::Gt(s.back, far_depth), hn::MulAdd(hn::Sub(back, s.front), slope, from), s.value_back[v]);
+      s.value_front[v] = hn::IfThenElse(s.front < near_depth, hn::MulAdd(front - s.front, slope, from), from);
+      s.value_back[v] = hn::IfThenElse(s.back > far_depth, hn::MulAdd(back - s.front, slope, from), s.value_back[v]);
     }
     s.front = front;
     s.back = back;
@@ -332,7 +330,7 @@ HWY_INLINE void append(const Segments<values>& s, const CellLanes& lanes, const 
   const D d;
   const hn::RebindToUnsigned<D> du;
   const hn::RebindToSigned<D> di;
-  const V in_tile = hn::MulAdd(hn::Sub(pixels.y, lanes.tile_top), lanes.tile_width, hn::Sub(pixels.x, lanes.tile_left));
+  const V in_tile = hn::MulAdd(pixels.y - lanes.tile_top, lanes.tile_width, pixels.x - lanes.tile_left);
   const auto packed = hn::Or(hn::BitCast(du, hn::ConvertTo(di, in_tile)), lanes.tet);
   const WideLanePacker pack(hn::RebindMask(du, s.hit));
   hn::StoreU(pack(packed), du, out.pixel_and_tet.data() + out.size);

@@ -43,7 +43,7 @@ class PackedKeys {
   HWY_INLINE PackedKeys(KeyVec nearest, KeyVec farthest, std::size_t rows) : nearest_(nearest) {
     const KeyTag d;
     const hn::RebindToUnsigned<KeyTag> bits;
-    const KeyVec range = hn::IfThenZeroElse(hn::Lt(farthest, nearest), hn::Sub(farthest, nearest));
+    const KeyVec range = hn::IfThenZeroElse(farthest < nearest, farthest - nearest);
     const auto range_bits =
         static_cast<int>(std::bit_width(hn::GetLane(hn::MaxOfLanes(bits, hn::BitCast(bits, range)))));
     const auto row_bits = static_cast<int>(std::bit_width(rows - 1));
@@ -53,10 +53,10 @@ class PackedKeys {
   HWY_INLINE KeyVec pack(KeyVec depth, std::size_t row) const {
     const KeyTag d;
     const hn::RebindToUnsigned<KeyTag> bits;
-    const auto behind = hn::BitCast(bits, hn::Sub(depth, nearest_));
+    const auto behind = hn::BitCast(bits, depth - nearest_);
     const auto shifted = up_ >= 0 ? hn::ShiftLeftSame(behind, up_) : hn::ShiftRightSame(behind, -up_);
     const KeyVec number = hn::Set(d, static_cast<std::int32_t>(row));
-    return hn::Add(hn::Or(hn::AndNot(row_mask_, hn::BitCast(d, shifted)), number), hn::Set(d, least_normal));
+    return hn::Or(hn::AndNot(row_mask_, hn::BitCast(d, shifted)), number) + hn::Set(d, least_normal);
   }
   /// A key behind all others, for rows beyond a list's end.
   static HWY_INLINE KeyVec behind_all(std::size_t row) {
@@ -66,7 +66,7 @@ class PackedKeys {
   HWY_INLINE KeyVec row(KeyVec key) const { return hn::And(key, row_mask_); }
   /// Whether the keys do not tell which depth is nearer.
   HWY_INLINE hn::Mask<KeyTag> level(KeyVec a, KeyVec b) const {
-    return hn::Lt(hn::Xor(a, b), hn::Add(row_mask_, hn::Set(KeyTag(), 1)));
+    return hn::Xor(a, b) < row_mask_ + hn::Set(KeyTag(), 1);
   }
 
  private:

@@ -40,7 +40,7 @@ HWY_INLINE const projection::LatticeSegment& segment_at(const projection::Lattic
 
 /// Lanes whose lists have this row.
 HWY_INLINE hn::Mask<KeyTag> has_row(std::size_t row, KeyVec count) {
-  return hn::Lt(hn::Set(KeyTag(), static_cast<std::int32_t>(row)), count);
+  return hn::Set(KeyTag(), static_cast<std::int32_t>(row)) < count;
 }
 
 /// Puts in order what the network left nearly so: keys do not tell all of a segment, nor always all of its depth.
@@ -108,11 +108,11 @@ HWY_INLINE std::size_t sort_windows(const projection::LatticeSegment* list, std:
   }
   sort_lanes(keys, static_cast<int>(chunks));
   const KeyVec bytes = hn::Set(d, static_cast<std::int32_t>(stride * sizeof *list));
-  auto ties = hn::Lt(count, hn::Zero(d));
+  auto ties = count < hn::Zero(d);
   KeyVec previous = hn::Zero(d);
   for (std::size_t row = 0; row < most; ++row) {
     const KeyVec key = hn::BitCast(d, hn::LoadU(df, keys + row * lanes));
-    hn::StoreU(hn::Mul(packed.row(key), bytes), d, slots + row * lanes);
+    hn::StoreU(packed.row(key) * bytes, d, slots + row * lanes);
     ties = hn::Or(ties, packed.level(previous, key));
     previous = key;
   }

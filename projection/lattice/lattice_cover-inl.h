@@ -41,7 +41,7 @@ constexpr int most_blocks = SegmentWindows::most_pixels / lanes;
 constexpr float outline_uncertainty = 2.0f + 0.75f * static_cast<float>(most_blocks);
 
 /// first, first + 1... (Iota() of what is no constant goes through memory, lane by lane.)
-HWY_INLINE VI numbers_from(int first) { return hn::Add(hn::Iota(I(), 0), hn::Set(I(), first)); }
+HWY_INLINE VI numbers_from(int first) { return hn::Iota(I(), 0) + hn::Set(I(), first); }
 
 /// Puts the lanes that are hit, or may be, behind `size` hits; returns how many there are then.
 HWY_INLINE std::size_t push_hits(VF least, MF among, VI hits, HitQueue& queue, std::size_t size) {
@@ -51,11 +51,11 @@ HWY_INLINE std::size_t push_hits(VF least, MF among, VI hits, HitQueue& queue, s
   const VI mark = hn::Set(d, Hit::uncertain);
 #if HWY_TARGET <= HWY_AVX3
   const MF near{_mm512_mask_cmp_ps_mask(among.raw, least.raw, minus_bound.raw, _CMP_GT_OQ)};
-  const MF uncertain = hn::Le(least, bound);
+  const MF uncertain = least <= bound;
   hits = VI{_mm512_mask_or_epi32(hits.raw, uncertain.raw, hits.raw, mark.raw)};
 #else
-  const MF near = hn::And(among, hn::Gt(least, minus_bound));
-  hits = hn::Or(hits, hn::IfThenElseZero(hn::RebindMask(d, hn::Le(least, bound)), mark));
+  const MF near = hn::And(among, least > minus_bound);
+  hits = hn::Or(hits, hn::IfThenElseZero(hn::RebindMask(d, least <= bound), mark));
 #endif
   const LanePacker pack(hn::RebindMask(d, near));
   hn::StoreU(pack(hits), d, queue.hit + size);
@@ -73,16 +73,15 @@ struct SmallCells {
   HWY_INLINE static unsigned worth_while(const CellBatch& batch, unsigned cells, int from) {
     const I d;
     const auto takes = mask_of(cells, from);
-    const VI width = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.x1 + from), hn::Load(d, batch.x0 + from)));
-    const VI height = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.y1 + from), hn::Load(d, batch.y0 + from)));
+    const VI width = hn::IfThenElseZero(takes, hn::Load(d, batch.x1 + from) - hn::Load(d, batch.x0 + from));
+    const VI height = hn::IfThenElseZero(takes, hn::Load(d, batch.y1 + from) - hn::Load(d, batch.y0 + from));
     const VI side = hn::Max(width, height);
     constexpr int across = usual_width, down = lanes / usual_width;
-    const VI blocks =
-        hn::Mul(hn::ShiftRight<std::countr_zero(unsigned{across})>(hn::Add(width, hn::Set(d, across - 1))),
-                hn::ShiftRight<std::countr_zero(unsigned{down})>(hn::Add(height, hn::Set(d, down - 1))));
-    const VI cost = hn::IfThenElseZero(takes, hn::Add(hn::Mul(blocks, hn::Set(d, block_cost)), hn::Set(d, cell_cost)));
+    const VI blocks = hn::ShiftRight<std::countr_zero(unsigned{across})>(width + hn::Set(d, across - 1)) *
+                      hn::ShiftRight<std::countr_zero(unsigned{down})>(height + hn::Set(d, down - 1));
+    const VI cost = hn::IfThenElseZero(takes, blocks * hn::Set(d, block_cost) + hn::Set(d, cell_cost));
     for (const int most_side : {16, 10, 6}) {
-      const auto small = hn::Lt(side, hn::Set(d, most_side + 1));
+      const auto small = side < hn::Set(d, most_side + 1);
       const int candidates = hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElseZero(small, width))) *
                              hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElseZero(small, height)));
       if (candidates * step_cost + start_cost < hn::GetLane(hn::SumOfLanes(d, hn::IfThenElseZero(small, cost))))
@@ -99,16 +98,16 @@ struct SmallCells {
     const F df;
     const auto takes = mask_of(cells, from);
     const VI x0 = hn::Load(d, batch.x0 + from), y0 = hn::Load(d, batch.y0 + from);
-    const VI width = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.x1 + from), x0));
-    const VI height = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.y1 + from), y0));
+    const VI width = hn::IfThenElseZero(takes, hn::Load(d, batch.x1 + from) - x0);
+    const VI height = hn::IfThenElseZero(takes, hn::Load(d, batch.y1 + from) - y0);
     const int rows = hn::GetLane(hn::MaxOfLanes(d, height));
     VI row_hits =
         hn::Or(numbers_from(from), hn::Or(hn::ShiftLeft<Hit::column_bit>(x0), hn::ShiftLeft<Hit::row_bit>(y0)));
     const VF one = hn::Set(df, 1.0f), center = hn::Set(df, static_cast<float>(CellBatch::center));
-    const VF first_x = hn::Sub(hn::ConvertTo(df, x0), center);
-    VF y = hn::Sub(hn::ConvertTo(df, y0), center);
+    const VF first_x = hn::ConvertTo(df, x0) - center;
+    VF y = hn::ConvertTo(df, y0) - center;
     for (int r = 0; r < rows; ++r) {
-      const VI row_width = hn::IfThenElseZero(hn::Gt(height, hn::Set(d, r)), width);
+      const VI row_width = hn::IfThenElseZero(height > hn::Set(d, r), width);
       const int columns = hn::GetLane(hn::MaxOfLanes(d, row_width));
       VF row_edge[4];
       for (int k = 0; k < 4; ++k)
@@ -121,15 +120,15 @@ struct SmallCells {
         VF edge[4];
         for (int k = 0; k < 4; ++k) edge[k] = hn::MulAdd(hn::Load(df, parts.outline[k].x + from), x, row_edge[k]);
         const VF least = hn::Min(hn::Min(edge[0], edge[1]), hn::Min(edge[2], edge[3]));
-        size = push_hits(least, hn::RebindMask(df, hn::Gt(row_width, column)), hits, queue, size);
-        x = hn::Add(x, one);
-        column = hn::Add(column, hn::Set(d, 1));
-        hits = hn::Add(hits, hn::Set(d, 1 << Hit::column_bit));
+        size = push_hits(least, hn::RebindMask(df, row_width > column), hits, queue, size);
+        x = x + one;
+        column = column + hn::Set(d, 1);
+        hits = hits + hn::Set(d, 1 << Hit::column_bit);
       }
       queue.size = size;
       if (size >= HitQueue::worth_draining) drain();
-      y = hn::Add(y, one);
-      row_hits = hn::Add(row_hits, hn::Set(d, 1 << Hit::row_bit));
+      y = y + one;
+      row_hits = row_hits + hn::Set(d, 1 << Hit::row_bit);
     }
   }
 
@@ -157,27 +156,27 @@ class CellBlocks {
     const VI center = number(CellBatch::center), one = number(1);
     for (int t = 0; t < CellBatch::most; t += lanes) {
       const VI x0 = hn::Load(d, batch.x0 + t), y0 = hn::Load(d, batch.y0 + t);
-      const VI box_width = hn::Sub(hn::Load(d, batch.x1 + t), x0), box_height = hn::Sub(hn::Load(d, batch.y1 + t), y0);
+      const VI box_width = hn::Load(d, batch.x1 + t) - x0, box_height = hn::Load(d, batch.y1 + t) - y0;
       VI shape = hn::Zero(d), columns = shape, rows = shape, blocks = number(0x7fffffff);
       VI block_width = shape, block_height = shape;
       for (int i = 0; i < 3; ++i) {
         const BlockShape& of = block_shapes[i];
         const auto blocks_over = [&](VI box, int side) HWY_ATTR {
-          return hn::ShiftRightSame(hn::Add(box, number(side - 1)), __builtin_ctz(static_cast<unsigned>(side)));
+          return hn::ShiftRightSame(box + number(side - 1), __builtin_ctz(static_cast<unsigned>(side)));
         };
         const VI across = blocks_over(box_width, of.width), down = blocks_over(box_height, of.height);
-        const VI count = hn::Mul(across, down);
-        const auto fewer = hn::Lt(count, blocks);
+        const VI count = across * down;
+        const auto fewer = count < blocks;
         blocks = hn::IfThenElse(fewer, count, blocks), shape = hn::IfThenElse(fewer, number(i), shape);
         columns = hn::IfThenElse(fewer, across, columns), rows = hn::IfThenElse(fewer, down, rows);
         block_width = hn::IfThenElse(fewer, number(of.width), block_width);
         block_height = hn::IfThenElse(fewer, number(of.height), block_height);
       }
-      const VI across = hn::Mul(columns, block_width), down = hn::Mul(rows, block_height);
-      const VI left = hn::Max(first_x, hn::Min(x0, hn::Sub(right, across)));
-      const VI top = hn::Max(first_y, hn::Min(y0, hn::Sub(bottom, down)));
-      const auto clipped = hn::Or(hn::Gt(hn::Add(left, across), right), hn::Gt(hn::Add(top, down), bottom));
-      const VI last_pixel = hn::Mul(hn::Sub(columns, one), block_width);
+      const VI across = columns * block_width, down = rows * block_height;
+      const VI left = hn::Max(first_x, hn::Min(x0, right - across));
+      const VI top = hn::Max(first_y, hn::Min(y0, bottom - down));
+      const auto clipped = hn::Or(left + across > right, top + down > bottom);
+      const VI last_pixel = (columns - one) * block_width;
       hn::Store(shape, d, shape_ + t);
       hn::Store(left, d, left_ + t), hn::Store(top, d, top_ + t);
       hn::Store(columns, d, columns_ + t), hn::Store(blocks, d, blocks_ + t);
@@ -185,17 +184,17 @@ class CellBlocks {
       hn::Store(hn::Or(numbers_from(t), hn::Or(hn::ShiftLeft<Hit::column_bit>(left), hn::ShiftLeft<Hit::row_bit>(top))),
                 d, first_hit_ + t);
       hn::Store(hn::ShiftLeft<Hit::column_bit>(block_width), d, hit_step_ + t);
-      hn::Store(hn::Sub(hn::ShiftLeft<Hit::row_bit>(block_height), hn::ShiftLeft<Hit::column_bit>(last_pixel)), d,
+      hn::Store(hn::ShiftLeft<Hit::row_bit>(block_height) - hn::ShiftLeft<Hit::column_bit>(last_pixel), d,
                 hit_step_ + CellBatch::most + t);
-      const VF x = hn::ConvertTo(df, hn::Sub(left, center)), y = hn::ConvertTo(df, hn::Sub(top, center));
+      const VF x = hn::ConvertTo(df, left - center), y = hn::ConvertTo(df, top - center);
       const VF back = hn::ConvertTo(df, last_pixel);
       const VF across_f = hn::ConvertTo(df, block_width), down_f = hn::ConvertTo(df, block_height);
       for (int k = 0; k < 4; ++k) {
         const CellParts::Edge& edge = parts.outline[k];
         const VF along_x = hn::Load(df, edge.x + t), along_y = hn::Load(df, edge.y + t);
         hn::Store(hn::MulAdd(along_x, x, hn::MulAdd(along_y, y, hn::Load(df, edge.start + t))), df, edge_[k] + t);
-        hn::Store(hn::Mul(along_x, across_f), df, edge_step_[k] + t);
-        hn::Store(hn::NegMulAdd(along_x, back, hn::Mul(along_y, down_f)), df, edge_step_[k] + CellBatch::most + t);
+        hn::Store(along_x * across_f, df, edge_step_[k] + t);
+        hn::Store(hn::NegMulAdd(along_x, back, along_y * down_f), df, edge_step_[k] + CellBatch::most + t);
       }
     }
   }
@@ -211,15 +210,15 @@ class CellBlocks {
     for (int k = 0; k < 4; ++k)
       edge[k] = hn::MulAdd(hn::Set(df, parts.outline[k].x[t]), x,
                            hn::MulAdd(hn::Set(df, parts.outline[k].y[t]), y, hn::Set(df, edge_[k][t])));
-    VI hits = hn::Add(hn::Set(d, first_hit_[t]),
-                      hn::Or(hn::ShiftLeft<Hit::column_bit>(column), hn::ShiftLeft<Hit::row_bit>(row)));
+    VI hits =
+        hn::Set(d, first_hit_[t]) + hn::Or(hn::ShiftLeft<Hit::column_bit>(column), hn::ShiftLeft<Hit::row_bit>(row));
     const bool clipped = clipped_[t] != 0;
     const int columns = columns_[t];
     int left = columns;
     std::size_t size = queue.size;
     for (int block = 0, count = blocks_[t]; block < count; ++block) {
       const VF least = hn::Min(hn::Min(edge[0], edge[1]), hn::Min(edge[2], edge[3]));
-      MF among = hn::Eq(x, x);
+      MF among = x == x;
       if (HWY_UNLIKELY(clipped)) among = in_rectangle(shape, t, block);
       size = push_hits(least, among, hits, queue, size);
       // All ones behind the last of a row. (A comparison's result would come in a part of a register: it would wait for
@@ -227,8 +226,8 @@ class CellBlocks {
       const int wraps = (--left - 1) >> 31;
       left += columns & wraps;
       const int step = (wraps & CellBatch::most) + t;
-      for (int k = 0; k < 4; ++k) edge[k] = hn::Add(edge[k], hn::Set(df, edge_step_[k][step]));
-      hits = hn::Add(hits, hn::Set(d, hit_step_[step]));
+      for (int k = 0; k < 4; ++k) edge[k] = edge[k] + hn::Set(df, edge_step_[k][step]);
+      hits = hits + hn::Set(d, hit_step_[step]);
     }
     queue.size = size;
   }
@@ -237,9 +236,9 @@ class CellBlocks {
   /// The lanes of a block that lie in the rectangle.
   HWY_NOINLINE MF in_rectangle(const BlockShape& shape, int t, int block) const {
     const I d;
-    const VI x = hn::Add(hn::Load(d, shape.column), hn::Set(d, left_[t] + block % columns_[t] * shape.width));
-    const VI y = hn::Add(hn::Load(d, shape.row), hn::Set(d, top_[t] + block / columns_[t] * shape.height));
-    return hn::RebindMask(F(), hn::And(hn::Lt(x, hn::Set(d, right_)), hn::Lt(y, hn::Set(d, bottom_))));
+    const VI x = hn::Load(d, shape.column) + hn::Set(d, left_[t] + block % columns_[t] * shape.width);
+    const VI y = hn::Load(d, shape.row) + hn::Set(d, top_[t] + block / columns_[t] * shape.height);
+    return hn::RebindMask(F(), hn::And(x < hn::Set(d, right_), y < hn::Set(d, bottom_)));
   }
 
   int right_, bottom_;

@@ -30,14 +30,14 @@ HWY_INLINE VI products(VI a, VI b) {
   return VI{_mm_madd_epi16(a.raw, b.raw)};
 #else
   const auto low = [](VI v) HWY_ATTR { return hn::ShiftRight<16>(hn::ShiftLeft<16>(v)); };
-  return hn::Add(hn::Mul(low(a), low(b)), hn::Mul(hn::ShiftRight<16>(a), hn::ShiftRight<16>(b)));
+  return low(a) * low(b) + hn::ShiftRight<16>(a) * hn::ShiftRight<16>(b);
 #endif
 }
 
 /// Pairs of 16 bits, added.
 HWY_INLINE VI add_pairs(VI a, VI b) {
   const hn::Repartition<std::int16_t, I> pairs;
-  return hn::BitCast(I(), hn::Add(hn::BitCast(pairs, a), hn::BitCast(pairs, b)));
+  return hn::BitCast(I(), hn::BitCast(pairs, a) + hn::BitCast(pairs, b));
 }
 
 /// The lesser of |a| and |b|.
@@ -109,7 +109,7 @@ class OneCell {
   HWY_INLINE OneCell(const CellParts& parts, int t) : parts_(parts), t_(t) {}
   HWY_INLINE MI behind() const {
     const I d;
-    return hn::Lt(hn::Set(d, -static_cast<std::int32_t>(parts_.behind >> t_ & 1)), hn::Zero(d));
+    return hn::Set(d, -static_cast<std::int32_t>(parts_.behind >> t_ & 1)) < hn::Zero(d);
   }
   template <class T>
   HWY_INLINE hn::Vec<hn::ScalableTag<T>> number(const T* numbers) const {
@@ -229,7 +229,7 @@ class HitCrossing {
     }
     MF hits_cell = hn::FirstN(df, count), touching = hits_cell;
     const MF flagged = hn::RebindMask(df, hn::TestBit(hit, number(Hit::uncertain)));
-    const MF uncertain = hn::And(hits_cell, hn::Or(hn::Le(sure, hn::Set(df, 1.0f)), flagged));
+    const MF uncertain = hn::And(hits_cell, hn::Or(sure <= hn::Set(df, 1.0f), flagged));
     bool all_hit = true;
     if (HWY_UNLIKELY(!hn::AllFalse(df, uncertain))) {
       Unsettled unsettled{{inner0, inner1, inner2}, hits_cell, touching};  // what settle() changes lies in memory
@@ -241,8 +241,8 @@ class HitCrossing {
 
     // Of one face against three the first side is the one face; of the three it is the one on whose side of its edges
     // with the others the ray passes.
-    const auto last = cells.choice(hn::RebindMask(d, hn::Le(inner2, zero)));
-    MI second_of_two = hn::RebindMask(d, hn::Le(inner1, zero));
+    const auto last = cells.choice(hn::RebindMask(d, inner2 <= zero));
+    MI second_of_two = hn::RebindMask(d, inner1 <= zero);
     if constexpr (Cells::may_be_three && Cells::may_be_two) second_of_two = hn::AndNot(cells.three(), second_of_two);
     const auto first_choice = cells.choice(second_of_two);
     const auto first_side = [&](const auto& number_of) HWY_ATTR {
@@ -251,7 +251,7 @@ class HitCrossing {
       else
         return cells.number(number_of(0), number_of(1), first_choice);
     };
-    const MI first_of_three = hn::RebindMask(d, hn::And(hn::Gt(inner0, zero), hn::Gt(inner1, zero)));
+    const MI first_of_three = hn::RebindMask(d, hn::And(inner0 > zero, inner1 > zero));
     const auto second_side = [&](const auto& number_of) HWY_ATTR {
       const VI others = cells.number(number_of(2), number_of(3), last);
       if constexpr (!Cells::may_be_three) return others;
@@ -261,7 +261,7 @@ class HitCrossing {
       const auto at_pixel = [&](const CellParts::Planes& planes) HWY_ATTR {
         const VI start = side([&](int k) { return planes[k].start; });
         const VI low = side([&](int k) { return planes[k].low; }), high = side([&](int k) { return planes[k].high; });
-        return hn::Add(hn::Add(start, products(low, place)), hn::ShiftLeft<16>(products(high, place)));
+        return start + products(low, place) + hn::ShiftLeft<16>(products(high, place));
       };
       Crossing c;
       c.depth = at_pixel(parts_.depth);
@@ -273,14 +273,14 @@ class HitCrossing {
         const VF inverse = inverse_weight(at_pixel(parts_.weight));
         const auto numbers_of = [&](const std::int32_t(*all)[CellBatch::most])
                                     HWY_ATTR { return side([&](int k) { return all[k]; }); };
-        c.depth = hn::Add(hn::NearestInt(hn::Mul(hn::ConvertTo(df, c.depth), inverse)), numbers_of(parts_.depth_c));
+        c.depth = hn::NearestInt(hn::ConvertTo(df, c.depth) * inverse) + numbers_of(parts_.depth_c);
         if constexpr (!per_cell) c.scalar = hn::MulAdd(c.scalar, inverse, hn::BitCast(df, numbers_of(parts_.scalar_c)));
       }
       return c;
     };
     const Crossing first = crossing(first_side);
     Crossing second = crossing(second_side);
-    const VI pixel = hn::Add(products(place, pixel_step_), center_pixel_);
+    const VI pixel = products(place, pixel_step_) + center_pixel_;
     // Nothing lies between the sides where a ray touches.
     if (HWY_UNLIKELY(!all_hit)) second.depth = hn::IfThenElse(hn::RebindMask(d, touching), first.depth, second.depth);
     const VI front = hn::Min(first.depth, second.depth), back = hn::Max(first.depth, second.depth);
@@ -340,8 +340,8 @@ class HitCrossing {
       inners[2][lane] = edge[roles.three != 0 ? roles.inner[2] : roles.inner[1]];
     }
     for (int k = 0; k < 3; ++k) inner[k] = hn::Load(df, inners[k]);
-    hits_cell = hn::Gt(hn::Load(df, hit), hn::Zero(df));
-    touching = hn::Gt(hn::Load(df, touches), hn::Zero(df));
+    hits_cell = hn::Load(df, hit) > hn::Zero(df);
+    touching = hn::Load(df, touches) > hn::Zero(df);
   }
 
   const LatticeView& view_;

@@ -33,7 +33,7 @@ HWY_NOINLINE inline CrossedSegments crossed_segments(const SegmentStream& stream
   std::int32_t* const crossed = surfaces.numbers(stream.size - first);
   std::size_t count = 0;
   VI cells = hn::Zero(d);
-  VI number = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(first)));
+  VI number = hn::Iota(d, 0) + hn::Set(d, static_cast<std::int32_t>(first));
   const auto of_cell = [&](const float* numbers, VI cell) HWY_ATTR {
     if constexpr (lanes == static_cast<int>(LatticeSurfaces::most_cells))
       return hn::TableLookupLanes(hn::Load(df, numbers), hn::IndicesFromVec(df, cell));
@@ -44,14 +44,14 @@ HWY_NOINLINE inline CrossedSegments crossed_segments(const SegmentStream& stream
     const VI cell = hn::And(hn::LoadU(d, stream.hit.data() + i),
                             hn::Set(d, static_cast<std::int32_t>(LatticeSurfaces::most_cells) - 1));
     const VF from = hn::LoadU(df, stream.scalar_front.data() + i), to = hn::LoadU(df, stream.scalar_back.data() + i);
-    const auto reaches = hn::And(hn::Ge(hn::Max(from, to), of_cell(surfaces.low, cell)),
-                                 hn::Lt(hn::Min(from, to), of_cell(surfaces.high, cell)));
+    const auto reaches =
+        hn::And(hn::Max(from, to) >= of_cell(surfaces.low, cell), hn::Min(from, to) < of_cell(surfaces.high, cell));
     const auto is = hn::And(reaches, hn::FirstN(df, stream.size - i));
     // Without a branch, which would go either way.
     const LanePacker pack(hn::RebindMask(d, is));
     hn::StoreU(pack(number), d, crossed + count);
     count += pack.count();
-    number = hn::Add(number, hn::Set(d, lanes));
+    number = number + hn::Set(d, lanes);
     cells = hn::Or(cells, hn::IfThenElseZero(hn::RebindMask(d, is), hn::Shl(hn::Set(d, 1), cell)));
   }
   alignas(64) std::int32_t of_lane[lanes];

@@ -107,38 +107,37 @@ class SurfaceCuts {
     if (out_.size + most * lanes > out_.front.size() - SegmentStream::padding)
       out_.reserve(2 * (out_.size + most * lanes));
 
-    const MI rises = hn::RebindMask(d, hn::Lt(from, to));
+    const MI rises = hn::RebindMask(d, from < to);
     const VI cosine = cosine_code(hit, cell);
-    const Doubles steps = in_double(hn::Sub(back, front)), start = in_double(front), scalar = in_double(from);
-    const Doubles slope =
-        in_halves([](V s, V a, V b) HWY_ATTR { return hn::Div(s, hn::Sub(b, a)); }, steps, scalar, in_double(to));
-    const VI limit = hn::Max(front, hn::Sub(back, hn::Set(d, back_end_steps)));
-    const VI at_limit = hn::IfThenElse(hn::Gt(limit, front), place(Place::back_end), place(Place::inside));
-    const MI level = hn::Eq(front, back);
+    const Doubles steps = in_double(back - front), start = in_double(front), scalar = in_double(from);
+    const Doubles slope = in_halves([](V s, V a, V b) HWY_ATTR { return s / (b - a); }, steps, scalar, in_double(to));
+    const VI limit = hn::Max(front, back - hn::Set(d, back_end_steps));
+    const VI at_limit = hn::IfThenElse(limit > front, place(Place::back_end), place(Place::inside));
+    const MI level = front == back;
     Part part{front, from};
     for (std::size_t k = 0; k < most; ++k) {
       const VI kth = hn::Set(d, static_cast<std::int32_t>(k));
-      const VI passed = hn::IfThenElse(rises, kth, hn::Sub(hn::Sub(count, hn::Set(d, 1)), kth));
-      const MI has = hn::Lt(kth, count);
-      const VI surface = hn::IfThenElseZero(has, hn::Add(first, passed));
+      const VI passed = hn::IfThenElse(rises, kth, count - hn::Set(d, 1) - kth);
+      const MI has = kth < count;
+      const VI surface = hn::IfThenElseZero(has, first + passed);
       const VF value = k == 0 ? first_values(rises, cell) : hn::GatherIndex(df, set_.on_lattice().data(), surface);
-      const MI crossed = hn::And(has, hn::RebindMask(d, hn::Xor(hn::Ge(from, value), hn::Ge(to, value))));
+      const MI crossed = hn::And(has, hn::RebindMask(d, hn::Xor(from >= value, to >= value)));
       if (hn::AllFalse(d, crossed)) continue;
       const auto depth_at = [](V v, V f, V s, V l, V z) HWY_ATTR {
-        const V along = hn::Mul(hn::Sub(v, f), s);
-        return hn::Round(hn::Add(z, hn::Min(hn::Max(along, hn::Zero(D())), l)));
+        const V along = (v - f) * s;
+        return hn::Round(z + hn::Min(hn::Max(along, hn::Zero(D())), l));
       };
       VI depth = in_steps(in_halves(depth_at, in_double(value), scalar, slope, steps, start));
-      const MI at_back = hn::Not(hn::Lt(depth, limit));
+      const MI at_back = hn::Not(depth < limit);
       const VI at = hn::IfThenElse(at_back, at_limit,
-                                   hn::IfThenElse(hn::Eq(depth, front), place(Place::front_end), place(Place::inside)));
+                                   hn::IfThenElse(depth == front, place(Place::front_end), place(Place::inside)));
       depth = hn::Min(depth, limit);
       const VF mark = mark_of(surface, rises, at, cosine);
       // One at the back end stands alone; so does the first of two at the front.
-      const MI alone = hn::And(crossed, hn::Or(hn::Eq(at, place(Place::back_end)), level));
+      const MI alone = hn::And(crossed, hn::Or(at == place(Place::back_end), level));
       const MI before = hn::AndNot(alone, crossed);
-      const MI at_front = hn::And(before, hn::Eq(depth, part.front));
-      const MI marked = hn::RebindMask(d, hn::Ge(part.scalar, hn::Set(df, LatticeMark::first)));
+      const MI at_front = hn::And(before, depth == part.front);
+      const MI marked = hn::RebindMask(d, part.scalar >= hn::Set(df, LatticeMark::first));
       const MI parts = hn::Or(alone, hn::AndNot(hn::AndNot(marked, at_front), before));
       const VI begin = hn::IfThenElse(alone, depth, part.front);
       const VF begin_scalar = hn::IfThenElse(hn::RebindMask(df, alone), mark, part.scalar);
@@ -147,7 +146,7 @@ class SurfaceCuts {
       part.scalar = hn::IfThenElse(hn::RebindMask(df, before), mark, part.scalar);
     }
     // Lanes without a segment go behind the last.
-    const VI spare = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(out_.size)));
+    const VI spare = hn::Iota(d, 0) + hn::Set(d, static_cast<std::int32_t>(out_.size));
     const VI own = hn::IfThenElse(here, segment, spare);
     hn::ScatterIndex(part.front, d, out_.front.data(), own);
     hn::ScatterIndex(part.scalar, df, out_.scalar_front.data(), own);
@@ -173,9 +172,9 @@ class SurfaceCuts {
   HWY_INLINE VF mark_of(VI surface, MI rises, VI at, VI cosine) const {
     const I d;
     const auto n = static_cast<std::int32_t>(set_.iso_values().size());
-    const VI within = hn::IfThenElse(rises, surface, hn::Sub(hn::Set(d, 2 * n - 1), surface));
-    const VI bits = hn::Or(hn::ShiftLeft<LatticeMark::cosine_bits>(hn::Add(at, within)), cosine);
-    return hn::BitCast(F(), hn::Add(bits, hn::Set(d, static_cast<std::int32_t>(LatticeMark::first_bits))));
+    const VI within = hn::IfThenElse(rises, surface, hn::Set(d, 2 * n - 1) - surface);
+    const VI bits = hn::Or(hn::ShiftLeft<LatticeMark::cosine_bits>(at + within), cosine);
+    return hn::BitCast(F(), bits + hn::Set(d, static_cast<std::int32_t>(LatticeMark::first_bits)));
   }
 
   /// The lower bits of the lanes' marks.
@@ -183,8 +182,8 @@ class SurfaceCuts {
     const I d;
     const F df;
     if (!perspective_) return number_of_cell(cells_.cosine_code, cell);
-    const VF codes = hn::Mul(cosine_of_rays(hit, cell), hn::Set(df, static_cast<float>(LatticeMark::cosines)));
-    return hn::ConvertTo(d, hn::Add(codes, hn::Set(df, 0.5f)));
+    const VF codes = cosine_of_rays(hit, cell) * hn::Set(df, static_cast<float>(LatticeMark::cosines));
+    return hn::ConvertTo(d, codes + hn::Set(df, 0.5f));
   }
 
   static HWY_INLINE VF in_float(Doubles v) {
@@ -207,14 +206,13 @@ class SurfaceCuts {
     const auto on_ray = [&](int axis) HWY_ATTR {
       const V corner = hn::Set(D(), rays_.corner[axis]), right = hn::Set(D(), rays_.right[axis]),
               down = hn::Set(D(), rays_.down[axis]);
-      return in_halves([&](V c, V r) HWY_ATTR { return hn::Add(hn::Add(corner, hn::Mul(right, c)), hn::Mul(down, r)); },
-                       column, row);
+      return in_halves([&](V c, V r) HWY_ATTR { return corner + right * c + down * r; }, column, row);
     };
     const Doubles x = on_ray(0), y = on_ray(1), z = on_ray(2);
     const auto between = [](V ax, V ay, V az, V bx, V by, V bz, V without) HWY_ATTR {
-      const V along = hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));
-      const V length = hn::Add(hn::Add(hn::Mul(ax, ax), hn::Mul(ay, ay)), hn::Mul(az, az));
-      return hn::Min(hn::Max(hn::Div(hn::Abs(along), hn::Sqrt(length)), without), hn::Set(D(), 1));
+      const V along = ax * bx + ay * by + az * bz;
+      const V length = ax * ax + ay * ay + az * az;
+      return hn::Min(hn::Max(hn::Abs(along) / hn::Sqrt(length), without), hn::Set(D(), 1));
     };
     return in_float(in_halves(between, x, y, z, doubles_of_cells(cells_.normal[0], cell),
                               doubles_of_cells(cells_.normal[1], cell), doubles_of_cells(cells_.normal[2], cell),

@@ -26,16 +26,11 @@ namespace HWY_NAMESPACE {
 struct Vectors {
   V x, y, z;
 };
-HWY_INLINE Vectors difference(const Vectors& a, const Vectors& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE Vectors product(const Vectors& a, V b) { return {hn::Mul(a.x, b), hn::Mul(a.y, b), hn::Mul(a.z, b)}; }
-HWY_INLINE V dot(const Vectors& a, const Vectors& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
+HWY_INLINE Vectors difference(const Vectors& a, const Vectors& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+HWY_INLINE Vectors product(const Vectors& a, V b) { return {a.x * b, a.y * b, a.z * b}; }
+HWY_INLINE V dot(const Vectors& a, const Vectors& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 HWY_INLINE Vectors cross(const Vectors& a, const Vectors& b) {
-  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(b.y, a.z)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(b.z, a.x)),
-          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(b.x, a.y))};
+  return {a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y};
 }
 HWY_INLINE V largest(const Vectors& v) { return hn::Max(hn::Max(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z)); }
 
@@ -46,22 +41,21 @@ HWY_INLINE Vectors unit_gradient(const Vectors (&corner)[4], const V (&scalar)[4
   V change[3], size = zero, most = zero;
   for (std::size_t i = 0; i < 3; ++i) {
     edge[i] = difference(corner[i + 1], corner[0]);
-    change[i] = hn::Sub(scalar[i + 1], scalar[0]);
+    change[i] = scalar[i + 1] - scalar[0];
     size = hn::Max(size, largest(edge[i])), most = hn::Max(most, hn::Abs(change[i]));
   }
   // Edges of size one: of no mesh do squares or products of them leave a double's range.
-  const V one = hn::Set(D(), 1), per_size = hn::Div(one, size), per_change = hn::Div(one, most);
+  const V one = hn::Set(D(), 1), per_size = one / size, per_change = one / most;
   const Vectors e0 = product(edge[0], per_size), e1 = product(edge[1], per_size), e2 = product(edge[2], per_size);
   const Vectors n0 = cross(e1, e2), n1 = cross(e2, e0), n2 = cross(e0, e1);
-  const V c0 = hn::Mul(change[0], per_change), c1 = hn::Mul(change[1], per_change), c2 = hn::Mul(change[2], per_change);
-  const auto sum = [&](V a, V b, V c)
-                       HWY_ATTR { return hn::Add(hn::Add(hn::Mul(c0, a), hn::Mul(c1, b)), hn::Mul(c2, c)); };
+  const V c0 = change[0] * per_change, c1 = change[1] * per_change, c2 = change[2] * per_change;
+  const auto sum = [&](V a, V b, V c) HWY_ATTR { return c0 * a + c1 * b + c2 * c; };
   const Vectors direction{sum(n0.x, n1.x, n2.x), sum(n0.y, n1.y, n2.y), sum(n0.z, n1.z, n2.z)};
   const V square = dot(direction, direction);
-  const Vectors unit = product(direction, hn::Div(one, hn::Sqrt(square)));
+  const Vectors unit = product(direction, one / hn::Sqrt(square));
   // Of a cell of no size, of one scalar, or flat, divisions gave no numbers.
   const V least = hn::Set(D(), 1e-300);
-  const auto is = hn::And(hn::Gt(square, zero), hn::And(hn::Gt(size, least), hn::Gt(most, least)));
+  const auto is = hn::And(square > zero, hn::And(size > least, most > least));
   return {hn::IfThenElseZero(is, unit.x), hn::IfThenElseZero(is, unit.y), hn::IfThenElseZero(is, unit.z)};
 }
 
@@ -91,14 +85,14 @@ HWY_NOINLINE inline void find_normals(const LatticeView& view, const CellBatch& 
     V scalar[4];
     for (std::size_t i = 0; i < 4; ++i) {
       const auto vertex = hn::Load(di, vertices[i]);
-      const auto first = hn::Add(hn::Add(vertex, vertex), vertex);
+      const auto first = vertex + vertex + vertex;
       corner[i] = {hn::GatherIndex(d, positions, first), hn::GatherIndex(d, positions + 1, first),
                    hn::GatherIndex(d, positions + 2, first)};
       scalar[i] = hn::GatherIndex(d, mesh.scalars.data(), vertex);
     }
     const Vectors normal = unit_gradient(corner, scalar);
     const V one = hn::Set(d, 1), zero = hn::Zero(d);
-    const V least = hn::IfThenElse(hn::Gt(largest(normal), zero), zero, one);
+    const V least = hn::IfThenElse(largest(normal) > zero, zero, one);
     alignas(64) double found[5][most];
     hn::Store(normal.x, d, found[0]), hn::Store(normal.y, d, found[1]), hn::Store(normal.z, d, found[2]);
     hn::Store(least, d, found[3]);
@@ -132,21 +126,21 @@ HWY_NOINLINE inline unsigned find_surfaces(const LatticeView& view, const CellBa
   const std::span<const float> values = view.projected.iso->surfaces->on_lattice();
   unsigned with = 0;
   for (int from = 0; from < batch.size; from += lanes) {
-    const VF below = hn::Sub(hn::Load(df, batch.scalar_low + from), hn::Set(df, margin));
-    const VF above = hn::Add(hn::Load(df, batch.scalar_high + from), hn::Set(df, margin));
+    const VF below = hn::Load(df, batch.scalar_low + from) - hn::Set(df, margin);
+    const VF above = hn::Load(df, batch.scalar_high + from) + hn::Set(df, margin);
     VI first = hn::Zero(d), last = hn::Zero(d);
     const auto count_if = [&](MF mask, VI& count)
-                              HWY_ATTR { count = hn::Sub(count, hn::VecFromMask(d, hn::RebindMask(d, mask))); };
+                              HWY_ATTR { count = count - hn::VecFromMask(d, hn::RebindMask(d, mask)); };
     for (const float value : values) {
-      count_if(hn::Lt(hn::Set(df, value), below), first);
-      count_if(hn::Le(hn::Set(df, value), above), last);
+      count_if(hn::Set(df, value) < below, first);
+      count_if(hn::Set(df, value) <= above, last);
     }
     const unsigned at_all = (1u << batch.size) - 1, here = ((1u << lanes) - 1) << from;
     const unsigned regular = at_all & here & ~batch.irregular;
-    const unsigned some = lane_bits(hn::RebindMask(df, hn::Lt(first, last))) << from & regular;
+    const unsigned some = lane_bits(hn::RebindMask(df, first < last)) << from & regular;
     with |= some;
     hn::Store(first, d, surfaces.first + from);
-    hn::Store(hn::Sub(last, first), d, surfaces.count + from);
+    hn::Store(last - first, d, surfaces.count + from);
     hn::Store(hn::Set(df, std::numeric_limits<float>::infinity()), df, surfaces.low + from);
     hn::Store(hn::Set(df, -std::numeric_limits<float>::infinity()), df, surfaces.high + from);
   }

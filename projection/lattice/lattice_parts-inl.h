@@ -88,12 +88,12 @@ class PartOrder {
   /// Sets `three` and `behind`, to be zero before the first. Returns the cells that have candidate pixels, a bit each.
   HWY_INLINE unsigned shapes() const {
     const I d;
-    const auto is = [&](const std::int32_t* table) HWY_ATTR { return hn::Ne(by_front(table, front_), hn::Zero(d)); };
+    const auto is = [&](const std::int32_t* table) HWY_ATTR { return by_front(table, front_) != hn::Zero(d); };
     const auto bits = [&](hn::Mask<I> mask) HWY_ATTR { return lane_bits(hn::RebindMask(F(), mask)) << from_; };
     parts_.three |= bits(is(part_table.three));
     parts_.behind |= bits(is(part_table.behind));
-    const auto columns = hn::Lt(hn::Load(d, batch_.x0 + from_), hn::Load(d, batch_.x1 + from_));
-    const auto rows = hn::Lt(hn::Load(d, batch_.y0 + from_), hn::Load(d, batch_.y1 + from_));
+    const auto columns = hn::Load(d, batch_.x0 + from_) < hn::Load(d, batch_.x1 + from_);
+    const auto rows = hn::Load(d, batch_.y0 + from_) < hn::Load(d, batch_.y1 + from_);
     return bits(hn::And(is(part_table.valid), hn::And(columns, rows)));
   }
 
@@ -142,7 +142,7 @@ class PartOrder {
   HWY_INLINE void edge_if(VI which, VF& start, VF& x, VF& y) const {
     if constexpr (occurs(inner ? part_table.inner[k] : part_table.outline[k], e)) {
       const F df;
-      const MF is = hn::RebindMask(df, hn::Eq(which, hn::Set(I(), e)));
+      const MF is = hn::RebindMask(df, which == hn::Set(I(), e));
       start = hn::IfThenElse(is, hn::Load(df, batch_.edge[e] + from_), start);
       x = hn::IfThenElse(is, hn::Load(df, batch_.edge_x[e] + from_), x);
       y = hn::IfThenElse(is, hn::Load(df, batch_.edge_y[e] + from_), y);
@@ -151,7 +151,7 @@ class PartOrder {
   HWY_INLINE VI number_of(VI face, const std::int32_t (*all)[CellBatch::most]) const {
     const I d;
     VI v = hn::Load(d, all[0] + from_);
-    for (int f = 1; f < 4; ++f) v = hn::IfThenElse(hn::Eq(face, hn::Set(d, f)), hn::Load(d, all[f] + from_), v);
+    for (int f = 1; f < 4; ++f) v = hn::IfThenElse(face == hn::Set(d, f), hn::Load(d, all[f] + from_), v);
     return v;
   }
   HWY_INLINE void planes(const VI (&face)[4], const CellBatch::FacePlanes& all, CellParts::Planes& to) const {
@@ -162,7 +162,7 @@ class PartOrder {
       const VI low = hn::Set(d, 0xffff);
       hn::Store(hn::Or(hn::And(x, low), hn::ShiftLeft<16>(y)), d, to[k].low + from_);
       // The lower part is signed: where it is negative the upper one is one more.
-      const auto high = [](VI v) HWY_ATTR { return hn::Add(v, hn::Set(I(), 0x8000)); };
+      const auto high = [](VI v) HWY_ATTR { return v + hn::Set(I(), 0x8000); };
       hn::Store(hn::Or(hn::BitCast(d, hn::ShiftRight<16>(hn::BitCast(hn::RebindToUnsigned<I>(), high(x)))),
                        hn::AndNot(low, high(y))),
                 d, to[k].high + from_);

@@ -74,7 +74,7 @@ HWY_INLINE hn::Vec<hn::Rebind<std::int32_t, D>> wrapped(V v) {
   const hn::RebindToUnsigned<D> du;
   const hn::Rebind<std::uint32_t, D> du32;
   const hn::Rebind<std::int32_t, D> di32;
-  return hn::BitCast(di32, hn::TruncateTo(du32, hn::BitCast(du, hn::Add(v, hn::Set(d, 0x1.8p52)))));
+  return hn::BitCast(di32, hn::TruncateTo(du32, hn::BitCast(du, v + hn::Set(d, 0x1.8p52))));
 }
 
 /// A plane over the square: value at its centre and steps.
@@ -87,10 +87,10 @@ struct FaceShape {
   V ax, ay, x1, y1, x2, y2, inverse_area;
 };
 HWY_INLINE Plane plane_of(const FaceShape& s, V qa, V qb, V qc) {
-  const V q1 = hn::Sub(qb, qa), q2 = hn::Sub(qc, qa);
+  const V q1 = qb - qa, q2 = qc - qa;
   Plane p;
-  p.x = hn::Mul(hn::Sub(hn::Mul(q1, s.y2), hn::Mul(q2, s.y1)), s.inverse_area);
-  p.y = hn::Mul(hn::Sub(hn::Mul(s.x1, q2), hn::Mul(s.x2, q1)), s.inverse_area);
+  p.x = (q1 * s.y2 - q2 * s.y1) * s.inverse_area;
+  p.y = (s.x1 * q2 - s.x2 * q1) * s.inverse_area;
   p.start = hn::NegMulAdd(p.x, s.ax, hn::NegMulAdd(p.y, s.ay, qa));
   return p;
 }
@@ -128,25 +128,23 @@ HWY_NOINLINE M rounded_visibly(const LatticeView& view, V extent, V volume, V tw
   const auto number = [](double v) HWY_ATTR { return hn::Set(D(), v); };
   const DepthLimits& limits = view.depth_limits;
   // The longest way through the cell: a third of it times the area that the cell covers is the volume.
-  V chord = hn::Div(hn::Abs(volume), hn::Mul(twice_area, number(0.5)));
+  V chord = hn::Abs(volume) / (twice_area * number(0.5));
   if constexpr (perspective)  // `volume` is of inverse depths there
-    chord = hn::Div(chord, hn::Mul(w_product, number(view.lattice.depth_unit)));
+    chord = chord / (w_product * number(view.lattice.depth_unit));
   const V light = number(limits.light_per_step);
-  const V error = hn::Mul(light, hn::MulAdd(extent, number(perspective ? DepthLimits::usual_quotient_error : 0),
-                                            number(DepthLimits::usual_plane_error)));
-  M thin = hn::And(
-      hn::Gt(error, number(DepthLimits::least_error)),
-      hn::Not(hn::Le(hn::Mul(error, error), hn::Mul(number(DepthLimits::most_error_squared), hn::Mul(light, chord)))));
+  const V error = light * hn::MulAdd(extent, number(perspective ? DepthLimits::usual_quotient_error : 0),
+                                     number(DepthLimits::usual_plane_error));
+  M thin = hn::And(error > number(DepthLimits::least_error),
+                   hn::Not(error * error <= number(DepthLimits::most_error_squared) * (light * chord)));
   if constexpr (perspective)
-    thin = hn::Or(thin, hn::Gt(hn::Mul(light, hn::Mul(extent, number(DepthLimits::most_quotient_error))),
-                               number(DepthLimits::most_error)));
+    thin = hn::Or(thin, light * (extent * number(DepthLimits::most_quotient_error)) > number(DepthLimits::most_error));
   return thin;
 }
 
 /// Whether the faces may be seen edge-on.
 HWY_INLINE M thin_face(const FaceShape& n, V area) {
-  const V span = hn::Add(hn::Add(hn::Abs(n.x1), hn::Abs(n.y1)), hn::Add(hn::Abs(n.x2), hn::Abs(n.y2)));
-  return hn::Le(hn::Abs(area), hn::Mul(span, hn::Set(D(), 0x1p-9)));
+  const V span = hn::Abs(n.x1) + hn::Abs(n.y1) + (hn::Abs(n.x2) + hn::Abs(n.y2));
+  return hn::Abs(area) <= span * hn::Set(D(), 0x1p-9);
 }
 
 /// Which faces are front faces, and the edge functions. `thin`: some face may be edge-on, which few are.
@@ -159,7 +157,7 @@ HWY_INLINE void set_up_sides(FaceShape (&shape)[4], const V (&area)[4], M uprigh
   const hn::Rebind<float, D> df;
   const auto number = [](double v) HWY_ATTR { return hn::Set(D(), v); };
   const V zero = hn::Zero(d), one = number(1);
-  const M none = hn::Lt(zero, zero);
+  const M none = zero < zero;
   M is_zero[4] = {none, none, none, none}, front[4];
   // What is true of a cell, a bit each: front faces from bit 0, edge-on faces from 8, flipped edges from 16.
   auto bits = hn::Zero(du64);
@@ -172,17 +170,17 @@ HWY_INLINE void set_up_sides(FaceShape (&shape)[4], const V (&area)[4], M uprigh
       // Edge-on for certain: orthographic coordinates and their differences are exact, and the products are zeros or
       // have the same factors, as where two corners coincide or all line up along an axis.
       if constexpr (!perspective) {
-        const auto both_zero = [&](V p, V q) HWY_ATTR { return hn::And(hn::Eq(p, zero), hn::Eq(q, zero)); };
-        is_zero[f] = hn::Or(hn::Or(both_zero(n.x1, n.x2), both_zero(n.y1, n.y2)),
-                            hn::Or(hn::Or(both_zero(n.x1, n.y1), both_zero(n.x2, n.y2)),
-                                   hn::And(hn::Eq(n.x1, n.x2), hn::Eq(n.y1, n.y2))));
+        const auto both_zero = [&](V p, V q) HWY_ATTR { return hn::And(p == zero, q == zero); };
+        is_zero[f] =
+            hn::Or(hn::Or(both_zero(n.x1, n.x2), both_zero(n.y1, n.y2)),
+                   hn::Or(hn::Or(both_zero(n.x1, n.y1), both_zero(n.x2, n.y2)), hn::And(n.x1 == n.x2, n.y1 == n.y2)));
       }
       irregular = hn::Or(irregular, hn::AndNot(is_zero[f], thin_face(n, area[f])));
-      n.inverse_area = hn::IfThenZeroElse(is_zero[f], hn::Div(one, hn::IfThenElse(is_zero[f], one, area[f])));
+      n.inverse_area = hn::IfThenZeroElse(is_zero[f], one / hn::IfThenElse(is_zero[f], one, area[f]));
     } else {
-      n.inverse_area = hn::Div(one, area[f]);
+      n.inverse_area = one / area[f];
     }
-    const M positive = face_outward[f] ? hn::Gt(area[f], zero) : hn::Lt(area[f], zero);
+    const M positive = face_outward[f] ? area[f] > zero : area[f] < zero;
     front[f] = hn::Not(hn::Xor(positive, upright));
   }
   if constexpr (thin) {
@@ -201,25 +199,25 @@ HWY_INLINE void set_up_sides(FaceShape (&shape)[4], const V (&area)[4], M uprigh
   V start[6], along_x[6], along_y[6], error = number(1e-290);
   for (int e = 0; e < 6; ++e) {
     const int a = edge_from[e], b = edge_to[e];
-    start[e] = hn::MulSub(x[a], y[b], hn::Mul(x[b], y[a]));
-    along_x[e] = hn::Sub(y[a], y[b]), along_y[e] = hn::Sub(x[b], x[a]);
+    start[e] = hn::MulSub(x[a], y[b], x[b] * y[a]);
+    along_x[e] = y[a] - y[b], along_y[e] = x[b] - x[a];
     error = hn::Max(error, hn::Abs(start[e]));
   }
-  const V scale = hn::Div(number(0x1p22), hn::MulAdd(span, number(CellBatch::center + 1), error));
+  const V scale = number(0x1p22) / hn::MulAdd(span, number(CellBatch::center + 1), error);
   for (int e = 0; e < 6; ++e) {
     const M inward = edge_inward[e] ? upright : hn::Not(upright);
     const M flip = hn::Xor(inward, front[edge_faces[e][0]]);
     add_bit(flip, 16 + e);
     const V signed_scale = hn::IfThenElse(flip, hn::Neg(scale), scale);
-    V scaled = hn::Mul(start[e], signed_scale);
+    V scaled = start[e] * signed_scale;
     if constexpr (thin) {
       // An edge without sides lies between two edge-on faces; it never decides.
-      const M without_sides = hn::And(hn::Eq(along_x[e], zero), hn::Eq(along_y[e], zero));
+      const M without_sides = hn::And(along_x[e] == zero, along_y[e] == zero);
       scaled = hn::IfThenElse(without_sides, number(4), scaled);
     }
     hn::StoreU(hn::DemoteTo(df, scaled), df, batch.edge[e] + from);
-    hn::StoreU(hn::DemoteTo(df, hn::Mul(along_x[e], signed_scale)), df, batch.edge_x[e] + from);
-    hn::StoreU(hn::DemoteTo(df, hn::Mul(along_y[e], signed_scale)), df, batch.edge_y[e] + from);
+    hn::StoreU(hn::DemoteTo(df, along_x[e] * signed_scale), df, batch.edge_x[e] + from);
+    hn::StoreU(hn::DemoteTo(df, along_y[e] * signed_scale), df, batch.edge_y[e] + from);
   }
   hn::StoreU(hn::TruncateTo(du32, bits), du32, batch.bits + from);
 }
@@ -258,8 +256,8 @@ struct Corners {
       const auto both = hn::BitCast(du64, hn::InterleaveUpper(d, rest_even, rest_odd));
       z[i] = hn::PromoteTo(d, hn::BitCast(di32, hn::TruncateTo(du32, both)));
       s[i] = hn::PromoteTo(d, hn::BitCast(di32, hn::TruncateTo(du32, hn::ShiftRight<32>(both))));
-      x[i] = hn::Sub(x[i], hn::Set(d, square_x + CellBatch::center + 0.5));
-      y[i] = hn::Sub(y[i], hn::Set(d, square_y + CellBatch::center + 0.5));
+      x[i] = x[i] - hn::Set(d, square_x + CellBatch::center + 0.5);
+      y[i] = y[i] - hn::Set(d, square_y + CellBatch::center + 0.5);
       nearest = hn::Min(nearest, z[i]), farthest = hn::Max(farthest, z[i]);
     }
   }
@@ -279,18 +277,18 @@ HWY_INLINE V set_up_box(const Corners& corners, const scene::PixelRect& rect, in
   const V y_low = hn::Min(hn::Min(y[0], y[1]), hn::Min(y[2], y[3]));
   const V y_high = hn::Max(hn::Max(y[0], y[1]), hn::Max(y[2], y[3]));
   const V reach = hn::Max(hn::Max(hn::Neg(x_low), x_high), hn::Max(hn::Neg(y_low), y_high));
-  irregular = hn::Or(irregular, hn::Not(hn::Lt(reach, number(16384))));
+  irregular = hn::Or(irregular, hn::Not(reach < number(16384)));
   const V slack = number(1e-6), center = number(CellBatch::center), behind = number(CellBatch::center + 1);
   const auto store_bound = [&](V v, int low, int high, std::int32_t* out) HWY_ATTR {
     hn::StoreU(hn::DemoteTo(di32, hn::Min(hn::Max(v, number(low)), number(high))), di32, out + from);
   };
   const int left = rect.x0 - square_x, right = rect.x1 - square_x, top = rect.y0 - square_y,
             bottom = rect.y1 - square_y;
-  store_bound(hn::Add(hn::Ceil(hn::Sub(x_low, slack)), center), left, right, batch.x0);
-  store_bound(hn::Add(hn::Floor(hn::Add(x_high, slack)), behind), left, right, batch.x1);
-  store_bound(hn::Add(hn::Ceil(hn::Sub(y_low, slack)), center), top, bottom, batch.y0);
-  store_bound(hn::Add(hn::Floor(hn::Add(y_high, slack)), behind), top, bottom, batch.y1);
-  return hn::Add(hn::Sub(x_high, x_low), hn::Sub(y_high, y_low));
+  store_bound(hn::Ceil(x_low - slack) + center, left, right, batch.x0);
+  store_bound(hn::Floor(x_high + slack) + behind, left, right, batch.x1);
+  store_bound(hn::Ceil(y_low - slack) + center, top, bottom, batch.y0);
+  store_bound(hn::Floor(y_high + slack) + behind, top, bottom, batch.y1);
+  return x_high - x_low + (y_high - y_low);
 }
 
 /// Stores the faces' planes: depth and, of point data, scalar.
@@ -313,13 +311,11 @@ HWY_INLINE void set_up_planes(const Corners& corners, const FaceShape (&shape)[4
     for (int f = 0; f < 4; ++f) {
       const V wa = w[face_corners[f][0]], wb = w[face_corners[f][1]], wc = w[face_corners[f][2]];
       const V most = hn::Max(wa, hn::Max(wb, wc)), full = hn::Set(d, CellBatch::weight_one);
-      const V weight[3] = {hn::Div(wa, most), hn::Div(wb, most), hn::Div(wc, most)};
-      store_plane(plane_of(shape[f], hn::Mul(weight[0], full), hn::Mul(weight[1], full), hn::Mul(weight[2], full)), f,
-                  from, batch.weight);
+      const V weight[3] = {wa / most, wb / most, wc / most};
+      store_plane(plane_of(shape[f], weight[0] * full, weight[1] * full, weight[2] * full), f, from, batch.weight);
       const auto relative = [&](const V(&q)[4], V qc) HWY_ATTR {
-        return plane_of(shape[f], hn::Mul(weight[0], hn::Sub(q[face_corners[f][0]], qc)),
-                        hn::Mul(weight[1], hn::Sub(q[face_corners[f][1]], qc)),
-                        hn::Mul(weight[2], hn::Sub(q[face_corners[f][2]], qc)));
+        return plane_of(shape[f], weight[0] * (q[face_corners[f][0]] - qc), weight[1] * (q[face_corners[f][1]] - qc),
+                        weight[2] * (q[face_corners[f][2]] - qc));
       };
       const V depth_c = hn::Round(z[face_corners[f][2]]);
       store_plane(relative(z, depth_c), f, from, batch.depth);
@@ -351,43 +347,41 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds,
   const V zero = hn::Zero(d);
   const Corners corners(view.vertices.data(), tets, square_x, square_y);
   const V(&x)[4] = corners.x, (&y)[4] = corners.y, nearest = corners.nearest, farthest = corners.farthest;
-  M irregular = hn::Or(hn::Lt(nearest, number(bounds.near)), hn::Gt(farthest, number(bounds.far)));
+  M irregular = hn::Or(nearest<number(bounds.near), farthest> number(bounds.far));
   V order[4];
   for (int i = 0; i < 4; ++i) order[i] = perspective ? hn::Neg(corners.w[i]) : corners.z[i];
   if constexpr (perspective) {
-    for (const V& w : corners.w) irregular = hn::Or(irregular, hn::Not(hn::Gt(w, zero)));
-    irregular = hn::Or(irregular, hn::Gt(corners.most_weight(), hn::Mul(corners.least_weight(), number(16))));
+    for (const V& w : corners.w) irregular = hn::Or(irregular, hn::Not(w > zero));
+    irregular = hn::Or(irregular, corners.most_weight() > corners.least_weight() * number(16));
   }
   const V span = set_up_box(corners, rect, square_x, square_y, from, irregular, batch);
 
   // Faces: area, which side of the cell, planes.
-  M thin = hn::Lt(zero, zero);
+  M thin = zero < zero;
   FaceShape shape[4];
   V area[4];
   for (int f = 0; f < 4; ++f) {
     const int a = face_corners[f][0], b = face_corners[f][1], c = face_corners[f][2];
     FaceShape& n = shape[f];
     n.ax = x[a], n.ay = y[a];
-    n.x1 = hn::Sub(x[b], x[a]), n.y1 = hn::Sub(y[b], y[a]);
-    n.x2 = hn::Sub(x[c], x[a]), n.y2 = hn::Sub(y[c], y[a]);
-    area[f] = hn::Sub(hn::Mul(n.x1, n.y2), hn::Mul(n.x2, n.y1));
+    n.x1 = x[b] - x[a], n.y1 = y[b] - y[a];
+    n.x2 = x[c] - x[a], n.y2 = y[c] - y[a];
+    area[f] = n.x1 * n.y2 - n.x2 * n.y1;
     thin = hn::Or(thin, thin_face(n, area[f]));
   }
   // The cell's volume has the sign of a front face's outward area: order grows with depth, and is linear on faces.
-  const V z1 = hn::Sub(order[1], order[0]), z2 = hn::Sub(order[2], order[0]), z3 = hn::Sub(order[3], order[0]);
+  const V z1 = order[1] - order[0], z2 = order[2] - order[0], z3 = order[3] - order[0];
   const V X1 = shape[0].x1, Y1 = shape[0].y1, X2 = shape[0].x2, Y2 = shape[0].y2, X3 = shape[1].x2, Y3 = shape[1].y2;
-  const V volume =
-      hn::MulAdd(z1, hn::MulSub(X2, Y3, hn::Mul(X3, Y2)),
-                 hn::MulAdd(z2, hn::MulSub(X3, Y1, hn::Mul(X1, Y3)), hn::Mul(z3, hn::MulSub(X1, Y2, hn::Mul(X2, Y1)))));
-  const M upright = hn::Ge(volume, zero);
-  const V extent = hn::Sub(farthest, nearest);
-  const M deep = hn::Gt(extent, number(view.depth_limits.least_extent));
+  const V volume = hn::MulAdd(z1, hn::MulSub(X2, Y3, X3 * Y2),
+                              hn::MulAdd(z2, hn::MulSub(X3, Y1, X1 * Y3), z3 * hn::MulSub(X1, Y2, X2 * Y1)));
+  const M upright = volume >= zero;
+  const V extent = farthest - nearest;
+  const M deep = extent > number(view.depth_limits.least_extent);
   if (HWY_UNLIKELY(!hn::AllFalse(d, deep))) {
-    const V twice_area =
-        hn::Add(hn::Add(hn::Abs(area[0]), hn::Abs(area[1])), hn::Add(hn::Abs(area[2]), hn::Abs(area[3])));
-    irregular = hn::Or(
-        irregular, hn::And(deep, rounded_visibly<perspective>(view, extent, volume, twice_area,
-                                                              hn::Mul(corners.most_weight(), corners.least_weight()))));
+    const V twice_area = hn::Abs(area[0]) + hn::Abs(area[1]) + (hn::Abs(area[2]) + hn::Abs(area[3]));
+    irregular =
+        hn::Or(irregular, hn::And(deep, rounded_visibly<perspective>(view, extent, volume, twice_area,
+                                                                     corners.most_weight() * corners.least_weight())));
   }
   if (HWY_UNLIKELY(!hn::AllFalse(d, thin)))
     set_up_sides<perspective, true>(shape, area, upright, x, y, span, from, irregular, batch);
@@ -397,8 +391,8 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds,
   const bool per_cell = view.projected.mesh->mesh().association == scene::Association::cell;
   set_up_planes<perspective>(corners, shape, per_cell, from, batch);
   if (per_cell) {
-    const V scalar = hn::Mul(hn::Sub(hn::LoadU(d, cell_scalar), number(view.lattice.scalar_origin)),
-                             number(1 / view.lattice.scalar_unit));
+    const V scalar =
+        (hn::LoadU(d, cell_scalar) - number(view.lattice.scalar_origin)) * number(1 / view.lattice.scalar_unit);
     hn::StoreU(hn::DemoteTo(df, hn::Round(scalar)), df, batch.cell_scalar + from);
   }
 

@@ -147,7 +147,7 @@ HWY_INLINE VF inverse_weight(VI weight) {
   const VF w = hn::ConvertTo(d, weight);
   // One Newton step makes the estimate (11 to 14 bits) right to float rounding.
   const VF estimate = hn::ApproximateReciprocal(w);
-  return hn::Mul(hn::Mul(estimate, hn::NegMulAdd(w, estimate, hn::Set(d, 2.0f))), hn::Set(d, CellBatch::weight_one));
+  return estimate * hn::NegMulAdd(w, estimate, hn::Set(d, 2.0f)) * hn::Set(d, CellBatch::weight_one);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -20,14 +20,13 @@ using V = hn::Vec<D>;
 /// A dot product as glm takes it: no fused sums, left to right.
 HWY_INLINE V along(const double (&axis)[3], V x, V y, V z) {
   const D d;
-  return hn::Add(hn::Add(hn::Mul(hn::Set(d, axis[0]), x), hn::Mul(hn::Set(d, axis[1]), y)),
-                 hn::Mul(hn::Set(d, axis[2]), z));
+  return hn::Set(d, axis[0]) * x + hn::Set(d, axis[1]) * y + hn::Set(d, axis[2]) * z;
 }
 
 HWY_INLINE V on_grid(V pixel) {
   const D d;
-  const V scaled = hn::Mul(pixel, hn::Set(d, 0x1p32));
-  return hn::IfThenElse(hn::IsFinite(scaled), hn::Mul(hn::Round(scaled), hn::Set(d, 0x1p-32)), pixel);
+  const V scaled = pixel * hn::Set(d, 0x1p32);
+  return hn::IfThenElse(hn::IsFinite(scaled), hn::Round(scaled) * hn::Set(d, 0x1p-32), pixel);
 }
 
 std::size_t project_points(const LinearMap& map, const double* points, std::size_t count, PixelVertex* out) {
@@ -39,17 +38,16 @@ std::size_t project_points(const LinearMap& map, const double* points, std::size
   for (; i + lanes <= count; i += lanes) {
     V x, y, z;
     hn::LoadInterleaved3(d, points + 3 * i, x, y, z);
-    x = hn::Sub(x, hn::Set(d, map.position[0]));
-    y = hn::Sub(y, hn::Set(d, map.position[1]));
-    z = hn::Sub(z, hn::Set(d, map.position[2]));
-    const V across = hn::Mul(along(map.right, x, y, z), scale), upward = hn::Mul(along(map.up, x, y, z), scale);
+    x = x - hn::Set(d, map.position[0]);
+    y = y - hn::Set(d, map.position[1]);
+    z = z - hn::Set(d, map.position[2]);
+    const V across = along(map.right, x, y, z) * scale, upward = along(map.up, x, y, z) * scale;
     const V depth = along(map.forward, x, y, z);
     if (map.perspective)
-      hn::StoreInterleaved4(hn::Add(hn::Mul(half_width, depth), across), hn::Sub(hn::Mul(half_height, depth), upward),
-                            depth, depth, d, &out[i].x);
+      hn::StoreInterleaved4(half_width * depth + across, half_height * depth - upward, depth, depth, d, &out[i].x);
     else
-      hn::StoreInterleaved4(on_grid(hn::Add(half_width, across)), on_grid(hn::Sub(half_height, upward)),
-                            hn::Set(d, 1.0), depth, d, &out[i].x);
+      hn::StoreInterleaved4(on_grid(half_width + across), on_grid(half_height - upward), hn::Set(d, 1.0), depth, d,
+                            &out[i].x);
   }
   return i;
 }

@@ -78,9 +78,9 @@ HWY_INLINE void walk_edge(const Vertex& start, const Vertex& end, int rect_y0, c
   const VF dz = hn::Set(f, end.z - start.z), ds = hn::Set(f, end.s - start.s);
   const VF y_start = hn::Set(f, start.y), stride = hn::Set(f, static_cast<float>(lane_count()));
   VF y = hn::Iota(f, static_cast<float>(rect_y0 + start.row) + 0.5f);  // exact: below 2^20
-  for (int row = start.row; row < end.row; row += lane_count(), y = hn::Add(y, stride)) {
-    const VF step = hn::Sub(y, y_start);  // of the first: the sub-pixel pre-step
-    const VF factor = hn::Mul(step, inverse_dy);
+  for (int row = start.row; row < end.row; row += lane_count(), y = y + stride) {
+    const VF step = y - y_start;  // of the first: the sub-pixel pre-step
+    const VF factor = step * inverse_dy;
     hn::StoreU(hn::MulAdd(step, inverse_slope, x_start), f, side.x + row);
     hn::StoreU(hn::MulAdd(factor, dz, z_start), f, side.z + row);
     hn::StoreU(hn::MulAdd(factor, ds, s_start), f, side.s + row);
@@ -93,12 +93,12 @@ HWY_INLINE void set_up_rows(int row0, int row1, const scene::PixelRect& box, con
   const I i;
   const VF half = hn::Set(f, 0.5f), one = hn::Set(f, 1.0f);
   const VF x0 = hn::Set(f, static_cast<float>(box.x0)), x1 = hn::Set(f, static_cast<float>(box.x1));
-  const auto first_pixel = [&](VF x) { return hn::ConvertTo(i, hn::Min(hn::Max(hn::Ceil(hn::Sub(x, half)), x0), x1)); };
+  const auto first_pixel = [&](VF x) { return hn::ConvertTo(i, hn::Min(hn::Max(hn::Ceil(x - half), x0), x1)); };
   for (int row = row0; row < row1; row += lane_count()) {
     const VF left = hn::LoadU(f, to.left.x + row), right = hn::LoadU(f, to.right.x + row);
     hn::StoreU(first_pixel(left), i, to.first + row);
     hn::StoreU(first_pixel(right), i, to.last + row);
-    hn::StoreU(hn::Div(one, hn::Sub(right, left)), f, to.inverse_width + row);
+    hn::StoreU(one / (right - left), f, to.inverse_width + row);
   }
 }
 
@@ -163,8 +163,8 @@ HWY_INLINE void fill_rows(int row0, int row1, const Cell& cell, const scene::Pix
     const VF dz = hn::Set(f, to.right.z[row] - to.left.z[row]), ds = hn::Set(f, to.right.s[row] - to.left.s[row]);
     int at = row * rect.width() + first - rect.x0;
     VF x = hn::Iota(f, static_cast<float>(first) + 0.5f);
-    for (; left > 0; left -= step, at += step, x = hn::Add(x, stride)) {
-      const VF factor = hn::Mul(hn::Sub(x, x_left), inverse_width);
+    for (; left > 0; left -= step, at += step, x = x + stride) {
+      const VF factor = (x - x_left) * inverse_width;
       const VF z = hn::MulAdd(factor, dz, z_left), s = hn::MulAdd(factor, ds, s_left);
       const auto lanes = hn::FirstN(i, static_cast<std::size_t>(left));
       if constexpr (side == Side::back) {
@@ -173,14 +173,14 @@ HWY_INLINE void fill_rows(int row0, int row1, const Cell& cell, const scene::Pix
         hn::BlendedStore(owner, lanes, i, to.b_owner + at);
       } else {
         const VF z_back = hn::LoadU(f, to.b_z + at), s_back = hn::LoadU(f, to.b_s + at);
-        const auto paired = hn::And(lanes, hn::Eq(hn::LoadU(i, to.b_owner + at), owner));
+        const auto paired = hn::And(lanes, hn::LoadU(i, to.b_owner + at) == owner);
         hn::BlendedStore(hn::Set(i, taken), paired, i, to.b_owner + at);
         const auto wanted = static_cast<std::size_t>(std::min(left, step)), found = hn::CountTrue(i, paired);
         const std::uint64_t pixel_and_tet = static_cast<std::uint64_t>(cell.tet) << 32 | static_cast<unsigned>(at);
         if (HWY_LIKELY(found == wanted && !cell.clipped)) {
           Lanes segments;
           hn::Store(z_back, f, segments.z_back);
-          hn::Store(hn::Mul(hn::Max(hn::Sub(z_back, z), hn::Zero(f)), inverse_edge), f, segments.length);
+          hn::Store(hn::Max(z_back - z, hn::Zero(f)) * inverse_edge, f, segments.length);
           hn::Store(s, f, segments.s_front);
           hn::Store(s_back, f, segments.s_back);
           store_segments(segments, pixel_and_tet, wanted, cell.longest_edge, to);

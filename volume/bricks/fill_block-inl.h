@@ -37,22 +37,22 @@ HWY_INLINE bool any_visible(const FrameView& frame, const std::int64_t (&low)[3]
 
 namespace fill {
 
-namespace HN = hwy::HWY_NAMESPACE;
-using DD = HN::ScalableTag<double>;
-using DFH = HN::Rebind<float, DD>;
-using DIH = HN::Rebind<std::int32_t, DD>;
+namespace hn = hwy::HWY_NAMESPACE;
+using DD = hn::ScalableTag<double>;
+using DFH = hn::Rebind<float, DD>;
+using DIH = hn::Rebind<std::int32_t, DD>;
 
-HWY_INLINE HN::Vec<DD> load_doubles(const float* p) { return HN::PromoteTo(DD(), HN::LoadU(DFH(), p)); }
-HWY_INLINE HN::Vec<DD> load_doubles(const double* p) { return HN::LoadU(DD(), p); }
-HWY_INLINE HN::Vec<DD> load_doubles(const std::int32_t* p) { return HN::PromoteTo(DD(), HN::LoadU(DIH(), p)); }
+HWY_INLINE hn::Vec<DD> load_doubles(const float* p) { return hn::PromoteTo(DD(), hn::LoadU(DFH(), p)); }
+HWY_INLINE hn::Vec<DD> load_doubles(const double* p) { return hn::LoadU(DD(), p); }
+HWY_INLINE hn::Vec<DD> load_doubles(const std::int32_t* p) { return hn::PromoteTo(DD(), hn::LoadU(DIH(), p)); }
 template <class T>
-HWY_INLINE HN::Vec<DD> load_doubles(const T* p) {
+HWY_INLINE hn::Vec<DD> load_doubles(const T* p) {
   if constexpr (sizeof(T) < 4) {
-    return HN::PromoteTo(DD(), HN::PromoteTo(DIH(), HN::LoadU(HN::Rebind<T, DD>(), p)));
+    return hn::PromoteTo(DD(), hn::PromoteTo(DIH(), hn::LoadU(hn::Rebind<T, DD>(), p)));
   } else {
-    HWY_ALIGN double values[HN::MaxLanes(DD())];
-    for (std::size_t i = 0; i < HN::Lanes(DD()); ++i) values[i] = p[i];
-    return HN::Load(DD(), values);
+    HWY_ALIGN double values[hn::MaxLanes(DD())];
+    for (std::size_t i = 0; i < hn::Lanes(DD()); ++i) values[i] = p[i];
+    return hn::Load(DD(), values);
   }
 }
 
@@ -66,48 +66,47 @@ HWY_INLINE void convert(const T* from, std::int64_t count, std::int64_t readable
   if constexpr (std::is_same_v<T, float> || sizeof(T) <= 2) {
     // A power of two and no shift: single precision rounds the same.
     if (lanes.scales_floats && rest == nullptr) {
-      const HN::ScalableTag<float> df;
-      const auto scale = HN::Set(df, static_cast<float>(lanes.factor));
-      const auto wide = static_cast<std::int64_t>(HN::Lanes(df));
+      const hn::ScalableTag<float> df;
+      const auto scale = hn::Set(df, static_cast<float>(lanes.factor));
+      const auto wide = static_cast<std::int64_t>(hn::Lanes(df));
       const auto vector_at = [&](std::int64_t at) HWY_ATTR {
         if constexpr (std::is_same_v<T, float>) {
-          const auto sample = HN::LoadU(df, from + at);
-          const auto lane = HN::Mul(sample, scale);
-          return HN::Add(lanes.whole ? HN::Round(lane) : lane, HN::Sub(sample, sample));
+          const auto sample = hn::LoadU(df, from + at);
+          const auto lane = sample * scale;
+          return (lanes.whole ? hn::Round(lane) : lane) + (sample - sample);
         } else {
-          const HN::RebindToSigned<decltype(df)> di;
-          const auto sample = HN::ConvertTo(df, HN::PromoteTo(di, HN::LoadU(HN::Rebind<T, decltype(df)>(), from + at)));
-          return HN::Round(HN::Mul(sample, scale));
+          const hn::RebindToSigned<decltype(df)> di;
+          const auto sample = hn::ConvertTo(df, hn::PromoteTo(di, hn::LoadU(hn::Rebind<T, decltype(df)>(), from + at)));
+          return hn::Round(sample * scale);
         }
       };
-      for (; i + wide <= count; i += wide) HN::StoreU(vector_at(i), df, to + i);
+      for (; i + wide <= count; i += wide) hn::StoreU(vector_at(i), df, to + i);
       if (i == count) return;
       if (i + wide <= readable) {
-        HN::BlendedStore(vector_at(i), HN::FirstN(df, static_cast<std::size_t>(count - i)), df, to + i);
+        hn::BlendedStore(vector_at(i), hn::FirstN(df, static_cast<std::size_t>(count - i)), df, to + i);
         return;
       }
       if (count >= wide) {
-        HN::StoreU(vector_at(count - wide), df, to + count - wide);
+        hn::StoreU(vector_at(count - wide), df, to + count - wide);
         return;
       }
     }
   }
   const DD d;
-  const auto factor = HN::Set(d, lanes.factor), term = HN::Set(d, lanes.term), lift = HN::Set(d, lanes.lift);
-  const auto n = static_cast<std::int64_t>(HN::Lanes(d));
+  const auto factor = hn::Set(d, lanes.factor), term = hn::Set(d, lanes.term), lift = hn::Set(d, lanes.lift);
+  const auto n = static_cast<std::int64_t>(hn::Lanes(d));
   const auto some = [&](const T* p, float* out, float* rounded_off) HWY_ATTR {
     const auto sample = load_doubles(p);
-    const auto exact = HN::MulAdd(HN::Mul(sample, lift), factor, term), lane = lanes.whole ? HN::Round(exact) : exact;
+    const auto exact = hn::MulAdd(sample * lift, factor, term), lane = lanes.whole ? hn::Round(exact) : exact;
     // inf - inf and NaN - NaN are NaN, x - x is 0: blanks become NaN.
-    const auto rounded = HN::DemoteTo(DFH(), HN::Add(lane, HN::Sub(sample, sample)));
-    HN::StoreU(rounded, DFH(), out);
-    if (rounded_off != nullptr)
-      HN::StoreU(HN::DemoteTo(DFH(), HN::Sub(exact, HN::PromoteTo(d, rounded))), DFH(), rounded_off);
+    const auto rounded = hn::DemoteTo(DFH(), lane + (sample - sample));
+    hn::StoreU(rounded, DFH(), out);
+    if (rounded_off != nullptr) hn::StoreU(hn::DemoteTo(DFH(), exact - hn::PromoteTo(d, rounded)), DFH(), rounded_off);
   };
   for (; i + n <= count; i += n) some(from + i, to + i, rest == nullptr ? nullptr : rest + i);
   if (i >= count) return;
-  T last[HN::MaxLanes(DD())] = {};
-  float out[HN::MaxLanes(DD())], out_rest[HN::MaxLanes(DD())];
+  T last[hn::MaxLanes(DD())] = {};
+  float out[hn::MaxLanes(DD())], out_rest[hn::MaxLanes(DD())];
   for (std::int64_t l = 0; l < n && i + l < count; ++l) last[l] = from[i + l];
   some(last, out, rest == nullptr ? nullptr : out_rest);
   for (std::int64_t l = 0; l < n && i + l < count; ++l) to[i + l] = out[l];

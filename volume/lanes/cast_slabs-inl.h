@@ -46,8 +46,8 @@ class PacketCast {
         before_(before),
         has_steps_(chunk.frame.error_bound != nullptr && !chunk.frame.error_bound->step.empty()) {
     const DF d;
-    const VF zero = HN::Zero(d);
-    progress_ = {zero, HN::Set(d, 1.0f), zero, zero, zero, zero};
+    const VF zero = hn::Zero(d);
+    progress_ = {zero, hn::Set(d, 1.0f), zero, zero, zero, zero};
     crossings_ = zero;
     find_ends();
   }
@@ -69,30 +69,29 @@ class PacketCast {
       group(n, std::min(n + SlabLines::most, chunk_.box.slabs));
     }
     if (HWY_UNLIKELY(tallies)) work.add_to(chunk_, lanes_, reach, chunk_.box.slabs, progress_, counts_);
-    counts_.voxels_visited += static_cast<std::uint64_t>(HN::GetLane(HN::SumOfLanes(d, crossings_)));
+    counts_.voxels_visited += static_cast<std::uint64_t>(hn::GetLane(hn::SumOfLanes(d, crossings_)));
   }
 
  private:
   /// The slabs that all live lanes cross from plane to plane: [plain_from_, plain_to_).
   HWY_INLINE void find_ends() {
     const DF d;
-    mirrored_.live = HN::Lt(lanes_.k_in, lanes_.k_out);
-    all_live_ = HN::AllTrue(d, mirrored_.live);
-    live_count_ = HN::CountTrue(d, mirrored_.live);
-    plain_from_ = HN::GetLane(HN::MaxOfLanes(d, HN::IfThenElse(mirrored_.live, lanes_.k_in, HN::Set(d, -1.0f))));
-    plain_to_ = HN::GetLane(HN::MinOfLanes(d, HN::IfThenElse(mirrored_.live, lanes_.k_out, HN::Set(d, 64.0f))));
+    mirrored_.live = lanes_.k_in < lanes_.k_out;
+    all_live_ = hn::AllTrue(d, mirrored_.live);
+    live_count_ = hn::CountTrue(d, mirrored_.live);
+    plain_from_ = hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElse(mirrored_.live, lanes_.k_in, hn::Set(d, -1.0f))));
+    plain_to_ = hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(mirrored_.live, lanes_.k_out, hn::Set(d, 64.0f))));
   }
 
   /// Rays that let nothing through any more are done. False if all are, or have left the volume.
   HWY_INLINE bool go_on(int n) {
     const DF d;
-    const MF dark = HN::And(mirrored_.live,
-                            HN::Lt(HN::Mul(before_, progress_.transmittance), HN::Set(d, frame_.least_transmittance)));
-    if (!HN::AllFalse(d, dark)) {
-      lanes_.k_out = HN::IfThenElse(dark, HN::Set(d, -1.0f), lanes_.k_out);
+    const MF dark = hn::And(mirrored_.live, before_ * progress_.transmittance < hn::Set(d, frame_.least_transmittance));
+    if (!hn::AllFalse(d, dark)) {
+      lanes_.k_out = hn::IfThenElse(dark, hn::Set(d, -1.0f), lanes_.k_out);
       find_ends();
     }
-    return !HN::AllFalse(d, HN::And(mirrored_.live, HN::Gt(lanes_.k_out, HN::Set(d, static_cast<float>(n)))));
+    return !hn::AllFalse(d, hn::And(mirrored_.live, lanes_.k_out > hn::Set(d, static_cast<float>(n))));
   }
 
   /// Whether the eight slabs from n on may meet a visible cell.
@@ -119,8 +118,8 @@ class PacketCast {
   /// Lanes in slab n.
   HWY_INLINE MF here(int n) const {
     const DF d;
-    return HN::And(mirrored_.live, HN::And(HN::Gt(lanes_.k_out, HN::Set(d, static_cast<float>(n))),
-                                           HN::Lt(lanes_.k_in, HN::Set(d, static_cast<float>(n + 1)))));
+    return hn::And(mirrored_.live, hn::And(lanes_.k_out > hn::Set(d, static_cast<float>(n)),
+                                           lanes_.k_in < hn::Set(d, static_cast<float>(n + 1))));
   }
 
   enum class Kind { empty, lines, parts };
@@ -131,9 +130,9 @@ class PacketCast {
     const bool by_lines = !cell_data && frame_.shading == nullptr;
     if (HWY_LIKELY(plain_from_ <= from && to <= plain_to_)) return by_lines ? Kind::lines : Kind::parts;
     const MF some = here(n);
-    if (HN::AllFalse(d, some)) return Kind::empty;
-    const MF whole = HN::And(HN::Le(lanes_.k_in, HN::Set(d, from)), HN::Ge(lanes_.k_out, HN::Set(d, to)));
-    return by_lines && HN::AllFalse(d, HN::AndNot(whole, some)) ? Kind::lines : Kind::parts;
+    if (hn::AllFalse(d, some)) return Kind::empty;
+    const MF whole = hn::And(lanes_.k_in <= hn::Set(d, from), lanes_.k_out >= hn::Set(d, to));
+    return by_lines && hn::AllFalse(d, hn::AndNot(whole, some)) ? Kind::lines : Kind::parts;
   }
 
   HWY_INLINE void group(int begin, int end) {
@@ -174,38 +173,36 @@ class PacketCast {
   }
 
   static HWY_INLINE Line kept(const Line& line, MF live) {
-    const auto keep = [&](VF v) HWY_ATTR { return HN::IfThenElseZero(live, v); };
+    const auto keep = [&](VF v) HWY_ATTR { return hn::IfThenElseZero(live, v); };
     return {keep(line.s_0), keep(line.s_1), keep(line.span), keep(line.shift), keep(line.rho)};
   }
 
   /// Adds slab n, in place m of the lines, or n and the next if `two` and they may be taken as one: how many.
   HWY_INLINE int add_lines(const SlabLines& lines, int m, int n, bool two) {
     const DF d;
-    const VF half = HN::Set(d, 0.5f);
+    const VF half = hn::Set(d, 0.5f);
     const bool plain = all_live_ && plain_from_ <= static_cast<float>(n) && static_cast<float>(n + 2) <= plain_to_;
     const UniformLookup& table = current_.uniform();
     Line a = line_of(lines, m);
     if (two && plain) {
       const Line b = line_of(lines, m + 1);
       // Not a number where either slab's field is not, which Max alone may leave out.
-      const VF r = HN::MulAdd(HN::Zero(d), HN::Add(a.rho, b.rho), HN::Max(a.rho, b.rho));
-      const VF low = HN::Sub(HN::Min(HN::Min(a.s_0, a.s_1), b.s_1), r),
-               high = HN::Add(HN::Max(HN::Max(a.s_0, a.s_1), b.s_1), r);
+      const VF r = hn::MulAdd(hn::Zero(d), a.rho + b.rho, hn::Max(a.rho, b.rho));
+      const VF low = hn::Min(hn::Min(a.s_0, a.s_1), b.s_1) - r, high = hn::Max(hn::Max(a.s_0, a.s_1), b.s_1) + r;
       if (HWY_LIKELY(current_.around(low, high, mirrored_.live)) && surfaces_.none_between(low, high, mirrored_.live)) {
         if (current_.clear()) return 2;
-        const VF length = HN::Add(lanes_.length, lanes_.length), span = HN::Sub(b.s_1, a.s_0);
-        const VF middle = HN::Mul(half, HN::Add(a.s_0, b.s_1)), tent = HN::Sub(a.s_1, middle);
-        const VF rho = HN::Add(HN::Abs(tent), r), tilt = HN::Mul(HN::Abs(span), HN::Set(d, 0.25f));
-        const VF even = HN::MulAdd(rho, rho, HN::Mul(r, tilt)), any = HN::Mul(rho, HN::Add(rho, tilt));
-        const VF dimmed = HN::Mul(HN::Mul(length, HN::Set(d, table.dimming_bound)),
-                                  HN::MulAdd(HN::Mul(HN::Abs(tent), HN::Mul(length, HN::Set(d, table.extinction))),
-                                             HN::Set(d, 1 / 60.0f), HN::Mul(r, HN::Set(d, 0.25f))));
-        const VF error =
-            HN::MulAdd(length, dimmed,
-                       HN::Mul(length, HN::MulAdd(HN::Set(d, 10 * table.product_bound), even,
-                                                  HN::Mul(HN::Mul(length, HN::Set(d, table.shadow_bound)), any))));
-        if (HN::AllTrue(d, HN::Le(error, HN::Set(d, 1.0f)))) {
-          const VF shift = HN::Mul(half, HN::Add(tent, HN::Add(a.shift, b.shift)));
+        const VF length = lanes_.length + lanes_.length, span = b.s_1 - a.s_0;
+        const VF middle = half * (a.s_0 + b.s_1), tent = a.s_1 - middle;
+        const VF rho = hn::Abs(tent) + r, tilt = hn::Abs(span) * hn::Set(d, 0.25f);
+        const VF even = hn::MulAdd(rho, rho, r * tilt), any = rho * (rho + tilt);
+        const VF dimmed = length * hn::Set(d, table.dimming_bound) *
+                          hn::MulAdd(hn::Abs(tent) * (length * hn::Set(d, table.extinction)), hn::Set(d, 1 / 60.0f),
+                                     r * hn::Set(d, 0.25f));
+        const VF error = hn::MulAdd(length, dimmed,
+                                    length * hn::MulAdd(hn::Set(d, 10 * table.product_bound), even,
+                                                        length * hn::Set(d, table.shadow_bound) * any));
+        if (hn::AllTrue(d, error <= hn::Set(d, 1.0f))) {
+          const VF shift = half * (tent + (a.shift + b.shift));
           add_uniform_line(a.s_0, b.s_1, span, shift, length, n);
           return 2;
         }
@@ -216,24 +213,24 @@ class PacketCast {
     if (!plain) {
       live = here(n);
       a = kept(a, live);
-      length = HN::IfThenElseZero(live, length);
+      length = hn::IfThenElseZero(live, length);
     }
-    const VF low = HN::Sub(HN::Min(a.s_0, a.s_1), a.rho), high = HN::Add(HN::Max(a.s_0, a.s_1), a.rho);
+    const VF low = hn::Min(a.s_0, a.s_1) - a.rho, high = hn::Max(a.s_0, a.s_1) + a.rho;
     if constexpr (has_surfaces) {
       if (HWY_UNLIKELY(!surfaces_.none_between(low, high, live))) {
         live = add_met(n, low, high, live);
-        if (HN::AllFalse(d, live)) return 1;
+        if (hn::AllFalse(d, live)) return 1;
         a = kept(a, live);
-        length = HN::IfThenElseZero(live, length);
+        length = hn::IfThenElseZero(live, length);
       }
     }
     const bool uniform = current_.around(low, high, live) || (has_steps_ && on_one_side(n));
     if (HWY_LIKELY(uniform)) {
       if (current_.clear()) return 1;
-      const VF spread = HN::Mul(HN::Mul(length, a.rho), HN::MulAdd(HN::Abs(a.span), HN::Set(d, 0.25f), a.rho));
-      const VF scale = HN::MulAdd(length, HN::Set(d, table.shadow_bound), HN::Set(d, 10 * table.product_bound));
-      const VF dimmed = HN::Mul(HN::Mul(length, HN::Set(d, table.dimming_bound / 9)), HN::Mul(length, a.rho));
-      if (HWY_LIKELY(HN::AllFalse(d, HN::Gt(HN::MulAdd(spread, scale, dimmed), HN::Set(d, 1.0f))))) {
+      const VF spread = length * a.rho * hn::MulAdd(hn::Abs(a.span), hn::Set(d, 0.25f), a.rho);
+      const VF scale = hn::MulAdd(length, hn::Set(d, table.shadow_bound), hn::Set(d, 10 * table.product_bound));
+      const VF dimmed = length * hn::Set(d, table.dimming_bound / 9) * (length * a.rho);
+      if (HWY_LIKELY(hn::AllFalse(d, hn::MulAdd(spread, scale, dimmed) > hn::Set(d, 1.0f)))) {
         add_uniform_line(a.s_0, a.s_1, a.span, a.shift, length, n);
         return 1;
       }
@@ -272,27 +269,23 @@ class PacketCast {
     const DF d;
     const UniformLookup& table = current_.uniform();
     const Bend found = bend_of(lines, m, line);
-    const auto kept = [&](VF v) HWY_ATTR { return HN::IfThenElseZero(live, v); };
+    const auto kept = [&](VF v) HWY_ATTR { return hn::IfThenElseZero(live, v); };
     const VF product = kept(found.product), covariance = kept(found.covariance), odd = kept(found.odd);
-    const VF depth = HN::Mul(length, HN::Set(d, table.extinction)), span = HN::Abs(line.span);
-    const VF beside_odd = HN::MulAdd(HN::Set(d, 0.5f), span, HN::MulAdd(HN::Set(d, 2.0f), line.rho, odd));
-    const VF next_order =
-        HN::MulAdd(HN::Mul(line.rho, HN::Set(d, 1 / 9.0f)), HN::Add(span, line.rho), HN::Abs(product));
-    const VF products = HN::Mul(HN::Mul(length, HN::Set(d, 10 * table.product_bound)),
-                                HN::MulAdd(odd, beside_odd, HN::Mul(depth, next_order)));
-    const VF shadows = HN::Mul(HN::Mul(length, HN::Set(d, table.shadow_bound)), spread);
-    if (!HN::AllFalse(d, HN::Gt(HN::MulAdd(dimmed, depth, HN::Add(products, shadows)), HN::Set(d, 1.0f)))) return false;
+    const VF depth = length * hn::Set(d, table.extinction), span = hn::Abs(line.span);
+    const VF beside_odd = hn::MulAdd(hn::Set(d, 0.5f), span, hn::MulAdd(hn::Set(d, 2.0f), line.rho, odd));
+    const VF next_order = hn::MulAdd(line.rho * hn::Set(d, 1 / 9.0f), span + line.rho, hn::Abs(product));
+    const VF products = length * hn::Set(d, 10 * table.product_bound) * hn::MulAdd(odd, beside_odd, depth * next_order);
+    const VF shadows = length * hn::Set(d, table.shadow_bound) * spread;
+    if (!hn::AllFalse(d, hn::MulAdd(dimmed, depth, products + shadows) > hn::Set(d, 1.0f))) return false;
     const float slope = 2 * table.row[LaneTable::half_extinction_slope];
-    const VF middle =
-        HN::MulAdd(HN::Set(d, 0.5f), line.span, HN::Sub(line.s_0, HN::Set(d, table.row[LaneTable::base])));
+    const VF middle = hn::MulAdd(hn::Set(d, 0.5f), line.span, line.s_0 - hn::Set(d, table.row[LaneTable::base]));
     const VF here =
-        HN::Mul(length, HN::MulAdd(HN::Set(d, slope), middle, HN::Set(d, 2 * table.row[LaneTable::half_extinction])));
-    const VF more =
-        HN::NegMulAdd(HN::Mul(here, here), covariance, HN::Mul(HN::Mul(length, HN::Set(d, slope)), product));
-    const VF seen = HN::Mul(progress_.transmittance, more);
-    progress_.red = HN::MulAdd(seen, HN::Set(d, table.row[LaneTable::red_slope]), progress_.red);
-    progress_.green = HN::MulAdd(seen, HN::Set(d, table.row[LaneTable::green_slope]), progress_.green);
-    progress_.blue = HN::MulAdd(seen, HN::Set(d, table.row[LaneTable::blue_slope]), progress_.blue);
+        length * hn::MulAdd(hn::Set(d, slope), middle, hn::Set(d, 2 * table.row[LaneTable::half_extinction]));
+    const VF more = hn::NegMulAdd(here * here, covariance, length * hn::Set(d, slope) * product);
+    const VF seen = progress_.transmittance * more;
+    progress_.red = hn::MulAdd(seen, hn::Set(d, table.row[LaneTable::red_slope]), progress_.red);
+    progress_.green = hn::MulAdd(seen, hn::Set(d, table.row[LaneTable::green_slope]), progress_.green);
+    progress_.blue = hn::MulAdd(seen, hn::Set(d, table.row[LaneTable::blue_slope]), progress_.blue);
     add_uniform_line(line.s_0, line.s_1, line.span, line.shift, length, n);
     return true;
   }
@@ -300,20 +293,19 @@ class PacketCast {
   HWY_INLINE void add_uniform_line(VF s_0, VF s_1, VF span, VF shift, VF length, int n) {
     const DF d;
     const VF before = progress_.transmittance;
-    CL::lanes::add_piece<false>(current_.uniform(), 0, HN::Add(s_0, shift), HN::Add(s_1, shift), span, length,
-                                progress_);
+    CL::lanes::add_piece<false>(current_.uniform(), 0, s_0 + shift, s_1 + shift, span, length, progress_);
     counts_.samples += live_count_;
-    if (HWY_UNLIKELY(!HN::AllTrue(d, notes_.seen)))
-      note_first_light(progress_, HN::Set(d, static_cast<float>(n)), notes_);
+    if (HWY_UNLIKELY(!hn::AllTrue(d, notes_.seen)))
+      note_first_light(progress_, hn::Set(d, static_cast<float>(n)), notes_);
     if (HWY_UNLIKELY(current_.uniform().ramp > 0))
       note_ramps(current_.uniform(), length, before, progress_.transmittance, notes_);
   }
 
   /// A slab that crosses knots, or is rough.
   HWY_NOINLINE void add_slowly(const SlabLines& lines, const Line& line, int m, int n, MF live, VF length) {
-    const MF apart = cast_mixed(frame_, lookup_, line, live, HN::Set(DF(), static_cast<float>(n)), length, current_,
+    const MF apart = cast_mixed(frame_, lookup_, line, live, hn::Set(DF(), static_cast<float>(n)), length, current_,
                                 progress_, notes_, counts_);
-    if (HN::AllFalse(DF(), apart)) return;
+    if (hn::AllFalse(DF(), apart)) return;
     cast_stretches(frame_, lookup_, lanes_.length, lines, m, n, apart, progress_, notes_, counts_);
   }
 
@@ -323,7 +315,7 @@ class PacketCast {
     const WindowPlace place = place_of(n);
     const Window window(place.front, place.back, chunk_.block.pitch);
     add_surfaces(path_of(lanes_, n, slabs_.i_window[n], slabs_.j_window[n]), window, rest_at(place), met);
-    return HN::AndNot(met, live);
+    return hn::AndNot(met, live);
   }
   HWY_INLINE RestOfSamples rest_at(const WindowPlace& place) const { return {chunk_.block, place.front, place.back}; }
   HWY_INLINE void add_surfaces(const SlabPath& path, const Window& window, const RestOfSamples& rest, MF lanes) {
@@ -342,11 +334,11 @@ class PacketCast {
     if (uniform && current_.clear() && meets_none) return;
     const SlabPath path = path_of(lanes_, n, slabs_.i_window[n], slabs_.j_window[n]);
     for (const Stretch& stretch : path.stretches)
-      counts_.voxels_visited += HN::CountTrue(d, HN::Gt(stretch.end, stretch.begin));
+      counts_.voxels_visited += hn::CountTrue(d, stretch.end > stretch.begin);
     const VF before = progress_.transmittance, light[3] = {progress_.red, progress_.green, progress_.blue};
     if constexpr (has_surfaces) {
       if (!meets_none) {
-        const MF there = HN::Gt(path.to, path.from);
+        const MF there = path.to > path.from;
         add_surfaces(path, window, rest_at(place), there);
         if (HWY_UNLIKELY(frame_.shading == nullptr && frame_.error_bound != nullptr && frame_.error_bound->ends))
           note_ends(*frame_.error_bound, lookup_, part_line(lanes_, path, window), path, there, lanes_.length, before,
@@ -356,19 +348,18 @@ class PacketCast {
     }
     if (cell_data || frame_.shading != nullptr) {
       cast_voxels<cell_data>(frame_, chunk_.axes, lookup_, lanes_, path, window, rest_at(place),
-                             uniform ? &current_.uniform() : nullptr, HN::Gt(path.to, path.from), progress_, notes_,
-                             counts_);
+                             uniform ? &current_.uniform() : nullptr, path.to > path.from, progress_, notes_, counts_);
       return;
     }
     if constexpr (!cell_data) {
-      const MF there = HN::Gt(path.to, path.from);
-      const VF length = HN::IfThenElseZero(there, HN::Mul(lanes_.length, HN::Sub(path.to, path.from)));
+      const MF there = path.to > path.from;
+      const VF length = hn::IfThenElseZero(there, lanes_.length * (path.to - path.from));
       const Line line = part_line(lanes_, path, window);
       MF apart = there;
       if (!(uniform && has_steps_))
-        apart = cast_mixed(frame_, lookup_, line, there, HN::Add(path.from, path.k), length, current_, progress_,
-                           notes_, counts_);
-      if (!HN::AllFalse(d, apart))
+        apart =
+            cast_mixed(frame_, lookup_, line, there, path.from + path.k, length, current_, progress_, notes_, counts_);
+      if (!hn::AllFalse(d, apart))
         cast_voxels<false>(frame_, chunk_.axes, lookup_, lanes_, path, window, rest_at(place),
                            uniform && has_steps_ ? &current_.uniform() : nullptr, apart, progress_, notes_, counts_);
       if (HWY_UNLIKELY(frame_.error_bound != nullptr && frame_.error_bound->ends))
@@ -400,33 +391,32 @@ template <bool cell_data, class Surfaces, class Window, class Lookup>
 HWY_NOINLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int ray, const Reach& reach,
                              const PacketSlabs& slabs, CurrentInterval& current, TileRays& rays, TileCounts& counts) {
   const DF d;
-  constexpr std::size_t most = HN::MaxLanes(DF());
-  const std::size_t lane_count = HN::Lanes(d);
+  constexpr std::size_t most = hn::MaxLanes(DF());
+  const std::size_t lane_count = hn::Lanes(d);
   Lanes lanes = lanes_of(chunk, ray, slabs.i_first[0], slabs.j_first[0], rays);
-  const VF before = HN::LoadU(d, rays.transmittance + ray);
-  lanes.k_out =
-      HN::IfThenElse(HN::Lt(before, HN::Set(d, chunk.frame.least_transmittance)), HN::Set(d, -1.0f), lanes.k_out);
+  const VF before = hn::LoadU(d, rays.transmittance + ray);
+  lanes.k_out = hn::IfThenElse(before < hn::Set(d, chunk.frame.least_transmittance), hn::Set(d, -1.0f), lanes.k_out);
   PacketCast<cell_data, Surfaces, Window, Lookup> cast(chunk, lookup, slabs, lanes, before, current, counts);
-  const VF alpha_before = HN::LoadU(d, rays.alpha + ray);
-  const MF seen_before = HN::Gt(alpha_before, HN::Zero(d));
-  cast.notes_ = {HN::Set(d, -1.0f), seen_before, HN::Zero(d), HN::Zero(d)};
+  const VF alpha_before = hn::LoadU(d, rays.alpha + ray);
+  const MF seen_before = alpha_before > hn::Zero(d);
+  cast.notes_ = {hn::Set(d, -1.0f), seen_before, hn::Zero(d), hn::Zero(d)};
   cast.run(reach);
 
   const Progress& progress = cast.progress_;
   const auto add = [&](float* sum, VF part)
-                       HWY_ATTR { HN::StoreU(HN::MulAdd(before, part, HN::LoadU(d, sum + ray)), d, sum + ray); };
+                       HWY_ATTR { hn::StoreU(hn::MulAdd(before, part, hn::LoadU(d, sum + ray)), d, sum + ray); };
   add(rays.alpha, progress.alpha);
   add(rays.red, progress.red);
   add(rays.green, progress.green);
   add(rays.blue, progress.blue);
-  HN::StoreU(HN::Mul(before, progress.transmittance), d, rays.transmittance + ray);
+  hn::StoreU(before * progress.transmittance, d, rays.transmittance + ray);
   add(rays.error_bound, cast.notes_.error_bound);
-  const VF rough = HN::Mul(HN::Mul(before, before), cast.notes_.rough);
-  HN::StoreU(HN::Add(rough, HN::LoadU(d, rays.rough + ray)), d, rays.rough + ray);
-  if (!HN::AllFalse(d, HN::AndNot(seen_before, cast.notes_.seen))) {
+  const VF rough = before * before * cast.notes_.rough;
+  hn::StoreU(rough + hn::LoadU(d, rays.rough + ray), d, rays.rough + ray);
+  if (!hn::AllFalse(d, hn::AndNot(seen_before, cast.notes_.seen))) {
     const auto first_k = static_cast<double>(chunk.box.first_k);
     HWY_ALIGN float place[most];
-    HN::Store(HN::IfThenElse(seen_before, HN::Set(d, -1.0f), cast.notes_.first), d, place);
+    hn::Store(hn::IfThenElse(seen_before, hn::Set(d, -1.0f), cast.notes_.first), d, place);
     for (std::size_t l = 0; l < lane_count; ++l)
       if (place[l] >= 0) rays.first_k[static_cast<std::size_t>(ray) + l] = first_k + static_cast<double>(place[l]);
   }
@@ -445,7 +435,7 @@ HWY_NOINLINE void cast_chunk_as(const ChunkView& chunk, TileRays& rays, TileCoun
     current.begin_at(*chunk.block.at(first, slabs.i_first[first], slabs.j_first[first]));
     const auto cast = [&]<class Window>() HWY_ATTR {
       slabs.template place_windows<Window>(chunk.block, chunk.box.slabs);
-      for (int lane = 0; lane < TileRays::packet_rays; lane += static_cast<int>(HN::Lanes(DF())))
+      for (int lane = 0; lane < TileRays::packet_rays; lane += static_cast<int>(hn::Lanes(DF())))
         cast_lanes<cell_data, Surfaces, Window>(chunk, lookup, packet * TileRays::packet_rays + lane, reach, slabs,
                                                 current, rays, counts);
     };

@@ -23,18 +23,18 @@ namespace HWY_NAMESPACE {
 /// A row of SurfaceView at edges.
 HWY_INLINE VF surface_row(const SurfaceView& view, const std::vector<float>& row, VI edge) {
   const DF d;
-  if (view.count + 2 <= HN::Lanes(d))
-    return HN::TableLookupLanes(HN::LoadU(d, row.data()), HN::IndicesFromVec(d, edge));
-  return HN::GatherIndex(d, row.data(), edge);
+  if (view.count + 2 <= hn::Lanes(d))
+    return hn::TableLookupLanes(hn::LoadU(d, row.data()), hn::IndicesFromVec(d, edge));
+  return hn::GatherIndex(d, row.data(), edge);
 }
 
 /// The gap that a scalar is in (SurfaceView); the first for what is none.
 HWY_INLINE VI surface_gap(const SurfaceView& view, VF s) {
   const DF d;
   const DI di;
-  VI gap = HN::Zero(di);
+  VI gap = hn::Zero(di);
   for (std::size_t n = 1; n <= view.count; ++n)
-    gap = HN::Add(gap, HN::IfThenElseZero(HN::RebindMask(di, HN::Ge(s, HN::Set(d, view.edge[n]))), HN::Set(di, 1)));
+    gap = gap + hn::IfThenElseZero(hn::RebindMask(di, s >= hn::Set(d, view.edge[n])), hn::Set(di, 1));
   return gap;
 }
 
@@ -54,19 +54,19 @@ struct NoSurfaces {
 class LaneSurfaces {
  public:
   explicit HWY_INLINE LaneSurfaces(const FrameView& frame)
-      : view_(*frame.surfaces), low_(HN::Zero(DF())), high_(HN::Zero(DF())) {}
+      : view_(*frame.surfaces), low_(hn::Zero(DF())), high_(hn::Zero(DF())) {}
 
   /// Whether lanes that are live meet no surface for certain where their field is in [low, high].
   HWY_INLINE bool none_between(VF low, VF high, MF live) {
-    return HWY_LIKELY(HN::AllFalse(DF(), outside(low, high, live))) || HN::AllFalse(DF(), met(low, high, live));
+    return HWY_LIKELY(hn::AllFalse(DF(), outside(low, high, live))) || hn::AllFalse(DF(), met(low, high, live));
   }
   /// The lanes that may.
   HWY_NOINLINE MF met(VF low, VF high, MF live) {
     const DF d;
     const VI gap = surface_gap(view_, low);
-    const VF noise = HN::Set(d, view_.noise);
-    low_ = HN::Add(surface_row(view_, view_.edge, gap), noise);
-    high_ = HN::Sub(surface_row(view_, view_.edge, HN::Add(gap, HN::Set(DI(), 1))), noise);
+    const VF noise = hn::Set(d, view_.noise);
+    low_ = surface_row(view_, view_.edge, gap) + noise;
+    high_ = surface_row(view_, view_.edge, gap + hn::Set(DI(), 1)) - noise;
     return outside(low, high, live);
   }
 
@@ -82,9 +82,7 @@ class LaneSurfaces {
   }
 
  private:
-  HWY_INLINE MF outside(VF low, VF high, MF live) const {
-    return HN::AndNot(HN::And(HN::Ge(low, low_), HN::Lt(high, high_)), live);
-  }
+  HWY_INLINE MF outside(VF low, VF high, MF live) const { return hn::AndNot(hn::And(low >= low_, high < high_), live); }
 
   const SurfaceView& view_;
   VF low_, high_;

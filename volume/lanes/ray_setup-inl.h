@@ -70,43 +70,43 @@ HWY_NOINLINE inline bool crosses_planes(const PixelRays& rays, int x0, int y0, i
 /// Puts rays a + b k that run in a plane of the lattice beside it, by `side`; `reach`: farthest of k from their origin.
 template <class V>
 HWY_INLINE void keep_side(V reach, double side, V& a, V& b) {
-  namespace HN = hwy::HWY_NAMESPACE;
-  const HN::DFromV<V> d;
-  const V plane = HN::Round(a), within = HN::Set(d, in_plane_within);
-  const auto in_plane = HN::And(HN::Lt(HN::Mul(HN::Abs(b), reach), within), HN::Lt(HN::Abs(HN::Sub(a, plane)), within));
-  a = HN::IfThenElse(in_plane, HN::Add(plane, HN::Set(d, side)), a);
-  b = HN::IfThenElse(in_plane, HN::Zero(d), b);
+  namespace hn = hwy::HWY_NAMESPACE;
+  const hn::DFromV<V> d;
+  const V plane = hn::Round(a), within = hn::Set(d, in_plane_within);
+  const auto in_plane = hn::And(hn::Abs(b) * reach < within, hn::Abs(a - plane) < within);
+  a = hn::IfThenElse(in_plane, plane + hn::Set(d, side), a);
+  b = hn::IfThenElse(in_plane, hn::Zero(d), b);
 }
 
 /// Cuts [in, out] to where a + b k is in [0, end].
 template <class V>
 HWY_INLINE void clip(V a, V b, double end, V& in, V& out) {
-  namespace HN = hwy::HWY_NAMESPACE;
-  const HN::DFromV<V> d;
-  const V zero = HN::Zero(d), one = HN::Set(d, 1.0), last = HN::Set(d, end);
-  const auto level = HN::Eq(b, zero);
-  const auto outside = HN::And(level, HN::Or(HN::Lt(a, zero), HN::Gt(a, last)));
-  const V per_b = HN::Div(one, HN::IfThenElse(level, one, b));
-  const V first = HN::Mul(HN::Neg(a), per_b), second = HN::Mul(HN::Sub(last, a), per_b);
-  in = HN::Max(in, HN::IfThenElse(level, in, HN::Min(first, second)));
-  out = HN::Min(out, HN::IfThenElse(level, out, HN::Max(first, second)));
-  out = HN::IfThenElse(outside, HN::Set(d, -1.0), out);
+  namespace hn = hwy::HWY_NAMESPACE;
+  const hn::DFromV<V> d;
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.0), last = hn::Set(d, end);
+  const auto level = b == zero;
+  const auto outside = hn::And(level, hn::Or(a<zero, a> last));
+  const V per_b = one / hn::IfThenElse(level, one, b);
+  const V first = hn::Neg(a) * per_b, second = (last - a) * per_b;
+  in = hn::Max(in, hn::IfThenElse(level, in, hn::Min(first, second)));
+  out = hn::Min(out, hn::IfThenElse(level, out, hn::Max(first, second)));
+  out = hn::IfThenElse(outside, hn::Set(d, -1.0), out);
 }
 
 /// Cuts [in, out] to where a + b k >= 0. A ray that runs in that plane is on the side that `inside` says.
 template <class V>
 HWY_INLINE void clip_half(V a, V b, V reach, bool inside, V& in, V& out) {
-  namespace HN = hwy::HWY_NAMESPACE;
-  const HN::DFromV<V> d;
-  const V zero = HN::Zero(d), within = HN::Set(d, in_plane_within);
-  const auto level = HN::Lt(HN::Mul(HN::Abs(b), reach), within);
-  const auto in_plane = HN::Lt(HN::Abs(a), within);
-  const V side = HN::IfThenElse(in_plane, HN::Set(d, inside ? 1.0 : -1.0), a);
-  const V at = HN::Div(HN::Neg(a), HN::IfThenElse(level, HN::Set(d, 1.0), b));
-  const auto rises = HN::Gt(b, zero);
-  in = HN::IfThenElse(HN::AndNot(level, rises), HN::Max(in, at), in);
-  out = HN::IfThenElse(HN::Or(level, rises), out, HN::Min(out, at));
-  out = HN::IfThenElse(HN::And(level, HN::Lt(side, zero)), HN::Set(d, -1.0), out);
+  namespace hn = hwy::HWY_NAMESPACE;
+  const hn::DFromV<V> d;
+  const V zero = hn::Zero(d), within = hn::Set(d, in_plane_within);
+  const auto level = hn::Abs(b) * reach < within;
+  const auto in_plane = hn::Abs(a) < within;
+  const V side = hn::IfThenElse(in_plane, hn::Set(d, inside ? 1.0 : -1.0), a);
+  const V at = hn::Neg(a) / hn::IfThenElse(level, hn::Set(d, 1.0), b);
+  const auto rises = b > zero;
+  in = hn::IfThenElse(hn::AndNot(level, rises), hn::Max(in, at), in);
+  out = hn::IfThenElse(hn::Or(level, rises), out, hn::Min(out, at));
+  out = hn::IfThenElse(hn::And(level, side < zero), hn::Set(d, -1.0), out);
 }
 
 /// On which side of a plane rays in it count, by the rule of side_of_plane().
@@ -128,72 +128,70 @@ HWY_NOINLINE inline void set_up_rays(const FrameView& frame, int x0, int y0, int
                end_k = static_cast<double>(frame.voxels[static_cast<std::size_t>(axes.k)]);
   const bool perspective = rays.tangent_step != 0;
   const bool level_i = !crosses_planes(rays, x0, y0, axes.i), level_j = !crosses_planes(rays, x0, y0, axes.j);
-  namespace HN = hwy::HWY_NAMESPACE;
-  const HN::ScalableTag<double> d;
-  const auto set = [&](double v) HWY_ATTR { return HN::Set(d, v); };
-  const auto zero = HN::Zero(d), one = set(1.0);
+  namespace hn = hwy::HWY_NAMESPACE;
+  const hn::ScalableTag<double> d;
+  const auto set = [&](double v) HWY_ATTR { return hn::Set(d, v); };
+  const auto zero = hn::Zero(d), one = set(1.0);
   HWY_ALIGN double column[TileRays::packet_rays], row[TileRays::packet_rays];
   for (int ray = 0; ray < TileRays::packet_rays; ++ray)
     column[ray] = TileRays::pixel_x(ray) + 0.5, row[ray] = TileRays::pixel_y(ray) + 0.5;
-  for (int ray = 0; ray < TileRays::count; ray += static_cast<int>(HN::Lanes(d))) {
+  for (int ray = 0; ray < TileRays::count; ray += static_cast<int>(hn::Lanes(d))) {
     const int packet = ray & ~(TileRays::packet_rays - 1), lane = ray - packet;
-    const auto px = HN::Add(set(x0 + TileRays::pixel_x(packet)), HN::Load(d, column + lane)),
-               py = HN::Add(set(y0 + TileRays::pixel_y(packet)), HN::Load(d, row + lane));
+    const auto px = set(x0 + TileRays::pixel_x(packet)) + hn::Load(d, column + lane),
+               py = set(y0 + TileRays::pixel_y(packet)) + hn::Load(d, row + lane);
     const auto along = [&](int a, const glm::dvec3& v, const glm::dvec3& v_x, const glm::dvec3& v_y)
-                           HWY_ATTR { return HN::MulAdd(py, set(v_y[a]), HN::MulAdd(px, set(v_x[a]), set(v[a]))); };
+                           HWY_ATTR { return hn::MulAdd(py, set(v_y[a]), hn::MulAdd(px, set(v_x[a]), set(v[a]))); };
     const auto origin = [&](int a) HWY_ATTR { return along(a, rays.origin, rays.origin_x, rays.origin_y); };
     const auto direction = [&](int a) HWY_ATTR { return along(a, rays.direction, rays.direction_x, rays.direction_y); };
     const auto di = direction(axes.i), dj = direction(axes.j), dk_signed = direction(axes.k), o_k = origin(axes.k);
-    const auto dk = HN::Abs(dk_signed), ok = axes.mirrored ? HN::Sub(set(end_k), o_k) : o_k;
-    auto here = HN::Eq(zero, zero);
+    const auto dk = hn::Abs(dk_signed), ok = axes.mirrored ? set(end_k) - o_k : o_k;
+    auto here = zero == zero;
     if (perspective) {
       // As axis_code() has it: the lowest of equal axes.
-      const auto not_less = [&](auto other, int axis) HWY_ATTR {
-        return axes.k < axis ? HN::Ge(dk, HN::Abs(other)) : HN::Gt(dk, HN::Abs(other));
-      };
-      const auto signed_right = axes.mirrored ? HN::Lt(dk_signed, zero) : HN::Ge(dk_signed, zero);
-      here = HN::And(signed_right, HN::And(not_less(di, axes.i), not_less(dj, axes.j)));
+      const auto not_less = [&](auto other, int axis)
+                                HWY_ATTR { return axes.k < axis ? dk >= hn::Abs(other) : dk > hn::Abs(other); };
+      const auto signed_right = axes.mirrored ? dk_signed < zero : dk_signed >= zero;
+      here = hn::And(signed_right, hn::And(not_less(di, axes.i), not_less(dj, axes.j)));
     }
-    const auto per_k = HN::Div(one, HN::IfThenElse(here, dk, one));
-    auto bx = HN::Mul(di, per_k), by = HN::Mul(dj, per_k);
-    auto ax = HN::NegMulAdd(ok, bx, origin(axes.i)), ay = HN::NegMulAdd(ok, by, origin(axes.j));
-    const auto reach = HN::Max(HN::Abs(ok), HN::Abs(HN::Sub(set(end_k), ok)));
+    const auto per_k = one / hn::IfThenElse(here, dk, one);
+    auto bx = di * per_k, by = dj * per_k;
+    auto ax = hn::NegMulAdd(ok, bx, origin(axes.i)), ay = hn::NegMulAdd(ok, by, origin(axes.j));
+    const auto reach = hn::Max(hn::Abs(ok), hn::Abs(set(end_k) - ok));
     if (level_i) keep_side(reach, side_of_plane(rays, perspective, axes.i), ax, bx);
     if (level_j) keep_side(reach, side_of_plane(rays, perspective, axes.j), ay, by);
-    auto in = HN::Max(zero, HN::MulAdd(set(rays.near_depth), dk, ok));
+    auto in = hn::Max(zero, hn::MulAdd(set(rays.near_depth), dk, ok));
     auto out_k = set(end_k);
-    if (std::isfinite(rays.far_depth)) out_k = HN::Min(out_k, HN::MulAdd(set(rays.far_depth), dk, ok));
+    if (std::isfinite(rays.far_depth)) out_k = hn::Min(out_k, hn::MulAdd(set(rays.far_depth), dk, ok));
     clip(ax, bx, end_i, in, out_k);
     clip(ay, by, end_j, in, out_k);
     for (const KeptSide& kept : rays.kept) {
       const auto si = set(kept.slope[axes.i]), sj = set(kept.slope[axes.j]);
       const double sk = axes.mirrored ? -kept.slope[axes.k] : kept.slope[axes.k];
       const double at_0 = axes.mirrored ? kept.slope[axes.k] * end_k + kept.constant : kept.constant;
-      clip_half(HN::MulAdd(si, ax, HN::MulAdd(sj, ay, set(at_0))), HN::MulAdd(si, bx, HN::MulAdd(sj, by, set(sk))),
+      clip_half(hn::MulAdd(si, ax, hn::MulAdd(sj, ay, set(at_0))), hn::MulAdd(si, bx, hn::MulAdd(sj, by, set(sk))),
                 reach, is_inside(rays, perspective, kept), in, out_k);
     }
-    const auto kept = HN::And(here, HN::Lt(in, out_k));
-    const auto tx = HN::Mul(HN::Sub(px, set(rays.tangent_x0)), set(rays.tangent_step)),
-               ty = HN::Mul(HN::Sub(py, set(rays.tangent_y0)), set(rays.tangent_step));
-    const auto length =
-        HN::Mul(HN::Mul(HN::Sqrt(HN::MulAdd(tx, tx, HN::MulAdd(ty, ty, one))), per_k), set(1 / frame.length_unit));
+    const auto kept = hn::And(here, in < out_k);
+    const auto tx = (px - set(rays.tangent_x0)) * set(rays.tangent_step),
+               ty = (py - set(rays.tangent_y0)) * set(rays.tangent_step);
+    const auto length = hn::Sqrt(hn::MulAdd(tx, tx, hn::MulAdd(ty, ty, one))) * per_k * set(1 / frame.length_unit);
     if (frame.shading != nullptr) {
       const double(&l)[3] = frame.shading->light_eye;
       // Towards the eye along the ray: (-tx, ty, 1) in the camera's frame, y being down the picture.
-      const auto towards = HN::NegMulAdd(tx, set(l[0]), HN::MulAdd(ty, set(l[1]), set(l[2])));
-      const auto cosine = HN::Div(towards, HN::Sqrt(HN::MulAdd(tx, tx, HN::MulAdd(ty, ty, one))));
-      HN::Store(HN::DemoteTo(HN::Rebind<float, decltype(d)>(), cosine), HN::Rebind<float, decltype(d)>(),
+      const auto towards = hn::NegMulAdd(tx, set(l[0]), hn::MulAdd(ty, set(l[1]), set(l[2])));
+      const auto cosine = towards / hn::Sqrt(hn::MulAdd(tx, tx, hn::MulAdd(ty, ty, one)));
+      hn::Store(hn::DemoteTo(hn::Rebind<float, decltype(d)>(), cosine), hn::Rebind<float, decltype(d)>(),
                 out.light_view + ray);
     }
-    HN::Store(HN::IfThenElseZero(here, ax), d, out.ax + ray);
-    HN::Store(HN::IfThenElseZero(here, bx), d, out.bx + ray);
-    HN::Store(HN::IfThenElseZero(here, ay), d, out.ay + ray);
-    HN::Store(HN::IfThenElseZero(here, by), d, out.by + ray);
-    HN::Store(HN::IfThenElse(kept, in, one), d, out.k_in + ray);
-    HN::Store(HN::IfThenElseZero(kept, out_k), d, out.k_out + ray);
-    HN::Store(HN::Neg(HN::Mul(ok, per_k)), d, out.depth_0 + ray);
-    HN::Store(per_k, d, out.depth_k + ray);
-    HN::Store(HN::DemoteTo(HN::Rebind<float, decltype(d)>(), length), HN::Rebind<float, decltype(d)>(),
+    hn::Store(hn::IfThenElseZero(here, ax), d, out.ax + ray);
+    hn::Store(hn::IfThenElseZero(here, bx), d, out.bx + ray);
+    hn::Store(hn::IfThenElseZero(here, ay), d, out.ay + ray);
+    hn::Store(hn::IfThenElseZero(here, by), d, out.by + ray);
+    hn::Store(hn::IfThenElse(kept, in, one), d, out.k_in + ray);
+    hn::Store(hn::IfThenElseZero(kept, out_k), d, out.k_out + ray);
+    hn::Store(hn::Neg(ok * per_k), d, out.depth_0 + ray);
+    hn::Store(per_k, d, out.depth_k + ray);
+    hn::Store(hn::DemoteTo(hn::Rebind<float, decltype(d)>(), length), hn::Rebind<float, decltype(d)>(),
               out.length_k + ray);
   }
 }

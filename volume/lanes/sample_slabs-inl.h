@@ -58,60 +58,59 @@ template <bool cell_data>
 HWY_INLINE VF field_in_block(const ChunkView& chunk, const std::int32_t* slice_offsets, const Lanes& lanes, VF k,
                              MF active) {
   const DF d;
-  const VF first = HN::Set(d, static_cast<float>(chunk.box.first_slab)),
-           last = HN::Set(d, static_cast<float>(chunk.box.slabs - 1));
-  const VF plane = HN::Min(HN::Max(HN::Floor(k), first), last);
-  const VF x = HN::MulAdd(k, lanes.bx, lanes.x), y = HN::MulAdd(k, lanes.by, lanes.y);
-  const VF i = HN::Min(HN::Max(HN::Floor(x), lanes.i_least), lanes.i_most),
-           j = HN::Min(HN::Max(HN::Floor(y), lanes.j_least), lanes.j_most);
-  const VI n = HN::ConvertTo(DI(), HN::IfThenElseZero(active, plane));
-  const VI column = HN::ConvertTo(DI(), HN::IfThenElseZero(active, HN::Add(i, lanes.i))),
-           row = HN::ConvertTo(DI(), HN::IfThenElseZero(active, HN::Add(j, lanes.j)));
-  const VI in_slice = HN::Add(HN::Mul(row, HN::Set(DI(), static_cast<std::int32_t>(chunk.block.pitch))), column);
+  const VF first = hn::Set(d, static_cast<float>(chunk.box.first_slab)),
+           last = hn::Set(d, static_cast<float>(chunk.box.slabs - 1));
+  const VF plane = hn::Min(hn::Max(hn::Floor(k), first), last);
+  const VF x = hn::MulAdd(k, lanes.bx, lanes.x), y = hn::MulAdd(k, lanes.by, lanes.y);
+  const VF i = hn::Min(hn::Max(hn::Floor(x), lanes.i_least), lanes.i_most),
+           j = hn::Min(hn::Max(hn::Floor(y), lanes.j_least), lanes.j_most);
+  const VI n = hn::ConvertTo(DI(), hn::IfThenElseZero(active, plane));
+  const VI column = hn::ConvertTo(DI(), hn::IfThenElseZero(active, i + lanes.i)),
+           row = hn::ConvertTo(DI(), hn::IfThenElseZero(active, j + lanes.j));
+  const VI in_slice = row * hn::Set(DI(), static_cast<std::int32_t>(chunk.block.pitch)) + column;
   const float* const samples = chunk.block.samples.data();
   const auto pitch = chunk.block.pitch;
   // Lanes that are not active read the first sample.
   const auto offset = [&](int slice) HWY_ATTR {
-    const VI at = HN::Add(in_slice, HN::GatherIndex(DI(), slice_offsets + slice, n));
-    return HN::IfThenElseZero(HN::RebindMask(DI(), active), at);
+    const VI at = in_slice + hn::GatherIndex(DI(), slice_offsets + slice, n);
+    return hn::IfThenElseZero(hn::RebindMask(DI(), active), at);
   };
   const VI a = offset(0);
-  if constexpr (cell_data) return HN::GatherIndex(d, samples, a);
+  if constexpr (cell_data) return hn::GatherIndex(d, samples, a);
   const VI b = offset(1);
-  const auto at = [&](std::ptrdiff_t corner, VI index) HWY_ATTR { return HN::GatherIndex(d, samples + corner, index); };
+  const auto at = [&](std::ptrdiff_t corner, VI index) HWY_ATTR { return hn::GatherIndex(d, samples + corner, index); };
   const Corners s{at(0, a), at(1, a), at(pitch, a), at(pitch + 1, a),
                   at(0, b), at(1, b), at(pitch, b), at(pitch + 1, b)};
-  const VoxelField field(s, HN::Sub(x, i), HN::Sub(y, j));
+  const VoxelField field(s, x - i, y - j);
   const VF fx = field.x, fy = field.y;
-  const VF front = HN::MulAdd(fy, HN::MulAdd(fx, field.aij, field.aj), HN::MulAdd(fx, field.ai, field.a00));
-  const VF change = HN::MulAdd(fy, HN::MulAdd(fx, field.cij, field.cj), HN::MulAdd(fx, field.ci, field.c00));
-  return HN::MulAdd(HN::Sub(k, plane), change, front);
+  const VF front = hn::MulAdd(fy, hn::MulAdd(fx, field.aij, field.aj), hn::MulAdd(fx, field.ai, field.a00));
+  const VF change = hn::MulAdd(fy, hn::MulAdd(fx, field.cij, field.cj), hn::MulAdd(fx, field.ci, field.c00));
+  return hn::MulAdd(k - plane, change, front);
 }
 
 /// Bilinear look-up of the pre-integrated table: optical depth and light.
 HWY_INLINE void look_up(const PreintegratedTable& table, VF front, VF back, VF (&out)[4]) {
   const DF d;
-  const VF last = HN::Set(d, static_cast<float>(table.size - 1)), zero = HN::Zero(d);
+  const VF last = hn::Set(d, static_cast<float>(table.size - 1)), zero = hn::Zero(d);
   const auto place = [&](VF s) HWY_ATTR {
-    return HN::Min(HN::Max(HN::Mul(HN::Sub(s, HN::Set(d, table.low)), HN::Set(d, table.scale)), zero), last);
+    return hn::Min(hn::Max((s - hn::Set(d, table.low)) * hn::Set(d, table.scale), zero), last);
   };
   const VF f = place(front), b = place(back);
-  const VF f0 = HN::Min(HN::Floor(f), HN::Sub(last, HN::Set(d, 1.0f))),
-           b0 = HN::Min(HN::Floor(b), HN::Sub(last, HN::Set(d, 1.0f)));
-  const VF wf = HN::Sub(f, f0), wb = HN::Sub(b, b0);
-  const VI index = HN::ConvertTo(DI(), HN::MulAdd(f0, HN::Set(d, static_cast<float>(table.size)), b0));
+  const VF f0 = hn::Min(hn::Floor(f), last - hn::Set(d, 1.0f)), b0 = hn::Min(hn::Floor(b), last - hn::Set(d, 1.0f));
+  const VF wf = f - f0, wb = b - b0;
+  const VI index = hn::ConvertTo(DI(), hn::MulAdd(f0, hn::Set(d, static_cast<float>(table.size)), b0));
   for (int c = 0; c < 4; ++c) {
     const float* const t = table.channel(c);
-    const VF s00 = HN::GatherIndex(d, t, index), s01 = HN::GatherIndex(d, t + 1, index),
-             s10 = HN::GatherIndex(d, t + table.size, index), s11 = HN::GatherIndex(d, t + table.size + 1, index);
-    const VF low = HN::MulAdd(wb, HN::Sub(s01, s00), s00), high = HN::MulAdd(wb, HN::Sub(s11, s10), s10);
-    out[c] = HN::MulAdd(wf, HN::Sub(high, low), low);
+    const VF s00 = hn::GatherIndex(d, t, index), s01 = hn::GatherIndex(d, t + 1, index),
+             s10 = hn::GatherIndex(d, t + table.size, index), s11 = hn::GatherIndex(d, t + table.size + 1, index);
+    const VF low = hn::MulAdd(wb, s01 - s00, s00), high = hn::MulAdd(wb, s11 - s10, s10);
+    out[c] = hn::MulAdd(wf, high - low, low);
   }
 }
 
 /// The steps of a packet's lanes [ray, ray + Lanes()) whose places are in a chunk, relative to its first plane.
 struct ChunkSteps {
-  static constexpr std::size_t most = HN::MaxLanes(DF());
+  static constexpr std::size_t most = hn::MaxLanes(DF());
   HWY_ALIGN float begin[most], each[most], last[most], count[most];
   HWY_ALIGN float final_step[most];  ///< number of the ray's last step; -1 if it is not in the chunk
   HWY_ALIGN float entry[most];       ///< where the ray enters the volume; -1 if not in the chunk
@@ -123,7 +122,7 @@ struct ChunkSteps {
     const double from = static_cast<double>(chunk.box.first_k), to = from + chunk.box.slabs;
     const bool final_chunk =
         chunk.box.first_k + chunk.box.slabs >= frame.voxels[static_cast<std::size_t>(chunk.axes.k)];
-    for (std::size_t l = 0; l < HN::Lanes(DF()); ++l) {
+    for (std::size_t l = 0; l < hn::Lanes(DF()); ++l) {
       const std::size_t r = static_cast<std::size_t>(ray) + l;
       begin[l] = each[l] = last[l] = 0, count[l] = 0, final_step[l] = entry[l] = -1;
       if (!(rays.from[r] < rays.to[r]) || rays.transmittance[r] < frame.least_transmittance) continue;
@@ -155,24 +154,24 @@ struct StepLight {
 template <class Lookup>
 HWY_INLINE StepLight sampled_step(const Lookup& lookup, VF s, VF extent, VF length_k, MF active) {
   const DF d;
-  const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f);
-  const MF good = HN::And(active, HN::Eq(s, s));
-  const VF scalar = HN::IfThenElseZero(good, s);
-  const auto index = lookup.index(lookup.locate(scalar, HN::Eq(zero, zero)), good);
-  const VF off = HN::Sub(scalar, lookup.at(LaneTable::base, index));
-  const VF kappa = HN::Max(zero, HN::MulAdd(lookup.at(LaneTable::half_extinction_slope, index), off,
+  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  const MF good = hn::And(active, s == s);
+  const VF scalar = hn::IfThenElseZero(good, s);
+  const auto index = lookup.index(lookup.locate(scalar, zero == zero), good);
+  const VF off = scalar - lookup.at(LaneTable::base, index);
+  const VF kappa = hn::Max(zero, hn::MulAdd(lookup.at(LaneTable::half_extinction_slope, index), off,
                                             lookup.at(LaneTable::half_extinction, index)));
-  const VF length = HN::IfThenElseZero(good, HN::Mul(extent, length_k));
+  const VF length = hn::IfThenElseZero(good, extent * length_k);
   StepLight light;
-  light.depth = HN::Mul(HN::Add(kappa, kappa), length);
-  const VF opacity = HN::Sub(one, HN::Exp(d, HN::Neg(light.depth)));
+  light.depth = (kappa + kappa) * length;
+  const VF opacity = one - hn::Exp(d, hn::Neg(light.depth));
   // Independent emission: the mean transmittance of the step, 1 where it is thin.
-  const VF mean = HN::IfThenElse(HN::Lt(light.depth, HN::Set(d, 1e-3f)),
-                                 HN::NegMulAdd(HN::Set(d, 0.5f), light.depth, one), HN::Div(opacity, light.depth));
-  const VF weight = lookup.independent ? HN::Mul(length, mean) : opacity;
+  const VF mean = hn::IfThenElse(light.depth < hn::Set(d, 1e-3f), hn::NegMulAdd(hn::Set(d, 0.5f), light.depth, one),
+                                 opacity / light.depth);
+  const VF weight = lookup.independent ? length * mean : opacity;
   for (int c = 0; c < 3; ++c)
-    light.color[c] = HN::Mul(weight, HN::MulAdd(lookup.at(LaneTable::red_slope + 2 * c, index), off,
-                                                lookup.at(LaneTable::red + 2 * c, index)));
+    light.color[c] = weight * hn::MulAdd(lookup.at(LaneTable::red_slope + 2 * c, index), off,
+                                         lookup.at(LaneTable::red + 2 * c, index));
   return light;
 }
 
@@ -182,19 +181,19 @@ HWY_INLINE StepLight preintegrated_step(const PreintegratedTable& table, const L
                                         VF length, MF active, MF last) {
   const DF d;
   // Blank samples give NaN, at either end.
-  const MF good = HN::And(active, HN::And(HN::Eq(back, back), HN::Eq(front, front)));
+  const MF good = hn::And(active, hn::And(back == back, front == front));
   VF found[4];
-  look_up(table, HN::IfThenElseZero(good, front), HN::IfThenElseZero(good, back), found);
+  look_up(table, hn::IfThenElseZero(good, front), hn::IfThenElseZero(good, back), found);
   StepLight light;
-  light.depth = HN::IfThenElseZero(good, found[0]);
-  for (int c = 0; c < 3; ++c) light.color[c] = HN::IfThenElseZero(good, found[c + 1]);
+  light.depth = hn::IfThenElseZero(good, found[0]);
+  for (int c = 0; c < 3; ++c) light.color[c] = hn::IfThenElseZero(good, found[c + 1]);
   // The last step is shorter than the table's, and its light is no share of theirs: integrated as the table is.
-  const MF final_one = HN::And(good, last);
-  if (!HN::AllFalse(d, final_one)) {
+  const MF final_one = hn::And(good, last);
+  if (!hn::AllFalse(d, final_one)) {
     const CL::Light exact = CL::integrate_lanes(lookup, length, front, back, final_one);
-    light.depth = HN::IfThenElse(final_one, exact.optical_depth, light.depth);
+    light.depth = hn::IfThenElse(final_one, exact.optical_depth, light.depth);
     const VF own[] = {exact.red, exact.green, exact.blue};
-    for (int c = 0; c < 3; ++c) light.color[c] = HN::IfThenElse(final_one, own[c], light.color[c]);
+    for (int c = 0; c < 3; ++c) light.color[c] = hn::IfThenElse(final_one, own[c], light.color[c]);
   }
   return light;
 }
@@ -204,59 +203,59 @@ HWY_INLINE void sample_lanes(const ChunkView& chunk, const Lookup& lookup, const
                              TileRays& rays, TileCounts& counts) {
   const DF d;
   const PreintegratedTable* const table = chunk.frame.preintegrated;
-  const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f);
+  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
   const Lanes lanes = lanes_of(chunk, ray, 0, 0, rays);
   const ChunkSteps steps(chunk, ray, rays);
   if (table != nullptr && steps.some_enter) {
-    const VF place = HN::Load(d, steps.entry);
-    const MF enters = HN::Ge(place, zero);
+    const VF place = hn::Load(d, steps.entry);
+    const MF enters = place >= zero;
     const VF front = field_in_block<cell_data>(chunk, slice_offsets, lanes, place, enters);
-    HN::StoreU(HN::IfThenElse(enters, front, HN::LoadU(d, rays.carried + ray)), d, rays.carried + ray);
+    hn::StoreU(hn::IfThenElse(enters, front, hn::LoadU(d, rays.carried + ray)), d, rays.carried + ray);
   }
   if (steps.longest == 0) return;
-  const VF step_begin = HN::Load(d, steps.begin), step_each = HN::Load(d, steps.each),
-           step_last = HN::Load(d, steps.last), step_count = HN::Load(d, steps.count),
-           step_final = HN::Load(d, steps.final_step);
-  VF through = HN::LoadU(d, rays.transmittance + ray), alpha = HN::LoadU(d, rays.alpha + ray);
-  VF light[3] = {HN::LoadU(d, rays.red + ray), HN::LoadU(d, rays.green + ray), HN::LoadU(d, rays.blue + ray)};
-  VF carried = HN::LoadU(d, rays.carried + ray);
-  const VF least = HN::Set(d, chunk.frame.least_transmittance);
-  RayNotes notes{HN::Set(d, -1.0f), HN::Gt(alpha, zero), zero, zero};
+  const VF step_begin = hn::Load(d, steps.begin), step_each = hn::Load(d, steps.each),
+           step_last = hn::Load(d, steps.last), step_count = hn::Load(d, steps.count),
+           step_final = hn::Load(d, steps.final_step);
+  VF through = hn::LoadU(d, rays.transmittance + ray), alpha = hn::LoadU(d, rays.alpha + ray);
+  VF light[3] = {hn::LoadU(d, rays.red + ray), hn::LoadU(d, rays.green + ray), hn::LoadU(d, rays.blue + ray)};
+  VF carried = hn::LoadU(d, rays.carried + ray);
+  const VF least = hn::Set(d, chunk.frame.least_transmittance);
+  RayNotes notes{hn::Set(d, -1.0f), alpha > zero, zero, zero};
   for (std::int64_t m = 0; m < steps.longest; ++m) {
-    const VF number = HN::Set(d, static_cast<float>(m));
-    const MF active = HN::And(HN::Lt(number, step_count), HN::Ge(through, least));
-    if (HN::AllFalse(d, active)) break;
-    counts.samples += HN::CountTrue(d, active);
-    const MF last = HN::Eq(number, step_final);
-    const VF extent = HN::IfThenElse(last, step_last, step_each);
-    const VF k = HN::MulAdd(number, step_each, step_begin);
+    const VF number = hn::Set(d, static_cast<float>(m));
+    const MF active = hn::And(number < step_count, through >= least);
+    if (hn::AllFalse(d, active)) break;
+    counts.samples += hn::CountTrue(d, active);
+    const MF last = number == step_final;
+    const VF extent = hn::IfThenElse(last, step_last, step_each);
+    const VF k = hn::MulAdd(number, step_each, step_begin);
     StepLight step;
     if (table == nullptr) {
       const VF s =
-          field_in_block<cell_data>(chunk, slice_offsets, lanes, HN::MulAdd(extent, HN::Set(d, 0.5f), k), active);
+          field_in_block<cell_data>(chunk, slice_offsets, lanes, hn::MulAdd(extent, hn::Set(d, 0.5f), k), active);
       step = sampled_step(lookup, s, extent, lanes.length, active);
     } else {
-      const VF back = field_in_block<cell_data>(chunk, slice_offsets, lanes, HN::Add(k, extent), active);
-      step = preintegrated_step(*table, lookup, carried, back, HN::Mul(extent, lanes.length), active, last);
-      carried = HN::IfThenElse(active, back, carried);
+      const VF back = field_in_block<cell_data>(chunk, slice_offsets, lanes, k + extent, active);
+      step = preintegrated_step(*table, lookup, carried, back, extent * lanes.length, active, last);
+      carried = hn::IfThenElse(active, back, carried);
     }
-    for (int c = 0; c < 3; ++c) light[c] = HN::MulAdd(through, step.color[c], light[c]);
-    const VF hidden = HN::Mul(through, HN::Sub(one, HN::Exp(d, HN::Neg(step.depth))));
-    alpha = HN::Add(alpha, hidden);
-    through = HN::Sub(through, hidden);
-    const MF now = HN::AndNot(notes.seen, HN::Gt(alpha, zero));
-    notes.first = HN::IfThenElse(now, k, notes.first);
-    notes.seen = HN::Or(notes.seen, now);
+    for (int c = 0; c < 3; ++c) light[c] = hn::MulAdd(through, step.color[c], light[c]);
+    const VF hidden = through * (one - hn::Exp(d, hn::Neg(step.depth)));
+    alpha = alpha + hidden;
+    through = through - hidden;
+    const MF now = hn::AndNot(notes.seen, alpha > zero);
+    notes.first = hn::IfThenElse(now, k, notes.first);
+    notes.seen = hn::Or(notes.seen, now);
   }
-  HN::StoreU(through, d, rays.transmittance + ray);
-  HN::StoreU(alpha, d, rays.alpha + ray);
-  HN::StoreU(light[0], d, rays.red + ray);
-  HN::StoreU(light[1], d, rays.green + ray);
-  HN::StoreU(light[2], d, rays.blue + ray);
-  HN::StoreU(carried, d, rays.carried + ray);
-  HWY_ALIGN float place[HN::MaxLanes(DF())];
-  HN::Store(notes.first, d, place);
-  for (std::size_t l = 0; l < HN::Lanes(d); ++l) {
+  hn::StoreU(through, d, rays.transmittance + ray);
+  hn::StoreU(alpha, d, rays.alpha + ray);
+  hn::StoreU(light[0], d, rays.red + ray);
+  hn::StoreU(light[1], d, rays.green + ray);
+  hn::StoreU(light[2], d, rays.blue + ray);
+  hn::StoreU(carried, d, rays.carried + ray);
+  HWY_ALIGN float place[hn::MaxLanes(DF())];
+  hn::Store(notes.first, d, place);
+  for (std::size_t l = 0; l < hn::Lanes(d); ++l) {
     double& first_k = rays.first_k[static_cast<std::size_t>(ray) + l];
     if (std::isnan(first_k) && rays.alpha[static_cast<std::size_t>(ray) + l] > 0)
       first_k = std::max(0.0, static_cast<double>(chunk.box.first_k) + static_cast<double>(place[l]));
@@ -273,7 +272,7 @@ HWY_NOINLINE void sample_chunk_as(const ChunkView& chunk, TileRays& rays, TileCo
     slice_offsets[n] = static_cast<std::int32_t>(chunk.block.at(n, 0, 0) - chunk.block.samples.data());
   for (int packet = 0; packet < TileRays::packets; ++packet) {
     if (!chunk.reach[packet].any) continue;
-    for (int lane = 0; lane < TileRays::packet_rays; lane += static_cast<int>(HN::Lanes(DF())))
+    for (int lane = 0; lane < TileRays::packet_rays; lane += static_cast<int>(hn::Lanes(DF())))
       sample_lanes<cell_data>(chunk, lookup, slice_offsets, packet * TileRays::packet_rays + lane, rays, counts);
   }
 }
@@ -281,7 +280,7 @@ HWY_NOINLINE void sample_chunk_as(const ChunkView& chunk, TileRays& rays, TileCo
 /// Where a ray's field is not known, as the chunk is hidden, a blank is carried on: its next step then shows nothing,
 /// as it would with the field (visible_to_steps() in cell_ranges.hpp).
 HWY_INLINE void skip_chunk(const ChunkView& chunk, TileRays& rays) {
-  const auto lanes = static_cast<int>(HN::Lanes(DF()));
+  const auto lanes = static_cast<int>(hn::Lanes(DF()));
   for (int ray = 0; ray < TileRays::count; ray += lanes) {
     if (!chunk.reach[ray / TileRays::packet_rays].any) continue;
     const ChunkSteps steps(chunk, ray, rays);

@@ -29,46 +29,46 @@ struct VoxelField {
 
   HWY_INLINE VoxelField(const Corners& s, VF x_in, VF y_in) : x(x_in), y(y_in) {
     a00 = s.a00;
-    ai = HN::Sub(s.a10, s.a00), aj = HN::Sub(s.a01, s.a00), aij = HN::Sub(HN::Sub(s.a11, s.a01), ai);
-    const VF c10 = HN::Sub(s.b10, s.a10), c01 = HN::Sub(s.b01, s.a01), c11 = HN::Sub(s.b11, s.a11);
-    c00 = HN::Sub(s.b00, s.a00);
-    ci = HN::Sub(c10, c00), cj = HN::Sub(c01, c00), cij = HN::Sub(HN::Sub(c11, c01), ci);
+    ai = s.a10 - s.a00, aj = s.a01 - s.a00, aij = s.a11 - s.a01 - ai;
+    const VF c10 = s.b10 - s.a10, c01 = s.b01 - s.a01, c11 = s.b11 - s.a11;
+    c00 = s.b00 - s.a00;
+    ci = c10 - c00, cj = c01 - c00, cij = c11 - c01 - ci;
   }
   HWY_INLINE VF at(VF u, VF bx, VF by) const {
-    const VF fx = HN::MulAdd(u, bx, x), fy = HN::MulAdd(u, by, y);
-    const VF a = HN::MulAdd(fy, HN::MulAdd(fx, aij, aj), HN::MulAdd(fx, ai, a00));
-    const VF c = HN::MulAdd(fy, HN::MulAdd(fx, cij, cj), HN::MulAdd(fx, ci, c00));
-    return HN::MulAdd(u, c, a);
+    const VF fx = hn::MulAdd(u, bx, x), fy = hn::MulAdd(u, by, y);
+    const VF a = hn::MulAdd(fy, hn::MulAdd(fx, aij, aj), hn::MulAdd(fx, ai, a00));
+    const VF c = hn::MulAdd(fy, hn::MulAdd(fx, cij, cj), hn::MulAdd(fx, ci, c00));
+    return hn::MulAdd(u, c, a);
   }
   /// Changes per voxel along i, j and k.
   HWY_INLINE void gradient(VF u, VF bx, VF by, VF& g_i, VF& g_j, VF& g_k) const {
-    const VF fx = HN::MulAdd(u, bx, x), fy = HN::MulAdd(u, by, y);
-    g_i = HN::MulAdd(fy, HN::MulAdd(u, cij, aij), HN::MulAdd(u, ci, ai));
-    g_j = HN::MulAdd(fx, HN::MulAdd(u, cij, aij), HN::MulAdd(u, cj, aj));
-    g_k = HN::MulAdd(fy, HN::MulAdd(fx, cij, cj), HN::MulAdd(fx, ci, c00));
+    const VF fx = hn::MulAdd(u, bx, x), fy = hn::MulAdd(u, by, y);
+    g_i = hn::MulAdd(fy, hn::MulAdd(u, cij, aij), hn::MulAdd(u, ci, ai));
+    g_j = hn::MulAdd(fx, hn::MulAdd(u, cij, aij), hn::MulAdd(u, cj, aj));
+    g_k = hn::MulAdd(fy, hn::MulAdd(fx, cij, cj), hn::MulAdd(fx, ci, c00));
   }
   /// At u = 0.
-  HWY_INLINE VF at_front() const { return HN::MulAdd(y, HN::MulAdd(x, aij, aj), HN::MulAdd(x, ai, a00)); }
+  HWY_INLINE VF at_front() const { return hn::MulAdd(y, hn::MulAdd(x, aij, aj), hn::MulAdd(x, ai, a00)); }
   /// At u = 1, where the ray is at (x_1, y_1) relative to the chunk's voxel, and this one at (i, j).
   HWY_INLINE VF at_back(VF x_1, VF y_1, VF i, VF j) const {
-    const VF fx = HN::Sub(x_1, i), fy = HN::Sub(y_1, j);
-    const VF a = HN::MulAdd(fy, HN::MulAdd(fx, aij, aj), HN::MulAdd(fx, ai, a00));
-    return HN::Add(a, HN::MulAdd(fy, HN::MulAdd(fx, cij, cj), HN::MulAdd(fx, ci, c00)));
+    const VF fx = x_1 - i, fy = y_1 - j;
+    const VF a = hn::MulAdd(fy, hn::MulAdd(fx, aij, aj), hn::MulAdd(fx, ai, a00));
+    return a + hn::MulAdd(fy, hn::MulAdd(fx, cij, cj), hn::MulAdd(fx, ci, c00));
   }
   /// Value at the middle u of a stretch of extent e, and the mean over it: every product of two of x, y and u adds a
   /// twelfth of the product of their changes. `ee` is e^2 / 12.
   HWY_INLINE void middle_and_mean(VF u, VF ee, VF bx, VF by, VF bends, VF& middle, VF& mean) const {
-    const VF fx = HN::MulAdd(u, bx, x), fy = HN::MulAdd(u, by, y);
-    const VF a_y = HN::MulAdd(fx, aij, aj), c_y = HN::MulAdd(fx, cij, cj), c_x = HN::MulAdd(fy, cij, ci);
-    const VF a = HN::MulAdd(fy, a_y, HN::MulAdd(fx, ai, a00)), c = HN::MulAdd(fy, c_y, HN::MulAdd(fx, ci, c00));
-    middle = HN::MulAdd(u, c, a);
-    const VF twist = HN::MulAdd(bends, HN::MulAdd(u, cij, aij), HN::MulAdd(bx, c_x, HN::Mul(by, c_y)));
-    mean = HN::MulAdd(ee, twist, middle);
+    const VF fx = hn::MulAdd(u, bx, x), fy = hn::MulAdd(u, by, y);
+    const VF a_y = hn::MulAdd(fx, aij, aj), c_y = hn::MulAdd(fx, cij, cj), c_x = hn::MulAdd(fy, cij, ci);
+    const VF a = hn::MulAdd(fy, a_y, hn::MulAdd(fx, ai, a00)), c = hn::MulAdd(fy, c_y, hn::MulAdd(fx, ci, c00));
+    middle = hn::MulAdd(u, c, a);
+    const VF twist = hn::MulAdd(bends, hn::MulAdd(u, cij, aij), hn::MulAdd(bx, c_x, by * c_y));
+    mean = hn::MulAdd(ee, twist, middle);
   }
 };
 
 /// How far off a place in slab n of the chunk may be, slabs: roundings of numbers as large as that.
-HWY_INLINE VF place_noise(VF k) { return HN::Mul(HN::Add(k, HN::Set(DF(), 2.0f)), HN::Set(DF(), 0x1p-24f)); }
+HWY_INLINE VF place_noise(VF k) { return (k + hn::Set(DF(), 2.0f)) * hn::Set(DF(), 0x1p-24f); }
 
 /// Notes what a slab errs, point data, as places where rays begin and end in it are rounded: there is too much or too
 /// little of the matter at its front (scalar line.s_0), behind which there is the slab's own light, and of that at its
@@ -78,32 +78,32 @@ HWY_NOINLINE void note_ends(const LaneErrorBound& bound, const Lookup& lookup, c
                             MF there, VF slab_length, VF before, const VF (&light)[3], const Progress& progress,
                             RayNotes& notes) {
   const DF d;
-  const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f), behind = progress.transmittance;
-  const VF off = HN::Mul(place_noise(path.k), slab_length), brightest = HN::Set(d, bound.brightest);
-  const MF good = HN::And(there, HN::Eq(line.rho, line.rho));
+  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f), behind = progress.transmittance;
+  const VF off = place_noise(path.k) * slab_length, brightest = hn::Set(d, bound.brightest);
+  const MF good = hn::And(there, line.rho == line.rho);
   const auto at = [&](VF s, MF ends, bool front) HWY_ATTR {
-    const VF scalar = HN::IfThenElseZero(good, s);
-    const VI interval = lookup.locate(scalar, HN::Eq(zero, zero));
+    const VF scalar = hn::IfThenElseZero(good, s);
+    const VI interval = lookup.locate(scalar, zero == zero);
     const auto index = lookup.index(interval, good);
-    const VF from = HN::Sub(scalar, lookup.at(LaneTable::base, index)), dimmed = HN::Sub(before, behind);
+    const VF from = scalar - lookup.at(LaneTable::base, index), dimmed = before - behind;
     const VF sums[3] = {progress.red, progress.green, progress.blue};
     VF differs = zero, sent = zero;
     for (int c = 0; c < 3; ++c) {
       const VF color =
-          HN::MulAdd(lookup.at(LaneTable::red_slope + 2 * c, index), from, lookup.at(LaneTable::red + 2 * c, index));
-      const VF own = HN::Sub(sums[c], light[c]);
-      differs = HN::Max(differs, lookup.independent ? own : HN::Abs(HN::NegMulAdd(color, dimmed, own)));
-      if (lookup.independent) sent = HN::Max(sent, color);
+          hn::MulAdd(lookup.at(LaneTable::red_slope + 2 * c, index), from, lookup.at(LaneTable::red + 2 * c, index));
+      const VF own = sums[c] - light[c];
+      differs = hn::Max(differs, lookup.independent ? own : hn::Abs(hn::NegMulAdd(color, dimmed, own)));
+      if (lookup.independent) sent = hn::Max(sent, color);
     }
     if (!front) differs = zero;
     const VF seen = front ? before : behind;
     const VF error =
-        HN::MulAdd(extinction_at(lookup, index, scalar), HN::MulAdd(behind, brightest, differs), HN::Mul(sent, seen));
-    const VF noted = HN::Min(HN::Mul(error, off), HN::Mul(seen, HN::Set(d, bound.most)));
-    notes.error_bound = HN::Add(notes.error_bound, HN::IfThenElseZero(HN::And(good, ends), noted));
+        hn::MulAdd(extinction_at(lookup, index, scalar), hn::MulAdd(behind, brightest, differs), sent * seen);
+    const VF noted = hn::Min(error * off, seen * hn::Set(d, bound.most));
+    notes.error_bound = notes.error_bound + hn::IfThenElseZero(hn::And(good, ends), noted);
   };
-  at(line.s_0, HN::Gt(path.from, zero), true);
-  at(line.s_1, HN::Lt(path.to, one), false);
+  at(line.s_0, path.from > zero, true);
+  at(line.s_1, path.to < one, false);
 }
 
 /// The same for stretch n of cell data, which begins and ends at planes of its voxel: `piece`.
@@ -112,39 +112,37 @@ HWY_NOINLINE void note_planes(const LaneErrorBound& bound, const Lookup& lookup,
                               const SlabPath& path, int n, const Piece& piece, MF there, VF before,
                               const Progress& progress, RayNotes& notes) {
   const DF d;
-  const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f), behind = progress.transmittance;
+  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f), behind = progress.transmittance;
   const Stretch& stretch = path.stretches[n];
-  const MF good = HN::And(there, HN::Eq(piece.s_0, piece.s_0));
-  const VF scalar = HN::IfThenElseZero(good, piece.s_0);
-  const VI interval = lookup.locate(scalar, HN::Eq(zero, zero));
+  const MF good = hn::And(there, piece.s_0 == piece.s_0);
+  const VF scalar = hn::IfThenElseZero(good, piece.s_0);
+  const VI interval = lookup.locate(scalar, zero == zero);
   const auto index = lookup.index(interval, good);
   // A plane of another axis is crossed the less surely the more slowly.
   const auto off = [&](VF i, VF j) HWY_ATTR {
     const auto of = [&](VF place, VF per_slope, MF crossed) HWY_ATTR {
-      const VF noise = HN::Mul(HN::Add(HN::Abs(place), one), HN::Set(d, 0x1p-24f));
-      return HN::IfThenElseZero(crossed, HN::Mul(noise, HN::Abs(per_slope)));
+      const VF noise = (hn::Abs(place) + one) * hn::Set(d, 0x1p-24f);
+      return hn::IfThenElseZero(crossed, noise * hn::Abs(per_slope));
     };
-    const VF crossing =
-        HN::Add(of(path.x, lanes.per_bx, HN::Ne(i, stretch.i)), of(path.y, lanes.per_by, HN::Ne(j, stretch.j)));
-    return HN::Min(HN::Add(place_noise(path.k), crossing), one);
+    const VF crossing = of(path.x, lanes.per_bx, i != stretch.i) + of(path.y, lanes.per_by, j != stretch.j);
+    return hn::Min(place_noise(path.k) + crossing, one);
   };
   const VF front = n == 0 ? place_noise(path.k) : off(path.stretches[n - 1].i, path.stretches[n - 1].j),
            back = n == 2 ? place_noise(path.k) : off(path.stretches[n + 1].i, path.stretches[n + 1].j);
-  const VF both = HN::Mul(HN::Add(HN::IfThenElseZero(HN::Gt(stretch.begin, zero), front),
-                                  HN::IfThenElseZero(HN::Lt(stretch.end, one), back)),
-                          lanes.length);
-  const VF extinction = extinction_at(lookup, index, scalar), brightest = HN::Set(d, bound.brightest);
-  VF error = HN::Mul(HN::Mul(extinction, behind), brightest);
+  const VF both =
+      (hn::IfThenElseZero(stretch.begin > zero, front) + hn::IfThenElseZero(stretch.end < one, back)) * lanes.length;
+  const VF extinction = extinction_at(lookup, index, scalar), brightest = hn::Set(d, bound.brightest);
+  VF error = extinction * behind * brightest;
   if (lookup.independent) {
-    const VF from = HN::Sub(scalar, lookup.at(LaneTable::base, index));
+    const VF from = scalar - lookup.at(LaneTable::base, index);
     VF sent = zero;
     for (int c = 0; c < 3; ++c)
-      sent = HN::Max(sent, HN::MulAdd(lookup.at(LaneTable::red_slope + 2 * c, index), from,
+      sent = hn::Max(sent, hn::MulAdd(lookup.at(LaneTable::red_slope + 2 * c, index), from,
                                       lookup.at(LaneTable::red + 2 * c, index)));
-    error = HN::Mul(HN::MulAdd(extinction, brightest, sent), before);
+    error = hn::MulAdd(extinction, brightest, sent) * before;
   }
-  const VF noted = HN::Min(HN::Mul(error, both), HN::Mul(before, HN::Set(d, bound.most)));
-  notes.error_bound = HN::Add(notes.error_bound, HN::IfThenElseZero(good, noted));
+  const VF noted = hn::Min(error * both, before * hn::Set(d, bound.most));
+  notes.error_bound = notes.error_bound + hn::IfThenElseZero(good, noted);
 }
 
 /// What floats leave of a slab's samples (SlabBlock::rest), for gradients.
@@ -158,11 +156,11 @@ class RestOfSamples {
   HWY_INLINE void add(const SlabPath& path, const Stretch& stretch, const Lanes& lanes, VF u, VF& g_i, VF& g_j,
                       VF& g_k) const {
     if (HWY_LIKELY(!there_)) return;
-    const VoxelField rest(window_.corners(window_index(window_, path, stretch)), HN::Sub(path.x, stretch.i),
-                          HN::Sub(path.y, stretch.j));
+    const VoxelField rest(window_.corners(window_index(window_, path, stretch)), path.x - stretch.i,
+                          path.y - stretch.j);
     VF r_i, r_j, r_k;
     rest.gradient(u, lanes.bx, lanes.by, r_i, r_j, r_k);
-    g_i = HN::Add(g_i, r_i), g_j = HN::Add(g_j, r_j), g_k = HN::Add(g_k, r_k);
+    g_i = g_i + r_i, g_j = g_j + r_j, g_k = g_k + r_k;
   }
 
  private:
@@ -177,38 +175,37 @@ HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const
                               const UniformLookup* uniform, MF wanted, Progress& progress, RayNotes& notes,
                               TileCounts& counts) {
   const DF d;
-  const VF half = HN::Set(d, 0.5f), zero = HN::Zero(d), one = HN::Set(d, 1.0f);
+  const VF half = hn::Set(d, 0.5f), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
   const bool lit_part = frame.shading != nullptr && !cell_data;
   for (const Stretch& stretch : path.stretches) {
-    const VF extent = HN::Sub(stretch.end, stretch.begin);
-    const MF there = HN::And(wanted, HN::Gt(extent, HN::Zero(d)));
-    const std::size_t voxels = HN::CountTrue(d, there);
+    const VF extent = stretch.end - stretch.begin;
+    const MF there = hn::And(wanted, extent > hn::Zero(d));
+    const std::size_t voxels = hn::CountTrue(d, there);
     if (voxels == 0) continue;
     const VI index = window_index(window, path, stretch);
     Piece piece;
     Lit lit{one, zero, zero};
-    piece.begin = HN::Add(stretch.begin, path.k);
+    piece.begin = stretch.begin + path.k;
     piece.extent = extent;
-    piece.length = HN::IfThenElseZero(there, HN::Mul(extent, lanes.length));
+    piece.length = hn::IfThenElseZero(there, extent * lanes.length);
     if constexpr (cell_data) {
       piece.s_0 = piece.s_mid = piece.s_1 = window.front(index);
-      piece.p_3 = HN::Zero(d);
+      piece.p_3 = hn::Zero(d);
     } else {
-      const VoxelField field(window.corners(index), HN::Sub(path.x, stretch.i), HN::Sub(path.y, stretch.j));
+      const VoxelField field(window.corners(index), path.x - stretch.i, path.y - stretch.j);
       piece.s_0 = field.at(stretch.begin, lanes.bx, lanes.by);
-      piece.s_mid = field.at(HN::Mul(half, HN::Add(stretch.begin, stretch.end)), lanes.bx, lanes.by);
+      piece.s_mid = field.at(half * (stretch.begin + stretch.end), lanes.bx, lanes.by);
       piece.s_1 = field.at(stretch.end, lanes.bx, lanes.by);
-      piece.p_3 = HN::Mul(HN::Mul(field.cij, lanes.bends), HN::Mul(extent, HN::Mul(extent, extent)));
+      piece.p_3 = field.cij * lanes.bends * (extent * (extent * extent));
       if (lit_part) {
         VF g_i, g_j, g_k;
-        const VF middle = HN::Mul(half, HN::Add(stretch.begin, stretch.end));
+        const VF middle = half * (stretch.begin + stretch.end);
         field.gradient(middle, lanes.bx, lanes.by, g_i, g_j, g_k);
         rest.add(path, stretch, lanes, middle, g_i, g_j, g_k);
-        const auto kept = [&](VF v) HWY_ATTR { return HN::IfThenElseZero(HN::And(there, HN::Eq(v, v)), v); };
+        const auto kept = [&](VF v) HWY_ATTR { return hn::IfThenElseZero(hn::And(there, v == v), v); };
         g_i = kept(g_i), g_j = kept(g_j), g_k = kept(g_k);
-        const VF slope = HN::MulAdd(lanes.bx, g_i, HN::MulAdd(lanes.by, g_j, g_k));
-        const VF per_length =
-            HN::Div(HN::Set(d, static_cast<float>(frame.shading->unit / frame.length_unit)), lanes.length);
+        const VF slope = hn::MulAdd(lanes.bx, g_i, hn::MulAdd(lanes.by, g_j, g_k));
+        const VF per_length = hn::Set(d, static_cast<float>(frame.shading->unit / frame.length_unit)) / lanes.length;
         lit = shade(*frame.shading, axes, g_i, g_j, g_k, slope, per_length, lanes.light_view, frame.rest_noise);
       }
     }
@@ -217,22 +214,22 @@ HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const
     const VF before = progress.transmittance;
     if (uniform != nullptr && HWY_LIKELY(add_uniform<cell_data>(*uniform, piece, target))) {
       counts.samples += voxels;
-      if (HWY_UNLIKELY(!HN::AllTrue(d, notes.seen))) note_first_light(target, piece.begin, notes);
+      if (HWY_UNLIKELY(!hn::AllTrue(d, notes.seen))) note_first_light(target, piece.begin, notes);
       if (HWY_UNLIKELY(uniform->ramp > 0))
-        note_ramps(*uniform, piece.length, before, HN::Mul(lit_part ? before : one, target.transmittance), notes);
+        note_ramps(*uniform, piece.length, before, (lit_part ? before : one) * target.transmittance, notes);
     } else {
       const VF through = lit_part ? before : one, error_bound = notes.error_bound, rough = notes.rough;
       notes.error_bound = notes.rough = zero;
       add_any(lookup, frame, piece, target, notes, counts.samples);
-      notes.error_bound = HN::MulAdd(through, notes.error_bound, error_bound);
-      notes.rough = HN::MulAdd(HN::Mul(through, through), notes.rough, rough);
+      notes.error_bound = hn::MulAdd(through, notes.error_bound, error_bound);
+      notes.rough = hn::MulAdd(through * through, notes.rough, rough);
     }
     if (cell_data && HWY_UNLIKELY(frame.error_bound != nullptr && frame.error_bound->ends))
       note_planes(*frame.error_bound, lookup, lanes, path, static_cast<int>(&stretch - path.stretches), piece, there,
                   before, progress, notes);
     if (lit_part) {
       if (HWY_UNLIKELY(frame.has_rest))
-        notes.error_bound = HN::MulAdd(HN::Mul(before, part.alpha), lit.error, notes.error_bound);
+        notes.error_bound = hn::MulAdd(before * part.alpha, lit.error, notes.error_bound);
       put_behind(part, lit, progress);
       // Within the stretch light is measured from its own front.
       note_first_light(progress, piece.begin, notes);
@@ -244,55 +241,54 @@ HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const
 /// coefficient (ray_piece-inl.h), which bound it together.
 HWY_INLINE VF bump_of(VF s_0, VF middle, VF s_1, VF p_3) {
   const DF d;
-  const VF even = HN::NegMulAdd(HN::Set(d, 0.5f), HN::Add(s_0, s_1), middle);
-  return HN::MulAdd(HN::Set(d, 0.25f), HN::Abs(p_3), HN::Abs(even));
+  const VF even = hn::NegMulAdd(hn::Set(d, 0.5f), s_0 + s_1, middle);
+  return hn::MulAdd(hn::Set(d, 0.25f), hn::Abs(p_3), hn::Abs(even));
 }
 
 /// The cubic at a stretch's other end: Simpson's rule is exact, mean = (s_0 + 4 middle + s_1) / 6.
 HWY_INLINE VF other_end(VF s, VF middle, VF mean) {
   const DF d;
-  return HN::Sub(HN::MulAdd(HN::Set(d, 6.0f), mean, HN::Mul(HN::Set(d, -4.0f), middle)), s);
+  return hn::MulAdd(hn::Set(d, 6.0f), mean, hn::Set(d, -4.0f) * middle) - s;
 }
 
 /// Bound of the field's distance from the slab's line: the borders', and the bumps between. Not a number where the
 /// field is not.
 HWY_INLINE VF distance_bound(VF border_1, VF line_1, VF border_2, VF line_2, const VF (&bump)[3]) {
-  const VF borders = HN::Max(HN::Abs(HN::Sub(border_1, line_1)), HN::Abs(HN::Sub(border_2, line_2)));
-  const VF bumps = HN::Max(HN::Max(bump[0], bump[1]), bump[2]);
-  const VF any = HN::Add(HN::Add(bump[0], bump[1]), HN::Add(bump[2], HN::Add(border_1, border_2)));
-  return HN::MulAdd(HN::Zero(DF()), any, HN::Add(borders, bumps));
+  const VF borders = hn::Max(hn::Abs(border_1 - line_1), hn::Abs(border_2 - line_2));
+  const VF bumps = hn::Max(hn::Max(bump[0], bump[1]), bump[2]);
+  const VF any = bump[0] + bump[1] + (bump[2] + (border_1 + border_2));
+  return hn::MulAdd(hn::Zero(DF()), any, borders + bumps);
 }
 
 /// The line of a slab that lanes may enter or leave anywhere. Lanes that are not there give anything.
 template <class Window>
 HWY_INLINE Line part_line(const Lanes& lanes, const SlabPath& path, const Window& window) {
   const DF d;
-  const VF half = HN::Set(d, 0.5f);
-  const VF extent = HN::Sub(path.to, path.from);
-  const VF per_extent = HN::Div(HN::Set(d, 1.0f), extent);
+  const VF half = hn::Set(d, 0.5f);
+  const VF extent = path.to - path.from;
+  const VF per_extent = hn::Set(d, 1.0f) / extent;
   Line line;
-  VF total = HN::Zero(d);
+  VF total = hn::Zero(d);
   VF middle[3], mean[3], p_3[3];
   line.s_0 = line.s_1 = total;
   for (int p = 0; p < 3; ++p) {
     const Stretch& stretch = path.stretches[p];
-    const VoxelField field(window.corners(window_index(window, path, stretch)), HN::Sub(path.x, stretch.i),
-                           HN::Sub(path.y, stretch.j));
-    const VF e = HN::Sub(stretch.end, stretch.begin), ee = HN::Mul(e, e);
-    field.middle_and_mean(HN::Mul(half, HN::Add(stretch.begin, stretch.end)), HN::Mul(ee, HN::Set(d, 1 / 12.0f)),
-                          lanes.bx, lanes.by, lanes.bends, middle[p], mean[p]);
-    p_3[p] = HN::Mul(HN::Mul(field.cij, lanes.bends), HN::Mul(ee, e));
-    total = HN::MulAdd(HN::Mul(e, per_extent), mean[p], total);
+    const VoxelField field(window.corners(window_index(window, path, stretch)), path.x - stretch.i, path.y - stretch.j);
+    const VF e = stretch.end - stretch.begin, ee = e * e;
+    field.middle_and_mean(half * (stretch.begin + stretch.end), ee * hn::Set(d, 1 / 12.0f), lanes.bx, lanes.by,
+                          lanes.bends, middle[p], mean[p]);
+    p_3[p] = field.cij * lanes.bends * (ee * e);
+    total = hn::MulAdd(e * per_extent, mean[p], total);
     if (p == 0) line.s_0 = field.at(stretch.begin, lanes.bx, lanes.by);
     if (p == 2) line.s_1 = field.at(stretch.end, lanes.bx, lanes.by);
   }
-  line.span = HN::Sub(line.s_1, line.s_0);
-  line.shift = HN::NegMulAdd(half, HN::Add(line.s_0, line.s_1), total);
-  const VF slope = HN::Mul(line.span, per_extent);
+  line.span = line.s_1 - line.s_0;
+  line.shift = hn::NegMulAdd(half, line.s_0 + line.s_1, total);
+  const VF slope = line.span * per_extent;
   const VF border_1 = other_end(line.s_0, middle[0], mean[0]), border_2 = other_end(line.s_1, middle[2], mean[2]);
   const VF bump[3] = {bump_of(line.s_0, middle[0], border_1, p_3[0]), bump_of(border_1, middle[1], border_2, p_3[1]),
                       bump_of(border_2, middle[2], line.s_1, p_3[2])};
-  const auto on_line = [&](VF at) HWY_ATTR { return HN::MulAdd(HN::Sub(at, path.from), slope, line.s_0); };
+  const auto on_line = [&](VF at) HWY_ATTR { return hn::MulAdd(at - path.from, slope, line.s_0); };
   line.rho =
       distance_bound(border_1, on_line(path.stretches[1].begin), border_2, on_line(path.stretches[2].begin), bump);
   return line;
@@ -305,75 +301,74 @@ template <class Lookup>
 HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, VF slab_length, const SlabLines& lines,
                                  int m, int n, MF wanted, Progress& progress, RayNotes& notes, TileCounts& counts) {
   const DF d;
-  const VF half = HN::Set(d, 0.5f), zero = HN::Zero(d), one = HN::Set(d, 1.0f);
+  const VF half = hn::Set(d, 0.5f), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
   const VF u_1 = lines.u_1[m], u_2 = lines.u_2[m], s_end = lines.s[m + 1];
   const VF place[4] = {zero, u_1, u_2, one};
   // Behind a plane that is not crossed there is nothing.
-  const VF value[4] = {lines.s[m], HN::IfThenElse(HN::Lt(u_1, one), lines.f_1[m], s_end),
-                       HN::IfThenElse(HN::Lt(u_2, one), lines.f_2[m], s_end), s_end};
+  const VF value[4] = {lines.s[m], hn::IfThenElse(u_1 < one, lines.f_1[m], s_end),
+                       hn::IfThenElse(u_2 < one, lines.f_2[m], s_end), s_end};
   Piece pieces[3];
-  MF there[3], torn = HN::Ne(zero, zero);
+  MF there[3], torn = zero != zero;
   const bool has_blanks = frame.ranges->range.blanks > 0;
   for (int k = 0; k < 3; ++k) {
     Piece& p = pieces[k];
-    p.extent = HN::Sub(place[k + 1], place[k]);
-    there[k] = HN::And(wanted, HN::Gt(p.extent, zero));
+    p.extent = place[k + 1] - place[k];
+    there[k] = hn::And(wanted, p.extent > zero);
     p.s_0 = value[k], p.s_1 = value[k + 1];
-    p.s_mid = HN::NegMulAdd(HN::Set(d, 0.25f), lines.even[k][m], HN::Mul(half, HN::Add(p.s_0, p.s_1)));
+    p.s_mid = hn::NegMulAdd(hn::Set(d, 0.25f), lines.even[k][m], half * (p.s_0 + p.s_1));
     p.p_3 = lines.odd[k][m];
-    p.length = HN::IfThenElseZero(there[k], HN::Mul(p.extent, slab_length));
-    p.begin = HN::Add(place[k], HN::Set(d, static_cast<float>(n)));
+    p.length = hn::IfThenElseZero(there[k], p.extent * slab_length);
+    p.begin = place[k] + hn::Set(d, static_cast<float>(n));
     // A voxel that is whole, but whose end is taken from one that is blank, as rounding has the ray pass an edge of
     // both on different sides.
-    const VF shape = HN::Add(lines.even[k][m], lines.odd[k][m]);
+    const VF shape = lines.even[k][m] + lines.odd[k][m];
     if (HWY_UNLIKELY(has_blanks))
-      torn = HN::Or(torn, HN::AndNot(HN::Eq(p.s_mid, p.s_mid), HN::And(there[k], HN::Eq(shape, shape))));
+      torn = hn::Or(torn, hn::AndNot(p.s_mid == p.s_mid, hn::And(there[k], shape == shape)));
   }
-  if (HWY_UNLIKELY(has_blanks && !HN::AllFalse(d, torn)))
-    notes.error_bound = HN::Add(notes.error_bound, HN::IfThenElseZero(torn, HN::Set(d, 1e9f)));
+  if (HWY_UNLIKELY(has_blanks && !hn::AllFalse(d, torn)))
+    notes.error_bound = notes.error_bound + hn::IfThenElseZero(torn, hn::Set(d, 1e9f));
 #if HWY_TARGET <= HWY_AVX3
-  if (HN::AllTrue(d, HN::Or(notes.seen, HN::Not(wanted)))) {
-    constexpr std::size_t lanes_each = HN::MaxLanes(DF()), most = 4 * lanes_each;
+  if (hn::AllTrue(d, hn::Or(notes.seen, hn::Not(wanted)))) {
+    constexpr std::size_t lanes_each = hn::MaxLanes(DF()), most = 4 * lanes_each;
     HWY_ALIGN float s_0[most], s_mid[most], s_1[most], p_3[most], length[most];
     std::size_t begin[4] = {0, 0, 0, 0};
     for (std::size_t k = 0; k < 3; ++k) {
-      begin[k + 1] = begin[k] + HN::CountTrue(d, there[k]);
+      begin[k + 1] = begin[k] + hn::CountTrue(d, there[k]);
       const auto keep = [&](VF v, float* to) HWY_ATTR {
-        HN::StoreU(VF{_mm512_maskz_compress_ps(there[k].raw, v.raw)}, d, to + begin[k]);
+        hn::StoreU(VF{_mm512_maskz_compress_ps(there[k].raw, v.raw)}, d, to + begin[k]);
       };
       keep(pieces[k].s_0, s_0), keep(pieces[k].s_mid, s_mid), keep(pieces[k].s_1, s_1);
       keep(pieces[k].p_3, p_3), keep(pieces[k].length, length);
     }
     HWY_ALIGN float light[8][most];
     for (std::size_t n_0 = 0; n_0 < begin[3]; n_0 += lanes_each) {
-      const MF used = HN::FirstN(d, begin[3] - n_0);
-      const Piece piece{HN::Load(d, s_0 + n_0),
-                        HN::Load(d, s_mid + n_0),
-                        HN::Load(d, s_1 + n_0),
-                        HN::Load(d, p_3 + n_0),
-                        HN::IfThenElseZero(used, HN::Load(d, length + n_0)),
+      const MF used = hn::FirstN(d, begin[3] - n_0);
+      const Piece piece{hn::Load(d, s_0 + n_0),
+                        hn::Load(d, s_mid + n_0),
+                        hn::Load(d, s_1 + n_0),
+                        hn::Load(d, p_3 + n_0),
+                        hn::IfThenElseZero(used, hn::Load(d, length + n_0)),
                         zero,
                         zero};
       Progress part{zero, one, zero, zero, zero, zero};
-      RayNotes here{zero, HN::Eq(zero, zero), zero, zero};
+      RayNotes here{zero, zero == zero, zero, zero};
       add_any(lookup, frame, piece, part, here, counts.samples);
       const VF parts[8] = {part.alpha, part.transmittance, part.optical_depth, part.red,
                            part.green, part.blue,          here.error_bound,   here.rough};
-      for (int c = 0; c < 8; ++c) HN::Store(parts[c], d, light[c] + n_0);
+      for (int c = 0; c < 8; ++c) hn::Store(parts[c], d, light[c] + n_0);
     }
     for (std::size_t k = 0; k < 3; ++k) {
       const auto part = [&](int c)
                             HWY_ATTR { return VF{_mm512_maskz_expandloadu_ps(there[k].raw, light[c] + begin[k])}; };
       const VF through = progress.transmittance;
-      progress.alpha = HN::MulAdd(through, part(0), progress.alpha);
-      progress.transmittance =
-          HN::Mul(through, VF{_mm512_mask_expandloadu_ps(one.raw, there[k].raw, light[1] + begin[k])});
-      progress.optical_depth = HN::Add(progress.optical_depth, part(2));
-      progress.red = HN::MulAdd(through, part(3), progress.red);
-      progress.green = HN::MulAdd(through, part(4), progress.green);
-      progress.blue = HN::MulAdd(through, part(5), progress.blue);
-      notes.error_bound = HN::MulAdd(through, part(6), notes.error_bound);
-      notes.rough = HN::MulAdd(HN::Mul(through, through), part(7), notes.rough);
+      progress.alpha = hn::MulAdd(through, part(0), progress.alpha);
+      progress.transmittance = through * VF{_mm512_mask_expandloadu_ps(one.raw, there[k].raw, light[1] + begin[k])};
+      progress.optical_depth = progress.optical_depth + part(2);
+      progress.red = hn::MulAdd(through, part(3), progress.red);
+      progress.green = hn::MulAdd(through, part(4), progress.green);
+      progress.blue = hn::MulAdd(through, part(5), progress.blue);
+      notes.error_bound = hn::MulAdd(through, part(6), notes.error_bound);
+      notes.rough = hn::MulAdd(through * through, part(7), notes.rough);
     }
     return;
   }
@@ -389,45 +384,42 @@ HWY_NOINLINE MF cast_mixed(const FrameView& frame, const Lookup& lookup, const L
                            VF length, CurrentInterval& current, Progress& progress, RayNotes& notes,
                            TileCounts& counts) {
   const DF d;
-  const VF zero = HN::Zero(d);
-  const VF spread = HN::Mul(HN::Mul(length, line.rho), HN::MulAdd(HN::Abs(line.span), HN::Set(d, 0.25f), line.rho));
-  const VF low = HN::Sub(HN::Min(line.s_0, line.s_1), line.rho), high = HN::Add(HN::Max(line.s_0, line.s_1), line.rho);
-  const VI interval = lookup.locate(low, HN::Eq(zero, zero));
+  const VF zero = hn::Zero(d);
+  const VF spread = length * line.rho * hn::MulAdd(hn::Abs(line.span), hn::Set(d, 0.25f), line.rho);
+  const VF low = hn::Min(line.s_0, line.s_1) - line.rho, high = hn::Max(line.s_0, line.s_1) + line.rho;
+  const VI interval = lookup.locate(low, zero == zero);
   const auto index = lookup.index(interval, there);
   current.move_to(static_cast<std::size_t>(
-      HN::GetLane(HN::MaxOfLanes(DI(), HN::IfThenElseZero(HN::RebindMask(DI(), there), interval)))));
-  const VF edge = lookup.edge(interval, index, HN::Set(DI(), 1));
-  const VF kappa_slope = HN::Abs(
-      HN::Add(lookup.at(LaneTable::half_extinction_slope, index), lookup.at(LaneTable::half_extinction_slope, index)));
-  const VF color_slope = HN::Max(
-      HN::Max(HN::Abs(lookup.at(LaneTable::red_slope, index)), HN::Abs(lookup.at(LaneTable::green_slope, index))),
-      HN::Abs(lookup.at(LaneTable::blue_slope, index)));
-  const VF scale =
-      HN::Mul(HN::Mul(kappa_slope, HN::Set(d, 1 / frame.piece_tolerance)),
-              HN::MulAdd(HN::Mul(length, kappa_slope), HN::Set(d, 0.03f * frame.largest_color), color_slope));
-  const VF extinction = HN::Max(extinction_at(lookup, index, low), extinction_at(lookup, index, high));
-  const VF dimming = HN::Mul(HN::Mul(length, extinction), lookup.independent ? length : HN::Mul(length, extinction));
-  const VF dimmed =
-      HN::Mul(HN::Mul(dimming, color_slope), HN::Mul(line.rho, HN::Set(d, 1 / (9 * frame.piece_tolerance))));
-  MF together =
-      HN::And(HN::And(there, HN::Lt(high, edge)), HN::Le(HN::MulAdd(spread, scale, dimmed), HN::Set(d, 1.0f)));
+      hn::GetLane(hn::MaxOfLanes(DI(), hn::IfThenElseZero(hn::RebindMask(DI(), there), interval)))));
+  const VF edge = lookup.edge(interval, index, hn::Set(DI(), 1));
+  const VF kappa_slope =
+      hn::Abs(lookup.at(LaneTable::half_extinction_slope, index) + lookup.at(LaneTable::half_extinction_slope, index));
+  const VF color_slope = hn::Max(
+      hn::Max(hn::Abs(lookup.at(LaneTable::red_slope, index)), hn::Abs(lookup.at(LaneTable::green_slope, index))),
+      hn::Abs(lookup.at(LaneTable::blue_slope, index)));
+  const VF scale = kappa_slope * hn::Set(d, 1 / frame.piece_tolerance) *
+                   hn::MulAdd(length * kappa_slope, hn::Set(d, 0.03f * frame.largest_color), color_slope);
+  const VF extinction = hn::Max(extinction_at(lookup, index, low), extinction_at(lookup, index, high));
+  const VF dimming = length * extinction * (lookup.independent ? length : length * extinction);
+  const VF dimmed = dimming * color_slope * (line.rho * hn::Set(d, 1 / (9 * frame.piece_tolerance)));
+  MF together = hn::And(hn::And(there, high < edge), hn::MulAdd(spread, scale, dimmed) <= hn::Set(d, 1.0f));
   if (frame.error_bound != nullptr && !frame.error_bound->step.empty()) {
     // What may touch a step is looked at as a cubic.
-    const VF noise = HN::Set(d, frame.error_bound->noise), low_edge = lookup.edge(interval, index, HN::Zero(DI()));
-    const MF above = HN::Ge(HN::Sub(low, low_edge), noise);
-    together = HN::And(together, HN::And(above, HN::Ge(HN::Sub(edge, high), noise)));
+    const VF noise = hn::Set(d, frame.error_bound->noise), low_edge = lookup.edge(interval, index, hn::Zero(DI()));
+    const MF above = low - low_edge >= noise;
+    together = hn::And(together, hn::And(above, edge - high >= noise));
   }
-  if (!HN::AllFalse(d, together)) {
-    const auto kept = [&](VF v) HWY_ATTR { return HN::IfThenElseZero(together, v); };
+  if (!hn::AllFalse(d, together)) {
+    const auto kept = [&](VF v) HWY_ATTR { return hn::IfThenElseZero(together, v); };
     const VF before = progress.transmittance;
-    CL::lanes::add_piece<false>(lookup, index, kept(HN::Add(line.s_0, line.shift)), kept(HN::Add(line.s_1, line.shift)),
+    CL::lanes::add_piece<false>(lookup, index, kept(line.s_0 + line.shift), kept(line.s_1 + line.shift),
                                 kept(line.span), kept(length), progress);
-    counts.samples += HN::CountTrue(d, together);
+    counts.samples += hn::CountTrue(d, together);
     note_first_light(progress, begin, notes);
     if (frame.error_bound != nullptr)
       note_ramps(interval, together, kept(length), *frame.error_bound, before, progress.transmittance, notes);
   }
-  return HN::AndNot(together, there);
+  return hn::AndNot(together, there);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -22,7 +22,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
-namespace HN = hwy::HWY_NAMESPACE;
+namespace hn = hwy::HWY_NAMESPACE;
 namespace CL = integrals::HWY_NAMESPACE;
 using CL::DF;
 using CL::DI;
@@ -137,16 +137,16 @@ class GatherWindow {
   /// It would take as long to look as to integrate.
   HWY_INLINE bool all_in(float, float) const { return false; }
   HWY_INLINE VI index(VF i, VF j) const {
-    return HN::ConvertTo(DI(), HN::MulAdd(j, HN::Set(DF(), static_cast<float>(pitch_)), i));
+    return hn::ConvertTo(DI(), hn::MulAdd(j, hn::Set(DF(), static_cast<float>(pitch_)), i));
   }
-  HWY_INLINE VF front(VI index) const { return HN::GatherIndex(DF(), a_, index); }
-  HWY_INLINE VF back(VI index) const { return HN::GatherIndex(DF(), b_, index); }
+  HWY_INLINE VF front(VI index) const { return hn::GatherIndex(DF(), a_, index); }
+  HWY_INLINE VF back(VI index) const { return hn::GatherIndex(DF(), b_, index); }
   HWY_INLINE Corners corners(VI index) const {
     const DF d;
-    return {HN::GatherIndex(d, a_, index),          HN::GatherIndex(d, a_ + 1, index),
-            HN::GatherIndex(d, a_ + pitch_, index), HN::GatherIndex(d, a_ + pitch_ + 1, index),
-            HN::GatherIndex(d, b_, index),          HN::GatherIndex(d, b_ + 1, index),
-            HN::GatherIndex(d, b_ + pitch_, index), HN::GatherIndex(d, b_ + pitch_ + 1, index)};
+    return {hn::GatherIndex(d, a_, index),          hn::GatherIndex(d, a_ + 1, index),
+            hn::GatherIndex(d, a_ + pitch_, index), hn::GatherIndex(d, a_ + pitch_ + 1, index),
+            hn::GatherIndex(d, b_, index),          hn::GatherIndex(d, b_ + 1, index),
+            hn::GatherIndex(d, b_ + pitch_, index), hn::GatherIndex(d, b_ + pitch_ + 1, index)};
   }
 
  private:
