@@ -26,7 +26,7 @@ using namespace integrals::HWY_NAMESPACE;  // vectors, and the integral of a seg
 using DD = hn::ScalableTag<double>;
 using VD = hn::Vec<DD>;
 using HalfF = hn::Half<DF>;
-constexpr std::size_t most_lanes = hn::MaxLanes(DI());
+constexpr std::size_t most_lanes = MaxLanes(DI());
 
 /// Lane values in double: two vectors.
 struct Doubles {
@@ -34,33 +34,32 @@ struct Doubles {
 };
 HWY_INLINE Doubles load(const double* from) {
   const DD d;
-  return {hn::Load(d, from), hn::Load(d, from + hn::Lanes(d))};
+  return {Load(d, from), Load(d, from + hn::Lanes(d))};
 }
 HWY_INLINE void store(Doubles v, double* to) {
   const DD d;
-  hn::Store(v.low, d, to);
-  hn::Store(v.high, d, to + hn::Lanes(d));
+  Store(v.low, d, to);
+  Store(v.high, d, to + hn::Lanes(d));
 }
 HWY_INLINE Doubles load(const float* from) {
   const DD d;
   const HalfF half;
-  return {hn::PromoteTo(d, hn::Load(half, from)), hn::PromoteTo(d, hn::Load(half, from + hn::Lanes(half)))};
+  return {PromoteTo(d, Load(half, from)), PromoteTo(d, Load(half, from + hn::Lanes(half)))};
 }
 HWY_INLINE Doubles promote(VF v) {
   const DD d;
   const HalfF half;
-  return {hn::PromoteTo(d, hn::LowerHalf(half, v)), hn::PromoteTo(d, hn::UpperHalf(half, v))};
+  return {PromoteTo(d, LowerHalf(half, v)), PromoteTo(d, UpperHalf(half, v))};
 }
 HWY_INLINE VF demote(Doubles v) {
   const HalfF half;
-  return hn::Combine(DF(), hn::DemoteTo(half, v.high), hn::DemoteTo(half, v.low));
+  return Combine(DF(), DemoteTo(half, v.high), DemoteTo(half, v.low));
 }
 /// The crossings' numbers, of marks.
 HWY_INLINE VI number_of(VF mark) {
   using Mark = projection::LatticeMark;
   const DI d;
-  return hn::ShiftRight<Mark::cosine_bits>(hn::BitCast(d, mark) -
-                                           hn::Set(d, static_cast<std::int32_t>(Mark::first_bits)));
+  return ShiftRight<Mark::cosine_bits>(BitCast(d, mark) - Set(d, static_cast<std::int32_t>(Mark::first_bits)));
 }
 
 /// scene::SurfaceSet::light() of marks, a crossing a lane.
@@ -73,14 +72,14 @@ class SurfaceLights {
     const DF d;
     const DI di;
     const auto& paint = surfaces.paint_by_number();
-    const VI nothing = hn::Set(di, static_cast<std::int32_t>(paint.opacity.size()) - 1);
-    const VI number = hn::Min(number_of(mark), nothing);
-    const VI code = hn::And(hn::BitCast(di, mark), hn::Set(di, static_cast<std::int32_t>(Mark::cosines)));
-    const Doubles cosine = promote(hn::ConvertTo(d, code) / hn::Set(d, static_cast<float>(Mark::cosines)));
+    const VI nothing = Set(di, static_cast<std::int32_t>(paint.opacity.size()) - 1);
+    const VI number = Min(number_of(mark), nothing);
+    const VI code = And(BitCast(di, mark), Set(di, static_cast<std::int32_t>(Mark::cosines)));
+    const Doubles cosine = promote(ConvertTo(d, code) / Set(d, static_cast<float>(Mark::cosines)));
     const auto& parts = surfaces.parts_of_light();
     const Doubles power = shine(surfaces, cosine);
-    const auto matte = [&](VD c) HWY_ATTR { return hn::Set(DD(), parts.ambient) + hn::Set(DD(), parts.diffuse) * c; };
-    const VD specular = hn::Set(DD(), parts.specular);
+    const auto matte = [&](VD c) HWY_ATTR { return Set(DD(), parts.ambient) + Set(DD(), parts.diffuse) * c; };
+    const VD specular = Set(DD(), parts.specular);
     const Doubles dull{matte(cosine.low), matte(cosine.high)};
     const Doubles bright{specular * power.low, specular * power.high};
     opacity = of_numbers(paint.opacity, number);
@@ -93,7 +92,7 @@ class SurfaceLights {
 
   /// What is seen of a surface and of `behind` it.
   [[nodiscard]] HWY_INLINE Doubles before(const Doubles& of_surface, const Doubles& behind) const {
-    const VD one = hn::Set(DD(), 1);
+    const VD one = Set(DD(), 1);
     return {of_surface.low + (one - opacity.low) * behind.low, of_surface.high + (one - opacity.high) * behind.high};
   }
 
@@ -102,13 +101,13 @@ class SurfaceLights {
     const DD d;
     const hn::RebindToSigned<DD> di;
     const hn::Half<DI> half;
-    return {hn::GatherIndex(d, column.data(), hn::PromoteTo(di, hn::LowerHalf(half, number))),
-            hn::GatherIndex(d, column.data(), hn::PromoteTo(di, hn::UpperHalf(half, number)))};
+    return {GatherIndex(d, column.data(), PromoteTo(di, LowerHalf(half, number))),
+            GatherIndex(d, column.data(), PromoteTo(di, UpperHalf(half, number)))};
   }
   static HWY_INLINE Doubles shine(const scene::SurfaceSet& surfaces, const Doubles& cosine) {
     const DD d;
     if (surfaces.whole_shininess() < 0) return any_shine(surfaces, cosine);
-    Doubles base = cosine, power{hn::Set(d, 1), hn::Set(d, 1)};
+    Doubles base = cosine, power{Set(d, 1), Set(d, 1)};
     for (int exponent = surfaces.whole_shininess(); exponent > 0; exponent /= 2) {
       if (exponent % 2 != 0) power = {power.low * base.low, power.high * base.high};
       base = {base.low * base.low, base.high * base.high};

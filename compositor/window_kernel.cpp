@@ -35,26 +35,24 @@ struct Fields {
 HWY_INLINE Fields transposed(VI v0, VI v1, VI v2, VI v3) {
   const DI d;
   const hn::RepartitionToWide<DI> wide;
-  const auto pairs = [&](VI v) HWY_ATTR { return hn::BitCast(wide, v); };
-  const auto low01 = pairs(hn::InterleaveLower(d, v0, v1)), high01 = pairs(hn::InterleaveUpper(d, v0, v1));
-  const auto low23 = pairs(hn::InterleaveLower(d, v2, v3)), high23 = pairs(hn::InterleaveUpper(d, v2, v3));
+  const auto pairs = [&](VI v) HWY_ATTR { return BitCast(wide, v); };
+  const auto low01 = pairs(InterleaveLower(d, v0, v1)), high01 = pairs(InterleaveUpper(d, v0, v1));
+  const auto low23 = pairs(InterleaveLower(d, v2, v3)), high23 = pairs(InterleaveUpper(d, v2, v3));
   const DF df;
-  return {hn::BitCast(d, hn::InterleaveLower(wide, low01, low23)),
-          hn::BitCast(d, hn::InterleaveUpper(wide, low01, low23)),
-          hn::BitCast(df, hn::InterleaveLower(wide, high01, high23)),
-          hn::BitCast(df, hn::InterleaveUpper(wide, high01, high23))};
+  return {BitCast(d, InterleaveLower(wide, low01, low23)), BitCast(d, InterleaveUpper(wide, low01, low23)),
+          BitCast(df, InterleaveLower(wide, high01, high23)), BitCast(df, InterleaveUpper(wide, high01, high23))};
 }
 
 /// Those of load_fields(), `lanes` / 4 of them: lanes first, first + 4, first + 8...
 template <std::size_t lanes>
 HWY_INLINE auto load_every_fourth(const projection::LatticeSegment* list, const std::int32_t* slots, int first) {
   if constexpr (lanes == 4) {
-    return hn::Load(hn::FixedTag<std::int32_t, 4>(),
-                    reinterpret_cast<const std::int32_t*>(&segment_at(list + first, slots[first])));
+    return Load(hn::FixedTag<std::int32_t, 4>(),
+                reinterpret_cast<const std::int32_t*>(&segment_at(list + first, slots[first])));
   } else {
     const auto low = load_every_fourth<lanes / 2>(list, slots, first);
     const auto high = load_every_fourth<lanes / 2>(list, slots, first + static_cast<int>(lanes) / 2);
-    return hn::Combine(hn::FixedTag<std::int32_t, lanes>(), high, low);
+    return Combine(hn::FixedTag<std::int32_t, lanes>(), high, low);
   }
 }
 
@@ -90,42 +88,42 @@ class PixelGroup {
     const DI d;
     const DF df;
     const std::size_t lanes = hn::Lanes(d);
-    const VF length_per_step = hn::Load(df, &state_.length_per_step[pixel_]);
-    const auto open = hn::Load(d, &state_.open[pixel_]) < hn::Zero(d);
-    const VI end = hn::Set(d, final_step), none = hn::Set(d, no_key);
+    const VF length_per_step = Load(df, &state_.length_per_step[pixel_]);
+    const auto open = Load(d, &state_.open[pixel_]) < Zero(d);
+    const VI end = Set(d, final_step), none = Set(d, no_key);
     VI run_back = none;
-    VI widest = hn::Zero(d);
+    VI widest = Zero(d);
     const VI count = this->count();
-    if constexpr (runs) run_back = hn::Load(d, &state_.back[pixel_]);
+    if constexpr (runs) run_back = Load(d, &state_.back[pixel_]);
     for (std::size_t row = from; row < to; ++row) {
       const Fields s = load_fields(list_, state_.order.slots.data() + row * lanes);
       const VI front = s.front;
-      const auto is_final = hn::And(front < end, has_row(row, count));
-      if (hn::AllFalse(d, is_final)) {
+      const auto is_final = And(front < end, has_row(row, count));
+      if (AllFalse(d, is_final)) {
         to = row;
         break;
       }
-      done_ = count_if(hn::RebindMask(df, is_final), done_);
+      done_ = count_if(RebindMask(df, is_final), done_);
       VF scalar_front = s.scalar_front;
       if constexpr (with_surfaces)
         scalar_front =
             light_.set_aside_surfaces(surfaces->on_lattice_by_number(), is_final, open, scalar_front, row - from);
-      const VF length = hn::ConvertTo(df, s.back - front) * length_per_step;
-      const auto takes = hn::And(is_final, open);
-      light_.put_segment(hn::IfThenElseZero(hn::RebindMask(df, takes), length), hn::IfThenElse(takes, front, none),
-                         s.back, scalar_front, s.scalar_back,
-                         table_.locate(scalar_front, s.scalar_back >= scalar_front), (row - from) * lanes);
+      const VF length = ConvertTo(df, s.back - front) * length_per_step;
+      const auto takes = And(is_final, open);
+      light_.put_segment(IfThenElseZero(RebindMask(df, takes), length), IfThenElse(takes, front, none), s.back,
+                         scalar_front, s.scalar_back, table_.locate(scalar_front, s.scalar_back >= scalar_front),
+                         (row - from) * lanes);
       if constexpr (runs) {
         // A lane in no run begins one in the first of these rows, or takes nothing from any: its list has no holes.
-        if (row == from) run_back = hn::IfThenElse(hn::And(takes, run_back == none), front, run_back);
-        widest = hn::Max(widest, hn::Abs(hn::IfThenElseZero(takes, front - run_back)));
+        if (row == from) run_back = IfThenElse(And(takes, run_back == none), front, run_back);
+        widest = Max(widest, Abs(IfThenElseZero(takes, front - run_back)));
         // Irregular cells' depths are a few steps off: a run does not go back.
-        run_back = hn::IfThenElse(takes, hn::Max(run_back, s.back), run_back);
+        run_back = IfThenElse(takes, Max(run_back, s.back), run_back);
       }
     }
     if constexpr (runs) {
-      hn::Store(run_back, d, light_.run_back);
-      light_.touching = hn::AllFalse(d, widest > hn::Set(d, touching_steps));
+      Store(run_back, d, light_.run_back);
+      light_.touching = AllFalse(d, widest > Set(d, touching_steps));
     }
     return to;
   }
@@ -138,7 +136,7 @@ class PixelGroup {
 
   /// Composites what lies before `final_step`; returns how many segments are done with.
   HWY_INLINE std::uint64_t composite(std::size_t rows, std::int32_t final_step, const WindowRules& rules) {
-    done_ = hn::Zero(DI());
+    done_ = Zero(DI());
     for (std::size_t from = 0, to; from < rows; from = to) {
       const std::size_t most = std::min(rows, from + LightRows::most);
       // In three passes, each of chains short enough for a processor to work on several rows at once.
@@ -154,12 +152,10 @@ class PixelGroup {
   /// Whether some lane has shown nothing yet.
   HWY_INLINE bool some_unseen() const {
     const DI d;
-    return !hn::AllFalse(d, hn::Load(d, &state_.first_back[pixel_]) == hn::Set(d, no_key));
+    return !AllFalse(d, Load(d, &state_.first_back[pixel_]) == Set(d, no_key));
   }
 
-  HWY_INLINE VI count() const {
-    return hn::LoadU(DI(), reinterpret_cast<const std::int32_t*>(windows_.counts() + pixel_));
-  }
+  HWY_INLINE VI count() const { return LoadU(DI(), reinterpret_cast<const std::int32_t*>(windows_.counts() + pixel_)); }
 
   /// Leaves in the windows what of the sorted rows was not final, in order. Returns how many segments are gone.
   HWY_INLINE std::uint64_t keep_rest(std::size_t rows) {
@@ -168,16 +164,16 @@ class PixelGroup {
     const std::size_t lanes = hn::Lanes(d), own = std::min(lanes, windows_.pixels() - pixel_);
     std::uint32_t* counts = windows_.counts() + pixel_;
     const VI count = this->count();
-    const auto open = hn::Load(d, &state_.open[pixel_]) < hn::Zero(d);
-    const VI left = hn::IfThenElseZero(open, count - done_);
-    hn::StoreU(left, d, reinterpret_cast<std::int32_t*>(counts));
-    const auto most = static_cast<std::size_t>(hn::GetLane(hn::MaxOfLanes(d, left)));
+    const auto open = Load(d, &state_.open[pixel_]) < Zero(d);
+    const VI left = IfThenElseZero(open, count - done_);
+    StoreU(left, d, reinterpret_cast<std::int32_t*>(counts));
+    const auto most = static_cast<std::size_t>(GetLane(MaxOfLanes(d, left)));
     state_.rest_rows[pixel_ / lanes] = static_cast<std::int32_t>(most);
-    const auto gone = static_cast<std::uint64_t>(hn::GetLane(hn::SumOfLanes(d, count - left)));
+    const auto gone = static_cast<std::uint64_t>(GetLane(SumOfLanes(d, count - left)));
     if (most == 0) return gone;
     // As many of each lane, so that no branch depends on one: what is not a lane's own is behind its list's end.
     alignas(64) std::int32_t first[most_lanes];
-    hn::Store(done_, d, first);
+    Store(done_, d, first);
     if (state_.rest.size() < most * lanes) state_.rest.resize(most * lanes);
     for (std::size_t k = 0; k < most; ++k)
       for (std::size_t lane = 0; lane < own; ++lane) {
@@ -194,7 +190,7 @@ class PixelGroup {
   LightRows& light_;
   std::size_t pixel_;
   projection::LatticeSegment* list_;
-  VI done_ = hn::Zero(DI());  ///< segments of each lane that were final
+  VI done_ = Zero(DI());  ///< segments of each lane that were final
 };
 
 template <TableForm form>
@@ -206,10 +202,10 @@ std::uint64_t composite_form(const WindowRules& rules, projection::SegmentWindow
   const DI d;
   const auto full = static_cast<std::int32_t>(windows.capacity());
   for (std::size_t pixel = 0; pixel < windows.pixels(); pixel += hn::Lanes(d)) {
-    const VI count = hn::LoadU(d, reinterpret_cast<const std::int32_t*>(windows.counts() + pixel));
+    const VI count = LoadU(d, reinterpret_cast<const std::int32_t*>(windows.counts() + pixel));
     const std::int32_t worthwhile =
         at_least == 1 ? 1 : std::max(at_least, std::min(2 * state.rest_rows[pixel / hn::Lanes(d)], full));
-    if (hn::AllFalse(d, count > hn::Set(d, worthwhile - 1))) continue;
+    if (AllFalse(d, count > Set(d, worthwhile - 1))) continue;
     PixelGroup<form> group(lookup, windows, pixel, state, light);
     const std::size_t rows = group.sort();
     timer.record("sort");

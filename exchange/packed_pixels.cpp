@@ -61,19 +61,19 @@ struct Rows {
 HWY_INLINE U load_words(const std::byte* from) {
   std::uint32_t word;
   std::memcpy(&word, from, sizeof word);
-  return hn::Set(DU(), word);
+  return Set(DU(), word);
 }
 HWY_INLINE void store_words(U words, std::byte* to) {
-  const std::uint32_t word = hn::GetLane(words);
+  const std::uint32_t word = GetLane(words);
   std::memcpy(to, &word, sizeof word);
 }
 #else
 using DB = hn::Repartition<std::uint8_t, DU>;
 HWY_INLINE U load_words(const std::byte* from) {
-  return hn::BitCast(DU(), hn::LoadU(DB(), reinterpret_cast<const std::uint8_t*>(from)));
+  return BitCast(DU(), LoadU(DB(), reinterpret_cast<const std::uint8_t*>(from)));
 }
 HWY_INLINE void store_words(U words, std::byte* to) {
-  hn::StoreU(hn::BitCast(DB(), words), DB(), reinterpret_cast<std::uint8_t*>(to));
+  StoreU(BitCast(DB(), words), DB(), reinterpret_cast<std::uint8_t*>(to));
 }
 #endif
 
@@ -84,12 +84,12 @@ HWY_INLINE void split_channels(const float* rgba, const float* depth, Rows& rows
   const std::size_t lanes = hn::Lanes(du);
   for (std::size_t c = 0; c < columns; c += lanes) {
     hn::Vec<DF> red, green, blue, alpha;
-    hn::LoadInterleaved4(df, rgba + color_channels * c, red, green, blue, alpha);
-    hn::Store(hn::BitCast(du, red), du, &rows.of[0][c]);
-    hn::Store(hn::BitCast(du, green), du, &rows.of[1][c]);
-    hn::Store(hn::BitCast(du, blue), du, &rows.of[2][c]);
-    hn::Store(hn::BitCast(du, alpha), du, &rows.of[3][c]);
-    hn::Store(hn::BitCast(du, hn::LoadU(df, depth + c)), du, &rows.of[4][c]);
+    LoadInterleaved4(df, rgba + color_channels * c, red, green, blue, alpha);
+    Store(BitCast(du, red), du, &rows.of[0][c]);
+    Store(BitCast(du, green), du, &rows.of[1][c]);
+    Store(BitCast(du, blue), du, &rows.of[2][c]);
+    Store(BitCast(du, alpha), du, &rows.of[3][c]);
+    Store(BitCast(du, LoadU(df, depth + c)), du, &rows.of[4][c]);
   }
 }
 
@@ -98,9 +98,9 @@ HWY_INLINE void join_channels(const Rows& rows, float* rgba, float* depth) {
   const DF df;
   const std::size_t lanes = hn::Lanes(du);
   for (std::size_t c = 0; c < columns; c += lanes) {
-    const auto channel = [&](std::size_t k) { return hn::BitCast(df, hn::Load(du, &rows.of[k][c])); };
-    hn::StoreInterleaved4(channel(0), channel(1), channel(2), channel(3), df, rgba + color_channels * c);
-    hn::StoreU(channel(4), df, depth + c);
+    const auto channel = [&](std::size_t k) { return BitCast(df, Load(du, &rows.of[k][c])); };
+    StoreInterleaved4(channel(0), channel(1), channel(2), channel(3), df, rgba + color_channels * c);
+    StoreU(channel(4), df, depth + c);
   }
 }
 
@@ -111,19 +111,19 @@ HWY_INLINE unsigned differ(const std::uint32_t* HWY_RESTRICT next, std::uint32_t
   const DU du;
   const DI di;
   const std::size_t lanes = hn::Lanes(du);
-  U all = hn::Zero(du);
+  U all = Zero(du);
   for (std::size_t c = 0; c < columns; c += lanes) {
-    const U value = hn::Load(du, next + c);
-    const U now = value - hn::Load(du, above + c);
-    const U off = now - hn::Load(du, step + c);
-    const U sign = hn::BitCast(du, hn::ShiftRight<31>(hn::BitCast(di, off)));
-    const U difference = hn::Xor(hn::ShiftLeft<1>(off), sign);
-    hn::Store(value, du, above + c);
-    hn::Store(now, du, step + c);
-    hn::Store(difference, du, differences + c);
-    all = hn::Or(all, difference);
+    const U value = Load(du, next + c);
+    const U now = value - Load(du, above + c);
+    const U off = now - Load(du, step + c);
+    const U sign = BitCast(du, ShiftRight<31>(BitCast(di, off)));
+    const U difference = Xor(ShiftLeft<1>(off), sign);
+    Store(value, du, above + c);
+    Store(now, du, step + c);
+    Store(difference, du, differences + c);
+    all = Or(all, difference);
   }
-  return 32u - static_cast<unsigned>(std::countl_zero(hn::GetLane(hn::MaxOfLanes(du, all))));
+  return 32u - static_cast<unsigned>(std::countl_zero(GetLane(MaxOfLanes(du, all))));
 }
 
 // Widths are as good as random: neither of these branches on one.
@@ -134,13 +134,13 @@ HWY_INLINE void put(const std::uint32_t* HWY_RESTRICT differences, unsigned widt
   const std::size_t lanes = hn::Lanes(du);
   const int shift = to.shift();
   std::byte* word = to.word();
-  const U finishes = hn::Set(du, static_cast<unsigned>(shift) + width >= 32 ? ~std::uint32_t{0} : 0);
+  const U finishes = Set(du, static_cast<unsigned>(shift) + width >= 32 ? ~std::uint32_t{0} : 0);
   for (std::size_t c = 0; c < columns; c += lanes, word += lanes * sizeof(std::uint32_t)) {
-    const U difference = hn::Load(du, differences + c);
-    const U all = hn::Or(hn::Load(du, unfinished + c), hn::ShiftLeftSame(difference, shift));
+    const U difference = Load(du, differences + c);
+    const U all = Or(Load(du, unfinished + c), ShiftLeftSame(difference, shift));
     store_words(all, word);
-    const U rest = hn::ShiftRightSame(hn::ShiftRight<1>(difference), 31 - shift);
-    hn::Store(hn::Or(hn::And(finishes, rest), hn::AndNot(finishes, all)), du, unfinished + c);
+    const U rest = ShiftRightSame(ShiftRight<1>(difference), 31 - shift);
+    Store(Or(And(finishes, rest), AndNot(finishes, all)), du, unfinished + c);
   }
   to.bits += width;
 }
@@ -154,15 +154,15 @@ HWY_INLINE void get(unsigned width, Streams<const std::byte>& from, std::uint32_
   const int shift = from.shift();
   const std::byte *word = from.word(), *next = std::min(word + word_bytes, from.last);
   word = std::min(word, from.last);
-  const U mask = hn::Set(du, static_cast<std::uint32_t>((std::uint64_t{1} << width) - 1));
+  const U mask = Set(du, static_cast<std::uint32_t>((std::uint64_t{1} << width) - 1));
   for (std::size_t c = 0; c < columns; c += lanes) {
-    const U low = hn::ShiftRightSame(load_words(word + c * sizeof(std::uint32_t)), shift);
-    const U high = hn::ShiftLeftSame(hn::ShiftLeft<1>(load_words(next + c * sizeof(std::uint32_t))), 31 - shift);
-    const U difference = hn::And(hn::Or(low, high), mask);
-    const U sign = hn::BitCast(du, hn::Neg(hn::BitCast(di, hn::And(difference, hn::Set(du, 1)))));
-    const U now = hn::Load(du, step + c) + hn::Xor(hn::ShiftRight<1>(difference), sign);
-    hn::Store(now, du, step + c);
-    hn::Store(hn::Load(du, value + c) + now, du, value + c);
+    const U low = ShiftRightSame(load_words(word + c * sizeof(std::uint32_t)), shift);
+    const U high = ShiftLeftSame(ShiftLeft<1>(load_words(next + c * sizeof(std::uint32_t))), 31 - shift);
+    const U difference = And(Or(low, high), mask);
+    const U sign = BitCast(du, Neg(BitCast(di, And(difference, Set(du, 1)))));
+    const U now = Load(du, step + c) + Xor(ShiftRight<1>(difference), sign);
+    Store(now, du, step + c);
+    Store(Load(du, value + c) + now, du, value + c);
   }
   from.bits += width;
 }

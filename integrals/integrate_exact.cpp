@@ -32,13 +32,13 @@ struct Moments {
 template <int count>
 HWY_INLINE Moments moments(V linear, V quadratic, const double (&nodes)[count], const double (&weights)[count]) {
   const D d;
-  Moments m{hn::Zero(d), hn::Zero(d)};
+  Moments m{Zero(d), Zero(d)};
   for (int i = 0; i < count; ++i) {
-    const V u = hn::Set(d, nodes[i]);
-    const V q = u * hn::MulAdd(quadratic, u, linear);
-    const V light = hn::Set(d, weights[i]) * hn::Exp(d, hn::Neg(q));
+    const V u = Set(d, nodes[i]);
+    const V q = u * MulAdd(quadratic, u, linear);
+    const V light = Set(d, weights[i]) * Exp(d, Neg(q));
     m.zeroth = m.zeroth + light;
-    m.first = hn::MulAdd(light, u, m.first);
+    m.first = MulAdd(light, u, m.first);
   }
   return m;
 }
@@ -46,9 +46,8 @@ HWY_INLINE Moments moments(V linear, V quadratic, const double (&nodes)[count], 
 /// exp(-x) for 0 <= x <= 0.05, to 1e-15.
 HWY_INLINE V thin_exp(V x) {
   const D d;
-  V sum = hn::Set(d, -1.0 / 5040);
-  for (const double c : {1.0 / 720, -1.0 / 120, 1.0 / 24, -1.0 / 6, 0.5, -1.0, 1.0})
-    sum = hn::MulAdd(sum, x, hn::Set(d, c));
+  V sum = Set(d, -1.0 / 5040);
+  for (const double c : {1.0 / 720, -1.0 / 120, 1.0 / 24, -1.0 / 6, 0.5, -1.0, 1.0}) sum = MulAdd(sum, x, Set(d, c));
   return sum;
 }
 
@@ -56,16 +55,15 @@ HWY_INLINE V thin_exp(V x) {
 /// is left out, q^5 / 120, is below 3e-9 for an optical depth of 0.05.
 HWY_INLINE V thin_zeroth(V a, V b) {
   const D d;
-  const auto number = [&](double value) HWY_ATTR { return hn::Set(d, value); };
+  const auto number = [&](double value) HWY_ATTR { return Set(d, value); };
   const V ab = a * b, a2 = a * a, b2 = b * b;
-  const V q1 = hn::MulAdd(a, number(1.0 / 2), b * number(1.0 / 3));
-  const V q2 = hn::MulAdd(a2, number(1.0 / 3), hn::MulAdd(ab, number(1.0 / 2), b2 * number(1.0 / 5)));
-  const V q3 = hn::MulAdd(a, hn::MulAdd(a2, number(1.0 / 4), ab * number(3.0 / 5)),
-                          b * hn::MulAdd(ab, number(1.0 / 2), b2 * number(1.0 / 7)));
-  const V q4 = hn::MulAdd(a2, hn::MulAdd(a2, number(1.0 / 5), hn::MulAdd(ab, number(2.0 / 3), b2 * number(6.0 / 7))),
-                          b2 * hn::MulAdd(ab, number(1.0 / 2), b2 * number(1.0 / 9)));
-  return hn::MulAdd(q4, number(1.0 / 24),
-                    hn::MulAdd(q3, number(-1.0 / 6), hn::MulAdd(q2, number(0.5), number(1.0) - q1)));
+  const V q1 = MulAdd(a, number(1.0 / 2), b * number(1.0 / 3));
+  const V q2 = MulAdd(a2, number(1.0 / 3), MulAdd(ab, number(1.0 / 2), b2 * number(1.0 / 5)));
+  const V q3 = MulAdd(a, MulAdd(a2, number(1.0 / 4), ab * number(3.0 / 5)),
+                      b * MulAdd(ab, number(1.0 / 2), b2 * number(1.0 / 7)));
+  const V q4 = MulAdd(a2, MulAdd(a2, number(1.0 / 5), MulAdd(ab, number(2.0 / 3), b2 * number(6.0 / 7))),
+                      b2 * MulAdd(ab, number(1.0 / 2), b2 * number(1.0 / 9)));
+  return MulAdd(q4, number(1.0 / 24), MulAdd(q3, number(-1.0 / 6), MulAdd(q2, number(0.5), number(1.0) - q1)));
 }
 
 /// Upper bound of the pieces of a segment: one for each interval, and those that thick ones are cut into. Each of these
@@ -80,19 +78,18 @@ std::size_t most_pieces(const Table& table) {
 template <bool in_register>
 HWY_INLINE V lookup(const std::vector<double>& table, VI interval) {
   const D d;
-  if constexpr (in_register) return hn::TableLookupLanes(hn::LoadU(d, table.data()), hn::IndicesFromVec(d, interval));
-  return hn::GatherIndex(d, table.data(), interval);
+  if constexpr (in_register) return TableLookupLanes(LoadU(d, table.data()), IndicesFromVec(d, interval));
+  return GatherIndex(d, table.data(), interval);
 }
 
 /// Where a piece is thicker than `most_depth`, how much of it has that depth; elsewhere 1. The root u of q(u) = that,
 /// in the form without cancellation.
 HWY_INLINE V part_of_depth(V kappa0, V kappa1, V piece, V twice_most_depth, hn::Mask<D> thick) {
   const D d;
-  const V one = hn::Set(d, 1.0);
+  const V one = Set(d, 1.0);
   const V linear = kappa0 * piece;
-  const V root =
-      hn::Sqrt(hn::Max(hn::Zero(d), hn::MulAdd(linear, linear, twice_most_depth * ((kappa1 - kappa0) * piece))));
-  return hn::IfThenElse(thick, hn::Min(one, twice_most_depth / (linear + root)), one);
+  const V root = Sqrt(Max(Zero(d), MulAdd(linear, linear, twice_most_depth * ((kappa1 - kappa0) * piece))));
+  return IfThenElse(thick, Min(one, twice_most_depth / (linear + root)), one);
 }
 
 /// What comes through a piece, and its moments where they are needed.
@@ -106,13 +103,13 @@ struct Passage {
 HWY_INLINE Passage pass(V kappa0, V kappa1, V piece, V depth, hn::Mask<D> varies, hn::Mask<D> active,
                         bool emits_by_extinction) {
   const D d;
-  const auto thin = depth < hn::Set(d, 0.05);
-  const auto needs_exp = hn::AndNot(thin, active);
-  const bool some_thin = !hn::AllTrue(d, needs_exp), some_thick = !hn::AllFalse(d, needs_exp);
-  const bool some_vary = !emits_by_extinction || !hn::AllFalse(d, hn::And(varies, active));
+  const auto thin = depth < Set(d, 0.05);
+  const auto needs_exp = AndNot(thin, active);
+  const bool some_thin = !AllTrue(d, needs_exp), some_thick = !AllFalse(d, needs_exp);
+  const bool some_vary = !emits_by_extinction || !AllFalse(d, And(varies, active));
   const V linear = kappa0 * piece;
-  const V quadratic = hn::Set(d, 0.5) * ((kappa1 - kappa0) * piece);
-  Passage p{hn::Set(d, 1.0), {hn::Zero(d), hn::Zero(d)}};
+  const V quadratic = Set(d, 0.5) * ((kappa1 - kappa0) * piece);
+  Passage p{Set(d, 1.0), {Zero(d), Zero(d)}};
   if (some_thin) {
     p.through = thin_exp(depth);
     if (!emits_by_extinction)
@@ -121,10 +118,10 @@ HWY_INLINE Passage pass(V kappa0, V kappa1, V piece, V depth, hn::Mask<D> varies
       p.m.zeroth = thin_zeroth(linear, quadratic);
   }
   if (some_thick) {
-    p.through = hn::IfThenElse(thin, p.through, hn::Exp(d, hn::Neg(depth)));
+    p.through = IfThenElse(thin, p.through, Exp(d, Neg(depth)));
     if (some_vary) {
       const Moments fine = moments(linear, quadratic, nodes6, weights6);
-      p.m = {hn::IfThenElse(thin, p.m.zeroth, fine.zeroth), hn::IfThenElse(thin, p.m.first, fine.first)};
+      p.m = {IfThenElse(thin, p.m.zeroth, fine.zeroth), IfThenElse(thin, p.m.first, fine.first)};
     }
   }
   return p;
@@ -136,42 +133,42 @@ HWY_INLINE Passage pass(V kappa0, V kappa1, V piece, V depth, hn::Mask<D> varies
 HWY_INLINE V light_of(V color0, V color1, V piece, const Passage& p, hn::Mask<D> varies, bool emits_by_extinction) {
   const D d;
   const V change = color1 - color0;
-  if (!emits_by_extinction) return piece * hn::MulAdd(change, p.m.first, color0 * p.m.zeroth);
-  const V light = color0 * (hn::Set(d, 1.0) - p.through);
-  return hn::IfThenElse(varies, hn::MulAdd(change, p.m.zeroth - p.through, light), light);
+  if (!emits_by_extinction) return piece * MulAdd(change, p.m.first, color0 * p.m.zeroth);
+  const V light = color0 * (Set(d, 1.0) - p.through);
+  return IfThenElse(varies, MulAdd(change, p.m.zeroth - p.through, light), light);
 }
 
 template <bool in_register>
 void exact(const PiecewiseTable& table, scene::Emission emission, const ExactPieces& pieces, SegmentBatch& batch) {
   const D d;
   const DI di;
-  const V zero = hn::Zero(d), one = hn::Set(d, 1.0), half = hn::Set(d, 0.5);
-  const V most_depth = hn::Set(d, pieces.optical_depth), twice_most_depth = hn::Set(d, 2 * pieces.optical_depth);
-  const V least_transmittance = hn::Set(d, pieces.transmittance);
+  const V zero = Zero(d), one = Set(d, 1.0), half = Set(d, 0.5);
+  const V most_depth = Set(d, pieces.optical_depth), twice_most_depth = Set(d, 2 * pieces.optical_depth);
+  const V least_transmittance = Set(d, pieces.transmittance);
   const auto lanes = static_cast<std::size_t>(hn::Lanes(d));
-  const auto step_up = hn::Set(di, 1), step_down = hn::Set(di, -1);
+  const auto step_up = Set(di, 1), step_down = Set(di, -1);
   const bool emits_by_extinction = emission == scene::Emission::absorption;
 
   for (std::size_t i = 0; i < batch.size; i += lanes) {
-    const auto in_batch = hn::Iota(d, 0) < hn::Set(d, static_cast<double>(batch.size - i));
-    const V length = hn::IfThenElseZero(in_batch, hn::LoadU(d, &batch.length[i]));
-    const V front = hn::IfThenElseZero(in_batch, hn::LoadU(d, &batch.scalar_front[i]));
-    const V back = hn::IfThenElseZero(in_batch, hn::LoadU(d, &batch.scalar_back[i]));
+    const auto in_batch = Iota(d, 0) < Set(d, static_cast<double>(batch.size - i));
+    const V length = IfThenElseZero(in_batch, LoadU(d, &batch.length[i]));
+    const V front = IfThenElseZero(in_batch, LoadU(d, &batch.scalar_front[i]));
+    const V back = IfThenElseZero(in_batch, LoadU(d, &batch.scalar_back[i]));
     const auto constant = front == back;
     const auto up = back >= front;
-    const V length_per_scalar = length / hn::IfThenElse(constant, one, back - front);
+    const V length_per_scalar = length / IfThenElse(constant, one, back - front);
 
     VI interval = locate(table, front, up);
     V scalar = front, left = length;
     V color[3] = {zero, zero, zero}, transmittance = one, optical_depth = zero;
     auto active = length > zero;
-    for (std::size_t pieces = most_pieces(table); pieces > 0 && !hn::AllFalse(d, active); --pieces) {
+    for (std::size_t pieces = most_pieces(table); pieces > 0 && !AllFalse(d, active); --pieces) {
       const V knot =
-          hn::IfThenElse(up, lookup<in_register>(table.above, interval), lookup<in_register>(table.below, interval));
-      V target = hn::IfThenElse(up, hn::Min(knot, back), hn::Max(knot, back));
-      target = hn::IfThenElse(constant, back, target);
+          IfThenElse(up, lookup<in_register>(table.above, interval), lookup<in_register>(table.below, interval));
+      V target = IfThenElse(up, Min(knot, back), Max(knot, back));
+      target = IfThenElse(constant, back, target);
       auto last = target == back;
-      V piece = hn::IfThenElse(last, left, hn::Min(left, (target - scalar) * length_per_scalar));
+      V piece = IfThenElse(last, left, Min(left, (target - scalar) * length_per_scalar));
 
       const V base = lookup<in_register>(table.base, interval);
       const V from = scalar - base;
@@ -179,46 +176,46 @@ void exact(const PiecewiseTable& table, scene::Emission emission, const ExactPie
       const auto channel = [&](int c, V& at_from, V& at_to) HWY_ATTR {
         const V start = lookup<in_register>(table.channels[c].start, interval);
         const V slope = lookup<in_register>(table.channels[c].slope, interval);
-        at_from = hn::MulAdd(slope, from, start);
-        at_to = hn::MulAdd(slope, to, start);
+        at_from = MulAdd(slope, from, start);
+        at_to = MulAdd(slope, to, start);
       };
       V kappa0, kappa1;
       channel(0, kappa0, kappa1);
       V depth = piece * (half * (kappa0 + kappa1));
       const auto thick = depth > most_depth;
-      if (!hn::AllFalse(d, thick)) {
+      if (!AllFalse(d, thick)) {
         const V u = part_of_depth(kappa0, kappa1, piece, twice_most_depth, thick);
         piece = piece * u;
-        kappa1 = hn::IfThenElse(thick, hn::MulAdd(kappa1 - kappa0, u, kappa0), kappa1);
-        target = hn::IfThenElse(thick, hn::MulAdd(target - scalar, u, scalar), target);
+        kappa1 = IfThenElse(thick, MulAdd(kappa1 - kappa0, u, kappa0), kappa1);
+        target = IfThenElse(thick, MulAdd(target - scalar, u, scalar), target);
         to = target - base;
         depth = piece * (half * (kappa0 + kappa1));
-        last = hn::AndNot(thick, last);
+        last = AndNot(thick, last);
       }
       V color0[3], color1[3];
       auto varies = zero < zero;
       for (int c = 0; c < 3; ++c) {
         channel(c + 1, color0[c], color1[c]);
-        varies = hn::Or(varies, color0[c] != color1[c]);
+        varies = Or(varies, color0[c] != color1[c]);
       }
       const Passage passage = pass(kappa0, kappa1, piece, depth, varies, active, emits_by_extinction);
       for (int c = 0; c < 3; ++c) {
         const V light = light_of(color0[c], color1[c], piece, passage, varies, emits_by_extinction);
-        color[c] = hn::IfThenElse(active, hn::MulAdd(transmittance, light, color[c]), color[c]);
+        color[c] = IfThenElse(active, MulAdd(transmittance, light, color[c]), color[c]);
       }
-      optical_depth = hn::IfThenElse(active, optical_depth + depth, optical_depth);
-      transmittance = hn::IfThenElse(active, transmittance * passage.through, transmittance);
+      optical_depth = IfThenElse(active, optical_depth + depth, optical_depth);
+      transmittance = IfThenElse(active, transmittance * passage.through, transmittance);
       left = left - piece;
       scalar = target;
-      active = hn::AndNot(hn::Or(last, transmittance < least_transmittance), active);
-      const auto on = hn::RebindMask(di, hn::AndNot(thick, active));
-      interval = interval + hn::IfThenElseZero(on, hn::IfThenElse(hn::RebindMask(di, up), step_up, step_down));
+      active = AndNot(Or(last, transmittance < least_transmittance), active);
+      const auto on = RebindMask(di, AndNot(thick, active));
+      interval = interval + IfThenElseZero(on, IfThenElse(RebindMask(di, up), step_up, step_down));
     }
-    hn::StoreU(color[0], d, &batch.red[i]);
-    hn::StoreU(color[1], d, &batch.green[i]);
-    hn::StoreU(color[2], d, &batch.blue[i]);
-    hn::StoreU(optical_depth, d, &batch.optical_depth[i]);
-    hn::StoreU(transmittance, d, &batch.transmittance[i]);
+    StoreU(color[0], d, &batch.red[i]);
+    StoreU(color[1], d, &batch.green[i]);
+    StoreU(color[2], d, &batch.blue[i]);
+    StoreU(optical_depth, d, &batch.optical_depth[i]);
+    StoreU(transmittance, d, &batch.transmittance[i]);
   }
 }
 

@@ -54,8 +54,8 @@ constexpr int pieces_a_fold = 16;
 template <std::size_t count>
 HWY_INLINE VF polynomial(VF x, const float (&c)[count]) {
   const DF d;
-  VF sum = hn::Set(d, c[count - 1]);
-  for (std::size_t i = count - 1; i-- > 0;) sum = hn::MulAdd(sum, x, hn::Set(d, c[i]));
+  VF sum = Set(d, c[count - 1]);
+  for (std::size_t i = count - 1; i-- > 0;) sum = MulAdd(sum, x, Set(d, c[i]));
   return sum;
 }
 
@@ -84,26 +84,26 @@ constexpr float o_h4 = 1.864437097e-5f;
 
 HWY_INLINE StretchLight stretch_light(const Stretch& s, bool independent) {
   const DF d;
-  const VF half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f);
+  const VF half = Set(d, 0.5f), one = Set(d, 1.0f);
   const VF h = s.depth_front + s.depth_back, b = s.depth_back - s.depth_front;
   const VF h2 = h * h;
   const VF fade = h * polynomial(h, e_1), through_half = one - fade;
-  const VF g_h4 = polynomial(b, g_bh4), g_h2 = hn::MulAdd(h2, g_h4, polynomial(b, g_bh2));
-  const VF g = hn::MulAdd(h2, g_h2, b * polynomial(b, g_b));
+  const VF g_h4 = polynomial(b, g_bh4), g_h2 = MulAdd(h2, g_h4, polynomial(b, g_bh2));
+  const VF g = MulAdd(h2, g_h2, b * polynomial(b, g_b));
   StretchLight light;
-  light.alpha = fade * (hn::Set(d, 2.0f) - fade);
+  light.alpha = fade * (Set(d, 2.0f) - fade);
   if (HWY_UNLIKELY(independent)) {
     // int c T dt = l (start M + slope (x_0 M + (x_1 - x_0) F)), F = int u exp(-q) du = exp(-h/2) ((1 + g) / 2 - h o).
-    const VF mean = hn::MulAdd(through_half, g, through_half);
-    const VF o = hn::MulAdd(h2, hn::MulAdd(h2, hn::Set(d, o_h4), polynomial(b, o_bh2)), polynomial(b, o_b));
-    const VF first = through_half * hn::MulAdd(half, g, hn::NegMulAdd(h, o, half));
+    const VF mean = MulAdd(through_half, g, through_half);
+    const VF o = MulAdd(h2, MulAdd(h2, Set(d, o_h4), polynomial(b, o_bh2)), polynomial(b, o_b));
+    const VF first = through_half * MulAdd(half, g, NegMulAdd(h, o, half));
     light.weight = s.length * mean;
-    light.moment = hn::MulAdd(s.length * s.span, first, s.from * light.weight);
+    light.moment = MulAdd(s.length * s.span, first, s.from * light.weight);
     return light;
   }
   const VF late = through_half * (g + fade);
   light.weight = light.alpha;
-  light.moment = hn::MulAdd(s.span, late, s.from * light.alpha);
+  light.moment = MulAdd(s.span, late, s.from * light.alpha);
   return light;
 }
 
@@ -120,8 +120,8 @@ struct Passage {
 
 HWY_INLINE void add_stretch(bool independent, Passage& p) {
   const StretchLight light = stretch_light(p.rest, independent);
-  p.weight = hn::MulAdd(p.transmittance, light.weight, p.weight);
-  p.moment = hn::MulAdd(p.transmittance, light.moment, p.moment);
+  p.weight = MulAdd(p.transmittance, light.weight, p.weight);
+  p.moment = MulAdd(p.transmittance, light.moment, p.moment);
   const VF hidden = p.transmittance * light.alpha;
   p.alpha = p.alpha + hidden;
   p.transmittance = p.transmittance - hidden;
@@ -131,19 +131,19 @@ HWY_INLINE void add_stretch(bool independent, Passage& p) {
 /// The other lanes stay as they are. By value: a reference would keep the caller's numbers in memory.
 HWY_NOINLINE inline Passage take_thick_steps(MF thick, bool independent, Passage p) {
   const DF d;
-  const VF one = hn::Set(d, 1.0f), zero = hn::Zero(d), bound = hn::Set(d, step_depth), most = hn::Set(d, most_depth);
-  const VF transmittance_left = hn::Set(d, 2e-9f);
-  const auto cut = [&](VF& x, VF rest) HWY_ATTR { x = hn::IfThenElse(thick, rest, x); };
-  cut(p.rest.depth_front, hn::Min(p.rest.depth_front, most));
-  cut(p.rest.depth_back, hn::Min(p.rest.depth_back, most));
+  const VF one = Set(d, 1.0f), zero = Zero(d), bound = Set(d, step_depth), most = Set(d, most_depth);
+  const VF transmittance_left = Set(d, 2e-9f);
+  const auto cut = [&](VF& x, VF rest) HWY_ATTR { x = IfThenElse(thick, rest, x); };
+  cut(p.rest.depth_front, Min(p.rest.depth_front, most));
+  cut(p.rest.depth_back, Min(p.rest.depth_back, most));
   constexpr int most_steps = 64;  // each lets exp(-1) through at most, so that 21 leave nothing
-  for (int n = 0; n < most_steps && !hn::AllFalse(d, thick); ++n) {
+  for (int n = 0; n < most_steps && !AllFalse(d, thick); ++n) {
     // With depths halved q(u) = 2 a u + (e - a) u^2; the root u of q(u) = bound in the form without cancellation.
     Stretch& s = p.rest;
     const VF a = s.depth_front, rise = s.depth_back - a;
-    const VF root = hn::Sqrt(hn::Max(zero, hn::MulAdd(a, a, bound * rise)));
-    const VF u = hn::Min(one, bound / (a + root));
-    const VF left = one - u, depth_cut = hn::MulAdd(rise, u, a);
+    const VF root = Sqrt(Max(zero, MulAdd(a, a, bound * rise)));
+    const VF u = Min(one, bound / (a + root));
+    const VF left = one - u, depth_cut = MulAdd(rise, u, a);
     Passage step = p;
     step.rest = {a * u, depth_cut * u, s.from, s.span * u, s.length * u};
     add_stretch(independent, step);
@@ -157,9 +157,9 @@ HWY_NOINLINE inline Passage take_thick_steps(MF thick, bool independent, Passage
     cut(s.span, s.span * left);
     cut(s.length, s.length * left);
     // A lane that nothing shows through any more is done: an empty stretch adds nothing.
-    const MF dark = hn::And(thick, p.transmittance < transmittance_left);
-    for (VF* x : {&s.depth_front, &s.depth_back, &s.length}) *x = hn::IfThenElse(dark, zero, *x);
-    thick = hn::And(thick, s.depth_front + s.depth_back > bound);
+    const MF dark = And(thick, p.transmittance < transmittance_left);
+    for (VF* x : {&s.depth_front, &s.depth_back, &s.length}) *x = IfThenElse(dark, zero, *x);
+    thick = And(thick, s.depth_front + s.depth_back > bound);
   }
   return p;
 }
@@ -171,19 +171,18 @@ template <bool first, class Lookup>
 HWY_INLINE void add_piece(const Lookup& table, const typename Lookup::Index& index, VF scalar, VF target, VF span,
                           VF length, Progress& so_far) {
   const DF d;
-  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  const VF zero = Zero(d), one = Set(d, 1.0f);
   const VF start = table.at(LaneTable::half_extinction, index),
            slope = table.at(LaneTable::half_extinction_slope, index);
   const VF base = table.at(LaneTable::base, index);
   const VF from = scalar - base, to = target - base;
-  const Stretch whole{hn::MulAdd(slope, from, start) * length, hn::MulAdd(slope, to, start) * length, from, span,
-                      length};
+  const Stretch whole{MulAdd(slope, from, start) * length, MulAdd(slope, to, start) * length, from, span, length};
   const VF depth = whole.depth_front + whole.depth_back;
-  if (table.has_clear && hn::AllFalse(d, depth > zero)) return;
+  if (table.has_clear && AllFalse(d, depth > zero)) return;
 
   VF weight, moment;
-  const MF thick = depth > hn::Set(d, step_depth);
-  if (HWY_UNLIKELY(!hn::AllFalse(d, thick))) {
+  const MF thick = depth > Set(d, step_depth);
+  if (HWY_UNLIKELY(!AllFalse(d, thick))) {
     Passage passage{whole, zero, one, zero, zero};
     if (!first) passage.alpha = so_far.alpha, passage.transmittance = so_far.transmittance;
     passage = take_thick_steps(thick, table.independent, passage);
@@ -206,8 +205,8 @@ HWY_INLINE void add_piece(const Lookup& table, const typename Lookup::Index& ind
   }
   so_far.optical_depth = first ? depth : so_far.optical_depth + depth;
   const auto add_color = [&](int c, VF& sum) HWY_ATTR {
-    sum = first ? table.at(c, index) * weight : hn::MulAdd(table.at(c, index), weight, sum);
-    sum = hn::MulAdd(table.at(c + 1, index), moment, sum);
+    sum = first ? table.at(c, index) * weight : MulAdd(table.at(c, index), weight, sum);
+    sum = MulAdd(table.at(c + 1, index), moment, sum);
   };
   add_color(LaneTable::red, so_far.red);
   add_color(LaneTable::green, so_far.green);
@@ -224,7 +223,7 @@ struct Walk {
   template <class Lookup>
   HWY_INLINE VF target(const Lookup& table, const typename Lookup::Index& index) const {
     const VF knot = table.edge(interval, index, up);
-    return hn::IfThenElse(up, hn::Min(knot, back), hn::Max(knot, back));
+    return IfThenElse(up, Min(knot, back), Max(knot, back));
   }
 
   /// The pieces behind the knot at `scalar`, at most `most` of them.
@@ -232,17 +231,17 @@ struct Walk {
   HWY_INLINE void go_on(const Lookup& table, int most, Progress& so_far) {
     const DF d;
     const DI di;
-    const VI step = hn::IfThenElse(hn::RebindMask(di, up), hn::Set(di, 1), hn::Set(di, -1));
+    const VI step = IfThenElse(RebindMask(di, up), Set(di, 1), Set(di, -1));
     for (int pieces = 0; pieces < most; ++pieces) {
-      interval = interval + hn::IfThenElseZero(hn::RebindMask(di, active), step);
+      interval = interval + IfThenElseZero(RebindMask(di, active), step);
       const auto index = table.index(interval, active);
       const VF end = target(table, index), span = end - scalar;
-      const VF length = hn::IfThenElseZero(active, span * length_per_scalar);
-      active = hn::And(active, end != back);
+      const VF length = IfThenElseZero(active, span * length_per_scalar);
+      active = And(active, end != back);
       add_piece<false>(table, index, scalar, end, span, length, so_far);
       scalar = end;
-      active = hn::And(active, so_far.optical_depth < hn::Set(d, opaque_depth));
-      if (hn::AllFalse(d, active)) break;
+      active = And(active, so_far.optical_depth < Set(d, opaque_depth));
+      if (AllFalse(d, active)) break;
     }
   }
 };
@@ -251,15 +250,15 @@ struct Walk {
 template <class Lookup>
 HWY_NOINLINE Progress go_far(const Lookup& table, Walk walk, Progress so_far) {
   const DF d;
-  const VF zero = hn::Zero(d);
-  for (std::size_t pieces = 0; pieces <= table.most_pieces && !hn::AllFalse(d, walk.active); pieces += pieces_a_fold) {
-    Progress since{zero, hn::Set(d, 1.0f), zero, zero, zero, zero};
+  const VF zero = Zero(d);
+  for (std::size_t pieces = 0; pieces <= table.most_pieces && !AllFalse(d, walk.active); pieces += pieces_a_fold) {
+    Progress since{zero, Set(d, 1.0f), zero, zero, zero, zero};
     walk.go_on(table, pieces_a_fold, since);
     const VF t = so_far.transmittance;
-    so_far = {hn::MulAdd(t, since.alpha, so_far.alpha),   t * since.transmittance,
-              so_far.optical_depth + since.optical_depth, hn::MulAdd(t, since.red, so_far.red),
-              hn::MulAdd(t, since.green, so_far.green),   hn::MulAdd(t, since.blue, so_far.blue)};
-    walk.active = hn::And(walk.active, so_far.optical_depth < hn::Set(d, opaque_depth));
+    so_far = {MulAdd(t, since.alpha, so_far.alpha),       t * since.transmittance,
+              so_far.optical_depth + since.optical_depth, MulAdd(t, since.red, so_far.red),
+              MulAdd(t, since.green, so_far.green),       MulAdd(t, since.blue, so_far.blue)};
+    walk.active = And(walk.active, so_far.optical_depth < Set(d, opaque_depth));
   }
   return so_far;
 }
@@ -272,22 +271,22 @@ HWY_NOINLINE Progress go_far(const Lookup& table, Walk walk, Progress so_far) {
 template <bool independent, TableForm form>
 HWY_INLINE Light integrate_simple(const Lookup<form>& table, VI interval, VF length, VF front, VF back, MF& more) {
   const DF d;
-  const MF active = length > hn::Zero(d), up = back >= front;
-  length = hn::Min(length, hn::Set(d, lanes::most_length));
+  const MF active = length > Zero(d), up = back >= front;
+  length = Min(length, Set(d, lanes::most_length));
   const auto index = table.index(interval, active);
   const VF knot = table.edge(interval, index, up);
-  const VF end = hn::IfThenElse(up, hn::Min(knot, back), hn::Max(knot, back));
+  const VF end = IfThenElse(up, Min(knot, back), Max(knot, back));
   const VF start = table.at(LaneTable::half_extinction, index),
            slope = table.at(LaneTable::half_extinction_slope, index);
   const VF base = table.at(LaneTable::base, index);
   const VF from = front - base, to = back - base;
-  const lanes::Stretch whole{hn::MulAdd(slope, from, start) * length, hn::MulAdd(slope, to, start) * length, from,
-                             back - front, length};
+  const lanes::Stretch whole{MulAdd(slope, from, start) * length, MulAdd(slope, to, start) * length, from, back - front,
+                             length};
   const VF depth = whole.depth_front + whole.depth_back;
-  more = hn::And(active, hn::Or(end != back, depth > hn::Set(d, lanes::step_depth)));
+  more = And(active, Or(end != back, depth > Set(d, lanes::step_depth)));
   const lanes::StretchLight light = lanes::stretch_light(whole, independent);
   const auto color = [&](int c) HWY_ATTR {
-    return hn::MulAdd(table.at(c + 1, index), light.moment, table.at(c, index) * light.weight);
+    return MulAdd(table.at(c + 1, index), light.moment, table.at(c, index) * light.weight);
   };
   return {light.alpha, depth, color(LaneTable::red), color(LaneTable::green), color(LaneTable::blue)};
 }
@@ -297,11 +296,11 @@ HWY_INLINE Light integrate_simple(const Lookup<form>& table, VI interval, VF len
 template <TableForm form>
 HWY_INLINE Light integrate_lanes(const Lookup<form>& table, VF length, VF front, VF back, MF active) {
   const DF d;
-  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  active = hn::And(active, length > zero);
-  length = hn::IfThenElseZero(active, hn::Min(length, hn::Set(d, lanes::most_length)));
-  front = hn::IfThenElseZero(active, front);
-  back = hn::IfThenElseZero(active, back);
+  const VF zero = Zero(d), one = Set(d, 1.0f);
+  active = And(active, length > zero);
+  length = IfThenElseZero(active, Min(length, Set(d, lanes::most_length)));
+  front = IfThenElseZero(active, front);
+  back = IfThenElseZero(active, back);
   lanes::Progress so_far{zero, one, zero, zero, zero, zero};
 
   lanes::Walk walk;
@@ -310,16 +309,16 @@ HWY_INLINE Light integrate_lanes(const Lookup<form>& table, VF length, VF front,
   walk.back = back;
   const auto index = table.index(walk.interval, active);
   const VF end = walk.target(table, index), span = end - front;
-  walk.active = hn::And(active, end != back);
+  walk.active = And(active, end != back);
   // What a level segment's division gives is not used.
   walk.length_per_scalar = length / (back - front);
-  const VF piece = hn::IfThenElse(walk.active, span * walk.length_per_scalar, length);
+  const VF piece = IfThenElse(walk.active, span * walk.length_per_scalar, length);
   lanes::add_piece<true>(table, index, front, end, span, piece, so_far);
-  if (!hn::AllFalse(d, walk.active)) {
+  if (!AllFalse(d, walk.active)) {
     walk.scalar = end;
-    walk.active = hn::And(walk.active, so_far.optical_depth < hn::Set(d, lanes::opaque_depth));
+    walk.active = And(walk.active, so_far.optical_depth < Set(d, lanes::opaque_depth));
     walk.go_on(table, lanes::pieces_a_fold, so_far);
-    if (HWY_UNLIKELY(!hn::AllFalse(d, walk.active))) so_far = lanes::go_far(table, walk, so_far);
+    if (HWY_UNLIKELY(!AllFalse(d, walk.active))) so_far = lanes::go_far(table, walk, so_far);
   }
   return {so_far.alpha, so_far.optical_depth, so_far.red, so_far.green, so_far.blue};
 }

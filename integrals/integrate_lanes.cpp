@@ -18,13 +18,13 @@ HWY_NOINLINE void integrate_batch(const LaneTable& table, FloatBatch& batch) {
   const Lookup<form> lookup(table);
   const std::size_t lanes = hn::Lanes(d);
   for (std::size_t i = 0; i < batch.size; i += lanes) {
-    const Light light = integrate_lanes(lookup, hn::LoadU(d, &batch.length[i]), hn::LoadU(d, &batch.scalar_front[i]),
-                                        hn::LoadU(d, &batch.scalar_back[i]), hn::FirstN(d, batch.size - i));
-    hn::StoreU(light.alpha, d, &batch.alpha[i]);
-    hn::StoreU(light.optical_depth, d, &batch.optical_depth[i]);
-    hn::StoreU(light.red, d, &batch.red[i]);
-    hn::StoreU(light.green, d, &batch.green[i]);
-    hn::StoreU(light.blue, d, &batch.blue[i]);
+    const Light light = integrate_lanes(lookup, LoadU(d, &batch.length[i]), LoadU(d, &batch.scalar_front[i]),
+                                        LoadU(d, &batch.scalar_back[i]), FirstN(d, batch.size - i));
+    StoreU(light.alpha, d, &batch.alpha[i]);
+    StoreU(light.optical_depth, d, &batch.optical_depth[i]);
+    StoreU(light.red, d, &batch.red[i]);
+    StoreU(light.green, d, &batch.green[i]);
+    StoreU(light.blue, d, &batch.blue[i]);
   }
 }
 

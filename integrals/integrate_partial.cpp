@@ -20,11 +20,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 HWY_INLINE V psi_of(const PsiTable& table, V a, V b) {
   const D d;
-  const V one = hn::Set(d, 1.0), last = hn::Set(d, table.size - 1);
+  const V one = Set(d, 1.0), last = Set(d, table.size - 1);
   const auto place = [&](V depth) HWY_ATTR { return place_in(last * (depth / (one + depth)), table.size); };
   const Place row = place(a), column = place(b);
-  const V stride = hn::Set(d, table.size);
-  const V corner = hn::MulAdd(row.below, stride, column.below);
+  const V stride = Set(d, table.size);
+  const V corner = MulAdd(row.below, stride, column.below);
   const auto at = [&](V index) HWY_ATTR { return gather_floats(table.psi.data(), index); };
   const V near = mixed(at(corner), at(corner + one), column.part);
   const V far_corner = corner + stride;
@@ -35,58 +35,58 @@ HWY_INLINE V psi_of(const PsiTable& table, V a, V b) {
 void partial(const PiecewiseTable& table, const PsiTable& psi, SegmentBatch& batch) {
   const D d;
   const DI di;
-  const V zero = hn::Zero(d), one = hn::Set(d, 1.0), half = hn::Set(d, 0.5);
+  const V zero = Zero(d), one = Set(d, 1.0), half = Set(d, 0.5);
   const auto lanes = static_cast<std::size_t>(hn::Lanes(d));
-  const auto step_up = hn::Set(di, 1), step_down = hn::Set(di, -1);
+  const auto step_up = Set(di, 1), step_down = Set(di, -1);
 
   for (std::size_t i = 0; i < batch.size; i += lanes) {
-    const auto in_batch = hn::Iota(d, 0) < hn::Set(d, static_cast<double>(batch.size - i));
-    const V length = hn::IfThenElseZero(in_batch, hn::LoadU(d, &batch.length[i]));
-    const V front = hn::IfThenElseZero(in_batch, hn::LoadU(d, &batch.scalar_front[i]));
-    const V back = hn::IfThenElseZero(in_batch, hn::LoadU(d, &batch.scalar_back[i]));
+    const auto in_batch = Iota(d, 0) < Set(d, static_cast<double>(batch.size - i));
+    const V length = IfThenElseZero(in_batch, LoadU(d, &batch.length[i]));
+    const V front = IfThenElseZero(in_batch, LoadU(d, &batch.scalar_front[i]));
+    const V back = IfThenElseZero(in_batch, LoadU(d, &batch.scalar_back[i]));
     const auto constant = front == back;
     const auto up = back >= front;
-    const V length_per_scalar = length / hn::IfThenElse(constant, one, back - front);
+    const V length_per_scalar = length / IfThenElse(constant, one, back - front);
 
     VI interval = locate(table, front, up);
     V scalar = front, left = length;
     V color[3] = {zero, zero, zero}, transmittance = one, optical_depth = zero;
     auto active = length > zero;
-    for (std::size_t pieces = table.above.size(); pieces > 0 && !hn::AllFalse(d, active); --pieces) {
+    for (std::size_t pieces = table.above.size(); pieces > 0 && !AllFalse(d, active); --pieces) {
       const auto lookup = [&](const std::vector<double>& column)
-                              HWY_ATTR { return hn::GatherIndex(d, column.data(), interval); };
-      const V knot = hn::IfThenElse(up, lookup(table.above), lookup(table.below));
-      V target = hn::IfThenElse(up, hn::Min(knot, back), hn::Max(knot, back));
-      target = hn::IfThenElse(constant, back, target);
+                              HWY_ATTR { return GatherIndex(d, column.data(), interval); };
+      const V knot = IfThenElse(up, lookup(table.above), lookup(table.below));
+      V target = IfThenElse(up, Min(knot, back), Max(knot, back));
+      target = IfThenElse(constant, back, target);
       const auto last = target == back;
-      const V piece = hn::IfThenElse(last, left, hn::Min(left, (target - scalar) * length_per_scalar));
+      const V piece = IfThenElse(last, left, Min(left, (target - scalar) * length_per_scalar));
       const V from = scalar - lookup(table.base), to = target - lookup(table.base);
       const auto channel = [&](int c, V at) HWY_ATTR {
-        return hn::MulAdd(lookup(table.channels[c].slope), at, lookup(table.channels[c].start));
+        return MulAdd(lookup(table.channels[c].slope), at, lookup(table.channels[c].start));
       };
-      const V a = hn::Max(channel(0, from), zero) * piece, b = hn::Max(channel(0, to), zero) * piece;
+      const V a = Max(channel(0, from), zero) * piece, b = Max(channel(0, to), zero) * piece;
       const V depth = half * (a + b);
-      const V absorbed = hn::Neg(hn::Expm1(d, hn::Neg(depth)));
+      const V absorbed = Neg(Expm1(d, Neg(depth)));
       // M - T, above 0 and below 1 - T for any monotonous extinction; the table's error must not leave that range.
-      const V shift = hn::Min(hn::Max(psi_of(psi, a, b) - (one - absorbed), zero), absorbed);
+      const V shift = Min(Max(psi_of(psi, a, b) - (one - absorbed), zero), absorbed);
       for (int c = 0; c < 3; ++c) {
         const V near = channel(c + 1, from), change = channel(c + 1, to) - near;
-        const V light = hn::MulAdd(change, shift, near * absorbed);
-        color[c] = hn::IfThenElse(active, hn::MulAdd(transmittance, light, color[c]), color[c]);
+        const V light = MulAdd(change, shift, near * absorbed);
+        color[c] = IfThenElse(active, MulAdd(transmittance, light, color[c]), color[c]);
       }
-      optical_depth = hn::IfThenElse(active, optical_depth + depth, optical_depth);
-      transmittance = hn::IfThenElse(active, transmittance * (one - absorbed), transmittance);
+      optical_depth = IfThenElse(active, optical_depth + depth, optical_depth);
+      transmittance = IfThenElse(active, transmittance * (one - absorbed), transmittance);
       left = left - piece;
       scalar = target;
-      active = hn::AndNot(hn::Or(last, transmittance < hn::Set(d, 1e-10)), active);
-      const auto on = hn::RebindMask(di, active);
-      interval = interval + hn::IfThenElseZero(on, hn::IfThenElse(hn::RebindMask(di, up), step_up, step_down));
+      active = AndNot(Or(last, transmittance < Set(d, 1e-10)), active);
+      const auto on = RebindMask(di, active);
+      interval = interval + IfThenElseZero(on, IfThenElse(RebindMask(di, up), step_up, step_down));
     }
-    hn::StoreU(color[0], d, &batch.red[i]);
-    hn::StoreU(color[1], d, &batch.green[i]);
-    hn::StoreU(color[2], d, &batch.blue[i]);
-    hn::StoreU(optical_depth, d, &batch.optical_depth[i]);
-    hn::StoreU(transmittance, d, &batch.transmittance[i]);
+    StoreU(color[0], d, &batch.red[i]);
+    StoreU(color[1], d, &batch.green[i]);
+    StoreU(color[2], d, &batch.blue[i]);
+    StoreU(optical_depth, d, &batch.optical_depth[i]);
+    StoreU(transmittance, d, &batch.transmittance[i]);
   }
 }
 

@@ -18,43 +18,42 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 void sampled(const PiecewiseTable& table, scene::Emission emission, int samples, SegmentBatch& batch) {
   const D d;
-  const V zero = hn::Zero(d), one = hn::Set(d, 1.0);
+  const V zero = Zero(d), one = Set(d, 1.0);
   const auto always = zero == zero;
   const auto lanes = static_cast<std::size_t>(hn::Lanes(d));
   const bool emits_by_extinction = emission == scene::Emission::absorption;
 
   for (std::size_t i = 0; i < batch.size; i += lanes) {
-    const auto in_batch = hn::Iota(d, 0) < hn::Set(d, static_cast<double>(batch.size - i));
-    const V step = hn::IfThenElseZero(in_batch, hn::LoadU(d, &batch.length[i])) / hn::Set(d, samples);
-    const V front = hn::IfThenElseZero(in_batch, hn::LoadU(d, &batch.scalar_front[i]));
-    const V change = hn::IfThenElseZero(in_batch, hn::LoadU(d, &batch.scalar_back[i])) - front;
+    const auto in_batch = Iota(d, 0) < Set(d, static_cast<double>(batch.size - i));
+    const V step = IfThenElseZero(in_batch, LoadU(d, &batch.length[i])) / Set(d, samples);
+    const V front = IfThenElseZero(in_batch, LoadU(d, &batch.scalar_front[i]));
+    const V change = IfThenElseZero(in_batch, LoadU(d, &batch.scalar_back[i])) - front;
     V color[3] = {zero, zero, zero}, transmittance = one, optical_depth = zero;
     for (int sample = 0; sample < samples; ++sample) {
-      const V s = hn::MulAdd(change, hn::Set(d, (sample + 0.5) / samples), front);
+      const V s = MulAdd(change, Set(d, (sample + 0.5) / samples), front);
       const VI interval = locate(table, s, always);
-      const V from = s - hn::GatherIndex(d, table.base.data(), interval);
+      const V from = s - GatherIndex(d, table.base.data(), interval);
       const auto channel = [&](int c) HWY_ATTR {
-        return hn::MulAdd(hn::GatherIndex(d, table.channels[c].slope.data(), interval), from,
-                          hn::GatherIndex(d, table.channels[c].start.data(), interval));
+        return MulAdd(GatherIndex(d, table.channels[c].slope.data(), interval), from,
+                      GatherIndex(d, table.channels[c].start.data(), interval));
       };
       const V depth = channel(0) * step;
-      const V through = hn::Exp(d, hn::Neg(depth));
+      const V through = Exp(d, Neg(depth));
       // int_0^step exp(-kappa t) dt, and kappa times it.
       const V absorbed = one - through;
-      const auto thin = depth < hn::Set(d, 1e-8);
-      const V source = emits_by_extinction
-                           ? absorbed
-                           : hn::IfThenElse(thin, step, step * (absorbed / hn::Max(depth, hn::Set(d, 1e-8))));
+      const auto thin = depth < Set(d, 1e-8);
+      const V source =
+          emits_by_extinction ? absorbed : IfThenElse(thin, step, step * (absorbed / Max(depth, Set(d, 1e-8))));
       const V weight = transmittance * source;
-      for (int c = 0; c < 3; ++c) color[c] = hn::MulAdd(weight, channel(c + 1), color[c]);
+      for (int c = 0; c < 3; ++c) color[c] = MulAdd(weight, channel(c + 1), color[c]);
       transmittance = transmittance * through;
       optical_depth = optical_depth + depth;
     }
-    hn::StoreU(color[0], d, &batch.red[i]);
-    hn::StoreU(color[1], d, &batch.green[i]);
-    hn::StoreU(color[2], d, &batch.blue[i]);
-    hn::StoreU(optical_depth, d, &batch.optical_depth[i]);
-    hn::StoreU(transmittance, d, &batch.transmittance[i]);
+    StoreU(color[0], d, &batch.red[i]);
+    StoreU(color[1], d, &batch.green[i]);
+    StoreU(color[2], d, &batch.blue[i]);
+    StoreU(optical_depth, d, &batch.optical_depth[i]);
+    StoreU(transmittance, d, &batch.transmittance[i]);
   }
 }
 

@@ -41,10 +41,9 @@ HWY_INLINE VF two_table_lookup(VF low, VF high, VI i) {
   return VF{_mm512_permutex2var_ps(low.raw, i.raw, high.raw)};
 #else
   const DI di;
-  const auto lanes = hn::Set(di, static_cast<std::int32_t>(hn::Lanes(di)));
-  const auto in_row = hn::IndicesFromVec(d, hn::And(i, lanes - hn::Set(di, 1)));
-  return hn::IfThenElse(hn::RebindMask(d, i < lanes), hn::TableLookupLanes(low, in_row),
-                        hn::TableLookupLanes(high, in_row));
+  const auto lanes = Set(di, static_cast<std::int32_t>(hn::Lanes(di)));
+  const auto in_row = IndicesFromVec(d, And(i, lanes - Set(di, 1)));
+  return IfThenElse(RebindMask(d, i < lanes), TableLookupLanes(low, in_row), TableLookupLanes(high, in_row));
 #endif
 }
 
@@ -55,7 +54,7 @@ HWY_INLINE VI truncated(VF v) {
 #elif HWY_TARGET <= HWY_AVX2
   return VI{_mm256_cvttps_epi32(v.raw)};
 #else
-  return hn::ConvertTo(DI(), v);
+  return ConvertTo(DI(), v);
 #endif
 }
 
@@ -71,9 +70,9 @@ class Lookup;
 HWY_INLINE VI count_if(MF mask, VI count) {
   const DI di;
 #if HWY_TARGET <= HWY_AVX3
-  return hn::IfThenElse(hn::RebindMask(di, mask), count + hn::Set(di, 1), count);
+  return IfThenElse(RebindMask(di, mask), count + Set(di, 1), count);
 #else
-  return count - hn::VecFromMask(di, hn::RebindMask(di, mask));
+  return count - VecFromMask(di, RebindMask(di, mask));
 #endif
 }
 
@@ -81,9 +80,9 @@ HWY_INLINE VI count_if(MF mask, VI count) {
 HWY_INLINE VF past(VF s, MF up) {
   const DF d;
   const DI di;
-  const VI bits = hn::BitCast(di, s + hn::Zero(d));  // -0 has no neighbour in its bits
-  const VI away = hn::Or(hn::ShiftRight<31>(bits), hn::Set(di, 1));
-  return hn::BitCast(d, hn::IfThenElse(hn::RebindMask(di, up), bits + away, bits));
+  const VI bits = BitCast(di, s + Zero(d));  // -0 has no neighbour in its bits
+  const VI away = Or(ShiftRight<31>(bits), Set(di, 1));
+  return BitCast(d, IfThenElse(RebindMask(di, up), bits + away, bits));
 }
 
 /// Further knots below s, of those after the first `passed`, by a binary search of the edges: edge_at finds edge[i].
@@ -91,8 +90,8 @@ template <class EdgeAt>
 HWY_INLINE VI search(VI passed, std::size_t first_step, VF s, const EdgeAt& edge_at) {
   const DI di;
   for (std::size_t step = first_step; step > 0; step /= 2) {
-    const VI further = passed + hn::Set(di, static_cast<std::int32_t>(step));
-    passed = hn::IfThenElse(hn::RebindMask(di, edge_at(further) < s), further, passed);
+    const VI further = passed + Set(di, static_cast<std::int32_t>(step));
+    passed = IfThenElse(RebindMask(di, edge_at(further) < s), further, passed);
   }
   return passed;
 }
@@ -109,13 +108,13 @@ struct Landmarks {
   }
   HWY_INLINE VI passed(VF s) const {
     const DF d;
-    VI even = hn::Zero(DI()), odd = even;
+    VI even = Zero(DI()), odd = even;
     for (std::size_t i = 0; i < count; i += 2) {
-      even = count_if(hn::Set(d, value[i]) < s, even);
-      odd = count_if(hn::Set(d, value[i + 1]) < s, odd);
+      even = count_if(Set(d, value[i]) < s, even);
+      odd = count_if(Set(d, value[i + 1]) < s, odd);
     }
     const VI landmarks = even + odd;
-    return first_step > 0 ? hn::ShiftLeftSame(landmarks, stride_bits) : landmarks;
+    return first_step > 0 ? ShiftLeftSame(landmarks, stride_bits) : landmarks;
   }
   float value[count];
   int stride_bits;
@@ -133,26 +132,26 @@ class Lookup<TableForm::one_vector> {
         landmarks_(table) {
     const DF d;
     const DI di;
-    for (int c = 0; c < LaneTable::column_count; ++c) rows_[c] = hn::LoadU(d, table.column(c));
+    for (int c = 0; c < LaneTable::column_count; ++c) rows_[c] = LoadU(d, table.column(c));
     // A grid of few cells, no two knots in one, goes into registers too: half the work of comparing knot by knot.
     const std::size_t lanes = hn::Lanes(di), cells = table.knots_before.size();
     in_registers_ = cells <= 2 * lanes && table.largest_step <= 1;
     if (!in_registers_) return;
-    HWY_ALIGN std::int32_t before[2 * hn::MaxLanes(DI())] = {};
+    HWY_ALIGN std::int32_t before[2 * MaxLanes(DI())] = {};
     std::copy(table.knots_before.begin(), table.knots_before.end(), before);
-    low_cells_ = hn::BitCast(d, hn::Load(di, before)), high_cells_ = hn::BitCast(d, hn::Load(di, before + lanes));
-    grid_origin_ = hn::Set(d, table.grid_origin), grid_scale_ = hn::Set(d, table.grid_scale);
-    last_cell_ = hn::Set(d, table.last_cell);
+    low_cells_ = BitCast(d, Load(di, before)), high_cells_ = BitCast(d, Load(di, before + lanes));
+    grid_origin_ = Set(d, table.grid_origin), grid_scale_ = Set(d, table.grid_scale);
+    last_cell_ = Set(d, table.last_cell);
   }
   HWY_INLINE VI locate(VF s, MF up) const {
     const DF d;
     const DI di;
     if (HWY_LIKELY(in_registers_)) {
       const VF place = (s - grid_origin_) * grid_scale_;
-      const VI cell = truncated(hn::Min(hn::Max(place, hn::Zero(d)), last_cell_));
-      const VI before = hn::BitCast(di, two_table_lookup(low_cells_, high_cells_, cell));
-      const VF next = at(LaneTable::edge, before + hn::Set(di, 1));
-      return count_if(hn::Or(next < s, hn::And(up, next == s)), before);
+      const VI cell = truncated(Min(Max(place, Zero(d)), last_cell_));
+      const VI before = BitCast(di, two_table_lookup(low_cells_, high_cells_, cell));
+      const VF next = at(LaneTable::edge, before + Set(di, 1));
+      return count_if(Or(next < s, And(up, next == s)), before);
     }
     const VF passing = past(s, up);
     return search(landmarks_.passed(passing), landmarks_.first_step, passing,
@@ -160,7 +159,7 @@ class Lookup<TableForm::one_vector> {
   }
   HWY_INLINE Index index(VI interval, MF) const { return interval; }
   HWY_INLINE VF at(int column, const Index& i) const {
-    return hn::TableLookupLanes(rows_[column], hn::IndicesFromVec(DF(), i));
+    return TableLookupLanes(rows_[column], IndicesFromVec(DF(), i));
   }
   HWY_INLINE VF edge(VI, const Index& i, VI upper) const { return at(LaneTable::edge, i + upper); }
   HWY_INLINE VF edge(VI, const Index& i, MF upper) const { return at(LaneTable::edge, count_if(upper, i)); }
@@ -187,8 +186,8 @@ class Lookup<TableForm::two_vectors> {
         landmarks_(table) {
     const DF d;
     for (int c = 0; c < LaneTable::column_count; ++c) {
-      low_[c] = hn::LoadU(d, table.column(c));
-      high_[c] = hn::LoadU(d, table.column(c) + hn::Lanes(d));
+      low_[c] = LoadU(d, table.column(c));
+      high_[c] = LoadU(d, table.column(c) + hn::Lanes(d));
     }
   }
   HWY_INLINE VI locate(VF s, MF up) const {
@@ -228,28 +227,28 @@ class Lookup<TableForm::many> {
   HWY_INLINE VI locate(VF s, MF up) const {
     const DF d;
     const DI di;
-    const VF place = (s - hn::Set(d, table_.grid_origin)) * hn::Set(d, table_.grid_scale);
-    const VI cell = truncated(hn::Min(hn::Max(place, hn::Zero(d)), hn::Set(d, table_.last_cell)));
-    return search(hn::GatherIndex(di, table_.knots_before.data(), cell), table_.largest_step, past(s, up),
-                  [&](VI i) HWY_ATTR { return hn::GatherIndex(DF(), table_.column(LaneTable::edge), i); });
+    const VF place = (s - Set(d, table_.grid_origin)) * Set(d, table_.grid_scale);
+    const VI cell = truncated(Min(Max(place, Zero(d)), Set(d, table_.last_cell)));
+    return search(GatherIndex(di, table_.knots_before.data(), cell), table_.largest_step, past(s, up),
+                  [&](VI i) HWY_ATTR { return GatherIndex(DF(), table_.column(LaneTable::edge), i); });
   }
   HWY_INLINE Index index(VI interval, MF active) const {
     const DF d;
     const DI di;
-    constexpr std::size_t most = hn::MaxLanes(DF());
+    constexpr std::size_t most = MaxLanes(DF());
     HWY_ALIGN std::int32_t intervals[most];
-    hn::Store(interval, di, intervals);
+    Store(interval, di, intervals);
     const auto lanes = static_cast<std::int32_t>(hn::Lanes(di));
-    const auto first = std::max<std::intptr_t>(0, hn::FindFirstTrue(d, active));
+    const auto first = std::max<std::intptr_t>(0, FindFirstTrue(d, active));
     const std::int32_t window = std::max(0, intervals[first] - lanes);
     Index index;
     index.interval = interval;
     index.window = static_cast<std::size_t>(window);
-    const VI in_window = interval - hn::Set(di, window);
+    const VI in_window = interval - Set(di, window);
     // Bits above 2 lanes are set where a lane is out of the window, on either side; one place is kept for the far edge.
-    const auto outside = hn::RebindMask(d, hn::Or(in_window<hn::Zero(di), in_window> hn::Set(di, 2 * lanes - 2)));
-    index.windowed = hn::AllFalse(d, hn::And(active, outside));
-    index.in_window = hn::IfThenZeroElse(hn::RebindMask(di, outside), in_window);
+    const auto outside = RebindMask(d, Or(in_window<Zero(di), in_window> Set(di, 2 * lanes - 2)));
+    index.windowed = AllFalse(d, And(active, outside));
+    index.in_window = IfThenZeroElse(RebindMask(di, outside), in_window);
     return index;
   }
   HWY_INLINE VF at(int column, const Index& i) const { return look_up(column, i, i.interval, i.in_window); }
@@ -269,9 +268,9 @@ class Lookup<TableForm::many> {
     const float* const row = table_.column(column);
     if (HWY_LIKELY(i.windowed)) {
       const float* const window = row + i.window;
-      return two_table_lookup(hn::LoadU(d, window), hn::LoadU(d, window + hn::Lanes(d)), in_window);
+      return two_table_lookup(LoadU(d, window), LoadU(d, window + hn::Lanes(d)), in_window);
     }
-    return hn::GatherIndex(d, row, interval);
+    return GatherIndex(d, row, interval);
   }
 
   const LaneTable& table_;

@@ -29,17 +29,17 @@ HWY_INLINE VI locate(const PiecewiseTable& table, V s, hwy::HWY_NAMESPACE::Mask<
   namespace hn = hwy::HWY_NAMESPACE;
   const D d;
   const DI di;
-  VI count = hn::Zero(di);
-  const auto passed = [&](V value) HWY_ATTR { return hn::Or(value < s, hn::And(up, value == s)); };
+  VI count = Zero(di);
+  const auto passed = [&](V value) HWY_ATTR { return Or(value < s, And(up, value == s)); };
   if (table.knot_count <= 12) {
     for (std::size_t k = 0; k < table.knot_count; ++k)
-      count = count - hn::VecFromMask(di, hn::RebindMask(di, passed(hn::Set(d, table.values[k]))));
+      count = count - VecFromMask(di, RebindMask(di, passed(Set(d, table.values[k]))));
     return count;
   }
   for (std::size_t step = (table.values.size() + 1) / 2; step > 0; step /= 2) {
-    const auto jump = hn::Set(di, static_cast<std::int64_t>(step));
-    const V value = hn::GatherIndex(d, table.values.data(), count + hn::Set(di, static_cast<std::int64_t>(step) - 1));
-    count = count + hn::IfThenElseZero(hn::RebindMask(di, passed(value)), jump);
+    const auto jump = Set(di, static_cast<std::int64_t>(step));
+    const V value = GatherIndex(d, table.values.data(), count + Set(di, static_cast<std::int64_t>(step) - 1));
+    count = count + IfThenElseZero(RebindMask(di, passed(value)), jump);
   }
   return count;
 }

@@ -27,15 +27,15 @@ struct Place {
 HWY_INLINE Place place_in(V x, int size) {
   namespace hn = hwy::HWY_NAMESPACE;
   const D d;
-  const V inside = hn::Min(hn::IfThenElseZero(x > hn::Zero(d), x), hn::Set(d, size - 1));
-  const V below = hn::Min(hn::Floor(inside), hn::Set(d, size - 2));
+  const V inside = Min(IfThenElseZero(x > Zero(d), x), Set(d, size - 1));
+  const V below = Min(Floor(inside), Set(d, size - 2));
   return {below, inside - below};
 }
 
 /// Linear between two entries.
 HWY_INLINE V mixed(V at_0, V at_1, V part) {
   namespace hn = hwy::HWY_NAMESPACE;
-  return hn::MulAdd(part, at_1 - at_0, at_0);
+  return MulAdd(part, at_1 - at_0, at_0);
 }
 
 /// Indices below 2^31.
@@ -44,7 +44,7 @@ HWY_INLINE V gather_floats(const float* table, V index) {
   const D d;
   const hn::Rebind<float, D> df;
   const hn::Rebind<std::int32_t, D> di32;
-  return hn::PromoteTo(d, hn::GatherIndex(df, table, hn::DemoteTo(di32, index)));
+  return PromoteTo(d, GatherIndex(df, table, DemoteTo(di32, index)));
 }
 
 }  // namespace HWY_NAMESPACE

@@ -20,13 +20,13 @@ double smallest(const PixelVertex* vertices, std::size_t count) {
   std::size_t v = 0;
 #if HWY_TARGET != HWY_SCALAR
   const hn::ScalableTag<double> d;
-  auto least_lanes = hn::Set(d, least);
+  auto least_lanes = Set(d, least);
   for (; v + hn::Lanes(d) <= count; v += hn::Lanes(d)) {
     hn::Vec<decltype(d)> x, y, w, depth;
-    hn::LoadInterleaved4(d, &vertices[v].x, x, y, w, depth);
-    least_lanes = hn::Min(depth, least_lanes);
+    LoadInterleaved4(d, &vertices[v].x, x, y, w, depth);
+    least_lanes = Min(depth, least_lanes);
   }
-  least = hn::GetLane(hn::MinOfLanes(d, least_lanes));
+  least = GetLane(MinOfLanes(d, least_lanes));
 #endif
   for (; v < count; ++v) least = vertices[v].depth < least ? vertices[v].depth : least;
   return least;
@@ -67,16 +67,16 @@ void make_vertices(const PixelVertex* vertices, const double* scalars, std::size
   const hn::ScalableTag<double> dd;
   const hn::Rebind<float, decltype(dd)> df;
   const std::size_t lanes = hn::Lanes(dd);
-  const auto origin = hn::Set(dd, depth_origin), origin_size = hn::Abs(origin);
+  const auto origin = Set(dd, depth_origin), origin_size = Abs(origin);
   std::size_t v = 0;
   for (; v + lanes <= count; v += lanes) {
     hn::Vec<decltype(dd)> x, y, w, depth;
-    hn::LoadInterleaved4(dd, &vertices[v].x, x, y, w, depth);
-    const auto offset = depth - origin - (hn::Abs(depth) + origin_size) * hn::Set(dd, 4e-16);
-    const auto lower = offset - hn::Abs(offset) * hn::Set(dd, 0x1p-23) - hn::Set(dd, 0x1p-149);
-    const auto scalar = scalars != nullptr ? hn::LoadU(dd, scalars + v) : hn::Zero(dd);
-    hn::StoreInterleaved4(hn::DemoteTo(df, x / w), hn::DemoteTo(df, y / w),
-                          hn::DemoteTo(df, hn::Min(lower, hn::Set(dd, 3e38))), hn::DemoteTo(df, scalar), df, &out[v].x);
+    LoadInterleaved4(dd, &vertices[v].x, x, y, w, depth);
+    const auto offset = depth - origin - (Abs(depth) + origin_size) * Set(dd, 4e-16);
+    const auto lower = offset - Abs(offset) * Set(dd, 0x1p-23) - Set(dd, 0x1p-149);
+    const auto scalar = scalars != nullptr ? LoadU(dd, scalars + v) : Zero(dd);
+    StoreInterleaved4(DemoteTo(df, x / w), DemoteTo(df, y / w), DemoteTo(df, Min(lower, Set(dd, 3e38))),
+                      DemoteTo(df, scalar), df, &out[v].x);
   }
   for (; v < count; ++v) out[v] = cull_vertex(vertices[v], scalars != nullptr ? scalars[v] : 0, depth_origin);
 }
@@ -87,7 +87,7 @@ using M = hn::Mask<D>;
 
 HWY_INLINE std::uint64_t bits_of(M mask) {
   std::uint64_t bits = 0;
-  hn::StoreMaskBits(D(), mask, reinterpret_cast<std::uint8_t*>(&bits));
+  StoreMaskBits(D(), mask, reinterpret_cast<std::uint8_t*>(&bits));
   return bits;
 }
 
@@ -98,18 +98,18 @@ struct Covered {
 };
 
 /// Ten times the rounding of a float pixel position and of what is added to it here, and of footprint()'s slack.
-HWY_INLINE V slack_of(V pixel) { return hn::MulAdd(hn::Abs(pixel), hn::Set(D(), 0x1p-22f), hn::Set(D(), 1e-6f)); }
+HWY_INLINE V slack_of(V pixel) { return MulAdd(Abs(pixel), Set(D(), 0x1p-22f), Set(D(), 1e-6f)); }
 
 HWY_INLINE Covered covered(V least, V most, V side) {
   const D d;
-  const V half = hn::Set(d, 0.5f), zero = hn::Zero(d);
-  const auto in_window = [&](V v) HWY_ATTR { return hn::Min(hn::Max(v, zero), side); };
+  const V half = Set(d, 0.5f), zero = Zero(d);
+  const auto in_window = [&](V v) HWY_ATTR { return Min(Max(v, zero), side); };
   const V from = least - half, from_slack = slack_of(least);
   const V to = most + half, to_slack = slack_of(most);  // floor(most - 1/2) + 1
-  const V first = in_window(hn::Ceil(from - from_slack)), last = in_window(hn::Floor(to + to_slack));
-  const M first_sure = first == in_window(hn::Ceil(from + from_slack));
-  const M last_sure = last == in_window(hn::Floor(to - to_slack));
-  return {first, last, first >= last, hn::And(first_sure, last_sure)};
+  const V first = in_window(Ceil(from - from_slack)), last = in_window(Floor(to + to_slack));
+  const M first_sure = first == in_window(Ceil(from + from_slack));
+  const M last_sure = last == in_window(Floor(to - to_slack));
+  return {first, last, first >= last, And(first_sure, last_sure)};
 }
 
 /// Boxes of cells, a cell after the other: smallest and largest of x, y, depth, scalar.
@@ -117,10 +117,10 @@ HWY_INLINE void boxes_of(const CullVertex* vertices, const scene::Tet* tets, std
                          float* high) {
   const hn::FixedTag<float, 4> d;
   for (std::size_t t = 0; t < count; ++t) {
-    const auto a = hn::Load(d, &vertices[tets[t][0]].x), b = hn::Load(d, &vertices[tets[t][1]].x);
-    const auto c = hn::Load(d, &vertices[tets[t][2]].x), e = hn::Load(d, &vertices[tets[t][3]].x);
-    hn::Store(hn::Min(hn::Min(a, b), hn::Min(c, e)), d, low + 4 * t);
-    hn::Store(hn::Max(hn::Max(a, b), hn::Max(c, e)), d, high + 4 * t);
+    const auto a = Load(d, &vertices[tets[t][0]].x), b = Load(d, &vertices[tets[t][1]].x);
+    const auto c = Load(d, &vertices[tets[t][2]].x), e = Load(d, &vertices[tets[t][3]].x);
+    Store(Min(Min(a, b), Min(c, e)), d, low + 4 * t);
+    Store(Max(Max(a, b), Max(c, e)), d, high + 4 * t);
   }
 }
 
@@ -130,8 +130,8 @@ struct Boxes {
 
   HWY_INLINE Boxes(const float* low, const float* high) {
     const D d;
-    hn::LoadInterleaved4(d, low, x_low, y_low, depth_low, scalar_low);
-    hn::LoadInterleaved4(d, high, x_high, y_high, depth_high, scalar_high);
+    LoadInterleaved4(d, low, x_low, y_low, depth_low, scalar_low);
+    LoadInterleaved4(d, high, x_high, y_high, depth_high, scalar_high);
   }
 };
 
@@ -141,12 +141,12 @@ struct Hidden {
 
   HWY_INLINE Hidden(const Boxes& boxes, const ClearFloats* clear, std::size_t clear_count) {
     const D d;
-    surely = maybe = hn::Zero(d) < hn::Zero(d);
+    surely = maybe = Zero(d) < Zero(d);
     for (std::size_t i = 0; i < clear_count; ++i) {
-      surely = hn::Or(surely, hn::And(boxes.scalar_low >= hn::Set(d, clear[i].sure_low),
-                                      boxes.scalar_high <= hn::Set(d, clear[i].sure_high)));
-      maybe = hn::Or(maybe, hn::And(boxes.scalar_low >= hn::Set(d, clear[i].maybe_low),
-                                    boxes.scalar_high <= hn::Set(d, clear[i].maybe_high)));
+      surely = Or(surely,
+                  And(boxes.scalar_low >= Set(d, clear[i].sure_low), boxes.scalar_high <= Set(d, clear[i].sure_high)));
+      maybe = Or(maybe,
+                 And(boxes.scalar_low >= Set(d, clear[i].maybe_low), boxes.scalar_high <= Set(d, clear[i].maybe_high)));
     }
   }
 };
@@ -159,27 +159,24 @@ struct Placed {
   HWY_INLINE Placed(const CullView& view, const Boxes& b) {
     const D d;
     // The farthest that a vertex of this CullVertex::depth may lie.
-    const auto at_most = [&](V v) HWY_ATTR {
-      return hn::MulAdd(hn::Abs(v), hn::Set(d, 4e-7f), v) + hn::Set(d, view.depth_slack);
-    };
-    too_near = at_most(b.depth_high) < hn::Set(d, view.near_low);
-    too_far = b.depth_low > hn::Set(d, view.far_high);
-    in_depth = hn::And(b.depth_low > hn::Set(d, view.near_high), at_most(b.depth_low) < hn::Set(d, view.far_low));
+    const auto at_most = [&](V v) HWY_ATTR { return MulAdd(Abs(v), Set(d, 4e-7f), v) + Set(d, view.depth_slack); };
+    too_near = at_most(b.depth_high) < Set(d, view.near_low);
+    too_far = b.depth_low > Set(d, view.far_high);
+    in_depth = And(b.depth_low > Set(d, view.near_high), at_most(b.depth_low) < Set(d, view.far_low));
 
-    const V width = hn::Set(d, view.width), height = hn::Set(d, view.height);
+    const V width = Set(d, view.width), height = Set(d, view.height);
     columns = covered(b.x_low, b.x_high, width), rows = covered(b.y_low, b.y_high, height);
     // A sum, which is no number where one of them is none.
-    const V widest = hn::Abs(b.x_low) + hn::Abs(b.x_high) + (hn::Abs(b.y_low) + hn::Abs(b.y_high));
-    tame = widest < hn::Set(d, 1e30f);
-    empty = hn::Or(columns.empty, rows.empty);
-    covers = hn::AndNot(empty, hn::And(columns.sure, rows.sure));
+    const V widest = Abs(b.x_low) + Abs(b.x_high) + (Abs(b.y_low) + Abs(b.y_high));
+    tame = widest < Set(d, 1e30f);
+    empty = Or(columns.empty, rows.empty);
+    covers = AndNot(empty, And(columns.sure, rows.sure));
     const auto within = [&](V least, V most, V side)
-                            HWY_ATTR { return hn::And(least > slack_of(least), most + slack_of(most) < side); };
-    const auto beyond = [&](V least, V most, V side) HWY_ATTR {
-      return hn::Or(most + slack_of(most) < hn::Zero(d), least - slack_of(least) > side);
-    };
-    inside = hn::And(within(b.x_low, b.x_high, width), within(b.y_low, b.y_high, height));
-    outside = hn::Or(beyond(b.x_low, b.x_high, width), beyond(b.y_low, b.y_high, height));
+                            HWY_ATTR { return And(least > slack_of(least), most + slack_of(most) < side); };
+    const auto beyond = [&](V least, V most, V side)
+                            HWY_ATTR { return Or(most + slack_of(most) < Zero(d), least - slack_of(least) > side); };
+    inside = And(within(b.x_low, b.x_high, width), within(b.y_low, b.y_high, height));
+    outside = Or(beyond(b.x_low, b.x_high, width), beyond(b.y_low, b.y_high, height));
   }
 };
 
@@ -188,18 +185,18 @@ HWY_INLINE std::uint64_t store_places(const CullView& view, const Placed& placed
   const D d;
   const hn::RebindToSigned<D> di;
   // Whole numbers up to 65536 plus a half, over the tile's size: floats are off by less than half a pixel.
-  const V inverse = hn::Set(d, view.inverse_tile_size), half = hn::Set(d, 0.5f);
-  const auto tile = [&](V pixel) HWY_ATTR { return hn::Floor(pixel * inverse); };
+  const V inverse = Set(d, view.inverse_tile_size), half = Set(d, 0.5f);
+  const auto tile = [&](V pixel) HWY_ATTR { return Floor(pixel * inverse); };
   const V column0 = tile(placed.columns.low + half), column1 = tile(placed.columns.high - half);
   const V row0 = tile(placed.rows.low + half), row1 = tile(placed.rows.high - half);
-  const auto first = hn::ConvertTo(di, hn::MulAdd(row0, hn::Set(d, view.columns), column0));
-  const auto more_columns = hn::ConvertTo(di, column1 - column0);
-  const auto more_rows = hn::ConvertTo(di, row1 - row0);
-  const auto place = hn::Or(first, hn::Or(hn::ShiftLeft<24>(more_columns), hn::ShiftLeft<28>(more_rows)));
-  const auto wide = hn::Max(more_columns, more_rows) > hn::Set(di, largest_place_span);
-  hn::StoreU(hn::IfThenElse(wide, hn::Set(di, static_cast<std::int32_t>(wide_place)), place), di,
-             reinterpret_cast<std::int32_t*>(places));
-  return bits_of(hn::RebindMask(d, hn::Or(more_columns, more_rows) == hn::Zero(di)));
+  const auto first = ConvertTo(di, MulAdd(row0, Set(d, view.columns), column0));
+  const auto more_columns = ConvertTo(di, column1 - column0);
+  const auto more_rows = ConvertTo(di, row1 - row0);
+  const auto place = Or(first, Or(ShiftLeft<24>(more_columns), ShiftLeft<28>(more_rows)));
+  const auto wide = Max(more_columns, more_rows) > Set(di, largest_place_span);
+  StoreU(IfThenElse(wide, Set(di, static_cast<std::int32_t>(wide_place)), place), di,
+         reinterpret_cast<std::int32_t*>(places));
+  return bits_of(RebindMask(d, Or(more_columns, more_rows) == Zero(di)));
 }
 
 CulledBlock cull(const CullView& view, const CullVertex* vertices, const scene::Tet* tets, std::size_t count,
@@ -224,21 +221,21 @@ CulledBlock cull(const CullView& view, const CullVertex* vertices, const scene::
   }
   for (std::size_t t = 0; t < count; t += lanes) {
     Boxes boxes(low + 4 * t, high + 4 * t);
-    if (cell_scalars != nullptr) boxes.scalar_low = boxes.scalar_high = hn::Load(d, scalars + t);
+    if (cell_scalars != nullptr) boxes.scalar_low = boxes.scalar_high = Load(d, scalars + t);
     const Hidden hidden(boxes, clear, clear_count);
     const Placed placed(view, boxes);
 
     const std::uint64_t here = cells >> t & (~std::uint64_t{0} >> (64 - lanes)), visible = ~bits_of(hidden.maybe);
-    const std::uint64_t drawn = visible & bits_of(hn::And(placed.in_depth, placed.tame));
+    const std::uint64_t drawn = visible & bits_of(And(placed.in_depth, placed.tame));
     const std::uint64_t empty = drawn & bits_of(placed.empty), projected = drawn & bits_of(placed.covers) & here;
     const std::uint64_t outside =
-        ((visible & bits_of(hn::Or(placed.too_near, placed.too_far))) | (empty & bits_of(placed.outside))) & here;
+        ((visible & bits_of(Or(placed.too_near, placed.too_far))) | (empty & bits_of(placed.outside))) & here;
     block.projected |= projected << t;
     block.invisible |= (bits_of(hidden.surely) & here) << t;
     block.outside_view |= outside << t;
     block.between_pixels |= (empty & bits_of(placed.inside) & ~outside & here) << t;
     block.in_one_tile |= (projected & store_places(view, placed, places + t)) << t;
-    hn::StoreU(hn::Max(boxes.depth_low, hn::Set(d, view.near_low)), d, near_depths + t);
+    StoreU(Max(boxes.depth_low, Set(d, view.near_low)), d, near_depths + t);
   }
   block.unsure = cells & ~(block.projected | block.invisible | block.outside_view | block.between_pixels);
   return block;

@@ -80,15 +80,15 @@ DepthOrder order(TileEntry* entries, TileEntry* other, std::uint32_t* steps, std
   const D d;
   const hn::RebindToSigned<D> di;
   const std::size_t lanes = hn::Lanes(d) / 2;
-  const V first = hn::Set(d, entries[0].near_depth);
+  const V first = Set(d, entries[0].near_depth);
   V low = first, high = first;
   std::size_t i = 0;
   for (; i + lanes <= n; i += lanes) {
-    const V depth = hn::OddEven(first, hn::LoadU(d, lanes_of(entries + i)));
-    low = hn::Min(low, depth);
-    high = hn::Max(high, depth);
+    const V depth = OddEven(first, LoadU(d, lanes_of(entries + i)));
+    low = Min(low, depth);
+    high = Max(high, depth);
   }
-  float least = hn::GetLane(hn::MinOfLanes(d, low)), most = hn::GetLane(hn::MaxOfLanes(d, high));
+  float least = GetLane(MinOfLanes(d, low)), most = GetLane(MaxOfLanes(d, high));
   for (; i < n; ++i) {
     least = entries[i].near_depth < least ? entries[i].near_depth : least;
     most = entries[i].near_depth > most ? entries[i].near_depth : most;
@@ -100,10 +100,10 @@ DepthOrder order(TileEntry* entries, TileEntry* other, std::uint32_t* steps, std
   if (!(scale > 0 && scale < HUGE_VALF)) return radix_sort(entries, other, n);
   // Rounding is monotonic, so steps are in order as depths are.
   for (i = 0; i + 2 * lanes <= n; i += 2 * lanes) {
-    const auto step_of = [&](V v) HWY_ATTR { return hn::ConvertTo(di, (v - hn::Set(d, least)) * hn::Set(d, scale)); };
-    const auto a = step_of(hn::LoadU(d, lanes_of(entries + i)));
-    const auto b = step_of(hn::LoadU(d, lanes_of(entries + i + lanes)));
-    hn::StoreU(hn::ConcatEven(di, b, a), di, reinterpret_cast<std::int32_t*>(steps + i));
+    const auto step_of = [&](V v) HWY_ATTR { return ConvertTo(di, (v - Set(d, least)) * Set(d, scale)); };
+    const auto a = step_of(LoadU(d, lanes_of(entries + i)));
+    const auto b = step_of(LoadU(d, lanes_of(entries + i + lanes)));
+    StoreU(ConcatEven(di, b, a), di, reinterpret_cast<std::int32_t*>(steps + i));
   }
   for (; i < n; ++i)
     steps[i] = static_cast<std::uint32_t>(static_cast<std::int32_t>((entries[i].near_depth - least) * scale));

@@ -164,26 +164,26 @@ struct CellLanes {
   HWY_INLINE CellLanes(const ProjectedMesh& projected, const Cell<values>& cell, std::uint32_t number,
                        const scene::PixelRect& rect) {
     const D d;
-    width = hn::Set(d, cell.box.width());
-    inverse_width = hn::Set(d, 1.0 / cell.box.width());
-    left = hn::Set(d, cell.box.x0 + 0.5);
-    top = hn::Set(d, cell.box.y0 + 0.5);
-    count = hn::Set(d, cell.box.area());
-    near_depth = hn::Set(d, projected.near_depth);
-    far_depth = hn::Set(d, projected.far_depth);
-    tile_left = hn::Set(d, rect.x0 + 0.5);
-    tile_top = hn::Set(d, rect.y0 + 0.5);
-    tile_width = hn::Set(d, rect.width());
-    bound = hn::Set(d, cell.error_bound);
-    tet = hn::Set(hn::RebindToUnsigned<D>(), static_cast<std::uint64_t>(number) << 32);
+    width = Set(d, cell.box.width());
+    inverse_width = Set(d, 1.0 / cell.box.width());
+    left = Set(d, cell.box.x0 + 0.5);
+    top = Set(d, cell.box.y0 + 0.5);
+    count = Set(d, cell.box.area());
+    near_depth = Set(d, projected.near_depth);
+    far_depth = Set(d, projected.far_depth);
+    tile_left = Set(d, rect.x0 + 0.5);
+    tile_top = Set(d, rect.y0 + 0.5);
+    tile_width = Set(d, rect.width());
+    bound = Set(d, cell.error_bound);
+    tet = Set(hn::RebindToUnsigned<D>(), static_cast<std::uint64_t>(number) << 32);
   }
 
   /// Candidates base, base + 1... of the box, row after row.
   HWY_INLINE Pixels pixels_from(int base) const {
     const D d;
-    const V k = hn::Iota(d, base);
-    const V row = hn::Floor((k + hn::Set(d, 0.5)) * inverse_width);  // k < 2^20: exact
-    return {hn::NegMulAdd(row, width, k) + left, row + top, k < count};
+    const V k = Iota(d, base);
+    const V row = Floor((k + Set(d, 0.5)) * inverse_width);  // k < 2^20: exact
+    return {NegMulAdd(row, width, k) + left, row + top, k < count};
   }
 };
 
@@ -194,26 +194,26 @@ HWY_INLINE void edge_functions(const Cell<values>& cell, const CellLanes& lanes,
   const D d;
   V qx[4], qy[4];
   for (int i = 0; i < 4; ++i) {
-    const V w = hn::Set(d, cell.corner[i].w);
-    qx[i] = hn::NegMulAdd(pixels.x, w, hn::Set(d, cell.corner[i].x));
-    qy[i] = hn::NegMulAdd(pixels.y, w, hn::Set(d, cell.corner[i].y));
+    const V w = Set(d, cell.corner[i].w);
+    qx[i] = NegMulAdd(pixels.x, w, Set(d, cell.corner[i].x));
+    qy[i] = NegMulAdd(pixels.y, w, Set(d, cell.corner[i].y));
   }
-  V least = hn::Set(d, HUGE_VAL);
+  V least = Set(d, HUGE_VAL);
   for (int e = 0; e < 6; ++e) {
     const int a = edge_from[e], b = edge_to[e];
-    edge[e] = hn::MulSub(qx[a], qy[b], qx[b] * qy[a]);
-    least = hn::Min(least, hn::Abs(edge[e]) + hn::Set(d, cell.certainty[e]));
+    edge[e] = MulSub(qx[a], qy[b], qx[b] * qy[a]);
+    least = Min(least, Abs(edge[e]) + Set(d, cell.certainty[e]));
   }
-  const auto uncertain = hn::And(pixels.in_box, least <= lanes.bound);
-  if (HWY_UNLIKELY(!hn::AllFalse(d, uncertain))) {
+  const auto uncertain = And(pixels.in_box, least <= lanes.bound);
+  if (HWY_UNLIKELY(!AllFalse(d, uncertain))) {
     alignas(64) double x[8], y[8], settled[6][8];
     std::uint8_t bits[8] = {0};
-    hn::StoreMaskBits(d, uncertain, bits);
-    hn::Store(pixels.x, d, x);
-    hn::Store(pixels.y, d, y);
-    for (int e = 0; e < 6; ++e) hn::Store(edge[e], d, settled[e]);
+    StoreMaskBits(d, uncertain, bits);
+    Store(pixels.x, d, x);
+    Store(pixels.y, d, y);
+    for (int e = 0; e < 6; ++e) Store(edge[e], d, settled[e]);
     settle_signs(cell, x, y, bits[0], settled, counts);
-    for (int e = 0; e < 6; ++e) edge[e] = hn::Load(d, settled[e]);
+    for (int e = 0; e < 6; ++e) edge[e] = Load(d, settled[e]);
   }
 }
 
@@ -224,27 +224,27 @@ struct Crossed {
   hn::Mask<D> any;
 
   HWY_INLINE Crossed() {
-    const V zero = hn::Zero(D());
+    const V zero = Zero(D());
     depth_sum = depth_c = zero;
     for (int v = 0; v < values; ++v) value_sum[v] = value_c[v] = zero;
-    weight = hn::Set(D(), 1.0);
+    weight = Set(D(), 1.0);
     any = zero < zero;
   }
   HWY_INLINE void gather(hn::Mask<D> pierced, const Crossed& face) {
-    depth_sum = hn::IfThenElse(pierced, face.depth_sum, depth_sum);
-    weight = hn::IfThenElse(pierced, face.weight, weight);
-    depth_c = hn::IfThenElse(pierced, face.depth_c, depth_c);
+    depth_sum = IfThenElse(pierced, face.depth_sum, depth_sum);
+    weight = IfThenElse(pierced, face.weight, weight);
+    depth_c = IfThenElse(pierced, face.depth_c, depth_c);
     for (int v = 0; v < values; ++v) {
-      value_sum[v] = hn::IfThenElse(pierced, face.value_sum[v], value_sum[v]);
-      value_c[v] = hn::IfThenElse(pierced, face.value_c[v], value_c[v]);
+      value_sum[v] = IfThenElse(pierced, face.value_sum[v], value_sum[v]);
+      value_c[v] = IfThenElse(pierced, face.value_c[v], value_c[v]);
     }
-    any = hn::Or(any, pierced);
+    any = Or(any, pierced);
   }
 };
 
 /// a * (at_a - at_c) + b * (at_b - at_c).
 HWY_INLINE V weighted(V a, V b, double at_a, double at_b, double at_c) {
-  return hn::MulAdd(a, hn::Set(D(), at_a - at_c), b * hn::Set(D(), at_b - at_c));
+  return MulAdd(a, Set(D(), at_a - at_c), b * Set(D(), at_b - at_c));
 }
 
 /// The cell's faces that rays pierce from one side (`plus`) and the other.
@@ -252,29 +252,29 @@ template <int values>
 HWY_INLINE void cross_faces(const Cell<values>& cell, const V (&edge)[6], Crossed<values>& plus,
                             Crossed<values>& minus) {
   const D d;
-  const V zero = hn::Zero(d);
+  const V zero = Zero(d);
   hn::Mask<D> positive[6], negative[6];
   V weight[6];
   for (int e = 0; e < 6; ++e) {
     positive[e] = edge[e] > zero;
     negative[e] = edge[e] < zero;
-    weight[e] = hn::Abs(edge[e]);
+    weight[e] = Abs(edge[e]);
   }
   for (int f = 0; f < 4; ++f) {
     if (!cell.pierceable[f]) continue;
     const Face face = faces[f];
-    const auto clockwise = hn::And(hn::And(positive[face.bc], negative[face.ac]), positive[face.ab]);
-    const auto counter = hn::And(hn::And(negative[face.bc], positive[face.ac]), negative[face.ab]);
+    const auto clockwise = And(And(positive[face.bc], negative[face.ac]), positive[face.ab]);
+    const auto counter = And(And(negative[face.bc], positive[face.ac]), negative[face.ab]);
     const auto is_plus = face.outward ? clockwise : counter, is_minus = face.outward ? counter : clockwise;
     Crossed<values> here;
     // Relative to corner c, so that a face of one value or depth keeps it to the bit: a transfer function may step
     // there.
     const V a = weight[face.bc], b = weight[face.ac];
-    here.depth_c = hn::Set(d, cell.corner[face.c].depth);
+    here.depth_c = Set(d, cell.corner[face.c].depth);
     here.depth_sum = weighted(a, b, cell.corner[face.a].depth, cell.corner[face.b].depth, cell.corner[face.c].depth);
     for (int v = 0; v < values; ++v) {
       const double* value = cell.value[v];
-      here.value_c[v] = hn::Set(d, value[face.c]);
+      here.value_c[v] = Set(d, value[face.c]);
       here.value_sum[v] = weighted(a, b, value[face.a], value[face.b], value[face.c]);
     }
     here.weight = weight[face.bc] + weight[face.ac] + weight[face.ab];
@@ -296,28 +296,28 @@ HWY_INLINE Segments<values> segments_between(const CellLanes& lanes, hn::Mask<D>
                                              const Crossed<values>& minus) {
   const D d;
   const V near_depth = lanes.near_depth, far_depth = lanes.far_depth;
-  const V plus_inverse = hn::Set(d, 1.0) / plus.weight, minus_inverse = hn::Set(d, 1.0) / minus.weight;
-  const V plus_depth = hn::MulAdd(plus.depth_sum, plus_inverse, plus.depth_c);
-  const V minus_depth = hn::MulAdd(minus.depth_sum, minus_inverse, minus.depth_c);
+  const V plus_inverse = Set(d, 1.0) / plus.weight, minus_inverse = Set(d, 1.0) / minus.weight;
+  const V plus_depth = MulAdd(plus.depth_sum, plus_inverse, plus.depth_c);
+  const V minus_depth = MulAdd(minus.depth_sum, minus_inverse, minus.depth_c);
   const auto plus_first = plus_depth <= minus_depth;
   Segments<values> s;
-  s.front = hn::Min(plus_depth, minus_depth);
-  s.back = hn::Max(plus_depth, minus_depth);
+  s.front = Min(plus_depth, minus_depth);
+  s.back = Max(plus_depth, minus_depth);
   for (int v = 0; v < values; ++v) {
-    const V at_plus = hn::MulAdd(plus.value_sum[v], plus_inverse, plus.value_c[v]);
-    const V at_minus = hn::MulAdd(minus.value_sum[v], minus_inverse, minus.value_c[v]);
-    s.value_front[v] = hn::IfThenElse(plus_first, at_plus, at_minus);
-    s.value_back[v] = hn::IfThenElse(plus_first, at_minus, at_plus);
+    const V at_plus = MulAdd(plus.value_sum[v], plus_inverse, plus.value_c[v]);
+    const V at_minus = MulAdd(minus.value_sum[v], minus_inverse, minus.value_c[v]);
+    s.value_front[v] = IfThenElse(plus_first, at_plus, at_minus);
+    s.value_back[v] = IfThenElse(plus_first, at_minus, at_plus);
   }
-  s.hit = hn::And(hit, hn::And(s.back > near_depth, s.front < far_depth));
-  const auto clipped = hn::And(s.hit, hn::Or(s.front<near_depth, s.back> far_depth));
-  if (HWY_UNLIKELY(!hn::AllFalse(d, clipped))) {
-    const V front = hn::Max(s.front, near_depth), back = hn::Min(s.back, far_depth);
+  s.hit = And(hit, And(s.back > near_depth, s.front < far_depth));
+  const auto clipped = And(s.hit, Or(s.front<near_depth, s.back> far_depth));
+  if (HWY_UNLIKELY(!AllFalse(d, clipped))) {
+    const V front = Max(s.front, near_depth), back = Min(s.back, far_depth);
     for (int v = 0; v < values; ++v) {
       const V slope = (s.value_back[v] - s.value_front[v]) / (s.back - s.front);
       const V from = s.value_front[v];
-      s.value_front[v] = hn::IfThenElse(s.front < near_depth, hn::MulAdd(front - s.front, slope, from), from);
-      s.value_back[v] = hn::IfThenElse(s.back > far_depth, hn::MulAdd(back - s.front, slope, from), s.value_back[v]);
+      s.value_front[v] = IfThenElse(s.front < near_depth, MulAdd(front - s.front, slope, from), from);
+      s.value_back[v] = IfThenElse(s.back > far_depth, MulAdd(back - s.front, slope, from), s.value_back[v]);
     }
     s.front = front;
     s.back = back;
@@ -330,18 +330,18 @@ HWY_INLINE void append(const Segments<values>& s, const CellLanes& lanes, const 
   const D d;
   const hn::RebindToUnsigned<D> du;
   const hn::RebindToSigned<D> di;
-  const V in_tile = hn::MulAdd(pixels.y - lanes.tile_top, lanes.tile_width, pixels.x - lanes.tile_left);
-  const auto packed = hn::Or(hn::BitCast(du, hn::ConvertTo(di, in_tile)), lanes.tet);
-  const WideLanePacker pack(hn::RebindMask(du, s.hit));
-  hn::StoreU(pack(packed), du, out.pixel_and_tet.data() + out.size);
-  hn::StoreU(pack(s.front), d, out.front.data() + out.size);
-  hn::StoreU(pack(s.back), d, out.back.data() + out.size);
-  hn::StoreU(pack(s.value_front[0]), d, out.scalar_front.data() + out.size);
-  hn::StoreU(pack(s.value_back[0]), d, out.scalar_back.data() + out.size);
+  const V in_tile = MulAdd(pixels.y - lanes.tile_top, lanes.tile_width, pixels.x - lanes.tile_left);
+  const auto packed = Or(BitCast(du, ConvertTo(di, in_tile)), lanes.tet);
+  const WideLanePacker pack(RebindMask(du, s.hit));
+  StoreU(pack(packed), du, out.pixel_and_tet.data() + out.size);
+  StoreU(pack(s.front), d, out.front.data() + out.size);
+  StoreU(pack(s.back), d, out.back.data() + out.size);
+  StoreU(pack(s.value_front[0]), d, out.scalar_front.data() + out.size);
+  StoreU(pack(s.value_back[0]), d, out.scalar_back.data() + out.size);
   if constexpr (values == 2) {
     auto& attributed = static_cast<AttributeSegments&>(out);
-    hn::StoreU(pack(s.value_front[1]), d, attributed.attribute_front.data() + out.size);
-    hn::StoreU(pack(s.value_back[1]), d, attributed.attribute_back.data() + out.size);
+    StoreU(pack(s.value_front[1]), d, attributed.attribute_front.data() + out.size);
+    StoreU(pack(s.value_back[1]), d, attributed.attribute_back.data() + out.size);
   }
   out.size += pack.count();
 }
@@ -360,18 +360,18 @@ void rasterize_cell(const ProjectedMesh& projected, const Cell<values>& cell, st
     cross_faces(cell, edge, plus, minus);
     // One crossing alone: the eye lies on a vertex or an edge of the cell, whose faces there are edge-on from
     // everywhere, and the ray begins on them.
-    const auto alone = hn::And(pixels.in_box, hn::Xor(plus.any, minus.any));
-    if (HWY_UNLIKELY(!hn::AllFalse(d, alone))) {
+    const auto alone = And(pixels.in_box, Xor(plus.any, minus.any));
+    if (HWY_UNLIKELY(!AllFalse(d, alone))) {
       const EyeOnEdge eye = eye_on_edge(cell.corner, cell.pixels_per_tangent);
       Crossed<values> here;
       for (int v = 0; v < values; ++v)
         here.value_c[v] =
-            hn::Set(d, cell.value[v][eye.from] + (cell.value[v][eye.to] - cell.value[v][eye.from]) * eye.part);
-      plus.gather(hn::AndNot(plus.any, alone), here);
-      minus.gather(hn::AndNot(minus.any, alone), here);
+            Set(d, cell.value[v][eye.from] + (cell.value[v][eye.to] - cell.value[v][eye.from]) * eye.part);
+      plus.gather(AndNot(plus.any, alone), here);
+      minus.gather(AndNot(minus.any, alone), here);
     }
-    const auto hit = hn::And(pixels.in_box, hn::And(plus.any, minus.any));
-    if (hn::AllFalse(d, hit)) continue;
+    const auto hit = And(pixels.in_box, And(plus.any, minus.any));
+    if (AllFalse(d, hit)) continue;
     append(segments_between(lanes, hit, plus, minus), lanes, pixels, out);
   }
 }

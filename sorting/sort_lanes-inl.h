@@ -43,31 +43,28 @@ class PackedKeys {
   HWY_INLINE PackedKeys(KeyVec nearest, KeyVec farthest, std::size_t rows) : nearest_(nearest) {
     const KeyTag d;
     const hn::RebindToUnsigned<KeyTag> bits;
-    const KeyVec range = hn::IfThenZeroElse(farthest < nearest, farthest - nearest);
-    const auto range_bits =
-        static_cast<int>(std::bit_width(hn::GetLane(hn::MaxOfLanes(bits, hn::BitCast(bits, range)))));
+    const KeyVec range = IfThenZeroElse(farthest < nearest, farthest - nearest);
+    const auto range_bits = static_cast<int>(std::bit_width(GetLane(MaxOfLanes(bits, BitCast(bits, range)))));
     const auto row_bits = static_cast<int>(std::bit_width(rows - 1));
     up_ = std::min(row_bits, key_bits - range_bits);
-    row_mask_ = hn::Set(d, (1 << row_bits) - 1);
+    row_mask_ = Set(d, (1 << row_bits) - 1);
   }
   HWY_INLINE KeyVec pack(KeyVec depth, std::size_t row) const {
     const KeyTag d;
     const hn::RebindToUnsigned<KeyTag> bits;
-    const auto behind = hn::BitCast(bits, depth - nearest_);
-    const auto shifted = up_ >= 0 ? hn::ShiftLeftSame(behind, up_) : hn::ShiftRightSame(behind, -up_);
-    const KeyVec number = hn::Set(d, static_cast<std::int32_t>(row));
-    return hn::Or(hn::AndNot(row_mask_, hn::BitCast(d, shifted)), number) + hn::Set(d, least_normal);
+    const auto behind = BitCast(bits, depth - nearest_);
+    const auto shifted = up_ >= 0 ? ShiftLeftSame(behind, up_) : ShiftRightSame(behind, -up_);
+    const KeyVec number = Set(d, static_cast<std::int32_t>(row));
+    return Or(AndNot(row_mask_, BitCast(d, shifted)), number) + Set(d, least_normal);
   }
   /// A key behind all others, for rows beyond a list's end.
   static HWY_INLINE KeyVec behind_all(std::size_t row) {
-    return hn::Set(KeyTag(), most_key + static_cast<std::int32_t>(row * sort_chunk * most_sort_chunks));
+    return Set(KeyTag(), most_key + static_cast<std::int32_t>(row * sort_chunk * most_sort_chunks));
   }
   /// The row that a key was packed with; of keys behind all others, any.
-  HWY_INLINE KeyVec row(KeyVec key) const { return hn::And(key, row_mask_); }
+  HWY_INLINE KeyVec row(KeyVec key) const { return And(key, row_mask_); }
   /// Whether the keys do not tell which depth is nearer.
-  HWY_INLINE hn::Mask<KeyTag> level(KeyVec a, KeyVec b) const {
-    return hn::Xor(a, b) < row_mask_ + hn::Set(KeyTag(), 1);
-  }
+  HWY_INLINE hn::Mask<KeyTag> level(KeyVec a, KeyVec b) const { return Xor(a, b) < row_mask_ + Set(KeyTag(), 1); }
 
  private:
   static constexpr int key_bits = 30;
@@ -110,8 +107,8 @@ inline constexpr auto merge_network = bitonic_merge();
 static_assert(sort_network.count == 63 && merge_network.count == 32);
 
 HWY_INLINE void exchange(SortVec& a, SortVec& b) {
-  const SortVec low = hn::Min(a, b);
-  b = hn::Max(a, b);
+  const SortVec low = Min(a, b);
+  b = Max(a, b);
   a = low;
 }
 
@@ -126,9 +123,9 @@ HWY_INLINE void run_on_rows(float* keys) {
   const SortTag d;
   const std::size_t lanes = hn::Lanes(d);
   SortVec key[sort_chunk];
-  for (int i = 0; i < sort_chunk; ++i) key[i] = hn::LoadU(d, keys + static_cast<std::size_t>(i) * lanes);
+  for (int i = 0; i < sort_chunk; ++i) key[i] = LoadU(d, keys + static_cast<std::size_t>(i) * lanes);
   run_network<network>(key, std::make_integer_sequence<int, network.count>());
-  for (int i = 0; i < sort_chunk; ++i) hn::StoreU(key[i], d, keys + static_cast<std::size_t>(i) * lanes);
+  for (int i = 0; i < sort_chunk; ++i) StoreU(key[i], d, keys + static_cast<std::size_t>(i) * lanes);
 }
 
 /// Exchanges row `low` + i with row `high` + i (reversed: `high` - i), i < rows.
@@ -138,9 +135,9 @@ HWY_INLINE void exchange_rows(float* keys, int low, int high, int rows) {
   const auto lanes = static_cast<int>(hn::Lanes(d));
   for (int i = 0; i < rows; ++i) {
     float *a = keys + (low + i) * lanes, *b = keys + (reversed ? high - i : high + i) * lanes;
-    SortVec key_a = hn::LoadU(d, a), key_b = hn::LoadU(d, b);
+    SortVec key_a = LoadU(d, a), key_b = LoadU(d, b);
     exchange(key_a, key_b);
-    hn::StoreU(key_a, d, a), hn::StoreU(key_b, d, b);
+    StoreU(key_a, d, a), StoreU(key_b, d, b);
   }
 }
 

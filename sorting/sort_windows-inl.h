@@ -40,7 +40,7 @@ HWY_INLINE const projection::LatticeSegment& segment_at(const projection::Lattic
 
 /// Lanes whose lists have this row.
 HWY_INLINE hn::Mask<KeyTag> has_row(std::size_t row, KeyVec count) {
-  return hn::Set(KeyTag(), static_cast<std::int32_t>(row)) < count;
+  return Set(KeyTag(), static_cast<std::int32_t>(row)) < count;
 }
 
 /// Puts in order what the network left nearly so: keys do not tell all of a segment, nor always all of its depth.
@@ -73,8 +73,8 @@ HWY_INLINE std::size_t sort_windows(const projection::LatticeSegment* list, std:
   const KeyTag d;
   const SortTag df;
   const std::size_t lanes = hn::Lanes(d);
-  const KeyVec count = hn::LoadU(d, reinterpret_cast<const std::int32_t*>(counts));
-  const auto most = static_cast<std::size_t>(hn::GetLane(hn::MaxOfLanes(d, count)));
+  const KeyVec count = LoadU(d, reinterpret_cast<const std::int32_t*>(counts));
+  const auto most = static_cast<std::size_t>(GetLane(MaxOfLanes(d, count)));
   if (most == 0) return 0;
   const std::size_t chunks = (most + sort_chunk - 1) / sort_chunk;
   const std::size_t rows = chunks * sort_chunk;
@@ -85,40 +85,40 @@ HWY_INLINE std::size_t sort_windows(const projection::LatticeSegment* list, std:
     return most;
   }
 
-  KeyVec nearest = hn::Set(d, 0x7fffffff), farthest = hn::Set(d, -0x7fffffff);
+  KeyVec nearest = Set(d, 0x7fffffff), farthest = Set(d, -0x7fffffff);
   for (std::size_t row = 0; row < most; ++row) {
     const std::size_t first = row * stride;
     const auto quarter = [&](std::size_t q) HWY_ATTR {
-      return hn::LoadU(d, reinterpret_cast<const std::int32_t*>(list + first + q * lanes / 4));
+      return LoadU(d, reinterpret_cast<const std::int32_t*>(list + first + q * lanes / 4));
     };
-    const KeyVec low = hn::ConcatEven(d, quarter(1), quarter(0)), high = hn::ConcatEven(d, quarter(3), quarter(2));
-    const KeyVec front = hn::ConcatEven(d, high, low);
+    const KeyVec low = ConcatEven(d, quarter(1), quarter(0)), high = ConcatEven(d, quarter(3), quarter(2));
+    const KeyVec front = ConcatEven(d, high, low);
     const auto here = has_row(row, count);
-    nearest = hn::Min(nearest, hn::IfThenElse(here, front, nearest));
-    farthest = hn::Max(farthest, hn::IfThenElse(here, front, farthest));
+    nearest = Min(nearest, IfThenElse(here, front, nearest));
+    farthest = Max(farthest, IfThenElse(here, front, farthest));
     // Fronts for now; what is beyond a list's end is not used.
-    hn::StoreU(front, d, slots + row * lanes);
+    StoreU(front, d, slots + row * lanes);
   }
   const PackedKeys packed(nearest, farthest, rows);
   float* keys = order.keys.data();
   for (std::size_t row = 0; row < rows; ++row) {
     KeyVec key = packed.behind_all(row);
-    if (row < most) key = hn::IfThenElse(has_row(row, count), packed.pack(hn::LoadU(d, slots + row * lanes), row), key);
-    hn::StoreU(hn::BitCast(df, key), df, keys + row * lanes);
+    if (row < most) key = IfThenElse(has_row(row, count), packed.pack(LoadU(d, slots + row * lanes), row), key);
+    StoreU(BitCast(df, key), df, keys + row * lanes);
   }
   sort_lanes(keys, static_cast<int>(chunks));
-  const KeyVec bytes = hn::Set(d, static_cast<std::int32_t>(stride * sizeof *list));
-  auto ties = count < hn::Zero(d);
-  KeyVec previous = hn::Zero(d);
+  const KeyVec bytes = Set(d, static_cast<std::int32_t>(stride * sizeof *list));
+  auto ties = count < Zero(d);
+  KeyVec previous = Zero(d);
   for (std::size_t row = 0; row < most; ++row) {
-    const KeyVec key = hn::BitCast(d, hn::LoadU(df, keys + row * lanes));
-    hn::StoreU(packed.row(key) * bytes, d, slots + row * lanes);
-    ties = hn::Or(ties, packed.level(previous, key));
+    const KeyVec key = BitCast(d, LoadU(df, keys + row * lanes));
+    StoreU(packed.row(key) * bytes, d, slots + row * lanes);
+    ties = Or(ties, packed.level(previous, key));
     previous = key;
   }
-  if (!hn::AllFalse(d, ties)) {
+  if (!AllFalse(d, ties)) {
     std::uint8_t bits[8] = {0};
-    hn::StoreMaskBits(d, ties, bits);
+    StoreMaskBits(d, ties, bits);
     for (std::uint64_t left = bits[0] | static_cast<std::uint64_t>(bits[1]) << 8; left != 0; left &= left - 1) {
       const auto lane = static_cast<std::size_t>(__builtin_ctzll(left));
       settle_ties(list + lane, counts[lane], lanes, slots + lane);

@@ -41,24 +41,24 @@ constexpr int most_blocks = SegmentWindows::most_pixels / lanes;
 constexpr float outline_uncertainty = 2.0f + 0.75f * static_cast<float>(most_blocks);
 
 /// first, first + 1... (Iota() of what is no constant goes through memory, lane by lane.)
-HWY_INLINE VI numbers_from(int first) { return hn::Iota(I(), 0) + hn::Set(I(), first); }
+HWY_INLINE VI numbers_from(int first) { return Iota(I(), 0) + Set(I(), first); }
 
 /// Puts the lanes that are hit, or may be, behind `size` hits; returns how many there are then.
 HWY_INLINE std::size_t push_hits(VF least, MF among, VI hits, HitQueue& queue, std::size_t size) {
   const F df;
   const I d;
-  const VF bound = hn::Set(df, outline_uncertainty), minus_bound = hn::Set(df, -outline_uncertainty);
-  const VI mark = hn::Set(d, Hit::uncertain);
+  const VF bound = Set(df, outline_uncertainty), minus_bound = Set(df, -outline_uncertainty);
+  const VI mark = Set(d, Hit::uncertain);
 #if HWY_TARGET <= HWY_AVX3
   const MF near{_mm512_mask_cmp_ps_mask(among.raw, least.raw, minus_bound.raw, _CMP_GT_OQ)};
   const MF uncertain = least <= bound;
   hits = VI{_mm512_mask_or_epi32(hits.raw, uncertain.raw, hits.raw, mark.raw)};
 #else
-  const MF near = hn::And(among, least > minus_bound);
-  hits = hn::Or(hits, hn::IfThenElseZero(hn::RebindMask(d, least <= bound), mark));
+  const MF near = And(among, least > minus_bound);
+  hits = Or(hits, IfThenElseZero(RebindMask(d, least <= bound), mark));
 #endif
-  const LanePacker pack(hn::RebindMask(d, near));
-  hn::StoreU(pack(hits), d, queue.hit + size);
+  const LanePacker pack(RebindMask(d, near));
+  StoreU(pack(hits), d, queue.hit + size);
   return size + pack.count();
 }
 
@@ -73,19 +73,19 @@ struct SmallCells {
   HWY_INLINE static unsigned worth_while(const CellBatch& batch, unsigned cells, int from) {
     const I d;
     const auto takes = mask_of(cells, from);
-    const VI width = hn::IfThenElseZero(takes, hn::Load(d, batch.x1 + from) - hn::Load(d, batch.x0 + from));
-    const VI height = hn::IfThenElseZero(takes, hn::Load(d, batch.y1 + from) - hn::Load(d, batch.y0 + from));
-    const VI side = hn::Max(width, height);
+    const VI width = IfThenElseZero(takes, Load(d, batch.x1 + from) - Load(d, batch.x0 + from));
+    const VI height = IfThenElseZero(takes, Load(d, batch.y1 + from) - Load(d, batch.y0 + from));
+    const VI side = Max(width, height);
     constexpr int across = usual_width, down = lanes / usual_width;
-    const VI blocks = hn::ShiftRight<std::countr_zero(unsigned{across})>(width + hn::Set(d, across - 1)) *
-                      hn::ShiftRight<std::countr_zero(unsigned{down})>(height + hn::Set(d, down - 1));
-    const VI cost = hn::IfThenElseZero(takes, blocks * hn::Set(d, block_cost) + hn::Set(d, cell_cost));
+    const VI blocks = hn::ShiftRight<std::countr_zero(unsigned{across})>(width + Set(d, across - 1)) *
+                      hn::ShiftRight<std::countr_zero(unsigned{down})>(height + Set(d, down - 1));
+    const VI cost = IfThenElseZero(takes, blocks * Set(d, block_cost) + Set(d, cell_cost));
     for (const int most_side : {16, 10, 6}) {
-      const auto small = side < hn::Set(d, most_side + 1);
-      const int candidates = hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElseZero(small, width))) *
-                             hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElseZero(small, height)));
-      if (candidates * step_cost + start_cost < hn::GetLane(hn::SumOfLanes(d, hn::IfThenElseZero(small, cost))))
-        return cells & lane_bits(hn::RebindMask(F(), small)) << from;
+      const auto small = side < Set(d, most_side + 1);
+      const int candidates =
+          GetLane(MaxOfLanes(d, IfThenElseZero(small, width))) * GetLane(MaxOfLanes(d, IfThenElseZero(small, height)));
+      if (candidates * step_cost + start_cost < GetLane(SumOfLanes(d, IfThenElseZero(small, cost))))
+        return cells & lane_bits(RebindMask(F(), small)) << from;
     }
     return 0;
   }
@@ -97,38 +97,36 @@ struct SmallCells {
     const I d;
     const F df;
     const auto takes = mask_of(cells, from);
-    const VI x0 = hn::Load(d, batch.x0 + from), y0 = hn::Load(d, batch.y0 + from);
-    const VI width = hn::IfThenElseZero(takes, hn::Load(d, batch.x1 + from) - x0);
-    const VI height = hn::IfThenElseZero(takes, hn::Load(d, batch.y1 + from) - y0);
-    const int rows = hn::GetLane(hn::MaxOfLanes(d, height));
-    VI row_hits =
-        hn::Or(numbers_from(from), hn::Or(hn::ShiftLeft<Hit::column_bit>(x0), hn::ShiftLeft<Hit::row_bit>(y0)));
-    const VF one = hn::Set(df, 1.0f), center = hn::Set(df, static_cast<float>(CellBatch::center));
-    const VF first_x = hn::ConvertTo(df, x0) - center;
-    VF y = hn::ConvertTo(df, y0) - center;
+    const VI x0 = Load(d, batch.x0 + from), y0 = Load(d, batch.y0 + from);
+    const VI width = IfThenElseZero(takes, Load(d, batch.x1 + from) - x0);
+    const VI height = IfThenElseZero(takes, Load(d, batch.y1 + from) - y0);
+    const int rows = GetLane(MaxOfLanes(d, height));
+    VI row_hits = Or(numbers_from(from), Or(ShiftLeft<Hit::column_bit>(x0), ShiftLeft<Hit::row_bit>(y0)));
+    const VF one = Set(df, 1.0f), center = Set(df, static_cast<float>(CellBatch::center));
+    const VF first_x = ConvertTo(df, x0) - center;
+    VF y = ConvertTo(df, y0) - center;
     for (int r = 0; r < rows; ++r) {
-      const VI row_width = hn::IfThenElseZero(height > hn::Set(d, r), width);
-      const int columns = hn::GetLane(hn::MaxOfLanes(d, row_width));
+      const VI row_width = IfThenElseZero(height > Set(d, r), width);
+      const int columns = GetLane(MaxOfLanes(d, row_width));
       VF row_edge[4];
       for (int k = 0; k < 4; ++k)
-        row_edge[k] =
-            hn::MulAdd(hn::Load(df, parts.outline[k].y + from), y, hn::Load(df, parts.outline[k].start + from));
+        row_edge[k] = MulAdd(Load(df, parts.outline[k].y + from), y, Load(df, parts.outline[k].start + from));
       VF x = first_x;
-      VI hits = row_hits, column = hn::Zero(d);
+      VI hits = row_hits, column = Zero(d);
       std::size_t size = queue.size;
       for (int c = 0; c < columns; ++c) {
         VF edge[4];
-        for (int k = 0; k < 4; ++k) edge[k] = hn::MulAdd(hn::Load(df, parts.outline[k].x + from), x, row_edge[k]);
-        const VF least = hn::Min(hn::Min(edge[0], edge[1]), hn::Min(edge[2], edge[3]));
-        size = push_hits(least, hn::RebindMask(df, row_width > column), hits, queue, size);
+        for (int k = 0; k < 4; ++k) edge[k] = MulAdd(Load(df, parts.outline[k].x + from), x, row_edge[k]);
+        const VF least = Min(Min(edge[0], edge[1]), Min(edge[2], edge[3]));
+        size = push_hits(least, RebindMask(df, row_width > column), hits, queue, size);
         x = x + one;
-        column = column + hn::Set(d, 1);
-        hits = hits + hn::Set(d, 1 << Hit::column_bit);
+        column = column + Set(d, 1);
+        hits = hits + Set(d, 1 << Hit::column_bit);
       }
       queue.size = size;
       if (size >= HitQueue::worth_draining) drain();
       y = y + one;
-      row_hits = row_hits + hn::Set(d, 1 << Hit::row_bit);
+      row_hits = row_hits + Set(d, 1 << Hit::row_bit);
     }
   }
 
@@ -136,7 +134,7 @@ struct SmallCells {
   HWY_INLINE static hn::Mask<I> mask_of(unsigned cells, int from) {
     cells >>= from;
     const std::uint8_t bits[8] = {static_cast<std::uint8_t>(cells), static_cast<std::uint8_t>(cells >> 8)};
-    return hn::LoadMaskBits(I(), bits);
+    return LoadMaskBits(I(), bits);
   }
 };
 
@@ -150,51 +148,50 @@ class CellBlocks {
     right_ = rect.x1 - square.x0, bottom_ = rect.y1 - square.y0;
     const I d;
     const F df;
-    const auto number = [](int n) HWY_ATTR { return hn::Set(I(), n); };
+    const auto number = [](int n) HWY_ATTR { return Set(I(), n); };
     const VI right = number(right_), bottom = number(bottom_);
     const VI first_x = number(rect.x0 - square.x0), first_y = number(rect.y0 - square.y0);
     const VI center = number(CellBatch::center), one = number(1);
     for (int t = 0; t < CellBatch::most; t += lanes) {
-      const VI x0 = hn::Load(d, batch.x0 + t), y0 = hn::Load(d, batch.y0 + t);
-      const VI box_width = hn::Load(d, batch.x1 + t) - x0, box_height = hn::Load(d, batch.y1 + t) - y0;
-      VI shape = hn::Zero(d), columns = shape, rows = shape, blocks = number(0x7fffffff);
+      const VI x0 = Load(d, batch.x0 + t), y0 = Load(d, batch.y0 + t);
+      const VI box_width = Load(d, batch.x1 + t) - x0, box_height = Load(d, batch.y1 + t) - y0;
+      VI shape = Zero(d), columns = shape, rows = shape, blocks = number(0x7fffffff);
       VI block_width = shape, block_height = shape;
       for (int i = 0; i < 3; ++i) {
         const BlockShape& of = block_shapes[i];
         const auto blocks_over = [&](VI box, int side) HWY_ATTR {
-          return hn::ShiftRightSame(box + number(side - 1), __builtin_ctz(static_cast<unsigned>(side)));
+          return ShiftRightSame(box + number(side - 1), __builtin_ctz(static_cast<unsigned>(side)));
         };
         const VI across = blocks_over(box_width, of.width), down = blocks_over(box_height, of.height);
         const VI count = across * down;
         const auto fewer = count < blocks;
-        blocks = hn::IfThenElse(fewer, count, blocks), shape = hn::IfThenElse(fewer, number(i), shape);
-        columns = hn::IfThenElse(fewer, across, columns), rows = hn::IfThenElse(fewer, down, rows);
-        block_width = hn::IfThenElse(fewer, number(of.width), block_width);
-        block_height = hn::IfThenElse(fewer, number(of.height), block_height);
+        blocks = IfThenElse(fewer, count, blocks), shape = IfThenElse(fewer, number(i), shape);
+        columns = IfThenElse(fewer, across, columns), rows = IfThenElse(fewer, down, rows);
+        block_width = IfThenElse(fewer, number(of.width), block_width);
+        block_height = IfThenElse(fewer, number(of.height), block_height);
       }
       const VI across = columns * block_width, down = rows * block_height;
-      const VI left = hn::Max(first_x, hn::Min(x0, right - across));
-      const VI top = hn::Max(first_y, hn::Min(y0, bottom - down));
-      const auto clipped = hn::Or(left + across > right, top + down > bottom);
+      const VI left = Max(first_x, Min(x0, right - across));
+      const VI top = Max(first_y, Min(y0, bottom - down));
+      const auto clipped = Or(left + across > right, top + down > bottom);
       const VI last_pixel = (columns - one) * block_width;
-      hn::Store(shape, d, shape_ + t);
-      hn::Store(left, d, left_ + t), hn::Store(top, d, top_ + t);
-      hn::Store(columns, d, columns_ + t), hn::Store(blocks, d, blocks_ + t);
-      hn::Store(hn::VecFromMask(d, clipped), d, clipped_ + t);
-      hn::Store(hn::Or(numbers_from(t), hn::Or(hn::ShiftLeft<Hit::column_bit>(left), hn::ShiftLeft<Hit::row_bit>(top))),
-                d, first_hit_ + t);
-      hn::Store(hn::ShiftLeft<Hit::column_bit>(block_width), d, hit_step_ + t);
-      hn::Store(hn::ShiftLeft<Hit::row_bit>(block_height) - hn::ShiftLeft<Hit::column_bit>(last_pixel), d,
-                hit_step_ + CellBatch::most + t);
-      const VF x = hn::ConvertTo(df, left - center), y = hn::ConvertTo(df, top - center);
-      const VF back = hn::ConvertTo(df, last_pixel);
-      const VF across_f = hn::ConvertTo(df, block_width), down_f = hn::ConvertTo(df, block_height);
+      Store(shape, d, shape_ + t);
+      Store(left, d, left_ + t), Store(top, d, top_ + t);
+      Store(columns, d, columns_ + t), Store(blocks, d, blocks_ + t);
+      Store(VecFromMask(d, clipped), d, clipped_ + t);
+      Store(Or(numbers_from(t), Or(ShiftLeft<Hit::column_bit>(left), ShiftLeft<Hit::row_bit>(top))), d, first_hit_ + t);
+      Store(ShiftLeft<Hit::column_bit>(block_width), d, hit_step_ + t);
+      Store(ShiftLeft<Hit::row_bit>(block_height) - ShiftLeft<Hit::column_bit>(last_pixel), d,
+            hit_step_ + CellBatch::most + t);
+      const VF x = ConvertTo(df, left - center), y = ConvertTo(df, top - center);
+      const VF back = ConvertTo(df, last_pixel);
+      const VF across_f = ConvertTo(df, block_width), down_f = ConvertTo(df, block_height);
       for (int k = 0; k < 4; ++k) {
         const CellParts::Edge& edge = parts.outline[k];
-        const VF along_x = hn::Load(df, edge.x + t), along_y = hn::Load(df, edge.y + t);
-        hn::Store(hn::MulAdd(along_x, x, hn::MulAdd(along_y, y, hn::Load(df, edge.start + t))), df, edge_[k] + t);
-        hn::Store(along_x * across_f, df, edge_step_[k] + t);
-        hn::Store(hn::NegMulAdd(along_x, back, along_y * down_f), df, edge_step_[k] + CellBatch::most + t);
+        const VF along_x = Load(df, edge.x + t), along_y = Load(df, edge.y + t);
+        Store(MulAdd(along_x, x, MulAdd(along_y, y, Load(df, edge.start + t))), df, edge_[k] + t);
+        Store(along_x * across_f, df, edge_step_[k] + t);
+        Store(NegMulAdd(along_x, back, along_y * down_f), df, edge_step_[k] + CellBatch::most + t);
       }
     }
   }
@@ -204,20 +201,19 @@ class CellBlocks {
     const I d;
     const F df;
     const BlockShape& shape = block_shapes[shape_[t]];
-    const VI column = hn::Load(d, shape.column), row = hn::Load(d, shape.row);
-    const VF x = hn::ConvertTo(df, column), y = hn::ConvertTo(df, row);
+    const VI column = Load(d, shape.column), row = Load(d, shape.row);
+    const VF x = ConvertTo(df, column), y = ConvertTo(df, row);
     VF edge[4];
     for (int k = 0; k < 4; ++k)
-      edge[k] = hn::MulAdd(hn::Set(df, parts.outline[k].x[t]), x,
-                           hn::MulAdd(hn::Set(df, parts.outline[k].y[t]), y, hn::Set(df, edge_[k][t])));
-    VI hits =
-        hn::Set(d, first_hit_[t]) + hn::Or(hn::ShiftLeft<Hit::column_bit>(column), hn::ShiftLeft<Hit::row_bit>(row));
+      edge[k] =
+          MulAdd(Set(df, parts.outline[k].x[t]), x, MulAdd(Set(df, parts.outline[k].y[t]), y, Set(df, edge_[k][t])));
+    VI hits = Set(d, first_hit_[t]) + Or(ShiftLeft<Hit::column_bit>(column), ShiftLeft<Hit::row_bit>(row));
     const bool clipped = clipped_[t] != 0;
     const int columns = columns_[t];
     int left = columns;
     std::size_t size = queue.size;
     for (int block = 0, count = blocks_[t]; block < count; ++block) {
-      const VF least = hn::Min(hn::Min(edge[0], edge[1]), hn::Min(edge[2], edge[3]));
+      const VF least = Min(Min(edge[0], edge[1]), Min(edge[2], edge[3]));
       MF among = x == x;
       if (HWY_UNLIKELY(clipped)) among = in_rectangle(shape, t, block);
       size = push_hits(least, among, hits, queue, size);
@@ -226,8 +222,8 @@ class CellBlocks {
       const int wraps = (--left - 1) >> 31;
       left += columns & wraps;
       const int step = (wraps & CellBatch::most) + t;
-      for (int k = 0; k < 4; ++k) edge[k] = edge[k] + hn::Set(df, edge_step_[k][step]);
-      hits = hits + hn::Set(d, hit_step_[step]);
+      for (int k = 0; k < 4; ++k) edge[k] = edge[k] + Set(df, edge_step_[k][step]);
+      hits = hits + Set(d, hit_step_[step]);
     }
     queue.size = size;
   }
@@ -236,9 +232,9 @@ class CellBlocks {
   /// The lanes of a block that lie in the rectangle.
   HWY_NOINLINE MF in_rectangle(const BlockShape& shape, int t, int block) const {
     const I d;
-    const VI x = hn::Load(d, shape.column) + hn::Set(d, left_[t] + block % columns_[t] * shape.width);
-    const VI y = hn::Load(d, shape.row) + hn::Set(d, top_[t] + block / columns_[t] * shape.height);
-    return hn::RebindMask(F(), hn::And(x < hn::Set(d, right_), y < hn::Set(d, bottom_)));
+    const VI x = Load(d, shape.column) + Set(d, left_[t] + block % columns_[t] * shape.width);
+    const VI y = Load(d, shape.row) + Set(d, top_[t] + block / columns_[t] * shape.height);
+    return RebindMask(F(), And(x < Set(d, right_), y < Set(d, bottom_)));
   }
 
   int right_, bottom_;

@@ -29,15 +29,15 @@ HWY_INLINE VI products(VI a, VI b) {
 #elif HWY_TARGET <= HWY_SSSE3
   return VI{_mm_madd_epi16(a.raw, b.raw)};
 #else
-  const auto low = [](VI v) HWY_ATTR { return hn::ShiftRight<16>(hn::ShiftLeft<16>(v)); };
-  return low(a) * low(b) + hn::ShiftRight<16>(a) * hn::ShiftRight<16>(b);
+  const auto low = [](VI v) HWY_ATTR { return ShiftRight<16>(ShiftLeft<16>(v)); };
+  return low(a) * low(b) + ShiftRight<16>(a) * ShiftRight<16>(b);
 #endif
 }
 
 /// Pairs of 16 bits, added.
 HWY_INLINE VI add_pairs(VI a, VI b) {
   const hn::Repartition<std::int16_t, I> pairs;
-  return hn::BitCast(I(), hn::BitCast(pairs, a) + hn::BitCast(pairs, b));
+  return BitCast(I(), BitCast(pairs, a) + BitCast(pairs, b));
 }
 
 /// The lesser of |a| and |b|.
@@ -46,7 +46,7 @@ HWY_INLINE VF least_magnitude(VF a, VF b) {
   constexpr int least_absolute = 2, sign_cleared = 2 << 2;
   return VF{_mm512_range_ps(a.raw, b.raw, least_absolute | sign_cleared)};
 #else
-  return hn::Min(hn::Abs(a), hn::Abs(b));
+  return Min(Abs(a), Abs(b));
 #endif
 }
 
@@ -55,8 +55,8 @@ HWY_INLINE VF least_magnitude(VF a, VF b) {
 struct CellFlags {
   VI three, behind;
   HWY_INLINE CellFlags(const CellParts& parts, int from)
-      : three(hn::Set(I(), static_cast<std::int32_t>(parts.three >> from))),
-        behind(hn::Set(I(), static_cast<std::int32_t>(parts.behind >> from))) {}
+      : three(Set(I(), static_cast<std::int32_t>(parts.three >> from))),
+        behind(Set(I(), static_cast<std::int32_t>(parts.behind >> from))) {}
 };
 
 /// What lanes ask of their hits' cells: whichever each is of, of as many as there are lanes, from `from` on. Their
@@ -66,16 +66,13 @@ class AnyCell {
  public:
   static constexpr bool may_be_two = two, may_be_three = with_three;
   HWY_INLINE AnyCell(const CellFlags& flags, int from, VI hit)
-      : flags_(flags),
-        from_(from),
-        cell_(hn::And(hit, hn::Set(I(), lanes - 1))),
-        bit_(hn::Shl(hn::Set(I(), 1), cell_)) {}
-  HWY_INLINE MI three() const { return hn::TestBit(flags_.three, bit_); }
-  HWY_INLINE MI behind() const { return hn::TestBit(flags_.behind, bit_); }
+      : flags_(flags), from_(from), cell_(And(hit, Set(I(), lanes - 1))), bit_(Shl(Set(I(), 1), cell_)) {}
+  HWY_INLINE MI three() const { return TestBit(flags_.three, bit_); }
+  HWY_INLINE MI behind() const { return TestBit(flags_.behind, bit_); }
   template <class T>
   HWY_INLINE hn::Vec<hn::ScalableTag<T>> number(const T* numbers) const {
     const hn::ScalableTag<T> d;
-    return hn::TableLookupLanes(hn::Load(d, numbers + from_), hn::IndicesFromVec(d, cell_));
+    return TableLookupLanes(Load(d, numbers + from_), IndicesFromVec(d, cell_));
   }
   /// To choose the second of two numbers.
 #if HWY_TARGET <= HWY_AVX3
@@ -84,13 +81,13 @@ class AnyCell {
     return VI{_mm512_mask_or_epi32(cell_.raw, second.raw, cell_.raw, _mm512_set1_epi32(CellBatch::most))};
   }
   HWY_INLINE VI number(const std::int32_t* first, const std::int32_t* second, Choice choice) const {
-    return VI{_mm512_permutex2var_epi32(hn::Load(I(), first).raw, choice.raw, hn::Load(I(), second).raw)};
+    return VI{_mm512_permutex2var_epi32(Load(I(), first).raw, choice.raw, Load(I(), second).raw)};
   }
 #else
   using Choice = MI;
   HWY_INLINE Choice choice(MI second) const { return second; }
   HWY_INLINE VI number(const std::int32_t* first, const std::int32_t* second, Choice choice) const {
-    return hn::IfThenElse(choice, number(second), number(first));
+    return IfThenElse(choice, number(second), number(first));
   }
 #endif
 
@@ -109,16 +106,16 @@ class OneCell {
   HWY_INLINE OneCell(const CellParts& parts, int t) : parts_(parts), t_(t) {}
   HWY_INLINE MI behind() const {
     const I d;
-    return hn::Set(d, -static_cast<std::int32_t>(parts_.behind >> t_ & 1)) < hn::Zero(d);
+    return Set(d, -static_cast<std::int32_t>(parts_.behind >> t_ & 1)) < Zero(d);
   }
   template <class T>
   HWY_INLINE hn::Vec<hn::ScalableTag<T>> number(const T* numbers) const {
-    return hn::Set(hn::ScalableTag<T>(), numbers[t_]);
+    return Set(hn::ScalableTag<T>(), numbers[t_]);
   }
   using Choice = MI;
   HWY_INLINE Choice choice(MI second) const { return second; }
   HWY_INLINE VI number(const std::int32_t* first, const std::int32_t* second, Choice choice) const {
-    return hn::IfThenElse(choice, number(second), number(first));
+    return IfThenElse(choice, number(second), number(first));
   }
 
  private:
@@ -139,8 +136,8 @@ class HitCrossing {
         square_(square),
         out_(out),
         counts_(counts),
-        pixel_step_(hn::Set(I(), rect.width() << 16 | 1)),
-        center_pixel_(hn::Set(
+        pixel_step_(Set(I(), rect.width() << 16 | 1)),
+        center_pixel_(Set(
             I(), (square.y0 + CellBatch::center - rect.y0) * rect.width() + square.x0 + CellBatch::center - rect.x0)) {}
 
   /// Whether hits of as many cells as lanes can be crossed together: where lanes find their cells' numbers by
@@ -156,8 +153,8 @@ class HitCrossing {
     const CellFlags flags(parts_, from);
     std::size_t i = 0;
     for (; i + lanes <= queue.size; i += lanes)
-      cross(queue.hit + i, lanes, AnyCell<two, three>(flags, from, hn::Load(d, queue.hit + i)));
-    hn::Store(hn::Load(d, queue.hit + i), d, queue.hit);
+      cross(queue.hit + i, lanes, AnyCell<two, three>(flags, from, Load(d, queue.hit + i)));
+    Store(Load(d, queue.hit + i), d, queue.hit);
     queue.size -= i;
   }
   /// The rest too.
@@ -165,7 +162,7 @@ class HitCrossing {
   HWY_INLINE void finish(HitQueue& queue, int from) {
     drain<two, three>(queue, from);
     const CellFlags flags(parts_, from);
-    if (queue.size > 0) cross(queue.hit, queue.size, AnyCell<two, three>(flags, from, hn::Load(I(), queue.hit)));
+    if (queue.size > 0) cross(queue.hit, queue.size, AnyCell<two, three>(flags, from, Load(I(), queue.hit)));
     queue.size = 0;
   }
 #endif
@@ -209,17 +206,16 @@ class HitCrossing {
   HWY_INLINE void cross(const std::int32_t* hits, std::size_t count, const Cells& cells) {
     const I d;
     const F df;
-    const auto number = [](int n) HWY_ATTR { return hn::Set(I(), n); };
-    const VI hit = hn::LoadU(d, hits);
+    const auto number = [](int n) HWY_ATTR { return Set(I(), n); };
+    const VI hit = LoadU(d, hits);
     constexpr std::int32_t side_pair = (SegmentWindows::side - 1) * 0x10001;
     constexpr std::int32_t minus_center_pair = -CellBatch::center * 0x10000 | (-CellBatch::center & 0xffff);
     // Column and row from the centre, 16 bits each.
-    const VI place =
-        add_pairs(hn::And(hn::ShiftRight<Hit::column_bit>(hit), number(side_pair)), number(minus_center_pair));
-    const VF xf = hn::ConvertTo(df, hn::ShiftRight<16>(hn::ShiftLeft<16>(place)));
-    const VF yf = hn::ConvertTo(df, hn::ShiftRight<16>(place)), zero = hn::Zero(df);
+    const VI place = add_pairs(And(ShiftRight<Hit::column_bit>(hit), number(side_pair)), number(minus_center_pair));
+    const VF xf = ConvertTo(df, ShiftRight<16>(ShiftLeft<16>(place)));
+    const VF yf = ConvertTo(df, ShiftRight<16>(place)), zero = Zero(df);
     const auto inner_at = [&](const CellParts::Edge& edge) HWY_ATTR {
-      return hn::MulAdd(cells.number(edge.x), xf, hn::MulAdd(cells.number(edge.y), yf, cells.number(edge.start)));
+      return MulAdd(cells.number(edge.x), xf, MulAdd(cells.number(edge.y), yf, cells.number(edge.start)));
     };
     VF inner0 = zero, inner1 = inner_at(parts_.inner[1]), inner2 = inner_at(parts_.inner[2]);
     VF sure = least_magnitude(inner1, inner2);
@@ -227,11 +223,11 @@ class HitCrossing {
       inner0 = inner_at(parts_.inner[0]);
       sure = least_magnitude(sure, inner0);
     }
-    MF hits_cell = hn::FirstN(df, count), touching = hits_cell;
-    const MF flagged = hn::RebindMask(df, hn::TestBit(hit, number(Hit::uncertain)));
-    const MF uncertain = hn::And(hits_cell, hn::Or(sure <= hn::Set(df, 1.0f), flagged));
+    MF hits_cell = FirstN(df, count), touching = hits_cell;
+    const MF flagged = RebindMask(df, TestBit(hit, number(Hit::uncertain)));
+    const MF uncertain = And(hits_cell, Or(sure <= Set(df, 1.0f), flagged));
     bool all_hit = true;
-    if (HWY_UNLIKELY(!hn::AllFalse(df, uncertain))) {
+    if (HWY_UNLIKELY(!AllFalse(df, uncertain))) {
       Unsettled unsettled{{inner0, inner1, inner2}, hits_cell, touching};  // what settle() changes lies in memory
       settle(lane_bits(uncertain), hits, unsettled);
       inner0 = unsettled.inner[0], inner1 = unsettled.inner[1], inner2 = unsettled.inner[2];
@@ -241,9 +237,9 @@ class HitCrossing {
 
     // Of one face against three the first side is the one face; of the three it is the one on whose side of its edges
     // with the others the ray passes.
-    const auto last = cells.choice(hn::RebindMask(d, inner2 <= zero));
-    MI second_of_two = hn::RebindMask(d, inner1 <= zero);
-    if constexpr (Cells::may_be_three && Cells::may_be_two) second_of_two = hn::AndNot(cells.three(), second_of_two);
+    const auto last = cells.choice(RebindMask(d, inner2 <= zero));
+    MI second_of_two = RebindMask(d, inner1 <= zero);
+    if constexpr (Cells::may_be_three && Cells::may_be_two) second_of_two = AndNot(cells.three(), second_of_two);
     const auto first_choice = cells.choice(second_of_two);
     const auto first_side = [&](const auto& number_of) HWY_ATTR {
       if constexpr (!Cells::may_be_two)
@@ -251,30 +247,30 @@ class HitCrossing {
       else
         return cells.number(number_of(0), number_of(1), first_choice);
     };
-    const MI first_of_three = hn::RebindMask(d, hn::And(inner0 > zero, inner1 > zero));
+    const MI first_of_three = RebindMask(d, And(inner0 > zero, inner1 > zero));
     const auto second_side = [&](const auto& number_of) HWY_ATTR {
       const VI others = cells.number(number_of(2), number_of(3), last);
       if constexpr (!Cells::may_be_three) return others;
-      return hn::IfThenElse(first_of_three, cells.number(number_of(1)), others);
+      return IfThenElse(first_of_three, cells.number(number_of(1)), others);
     };
     const auto crossing = [&](const auto& side) HWY_ATTR {
       const auto at_pixel = [&](const CellParts::Planes& planes) HWY_ATTR {
         const VI start = side([&](int k) { return planes[k].start; });
         const VI low = side([&](int k) { return planes[k].low; }), high = side([&](int k) { return planes[k].high; });
-        return start + products(low, place) + hn::ShiftLeft<16>(products(high, place));
+        return start + products(low, place) + ShiftLeft<16>(products(high, place));
       };
       Crossing c;
       c.depth = at_pixel(parts_.depth);
       if constexpr (per_cell)
         c.scalar = cells.number(batch_.cell_scalar);
       else
-        c.scalar = hn::ConvertTo(df, at_pixel(parts_.scalar));
+        c.scalar = ConvertTo(df, at_pixel(parts_.scalar));
       if constexpr (perspective) {
         const VF inverse = inverse_weight(at_pixel(parts_.weight));
         const auto numbers_of = [&](const std::int32_t(*all)[CellBatch::most])
                                     HWY_ATTR { return side([&](int k) { return all[k]; }); };
-        c.depth = hn::NearestInt(hn::ConvertTo(df, c.depth) * inverse) + numbers_of(parts_.depth_c);
-        if constexpr (!per_cell) c.scalar = hn::MulAdd(c.scalar, inverse, hn::BitCast(df, numbers_of(parts_.scalar_c)));
+        c.depth = NearestInt(ConvertTo(df, c.depth) * inverse) + numbers_of(parts_.depth_c);
+        if constexpr (!per_cell) c.scalar = MulAdd(c.scalar, inverse, BitCast(df, numbers_of(parts_.scalar_c)));
       }
       return c;
     };
@@ -282,11 +278,11 @@ class HitCrossing {
     Crossing second = crossing(second_side);
     const VI pixel = products(place, pixel_step_) + center_pixel_;
     // Nothing lies between the sides where a ray touches.
-    if (HWY_UNLIKELY(!all_hit)) second.depth = hn::IfThenElse(hn::RebindMask(d, touching), first.depth, second.depth);
-    const VI front = hn::Min(first.depth, second.depth), back = hn::Max(first.depth, second.depth);
-    const MF swapped = hn::RebindMask(df, cells.behind());
-    const VF scalar_front = hn::IfThenElse(swapped, second.scalar, first.scalar);
-    const VF scalar_back = hn::IfThenElse(swapped, first.scalar, second.scalar);
+    if (HWY_UNLIKELY(!all_hit)) second.depth = IfThenElse(RebindMask(d, touching), first.depth, second.depth);
+    const VI front = Min(first.depth, second.depth), back = Max(first.depth, second.depth);
+    const MF swapped = RebindMask(df, cells.behind());
+    const VF scalar_front = IfThenElse(swapped, second.scalar, first.scalar);
+    const VF scalar_back = IfThenElse(swapped, first.scalar, second.scalar);
     if (HWY_UNLIKELY(!all_hit)) {
       if (HWY_UNLIKELY(out_.keeps_hits)) append_hits(hits_cell, hit, out_);
       append(hits_cell, pixel, front, back, scalar_front, scalar_back, out_);
@@ -296,10 +292,10 @@ class HitCrossing {
     const std::size_t at = out_.size;
     std::int32_t *const pixels = out_.pixel.data(), *const fronts = out_.front.data(), *const backs = out_.back.data();
     float *const scalar_fronts = out_.scalar_front.data(), *const scalar_backs = out_.scalar_back.data();
-    hn::StoreU(pixel, d, pixels + at);
-    hn::StoreU(front, d, fronts + at), hn::StoreU(back, d, backs + at);
-    hn::StoreU(scalar_front, df, scalar_fronts + at), hn::StoreU(scalar_back, df, scalar_backs + at);
-    if (HWY_UNLIKELY(out_.keeps_hits)) hn::StoreU(hit, d, out_.hit.data() + at);
+    StoreU(pixel, d, pixels + at);
+    StoreU(front, d, fronts + at), StoreU(back, d, backs + at);
+    StoreU(scalar_front, df, scalar_fronts + at), StoreU(scalar_back, df, scalar_backs + at);
+    if (HWY_UNLIKELY(out_.keeps_hits)) StoreU(hit, d, out_.hit.data() + at);
     out_.size = at + count;
   }
 
@@ -313,8 +309,8 @@ class HitCrossing {
     VF(&inner)[3] = unsettled.inner;
     MF &hits_cell = unsettled.hits_cell, &touching = unsettled.touching;
     alignas(64) float inners[3][lanes], hit[lanes], touches[lanes] = {};
-    for (int k = 0; k < 3; ++k) hn::Store(inner[k], df, inners[k]);
-    hn::Store(hn::IfThenElseZero(hits_cell, hn::Set(df, 1.0f)), df, hit);
+    for (int k = 0; k < 3; ++k) Store(inner[k], df, inners[k]);
+    Store(IfThenElseZero(hits_cell, Set(df, 1.0f)), df, hit);
     for (; uncertain != 0; uncertain &= uncertain - 1) {
       const int lane = __builtin_ctz(uncertain), t = hits[lane] & (CellBatch::most - 1);
       const int column = hits[lane] >> Hit::column_bit & (SegmentWindows::side - 1);
@@ -339,9 +335,9 @@ class HitCrossing {
       inners[1][lane] = edge[roles.three != 0 ? roles.inner[1] : roles.inner[0]];
       inners[2][lane] = edge[roles.three != 0 ? roles.inner[2] : roles.inner[1]];
     }
-    for (int k = 0; k < 3; ++k) inner[k] = hn::Load(df, inners[k]);
-    hits_cell = hn::Load(df, hit) > hn::Zero(df);
-    touching = hn::Load(df, touches) > hn::Zero(df);
+    for (int k = 0; k < 3; ++k) inner[k] = Load(df, inners[k]);
+    hits_cell = Load(df, hit) > Zero(df);
+    touching = Load(df, touches) > Zero(df);
   }
 
   const LatticeView& view_;

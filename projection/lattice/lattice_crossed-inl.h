@@ -32,30 +32,30 @@ HWY_NOINLINE inline CrossedSegments crossed_segments(const SegmentStream& stream
   const F df;
   std::int32_t* const crossed = surfaces.numbers(stream.size - first);
   std::size_t count = 0;
-  VI cells = hn::Zero(d);
-  VI number = hn::Iota(d, 0) + hn::Set(d, static_cast<std::int32_t>(first));
+  VI cells = Zero(d);
+  VI number = Iota(d, 0) + Set(d, static_cast<std::int32_t>(first));
   const auto of_cell = [&](const float* numbers, VI cell) HWY_ATTR {
     if constexpr (lanes == static_cast<int>(LatticeSurfaces::most_cells))
-      return hn::TableLookupLanes(hn::Load(df, numbers), hn::IndicesFromVec(df, cell));
+      return TableLookupLanes(Load(df, numbers), IndicesFromVec(df, cell));
     else
-      return hn::GatherIndex(df, numbers, cell);
+      return GatherIndex(df, numbers, cell);
   };
   for (std::size_t i = first; i < stream.size; i += lanes) {
-    const VI cell = hn::And(hn::LoadU(d, stream.hit.data() + i),
-                            hn::Set(d, static_cast<std::int32_t>(LatticeSurfaces::most_cells) - 1));
-    const VF from = hn::LoadU(df, stream.scalar_front.data() + i), to = hn::LoadU(df, stream.scalar_back.data() + i);
+    const VI cell =
+        And(LoadU(d, stream.hit.data() + i), Set(d, static_cast<std::int32_t>(LatticeSurfaces::most_cells) - 1));
+    const VF from = LoadU(df, stream.scalar_front.data() + i), to = LoadU(df, stream.scalar_back.data() + i);
     const auto reaches =
-        hn::And(hn::Max(from, to) >= of_cell(surfaces.low, cell), hn::Min(from, to) < of_cell(surfaces.high, cell));
-    const auto is = hn::And(reaches, hn::FirstN(df, stream.size - i));
+        And(Max(from, to) >= of_cell(surfaces.low, cell), Min(from, to) < of_cell(surfaces.high, cell));
+    const auto is = And(reaches, FirstN(df, stream.size - i));
     // Without a branch, which would go either way.
-    const LanePacker pack(hn::RebindMask(d, is));
-    hn::StoreU(pack(number), d, crossed + count);
+    const LanePacker pack(RebindMask(d, is));
+    StoreU(pack(number), d, crossed + count);
     count += pack.count();
-    number = number + hn::Set(d, lanes);
-    cells = hn::Or(cells, hn::IfThenElseZero(hn::RebindMask(d, is), hn::Shl(hn::Set(d, 1), cell)));
+    number = number + Set(d, lanes);
+    cells = Or(cells, IfThenElseZero(RebindMask(d, is), Shl(Set(d, 1), cell)));
   }
   alignas(64) std::int32_t of_lane[lanes];
-  hn::Store(cells, d, of_lane);
+  Store(cells, d, of_lane);
   unsigned all = 0;
   for (const std::int32_t bits : of_lane) all |= static_cast<unsigned>(bits);
   return {crossed, count, all};

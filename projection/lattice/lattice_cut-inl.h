@@ -26,12 +26,12 @@ struct Doubles {
 HWY_INLINE Doubles in_double(VI v) {
   const D d;
   const hn::Half<I> half;
-  return {hn::PromoteTo(d, hn::LowerHalf(half, v)), hn::PromoteTo(d, hn::UpperHalf(half, v))};
+  return {PromoteTo(d, LowerHalf(half, v)), PromoteTo(d, UpperHalf(half, v))};
 }
 HWY_INLINE Doubles in_double(VF v) {
   const D d;
   const hn::Half<F> half;
-  return {hn::PromoteTo(d, hn::LowerHalf(half, v)), hn::PromoteTo(d, hn::UpperHalf(half, v))};
+  return {PromoteTo(d, LowerHalf(half, v)), PromoteTo(d, UpperHalf(half, v))};
 }
 /// f(vectors), for both halves.
 template <class Function, class... Args>
@@ -55,9 +55,9 @@ class SurfaceCuts {
   HWY_NOINLINE void cut(const CrossedSegments& segments) {
     const I d;
     for (std::size_t i = 0; i < segments.count; i += lanes) {
-      const auto here = hn::FirstN(d, segments.count - i);
-      const VI segment = hn::LoadU(d, segments.numbers + i);
-      cut_lanes(hn::IfThenElseZero(here, segment), here);
+      const auto here = FirstN(d, segments.count - i);
+      const VI segment = LoadU(d, segments.numbers + i);
+      cut_lanes(IfThenElseZero(here, segment), here);
     }
   }
 
@@ -85,96 +85,94 @@ class SurfaceCuts {
   static HWY_INLINE hn::Vec<hn::ScalableTag<T>> number_of_cell(const T* numbers, VI cell) {
     const hn::ScalableTag<T> d;
     if constexpr (lanes == static_cast<int>(LatticeSurfaces::most_cells))
-      return hn::TableLookupLanes(hn::Load(d, numbers), hn::IndicesFromVec(d, cell));
+      return TableLookupLanes(Load(d, numbers), IndicesFromVec(d, cell));
     else
-      return hn::GatherIndex(d, numbers, cell);
+      return GatherIndex(d, numbers, cell);
   }
 
   HWY_INLINE void cut_lanes(VI segment, MI here) {
     const I d;
     const F df;
-    const VI hit = hn::GatherIndex(d, out_.hit.data(), segment);
-    const VI cell = hn::And(hit, hn::Set(d, static_cast<std::int32_t>(LatticeSurfaces::most_cells) - 1));
-    const VI front = hn::GatherIndex(d, out_.front.data(), segment),
-             back = hn::GatherIndex(d, out_.back.data(), segment);
-    const VF from = hn::GatherIndex(df, out_.scalar_front.data(), segment),
-             to = hn::GatherIndex(df, out_.scalar_back.data(), segment);
-    const VI pixel = hn::GatherIndex(d, out_.pixel.data(), segment);
+    const VI hit = GatherIndex(d, out_.hit.data(), segment);
+    const VI cell = And(hit, Set(d, static_cast<std::int32_t>(LatticeSurfaces::most_cells) - 1));
+    const VI front = GatherIndex(d, out_.front.data(), segment), back = GatherIndex(d, out_.back.data(), segment);
+    const VF from = GatherIndex(df, out_.scalar_front.data(), segment),
+             to = GatherIndex(df, out_.scalar_back.data(), segment);
+    const VI pixel = GatherIndex(d, out_.pixel.data(), segment);
     const VI first = number_of_cell(cells_.first, cell);
-    const VI count = hn::IfThenElseZero(here, number_of_cell(cells_.count, cell));
-    const auto most = static_cast<std::size_t>(hn::GetLane(hn::MaxOfLanes(d, count)));
+    const VI count = IfThenElseZero(here, number_of_cell(cells_.count, cell));
+    const auto most = static_cast<std::size_t>(GetLane(MaxOfLanes(d, count)));
     // Each crossing appends one.
     if (out_.size + most * lanes > out_.front.size() - SegmentStream::padding)
       out_.reserve(2 * (out_.size + most * lanes));
 
-    const MI rises = hn::RebindMask(d, from < to);
+    const MI rises = RebindMask(d, from < to);
     const VI cosine = cosine_code(hit, cell);
     const Doubles steps = in_double(back - front), start = in_double(front), scalar = in_double(from);
     const Doubles slope = in_halves([](V s, V a, V b) HWY_ATTR { return s / (b - a); }, steps, scalar, in_double(to));
-    const VI limit = hn::Max(front, back - hn::Set(d, back_end_steps));
-    const VI at_limit = hn::IfThenElse(limit > front, place(Place::back_end), place(Place::inside));
+    const VI limit = Max(front, back - Set(d, back_end_steps));
+    const VI at_limit = IfThenElse(limit > front, place(Place::back_end), place(Place::inside));
     const MI level = front == back;
     Part part{front, from};
     for (std::size_t k = 0; k < most; ++k) {
-      const VI kth = hn::Set(d, static_cast<std::int32_t>(k));
-      const VI passed = hn::IfThenElse(rises, kth, count - hn::Set(d, 1) - kth);
+      const VI kth = Set(d, static_cast<std::int32_t>(k));
+      const VI passed = IfThenElse(rises, kth, count - Set(d, 1) - kth);
       const MI has = kth < count;
-      const VI surface = hn::IfThenElseZero(has, first + passed);
-      const VF value = k == 0 ? first_values(rises, cell) : hn::GatherIndex(df, set_.on_lattice().data(), surface);
-      const MI crossed = hn::And(has, hn::RebindMask(d, hn::Xor(from >= value, to >= value)));
-      if (hn::AllFalse(d, crossed)) continue;
+      const VI surface = IfThenElseZero(has, first + passed);
+      const VF value = k == 0 ? first_values(rises, cell) : GatherIndex(df, set_.on_lattice().data(), surface);
+      const MI crossed = And(has, RebindMask(d, Xor(from >= value, to >= value)));
+      if (AllFalse(d, crossed)) continue;
       const auto depth_at = [](V v, V f, V s, V l, V z) HWY_ATTR {
         const V along = (v - f) * s;
-        return hn::Round(z + hn::Min(hn::Max(along, hn::Zero(D())), l));
+        return Round(z + Min(Max(along, Zero(D())), l));
       };
       VI depth = in_steps(in_halves(depth_at, in_double(value), scalar, slope, steps, start));
-      const MI at_back = hn::Not(depth < limit);
-      const VI at = hn::IfThenElse(at_back, at_limit,
-                                   hn::IfThenElse(depth == front, place(Place::front_end), place(Place::inside)));
-      depth = hn::Min(depth, limit);
+      const MI at_back = Not(depth < limit);
+      const VI at =
+          IfThenElse(at_back, at_limit, IfThenElse(depth == front, place(Place::front_end), place(Place::inside)));
+      depth = Min(depth, limit);
       const VF mark = mark_of(surface, rises, at, cosine);
       // One at the back end stands alone; so does the first of two at the front.
-      const MI alone = hn::And(crossed, hn::Or(at == place(Place::back_end), level));
-      const MI before = hn::AndNot(alone, crossed);
-      const MI at_front = hn::And(before, depth == part.front);
-      const MI marked = hn::RebindMask(d, part.scalar >= hn::Set(df, LatticeMark::first));
-      const MI parts = hn::Or(alone, hn::AndNot(hn::AndNot(marked, at_front), before));
-      const VI begin = hn::IfThenElse(alone, depth, part.front);
-      const VF begin_scalar = hn::IfThenElse(hn::RebindMask(df, alone), mark, part.scalar);
-      append(hn::RebindMask(df, parts), pixel, begin, depth, begin_scalar, value, out_);
-      part.front = hn::IfThenElse(before, depth, part.front);
-      part.scalar = hn::IfThenElse(hn::RebindMask(df, before), mark, part.scalar);
+      const MI alone = And(crossed, Or(at == place(Place::back_end), level));
+      const MI before = AndNot(alone, crossed);
+      const MI at_front = And(before, depth == part.front);
+      const MI marked = RebindMask(d, part.scalar >= Set(df, LatticeMark::first));
+      const MI parts = Or(alone, AndNot(AndNot(marked, at_front), before));
+      const VI begin = IfThenElse(alone, depth, part.front);
+      const VF begin_scalar = IfThenElse(RebindMask(df, alone), mark, part.scalar);
+      append(RebindMask(df, parts), pixel, begin, depth, begin_scalar, value, out_);
+      part.front = IfThenElse(before, depth, part.front);
+      part.scalar = IfThenElse(RebindMask(df, before), mark, part.scalar);
     }
     // Lanes without a segment go behind the last.
-    const VI spare = hn::Iota(d, 0) + hn::Set(d, static_cast<std::int32_t>(out_.size));
-    const VI own = hn::IfThenElse(here, segment, spare);
-    hn::ScatterIndex(part.front, d, out_.front.data(), own);
-    hn::ScatterIndex(part.scalar, df, out_.scalar_front.data(), own);
+    const VI spare = Iota(d, 0) + Set(d, static_cast<std::int32_t>(out_.size));
+    const VI own = IfThenElse(here, segment, spare);
+    ScatterIndex(part.front, d, out_.front.data(), own);
+    ScatterIndex(part.scalar, df, out_.scalar_front.data(), own);
   }
 
   using Place = scene::SurfaceSet::Place;
   /// The lowest number of a crossing there.
-  HWY_INLINE VI place(Place p) const { return hn::Set(I(), static_cast<std::int32_t>(p) * numbers_a_place_); }
+  HWY_INLINE VI place(Place p) const { return Set(I(), static_cast<std::int32_t>(p) * numbers_a_place_); }
 
   /// The surfaces that the cells' segments may cross first.
   HWY_INLINE VF first_values(MI rises, VI cell) const {
-    return hn::IfThenElse(hn::RebindMask(F(), rises), number_of_cell(cells_.low, cell),
-                          number_of_cell(cells_.high, cell));
+    return IfThenElse(RebindMask(F(), rises), number_of_cell(cells_.low, cell), number_of_cell(cells_.high, cell));
   }
 
   /// Whole numbers of 31 bits.
   static HWY_INLINE VI in_steps(Doubles v) {
     const hn::Half<I> half;
-    return hn::Combine(I(), hn::DemoteTo(half, v.high), hn::DemoteTo(half, v.low));
+    return Combine(I(), DemoteTo(half, v.high), DemoteTo(half, v.low));
   }
 
   /// LatticeMark::of(the crossing).
   HWY_INLINE VF mark_of(VI surface, MI rises, VI at, VI cosine) const {
     const I d;
     const auto n = static_cast<std::int32_t>(set_.iso_values().size());
-    const VI within = hn::IfThenElse(rises, surface, hn::Set(d, 2 * n - 1) - surface);
-    const VI bits = hn::Or(hn::ShiftLeft<LatticeMark::cosine_bits>(at + within), cosine);
-    return hn::BitCast(F(), bits + hn::Set(d, static_cast<std::int32_t>(LatticeMark::first_bits)));
+    const VI within = IfThenElse(rises, surface, Set(d, 2 * n - 1) - surface);
+    const VI bits = Or(ShiftLeft<LatticeMark::cosine_bits>(at + within), cosine);
+    return BitCast(F(), bits + Set(d, static_cast<std::int32_t>(LatticeMark::first_bits)));
   }
 
   /// The lower bits of the lanes' marks.
@@ -182,37 +180,37 @@ class SurfaceCuts {
     const I d;
     const F df;
     if (!perspective_) return number_of_cell(cells_.cosine_code, cell);
-    const VF codes = cosine_of_rays(hit, cell) * hn::Set(df, static_cast<float>(LatticeMark::cosines));
-    return hn::ConvertTo(d, codes + hn::Set(df, 0.5f));
+    const VF codes = cosine_of_rays(hit, cell) * Set(df, static_cast<float>(LatticeMark::cosines));
+    return ConvertTo(d, codes + Set(df, 0.5f));
   }
 
   static HWY_INLINE VF in_float(Doubles v) {
     const hn::Half<F> half;
-    return hn::Combine(F(), hn::DemoteTo(half, v.high), hn::DemoteTo(half, v.low));
+    return Combine(F(), DemoteTo(half, v.high), DemoteTo(half, v.low));
   }
   static HWY_INLINE Doubles doubles_of_cells(const double* numbers, VI cell) {
     const D d;
     const hn::RebindToSigned<D> di;
     const hn::Half<I> half;
-    return {hn::GatherIndex(d, numbers, hn::PromoteTo(di, hn::LowerHalf(half, cell))),
-            hn::GatherIndex(d, numbers, hn::PromoteTo(di, hn::UpperHalf(half, cell)))};
+    return {GatherIndex(d, numbers, PromoteTo(di, LowerHalf(half, cell))),
+            GatherIndex(d, numbers, PromoteTo(di, UpperHalf(half, cell)))};
   }
 
   HWY_INLINE VF cosine_of_rays(VI hit, VI cell) const {
     const I d;
-    const VI side = hn::Set(d, SegmentWindows::side - 1);
-    const Doubles column = in_double(hn::And(hn::ShiftRight<Hit::column_bit>(hit), side));
-    const Doubles row = in_double(hn::And(hn::ShiftRight<Hit::row_bit>(hit), side));
+    const VI side = Set(d, SegmentWindows::side - 1);
+    const Doubles column = in_double(And(ShiftRight<Hit::column_bit>(hit), side));
+    const Doubles row = in_double(And(ShiftRight<Hit::row_bit>(hit), side));
     const auto on_ray = [&](int axis) HWY_ATTR {
-      const V corner = hn::Set(D(), rays_.corner[axis]), right = hn::Set(D(), rays_.right[axis]),
-              down = hn::Set(D(), rays_.down[axis]);
+      const V corner = Set(D(), rays_.corner[axis]), right = Set(D(), rays_.right[axis]),
+              down = Set(D(), rays_.down[axis]);
       return in_halves([&](V c, V r) HWY_ATTR { return corner + right * c + down * r; }, column, row);
     };
     const Doubles x = on_ray(0), y = on_ray(1), z = on_ray(2);
     const auto between = [](V ax, V ay, V az, V bx, V by, V bz, V without) HWY_ATTR {
       const V along = ax * bx + ay * by + az * bz;
       const V length = ax * ax + ay * ay + az * az;
-      return hn::Min(hn::Max(hn::Abs(along) / hn::Sqrt(length), without), hn::Set(D(), 1));
+      return Min(Max(Abs(along) / Sqrt(length), without), Set(D(), 1));
     };
     return in_float(in_halves(between, x, y, z, doubles_of_cells(cells_.normal[0], cell),
                               doubles_of_cells(cells_.normal[1], cell), doubles_of_cells(cells_.normal[2], cell),

@@ -32,31 +32,31 @@ HWY_INLINE V dot(const Vectors& a, const Vectors& b) { return a.x * b.x + a.y * 
 HWY_INLINE Vectors cross(const Vectors& a, const Vectors& b) {
   return {a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y};
 }
-HWY_INLINE V largest(const Vectors& v) { return hn::Max(hn::Max(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z)); }
+HWY_INLINE V largest(const Vectors& v) { return Max(Max(Abs(v.x), Abs(v.y)), Abs(v.z)); }
 
 /// unit(gradient_direction()) of surface_crossings.hpp but for rounding, a cell a lane.
 HWY_INLINE Vectors unit_gradient(const Vectors (&corner)[4], const V (&scalar)[4]) {
-  const V zero = hn::Zero(D());
+  const V zero = Zero(D());
   Vectors edge[3];
   V change[3], size = zero, most = zero;
   for (std::size_t i = 0; i < 3; ++i) {
     edge[i] = difference(corner[i + 1], corner[0]);
     change[i] = scalar[i + 1] - scalar[0];
-    size = hn::Max(size, largest(edge[i])), most = hn::Max(most, hn::Abs(change[i]));
+    size = Max(size, largest(edge[i])), most = Max(most, Abs(change[i]));
   }
   // Edges of size one: of no mesh do squares or products of them leave a double's range.
-  const V one = hn::Set(D(), 1), per_size = one / size, per_change = one / most;
+  const V one = Set(D(), 1), per_size = one / size, per_change = one / most;
   const Vectors e0 = product(edge[0], per_size), e1 = product(edge[1], per_size), e2 = product(edge[2], per_size);
   const Vectors n0 = cross(e1, e2), n1 = cross(e2, e0), n2 = cross(e0, e1);
   const V c0 = change[0] * per_change, c1 = change[1] * per_change, c2 = change[2] * per_change;
   const auto sum = [&](V a, V b, V c) HWY_ATTR { return c0 * a + c1 * b + c2 * c; };
   const Vectors direction{sum(n0.x, n1.x, n2.x), sum(n0.y, n1.y, n2.y), sum(n0.z, n1.z, n2.z)};
   const V square = dot(direction, direction);
-  const Vectors unit = product(direction, one / hn::Sqrt(square));
+  const Vectors unit = product(direction, one / Sqrt(square));
   // Of a cell of no size, of one scalar, or flat, divisions gave no numbers.
-  const V least = hn::Set(D(), 1e-300);
-  const auto is = hn::And(square > zero, hn::And(size > least, most > least));
-  return {hn::IfThenElseZero(is, unit.x), hn::IfThenElseZero(is, unit.y), hn::IfThenElseZero(is, unit.z)};
+  const V least = Set(D(), 1e-300);
+  const auto is = And(square > zero, And(size > least, most > least));
+  return {IfThenElseZero(is, unit.x), IfThenElseZero(is, unit.y), IfThenElseZero(is, unit.z)};
 }
 
 /// Normals and cosines of some of a batch's cells, a bit each. To be called once find_surfaces()'s prefetches have had
@@ -65,13 +65,13 @@ HWY_NOINLINE inline void find_normals(const LatticeView& view, const CellBatch& 
                                       LatticeSurfaces& surfaces) {
   const D d;
   const hn::RebindToSigned<D> di;
-  constexpr std::size_t most = hn::MaxLanes(D());
+  constexpr std::size_t most = MaxLanes(D());
   const PreparedMesh& prepared = *view.projected.mesh;
   const scene::TetMeshView& mesh = prepared.mesh();
   const double* const positions = &mesh.positions.front().x;
   static_assert(sizeof(glm::dvec3) == 3 * sizeof(double));
   const glm::dvec3 towards = view.perspective ? glm::dvec3(0) : view.projected.iso->space->direction(0, 0);
-  const Vectors ray{hn::Set(d, towards.x), hn::Set(d, towards.y), hn::Set(d, towards.z)};
+  const Vectors ray{Set(d, towards.x), Set(d, towards.y), Set(d, towards.z)};
   while (cells != 0) {
     // Lanes beyond the last read vertex 0.
     alignas(64) std::int64_t vertices[4][most] = {};
@@ -84,19 +84,19 @@ HWY_NOINLINE inline void find_normals(const LatticeView& view, const CellBatch& 
     Vectors corner[4];
     V scalar[4];
     for (std::size_t i = 0; i < 4; ++i) {
-      const auto vertex = hn::Load(di, vertices[i]);
+      const auto vertex = Load(di, vertices[i]);
       const auto first = vertex + vertex + vertex;
-      corner[i] = {hn::GatherIndex(d, positions, first), hn::GatherIndex(d, positions + 1, first),
-                   hn::GatherIndex(d, positions + 2, first)};
-      scalar[i] = hn::GatherIndex(d, mesh.scalars.data(), vertex);
+      corner[i] = {GatherIndex(d, positions, first), GatherIndex(d, positions + 1, first),
+                   GatherIndex(d, positions + 2, first)};
+      scalar[i] = GatherIndex(d, mesh.scalars.data(), vertex);
     }
     const Vectors normal = unit_gradient(corner, scalar);
-    const V one = hn::Set(d, 1), zero = hn::Zero(d);
-    const V least = hn::IfThenElse(largest(normal) > zero, zero, one);
+    const V one = Set(d, 1), zero = Zero(d);
+    const V least = IfThenElse(largest(normal) > zero, zero, one);
     alignas(64) double found[5][most];
-    hn::Store(normal.x, d, found[0]), hn::Store(normal.y, d, found[1]), hn::Store(normal.z, d, found[2]);
-    hn::Store(least, d, found[3]);
-    hn::Store(hn::Min(hn::Max(hn::Abs(dot(ray, normal)), least), one), d, found[4]);
+    Store(normal.x, d, found[0]), Store(normal.y, d, found[1]), Store(normal.z, d, found[2]);
+    Store(least, d, found[3]);
+    Store(Min(Max(Abs(dot(ray, normal)), least), one), d, found[4]);
     for (std::size_t lane = 0; lane < count; ++lane) {
       const std::size_t t = of_lane[lane];
       for (std::size_t axis = 0; axis < 3; ++axis) surfaces.normal[axis][t] = found[axis][lane];
@@ -126,23 +126,22 @@ HWY_NOINLINE inline unsigned find_surfaces(const LatticeView& view, const CellBa
   const std::span<const float> values = view.projected.iso->surfaces->on_lattice();
   unsigned with = 0;
   for (int from = 0; from < batch.size; from += lanes) {
-    const VF below = hn::Load(df, batch.scalar_low + from) - hn::Set(df, margin);
-    const VF above = hn::Load(df, batch.scalar_high + from) + hn::Set(df, margin);
-    VI first = hn::Zero(d), last = hn::Zero(d);
-    const auto count_if = [&](MF mask, VI& count)
-                              HWY_ATTR { count = count - hn::VecFromMask(d, hn::RebindMask(d, mask)); };
+    const VF below = Load(df, batch.scalar_low + from) - Set(df, margin);
+    const VF above = Load(df, batch.scalar_high + from) + Set(df, margin);
+    VI first = Zero(d), last = Zero(d);
+    const auto count_if = [&](MF mask, VI& count) HWY_ATTR { count = count - VecFromMask(d, RebindMask(d, mask)); };
     for (const float value : values) {
-      count_if(hn::Set(df, value) < below, first);
-      count_if(hn::Set(df, value) <= above, last);
+      count_if(Set(df, value) < below, first);
+      count_if(Set(df, value) <= above, last);
     }
     const unsigned at_all = (1u << batch.size) - 1, here = ((1u << lanes) - 1) << from;
     const unsigned regular = at_all & here & ~batch.irregular;
-    const unsigned some = lane_bits(hn::RebindMask(df, first < last)) << from & regular;
+    const unsigned some = lane_bits(RebindMask(df, first < last)) << from & regular;
     with |= some;
-    hn::Store(first, d, surfaces.first + from);
-    hn::Store(last - first, d, surfaces.count + from);
-    hn::Store(hn::Set(df, std::numeric_limits<float>::infinity()), df, surfaces.low + from);
-    hn::Store(hn::Set(df, -std::numeric_limits<float>::infinity()), df, surfaces.high + from);
+    Store(first, d, surfaces.first + from);
+    Store(last - first, d, surfaces.count + from);
+    Store(Set(df, std::numeric_limits<float>::infinity()), df, surfaces.low + from);
+    Store(Set(df, -std::numeric_limits<float>::infinity()), df, surfaces.high + from);
   }
   for (unsigned left = with; left != 0; left &= left - 1) {
     const int t = __builtin_ctz(left);

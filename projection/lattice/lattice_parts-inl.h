@@ -71,9 +71,9 @@ struct CellParts {
 /// table[front faces], 16 numbers.
 HWY_INLINE VI by_front(const std::int32_t* table, VI front) {
   if constexpr (lanes == 16)
-    return hn::TableLookupLanes(hn::Load(I(), table), hn::IndicesFromVec(I(), front));
+    return TableLookupLanes(Load(I(), table), IndicesFromVec(I(), front));
   else
-    return hn::GatherIndex(I(), table, front);
+    return GatherIndex(I(), table, front);
 }
 
 /// Orders the parts of a batch's cells [from, from + lanes).
@@ -82,19 +82,19 @@ class PartOrder {
   HWY_INLINE PartOrder(const CellBatch& batch, int from, CellParts& parts)
       : batch_(batch),
         from_(from),
-        front_(hn::And(hn::BitCast(I(), hn::Load(hn::RebindToUnsigned<I>(), batch.bits + from)), hn::Set(I(), 15))),
+        front_(And(BitCast(I(), Load(hn::RebindToUnsigned<I>(), batch.bits + from)), Set(I(), 15))),
         parts_(parts) {}
 
   /// Sets `three` and `behind`, to be zero before the first. Returns the cells that have candidate pixels, a bit each.
   HWY_INLINE unsigned shapes() const {
     const I d;
-    const auto is = [&](const std::int32_t* table) HWY_ATTR { return by_front(table, front_) != hn::Zero(d); };
-    const auto bits = [&](hn::Mask<I> mask) HWY_ATTR { return lane_bits(hn::RebindMask(F(), mask)) << from_; };
+    const auto is = [&](const std::int32_t* table) HWY_ATTR { return by_front(table, front_) != Zero(d); };
+    const auto bits = [&](hn::Mask<I> mask) HWY_ATTR { return lane_bits(RebindMask(F(), mask)) << from_; };
     parts_.three |= bits(is(part_table.three));
     parts_.behind |= bits(is(part_table.behind));
-    const auto columns = hn::Load(d, batch_.x0 + from_) < hn::Load(d, batch_.x1 + from_);
-    const auto rows = hn::Load(d, batch_.y0 + from_) < hn::Load(d, batch_.y1 + from_);
-    return bits(hn::And(is(part_table.valid), hn::And(columns, rows)));
+    const auto columns = Load(d, batch_.x0 + from_) < Load(d, batch_.x1 + from_);
+    const auto rows = Load(d, batch_.y0 + from_) < Load(d, batch_.y1 + from_);
+    return bits(And(is(part_table.valid), And(columns, rows)));
   }
 
   /// Sets all the rest that such a view of such a mesh uses.
@@ -108,11 +108,11 @@ class PartOrder {
     if constexpr (!per_cell) planes(face, batch_.scalar, parts_.scalar);
     if constexpr (perspective) {
       planes(face, batch_.weight, parts_.weight);
-      for (int k = 0; k < 4; ++k) hn::Store(number_of(face[k], batch_.depth_c), I(), parts_.depth_c[k] + from_);
+      for (int k = 0; k < 4; ++k) Store(number_of(face[k], batch_.depth_c), I(), parts_.depth_c[k] + from_);
       if constexpr (!per_cell)
         for (int k = 0; k < 4; ++k)
-          hn::Store(number_of(face[k], reinterpret_cast<const std::int32_t(*)[CellBatch::most]>(batch_.scalar_c)), I(),
-                    parts_.scalar_c[k] + from_);
+          Store(number_of(face[k], reinterpret_cast<const std::int32_t(*)[CellBatch::most]>(batch_.scalar_c)), I(),
+                parts_.scalar_c[k] + from_);
     }
   }
 
@@ -130,9 +130,9 @@ class PartOrder {
     const F df;
     const VI which = by_front(part, front_);
     // Where there is none, surely not positive.
-    VF start = hn::Set(df, -4.0f), x = hn::Zero(df), y = x;
+    VF start = Set(df, -4.0f), x = Zero(df), y = x;
     edges_of<k, inner>(which, start, x, y, std::make_integer_sequence<int, 6>());
-    hn::Store(start, df, to.start + from_), hn::Store(x, df, to.x + from_), hn::Store(y, df, to.y + from_);
+    Store(start, df, to.start + from_), Store(x, df, to.x + from_), Store(y, df, to.y + from_);
   }
   template <int k, bool inner, int... e>
   HWY_INLINE void edges_of(VI which, VF& start, VF& x, VF& y, std::integer_sequence<int, e...>) const {
@@ -142,30 +142,29 @@ class PartOrder {
   HWY_INLINE void edge_if(VI which, VF& start, VF& x, VF& y) const {
     if constexpr (occurs(inner ? part_table.inner[k] : part_table.outline[k], e)) {
       const F df;
-      const MF is = hn::RebindMask(df, which == hn::Set(I(), e));
-      start = hn::IfThenElse(is, hn::Load(df, batch_.edge[e] + from_), start);
-      x = hn::IfThenElse(is, hn::Load(df, batch_.edge_x[e] + from_), x);
-      y = hn::IfThenElse(is, hn::Load(df, batch_.edge_y[e] + from_), y);
+      const MF is = RebindMask(df, which == Set(I(), e));
+      start = IfThenElse(is, Load(df, batch_.edge[e] + from_), start);
+      x = IfThenElse(is, Load(df, batch_.edge_x[e] + from_), x);
+      y = IfThenElse(is, Load(df, batch_.edge_y[e] + from_), y);
     }
   }
   HWY_INLINE VI number_of(VI face, const std::int32_t (*all)[CellBatch::most]) const {
     const I d;
-    VI v = hn::Load(d, all[0] + from_);
-    for (int f = 1; f < 4; ++f) v = hn::IfThenElse(face == hn::Set(d, f), hn::Load(d, all[f] + from_), v);
+    VI v = Load(d, all[0] + from_);
+    for (int f = 1; f < 4; ++f) v = IfThenElse(face == Set(d, f), Load(d, all[f] + from_), v);
     return v;
   }
   HWY_INLINE void planes(const VI (&face)[4], const CellBatch::FacePlanes& all, CellParts::Planes& to) const {
     const I d;
     for (int k = 0; k < 4; ++k) {
       const VI x = number_of(face[k], all.x), y = number_of(face[k], all.y);
-      hn::Store(number_of(face[k], all.start), d, to[k].start + from_);
-      const VI low = hn::Set(d, 0xffff);
-      hn::Store(hn::Or(hn::And(x, low), hn::ShiftLeft<16>(y)), d, to[k].low + from_);
+      Store(number_of(face[k], all.start), d, to[k].start + from_);
+      const VI low = Set(d, 0xffff);
+      Store(Or(And(x, low), ShiftLeft<16>(y)), d, to[k].low + from_);
       // The lower part is signed: where it is negative the upper one is one more.
-      const auto high = [](VI v) HWY_ATTR { return v + hn::Set(I(), 0x8000); };
-      hn::Store(hn::Or(hn::BitCast(d, hn::ShiftRight<16>(hn::BitCast(hn::RebindToUnsigned<I>(), high(x)))),
-                       hn::AndNot(low, high(y))),
-                d, to[k].high + from_);
+      const auto high = [](VI v) HWY_ATTR { return v + Set(I(), 0x8000); };
+      Store(Or(BitCast(d, ShiftRight<16>(BitCast(hn::RebindToUnsigned<I>(), high(x)))), AndNot(low, high(y))), d,
+            to[k].high + from_);
     }
   }
 

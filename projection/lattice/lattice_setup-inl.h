@@ -74,7 +74,7 @@ HWY_INLINE hn::Vec<hn::Rebind<std::int32_t, D>> wrapped(V v) {
   const hn::RebindToUnsigned<D> du;
   const hn::Rebind<std::uint32_t, D> du32;
   const hn::Rebind<std::int32_t, D> di32;
-  return hn::BitCast(di32, hn::TruncateTo(du32, hn::BitCast(du, v + hn::Set(d, 0x1.8p52))));
+  return BitCast(di32, TruncateTo(du32, BitCast(du, v + Set(d, 0x1.8p52))));
 }
 
 /// A plane over the square: value at its centre and steps.
@@ -91,21 +91,21 @@ HWY_INLINE Plane plane_of(const FaceShape& s, V qa, V qb, V qc) {
   Plane p;
   p.x = (q1 * s.y2 - q2 * s.y1) * s.inverse_area;
   p.y = (s.x1 * q2 - s.x2 * q1) * s.inverse_area;
-  p.start = hn::NegMulAdd(p.x, s.ax, hn::NegMulAdd(p.y, s.ay, qa));
+  p.start = NegMulAdd(p.x, s.ax, NegMulAdd(p.y, s.ay, qa));
   return p;
 }
 
 /// Those of face f, of the cells from `from` on.
 HWY_INLINE void store_plane(const Plane& plane, int f, int from, CellBatch::FacePlanes& out) {
   const hn::Rebind<std::int32_t, D> d;
-  hn::StoreU(wrapped(plane.start), d, out.start[f] + from);
-  hn::StoreU(wrapped(plane.x), d, out.x[f] + from);
-  hn::StoreU(wrapped(plane.y), d, out.y[f] + from);
+  StoreU(wrapped(plane.start), d, out.start[f] + from);
+  StoreU(wrapped(plane.x), d, out.x[f] + from);
+  StoreU(wrapped(plane.y), d, out.y[f] + from);
 }
 
 HWY_INLINE unsigned bits_of(M mask) {
   std::uint8_t bits[8] = {0};
-  hn::StoreMaskBits(D(), mask, bits);
+  StoreMaskBits(D(), mask, bits);
   return bits[0];
 }
 
@@ -125,26 +125,26 @@ struct DepthBounds {
 /// Of cells that are deeper than DepthLimits::least_extent: those that are too thin for their rounding (DepthLimits).
 template <bool perspective>
 HWY_NOINLINE M rounded_visibly(const LatticeView& view, V extent, V volume, V twice_area, V w_product) {
-  const auto number = [](double v) HWY_ATTR { return hn::Set(D(), v); };
+  const auto number = [](double v) HWY_ATTR { return Set(D(), v); };
   const DepthLimits& limits = view.depth_limits;
   // The longest way through the cell: a third of it times the area that the cell covers is the volume.
-  V chord = hn::Abs(volume) / (twice_area * number(0.5));
+  V chord = Abs(volume) / (twice_area * number(0.5));
   if constexpr (perspective)  // `volume` is of inverse depths there
     chord = chord / (w_product * number(view.lattice.depth_unit));
   const V light = number(limits.light_per_step);
-  const V error = light * hn::MulAdd(extent, number(perspective ? DepthLimits::usual_quotient_error : 0),
-                                     number(DepthLimits::usual_plane_error));
-  M thin = hn::And(error > number(DepthLimits::least_error),
-                   hn::Not(error * error <= number(DepthLimits::most_error_squared) * (light * chord)));
+  const V error = light * MulAdd(extent, number(perspective ? DepthLimits::usual_quotient_error : 0),
+                                 number(DepthLimits::usual_plane_error));
+  M thin = And(error > number(DepthLimits::least_error),
+               Not(error * error <= number(DepthLimits::most_error_squared) * (light * chord)));
   if constexpr (perspective)
-    thin = hn::Or(thin, light * (extent * number(DepthLimits::most_quotient_error)) > number(DepthLimits::most_error));
+    thin = Or(thin, light * (extent * number(DepthLimits::most_quotient_error)) > number(DepthLimits::most_error));
   return thin;
 }
 
 /// Whether the faces may be seen edge-on.
 HWY_INLINE M thin_face(const FaceShape& n, V area) {
-  const V span = hn::Abs(n.x1) + hn::Abs(n.y1) + (hn::Abs(n.x2) + hn::Abs(n.y2));
-  return hn::Abs(area) <= span * hn::Set(D(), 0x1p-9);
+  const V span = Abs(n.x1) + Abs(n.y1) + (Abs(n.x2) + Abs(n.y2));
+  return Abs(area) <= span * Set(D(), 0x1p-9);
 }
 
 /// Which faces are front faces, and the edge functions. `thin`: some face may be edge-on, which few are.
@@ -155,14 +155,14 @@ HWY_INLINE void set_up_sides(FaceShape (&shape)[4], const V (&area)[4], M uprigh
   const hn::RebindToUnsigned<D> du64;
   const hn::Rebind<std::uint32_t, D> du32;
   const hn::Rebind<float, D> df;
-  const auto number = [](double v) HWY_ATTR { return hn::Set(D(), v); };
-  const V zero = hn::Zero(d), one = number(1);
+  const auto number = [](double v) HWY_ATTR { return Set(D(), v); };
+  const V zero = Zero(d), one = number(1);
   const M none = zero < zero;
   M is_zero[4] = {none, none, none, none}, front[4];
   // What is true of a cell, a bit each: front faces from bit 0, edge-on faces from 8, flipped edges from 16.
-  auto bits = hn::Zero(du64);
+  auto bits = Zero(du64);
   const auto add_bit = [&](M mask, int bit) HWY_ATTR {
-    bits = hn::Or(bits, hn::IfThenElseZero(hn::RebindMask(du64, mask), hn::Set(du64, std::uint64_t{1} << bit)));
+    bits = Or(bits, IfThenElseZero(RebindMask(du64, mask), Set(du64, std::uint64_t{1} << bit)));
   };
   for (int f = 0; f < 4; ++f) {
     FaceShape& n = shape[f];
@@ -170,25 +170,24 @@ HWY_INLINE void set_up_sides(FaceShape (&shape)[4], const V (&area)[4], M uprigh
       // Edge-on for certain: orthographic coordinates and their differences are exact, and the products are zeros or
       // have the same factors, as where two corners coincide or all line up along an axis.
       if constexpr (!perspective) {
-        const auto both_zero = [&](V p, V q) HWY_ATTR { return hn::And(p == zero, q == zero); };
-        is_zero[f] =
-            hn::Or(hn::Or(both_zero(n.x1, n.x2), both_zero(n.y1, n.y2)),
-                   hn::Or(hn::Or(both_zero(n.x1, n.y1), both_zero(n.x2, n.y2)), hn::And(n.x1 == n.x2, n.y1 == n.y2)));
+        const auto both_zero = [&](V p, V q) HWY_ATTR { return And(p == zero, q == zero); };
+        is_zero[f] = Or(Or(both_zero(n.x1, n.x2), both_zero(n.y1, n.y2)),
+                        Or(Or(both_zero(n.x1, n.y1), both_zero(n.x2, n.y2)), And(n.x1 == n.x2, n.y1 == n.y2)));
       }
-      irregular = hn::Or(irregular, hn::AndNot(is_zero[f], thin_face(n, area[f])));
-      n.inverse_area = hn::IfThenZeroElse(is_zero[f], one / hn::IfThenElse(is_zero[f], one, area[f]));
+      irregular = Or(irregular, AndNot(is_zero[f], thin_face(n, area[f])));
+      n.inverse_area = IfThenZeroElse(is_zero[f], one / IfThenElse(is_zero[f], one, area[f]));
     } else {
       n.inverse_area = one / area[f];
     }
     const M positive = face_outward[f] ? area[f] > zero : area[f] < zero;
-    front[f] = hn::Not(hn::Xor(positive, upright));
+    front[f] = Not(Xor(positive, upright));
   }
   if constexpr (thin) {
     // Edge-on faces, which no ray passes, fill up the sides: the first counts as a front face, others as back faces.
     M seen_zero = none;
     for (int f = 0; f < 4; ++f) {
-      front[f] = hn::Or(hn::AndNot(is_zero[f], front[f]), hn::And(is_zero[f], hn::Not(seen_zero)));
-      seen_zero = hn::Or(seen_zero, is_zero[f]);
+      front[f] = Or(AndNot(is_zero[f], front[f]), And(is_zero[f], Not(seen_zero)));
+      seen_zero = Or(seen_zero, is_zero[f]);
       add_bit(is_zero[f], 8 + f);
     }
   }
@@ -199,27 +198,27 @@ HWY_INLINE void set_up_sides(FaceShape (&shape)[4], const V (&area)[4], M uprigh
   V start[6], along_x[6], along_y[6], error = number(1e-290);
   for (int e = 0; e < 6; ++e) {
     const int a = edge_from[e], b = edge_to[e];
-    start[e] = hn::MulSub(x[a], y[b], x[b] * y[a]);
+    start[e] = MulSub(x[a], y[b], x[b] * y[a]);
     along_x[e] = y[a] - y[b], along_y[e] = x[b] - x[a];
-    error = hn::Max(error, hn::Abs(start[e]));
+    error = Max(error, Abs(start[e]));
   }
-  const V scale = number(0x1p22) / hn::MulAdd(span, number(CellBatch::center + 1), error);
+  const V scale = number(0x1p22) / MulAdd(span, number(CellBatch::center + 1), error);
   for (int e = 0; e < 6; ++e) {
-    const M inward = edge_inward[e] ? upright : hn::Not(upright);
-    const M flip = hn::Xor(inward, front[edge_faces[e][0]]);
+    const M inward = edge_inward[e] ? upright : Not(upright);
+    const M flip = Xor(inward, front[edge_faces[e][0]]);
     add_bit(flip, 16 + e);
-    const V signed_scale = hn::IfThenElse(flip, hn::Neg(scale), scale);
+    const V signed_scale = IfThenElse(flip, Neg(scale), scale);
     V scaled = start[e] * signed_scale;
     if constexpr (thin) {
       // An edge without sides lies between two edge-on faces; it never decides.
-      const M without_sides = hn::And(along_x[e] == zero, along_y[e] == zero);
-      scaled = hn::IfThenElse(without_sides, number(4), scaled);
+      const M without_sides = And(along_x[e] == zero, along_y[e] == zero);
+      scaled = IfThenElse(without_sides, number(4), scaled);
     }
-    hn::StoreU(hn::DemoteTo(df, scaled), df, batch.edge[e] + from);
-    hn::StoreU(hn::DemoteTo(df, along_x[e] * signed_scale), df, batch.edge_x[e] + from);
-    hn::StoreU(hn::DemoteTo(df, along_y[e] * signed_scale), df, batch.edge_y[e] + from);
+    StoreU(DemoteTo(df, scaled), df, batch.edge[e] + from);
+    StoreU(DemoteTo(df, along_x[e] * signed_scale), df, batch.edge_x[e] + from);
+    StoreU(DemoteTo(df, along_y[e] * signed_scale), df, batch.edge_y[e] + from);
   }
-  hn::StoreU(hn::TruncateTo(du32, bits), du32, batch.bits + from);
+  StoreU(TruncateTo(du32, bits), du32, batch.bits + from);
 }
 
 /// `count` numbers: of vertices first, first + 2, first + 4... the first two or the second two (`pair` 0 or 1). Beside
@@ -227,11 +226,11 @@ HWY_INLINE void set_up_sides(FaceShape (&shape)[4], const V (&area)[4], M uprigh
 template <std::size_t count, class Vertex>
 HWY_INLINE auto load_every_second(const Vertex& vertex, int first, int pair) {
   if constexpr (count == 2) {
-    return hn::LoadU(hn::FixedTag<double, 2>(), reinterpret_cast<const double*>(vertex(first)) + 2 * pair);
+    return LoadU(hn::FixedTag<double, 2>(), reinterpret_cast<const double*>(vertex(first)) + 2 * pair);
   } else {
     const auto low = load_every_second<count / 2>(vertex, first, pair);
     const auto high = load_every_second<count / 2>(vertex, first + static_cast<int>(count / 2), pair);
-    return hn::Combine(hn::FixedTag<double, count>(), high, low);
+    return Combine(hn::FixedTag<double, count>(), high, low);
   }
 }
 
@@ -245,24 +244,24 @@ struct Corners {
     const hn::Rebind<std::int32_t, D> di32;
     const hn::RebindToUnsigned<D> du64;
     const hn::Rebind<std::uint32_t, D> du32;
-    nearest = hn::Set(d, HUGE_VAL), farthest = hn::Set(d, -HUGE_VAL);
+    nearest = Set(d, HUGE_VAL), farthest = Set(d, -HUGE_VAL);
     for (int i = 0; i < 4; ++i) {
       const auto vertex = [&](int lane) HWY_ATTR { return &vertices[(*tets[lane])[static_cast<std::size_t>(i)]]; };
-      const auto even = [&](int pair) HWY_ATTR { return load_every_second<hn::MaxLanes(D())>(vertex, 0, pair); };
-      const auto odd = [&](int pair) HWY_ATTR { return load_every_second<hn::MaxLanes(D())>(vertex, 1, pair); };
+      const auto even = [&](int pair) HWY_ATTR { return load_every_second<MaxLanes(D())>(vertex, 0, pair); };
+      const auto odd = [&](int pair) HWY_ATTR { return load_every_second<MaxLanes(D())>(vertex, 1, pair); };
       const V xy_even = even(0), xy_odd = odd(0), rest_even = even(1), rest_odd = odd(1);
-      x[i] = hn::InterleaveLower(d, xy_even, xy_odd), y[i] = hn::InterleaveUpper(d, xy_even, xy_odd);
-      w[i] = hn::InterleaveLower(d, rest_even, rest_odd);
-      const auto both = hn::BitCast(du64, hn::InterleaveUpper(d, rest_even, rest_odd));
-      z[i] = hn::PromoteTo(d, hn::BitCast(di32, hn::TruncateTo(du32, both)));
-      s[i] = hn::PromoteTo(d, hn::BitCast(di32, hn::TruncateTo(du32, hn::ShiftRight<32>(both))));
-      x[i] = x[i] - hn::Set(d, square_x + CellBatch::center + 0.5);
-      y[i] = y[i] - hn::Set(d, square_y + CellBatch::center + 0.5);
-      nearest = hn::Min(nearest, z[i]), farthest = hn::Max(farthest, z[i]);
+      x[i] = InterleaveLower(d, xy_even, xy_odd), y[i] = InterleaveUpper(d, xy_even, xy_odd);
+      w[i] = InterleaveLower(d, rest_even, rest_odd);
+      const auto both = BitCast(du64, InterleaveUpper(d, rest_even, rest_odd));
+      z[i] = PromoteTo(d, BitCast(di32, TruncateTo(du32, both)));
+      s[i] = PromoteTo(d, BitCast(di32, TruncateTo(du32, ShiftRight<32>(both))));
+      x[i] = x[i] - Set(d, square_x + CellBatch::center + 0.5);
+      y[i] = y[i] - Set(d, square_y + CellBatch::center + 0.5);
+      nearest = Min(nearest, z[i]), farthest = Max(farthest, z[i]);
     }
   }
-  [[nodiscard]] HWY_INLINE V least_weight() const { return hn::Min(hn::Min(w[0], w[1]), hn::Min(w[2], w[3])); }
-  [[nodiscard]] HWY_INLINE V most_weight() const { return hn::Max(hn::Max(w[0], w[1]), hn::Max(w[2], w[3])); }
+  [[nodiscard]] HWY_INLINE V least_weight() const { return Min(Min(w[0], w[1]), Min(w[2], w[3])); }
+  [[nodiscard]] HWY_INLINE V most_weight() const { return Max(Max(w[0], w[1]), Max(w[2], w[3])); }
 };
 
 /// Stores the candidate pixels: centres inside the bounding box, widened by far more than rounding. Returns the box's
@@ -270,24 +269,24 @@ struct Corners {
 HWY_INLINE V set_up_box(const Corners& corners, const scene::PixelRect& rect, int square_x, int square_y, int from,
                         M& irregular, CellBatch& batch) {
   const hn::Rebind<std::int32_t, D> di32;
-  const auto number = [](double v) HWY_ATTR { return hn::Set(D(), v); };
+  const auto number = [](double v) HWY_ATTR { return Set(D(), v); };
   const V(&x)[4] = corners.x, (&y)[4] = corners.y;
-  const V x_low = hn::Min(hn::Min(x[0], x[1]), hn::Min(x[2], x[3]));
-  const V x_high = hn::Max(hn::Max(x[0], x[1]), hn::Max(x[2], x[3]));
-  const V y_low = hn::Min(hn::Min(y[0], y[1]), hn::Min(y[2], y[3]));
-  const V y_high = hn::Max(hn::Max(y[0], y[1]), hn::Max(y[2], y[3]));
-  const V reach = hn::Max(hn::Max(hn::Neg(x_low), x_high), hn::Max(hn::Neg(y_low), y_high));
-  irregular = hn::Or(irregular, hn::Not(reach < number(16384)));
+  const V x_low = Min(Min(x[0], x[1]), Min(x[2], x[3]));
+  const V x_high = Max(Max(x[0], x[1]), Max(x[2], x[3]));
+  const V y_low = Min(Min(y[0], y[1]), Min(y[2], y[3]));
+  const V y_high = Max(Max(y[0], y[1]), Max(y[2], y[3]));
+  const V reach = Max(Max(Neg(x_low), x_high), Max(Neg(y_low), y_high));
+  irregular = Or(irregular, Not(reach < number(16384)));
   const V slack = number(1e-6), center = number(CellBatch::center), behind = number(CellBatch::center + 1);
   const auto store_bound = [&](V v, int low, int high, std::int32_t* out) HWY_ATTR {
-    hn::StoreU(hn::DemoteTo(di32, hn::Min(hn::Max(v, number(low)), number(high))), di32, out + from);
+    StoreU(DemoteTo(di32, Min(Max(v, number(low)), number(high))), di32, out + from);
   };
   const int left = rect.x0 - square_x, right = rect.x1 - square_x, top = rect.y0 - square_y,
             bottom = rect.y1 - square_y;
-  store_bound(hn::Ceil(x_low - slack) + center, left, right, batch.x0);
-  store_bound(hn::Floor(x_high + slack) + behind, left, right, batch.x1);
-  store_bound(hn::Ceil(y_low - slack) + center, top, bottom, batch.y0);
-  store_bound(hn::Floor(y_high + slack) + behind, top, bottom, batch.y1);
+  store_bound(Ceil(x_low - slack) + center, left, right, batch.x0);
+  store_bound(Floor(x_high + slack) + behind, left, right, batch.x1);
+  store_bound(Ceil(y_low - slack) + center, top, bottom, batch.y0);
+  store_bound(Floor(y_high + slack) + behind, top, bottom, batch.y1);
   return x_high - x_low + (y_high - y_low);
 }
 
@@ -310,20 +309,20 @@ HWY_INLINE void set_up_planes(const Corners& corners, const FaceShape (&shape)[4
   } else {
     for (int f = 0; f < 4; ++f) {
       const V wa = w[face_corners[f][0]], wb = w[face_corners[f][1]], wc = w[face_corners[f][2]];
-      const V most = hn::Max(wa, hn::Max(wb, wc)), full = hn::Set(d, CellBatch::weight_one);
+      const V most = Max(wa, Max(wb, wc)), full = Set(d, CellBatch::weight_one);
       const V weight[3] = {wa / most, wb / most, wc / most};
       store_plane(plane_of(shape[f], weight[0] * full, weight[1] * full, weight[2] * full), f, from, batch.weight);
       const auto relative = [&](const V(&q)[4], V qc) HWY_ATTR {
         return plane_of(shape[f], weight[0] * (q[face_corners[f][0]] - qc), weight[1] * (q[face_corners[f][1]] - qc),
                         weight[2] * (q[face_corners[f][2]] - qc));
       };
-      const V depth_c = hn::Round(z[face_corners[f][2]]);
+      const V depth_c = Round(z[face_corners[f][2]]);
       store_plane(relative(z, depth_c), f, from, batch.depth);
-      hn::StoreU(wrapped(depth_c), di32, batch.depth_c[f] + from);
+      StoreU(wrapped(depth_c), di32, batch.depth_c[f] + from);
       if (per_cell) continue;
-      const V scalar_c = hn::Round(s[face_corners[f][2]]);
+      const V scalar_c = Round(s[face_corners[f][2]]);
       store_plane(relative(s, scalar_c), f, from, batch.scalar);
-      hn::StoreU(hn::DemoteTo(df, scalar_c), df, batch.scalar_c[f] + from);
+      StoreU(DemoteTo(df, scalar_c), df, batch.scalar_c[f] + from);
     }
   }
 }
@@ -332,8 +331,8 @@ HWY_INLINE void set_up_planes(const Corners& corners, const FaceShape (&shape)[4
 HWY_INLINE void store_scalar_range(const Corners& corners, int from, CellBatch& batch) {
   const hn::Rebind<float, D> df;
   const V(&s)[4] = corners.s;
-  hn::StoreU(hn::DemoteTo(df, hn::Min(hn::Min(s[0], s[1]), hn::Min(s[2], s[3]))), df, batch.scalar_low + from);
-  hn::StoreU(hn::DemoteTo(df, hn::Max(hn::Max(s[0], s[1]), hn::Max(s[2], s[3]))), df, batch.scalar_high + from);
+  StoreU(DemoteTo(df, Min(Min(s[0], s[1]), Min(s[2], s[3]))), df, batch.scalar_low + from);
+  StoreU(DemoteTo(df, Max(Max(s[0], s[1]), Max(s[2], s[3]))), df, batch.scalar_high + from);
 }
 
 /// One vector of cells: the first of them is cell `from` of the batch. `cell_scalar` is read of cell data only.
@@ -343,16 +342,16 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds,
                              int from, CellBatch& batch) {
   const D d;
   const hn::Rebind<float, D> df;
-  const auto number = [](double v) HWY_ATTR { return hn::Set(D(), v); };
-  const V zero = hn::Zero(d);
+  const auto number = [](double v) HWY_ATTR { return Set(D(), v); };
+  const V zero = Zero(d);
   const Corners corners(view.vertices.data(), tets, square_x, square_y);
   const V(&x)[4] = corners.x, (&y)[4] = corners.y, nearest = corners.nearest, farthest = corners.farthest;
-  M irregular = hn::Or(nearest<number(bounds.near), farthest> number(bounds.far));
+  M irregular = Or(nearest<number(bounds.near), farthest> number(bounds.far));
   V order[4];
-  for (int i = 0; i < 4; ++i) order[i] = perspective ? hn::Neg(corners.w[i]) : corners.z[i];
+  for (int i = 0; i < 4; ++i) order[i] = perspective ? Neg(corners.w[i]) : corners.z[i];
   if constexpr (perspective) {
-    for (const V& w : corners.w) irregular = hn::Or(irregular, hn::Not(w > zero));
-    irregular = hn::Or(irregular, corners.most_weight() > corners.least_weight() * number(16));
+    for (const V& w : corners.w) irregular = Or(irregular, Not(w > zero));
+    irregular = Or(irregular, corners.most_weight() > corners.least_weight() * number(16));
   }
   const V span = set_up_box(corners, rect, square_x, square_y, from, irregular, batch);
 
@@ -367,23 +366,22 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds,
     n.x1 = x[b] - x[a], n.y1 = y[b] - y[a];
     n.x2 = x[c] - x[a], n.y2 = y[c] - y[a];
     area[f] = n.x1 * n.y2 - n.x2 * n.y1;
-    thin = hn::Or(thin, thin_face(n, area[f]));
+    thin = Or(thin, thin_face(n, area[f]));
   }
   // The cell's volume has the sign of a front face's outward area: order grows with depth, and is linear on faces.
   const V z1 = order[1] - order[0], z2 = order[2] - order[0], z3 = order[3] - order[0];
   const V X1 = shape[0].x1, Y1 = shape[0].y1, X2 = shape[0].x2, Y2 = shape[0].y2, X3 = shape[1].x2, Y3 = shape[1].y2;
-  const V volume = hn::MulAdd(z1, hn::MulSub(X2, Y3, X3 * Y2),
-                              hn::MulAdd(z2, hn::MulSub(X3, Y1, X1 * Y3), z3 * hn::MulSub(X1, Y2, X2 * Y1)));
+  const V volume =
+      MulAdd(z1, MulSub(X2, Y3, X3 * Y2), MulAdd(z2, MulSub(X3, Y1, X1 * Y3), z3 * MulSub(X1, Y2, X2 * Y1)));
   const M upright = volume >= zero;
   const V extent = farthest - nearest;
   const M deep = extent > number(view.depth_limits.least_extent);
-  if (HWY_UNLIKELY(!hn::AllFalse(d, deep))) {
-    const V twice_area = hn::Abs(area[0]) + hn::Abs(area[1]) + (hn::Abs(area[2]) + hn::Abs(area[3]));
-    irregular =
-        hn::Or(irregular, hn::And(deep, rounded_visibly<perspective>(view, extent, volume, twice_area,
+  if (HWY_UNLIKELY(!AllFalse(d, deep))) {
+    const V twice_area = Abs(area[0]) + Abs(area[1]) + (Abs(area[2]) + Abs(area[3]));
+    irregular = Or(irregular, And(deep, rounded_visibly<perspective>(view, extent, volume, twice_area,
                                                                      corners.most_weight() * corners.least_weight())));
   }
-  if (HWY_UNLIKELY(!hn::AllFalse(d, thin)))
+  if (HWY_UNLIKELY(!AllFalse(d, thin)))
     set_up_sides<perspective, true>(shape, area, upright, x, y, span, from, irregular, batch);
   else
     set_up_sides<perspective, false>(shape, area, upright, x, y, span, from, irregular, batch);
@@ -392,8 +390,8 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds,
   set_up_planes<perspective>(corners, shape, per_cell, from, batch);
   if (per_cell) {
     const V scalar =
-        (hn::LoadU(d, cell_scalar) - number(view.lattice.scalar_origin)) * number(1 / view.lattice.scalar_unit);
-    hn::StoreU(hn::DemoteTo(df, hn::Round(scalar)), df, batch.cell_scalar + from);
+        (LoadU(d, cell_scalar) - number(view.lattice.scalar_origin)) * number(1 / view.lattice.scalar_unit);
+    StoreU(DemoteTo(df, Round(scalar)), df, batch.cell_scalar + from);
   }
 
   if (HWY_UNLIKELY(view.projected.iso != nullptr)) store_scalar_range(corners, from, batch);

@@ -26,7 +26,7 @@ using I = hn::RebindToSigned<F>;
 using VF = hn::Vec<F>;
 using VI = hn::Vec<I>;
 using MF = hn::Mask<F>;
-constexpr int lanes = static_cast<int>(hn::MaxLanes(F()));
+constexpr int lanes = static_cast<int>(MaxLanes(F()));
 
 /// Depth (steps) and scalar where the lanes' rays pass one side of the cell.
 struct Crossing {
@@ -39,20 +39,20 @@ struct Crossing {
 HWY_INLINE void append(MF hit, VI pixel, VI front, VI back, VF scalar_front, VF scalar_back, SegmentStream& out) {
   const I d;
   const F df;
-  const LanePacker pack(hn::RebindMask(d, hit));
-  hn::StoreU(pack(pixel), d, out.pixel.data() + out.size);
-  hn::StoreU(pack(front), d, out.front.data() + out.size);
-  hn::StoreU(pack(back), d, out.back.data() + out.size);
-  hn::StoreU(pack(scalar_front), df, out.scalar_front.data() + out.size);
-  hn::StoreU(pack(scalar_back), df, out.scalar_back.data() + out.size);
+  const LanePacker pack(RebindMask(d, hit));
+  StoreU(pack(pixel), d, out.pixel.data() + out.size);
+  StoreU(pack(front), d, out.front.data() + out.size);
+  StoreU(pack(back), d, out.back.data() + out.size);
+  StoreU(pack(scalar_front), df, out.scalar_front.data() + out.size);
+  StoreU(pack(scalar_back), df, out.scalar_back.data() + out.size);
   out.size += pack.count();
 }
 
 /// The same of what SegmentStream::hit keeps, before append() of the lanes' segments.
 HWY_NOINLINE inline void append_hits(MF hit, VI hits, SegmentStream& out) {
   const I d;
-  const LanePacker pack(hn::RebindMask(d, hit));
-  hn::StoreU(pack(hits), d, out.hit.data() + out.size);
+  const LanePacker pack(RebindMask(d, hit));
+  StoreU(pack(hits), d, out.hit.data() + out.size);
 }
 
 /// Which edges and faces play which part, by the set of front faces (bit f of the index).
@@ -137,17 +137,17 @@ inline bool settle_pixel(const LatticeView& view, const CellBatch& batch, int t,
 /// The lanes of a mask, a bit each.
 HWY_INLINE unsigned lane_bits(MF mask) {
   std::uint8_t bits[8] = {0};
-  hn::StoreMaskBits(F(), mask, bits);
+  StoreMaskBits(F(), mask, bits);
   return bits[0] | static_cast<unsigned>(bits[1]) << 8;
 }
 
 /// The faces' planes as a ray meets one of them: 1 / weight, and with it depth and scalar behind a corner.
 HWY_INLINE VF inverse_weight(VI weight) {
   const F d;
-  const VF w = hn::ConvertTo(d, weight);
+  const VF w = ConvertTo(d, weight);
   // One Newton step makes the estimate (11 to 14 bits) right to float rounding.
-  const VF estimate = hn::ApproximateReciprocal(w);
-  return estimate * hn::NegMulAdd(w, estimate, hn::Set(d, 2.0f)) * hn::Set(d, CellBatch::weight_one);
+  const VF estimate = ApproximateReciprocal(w);
+  return estimate * NegMulAdd(w, estimate, Set(d, 2.0f)) * Set(d, CellBatch::weight_one);
 }
 
 }  // namespace HWY_NAMESPACE

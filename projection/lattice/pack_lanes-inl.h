@@ -24,10 +24,10 @@ class LanePacker {
   using F = hn::ScalableTag<float>;
   using I = hn::RebindToSigned<F>;
 
-  explicit HWY_INLINE LanePacker(hn::Mask<I> mask) : mask_(mask), count_(hn::CountTrue(I(), mask)) {
+  explicit HWY_INLINE LanePacker(hn::Mask<I> mask) : mask_(mask), count_(CountTrue(I(), mask)) {
 #if HWY_TARGET > HWY_AVX3
     std::uint8_t bits[8] = {0};
-    hn::StoreMaskBits(I(), mask, bits);
+    StoreMaskBits(I(), mask, bits);
     bits_ = bits[0];
 #endif
   }
@@ -36,19 +36,18 @@ class LanePacker {
 
   HWY_INLINE hn::Vec<I> operator()(hn::Vec<I> v) const {
 #if HWY_TARGET <= HWY_AVX3
-    return hn::Compress(v, mask_);
+    return Compress(v, mask_);
 #else
     const I d;
-    if constexpr (hn::MaxLanes(I()) == 8) {
-      return hn::TableLookupLanes(v, hn::IndicesFromVec(d, hn::Load(d, packing_orders.lanes8[bits_].data())));
+    if constexpr (MaxLanes(I()) == 8) {
+      return TableLookupLanes(v, IndicesFromVec(d, Load(d, packing_orders.lanes8[bits_].data())));
     } else {
       const hn::Repartition<std::uint8_t, I> bytes;
-      return hn::BitCast(
-          d, hn::TableLookupBytes(hn::BitCast(bytes, v), hn::Load(bytes, packing_orders.bytes4[bits_].data())));
+      return BitCast(d, TableLookupBytes(BitCast(bytes, v), Load(bytes, packing_orders.bytes4[bits_].data())));
     }
 #endif
   }
-  HWY_INLINE hn::Vec<F> operator()(hn::Vec<F> v) const { return hn::BitCast(F(), (*this)(hn::BitCast(I(), v))); }
+  HWY_INLINE hn::Vec<F> operator()(hn::Vec<F> v) const { return BitCast(F(), (*this)(BitCast(I(), v))); }
 
  private:
   hn::Mask<I> mask_;
@@ -64,10 +63,10 @@ class WideLanePacker {
   using D = hn::ScalableTag<double>;
   using U = hn::RebindToUnsigned<D>;
 
-  explicit HWY_INLINE WideLanePacker(hn::Mask<U> mask) : mask_(mask), count_(hn::CountTrue(U(), mask)) {
+  explicit HWY_INLINE WideLanePacker(hn::Mask<U> mask) : mask_(mask), count_(CountTrue(U(), mask)) {
 #if HWY_TARGET > HWY_AVX3
     std::uint8_t bits[8] = {0};
-    hn::StoreMaskBits(U(), mask, bits);
+    StoreMaskBits(U(), mask, bits);
     // Each bit twice: 0 0 b1 b1 b0 b0 ...
     const unsigned b = bits[0];
     pairs_ = 3 * ((b & 1) | (b & 2) << 1 | (b & 4) << 2 | (b & 8) << 3);
@@ -78,21 +77,19 @@ class WideLanePacker {
 
   HWY_INLINE hn::Vec<U> operator()(hn::Vec<U> v) const {
 #if HWY_TARGET <= HWY_AVX3
-    return hn::Compress(v, mask_);
+    return Compress(v, mask_);
 #else
-    if constexpr (hn::MaxLanes(U()) == 4) {
+    if constexpr (MaxLanes(U()) == 4) {
       const hn::Repartition<std::int32_t, U> d;
-      return hn::BitCast(
-          U(), hn::TableLookupLanes(hn::BitCast(d, v),
-                                    hn::IndicesFromVec(d, hn::Load(d, packing_orders.lanes8[pairs_].data()))));
+      return BitCast(U(),
+                     TableLookupLanes(BitCast(d, v), IndicesFromVec(d, Load(d, packing_orders.lanes8[pairs_].data()))));
     } else {
       const hn::Repartition<std::uint8_t, U> bytes;
-      return hn::BitCast(
-          U(), hn::TableLookupBytes(hn::BitCast(bytes, v), hn::Load(bytes, packing_orders.bytes4[pairs_].data())));
+      return BitCast(U(), TableLookupBytes(BitCast(bytes, v), Load(bytes, packing_orders.bytes4[pairs_].data())));
     }
 #endif
   }
-  HWY_INLINE hn::Vec<D> operator()(hn::Vec<D> v) const { return hn::BitCast(D(), (*this)(hn::BitCast(U(), v))); }
+  HWY_INLINE hn::Vec<D> operator()(hn::Vec<D> v) const { return BitCast(D(), (*this)(BitCast(U(), v))); }
 
  private:
   hn::Mask<U> mask_;
@@ -114,7 +111,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 class WideLanePacker {
  public:
   using U = hn::ScalableTag<std::uint64_t>;
-  explicit WideLanePacker(hn::Mask<U> mask) : count_(hn::CountTrue(U(), mask)) {}
+  explicit WideLanePacker(hn::Mask<U> mask) : count_(CountTrue(U(), mask)) {}
   [[nodiscard]] std::size_t count() const { return count_; }
   template <class V>
   V operator()(V v) const {

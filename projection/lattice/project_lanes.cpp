@@ -20,34 +20,33 @@ using V = hn::Vec<D>;
 /// A dot product as glm takes it: no fused sums, left to right.
 HWY_INLINE V along(const double (&axis)[3], V x, V y, V z) {
   const D d;
-  return hn::Set(d, axis[0]) * x + hn::Set(d, axis[1]) * y + hn::Set(d, axis[2]) * z;
+  return Set(d, axis[0]) * x + Set(d, axis[1]) * y + Set(d, axis[2]) * z;
 }
 
 HWY_INLINE V on_grid(V pixel) {
   const D d;
-  const V scaled = pixel * hn::Set(d, 0x1p32);
-  return hn::IfThenElse(hn::IsFinite(scaled), hn::Round(scaled) * hn::Set(d, 0x1p-32), pixel);
+  const V scaled = pixel * Set(d, 0x1p32);
+  return IfThenElse(IsFinite(scaled), Round(scaled) * Set(d, 0x1p-32), pixel);
 }
 
 std::size_t project_points(const LinearMap& map, const double* points, std::size_t count, PixelVertex* out) {
   const D d;
   const std::size_t lanes = hn::Lanes(d);
-  const V half_width = hn::Set(d, map.half_width), half_height = hn::Set(d, map.half_height);
-  const V scale = hn::Set(d, map.pixels_per_unit);
+  const V half_width = Set(d, map.half_width), half_height = Set(d, map.half_height);
+  const V scale = Set(d, map.pixels_per_unit);
   std::size_t i = 0;
   for (; i + lanes <= count; i += lanes) {
     V x, y, z;
-    hn::LoadInterleaved3(d, points + 3 * i, x, y, z);
-    x = x - hn::Set(d, map.position[0]);
-    y = y - hn::Set(d, map.position[1]);
-    z = z - hn::Set(d, map.position[2]);
+    LoadInterleaved3(d, points + 3 * i, x, y, z);
+    x = x - Set(d, map.position[0]);
+    y = y - Set(d, map.position[1]);
+    z = z - Set(d, map.position[2]);
     const V across = along(map.right, x, y, z) * scale, upward = along(map.up, x, y, z) * scale;
     const V depth = along(map.forward, x, y, z);
     if (map.perspective)
-      hn::StoreInterleaved4(half_width * depth + across, half_height * depth - upward, depth, depth, d, &out[i].x);
+      StoreInterleaved4(half_width * depth + across, half_height * depth - upward, depth, depth, d, &out[i].x);
     else
-      hn::StoreInterleaved4(on_grid(half_width + across), on_grid(half_height - upward), hn::Set(d, 1.0), depth, d,
-                            &out[i].x);
+      StoreInterleaved4(on_grid(half_width + across), on_grid(half_height - upward), Set(d, 1.0), depth, d, &out[i].x);
   }
   return i;
 }

@@ -28,10 +28,9 @@ std::size_t scatter(const SegmentStream& s, std::size_t from, std::size_t capaci
   const std::size_t lanes = hn::Lanes(d);
   alignas(64) LatticeSegment records[most];
   for (std::size_t i = from; i < s.size; i += lanes) {
-    hn::StoreInterleaved4(hn::LoadU(d, s.front.data() + i), hn::LoadU(d, s.back.data() + i),
-                          hn::BitCast(d, hn::LoadU(df, s.scalar_front.data() + i)),
-                          hn::BitCast(d, hn::LoadU(df, s.scalar_back.data() + i)), d,
-                          reinterpret_cast<std::int32_t*>(records));
+    StoreInterleaved4(LoadU(d, s.front.data() + i), LoadU(d, s.back.data() + i),
+                      BitCast(d, LoadU(df, s.scalar_front.data() + i)), BitCast(d, LoadU(df, s.scalar_back.data() + i)),
+                      d, reinterpret_cast<std::int32_t*>(records));
     const std::size_t end = s.size - i < lanes ? s.size - i : lanes;
     // The lines that segments 48 ahead go to, or thereabouts, as their lists may grow until then. Every second one's:
     // neighbours in the stream mostly go to one line.

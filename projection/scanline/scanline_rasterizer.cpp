@@ -21,7 +21,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using F = hn::CappedTag<float, 4>;
 using I = hn::CappedTag<std::int32_t, 4>;
 using VF = hn::Vec<F>;
-constexpr std::size_t most_lanes = hn::MaxLanes(F());
+constexpr std::size_t most_lanes = MaxLanes(F());
 
 HWY_INLINE int lane_count() { return static_cast<int>(hn::Lanes(F())); }
 
@@ -73,17 +73,17 @@ HWY_INLINE void walk_edge(const Vertex& start, const Vertex& end, int rect_y0, c
   if (start.row >= end.row) return;
   const F f;
   const float per_row = 1 / (end.y - start.y);
-  const VF inverse_dy = hn::Set(f, per_row), inverse_slope = hn::Set(f, (end.x - start.x) * per_row);
-  const VF x_start = hn::Set(f, start.x), z_start = hn::Set(f, start.z), s_start = hn::Set(f, start.s);
-  const VF dz = hn::Set(f, end.z - start.z), ds = hn::Set(f, end.s - start.s);
-  const VF y_start = hn::Set(f, start.y), stride = hn::Set(f, static_cast<float>(lane_count()));
-  VF y = hn::Iota(f, static_cast<float>(rect_y0 + start.row) + 0.5f);  // exact: below 2^20
+  const VF inverse_dy = Set(f, per_row), inverse_slope = Set(f, (end.x - start.x) * per_row);
+  const VF x_start = Set(f, start.x), z_start = Set(f, start.z), s_start = Set(f, start.s);
+  const VF dz = Set(f, end.z - start.z), ds = Set(f, end.s - start.s);
+  const VF y_start = Set(f, start.y), stride = Set(f, static_cast<float>(lane_count()));
+  VF y = Iota(f, static_cast<float>(rect_y0 + start.row) + 0.5f);  // exact: below 2^20
   for (int row = start.row; row < end.row; row += lane_count(), y = y + stride) {
     const VF step = y - y_start;  // of the first: the sub-pixel pre-step
     const VF factor = step * inverse_dy;
-    hn::StoreU(hn::MulAdd(step, inverse_slope, x_start), f, side.x + row);
-    hn::StoreU(hn::MulAdd(factor, dz, z_start), f, side.z + row);
-    hn::StoreU(hn::MulAdd(factor, ds, s_start), f, side.s + row);
+    StoreU(MulAdd(step, inverse_slope, x_start), f, side.x + row);
+    StoreU(MulAdd(factor, dz, z_start), f, side.z + row);
+    StoreU(MulAdd(factor, ds, s_start), f, side.s + row);
   }
 }
 
@@ -91,14 +91,14 @@ HWY_INLINE void walk_edge(const Vertex& start, const Vertex& end, int rect_y0, c
 HWY_INLINE void set_up_rows(int row0, int row1, const scene::PixelRect& box, const Arrays& to) {
   const F f;
   const I i;
-  const VF half = hn::Set(f, 0.5f), one = hn::Set(f, 1.0f);
-  const VF x0 = hn::Set(f, static_cast<float>(box.x0)), x1 = hn::Set(f, static_cast<float>(box.x1));
-  const auto first_pixel = [&](VF x) { return hn::ConvertTo(i, hn::Min(hn::Max(hn::Ceil(x - half), x0), x1)); };
+  const VF half = Set(f, 0.5f), one = Set(f, 1.0f);
+  const VF x0 = Set(f, static_cast<float>(box.x0)), x1 = Set(f, static_cast<float>(box.x1));
+  const auto first_pixel = [&](VF x) { return ConvertTo(i, Min(Max(Ceil(x - half), x0), x1)); };
   for (int row = row0; row < row1; row += lane_count()) {
-    const VF left = hn::LoadU(f, to.left.x + row), right = hn::LoadU(f, to.right.x + row);
-    hn::StoreU(first_pixel(left), i, to.first + row);
-    hn::StoreU(first_pixel(right), i, to.last + row);
-    hn::StoreU(one / (right - left), f, to.inverse_width + row);
+    const VF left = LoadU(f, to.left.x + row), right = LoadU(f, to.right.x + row);
+    StoreU(first_pixel(left), i, to.first + row);
+    StoreU(first_pixel(right), i, to.last + row);
+    StoreU(one / (right - left), f, to.inverse_width + row);
   }
 }
 
@@ -125,11 +125,11 @@ HWY_NOINLINE void store_some(VF z_back, VF z_front, VF s_front, VF s_back, hn::M
                              std::uint64_t pixel_and_tet, const Cell& cell, Arrays& to) {
   const F f;
   alignas(16) float zb[4], zf[4], sf[4], sb[4], mine[4];
-  hn::Store(z_back, f, zb);
-  hn::Store(z_front, f, zf);
-  hn::Store(s_front, f, sf);
-  hn::Store(s_back, f, sb);
-  hn::Store(hn::IfThenElseZero(paired, hn::Set(f, 1.0f)), f, mine);
+  Store(z_back, f, zb);
+  Store(z_front, f, zf);
+  Store(s_front, f, sf);
+  Store(s_back, f, sb);
+  Store(IfThenElseZero(paired, Set(f, 1.0f)), f, mine);
   for (std::size_t k = 0; k < hn::Lanes(f); ++k) {
     if (mine[k] == 0) continue;
     if (cell.clipped) {
@@ -151,42 +151,42 @@ HWY_INLINE void fill_rows(int row0, int row1, const Cell& cell, const scene::Pix
   const F f;
   const I i;
   const int step = lane_count();
-  const auto owner = hn::Set(i, cell.owner);
-  const VF stride = hn::Set(f, static_cast<float>(step)), nearest = hn::Set(f, cell.nearest),
-           inverse_edge = hn::Set(f, 1 / cell.longest_edge);
+  const auto owner = Set(i, cell.owner);
+  const VF stride = Set(f, static_cast<float>(step)), nearest = Set(f, cell.nearest),
+           inverse_edge = Set(f, 1 / cell.longest_edge);
   for (int row = row0; row < row1; ++row) {
     const int first = to.first[row];
     int left = to.last[row] - first;
     if (left <= 0) continue;
-    const VF x_left = hn::Set(f, to.left.x[row]), inverse_width = hn::Set(f, to.inverse_width[row]);
-    const VF z_left = hn::Set(f, to.left.z[row]), s_left = hn::Set(f, to.left.s[row]);
-    const VF dz = hn::Set(f, to.right.z[row] - to.left.z[row]), ds = hn::Set(f, to.right.s[row] - to.left.s[row]);
+    const VF x_left = Set(f, to.left.x[row]), inverse_width = Set(f, to.inverse_width[row]);
+    const VF z_left = Set(f, to.left.z[row]), s_left = Set(f, to.left.s[row]);
+    const VF dz = Set(f, to.right.z[row] - to.left.z[row]), ds = Set(f, to.right.s[row] - to.left.s[row]);
     int at = row * rect.width() + first - rect.x0;
-    VF x = hn::Iota(f, static_cast<float>(first) + 0.5f);
+    VF x = Iota(f, static_cast<float>(first) + 0.5f);
     for (; left > 0; left -= step, at += step, x = x + stride) {
       const VF factor = (x - x_left) * inverse_width;
-      const VF z = hn::MulAdd(factor, dz, z_left), s = hn::MulAdd(factor, ds, s_left);
-      const auto lanes = hn::FirstN(i, static_cast<std::size_t>(left));
+      const VF z = MulAdd(factor, dz, z_left), s = MulAdd(factor, ds, s_left);
+      const auto lanes = FirstN(i, static_cast<std::size_t>(left));
       if constexpr (side == Side::back) {
-        hn::BlendedStore(hn::Max(z, nearest), hn::RebindMask(f, lanes), f, to.b_z + at);
-        hn::BlendedStore(s, hn::RebindMask(f, lanes), f, to.b_s + at);
-        hn::BlendedStore(owner, lanes, i, to.b_owner + at);
+        BlendedStore(Max(z, nearest), RebindMask(f, lanes), f, to.b_z + at);
+        BlendedStore(s, RebindMask(f, lanes), f, to.b_s + at);
+        BlendedStore(owner, lanes, i, to.b_owner + at);
       } else {
-        const VF z_back = hn::LoadU(f, to.b_z + at), s_back = hn::LoadU(f, to.b_s + at);
-        const auto paired = hn::And(lanes, hn::LoadU(i, to.b_owner + at) == owner);
-        hn::BlendedStore(hn::Set(i, taken), paired, i, to.b_owner + at);
-        const auto wanted = static_cast<std::size_t>(std::min(left, step)), found = hn::CountTrue(i, paired);
+        const VF z_back = LoadU(f, to.b_z + at), s_back = LoadU(f, to.b_s + at);
+        const auto paired = And(lanes, LoadU(i, to.b_owner + at) == owner);
+        BlendedStore(Set(i, taken), paired, i, to.b_owner + at);
+        const auto wanted = static_cast<std::size_t>(std::min(left, step)), found = CountTrue(i, paired);
         const std::uint64_t pixel_and_tet = static_cast<std::uint64_t>(cell.tet) << 32 | static_cast<unsigned>(at);
         if (HWY_LIKELY(found == wanted && !cell.clipped)) {
           Lanes segments;
-          hn::Store(z_back, f, segments.z_back);
-          hn::Store(hn::Max(z_back - z, hn::Zero(f)) * inverse_edge, f, segments.length);
-          hn::Store(s, f, segments.s_front);
-          hn::Store(s_back, f, segments.s_back);
+          Store(z_back, f, segments.z_back);
+          Store(Max(z_back - z, Zero(f)) * inverse_edge, f, segments.length);
+          Store(s, f, segments.s_front);
+          Store(s_back, f, segments.s_back);
           store_segments(segments, pixel_and_tet, wanted, cell.longest_edge, to);
         } else {
           to.unpaired += wanted - found;
-          store_some(z_back, z, s, s_back, hn::RebindMask(f, paired), pixel_and_tet, cell, to);
+          store_some(z_back, z, s, s_back, RebindMask(f, paired), pixel_and_tet, cell, to);
         }
       }
     }

@@ -42,17 +42,17 @@ using DD = hn::ScalableTag<double>;
 using DFH = hn::Rebind<float, DD>;
 using DIH = hn::Rebind<std::int32_t, DD>;
 
-HWY_INLINE hn::Vec<DD> load_doubles(const float* p) { return hn::PromoteTo(DD(), hn::LoadU(DFH(), p)); }
-HWY_INLINE hn::Vec<DD> load_doubles(const double* p) { return hn::LoadU(DD(), p); }
-HWY_INLINE hn::Vec<DD> load_doubles(const std::int32_t* p) { return hn::PromoteTo(DD(), hn::LoadU(DIH(), p)); }
+HWY_INLINE hn::Vec<DD> load_doubles(const float* p) { return PromoteTo(DD(), LoadU(DFH(), p)); }
+HWY_INLINE hn::Vec<DD> load_doubles(const double* p) { return LoadU(DD(), p); }
+HWY_INLINE hn::Vec<DD> load_doubles(const std::int32_t* p) { return PromoteTo(DD(), LoadU(DIH(), p)); }
 template <class T>
 HWY_INLINE hn::Vec<DD> load_doubles(const T* p) {
   if constexpr (sizeof(T) < 4) {
-    return hn::PromoteTo(DD(), hn::PromoteTo(DIH(), hn::LoadU(hn::Rebind<T, DD>(), p)));
+    return PromoteTo(DD(), PromoteTo(DIH(), LoadU(hn::Rebind<T, DD>(), p)));
   } else {
-    HWY_ALIGN double values[hn::MaxLanes(DD())];
+    HWY_ALIGN double values[MaxLanes(DD())];
     for (std::size_t i = 0; i < hn::Lanes(DD()); ++i) values[i] = p[i];
-    return hn::Load(DD(), values);
+    return Load(DD(), values);
   }
 }
 
@@ -67,46 +67,46 @@ HWY_INLINE void convert(const T* from, std::int64_t count, std::int64_t readable
     // A power of two and no shift: single precision rounds the same.
     if (lanes.scales_floats && rest == nullptr) {
       const hn::ScalableTag<float> df;
-      const auto scale = hn::Set(df, static_cast<float>(lanes.factor));
+      const auto scale = Set(df, static_cast<float>(lanes.factor));
       const auto wide = static_cast<std::int64_t>(hn::Lanes(df));
       const auto vector_at = [&](std::int64_t at) HWY_ATTR {
         if constexpr (std::is_same_v<T, float>) {
-          const auto sample = hn::LoadU(df, from + at);
+          const auto sample = LoadU(df, from + at);
           const auto lane = sample * scale;
-          return (lanes.whole ? hn::Round(lane) : lane) + (sample - sample);
+          return (lanes.whole ? Round(lane) : lane) + (sample - sample);
         } else {
           const hn::RebindToSigned<decltype(df)> di;
-          const auto sample = hn::ConvertTo(df, hn::PromoteTo(di, hn::LoadU(hn::Rebind<T, decltype(df)>(), from + at)));
-          return hn::Round(sample * scale);
+          const auto sample = ConvertTo(df, PromoteTo(di, LoadU(hn::Rebind<T, decltype(df)>(), from + at)));
+          return Round(sample * scale);
         }
       };
-      for (; i + wide <= count; i += wide) hn::StoreU(vector_at(i), df, to + i);
+      for (; i + wide <= count; i += wide) StoreU(vector_at(i), df, to + i);
       if (i == count) return;
       if (i + wide <= readable) {
-        hn::BlendedStore(vector_at(i), hn::FirstN(df, static_cast<std::size_t>(count - i)), df, to + i);
+        BlendedStore(vector_at(i), FirstN(df, static_cast<std::size_t>(count - i)), df, to + i);
         return;
       }
       if (count >= wide) {
-        hn::StoreU(vector_at(count - wide), df, to + count - wide);
+        StoreU(vector_at(count - wide), df, to + count - wide);
         return;
       }
     }
   }
   const DD d;
-  const auto factor = hn::Set(d, lanes.factor), term = hn::Set(d, lanes.term), lift = hn::Set(d, lanes.lift);
+  const auto factor = Set(d, lanes.factor), term = Set(d, lanes.term), lift = Set(d, lanes.lift);
   const auto n = static_cast<std::int64_t>(hn::Lanes(d));
   const auto some = [&](const T* p, float* out, float* rounded_off) HWY_ATTR {
     const auto sample = load_doubles(p);
-    const auto exact = hn::MulAdd(sample * lift, factor, term), lane = lanes.whole ? hn::Round(exact) : exact;
+    const auto exact = MulAdd(sample * lift, factor, term), lane = lanes.whole ? Round(exact) : exact;
     // inf - inf and NaN - NaN are NaN, x - x is 0: blanks become NaN.
-    const auto rounded = hn::DemoteTo(DFH(), lane + (sample - sample));
-    hn::StoreU(rounded, DFH(), out);
-    if (rounded_off != nullptr) hn::StoreU(hn::DemoteTo(DFH(), exact - hn::PromoteTo(d, rounded)), DFH(), rounded_off);
+    const auto rounded = DemoteTo(DFH(), lane + (sample - sample));
+    StoreU(rounded, DFH(), out);
+    if (rounded_off != nullptr) StoreU(DemoteTo(DFH(), exact - PromoteTo(d, rounded)), DFH(), rounded_off);
   };
   for (; i + n <= count; i += n) some(from + i, to + i, rest == nullptr ? nullptr : rest + i);
   if (i >= count) return;
-  T last[hn::MaxLanes(DD())] = {};
-  float out[hn::MaxLanes(DD())], out_rest[hn::MaxLanes(DD())];
+  T last[MaxLanes(DD())] = {};
+  float out[MaxLanes(DD())], out_rest[MaxLanes(DD())];
   for (std::int64_t l = 0; l < n && i + l < count; ++l) last[l] = from[i + l];
   some(last, out, rest == nullptr ? nullptr : out_rest);
   for (std::int64_t l = 0; l < n && i + l < count; ++l) to[i + l] = out[l];

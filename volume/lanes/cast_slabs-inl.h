@@ -46,8 +46,8 @@ class PacketCast {
         before_(before),
         has_steps_(chunk.frame.error_bound != nullptr && !chunk.frame.error_bound->step.empty()) {
     const DF d;
-    const VF zero = hn::Zero(d);
-    progress_ = {zero, hn::Set(d, 1.0f), zero, zero, zero, zero};
+    const VF zero = Zero(d);
+    progress_ = {zero, Set(d, 1.0f), zero, zero, zero, zero};
     crossings_ = zero;
     find_ends();
   }
@@ -69,7 +69,7 @@ class PacketCast {
       group(n, std::min(n + SlabLines::most, chunk_.box.slabs));
     }
     if (HWY_UNLIKELY(tallies)) work.add_to(chunk_, lanes_, reach, chunk_.box.slabs, progress_, counts_);
-    counts_.voxels_visited += static_cast<std::uint64_t>(hn::GetLane(hn::SumOfLanes(d, crossings_)));
+    counts_.voxels_visited += static_cast<std::uint64_t>(GetLane(SumOfLanes(d, crossings_)));
   }
 
  private:
@@ -77,21 +77,21 @@ class PacketCast {
   HWY_INLINE void find_ends() {
     const DF d;
     mirrored_.live = lanes_.k_in < lanes_.k_out;
-    all_live_ = hn::AllTrue(d, mirrored_.live);
-    live_count_ = hn::CountTrue(d, mirrored_.live);
-    plain_from_ = hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElse(mirrored_.live, lanes_.k_in, hn::Set(d, -1.0f))));
-    plain_to_ = hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(mirrored_.live, lanes_.k_out, hn::Set(d, 64.0f))));
+    all_live_ = AllTrue(d, mirrored_.live);
+    live_count_ = CountTrue(d, mirrored_.live);
+    plain_from_ = GetLane(MaxOfLanes(d, IfThenElse(mirrored_.live, lanes_.k_in, Set(d, -1.0f))));
+    plain_to_ = GetLane(MinOfLanes(d, IfThenElse(mirrored_.live, lanes_.k_out, Set(d, 64.0f))));
   }
 
   /// Rays that let nothing through any more are done. False if all are, or have left the volume.
   HWY_INLINE bool go_on(int n) {
     const DF d;
-    const MF dark = hn::And(mirrored_.live, before_ * progress_.transmittance < hn::Set(d, frame_.least_transmittance));
-    if (!hn::AllFalse(d, dark)) {
-      lanes_.k_out = hn::IfThenElse(dark, hn::Set(d, -1.0f), lanes_.k_out);
+    const MF dark = And(mirrored_.live, before_ * progress_.transmittance < Set(d, frame_.least_transmittance));
+    if (!AllFalse(d, dark)) {
+      lanes_.k_out = IfThenElse(dark, Set(d, -1.0f), lanes_.k_out);
       find_ends();
     }
-    return !hn::AllFalse(d, hn::And(mirrored_.live, lanes_.k_out > hn::Set(d, static_cast<float>(n))));
+    return !AllFalse(d, And(mirrored_.live, lanes_.k_out > Set(d, static_cast<float>(n))));
   }
 
   /// Whether the eight slabs from n on may meet a visible cell.
@@ -118,8 +118,8 @@ class PacketCast {
   /// Lanes in slab n.
   HWY_INLINE MF here(int n) const {
     const DF d;
-    return hn::And(mirrored_.live, hn::And(lanes_.k_out > hn::Set(d, static_cast<float>(n)),
-                                           lanes_.k_in < hn::Set(d, static_cast<float>(n + 1))));
+    return And(mirrored_.live,
+               And(lanes_.k_out > Set(d, static_cast<float>(n)), lanes_.k_in < Set(d, static_cast<float>(n + 1))));
   }
 
   enum class Kind { empty, lines, parts };
@@ -130,9 +130,9 @@ class PacketCast {
     const bool by_lines = !cell_data && frame_.shading == nullptr;
     if (HWY_LIKELY(plain_from_ <= from && to <= plain_to_)) return by_lines ? Kind::lines : Kind::parts;
     const MF some = here(n);
-    if (hn::AllFalse(d, some)) return Kind::empty;
-    const MF whole = hn::And(lanes_.k_in <= hn::Set(d, from), lanes_.k_out >= hn::Set(d, to));
-    return by_lines && hn::AllFalse(d, hn::AndNot(whole, some)) ? Kind::lines : Kind::parts;
+    if (AllFalse(d, some)) return Kind::empty;
+    const MF whole = And(lanes_.k_in <= Set(d, from), lanes_.k_out >= Set(d, to));
+    return by_lines && AllFalse(d, AndNot(whole, some)) ? Kind::lines : Kind::parts;
   }
 
   HWY_INLINE void group(int begin, int end) {
@@ -173,35 +173,34 @@ class PacketCast {
   }
 
   static HWY_INLINE Line kept(const Line& line, MF live) {
-    const auto keep = [&](VF v) HWY_ATTR { return hn::IfThenElseZero(live, v); };
+    const auto keep = [&](VF v) HWY_ATTR { return IfThenElseZero(live, v); };
     return {keep(line.s_0), keep(line.s_1), keep(line.span), keep(line.shift), keep(line.rho)};
   }
 
   /// Adds slab n, in place m of the lines, or n and the next if `two` and they may be taken as one: how many.
   HWY_INLINE int add_lines(const SlabLines& lines, int m, int n, bool two) {
     const DF d;
-    const VF half = hn::Set(d, 0.5f);
+    const VF half = Set(d, 0.5f);
     const bool plain = all_live_ && plain_from_ <= static_cast<float>(n) && static_cast<float>(n + 2) <= plain_to_;
     const UniformLookup& table = current_.uniform();
     Line a = line_of(lines, m);
     if (two && plain) {
       const Line b = line_of(lines, m + 1);
       // Not a number where either slab's field is not, which Max alone may leave out.
-      const VF r = hn::MulAdd(hn::Zero(d), a.rho + b.rho, hn::Max(a.rho, b.rho));
-      const VF low = hn::Min(hn::Min(a.s_0, a.s_1), b.s_1) - r, high = hn::Max(hn::Max(a.s_0, a.s_1), b.s_1) + r;
+      const VF r = MulAdd(Zero(d), a.rho + b.rho, Max(a.rho, b.rho));
+      const VF low = Min(Min(a.s_0, a.s_1), b.s_1) - r, high = Max(Max(a.s_0, a.s_1), b.s_1) + r;
       if (HWY_LIKELY(current_.around(low, high, mirrored_.live)) && surfaces_.none_between(low, high, mirrored_.live)) {
         if (current_.clear()) return 2;
         const VF length = lanes_.length + lanes_.length, span = b.s_1 - a.s_0;
         const VF middle = half * (a.s_0 + b.s_1), tent = a.s_1 - middle;
-        const VF rho = hn::Abs(tent) + r, tilt = hn::Abs(span) * hn::Set(d, 0.25f);
-        const VF even = hn::MulAdd(rho, rho, r * tilt), any = rho * (rho + tilt);
-        const VF dimmed = length * hn::Set(d, table.dimming_bound) *
-                          hn::MulAdd(hn::Abs(tent) * (length * hn::Set(d, table.extinction)), hn::Set(d, 1 / 60.0f),
-                                     r * hn::Set(d, 0.25f));
-        const VF error = hn::MulAdd(length, dimmed,
-                                    length * hn::MulAdd(hn::Set(d, 10 * table.product_bound), even,
-                                                        length * hn::Set(d, table.shadow_bound) * any));
-        if (hn::AllTrue(d, error <= hn::Set(d, 1.0f))) {
+        const VF rho = Abs(tent) + r, tilt = Abs(span) * Set(d, 0.25f);
+        const VF even = MulAdd(rho, rho, r * tilt), any = rho * (rho + tilt);
+        const VF dimmed = length * Set(d, table.dimming_bound) *
+                          MulAdd(Abs(tent) * (length * Set(d, table.extinction)), Set(d, 1 / 60.0f), r * Set(d, 0.25f));
+        const VF error =
+            MulAdd(length, dimmed,
+                   length * MulAdd(Set(d, 10 * table.product_bound), even, length * Set(d, table.shadow_bound) * any));
+        if (AllTrue(d, error <= Set(d, 1.0f))) {
           const VF shift = half * (tent + (a.shift + b.shift));
           add_uniform_line(a.s_0, b.s_1, span, shift, length, n);
           return 2;
@@ -213,24 +212,24 @@ class PacketCast {
     if (!plain) {
       live = here(n);
       a = kept(a, live);
-      length = hn::IfThenElseZero(live, length);
+      length = IfThenElseZero(live, length);
     }
-    const VF low = hn::Min(a.s_0, a.s_1) - a.rho, high = hn::Max(a.s_0, a.s_1) + a.rho;
+    const VF low = Min(a.s_0, a.s_1) - a.rho, high = Max(a.s_0, a.s_1) + a.rho;
     if constexpr (has_surfaces) {
       if (HWY_UNLIKELY(!surfaces_.none_between(low, high, live))) {
         live = add_met(n, low, high, live);
-        if (hn::AllFalse(d, live)) return 1;
+        if (AllFalse(d, live)) return 1;
         a = kept(a, live);
-        length = hn::IfThenElseZero(live, length);
+        length = IfThenElseZero(live, length);
       }
     }
     const bool uniform = current_.around(low, high, live) || (has_steps_ && on_one_side(n));
     if (HWY_LIKELY(uniform)) {
       if (current_.clear()) return 1;
-      const VF spread = length * a.rho * hn::MulAdd(hn::Abs(a.span), hn::Set(d, 0.25f), a.rho);
-      const VF scale = hn::MulAdd(length, hn::Set(d, table.shadow_bound), hn::Set(d, 10 * table.product_bound));
-      const VF dimmed = length * hn::Set(d, table.dimming_bound / 9) * (length * a.rho);
-      if (HWY_LIKELY(hn::AllFalse(d, hn::MulAdd(spread, scale, dimmed) > hn::Set(d, 1.0f)))) {
+      const VF spread = length * a.rho * MulAdd(Abs(a.span), Set(d, 0.25f), a.rho);
+      const VF scale = MulAdd(length, Set(d, table.shadow_bound), Set(d, 10 * table.product_bound));
+      const VF dimmed = length * Set(d, table.dimming_bound / 9) * (length * a.rho);
+      if (HWY_LIKELY(AllFalse(d, MulAdd(spread, scale, dimmed) > Set(d, 1.0f)))) {
         add_uniform_line(a.s_0, a.s_1, a.span, a.shift, length, n);
         return 1;
       }
@@ -269,23 +268,22 @@ class PacketCast {
     const DF d;
     const UniformLookup& table = current_.uniform();
     const Bend found = bend_of(lines, m, line);
-    const auto kept = [&](VF v) HWY_ATTR { return hn::IfThenElseZero(live, v); };
+    const auto kept = [&](VF v) HWY_ATTR { return IfThenElseZero(live, v); };
     const VF product = kept(found.product), covariance = kept(found.covariance), odd = kept(found.odd);
-    const VF depth = length * hn::Set(d, table.extinction), span = hn::Abs(line.span);
-    const VF beside_odd = hn::MulAdd(hn::Set(d, 0.5f), span, hn::MulAdd(hn::Set(d, 2.0f), line.rho, odd));
-    const VF next_order = hn::MulAdd(line.rho * hn::Set(d, 1 / 9.0f), span + line.rho, hn::Abs(product));
-    const VF products = length * hn::Set(d, 10 * table.product_bound) * hn::MulAdd(odd, beside_odd, depth * next_order);
-    const VF shadows = length * hn::Set(d, table.shadow_bound) * spread;
-    if (!hn::AllFalse(d, hn::MulAdd(dimmed, depth, products + shadows) > hn::Set(d, 1.0f))) return false;
+    const VF depth = length * Set(d, table.extinction), span = Abs(line.span);
+    const VF beside_odd = MulAdd(Set(d, 0.5f), span, MulAdd(Set(d, 2.0f), line.rho, odd));
+    const VF next_order = MulAdd(line.rho * Set(d, 1 / 9.0f), span + line.rho, Abs(product));
+    const VF products = length * Set(d, 10 * table.product_bound) * MulAdd(odd, beside_odd, depth * next_order);
+    const VF shadows = length * Set(d, table.shadow_bound) * spread;
+    if (!AllFalse(d, MulAdd(dimmed, depth, products + shadows) > Set(d, 1.0f))) return false;
     const float slope = 2 * table.row[LaneTable::half_extinction_slope];
-    const VF middle = hn::MulAdd(hn::Set(d, 0.5f), line.span, line.s_0 - hn::Set(d, table.row[LaneTable::base]));
-    const VF here =
-        length * hn::MulAdd(hn::Set(d, slope), middle, hn::Set(d, 2 * table.row[LaneTable::half_extinction]));
-    const VF more = hn::NegMulAdd(here * here, covariance, length * hn::Set(d, slope) * product);
+    const VF middle = MulAdd(Set(d, 0.5f), line.span, line.s_0 - Set(d, table.row[LaneTable::base]));
+    const VF here = length * MulAdd(Set(d, slope), middle, Set(d, 2 * table.row[LaneTable::half_extinction]));
+    const VF more = NegMulAdd(here * here, covariance, length * Set(d, slope) * product);
     const VF seen = progress_.transmittance * more;
-    progress_.red = hn::MulAdd(seen, hn::Set(d, table.row[LaneTable::red_slope]), progress_.red);
-    progress_.green = hn::MulAdd(seen, hn::Set(d, table.row[LaneTable::green_slope]), progress_.green);
-    progress_.blue = hn::MulAdd(seen, hn::Set(d, table.row[LaneTable::blue_slope]), progress_.blue);
+    progress_.red = MulAdd(seen, Set(d, table.row[LaneTable::red_slope]), progress_.red);
+    progress_.green = MulAdd(seen, Set(d, table.row[LaneTable::green_slope]), progress_.green);
+    progress_.blue = MulAdd(seen, Set(d, table.row[LaneTable::blue_slope]), progress_.blue);
     add_uniform_line(line.s_0, line.s_1, line.span, line.shift, length, n);
     return true;
   }
@@ -295,17 +293,16 @@ class PacketCast {
     const VF before = progress_.transmittance;
     CL::lanes::add_piece<false>(current_.uniform(), 0, s_0 + shift, s_1 + shift, span, length, progress_);
     counts_.samples += live_count_;
-    if (HWY_UNLIKELY(!hn::AllTrue(d, notes_.seen)))
-      note_first_light(progress_, hn::Set(d, static_cast<float>(n)), notes_);
+    if (HWY_UNLIKELY(!AllTrue(d, notes_.seen))) note_first_light(progress_, Set(d, static_cast<float>(n)), notes_);
     if (HWY_UNLIKELY(current_.uniform().ramp > 0))
       note_ramps(current_.uniform(), length, before, progress_.transmittance, notes_);
   }
 
   /// A slab that crosses knots, or is rough.
   HWY_NOINLINE void add_slowly(const SlabLines& lines, const Line& line, int m, int n, MF live, VF length) {
-    const MF apart = cast_mixed(frame_, lookup_, line, live, hn::Set(DF(), static_cast<float>(n)), length, current_,
+    const MF apart = cast_mixed(frame_, lookup_, line, live, Set(DF(), static_cast<float>(n)), length, current_,
                                 progress_, notes_, counts_);
-    if (hn::AllFalse(DF(), apart)) return;
+    if (AllFalse(DF(), apart)) return;
     cast_stretches(frame_, lookup_, lanes_.length, lines, m, n, apart, progress_, notes_, counts_);
   }
 
@@ -315,7 +312,7 @@ class PacketCast {
     const WindowPlace place = place_of(n);
     const Window window(place.front, place.back, chunk_.block.pitch);
     add_surfaces(path_of(lanes_, n, slabs_.i_window[n], slabs_.j_window[n]), window, rest_at(place), met);
-    return hn::AndNot(met, live);
+    return AndNot(met, live);
   }
   HWY_INLINE RestOfSamples rest_at(const WindowPlace& place) const { return {chunk_.block, place.front, place.back}; }
   HWY_INLINE void add_surfaces(const SlabPath& path, const Window& window, const RestOfSamples& rest, MF lanes) {
@@ -333,8 +330,7 @@ class PacketCast {
     const bool meets_none = surfaces_.none_in(window, *place.front);
     if (uniform && current_.clear() && meets_none) return;
     const SlabPath path = path_of(lanes_, n, slabs_.i_window[n], slabs_.j_window[n]);
-    for (const Stretch& stretch : path.stretches)
-      counts_.voxels_visited += hn::CountTrue(d, stretch.end > stretch.begin);
+    for (const Stretch& stretch : path.stretches) counts_.voxels_visited += CountTrue(d, stretch.end > stretch.begin);
     const VF before = progress_.transmittance, light[3] = {progress_.red, progress_.green, progress_.blue};
     if constexpr (has_surfaces) {
       if (!meets_none) {
@@ -353,13 +349,13 @@ class PacketCast {
     }
     if constexpr (!cell_data) {
       const MF there = path.to > path.from;
-      const VF length = hn::IfThenElseZero(there, lanes_.length * (path.to - path.from));
+      const VF length = IfThenElseZero(there, lanes_.length * (path.to - path.from));
       const Line line = part_line(lanes_, path, window);
       MF apart = there;
       if (!(uniform && has_steps_))
         apart =
             cast_mixed(frame_, lookup_, line, there, path.from + path.k, length, current_, progress_, notes_, counts_);
-      if (!hn::AllFalse(d, apart))
+      if (!AllFalse(d, apart))
         cast_voxels<false>(frame_, chunk_.axes, lookup_, lanes_, path, window, rest_at(place),
                            uniform && has_steps_ ? &current_.uniform() : nullptr, apart, progress_, notes_, counts_);
       if (HWY_UNLIKELY(frame_.error_bound != nullptr && frame_.error_bound->ends))
@@ -391,32 +387,32 @@ template <bool cell_data, class Surfaces, class Window, class Lookup>
 HWY_NOINLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int ray, const Reach& reach,
                              const PacketSlabs& slabs, CurrentInterval& current, TileRays& rays, TileCounts& counts) {
   const DF d;
-  constexpr std::size_t most = hn::MaxLanes(DF());
+  constexpr std::size_t most = MaxLanes(DF());
   const std::size_t lane_count = hn::Lanes(d);
   Lanes lanes = lanes_of(chunk, ray, slabs.i_first[0], slabs.j_first[0], rays);
-  const VF before = hn::LoadU(d, rays.transmittance + ray);
-  lanes.k_out = hn::IfThenElse(before < hn::Set(d, chunk.frame.least_transmittance), hn::Set(d, -1.0f), lanes.k_out);
+  const VF before = LoadU(d, rays.transmittance + ray);
+  lanes.k_out = IfThenElse(before < Set(d, chunk.frame.least_transmittance), Set(d, -1.0f), lanes.k_out);
   PacketCast<cell_data, Surfaces, Window, Lookup> cast(chunk, lookup, slabs, lanes, before, current, counts);
-  const VF alpha_before = hn::LoadU(d, rays.alpha + ray);
-  const MF seen_before = alpha_before > hn::Zero(d);
-  cast.notes_ = {hn::Set(d, -1.0f), seen_before, hn::Zero(d), hn::Zero(d)};
+  const VF alpha_before = LoadU(d, rays.alpha + ray);
+  const MF seen_before = alpha_before > Zero(d);
+  cast.notes_ = {Set(d, -1.0f), seen_before, Zero(d), Zero(d)};
   cast.run(reach);
 
   const Progress& progress = cast.progress_;
   const auto add = [&](float* sum, VF part)
-                       HWY_ATTR { hn::StoreU(hn::MulAdd(before, part, hn::LoadU(d, sum + ray)), d, sum + ray); };
+                       HWY_ATTR { StoreU(MulAdd(before, part, LoadU(d, sum + ray)), d, sum + ray); };
   add(rays.alpha, progress.alpha);
   add(rays.red, progress.red);
   add(rays.green, progress.green);
   add(rays.blue, progress.blue);
-  hn::StoreU(before * progress.transmittance, d, rays.transmittance + ray);
+  StoreU(before * progress.transmittance, d, rays.transmittance + ray);
   add(rays.error_bound, cast.notes_.error_bound);
   const VF rough = before * before * cast.notes_.rough;
-  hn::StoreU(rough + hn::LoadU(d, rays.rough + ray), d, rays.rough + ray);
-  if (!hn::AllFalse(d, hn::AndNot(seen_before, cast.notes_.seen))) {
+  StoreU(rough + LoadU(d, rays.rough + ray), d, rays.rough + ray);
+  if (!AllFalse(d, AndNot(seen_before, cast.notes_.seen))) {
     const auto first_k = static_cast<double>(chunk.box.first_k);
     HWY_ALIGN float place[most];
-    hn::Store(hn::IfThenElse(seen_before, hn::Set(d, -1.0f), cast.notes_.first), d, place);
+    Store(IfThenElse(seen_before, Set(d, -1.0f), cast.notes_.first), d, place);
     for (std::size_t l = 0; l < lane_count; ++l)
       if (place[l] >= 0) rays.first_k[static_cast<std::size_t>(ray) + l] = first_k + static_cast<double>(place[l]);
   }

@@ -23,21 +23,21 @@ namespace HWY_NAMESPACE {
 HWY_INLINE Reach reach_of(const FrameView& frame, const TileRays& rays, int packet, double first_k, double last_k) {
   namespace hn = hwy::HWY_NAMESPACE;
   const hn::ScalableTag<double> d;
-  const auto most = hn::Set(d, 1e30), least = hn::Set(d, -1e30);
+  const auto most = Set(d, 1e30), least = Set(d, -1e30);
   auto x_low_0 = most, x_low_1 = most, y_low_0 = most, y_low_1 = most;
   auto x_high_0 = least, x_high_1 = least, y_high_0 = least, y_high_1 = least;
-  const auto k_0 = hn::Set(d, first_k), k_1 = hn::Set(d, first_k + SlabBlock::slabs);
+  const auto k_0 = Set(d, first_k), k_1 = Set(d, first_k + SlabBlock::slabs);
   const auto first = static_cast<std::size_t>(packet) * TileRays::packet_rays;
   bool any = false;
   for (std::size_t r = first; r < first + TileRays::packet_rays; r += hn::Lanes(d)) {
-    const auto through = hn::PromoteTo(d, hn::LoadU(hn::Rebind<float, decltype(d)>(), rays.transmittance + r));
-    const auto here = hn::And(hn::And(hn::Load(d, rays.from + r) < hn::Set(d, last_k), hn::Load(d, rays.to + r) > k_0),
-                              through >= hn::Set(d, static_cast<double>(frame.least_transmittance)));
-    any = any || !hn::AllFalse(d, here);
+    const auto through = PromoteTo(d, LoadU(hn::Rebind<float, decltype(d)>(), rays.transmittance + r));
+    const auto here = And(And(Load(d, rays.from + r) < Set(d, last_k), Load(d, rays.to + r) > k_0),
+                          through >= Set(d, static_cast<double>(frame.least_transmittance)));
+    any = any || !AllFalse(d, here);
     const auto widen = [&](const double* a, const double* b, auto k, auto& low, auto& high) HWY_ATTR {
-      const auto place = hn::MulAdd(hn::Load(d, b + r), k, hn::Load(d, a + r));
-      low = hn::Min(low, hn::IfThenElse(here, place, most));
-      high = hn::Max(high, hn::IfThenElse(here, place, least));
+      const auto place = MulAdd(Load(d, b + r), k, Load(d, a + r));
+      low = Min(low, IfThenElse(here, place, most));
+      high = Max(high, IfThenElse(here, place, least));
     };
     widen(rays.ax, rays.bx, k_0, x_low_0, x_high_0);
     widen(rays.ax, rays.bx, k_1, x_low_1, x_high_1);
@@ -45,8 +45,8 @@ HWY_INLINE Reach reach_of(const FrameView& frame, const TileRays& rays, int pack
     widen(rays.ay, rays.by, k_1, y_low_1, y_high_1);
   }
   Reach reach;
-  const auto lowest = [&](auto v) HWY_ATTR { return static_cast<float>(hn::GetLane(hn::MinOfLanes(d, v))); };
-  const auto highest = [&](auto v) HWY_ATTR { return static_cast<float>(hn::GetLane(hn::MaxOfLanes(d, v))); };
+  const auto lowest = [&](auto v) HWY_ATTR { return static_cast<float>(GetLane(MinOfLanes(d, v))); };
+  const auto highest = [&](auto v) HWY_ATTR { return static_cast<float>(GetLane(MaxOfLanes(d, v))); };
   if (any) {
     reach.x_low[0] = lowest(x_low_0), reach.x_low[1] = lowest(x_low_1);
     reach.x_high[0] = highest(x_high_0), reach.x_high[1] = highest(x_high_1);

@@ -45,8 +45,8 @@ class CurrentInterval {
   /// live.
   [[nodiscard]] HWY_INLINE bool around(VF low, VF high, MF live) const {
     const DF d;
-    const MF below = high < hn::Set(d, guarded_high_);
-    return hn::AllFalse(d, hn::AndNot(hn::And(low >= hn::Set(d, guarded_low_), below), live));
+    const MF below = high < Set(d, guarded_high_);
+    return AllFalse(d, AndNot(And(low >= Set(d, guarded_low_), below), live));
   }
   /// Whether a sample lies in the current interval for certain.
   [[nodiscard]] HWY_INLINE bool holds(float s) const { return held_low_ <= s && s < held_high_; }

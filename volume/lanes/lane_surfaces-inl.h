@@ -23,18 +23,17 @@ namespace HWY_NAMESPACE {
 /// A row of SurfaceView at edges.
 HWY_INLINE VF surface_row(const SurfaceView& view, const std::vector<float>& row, VI edge) {
   const DF d;
-  if (view.count + 2 <= hn::Lanes(d))
-    return hn::TableLookupLanes(hn::LoadU(d, row.data()), hn::IndicesFromVec(d, edge));
-  return hn::GatherIndex(d, row.data(), edge);
+  if (view.count + 2 <= hn::Lanes(d)) return TableLookupLanes(LoadU(d, row.data()), IndicesFromVec(d, edge));
+  return GatherIndex(d, row.data(), edge);
 }
 
 /// The gap that a scalar is in (SurfaceView); the first for what is none.
 HWY_INLINE VI surface_gap(const SurfaceView& view, VF s) {
   const DF d;
   const DI di;
-  VI gap = hn::Zero(di);
+  VI gap = Zero(di);
   for (std::size_t n = 1; n <= view.count; ++n)
-    gap = gap + hn::IfThenElseZero(hn::RebindMask(di, s >= hn::Set(d, view.edge[n])), hn::Set(di, 1));
+    gap = gap + IfThenElseZero(RebindMask(di, s >= Set(d, view.edge[n])), Set(di, 1));
   return gap;
 }
 
@@ -54,19 +53,19 @@ struct NoSurfaces {
 class LaneSurfaces {
  public:
   explicit HWY_INLINE LaneSurfaces(const FrameView& frame)
-      : view_(*frame.surfaces), low_(hn::Zero(DF())), high_(hn::Zero(DF())) {}
+      : view_(*frame.surfaces), low_(Zero(DF())), high_(Zero(DF())) {}
 
   /// Whether lanes that are live meet no surface for certain where their field is in [low, high].
   HWY_INLINE bool none_between(VF low, VF high, MF live) {
-    return HWY_LIKELY(hn::AllFalse(DF(), outside(low, high, live))) || hn::AllFalse(DF(), met(low, high, live));
+    return HWY_LIKELY(AllFalse(DF(), outside(low, high, live))) || AllFalse(DF(), met(low, high, live));
   }
   /// The lanes that may.
   HWY_NOINLINE MF met(VF low, VF high, MF live) {
     const DF d;
     const VI gap = surface_gap(view_, low);
-    const VF noise = hn::Set(d, view_.noise);
+    const VF noise = Set(d, view_.noise);
     low_ = surface_row(view_, view_.edge, gap) + noise;
-    high_ = surface_row(view_, view_.edge, gap + hn::Set(DI(), 1)) - noise;
+    high_ = surface_row(view_, view_.edge, gap + Set(DI(), 1)) - noise;
     return outside(low, high, live);
   }
 
@@ -82,7 +81,7 @@ class LaneSurfaces {
   }
 
  private:
-  HWY_INLINE MF outside(VF low, VF high, MF live) const { return hn::AndNot(hn::And(low >= low_, high < high_), live); }
+  HWY_INLINE MF outside(VF low, VF high, MF live) const { return AndNot(And(low >= low_, high < high_), live); }
 
   const SurfaceView& view_;
   VF low_, high_;

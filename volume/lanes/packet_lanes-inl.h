@@ -68,33 +68,33 @@ struct SlabPath {
 
 HWY_INLINE SlabPath path_of(const Lanes& lanes, int n, int i_window, int j_window) {
   const DF d;
-  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  const VF zero = Zero(d), one = Set(d, 1.0f);
   SlabPath path;
-  const VF k = hn::Set(d, static_cast<float>(n));
-  const VF from = hn::Min(hn::Max(lanes.k_in - k, zero), one), to = hn::Max(hn::Min(lanes.k_out - k, one), from);
-  const VF x = hn::MulAdd(k, lanes.bx, lanes.x), y = hn::MulAdd(k, lanes.by, lanes.y);
+  const VF k = Set(d, static_cast<float>(n));
+  const VF from = Min(Max(lanes.k_in - k, zero), one), to = Max(Min(lanes.k_out - k, one), from);
+  const VF x = MulAdd(k, lanes.bx, lanes.x), y = MulAdd(k, lanes.by, lanes.y);
   const auto cell = [&](VF position, VF slope, VF u, VF least, VF most)
-                        HWY_ATTR { return hn::Min(hn::Max(hn::Floor(hn::MulAdd(u, slope, position)), least), most); };
+                        HWY_ATTR { return Min(Max(Floor(MulAdd(u, slope, position)), least), most); };
   // By rounding a ray may seem to cross two planes; the second is at its very end.
   const auto next_cell = [&](VF first_cell, VF last_cell)
-                             HWY_ATTR { return hn::Min(hn::Max(last_cell, first_cell - one), first_cell + one); };
+                             HWY_ATTR { return Min(Max(last_cell, first_cell - one), first_cell + one); };
   const VF i_0 = cell(x, lanes.bx, from, lanes.i_least, lanes.i_most),
            i_1 = next_cell(i_0, cell(x, lanes.bx, to, lanes.i_least, lanes.i_most)),
            j_0 = cell(y, lanes.by, from, lanes.j_least, lanes.j_most),
            j_1 = next_cell(j_0, cell(y, lanes.by, to, lanes.j_least, lanes.j_most));
   const auto crossing = [&](VF c_0, VF c_1, VF position, VF per_slope) HWY_ATTR {
-    const VF u = (hn::Max(c_0, c_1) - position) * per_slope;
-    return hn::IfThenElse(c_0 == c_1, to, hn::Min(hn::Max(u, from), to));
+    const VF u = (Max(c_0, c_1) - position) * per_slope;
+    return IfThenElse(c_0 == c_1, to, Min(Max(u, from), to));
   };
   const VF u_i = crossing(i_0, i_1, x, lanes.per_bx), u_j = crossing(j_0, j_1, y, lanes.per_by);
-  const VF u_1 = hn::Min(u_i, u_j), u_2 = hn::Max(u_i, u_j);
+  const VF u_1 = Min(u_i, u_j), u_2 = Max(u_i, u_j);
   const MF i_first = u_i < u_j;
   path.k = k, path.x = x, path.y = y, path.from = from, path.to = to;
   path.stretches[0] = {i_0, j_0, from, u_1};
-  path.stretches[1] = {hn::IfThenElse(i_first, i_1, i_0), hn::IfThenElse(i_first, j_0, j_1), u_1, u_2};
+  path.stretches[1] = {IfThenElse(i_first, i_1, i_0), IfThenElse(i_first, j_0, j_1), u_1, u_2};
   path.stretches[2] = {i_1, j_1, u_2, to};
-  path.i_offset = lanes.i - hn::Set(d, static_cast<float>(i_window - lanes.i_base));
-  path.j_offset = lanes.j - hn::Set(d, static_cast<float>(j_window - lanes.j_base));
+  path.i_offset = lanes.i - Set(d, static_cast<float>(i_window - lanes.i_base));
+  path.j_offset = lanes.j - Set(d, static_cast<float>(j_window - lanes.j_base));
   return path;
 }
 
@@ -104,8 +104,8 @@ HWY_INLINE VI window_index(const Window& window, const SlabPath& path, const Str
   if constexpr (std::is_same_v<Window, GatherWindow>) {
     // Lanes without a stretch may be anywhere.
     const MF there = path.to > path.from;
-    i = hn::IfThenElseZero(there, i);
-    j = hn::IfThenElseZero(there, j);
+    i = IfThenElseZero(there, i);
+    j = IfThenElseZero(there, j);
   }
   return window.index(i, j);
 }
@@ -114,48 +114,47 @@ HWY_INLINE VI window_index(const Window& window, const SlabPath& path, const Str
 HWY_INLINE Lanes lanes_of(const ChunkView& chunk, int ray, int i_base, int j_base, const TileRays& rays) {
   const DF d;
   const FrameView& frame = chunk.frame;
-  constexpr std::size_t most = hn::MaxLanes(DF());
+  constexpr std::size_t most = MaxLanes(DF());
   const std::size_t lane_count = hn::Lanes(d);
   const ChunkBox& box = chunk.box;
   const auto first_k = static_cast<double>(box.first_k);
   Lanes lanes;
-  const VF one = hn::Set(d, 1.0f);
+  const VF one = Set(d, 1.0f);
   // In double up to here.
   HWY_ALIGN float x[most], y[most], i[most], j[most], bx[most], by[most], k_in[most], k_out[most];
   const hn::Rebind<double, hn::Half<DF>> dd;
   const hn::Rebind<float, decltype(dd)> dh;
-  const auto k_0 = hn::Set(dd, first_k);
+  const auto k_0 = Set(dd, first_k);
   for (std::size_t l = 0; l < lane_count; l += hn::Lanes(dd)) {
     const std::size_t r = static_cast<std::size_t>(ray) + l;
-    const auto axis = [&](const double* a, const double* b, int base, float* place, float* cell,
-                          float* slope) HWY_ATTR {
-      const auto slopes = hn::Load(dd, b + r), places = hn::MulAdd(slopes, k_0, hn::Load(dd, a + r));
-      const auto floors = hn::Floor(places);
-      hn::Store(hn::DemoteTo(dh, places - floors), dh, place + l);
-      hn::Store(hn::DemoteTo(dh, floors - hn::Set(dd, base)), dh, cell + l);
-      hn::Store(hn::DemoteTo(dh, slopes), dh, slope + l);
-    };
+    const auto axis = [&](const double* a, const double* b, int base, float* place, float* cell, float* slope)
+                          HWY_ATTR {
+                            const auto slopes = Load(dd, b + r), places = MulAdd(slopes, k_0, Load(dd, a + r));
+                            const auto floors = Floor(places);
+                            Store(DemoteTo(dh, places - floors), dh, place + l);
+                            Store(DemoteTo(dh, floors - Set(dd, base)), dh, cell + l);
+                            Store(DemoteTo(dh, slopes), dh, slope + l);
+                          };
     axis(rays.ax, rays.bx, i_base, x, i, bx);
     axis(rays.ay, rays.by, j_base, y, j, by);
     const auto end = [&](const double* k, float* out) HWY_ATTR {
-      const auto relative = hn::Load(dd, k + r) - k_0;
-      hn::Store(hn::DemoteTo(dh, hn::Min(hn::Max(relative, hn::Set(dd, -1.0)), hn::Set(dd, SlabBlock::slabs + 4.0))),
-                dh, out + l);
+      const auto relative = Load(dd, k + r) - k_0;
+      Store(DemoteTo(dh, Min(Max(relative, Set(dd, -1.0)), Set(dd, SlabBlock::slabs + 4.0))), dh, out + l);
     };
     end(rays.from, k_in);
     end(rays.to, k_out);
   }
-  lanes.bx = hn::Load(d, bx), lanes.by = hn::Load(d, by);
+  lanes.bx = Load(d, bx), lanes.by = Load(d, by);
   lanes.per_bx = one / lanes.bx, lanes.per_by = one / lanes.by;
-  lanes.x = hn::Load(d, x), lanes.y = hn::Load(d, y);
-  lanes.i = hn::Load(d, i), lanes.j = hn::Load(d, j);
-  lanes.i_least = hn::Set(d, static_cast<float>(box.i_low - i_base)) - lanes.i;
-  lanes.j_least = hn::Set(d, static_cast<float>(box.j_low - j_base)) - lanes.j;
-  lanes.i_most = lanes.i_least + hn::Set(d, static_cast<float>(box.i_last - box.i_low));
-  lanes.j_most = lanes.j_least + hn::Set(d, static_cast<float>(box.j_last - box.j_low));
-  lanes.k_in = hn::Load(d, k_in), lanes.k_out = hn::Load(d, k_out);
-  lanes.length = hn::LoadU(d, rays.length_k + ray);
-  lanes.light_view = frame.shading != nullptr ? hn::LoadU(d, rays.light_view + ray) : one;
+  lanes.x = Load(d, x), lanes.y = Load(d, y);
+  lanes.i = Load(d, i), lanes.j = Load(d, j);
+  lanes.i_least = Set(d, static_cast<float>(box.i_low - i_base)) - lanes.i;
+  lanes.j_least = Set(d, static_cast<float>(box.j_low - j_base)) - lanes.j;
+  lanes.i_most = lanes.i_least + Set(d, static_cast<float>(box.i_last - box.i_low));
+  lanes.j_most = lanes.j_least + Set(d, static_cast<float>(box.j_last - box.j_low));
+  lanes.k_in = Load(d, k_in), lanes.k_out = Load(d, k_out);
+  lanes.length = LoadU(d, rays.length_k + ray);
+  lanes.light_view = frame.shading != nullptr ? LoadU(d, rays.light_view + ray) : one;
   lanes.bends = lanes.bx * lanes.by;
   lanes.i_base = i_base, lanes.j_base = j_base;
   return lanes;

@@ -71,12 +71,12 @@ struct GroupWork {
   HWY_NOINLINE void add_to(const ChunkView& chunk, const Lanes& lanes, const Reach& reach, int next,
                            const Progress& progress, const TileCounts& counts) const {
     const DF d;
-    const VF begin = hn::Max(lanes.k_in, hn::Set(d, static_cast<float>(first))),
-             end = hn::Min(k_out, hn::Set(d, static_cast<float>(std::min(next, first + 8))));
-    const float slabs = hn::GetLane(hn::SumOfLanes(d, hn::Max(hn::Zero(d), end - begin)));
+    const VF begin = Max(lanes.k_in, Set(d, static_cast<float>(first))),
+             end = Min(k_out, Set(d, static_cast<float>(std::min(next, first + 8))));
+    const float slabs = GetLane(SumOfLanes(d, Max(Zero(d), end - begin)));
     if (!(slabs > 0)) return;
     const VF depth = (progress.optical_depth - depth_before) / lanes.length;
-    const float thick = hn::GetLane(hn::SumOfLanes(d, hn::Min(hn::Max(depth, hn::Zero(d)), hn::Set(d, 1e4f))));
+    const float thick = GetLane(SumOfLanes(d, Min(Max(depth, Zero(d)), Set(d, 1e4f))));
     const float along = (static_cast<float>(first) + 4) / SlabBlock::slabs;
     const auto middle = [&](const float(&low)[2], const float(&high)[2]) {
       return static_cast<std::int64_t>(0.5f * ((low[0] + high[0]) * (1 - along) + (low[1] + high[1]) * along));

@@ -33,9 +33,9 @@ struct RayNotes {
 
 HWY_INLINE void note_first_light(const Progress& progress, VF place, RayNotes& notes) {
   const DF d;
-  const MF now = hn::AndNot(notes.seen, progress.alpha > hn::Zero(d));
-  notes.first = hn::IfThenElse(now, place, notes.first);
-  notes.seen = hn::Or(notes.seen, now);
+  const MF now = AndNot(notes.seen, progress.alpha > Zero(d));
+  notes.first = IfThenElse(now, place, notes.first);
+  notes.seen = Or(notes.seen, now);
 }
 
 /// The transfer function where all lanes are in one interval.
@@ -46,14 +46,13 @@ struct UniformLookup {
   float product_bound, shadow_bound;    ///< 0.1 |k' c'| and 0.03 |k'|^2 c
   float ramp, ramp_steady, ramp_color;  ///< LaneErrorBound's
   float dimming_bound, extinction;      ///< |c'| k^2 (independent emission: |c'| k) and k, at most in the interval
-  HWY_INLINE VF at(int column, Index) const { return hn::Set(DF(), row[column]); }
+  HWY_INLINE VF at(int column, Index) const { return Set(DF(), row[column]); }
 };
 
 /// A row of LaneErrorBound at intervals or edges of the lanes that are wanted; zero elsewhere.
 HWY_INLINE VF bound_row(const std::vector<float>& row, VI at, MF wanted) {
   const DF d;
-  return hn::IfThenElseZero(wanted,
-                            hn::GatherIndex(d, row.data(), hn::IfThenElseZero(hn::RebindMask(DI(), wanted), at)));
+  return IfThenElseZero(wanted, GatherIndex(d, row.data(), IfThenElseZero(RebindMask(DI(), wanted), at)));
 }
 
 /// Notes what a stretch errs by the ramps of its intervals. Of an opaque one the colour's error is seen at its front.
@@ -63,17 +62,17 @@ HWY_INLINE void note_ramps(VI interval, MF wanted, VF length, const LaneErrorBou
   const DF d;
   const VF through = length * behind;
   const VF color = (before - behind) * bound_row(bound.ramp_color, interval, wanted);
-  const VF ramp = through * bound_row(bound.ramp, interval, wanted), error = hn::Max(ramp, color);
-  notes.rough = hn::MulAdd(error, error, notes.rough);
-  notes.error_bound = hn::MulAdd(ramp, hn::Set(d, bound.steady), notes.error_bound);
+  const VF ramp = through * bound_row(bound.ramp, interval, wanted), error = Max(ramp, color);
+  notes.rough = MulAdd(error, error, notes.rough);
+  notes.error_bound = MulAdd(ramp, Set(d, bound.steady), notes.error_bound);
 }
 HWY_INLINE void note_ramps(const UniformLookup& table, VF length, VF before, VF behind, RayNotes& notes) {
   const DF d;
   const VF through = length * behind;
-  const VF color = (before - behind) * hn::Set(d, table.ramp_color);
-  const VF error = hn::Max(through * hn::Set(d, table.ramp), color);
-  notes.rough = hn::MulAdd(error, error, notes.rough);
-  notes.error_bound = hn::MulAdd(through, hn::Set(d, table.ramp_steady), notes.error_bound);
+  const VF color = (before - behind) * Set(d, table.ramp_color);
+  const VF error = Max(through * Set(d, table.ramp), color);
+  notes.rough = MulAdd(error, error, notes.rough);
+  notes.error_bound = MulAdd(through, Set(d, table.ramp_steady), notes.error_bound);
 }
 
 /// Where lanes cannot tell on which side of a step the cubic is: for how long, and the steps' edges.
@@ -89,19 +88,19 @@ template <class Lookup>
 HWY_INLINE bool touches(const Lookup& table, typename Lookup::Index index, VI interval, MF active,
                         const LaneErrorBound& bound, const Cubic& c, VF v, VF s, VF length, Touch& touch) {
   const DF d;
-  const VF noise = hn::Set(d, bound.noise);
-  const VI below = hn::Zero(DI()), above = hn::Set(DI(), 1);
-  const VF from_low = hn::Abs(s - table.edge(interval, index, below)),
-           from_high = hn::Abs(table.edge(interval, index, above) - s);
+  const VF noise = Set(d, bound.noise);
+  const VI below = Zero(DI()), above = Set(DI(), 1);
+  const VF from_low = Abs(s - table.edge(interval, index, below)),
+           from_high = Abs(table.edge(interval, index, above) - s);
   const MF to_high = from_high < from_low;
-  const VF away = hn::IfThenElse(to_high, from_high, from_low);
-  touch.near = hn::And(active, away < noise);
-  if (HWY_LIKELY(hn::AllFalse(d, touch.near))) return false;
-  touch.edge = interval + hn::IfThenElseZero(hn::RebindMask(DI(), to_high), above);
-  const VF bend = hn::Abs(hn::MulAdd(hn::Set(d, 6.0f) * c.p_3, v, c.p_2 + c.p_2));
-  const VF slope = hn::Max(hn::Abs(c.slope(v)), hn::Sqrt((noise + noise) * bend));
-  const VF share = hn::Min(noise / hn::Max(slope, hn::Set(d, 1e-30f)), hn::Set(d, 1.0f));
-  touch.length = hn::IfThenElseZero(touch.near, share * length);
+  const VF away = IfThenElse(to_high, from_high, from_low);
+  touch.near = And(active, away < noise);
+  if (HWY_LIKELY(AllFalse(d, touch.near))) return false;
+  touch.edge = interval + IfThenElseZero(RebindMask(DI(), to_high), above);
+  const VF bend = Abs(MulAdd(Set(d, 6.0f) * c.p_3, v, c.p_2 + c.p_2));
+  const VF slope = Max(Abs(c.slope(v)), Sqrt((noise + noise) * bend));
+  const VF share = Min(noise / Max(slope, Set(d, 1e-30f)), Set(d, 1.0f));
+  touch.length = IfThenElseZero(touch.near, share * length);
   return true;
 }
 
@@ -119,20 +118,20 @@ struct Excess {
   VF beside_steps, beside_ramps;              ///< light that differs whatever lies behind
 
   HWY_INLINE void add(VF w, VF through, const VF (&color)[3], const Progress& progress) {
-    const VF a[3] = {hn::MulAdd(through, color[0], progress.red), hn::MulAdd(through, color[1], progress.green),
-                     hn::MulAdd(through, color[2], progress.blue)};
+    const VF a[3] = {MulAdd(through, color[0], progress.red), MulAdd(through, color[1], progress.green),
+                     MulAdd(through, color[2], progress.blue)};
     depth = depth + w;
-    red = hn::MulAdd(w, a[0], red), green = hn::MulAdd(w, a[1], green), blue = hn::MulAdd(w, a[2], blue);
-    square = hn::MulAdd(w, hn::MulAdd(a[0], a[0], hn::MulAdd(a[1], a[1], a[2] * a[2])), square);
+    red = MulAdd(w, a[0], red), green = MulAdd(w, a[1], green), blue = MulAdd(w, a[2], blue);
+    square = MulAdd(w, MulAdd(a[0], a[0], MulAdd(a[1], a[1], a[2] * a[2])), square);
   }
   /// Of the whole stretch, by the depths alone.
   HWY_INLINE VF error(const Progress& e, const LaneErrorBound& bound) const {
     const DF d;
-    const VF across = hn::MulAdd(red, e.red, hn::MulAdd(green, e.green, blue * e.blue));
-    const VF light = hn::MulAdd(e.red, e.red, hn::MulAdd(e.green, e.green, e.blue * e.blue));
-    const VF squares = hn::MulAdd(depth, light, hn::NegMulAdd(hn::Set(d, 2.0f), across, square));
-    const VF inside = hn::Sqrt(depth * hn::Max(hn::Zero(d), squares));
-    const VF behind = depth * e.transmittance * hn::Set(d, bound.brightest);
+    const VF across = MulAdd(red, e.red, MulAdd(green, e.green, blue * e.blue));
+    const VF light = MulAdd(e.red, e.red, MulAdd(e.green, e.green, e.blue * e.blue));
+    const VF squares = MulAdd(depth, light, NegMulAdd(Set(d, 2.0f), across, square));
+    const VF inside = Sqrt(depth * Max(Zero(d), squares));
+    const VF behind = depth * e.transmittance * Set(d, bound.brightest);
     return inside + behind;
   }
 };
@@ -141,9 +140,9 @@ template <class Lookup>
 HWY_INLINE void colors_at(const Lookup& table, typename Lookup::Index index, VF s, VF (&color)[3]) {
   const VF from = s - table.at(LaneTable::base, index);
   for (int c = 0; c < 3; ++c)
-    color[c] = table.independent ? hn::Zero(DF())
-                                 : hn::MulAdd(table.at(LaneTable::red_slope + 2 * c, index), from,
-                                              table.at(LaneTable::red + 2 * c, index));
+    color[c] = table.independent ? Zero(DF())
+                                 : MulAdd(table.at(LaneTable::red_slope + 2 * c, index), from,
+                                          table.at(LaneTable::red + 2 * c, index));
 }
 
 /// Adds what a step may err that the cubic is at v on, or nearly.
@@ -152,20 +151,20 @@ HWY_NOINLINE void add_step_error(const Lookup& table, typename Lookup::Index ind
                                  const LaneErrorBound& bound, const Cubic& c, VF v, VF s, VF stretch_length,
                                  const Progress& progress, StretchErrors& sum, Excess& excess) {
   const DF d;
-  const VF most_depth = hn::Set(d, 1e3f), behind = progress.transmittance;
+  const VF most_depth = Set(d, 1e3f), behind = progress.transmittance;
   Touch touch;
   if (!touches(table, index, interval, active, bound, c, v, s, stretch_length, touch)) return;
   const auto row = [&](const std::vector<float>& of) HWY_ATTR { return bound_row(of, touch.edge, touch.near); };
   const VF weight = row(bound.step);
   if (!closely) {
-    const VF error = hn::Min(touch.length * weight, hn::Set(d, bound.most));
-    sum.steps = hn::MulAdd(error, behind, sum.steps);
+    const VF error = Min(touch.length * weight, Set(d, bound.most));
+    sum.steps = MulAdd(error, behind, sum.steps);
   } else {
-    const VF length_there = hn::IfThenElseZero(weight > hn::Zero(d), touch.length);
-    const VF w = hn::Min(length_there * row(bound.step_extinction), most_depth);
+    const VF length_there = IfThenElseZero(weight > Zero(d), touch.length);
+    const VF w = Min(length_there * row(bound.step_extinction), most_depth);
     const VF color[3] = {row(bound.step_red), row(bound.step_green), row(bound.step_blue)};
     excess.add(w, behind, color, progress);
-    excess.beside_steps = hn::MulAdd(length_there * row(bound.step_light), behind, excess.beside_steps);
+    excess.beside_steps = MulAdd(length_there * row(bound.step_light), behind, excess.beside_steps);
   }
 }
 
@@ -175,25 +174,25 @@ HWY_NOINLINE void add_ramp_excess(const Lookup& table, typename Lookup::Index in
                                   const LaneErrorBound& bound, VF s_end, VF length, VF before, const Progress& progress,
                                   Excess& excess) {
   const DF d;
-  const VF most_depth = hn::Set(d, 1e3f), behind = progress.transmittance;
-  const VF w = hn::Min(length * bound_row(bound.ramp_extinction, interval, steep), most_depth);
+  const VF most_depth = Set(d, 1e3f), behind = progress.transmittance;
+  const VF w = Min(length * bound_row(bound.ramp_extinction, interval, steep), most_depth);
   VF color[3];
   colors_at(table, index, s_end, color);
   excess.add(w, behind, color, progress);
   excess.ramps = excess.ramps + w;
   const VF seen = table.independent ? length * before : before - behind;
-  excess.beside_ramps = hn::MulAdd(seen, bound_row(bound.ramp_color, interval, steep), excess.beside_ramps);
+  excess.beside_ramps = MulAdd(seen, bound_row(bound.ramp_color, interval, steep), excess.beside_ramps);
 }
 
 /// Depths that differ are told apart by how much; light beside them is each one's own.
 HWY_INLINE void set_close_errors(const Excess& excess, const Progress& progress, const LaneErrorBound& bound,
                                  StretchErrors& errors) {
   const DF d;
-  const VF error = excess.error(progress, bound), most_error = hn::Set(d, bound.most);
-  const VF share = excess.ramps / hn::Max(excess.depth, hn::Set(d, 1e-30f));
+  const VF error = excess.error(progress, bound), most_error = Set(d, bound.most);
+  const VF share = excess.ramps / Max(excess.depth, Set(d, 1e-30f));
   const VF of_ramps = error * share;
-  errors.ramps = hn::Min(most_error, of_ramps + excess.beside_ramps);
-  errors.steps = hn::Min(most_error, error - of_ramps + excess.beside_steps);
+  errors.ramps = Min(most_error, of_ramps + excess.beside_ramps);
+  errors.steps = Min(most_error, error - of_ramps + excess.beside_steps);
 }
 
 }  // namespace HWY_NAMESPACE

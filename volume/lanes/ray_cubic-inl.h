@@ -26,50 +26,50 @@ struct Piece {
 /// A cubic over v in [0, 1].
 struct Cubic {
   VF p_0, p_1, p_2, p_3;
-  HWY_INLINE VF at(VF v) const { return hn::MulAdd(hn::MulAdd(hn::MulAdd(p_3, v, p_2), v, p_1), v, p_0); }
+  HWY_INLINE VF at(VF v) const { return MulAdd(MulAdd(MulAdd(p_3, v, p_2), v, p_1), v, p_0); }
   HWY_INLINE VF slope(VF v) const {
     const DF d;
-    return hn::MulAdd(hn::MulAdd(hn::Set(d, 3.0f) * p_3, v, p_2 + p_2), v, p_1);
+    return MulAdd(MulAdd(Set(d, 3.0f) * p_3, v, p_2 + p_2), v, p_1);
   }
 };
 
 /// Places of the cubic's extrema in (0, 1), 1 where there are none.
 HWY_INLINE void find_extrema(const Cubic& c, VF& first, VF& second) {
   const DF d;
-  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f), three = hn::Set(d, 3.0f);
-  const VF discriminant = hn::NegMulAdd(three * c.p_1, c.p_3, c.p_2 * c.p_2);
-  const VF root = hn::Sqrt(hn::Max(zero, discriminant));
-  const VF q = hn::Neg(c.p_2 + hn::CopySign(root, c.p_2));
+  const VF zero = Zero(d), one = Set(d, 1.0f), three = Set(d, 3.0f);
+  const VF discriminant = NegMulAdd(three * c.p_1, c.p_3, c.p_2 * c.p_2);
+  const VF root = Sqrt(Max(zero, discriminant));
+  const VF q = Neg(c.p_2 + CopySign(root, c.p_2));
   const auto inside = [&](VF v) HWY_ATTR {
-    const MF good = hn::And(discriminant > zero, hn::And(v > zero, v < one));
-    return hn::IfThenElse(good, v, one);
+    const MF good = And(discriminant > zero, And(v > zero, v < one));
+    return IfThenElse(good, v, one);
   };
   const VF a = inside(q / (three * c.p_3)), b = inside(c.p_1 / q);
-  first = hn::Min(a, b);
-  second = hn::Max(a, b);
+  first = Min(a, b);
+  second = Max(a, b);
 }
 
 /// v in [low, high] where the cubic, monotone there, has the value `level`, which lies between its ends'.
 HWY_INLINE VF find_crossing(const Cubic& c, VF low, VF high, VF s_low, VF s_high, VF level, MF wanted) {
   const DF d;
-  const VF half = hn::Set(d, 0.5f);
+  const VF half = Set(d, 0.5f);
   const MF rises = s_high > s_low;
-  VF v = hn::MulAdd(high - low, (level - s_low) / (s_high - s_low), low);
+  VF v = MulAdd(high - low, (level - s_low) / (s_high - s_low), low);
   for (int step = 0; step < 12; ++step) {
     const VF excess = c.at(v) - level;
-    const MF above = excess > hn::Zero(d);
+    const MF above = excess > Zero(d);
     // What lies on the far side becomes the bracket's end.
-    const MF beyond = hn::Xor(above, hn::Not(rises));
-    high = hn::IfThenElse(beyond, v, high);
-    low = hn::IfThenElse(beyond, low, v);
+    const MF beyond = Xor(above, Not(rises));
+    high = IfThenElse(beyond, v, high);
+    low = IfThenElse(beyond, low, v);
     VF next = v - excess / c.slope(v);
-    const MF kept = hn::And(next >= low, next <= high);
-    next = hn::IfThenElse(kept, next, half * (low + high));
+    const MF kept = And(next >= low, next <= high);
+    next = IfThenElse(kept, next, half * (low + high));
     // Newton's method squares its error: after a step of 1e-3 what is left is about 1e-6.
-    const VF step_done = hn::IfThenElse(kept, hn::Set(d, 1e-3f), hn::Set(d, 1e-6f));
-    const MF moving = hn::And(wanted, hn::Abs(next - v) > step_done);
+    const VF step_done = IfThenElse(kept, Set(d, 1e-3f), Set(d, 1e-6f));
+    const MF moving = And(wanted, Abs(next - v) > step_done);
     v = next;
-    if (hn::AllFalse(d, moving)) break;
+    if (AllFalse(d, moving)) break;
   }
   return v;
 }
@@ -77,13 +77,13 @@ HWY_INLINE VF find_crossing(const Cubic& c, VF low, VF high, VF s_low, VF s_high
 /// The cubic through a piece's ends and middle; zero where lanes are not active.
 HWY_INLINE Cubic cubic_of(const Piece& piece, MF active) {
   const DF d;
-  const VF s_0 = hn::IfThenElseZero(active, piece.s_0), s_mid = hn::IfThenElseZero(active, piece.s_mid),
-           s_1 = hn::IfThenElseZero(active, piece.s_1), p_3 = hn::IfThenElseZero(active, piece.p_3);
+  const VF s_0 = IfThenElseZero(active, piece.s_0), s_mid = IfThenElseZero(active, piece.s_mid),
+           s_1 = IfThenElseZero(active, piece.s_1), p_3 = IfThenElseZero(active, piece.p_3);
   Cubic c;
   c.p_0 = s_0;
   c.p_3 = p_3;
   const VF bend = s_0 + s_1 - (s_mid + s_mid);
-  c.p_2 = hn::NegMulAdd(hn::Set(d, 1.5f), p_3, bend + bend);
+  c.p_2 = NegMulAdd(Set(d, 1.5f), p_3, bend + bend);
   c.p_1 = s_1 - s_0 - c.p_2 - p_3;
   return c;
 }
@@ -91,10 +91,10 @@ HWY_INLINE Cubic cubic_of(const Piece& piece, MF active) {
 /// Whether a cubic does not turn in [0, 1] for certain: its slope's Bezier coefficients are of one sign.
 HWY_INLINE MF is_monotone(const Cubic& c) {
   const DF d;
-  const VF zero = hn::Zero(d);
-  const VF d_1 = c.p_1 + c.p_2, d_2 = d_1 + hn::MulAdd(hn::Set(d, 3.0f), c.p_3, c.p_2);
-  const VF least = hn::Min(c.p_1, hn::Min(d_1, d_2)), most = hn::Max(c.p_1, hn::Max(d_1, d_2));
-  return hn::Not(hn::And(least<zero, most> zero));
+  const VF zero = Zero(d);
+  const VF d_1 = c.p_1 + c.p_2, d_2 = d_1 + MulAdd(Set(d, 3.0f), c.p_3, c.p_2);
+  const VF least = Min(c.p_1, Min(d_1, d_2)), most = Max(c.p_1, Max(d_1, d_2));
+  return Not(And(least<zero, most> zero));
 }
 
 }  // namespace HWY_NAMESPACE

@@ -46,19 +46,19 @@ struct RoughnessBounds {
 /// What a stretch errs, of the tolerance; see Error above.
 HWY_INLINE VF roughness(VF length, VF m, VF p_3, VF span, const RoughnessBounds& bounds) {
   const DF d;
-  const VF odd = hn::Abs(p_3), even = hn::Abs(m);
-  const VF rho = hn::MulAdd(odd, hn::Set(d, 0.25f), even * hn::Set(d, 1.5f));
-  const VF spread = hn::MulAdd(hn::Abs(span), hn::Set(d, 0.3f), rho);
-  const VF scale = hn::MulAdd(length, bounds.shadow, bounds.product);
+  const VF odd = Abs(p_3), even = Abs(m);
+  const VF rho = MulAdd(odd, Set(d, 0.25f), even * Set(d, 1.5f));
+  const VF spread = MulAdd(Abs(span), Set(d, 0.3f), rho);
+  const VF scale = MulAdd(length, bounds.shadow, bounds.product);
   const VF depth = length * bounds.extinction;
-  const VF dimmed = hn::MulAdd(odd, hn::Set(d, 1 / 120.0f), even * depth * hn::Set(d, 1 / 60.0f));
-  const VF error = hn::MulAdd(rho * spread, scale, length * bounds.dimming * dimmed);
+  const VF dimmed = MulAdd(odd, Set(d, 1 / 120.0f), even * depth * Set(d, 1 / 60.0f));
+  const VF error = MulAdd(rho * spread, scale, length * bounds.dimming * dimmed);
   return length * error;
 }
 
 /// Whether a stretch errs more than the tolerance.
 HWY_INLINE MF too_rough(VF length, VF m, VF p_3, VF span, const RoughnessBounds& bounds) {
-  return roughness(length, m, p_3, span, bounds) > hn::Set(DF(), 1.0f);
+  return roughness(length, m, p_3, span, bounds) > Set(DF(), 1.0f);
 }
 
 /// Adds the stretches if they are smooth enough; false, and nothing added, if not.
@@ -70,11 +70,11 @@ HWY_INLINE bool add_uniform(const UniformLookup& table, const Piece& piece, Prog
     CL::lanes::add_piece<false>(table, 0, piece.s_0, piece.s_1, span, piece.length, progress);
     return true;
   }
-  const VF m = (piece.s_mid + piece.s_mid - (piece.s_0 + piece.s_1)) * hn::Set(d, 1 / 3.0f);
-  const MF rough = too_rough(piece.length, m, piece.p_3, span,
-                             {hn::Set(d, table.product_bound), hn::Set(d, table.shadow_bound),
-                              hn::Set(d, table.dimming_bound), hn::Set(d, table.extinction)});
-  if (HWY_UNLIKELY(!hn::AllFalse(d, rough))) return false;
+  const VF m = (piece.s_mid + piece.s_mid - (piece.s_0 + piece.s_1)) * Set(d, 1 / 3.0f);
+  const MF rough = too_rough(
+      piece.length, m, piece.p_3, span,
+      {Set(d, table.product_bound), Set(d, table.shadow_bound), Set(d, table.dimming_bound), Set(d, table.extinction)});
+  if (HWY_UNLIKELY(!AllFalse(d, rough))) return false;
   CL::lanes::add_piece<false>(table, 0, piece.s_0 + m, piece.s_1 + m, span, piece.length, progress);
   return true;
 }
@@ -82,8 +82,8 @@ HWY_INLINE bool add_uniform(const UniformLookup& table, const Piece& piece, Prog
 /// At scalar s of an interval.
 template <class Lookup>
 HWY_INLINE VF extinction_at(const Lookup& table, typename Lookup::Index index, VF s) {
-  const VF half = hn::MulAdd(table.at(LaneTable::half_extinction_slope, index), s - table.at(LaneTable::base, index),
-                             table.at(LaneTable::half_extinction, index));
+  const VF half = MulAdd(table.at(LaneTable::half_extinction_slope, index), s - table.at(LaneTable::base, index),
+                         table.at(LaneTable::half_extinction, index));
   return half + half;
 }
 
@@ -97,94 +97,94 @@ template <bool closely, class Lookup>
 HWY_NOINLINE StretchErrors walk_cubic(const Lookup& table, const FrameView& frame, const Piece& piece,
                                       Progress& progress, RayNotes& notes, std::uint64_t& pieces) {
   const DF d;
-  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
-  MF active = hn::And(piece.length > zero, piece.s_mid == piece.s_mid);
+  const VF zero = Zero(d), one = Set(d, 1.0f), half = Set(d, 0.5f);
+  MF active = And(piece.length > zero, piece.s_mid == piece.s_mid);
   StretchErrors errors{zero, zero, zero};
   Excess excess{zero, zero, zero, zero, zero, zero, zero, zero};
-  if (hn::AllFalse(d, active)) return errors;
+  if (AllFalse(d, active)) return errors;
   const Cubic c = cubic_of(piece, active);
-  const VF s_0 = c.p_0, s_1 = hn::IfThenElseZero(active, piece.s_1), p_3 = c.p_3;
+  const VF s_0 = c.p_0, s_1 = IfThenElseZero(active, piece.s_1), p_3 = c.p_3;
   VF turn_1 = one, turn_2 = one;
-  if (!hn::AllFalse(d, hn::AndNot(is_monotone(c), active))) find_extrema(c, turn_1, turn_2);
+  if (!AllFalse(d, AndNot(is_monotone(c), active))) find_extrema(c, turn_1, turn_2);
 
-  const VF per_tolerance = hn::Set(d, 1 / frame.piece_tolerance);
+  const VF per_tolerance = Set(d, 1 / frame.piece_tolerance);
   const bool has_steps = frame.error_bound != nullptr && !frame.error_bound->step.empty();
   const float* const ramps =
       frame.error_bound != nullptr && !frame.error_bound->ramp.empty() ? frame.error_bound->ramp.data() : nullptr;
   VF v = zero, s = s_0;
   // Each round ends at a knot, an extremum, a halving or the stretch's end; knots are few but for wild functions.
   for (int round = 0; round < 4096; ++round) {
-    const VF turn = hn::IfThenElse(v < turn_1, turn_1, hn::IfThenElse(v < turn_2, turn_2, one));
-    const VF s_turn = hn::IfThenElse(turn == one, s_1, c.at(turn));
+    const VF turn = IfThenElse(v < turn_1, turn_1, IfThenElse(v < turn_2, turn_2, one));
+    const VF s_turn = IfThenElse(turn == one, s_1, c.at(turn));
     const MF up = s_turn >= s;
-    const VI to_far_edge = hn::IfThenElseZero(hn::RebindMask(DI(), up), hn::Set(DI(), 1));
+    const VI to_far_edge = IfThenElseZero(RebindMask(DI(), up), Set(DI(), 1));
     const VI interval = table.locate(s, up);
     const auto index = table.index(interval, active);
     const VF knot = table.edge(interval, index, to_far_edge);
-    const MF crosses = hn::And(active, hn::Or(hn::And(up, knot < s_turn), hn::AndNot(up, knot > s_turn)));
+    const MF crosses = And(active, Or(And(up, knot < s_turn), AndNot(up, knot > s_turn)));
     VF end = turn, s_end = s_turn;
-    if (!hn::AllFalse(d, crosses)) {
+    if (!AllFalse(d, crosses)) {
       const VF at_knot = find_crossing(c, v, turn, s, s_turn, knot, crosses);
-      end = hn::IfThenElse(crosses, at_knot, end);
-      s_end = hn::IfThenElse(crosses, knot, s_end);
+      end = IfThenElse(crosses, at_knot, end);
+      s_end = IfThenElse(crosses, knot, s_end);
     }
-    const VF slope = hn::Set(d, 2.0f) * hn::Abs(table.at(LaneTable::half_extinction_slope, index));
-    const VF color_slope = hn::Max(
-        hn::Max(hn::Abs(table.at(LaneTable::red_slope, index)), hn::Abs(table.at(LaneTable::green_slope, index))),
-        hn::Abs(table.at(LaneTable::blue_slope, index)));
+    const VF slope = Set(d, 2.0f) * Abs(table.at(LaneTable::half_extinction_slope, index));
+    const VF color_slope =
+        Max(Max(Abs(table.at(LaneTable::red_slope, index)), Abs(table.at(LaneTable::green_slope, index))),
+            Abs(table.at(LaneTable::blue_slope, index)));
     RoughnessBounds bounds;
-    bounds.product = hn::Set(d, 0.1f) * (slope * color_slope);
+    bounds.product = Set(d, 0.1f) * (slope * color_slope);
     if (table.independent) bounds.product = zero;
     bounds.product = bounds.product * per_tolerance;
-    bounds.shadow = slope * slope * hn::Set(d, 0.03f * frame.largest_color) * per_tolerance;
+    bounds.shadow = slope * slope * Set(d, 0.03f * frame.largest_color) * per_tolerance;
     // What is dimmed already needs no care: behind 14 optical depths any of it is right.
     const VF seen = per_tolerance * (color_slope * progress.transmittance);
     VF extent, m, length;
     for (int halvings = 0;; ++halvings) {
       extent = end - v;
-      const VF middle = c.at(hn::MulAdd(half, extent, v));
-      m = (middle + middle - (s + s_end)) * hn::Set(d, 1 / 3.0f);
-      length = hn::IfThenElseZero(active, extent * piece.length);
+      const VF middle = c.at(MulAdd(half, extent, v));
+      m = (middle + middle - (s + s_end)) * Set(d, 1 / 3.0f);
+      length = IfThenElseZero(active, extent * piece.length);
       const VF cubed = p_3 * (extent * (extent * extent));
       // Between two places where the cubic does not turn, extinction is largest at one of them.
-      bounds.extinction = hn::Max(extinction_at(table, index, s), extinction_at(table, index, s_end));
+      bounds.extinction = Max(extinction_at(table, index, s), extinction_at(table, index, s_end));
       bounds.dimming = seen * (table.independent ? bounds.extinction : bounds.extinction * bounds.extinction);
       const MF rough = too_rough(length, m, cubed, s_end - s, bounds);
-      if (hn::AllFalse(d, rough)) break;
+      if (AllFalse(d, rough)) break;
       if (HWY_UNLIKELY(halvings == most_halvings)) {
         // What is left is noted as it is seen.
-        const VF error = roughness(length, m, cubed, s_end - s, bounds) * hn::Set(d, frame.piece_tolerance);
-        errors.left = hn::MulAdd(hn::IfThenElseZero(rough, hn::Min(error, one)), progress.transmittance, errors.left);
+        const VF error = roughness(length, m, cubed, s_end - s, bounds) * Set(d, frame.piece_tolerance);
+        errors.left = MulAdd(IfThenElseZero(rough, Min(error, one)), progress.transmittance, errors.left);
         break;
       }
-      end = hn::IfThenElse(rough, hn::MulAdd(half, extent, v), end);
-      s_end = hn::IfThenElse(rough, middle, s_end);
+      end = IfThenElse(rough, MulAdd(half, extent, v), end);
+      s_end = IfThenElse(rough, middle, s_end);
     }
-    pieces += hn::CountTrue(d, active);
+    pieces += CountTrue(d, active);
     if (HWY_UNLIKELY(round == 0 && has_steps))
       add_step_error<closely>(table, index, interval, active, *frame.error_bound, c, v, s, piece.length, progress,
                               errors, excess);
     const VF before = progress.transmittance;
     CL::lanes::add_piece<false>(table, index, s + m, s_end + m, s_end - s, length, progress);
-    note_first_light(progress, hn::MulAdd(v, piece.extent, piece.begin), notes);
+    note_first_light(progress, MulAdd(v, piece.extent, piece.begin), notes);
     if (HWY_UNLIKELY(has_steps))
       add_step_error<closely>(table, index, interval, active, *frame.error_bound, c, end, s_end, piece.length, progress,
                               errors, excess);
     if (ramps != nullptr) {
       // Lanes that are done have an interval and no length.
-      const VF ramp = hn::GatherIndex(d, ramps, interval);
+      const VF ramp = GatherIndex(d, ramps, interval);
       if (!closely)
-        errors.ramps = hn::MulAdd(length * before, ramp, errors.ramps);
-      else if (const MF steep = hn::And(active, ramp > zero); !hn::AllFalse(d, steep))
+        errors.ramps = MulAdd(length * before, ramp, errors.ramps);
+      else if (const MF steep = And(active, ramp > zero); !AllFalse(d, steep))
         add_ramp_excess(table, index, interval, steep, *frame.error_bound, s_end, length, before, progress, excess);
     }
-    v = hn::IfThenElse(active, end, v);
-    s = hn::IfThenElse(active, s_end, s);
-    active = hn::And(active, v < one);
-    if (hn::AllFalse(d, active)) break;
+    v = IfThenElse(active, end, v);
+    s = IfThenElse(active, s_end, s);
+    active = And(active, v < one);
+    if (AllFalse(d, active)) break;
   }
   // Rounds that do not do.
-  errors.left = errors.left + hn::IfThenElseZero(active, progress.transmittance);
+  errors.left = errors.left + IfThenElseZero(active, progress.transmittance);
   if (closely) set_close_errors(excess, progress, *frame.error_bound, errors);
   return errors;
 }
@@ -194,23 +194,23 @@ template <class Lookup>
 HWY_INLINE void add_any(const Lookup& table, const FrameView& frame, const Piece& piece, Progress& progress,
                         RayNotes& notes, std::uint64_t& pieces) {
   const DF d;
-  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f), before = progress.transmittance;
+  const VF zero = Zero(d), one = Set(d, 1.0f), before = progress.transmittance;
   StretchErrors errors = walk_cubic<false>(table, frame, piece, progress, notes, pieces);
   if (HWY_LIKELY(frame.error_bound == nullptr)) return;
-  const MF matters = errors.steps + errors.ramps > hn::Set(d, frame.error_bound->matters);
-  if (HWY_UNLIKELY(!hn::AllFalse(d, matters))) {
+  const MF matters = errors.steps + errors.ramps > Set(d, frame.error_bound->matters);
+  if (HWY_UNLIKELY(!AllFalse(d, matters))) {
     Progress alone{zero, one, zero, zero, zero, zero};
     RayNotes none{zero, zero == zero, zero, zero};
     std::uint64_t again = 0;
     const StretchErrors close = walk_cubic<true>(table, frame, piece, alone, none, again);
-    const auto less = [&](VF far, VF near) HWY_ATTR { return hn::Min(far, before * near); };
+    const auto less = [&](VF far, VF near) HWY_ATTR { return Min(far, before * near); };
     const VF ramps = less(errors.ramps, close.ramps);
-    errors.steps = hn::Min(errors.steps + (errors.ramps - ramps), before * close.steps);
+    errors.steps = Min(errors.steps + (errors.ramps - ramps), before * close.steps);
     errors.ramps = ramps;
   }
-  const VF steady = hn::Set(d, frame.error_bound->steady);
-  notes.error_bound = notes.error_bound + (errors.left + hn::MulAdd(errors.ramps, steady, errors.steps));
-  notes.rough = hn::MulAdd(errors.ramps, errors.ramps, notes.rough);
+  const VF steady = Set(d, frame.error_bound->steady);
+  notes.error_bound = notes.error_bound + (errors.left + MulAdd(errors.ramps, steady, errors.steps));
+  notes.rough = MulAdd(errors.ramps, errors.ramps, notes.rough);
 }
 
 }  // namespace HWY_NAMESPACE

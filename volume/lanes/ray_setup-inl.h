@@ -72,10 +72,10 @@ template <class V>
 HWY_INLINE void keep_side(V reach, double side, V& a, V& b) {
   namespace hn = hwy::HWY_NAMESPACE;
   const hn::DFromV<V> d;
-  const V plane = hn::Round(a), within = hn::Set(d, in_plane_within);
-  const auto in_plane = hn::And(hn::Abs(b) * reach < within, hn::Abs(a - plane) < within);
-  a = hn::IfThenElse(in_plane, plane + hn::Set(d, side), a);
-  b = hn::IfThenElse(in_plane, hn::Zero(d), b);
+  const V plane = Round(a), within = Set(d, in_plane_within);
+  const auto in_plane = And(Abs(b) * reach < within, Abs(a - plane) < within);
+  a = IfThenElse(in_plane, plane + Set(d, side), a);
+  b = IfThenElse(in_plane, Zero(d), b);
 }
 
 /// Cuts [in, out] to where a + b k is in [0, end].
@@ -83,14 +83,14 @@ template <class V>
 HWY_INLINE void clip(V a, V b, double end, V& in, V& out) {
   namespace hn = hwy::HWY_NAMESPACE;
   const hn::DFromV<V> d;
-  const V zero = hn::Zero(d), one = hn::Set(d, 1.0), last = hn::Set(d, end);
+  const V zero = Zero(d), one = Set(d, 1.0), last = Set(d, end);
   const auto level = b == zero;
-  const auto outside = hn::And(level, hn::Or(a<zero, a> last));
-  const V per_b = one / hn::IfThenElse(level, one, b);
-  const V first = hn::Neg(a) * per_b, second = (last - a) * per_b;
-  in = hn::Max(in, hn::IfThenElse(level, in, hn::Min(first, second)));
-  out = hn::Min(out, hn::IfThenElse(level, out, hn::Max(first, second)));
-  out = hn::IfThenElse(outside, hn::Set(d, -1.0), out);
+  const auto outside = And(level, Or(a<zero, a> last));
+  const V per_b = one / IfThenElse(level, one, b);
+  const V first = Neg(a) * per_b, second = (last - a) * per_b;
+  in = Max(in, IfThenElse(level, in, Min(first, second)));
+  out = Min(out, IfThenElse(level, out, Max(first, second)));
+  out = IfThenElse(outside, Set(d, -1.0), out);
 }
 
 /// Cuts [in, out] to where a + b k >= 0. A ray that runs in that plane is on the side that `inside` says.
@@ -98,15 +98,15 @@ template <class V>
 HWY_INLINE void clip_half(V a, V b, V reach, bool inside, V& in, V& out) {
   namespace hn = hwy::HWY_NAMESPACE;
   const hn::DFromV<V> d;
-  const V zero = hn::Zero(d), within = hn::Set(d, in_plane_within);
-  const auto level = hn::Abs(b) * reach < within;
-  const auto in_plane = hn::Abs(a) < within;
-  const V side = hn::IfThenElse(in_plane, hn::Set(d, inside ? 1.0 : -1.0), a);
-  const V at = hn::Neg(a) / hn::IfThenElse(level, hn::Set(d, 1.0), b);
+  const V zero = Zero(d), within = Set(d, in_plane_within);
+  const auto level = Abs(b) * reach < within;
+  const auto in_plane = Abs(a) < within;
+  const V side = IfThenElse(in_plane, Set(d, inside ? 1.0 : -1.0), a);
+  const V at = Neg(a) / IfThenElse(level, Set(d, 1.0), b);
   const auto rises = b > zero;
-  in = hn::IfThenElse(hn::AndNot(level, rises), hn::Max(in, at), in);
-  out = hn::IfThenElse(hn::Or(level, rises), out, hn::Min(out, at));
-  out = hn::IfThenElse(hn::And(level, side < zero), hn::Set(d, -1.0), out);
+  in = IfThenElse(AndNot(level, rises), Max(in, at), in);
+  out = IfThenElse(Or(level, rises), out, Min(out, at));
+  out = IfThenElse(And(level, side < zero), Set(d, -1.0), out);
 }
 
 /// On which side of a plane rays in it count, by the rule of side_of_plane().
@@ -130,69 +130,67 @@ HWY_NOINLINE inline void set_up_rays(const FrameView& frame, int x0, int y0, int
   const bool level_i = !crosses_planes(rays, x0, y0, axes.i), level_j = !crosses_planes(rays, x0, y0, axes.j);
   namespace hn = hwy::HWY_NAMESPACE;
   const hn::ScalableTag<double> d;
-  const auto set = [&](double v) HWY_ATTR { return hn::Set(d, v); };
-  const auto zero = hn::Zero(d), one = set(1.0);
+  const auto set = [&](double v) HWY_ATTR { return Set(d, v); };
+  const auto zero = Zero(d), one = set(1.0);
   HWY_ALIGN double column[TileRays::packet_rays], row[TileRays::packet_rays];
   for (int ray = 0; ray < TileRays::packet_rays; ++ray)
     column[ray] = TileRays::pixel_x(ray) + 0.5, row[ray] = TileRays::pixel_y(ray) + 0.5;
   for (int ray = 0; ray < TileRays::count; ray += static_cast<int>(hn::Lanes(d))) {
     const int packet = ray & ~(TileRays::packet_rays - 1), lane = ray - packet;
-    const auto px = set(x0 + TileRays::pixel_x(packet)) + hn::Load(d, column + lane),
-               py = set(y0 + TileRays::pixel_y(packet)) + hn::Load(d, row + lane);
+    const auto px = set(x0 + TileRays::pixel_x(packet)) + Load(d, column + lane),
+               py = set(y0 + TileRays::pixel_y(packet)) + Load(d, row + lane);
     const auto along = [&](int a, const glm::dvec3& v, const glm::dvec3& v_x, const glm::dvec3& v_y)
-                           HWY_ATTR { return hn::MulAdd(py, set(v_y[a]), hn::MulAdd(px, set(v_x[a]), set(v[a]))); };
+                           HWY_ATTR { return MulAdd(py, set(v_y[a]), MulAdd(px, set(v_x[a]), set(v[a]))); };
     const auto origin = [&](int a) HWY_ATTR { return along(a, rays.origin, rays.origin_x, rays.origin_y); };
     const auto direction = [&](int a) HWY_ATTR { return along(a, rays.direction, rays.direction_x, rays.direction_y); };
     const auto di = direction(axes.i), dj = direction(axes.j), dk_signed = direction(axes.k), o_k = origin(axes.k);
-    const auto dk = hn::Abs(dk_signed), ok = axes.mirrored ? set(end_k) - o_k : o_k;
+    const auto dk = Abs(dk_signed), ok = axes.mirrored ? set(end_k) - o_k : o_k;
     auto here = zero == zero;
     if (perspective) {
       // As axis_code() has it: the lowest of equal axes.
       const auto not_less = [&](auto other, int axis)
-                                HWY_ATTR { return axes.k < axis ? dk >= hn::Abs(other) : dk > hn::Abs(other); };
+                                HWY_ATTR { return axes.k < axis ? dk >= Abs(other) : dk > Abs(other); };
       const auto signed_right = axes.mirrored ? dk_signed < zero : dk_signed >= zero;
-      here = hn::And(signed_right, hn::And(not_less(di, axes.i), not_less(dj, axes.j)));
+      here = And(signed_right, And(not_less(di, axes.i), not_less(dj, axes.j)));
     }
-    const auto per_k = one / hn::IfThenElse(here, dk, one);
+    const auto per_k = one / IfThenElse(here, dk, one);
     auto bx = di * per_k, by = dj * per_k;
-    auto ax = hn::NegMulAdd(ok, bx, origin(axes.i)), ay = hn::NegMulAdd(ok, by, origin(axes.j));
-    const auto reach = hn::Max(hn::Abs(ok), hn::Abs(set(end_k) - ok));
+    auto ax = NegMulAdd(ok, bx, origin(axes.i)), ay = NegMulAdd(ok, by, origin(axes.j));
+    const auto reach = Max(Abs(ok), Abs(set(end_k) - ok));
     if (level_i) keep_side(reach, side_of_plane(rays, perspective, axes.i), ax, bx);
     if (level_j) keep_side(reach, side_of_plane(rays, perspective, axes.j), ay, by);
-    auto in = hn::Max(zero, hn::MulAdd(set(rays.near_depth), dk, ok));
+    auto in = Max(zero, MulAdd(set(rays.near_depth), dk, ok));
     auto out_k = set(end_k);
-    if (std::isfinite(rays.far_depth)) out_k = hn::Min(out_k, hn::MulAdd(set(rays.far_depth), dk, ok));
+    if (std::isfinite(rays.far_depth)) out_k = Min(out_k, MulAdd(set(rays.far_depth), dk, ok));
     clip(ax, bx, end_i, in, out_k);
     clip(ay, by, end_j, in, out_k);
     for (const KeptSide& kept : rays.kept) {
       const auto si = set(kept.slope[axes.i]), sj = set(kept.slope[axes.j]);
       const double sk = axes.mirrored ? -kept.slope[axes.k] : kept.slope[axes.k];
       const double at_0 = axes.mirrored ? kept.slope[axes.k] * end_k + kept.constant : kept.constant;
-      clip_half(hn::MulAdd(si, ax, hn::MulAdd(sj, ay, set(at_0))), hn::MulAdd(si, bx, hn::MulAdd(sj, by, set(sk))),
-                reach, is_inside(rays, perspective, kept), in, out_k);
+      clip_half(MulAdd(si, ax, MulAdd(sj, ay, set(at_0))), MulAdd(si, bx, MulAdd(sj, by, set(sk))), reach,
+                is_inside(rays, perspective, kept), in, out_k);
     }
-    const auto kept = hn::And(here, in < out_k);
+    const auto kept = And(here, in < out_k);
     const auto tx = (px - set(rays.tangent_x0)) * set(rays.tangent_step),
                ty = (py - set(rays.tangent_y0)) * set(rays.tangent_step);
-    const auto length = hn::Sqrt(hn::MulAdd(tx, tx, hn::MulAdd(ty, ty, one))) * per_k * set(1 / frame.length_unit);
+    const auto length = Sqrt(MulAdd(tx, tx, MulAdd(ty, ty, one))) * per_k * set(1 / frame.length_unit);
     if (frame.shading != nullptr) {
       const double(&l)[3] = frame.shading->light_eye;
       // Towards the eye along the ray: (-tx, ty, 1) in the camera's frame, y being down the picture.
-      const auto towards = hn::NegMulAdd(tx, set(l[0]), hn::MulAdd(ty, set(l[1]), set(l[2])));
-      const auto cosine = towards / hn::Sqrt(hn::MulAdd(tx, tx, hn::MulAdd(ty, ty, one)));
-      hn::Store(hn::DemoteTo(hn::Rebind<float, decltype(d)>(), cosine), hn::Rebind<float, decltype(d)>(),
-                out.light_view + ray);
+      const auto towards = NegMulAdd(tx, set(l[0]), MulAdd(ty, set(l[1]), set(l[2])));
+      const auto cosine = towards / Sqrt(MulAdd(tx, tx, MulAdd(ty, ty, one)));
+      Store(DemoteTo(hn::Rebind<float, decltype(d)>(), cosine), hn::Rebind<float, decltype(d)>(), out.light_view + ray);
     }
-    hn::Store(hn::IfThenElseZero(here, ax), d, out.ax + ray);
-    hn::Store(hn::IfThenElseZero(here, bx), d, out.bx + ray);
-    hn::Store(hn::IfThenElseZero(here, ay), d, out.ay + ray);
-    hn::Store(hn::IfThenElseZero(here, by), d, out.by + ray);
-    hn::Store(hn::IfThenElse(kept, in, one), d, out.k_in + ray);
-    hn::Store(hn::IfThenElseZero(kept, out_k), d, out.k_out + ray);
-    hn::Store(hn::Neg(ok * per_k), d, out.depth_0 + ray);
-    hn::Store(per_k, d, out.depth_k + ray);
-    hn::Store(hn::DemoteTo(hn::Rebind<float, decltype(d)>(), length), hn::Rebind<float, decltype(d)>(),
-              out.length_k + ray);
+    Store(IfThenElseZero(here, ax), d, out.ax + ray);
+    Store(IfThenElseZero(here, bx), d, out.bx + ray);
+    Store(IfThenElseZero(here, ay), d, out.ay + ray);
+    Store(IfThenElseZero(here, by), d, out.by + ray);
+    Store(IfThenElse(kept, in, one), d, out.k_in + ray);
+    Store(IfThenElseZero(kept, out_k), d, out.k_out + ray);
+    Store(Neg(ok * per_k), d, out.depth_0 + ray);
+    Store(per_k, d, out.depth_k + ray);
+    Store(DemoteTo(hn::Rebind<float, decltype(d)>(), length), hn::Rebind<float, decltype(d)>(), out.length_k + ray);
   }
 }
 

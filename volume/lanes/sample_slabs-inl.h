@@ -58,59 +58,56 @@ template <bool cell_data>
 HWY_INLINE VF field_in_block(const ChunkView& chunk, const std::int32_t* slice_offsets, const Lanes& lanes, VF k,
                              MF active) {
   const DF d;
-  const VF first = hn::Set(d, static_cast<float>(chunk.box.first_slab)),
-           last = hn::Set(d, static_cast<float>(chunk.box.slabs - 1));
-  const VF plane = hn::Min(hn::Max(hn::Floor(k), first), last);
-  const VF x = hn::MulAdd(k, lanes.bx, lanes.x), y = hn::MulAdd(k, lanes.by, lanes.y);
-  const VF i = hn::Min(hn::Max(hn::Floor(x), lanes.i_least), lanes.i_most),
-           j = hn::Min(hn::Max(hn::Floor(y), lanes.j_least), lanes.j_most);
-  const VI n = hn::ConvertTo(DI(), hn::IfThenElseZero(active, plane));
-  const VI column = hn::ConvertTo(DI(), hn::IfThenElseZero(active, i + lanes.i)),
-           row = hn::ConvertTo(DI(), hn::IfThenElseZero(active, j + lanes.j));
-  const VI in_slice = row * hn::Set(DI(), static_cast<std::int32_t>(chunk.block.pitch)) + column;
+  const VF first = Set(d, static_cast<float>(chunk.box.first_slab)),
+           last = Set(d, static_cast<float>(chunk.box.slabs - 1));
+  const VF plane = Min(Max(Floor(k), first), last);
+  const VF x = MulAdd(k, lanes.bx, lanes.x), y = MulAdd(k, lanes.by, lanes.y);
+  const VF i = Min(Max(Floor(x), lanes.i_least), lanes.i_most), j = Min(Max(Floor(y), lanes.j_least), lanes.j_most);
+  const VI n = ConvertTo(DI(), IfThenElseZero(active, plane));
+  const VI column = ConvertTo(DI(), IfThenElseZero(active, i + lanes.i)),
+           row = ConvertTo(DI(), IfThenElseZero(active, j + lanes.j));
+  const VI in_slice = row * Set(DI(), static_cast<std::int32_t>(chunk.block.pitch)) + column;
   const float* const samples = chunk.block.samples.data();
   const auto pitch = chunk.block.pitch;
   // Lanes that are not active read the first sample.
   const auto offset = [&](int slice) HWY_ATTR {
-    const VI at = in_slice + hn::GatherIndex(DI(), slice_offsets + slice, n);
-    return hn::IfThenElseZero(hn::RebindMask(DI(), active), at);
+    const VI at = in_slice + GatherIndex(DI(), slice_offsets + slice, n);
+    return IfThenElseZero(RebindMask(DI(), active), at);
   };
   const VI a = offset(0);
-  if constexpr (cell_data) return hn::GatherIndex(d, samples, a);
+  if constexpr (cell_data) return GatherIndex(d, samples, a);
   const VI b = offset(1);
-  const auto at = [&](std::ptrdiff_t corner, VI index) HWY_ATTR { return hn::GatherIndex(d, samples + corner, index); };
+  const auto at = [&](std::ptrdiff_t corner, VI index) HWY_ATTR { return GatherIndex(d, samples + corner, index); };
   const Corners s{at(0, a), at(1, a), at(pitch, a), at(pitch + 1, a),
                   at(0, b), at(1, b), at(pitch, b), at(pitch + 1, b)};
   const VoxelField field(s, x - i, y - j);
   const VF fx = field.x, fy = field.y;
-  const VF front = hn::MulAdd(fy, hn::MulAdd(fx, field.aij, field.aj), hn::MulAdd(fx, field.ai, field.a00));
-  const VF change = hn::MulAdd(fy, hn::MulAdd(fx, field.cij, field.cj), hn::MulAdd(fx, field.ci, field.c00));
-  return hn::MulAdd(k - plane, change, front);
+  const VF front = MulAdd(fy, MulAdd(fx, field.aij, field.aj), MulAdd(fx, field.ai, field.a00));
+  const VF change = MulAdd(fy, MulAdd(fx, field.cij, field.cj), MulAdd(fx, field.ci, field.c00));
+  return MulAdd(k - plane, change, front);
 }
 
 /// Bilinear look-up of the pre-integrated table: optical depth and light.
 HWY_INLINE void look_up(const PreintegratedTable& table, VF front, VF back, VF (&out)[4]) {
   const DF d;
-  const VF last = hn::Set(d, static_cast<float>(table.size - 1)), zero = hn::Zero(d);
-  const auto place = [&](VF s) HWY_ATTR {
-    return hn::Min(hn::Max((s - hn::Set(d, table.low)) * hn::Set(d, table.scale), zero), last);
-  };
+  const VF last = Set(d, static_cast<float>(table.size - 1)), zero = Zero(d);
+  const auto place = [&](VF s) HWY_ATTR { return Min(Max((s - Set(d, table.low)) * Set(d, table.scale), zero), last); };
   const VF f = place(front), b = place(back);
-  const VF f0 = hn::Min(hn::Floor(f), last - hn::Set(d, 1.0f)), b0 = hn::Min(hn::Floor(b), last - hn::Set(d, 1.0f));
+  const VF f0 = Min(Floor(f), last - Set(d, 1.0f)), b0 = Min(Floor(b), last - Set(d, 1.0f));
   const VF wf = f - f0, wb = b - b0;
-  const VI index = hn::ConvertTo(DI(), hn::MulAdd(f0, hn::Set(d, static_cast<float>(table.size)), b0));
+  const VI index = ConvertTo(DI(), MulAdd(f0, Set(d, static_cast<float>(table.size)), b0));
   for (int c = 0; c < 4; ++c) {
     const float* const t = table.channel(c);
-    const VF s00 = hn::GatherIndex(d, t, index), s01 = hn::GatherIndex(d, t + 1, index),
-             s10 = hn::GatherIndex(d, t + table.size, index), s11 = hn::GatherIndex(d, t + table.size + 1, index);
-    const VF low = hn::MulAdd(wb, s01 - s00, s00), high = hn::MulAdd(wb, s11 - s10, s10);
-    out[c] = hn::MulAdd(wf, high - low, low);
+    const VF s00 = GatherIndex(d, t, index), s01 = GatherIndex(d, t + 1, index),
+             s10 = GatherIndex(d, t + table.size, index), s11 = GatherIndex(d, t + table.size + 1, index);
+    const VF low = MulAdd(wb, s01 - s00, s00), high = MulAdd(wb, s11 - s10, s10);
+    out[c] = MulAdd(wf, high - low, low);
   }
 }
 
 /// The steps of a packet's lanes [ray, ray + Lanes()) whose places are in a chunk, relative to its first plane.
 struct ChunkSteps {
-  static constexpr std::size_t most = hn::MaxLanes(DF());
+  static constexpr std::size_t most = MaxLanes(DF());
   HWY_ALIGN float begin[most], each[most], last[most], count[most];
   HWY_ALIGN float final_step[most];  ///< number of the ray's last step; -1 if it is not in the chunk
   HWY_ALIGN float entry[most];       ///< where the ray enters the volume; -1 if not in the chunk
@@ -154,24 +151,24 @@ struct StepLight {
 template <class Lookup>
 HWY_INLINE StepLight sampled_step(const Lookup& lookup, VF s, VF extent, VF length_k, MF active) {
   const DF d;
-  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  const MF good = hn::And(active, s == s);
-  const VF scalar = hn::IfThenElseZero(good, s);
+  const VF zero = Zero(d), one = Set(d, 1.0f);
+  const MF good = And(active, s == s);
+  const VF scalar = IfThenElseZero(good, s);
   const auto index = lookup.index(lookup.locate(scalar, zero == zero), good);
   const VF off = scalar - lookup.at(LaneTable::base, index);
-  const VF kappa = hn::Max(zero, hn::MulAdd(lookup.at(LaneTable::half_extinction_slope, index), off,
-                                            lookup.at(LaneTable::half_extinction, index)));
-  const VF length = hn::IfThenElseZero(good, extent * length_k);
+  const VF kappa = Max(zero, MulAdd(lookup.at(LaneTable::half_extinction_slope, index), off,
+                                    lookup.at(LaneTable::half_extinction, index)));
+  const VF length = IfThenElseZero(good, extent * length_k);
   StepLight light;
   light.depth = (kappa + kappa) * length;
-  const VF opacity = one - hn::Exp(d, hn::Neg(light.depth));
+  const VF opacity = one - Exp(d, Neg(light.depth));
   // Independent emission: the mean transmittance of the step, 1 where it is thin.
-  const VF mean = hn::IfThenElse(light.depth < hn::Set(d, 1e-3f), hn::NegMulAdd(hn::Set(d, 0.5f), light.depth, one),
-                                 opacity / light.depth);
+  const VF mean =
+      IfThenElse(light.depth < Set(d, 1e-3f), NegMulAdd(Set(d, 0.5f), light.depth, one), opacity / light.depth);
   const VF weight = lookup.independent ? length * mean : opacity;
   for (int c = 0; c < 3; ++c)
-    light.color[c] = weight * hn::MulAdd(lookup.at(LaneTable::red_slope + 2 * c, index), off,
-                                         lookup.at(LaneTable::red + 2 * c, index));
+    light.color[c] =
+        weight * MulAdd(lookup.at(LaneTable::red_slope + 2 * c, index), off, lookup.at(LaneTable::red + 2 * c, index));
   return light;
 }
 
@@ -181,19 +178,19 @@ HWY_INLINE StepLight preintegrated_step(const PreintegratedTable& table, const L
                                         VF length, MF active, MF last) {
   const DF d;
   // Blank samples give NaN, at either end.
-  const MF good = hn::And(active, hn::And(back == back, front == front));
+  const MF good = And(active, And(back == back, front == front));
   VF found[4];
-  look_up(table, hn::IfThenElseZero(good, front), hn::IfThenElseZero(good, back), found);
+  look_up(table, IfThenElseZero(good, front), IfThenElseZero(good, back), found);
   StepLight light;
-  light.depth = hn::IfThenElseZero(good, found[0]);
-  for (int c = 0; c < 3; ++c) light.color[c] = hn::IfThenElseZero(good, found[c + 1]);
+  light.depth = IfThenElseZero(good, found[0]);
+  for (int c = 0; c < 3; ++c) light.color[c] = IfThenElseZero(good, found[c + 1]);
   // The last step is shorter than the table's, and its light is no share of theirs: integrated as the table is.
-  const MF final_one = hn::And(good, last);
-  if (!hn::AllFalse(d, final_one)) {
+  const MF final_one = And(good, last);
+  if (!AllFalse(d, final_one)) {
     const CL::Light exact = CL::integrate_lanes(lookup, length, front, back, final_one);
-    light.depth = hn::IfThenElse(final_one, exact.optical_depth, light.depth);
+    light.depth = IfThenElse(final_one, exact.optical_depth, light.depth);
     const VF own[] = {exact.red, exact.green, exact.blue};
-    for (int c = 0; c < 3; ++c) light.color[c] = hn::IfThenElse(final_one, own[c], light.color[c]);
+    for (int c = 0; c < 3; ++c) light.color[c] = IfThenElse(final_one, own[c], light.color[c]);
   }
   return light;
 }
@@ -203,58 +200,56 @@ HWY_INLINE void sample_lanes(const ChunkView& chunk, const Lookup& lookup, const
                              TileRays& rays, TileCounts& counts) {
   const DF d;
   const PreintegratedTable* const table = chunk.frame.preintegrated;
-  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  const VF zero = Zero(d), one = Set(d, 1.0f);
   const Lanes lanes = lanes_of(chunk, ray, 0, 0, rays);
   const ChunkSteps steps(chunk, ray, rays);
   if (table != nullptr && steps.some_enter) {
-    const VF place = hn::Load(d, steps.entry);
+    const VF place = Load(d, steps.entry);
     const MF enters = place >= zero;
     const VF front = field_in_block<cell_data>(chunk, slice_offsets, lanes, place, enters);
-    hn::StoreU(hn::IfThenElse(enters, front, hn::LoadU(d, rays.carried + ray)), d, rays.carried + ray);
+    StoreU(IfThenElse(enters, front, LoadU(d, rays.carried + ray)), d, rays.carried + ray);
   }
   if (steps.longest == 0) return;
-  const VF step_begin = hn::Load(d, steps.begin), step_each = hn::Load(d, steps.each),
-           step_last = hn::Load(d, steps.last), step_count = hn::Load(d, steps.count),
-           step_final = hn::Load(d, steps.final_step);
-  VF through = hn::LoadU(d, rays.transmittance + ray), alpha = hn::LoadU(d, rays.alpha + ray);
-  VF light[3] = {hn::LoadU(d, rays.red + ray), hn::LoadU(d, rays.green + ray), hn::LoadU(d, rays.blue + ray)};
-  VF carried = hn::LoadU(d, rays.carried + ray);
-  const VF least = hn::Set(d, chunk.frame.least_transmittance);
-  RayNotes notes{hn::Set(d, -1.0f), alpha > zero, zero, zero};
+  const VF step_begin = Load(d, steps.begin), step_each = Load(d, steps.each), step_last = Load(d, steps.last),
+           step_count = Load(d, steps.count), step_final = Load(d, steps.final_step);
+  VF through = LoadU(d, rays.transmittance + ray), alpha = LoadU(d, rays.alpha + ray);
+  VF light[3] = {LoadU(d, rays.red + ray), LoadU(d, rays.green + ray), LoadU(d, rays.blue + ray)};
+  VF carried = LoadU(d, rays.carried + ray);
+  const VF least = Set(d, chunk.frame.least_transmittance);
+  RayNotes notes{Set(d, -1.0f), alpha > zero, zero, zero};
   for (std::int64_t m = 0; m < steps.longest; ++m) {
-    const VF number = hn::Set(d, static_cast<float>(m));
-    const MF active = hn::And(number < step_count, through >= least);
-    if (hn::AllFalse(d, active)) break;
-    counts.samples += hn::CountTrue(d, active);
+    const VF number = Set(d, static_cast<float>(m));
+    const MF active = And(number < step_count, through >= least);
+    if (AllFalse(d, active)) break;
+    counts.samples += CountTrue(d, active);
     const MF last = number == step_final;
-    const VF extent = hn::IfThenElse(last, step_last, step_each);
-    const VF k = hn::MulAdd(number, step_each, step_begin);
+    const VF extent = IfThenElse(last, step_last, step_each);
+    const VF k = MulAdd(number, step_each, step_begin);
     StepLight step;
     if (table == nullptr) {
-      const VF s =
-          field_in_block<cell_data>(chunk, slice_offsets, lanes, hn::MulAdd(extent, hn::Set(d, 0.5f), k), active);
+      const VF s = field_in_block<cell_data>(chunk, slice_offsets, lanes, MulAdd(extent, Set(d, 0.5f), k), active);
       step = sampled_step(lookup, s, extent, lanes.length, active);
     } else {
       const VF back = field_in_block<cell_data>(chunk, slice_offsets, lanes, k + extent, active);
       step = preintegrated_step(*table, lookup, carried, back, extent * lanes.length, active, last);
-      carried = hn::IfThenElse(active, back, carried);
+      carried = IfThenElse(active, back, carried);
     }
-    for (int c = 0; c < 3; ++c) light[c] = hn::MulAdd(through, step.color[c], light[c]);
-    const VF hidden = through * (one - hn::Exp(d, hn::Neg(step.depth)));
+    for (int c = 0; c < 3; ++c) light[c] = MulAdd(through, step.color[c], light[c]);
+    const VF hidden = through * (one - Exp(d, Neg(step.depth)));
     alpha = alpha + hidden;
     through = through - hidden;
-    const MF now = hn::AndNot(notes.seen, alpha > zero);
-    notes.first = hn::IfThenElse(now, k, notes.first);
-    notes.seen = hn::Or(notes.seen, now);
+    const MF now = AndNot(notes.seen, alpha > zero);
+    notes.first = IfThenElse(now, k, notes.first);
+    notes.seen = Or(notes.seen, now);
   }
-  hn::StoreU(through, d, rays.transmittance + ray);
-  hn::StoreU(alpha, d, rays.alpha + ray);
-  hn::StoreU(light[0], d, rays.red + ray);
-  hn::StoreU(light[1], d, rays.green + ray);
-  hn::StoreU(light[2], d, rays.blue + ray);
-  hn::StoreU(carried, d, rays.carried + ray);
-  HWY_ALIGN float place[hn::MaxLanes(DF())];
-  hn::Store(notes.first, d, place);
+  StoreU(through, d, rays.transmittance + ray);
+  StoreU(alpha, d, rays.alpha + ray);
+  StoreU(light[0], d, rays.red + ray);
+  StoreU(light[1], d, rays.green + ray);
+  StoreU(light[2], d, rays.blue + ray);
+  StoreU(carried, d, rays.carried + ray);
+  HWY_ALIGN float place[MaxLanes(DF())];
+  Store(notes.first, d, place);
   for (std::size_t l = 0; l < hn::Lanes(d); ++l) {
     double& first_k = rays.first_k[static_cast<std::size_t>(ray) + l];
     if (std::isnan(first_k) && rays.alpha[static_cast<std::size_t>(ray) + l] > 0)

@@ -35,44 +35,42 @@ struct Lit {
 HWY_INLINE Lit shade(const ShadingView& shading, const RayAxes& axes, VF g_i, VF g_j, VF g_k, VF slope_k, VF per_length,
                      VF light_view, float noise) {
   const DF d;
-  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  const VF zero = Zero(d), one = Set(d, 1.0f);
   const float flip = axes.mirrored ? -1.0f : 1.0f;
   const auto metric = [&](int a, int b) HWY_ATTR { return static_cast<float>(shading.metric[a][b]); };
-  const auto times = [&](VF v, float s) HWY_ATTR { return v * hn::Set(d, s); };
+  const auto times = [&](VF v, float s) HWY_ATTR { return v * Set(d, s); };
   const VF m_i = times(g_i, metric(axes.i, axes.i)) +
                  (times(g_j, 2 * metric(axes.i, axes.j)) + times(g_k, 2 * flip * metric(axes.i, axes.k)));
   const VF m_j = times(g_j, metric(axes.j, axes.j)) + times(g_k, 2 * flip * metric(axes.j, axes.k));
-  const VF square = hn::MulAdd(g_i, m_i, hn::MulAdd(g_j, m_j, times(g_k * g_k, metric(axes.k, axes.k))));
-  const MF flat = hn::Not(square > zero);
-  const VF per_norm = one / hn::Sqrt(hn::IfThenElse(flat, one, square));
+  const VF square = MulAdd(g_i, m_i, MulAdd(g_j, m_j, times(g_k * g_k, metric(axes.k, axes.k))));
+  const MF flat = Not(square > zero);
+  const VF per_norm = one / Sqrt(IfThenElse(flat, one, square));
   const auto toward = [&](int a) HWY_ATTR { return static_cast<float>(shading.light[a]); };
   const VF n_l =
       per_norm * (times(g_i, toward(axes.i)) + (times(g_j, toward(axes.j)) + times(g_k, flip * toward(axes.k))));
-  const VF n_v = hn::Neg(per_norm * (slope_k * per_length));
-  const VF half_length =
-      hn::Sqrt(hn::Max(hn::Set(d, 1e-12f), hn::MulAdd(hn::Set(d, 2.0f), light_view, hn::Set(d, 2.0f))));
-  const VF n_h = hn::Min(one, hn::Max(hn::Set(d, 1e-6f), hn::Abs((n_l + n_v) / half_length)));
-  const VF shine = hn::Exp(d, hn::Set(d, static_cast<float>(shading.shininess)) * hn::Log(d, n_h));
-  const VF own = hn::MulAdd(hn::Abs(n_l), hn::Set(d, static_cast<float>(shading.diffuse)),
-                            hn::Set(d, static_cast<float>(shading.ambient)));
+  const VF n_v = Neg(per_norm * (slope_k * per_length));
+  const VF half_length = Sqrt(Max(Set(d, 1e-12f), MulAdd(Set(d, 2.0f), light_view, Set(d, 2.0f))));
+  const VF n_h = Min(one, Max(Set(d, 1e-6f), Abs((n_l + n_v) / half_length)));
+  const VF shine = Exp(d, Set(d, static_cast<float>(shading.shininess)) * Log(d, n_h));
+  const VF own =
+      MulAdd(Abs(n_l), Set(d, static_cast<float>(shading.diffuse)), Set(d, static_cast<float>(shading.ambient)));
   // A unit normal turns by no more than the noise's part of the gradient, and light changes by this much a turn.
   const double turn = shading.diffuse + shading.specular * std::max(1.0, shading.shininess);
   const float world_noise =
       noise * static_cast<float>(turn * std::sqrt(shading.metric[0][0] + shading.metric[1][1] + shading.metric[2][2]));
-  return {hn::IfThenElse(flat, one, own),
-          hn::IfThenElseZero(hn::Not(flat), times(shine, static_cast<float>(shading.specular))),
-          hn::IfThenElseZero(hn::Not(flat), times(per_norm, world_noise))};
+  return {IfThenElse(flat, one, own), IfThenElseZero(Not(flat), times(shine, static_cast<float>(shading.specular))),
+          IfThenElseZero(Not(flat), times(per_norm, world_noise))};
 }
 
 /// Puts a stretch, integrated by itself, behind what there is.
 HWY_INLINE void put_behind(const Progress& part, const Lit& lit, Progress& progress) {
   const VF t = progress.transmittance;
   const auto color = [&](VF own, VF& sum)
-                         HWY_ATTR { sum = hn::MulAdd(t, hn::MulAdd(lit.own, own, lit.white * part.alpha), sum); };
+                         HWY_ATTR { sum = MulAdd(t, MulAdd(lit.own, own, lit.white * part.alpha), sum); };
   color(part.red, progress.red);
   color(part.green, progress.green);
   color(part.blue, progress.blue);
-  progress.alpha = hn::MulAdd(t, part.alpha, progress.alpha);
+  progress.alpha = MulAdd(t, part.alpha, progress.alpha);
   progress.transmittance = t * part.transmittance;
   progress.optical_depth = progress.optical_depth + part.optical_depth;
 }

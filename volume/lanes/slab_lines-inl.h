@@ -43,22 +43,22 @@ struct MirroredLanes {
   HWY_INLINE MirroredLanes(const Lanes& lanes, int columns) {
     const DF d;
     const DI di;
-    const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    const VF zero = Zero(d), one = Set(d, 1.0f);
     const auto axis = [&](VF position, VF slope, VF least, VF most, VF& x_out, VF& b_out, VF& per, VF& sign,
                           VF& least_out, VF& most_out) HWY_ATTR {
       const MF down = slope < zero;
-      sign = hn::IfThenElse(down, hn::Neg(one), one);
+      sign = IfThenElse(down, Neg(one), one);
       x_out = sign * position;
-      b_out = hn::Abs(slope);
-      per = one / hn::Max(b_out, hn::Set(d, 1e-30f));
-      least_out = hn::IfThenElse(down, hn::Neg(most) - one, least);
-      most_out = hn::IfThenElse(down, hn::Neg(least) - one, most);
+      b_out = Abs(slope);
+      per = one / Max(b_out, Set(d, 1e-30f));
+      least_out = IfThenElse(down, Neg(most) - one, least);
+      most_out = IfThenElse(down, Neg(least) - one, most);
     };
     axis(lanes.x, lanes.bx, lanes.i_least, lanes.i_most, x, bx, per_bx, sign_i, i_least, i_most);
     axis(lanes.y, lanes.by, lanes.j_least, lanes.j_most, y, by, per_by, sign_j, j_least, j_most);
     i = lanes.i, j = lanes.j;
-    step_i = hn::ConvertTo(di, sign_i);
-    step_j = hn::ConvertTo(di, hn::Set(d, static_cast<float>(columns)) * sign_j);
+    step_i = ConvertTo(di, sign_i);
+    step_j = ConvertTo(di, Set(d, static_cast<float>(columns)) * sign_j);
     bends = bx * by;
     live = lanes.k_in < lanes.k_out;
   }
@@ -82,17 +82,17 @@ struct Line {
 
 HWY_INLINE Line line_of(const SlabLines& lines, int n) {
   const DF d;
-  const VF one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+  const VF one = Set(d, 1.0f), half = Set(d, 0.5f);
   Line line;
   line.s_0 = lines.s[n], line.s_1 = lines.s[n + 1];
   line.span = line.s_1 - line.s_0;
   const VF u_1 = lines.u_1[n], u_2 = lines.u_2[n];
-  const VF d_1 = hn::IfThenElseZero(u_1 < one, lines.f_1[n] - hn::MulAdd(u_1, line.span, line.s_0)),
-           d_2 = hn::IfThenElseZero(u_2 < one, lines.f_2[n] - hn::MulAdd(u_2, line.span, line.s_0));
+  const VF d_1 = IfThenElseZero(u_1 < one, lines.f_1[n] - MulAdd(u_1, line.span, line.s_0)),
+           d_2 = IfThenElseZero(u_2 < one, lines.f_2[n] - MulAdd(u_2, line.span, line.s_0));
   // Trapezia: the ends' weights are half the stretches beside them.
-  const VF kinks = hn::MulAdd(d_1, u_2, d_2 * (one - u_1));
-  line.shift = hn::NegMulAdd(hn::Set(d, 1.0f), lines.sag[n], half * kinks);
-  line.rho = hn::Max(hn::Abs(d_1), hn::Abs(d_2)) + lines.bump[n];
+  const VF kinks = MulAdd(d_1, u_2, d_2 * (one - u_1));
+  line.shift = NegMulAdd(Set(d, 1.0f), lines.sag[n], half * kinks);
+  line.rho = Max(Abs(d_1), Abs(d_2)) + lines.bump[n];
   return line;
 }
 
@@ -106,28 +106,26 @@ struct Bend {
 
 HWY_INLINE Bend bend_of(const SlabLines& lines, int n, const Line& line) {
   const DF d;
-  const auto number = [](double v) HWY_ATTR { return hn::Set(DF(), static_cast<float>(v)); };
-  const VF zero = hn::Zero(d), one = number(1), half = number(0.5);
+  const auto number = [](double v) HWY_ATTR { return Set(DF(), static_cast<float>(v)); };
+  const VF zero = Zero(d), one = number(1), half = number(0.5);
   const VF u[4] = {zero, lines.u_1[n], lines.u_2[n], one};
-  const auto kink = [&](VF at, VF f)
-                        HWY_ATTR { return hn::IfThenElseZero(at < one, f - hn::MulAdd(at, line.span, line.s_0)); };
+  const auto kink = [&](VF at, VF f) HWY_ATTR { return IfThenElseZero(at < one, f - MulAdd(at, line.span, line.s_0)); };
   const VF r[4] = {zero, kink(u[1], lines.f_1[n]), kink(u[2], lines.f_2[n]), zero};
   VF mean = zero, square = zero, moment = zero, odd = zero;
   for (int k = 0; k < 3; ++k) {
     // A chord from p to q and a parabola on it, of height b.
     const VF p = r[k], q = r[k + 1], b = number(-0.25) * lines.even[k][n];
     const VF e = u[k + 1] - u[k], middle = half * (u[k] + u[k + 1]), sum = p + q;
-    const VF area = hn::MulAdd(half, sum, number(2 / 3.0) * b);
-    mean = hn::MulAdd(e, area, mean);
-    const VF chords = hn::MulAdd(sum, sum, hn::Neg(p * q));
-    square = hn::MulAdd(
-        e, hn::MulAdd(number(1 / 3.0), chords, b * hn::MulAdd(number(2 / 3.0), sum, number(8 / 15.0) * b)), square);
-    moment = hn::MulAdd(e, hn::MulAdd(middle, area, number(1 / 12.0) * e * (q - p)), moment);
-    odd = hn::Max(odd, hn::Abs(lines.odd[k][n]));
+    const VF area = MulAdd(half, sum, number(2 / 3.0) * b);
+    mean = MulAdd(e, area, mean);
+    const VF chords = MulAdd(sum, sum, Neg(p * q));
+    square = MulAdd(e, MulAdd(number(1 / 3.0), chords, b * MulAdd(number(2 / 3.0), sum, number(8 / 15.0) * b)), square);
+    moment = MulAdd(e, MulAdd(middle, area, number(1 / 12.0) * e * (q - p)), moment);
+    odd = Max(odd, Abs(lines.odd[k][n]));
   }
   Bend bend;
-  bend.covariance = hn::NegMulAdd(half, mean, moment);
-  bend.product = hn::MulAdd(line.span + line.span, bend.covariance, hn::Max(zero, hn::NegMulAdd(mean, mean, square)));
+  bend.covariance = NegMulAdd(half, mean, moment);
+  bend.product = MulAdd(line.span + line.span, bend.covariance, Max(zero, NegMulAdd(mean, mean, square)));
   bend.odd = number(0.0482) * odd;  // v (v - 1/2) (v - 1) is at most 1 / (12 sqrt 3)
   return bend;
 }
@@ -145,12 +143,12 @@ struct VoxelAt {
   VF fx, fy;  ///< from its corner, 0 to 1
 
   HWY_INLINE VoxelAt(const MirroredLanes& lanes, const WindowPlace& place, int n) {
-    const VF k = hn::Set(DF(), static_cast<float>(n));
-    const VF x = hn::MulAdd(k, lanes.bx, lanes.x), y = hn::MulAdd(k, lanes.by, lanes.y);
-    i = hn::Floor(x), j = hn::Floor(y);
+    const VF k = Set(DF(), static_cast<float>(n));
+    const VF x = MulAdd(k, lanes.bx, lanes.x), y = MulAdd(k, lanes.by, lanes.y);
+    i = Floor(x), j = Floor(y);
     if (HWY_UNLIKELY(!place.inner)) {
-      i = hn::Min(hn::Max(i, lanes.i_least), lanes.i_most);
-      j = hn::Min(hn::Max(j, lanes.j_least), lanes.j_most);
+      i = Min(Max(i, lanes.i_least), lanes.i_most);
+      j = Min(Max(j, lanes.j_least), lanes.j_most);
     }
     fx = x - i, fy = y - j;
   }
@@ -159,10 +157,10 @@ struct VoxelAt {
   HWY_INLINE VI element(const MirroredLanes& lanes, const WindowPlace& place, std::ptrdiff_t pitch) const {
     const DF d;
     constexpr bool gathers = std::is_same_v<Window, GatherWindow>;
-    const VF at = hn::MulAdd(hn::Set(d, static_cast<float>(gathers ? pitch : Window::columns)),
-                             hn::MulAdd(lanes.sign_j, j, lanes.j), hn::MulAdd(lanes.sign_i, i, lanes.i)) +
-                  hn::Set(d, place.origin);
-    return hn::ConvertTo(DI(), at);
+    const VF at = MulAdd(Set(d, static_cast<float>(gathers ? pitch : Window::columns)),
+                         MulAdd(lanes.sign_j, j, lanes.j), MulAdd(lanes.sign_i, i, lanes.i)) +
+                  Set(d, place.origin);
+    return ConvertTo(DI(), at);
   }
 };
 
@@ -174,24 +172,24 @@ HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, cons
                           std::ptrdiff_t pitch, int n, int m, SlabLines& lines, VF& voxels) {
   const DF d;
   const DI di;
-  const VF one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+  const VF one = Set(d, 1.0f), half = Set(d, 0.5f);
   const VoxelAt in(lanes, place, n);
   const VF fx = in.fx, fy = in.fy;
-  VF u_i = hn::Min((one - fx) * lanes.per_bx, one), u_j = hn::Min((one - fy) * lanes.per_by, one);
+  VF u_i = Min((one - fx) * lanes.per_bx, one), u_j = Min((one - fy) * lanes.per_by, one);
   if (HWY_UNLIKELY(!place.inner)) {
-    u_i = hn::IfThenElse(in.i == lanes.i_most, one, u_i);
-    u_j = hn::IfThenElse(in.j == lanes.j_most, one, u_j);
+    u_i = IfThenElse(in.i == lanes.i_most, one, u_i);
+    u_j = IfThenElse(in.j == lanes.j_most, one, u_j);
   }
-  const VF u_1 = hn::Min(u_i, u_j), u_2 = hn::Max(u_i, u_j);
+  const VF u_1 = Min(u_i, u_j), u_2 = Max(u_i, u_j);
   const MF i_first = u_i < u_j, cross_1 = u_1 < one, cross_2 = u_2 < one;
-  const auto first = [&](VF a, VF b) HWY_ATTR { return hn::IfThenElse(i_first, a, b); };
-  const VF voxel = hn::IfThenElseZero(lanes.live, one);
-  voxels = voxels + voxel + (hn::IfThenElseZero(cross_1, voxel) + hn::IfThenElseZero(cross_2, voxel));
+  const auto first = [&](VF a, VF b) HWY_ATTR { return IfThenElse(i_first, a, b); };
+  const VF voxel = IfThenElseZero(lanes.live, one);
+  voxels = voxels + voxel + (IfThenElseZero(cross_1, voxel) + IfThenElseZero(cross_2, voxel));
 
   constexpr bool gathers = std::is_same_v<Window, GatherWindow>;
-  const auto if_int = [&](MF mask, VI v) HWY_ATTR { return hn::IfThenElseZero(hn::RebindMask(di, mask), v); };
-  VI step_p = hn::IfThenElse(hn::RebindMask(di, i_first), lanes.step_i, lanes.step_j),
-     step_q = hn::IfThenElse(hn::RebindMask(di, i_first), lanes.step_j, lanes.step_i);
+  const auto if_int = [&](MF mask, VI v) HWY_ATTR { return IfThenElseZero(RebindMask(di, mask), v); };
+  VI step_p = IfThenElse(RebindMask(di, i_first), lanes.step_i, lanes.step_j),
+     step_q = IfThenElse(RebindMask(di, i_first), lanes.step_j, lanes.step_i);
   VI at_00 = in.element<Window>(lanes, place, pitch);
   // Lanes that are not there may be anywhere.
   if (gathers) step_p = if_int(lanes.live, step_p), step_q = if_int(lanes.live, step_q);
@@ -204,7 +202,7 @@ HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, cons
   const VF b_p = first(lanes.bx, lanes.by), b_q = first(lanes.by, lanes.bx);
   const VF p_0 = first(fx, fy), q_0 = first(fy, fx);
   const VF e_0 = u_1, e_1 = u_2 - u_1, e_2 = one - u_2;
-  const VF q_1 = hn::MulAdd(u_1, b_q, q_0), p_2 = e_1 * b_p;
+  const VF q_1 = MulAdd(u_1, b_q, q_0), p_2 = e_1 * b_p;
 
   // The voxel it enters.
   const VF a_10 = window.front(at_10), b_10 = window.back(at_10), a_11 = window.front(at_11), b_11 = window.back(at_11);
@@ -214,18 +212,18 @@ HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, cons
     const VF a_00 = window.front(at_00), b_00 = window.back(at_00), a_01 = window.front(at_01),
              b_01 = window.back(at_01);
     const VF pa_0 = a_10 - a_00, pa_1 = a_11 - a_01, pb_0 = b_10 - b_00, pb_1 = b_11 - b_01;
-    const VF front_0 = hn::MulAdd(p_0, pa_0, a_00), front_1 = hn::MulAdd(p_0, pa_1, a_01);
-    lines.s[m] = hn::MulAdd(q_0, front_1 - front_0, front_0);
+    const VF front_0 = MulAdd(p_0, pa_0, a_00), front_1 = MulAdd(p_0, pa_1, a_01);
+    lines.s[m] = MulAdd(q_0, front_1 - front_0, front_0);
     const VF d_pq = pa_1 - pa_0;
     third_0 = pb_1 - pb_0 - d_pq;
-    const VF p_middle = hn::MulAdd(half * u_1, b_p, p_0);
-    const VF weight = hn::NegMulAdd(b_q, one - p_middle, b_p * q_1);
-    tau_0 = hn::MulAdd(lanes.bends, d_pq, hn::MulAdd(third_0, weight, b_q * d_qk));
-    tau_0 = hn::MulAdd(b_p, pb_0 - pa_0, tau_0);
+    const VF p_middle = MulAdd(half * u_1, b_p, p_0);
+    const VF weight = NegMulAdd(b_q, one - p_middle, b_p * q_1);
+    tau_0 = MulAdd(lanes.bends, d_pq, MulAdd(third_0, weight, b_q * d_qk));
+    tau_0 = MulAdd(b_p, pb_0 - pa_0, tau_0);
   }
   {
-    const VF a = hn::MulAdd(q_1, qa, a_10), b = hn::MulAdd(q_1, qb, b_10);
-    lines.f_1[m] = hn::MulAdd(u_1, b - a, a);
+    const VF a = MulAdd(q_1, qa, a_10), b = MulAdd(q_1, qb, b_10);
+    lines.f_1[m] = MulAdd(u_1, b - a, a);
   }
 
   // Behind p's plane.
@@ -236,12 +234,12 @@ HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, cons
     const VF a_20 = window.front(at_20), b_20 = window.back(at_20);
     const VF d_pq = pa_1 - (a_20 - a_10);
     third_1 = pb_1 - (b_20 - b_10) - d_pq;
-    const VF q_middle = hn::MulAdd(half * e_1, b_q, q_1);
-    const VF weight = hn::NegMulAdd(b_p, one - q_middle, lanes.bends * u_2);
-    tau_1 = hn::MulAdd(lanes.bends, d_pq, hn::MulAdd(third_1, weight, b_q * d_qk));
-    tau_1 = hn::MulAdd(b_p, d_pk, tau_1);
-    const VF a = hn::MulAdd(p_2, pa_1, a_11), b = hn::MulAdd(p_2, pb_1, b_11);
-    lines.f_2[m] = hn::MulAdd(u_2, b - a, a);
+    const VF q_middle = MulAdd(half * e_1, b_q, q_1);
+    const VF weight = NegMulAdd(b_p, one - q_middle, lanes.bends * u_2);
+    tau_1 = MulAdd(lanes.bends, d_pq, MulAdd(third_1, weight, b_q * d_qk));
+    tau_1 = MulAdd(b_p, d_pk, tau_1);
+    const VF a = MulAdd(p_2, pa_1, a_11), b = MulAdd(p_2, pb_1, b_11);
+    lines.f_2[m] = MulAdd(u_2, b - a, a);
   }
 
   // Behind q's plane.
@@ -252,26 +250,25 @@ HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, cons
     const VF qa_1 = a_12 - a_11, qb_1 = b_12 - b_11;
     const VF d_pq = a_22 - a_21 - qa_1;
     third_2 = b_22 - b_21 - qb_1 - d_pq;
-    const VF p_middle = hn::MulAdd(half * e_2, b_p, p_2);
-    const VF weight = hn::MulAdd(b_q, p_middle, lanes.bends);
-    tau_2 = hn::MulAdd(lanes.bends, d_pq, hn::MulAdd(third_2, weight, b_q * (qb_1 - qa_1)));
-    tau_2 = hn::MulAdd(b_p, d_pk, tau_2);
+    const VF p_middle = MulAdd(half * e_2, b_p, p_2);
+    const VF weight = MulAdd(b_q, p_middle, lanes.bends);
+    tau_2 = MulAdd(lanes.bends, d_pq, MulAdd(third_2, weight, b_q * (qb_1 - qa_1)));
+    tau_2 = MulAdd(b_p, d_pk, tau_2);
   }
 
   const VF ee_0 = e_0 * e_0, ee_1 = e_1 * e_1, ee_2 = e_2 * e_2;
   const VF w_0 = ee_0 * tau_0, w_1 = ee_1 * tau_1, w_2 = ee_2 * tau_2;
   lines.u_1[m] = u_1, lines.u_2[m] = u_2;
-  lines.sag[m] = hn::Set(d, 1 / 6.0f) * hn::MulAdd(e_0, w_0, hn::MulAdd(e_1, w_1, e_2 * w_2));
+  lines.sag[m] = Set(d, 1 / 6.0f) * MulAdd(e_0, w_0, MulAdd(e_1, w_1, e_2 * w_2));
   lines.even[0][m] = w_0, lines.even[1][m] = w_1, lines.even[2][m] = w_2;
   const VF odd_0 = lanes.bends * e_0 * ee_0 * third_0, odd_1 = lanes.bends * e_1 * ee_1 * third_1,
            odd_2 = lanes.bends * e_2 * ee_2 * third_2;
   lines.odd[0][m] = odd_0, lines.odd[1][m] = odd_1, lines.odd[2][m] = odd_2;
-  const VF even = hn::Max(hn::Max(hn::Abs(w_0), hn::Abs(w_1)), hn::Abs(w_2)),
-           odd = hn::Max(hn::Max(hn::Abs(odd_0), hn::Abs(odd_1)), hn::Abs(odd_2));
+  const VF even = Max(Max(Abs(w_0), Abs(w_1)), Abs(w_2)), odd = Max(Max(Abs(odd_0), Abs(odd_1)), Abs(odd_2));
   // Not a number where any of them is not: Max may leave that out.
   const VF all = odd_0 + odd_1 + (odd_2 + lines.sag[m]);
-  const VF any = hn::MulAdd(hn::Zero(d), all, odd + even);
-  lines.bump[m] = hn::Set(d, 0.25f) * any;
+  const VF any = MulAdd(Zero(d), all, odd + even);
+  lines.bump[m] = Set(d, 0.25f) * any;
 }
 
 /// The field at slab n's back plane, into place m + 1.
@@ -282,14 +279,14 @@ HWY_INLINE void find_back(const MirroredLanes& lanes, const Window& window, cons
   const VoxelAt in(lanes, place, n + 1);
   const VF fx = in.fx, fy = in.fy;
   constexpr bool gathers = std::is_same_v<Window, GatherWindow>;
-  const auto kept = [&](VI v) HWY_ATTR { return gathers ? hn::IfThenElseZero(hn::RebindMask(di, lanes.live), v) : v; };
+  const auto kept = [&](VI v) HWY_ATTR { return gathers ? IfThenElseZero(RebindMask(di, lanes.live), v) : v; };
   const VI at_00 = kept(in.element<Window>(lanes, place, pitch)), step_i = kept(lanes.step_i),
            step_j = kept(lanes.step_j);
   const VI at_10 = at_00 + step_i;
   const VF b_00 = window.back(at_00), b_10 = window.back(at_10), b_01 = window.back(at_00 + step_j),
            b_11 = window.back(at_10 + step_j);
-  const VF back_0 = hn::MulAdd(fx, b_10 - b_00, b_00), back_1 = hn::MulAdd(fx, b_11 - b_01, b_01);
-  lines.s[m + 1] = hn::MulAdd(fy, back_1 - back_0, back_0);
+  const VF back_0 = MulAdd(fx, b_10 - b_00, b_00), back_1 = MulAdd(fx, b_11 - b_01, b_01);
+  lines.s[m + 1] = MulAdd(fy, back_1 - back_0, back_0);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -39,12 +39,12 @@ struct CornerRange {
   VF width, largest;
 
   explicit HWY_INLINE CornerRange(const Corners& s) {
-    const auto low = [](VF a, VF b) HWY_ATTR { return hn::Min(a, b); };
-    const auto high = [](VF a, VF b) HWY_ATTR { return hn::Max(a, b); };
+    const auto low = [](VF a, VF b) HWY_ATTR { return Min(a, b); };
+    const auto high = [](VF a, VF b) HWY_ATTR { return Max(a, b); };
     const VF least = low(low(low(s.a00, s.a10), low(s.a01, s.a11)), low(low(s.b00, s.b10), low(s.b01, s.b11))),
              most = high(high(high(s.a00, s.a10), high(s.a01, s.a11)), high(high(s.b00, s.b10), high(s.b01, s.b11)));
     width = most - least;
-    largest = hn::Max(hn::Abs(least), hn::Abs(most));
+    largest = Max(Abs(least), Abs(most));
   }
 };
 
@@ -78,17 +78,17 @@ class SurfaceCast {
         progress_(progress),
         notes_(notes),
         counts_(counts),
-        per_length_(hn::Set(DF(), static_cast<float>(view_.unit / frame.length_unit)) / lanes.length) {}
+        per_length_(Set(DF(), static_cast<float>(view_.unit / frame.length_unit)) / lanes.length) {}
 
   /// The lanes that are `wanted` through a slab.
   template <class Window>
   HWY_NOINLINE void cast(const SlabPath& path, const Window& window, const RestOfSamples& rest, MF wanted) {
     const DF d;
-    const VF half = hn::Set(d, 0.5f), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    const VF half = Set(d, 0.5f), zero = Zero(d), one = Set(d, 1.0f);
     for (const Stretch& s : path.stretches) {
       const VF extent = s.end - s.begin;
-      const MF there = hn::And(wanted, extent > zero);
-      if (hn::AllFalse(d, there)) continue;
+      const MF there = And(wanted, extent > zero);
+      if (AllFalse(d, there)) continue;
       const Corners corners = window.corners(window_index(window, path, s));
       VoxelStretch stretch{
           VoxelField(corners, path.x - s.i, path.y - s.j), corners, s.begin, extent, {}, {}, path, s, rest};
@@ -98,13 +98,13 @@ class SurfaceCast {
       piece.s_mid = field.at(half * (s.begin + s.end), lanes_.bx, lanes_.by);
       piece.s_1 = field.at(s.end, lanes_.bx, lanes_.by);
       piece.p_3 = field.cij * lanes_.bends * (extent * (extent * extent));
-      piece.length = hn::IfThenElseZero(there, extent * lanes_.length);
+      piece.length = IfThenElseZero(there, extent * lanes_.length);
       piece.begin = s.begin + path.k;
       piece.extent = extent;
-      const MF whole = hn::And(there, piece.s_mid == piece.s_mid);
+      const MF whole = And(there, piece.s_mid == piece.s_mid);
       stretch.cubic = cubic_of(piece, whole);
       const VF bump = bump_of(piece.s_0, piece.s_mid, piece.s_1, piece.p_3);
-      const VF low = hn::Min(piece.s_0, piece.s_1) - bump, high = hn::Max(piece.s_0, piece.s_1) + bump;
+      const VF low = Min(piece.s_0, piece.s_1) - bump, high = Max(piece.s_0, piece.s_1) + bump;
       if (surfaces_.none_between(low, high, whole))
         add_light(stretch, zero, one, piece.s_0, piece.s_1, whole);
       else
@@ -119,12 +119,12 @@ class SurfaceCast {
     VF low, high;
   };
   HWY_INLINE Gap gap(VI number) const {
-    return {number, surface_row(view_, view_.edge, number), surface_row(view_, view_.edge, number + hn::Set(DI(), 1))};
+    return {number, surface_row(view_, view_.edge, number), surface_row(view_, view_.edge, number + Set(DI(), 1))};
   }
 
   /// Lanes whose field `s` is nearer to a value that ends the gap than noise lets tell.
   static HWY_INLINE MF touches(const Gap& in, VF s, VF noise, MF lanes) {
-    return hn::And(lanes, hn::Or(hn::Abs(s - in.low) < noise, hn::Abs(in.high - s) < noise));
+    return And(lanes, Or(Abs(s - in.low) < noise, Abs(in.high - s) < noise));
   }
 
   /// Where a stretch begins or ends in a level side (see Level above), and along which axes that lies.
@@ -135,103 +135,103 @@ class SurfaceCast {
   HWY_NOINLINE LevelSide level_side(const VoxelStretch& stretch, const Gap& in, VF u, MF near, VF& s) const {
     const DF d;
     const DI di;
-    const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-    const MF upper = hn::Abs(in.high - s) < hn::Abs(s - in.low);
-    const VF level = hn::IfThenElse(upper, in.high, in.low);
-    const VI edge = in.number + hn::IfThenElseZero(hn::RebindMask(di, upper), hn::Set(di, 1));
-    const MF exact = hn::And(near, surface_row(view_, view_.exact, edge) > zero);
+    const VF zero = Zero(d), one = Set(d, 1.0f);
+    const MF upper = Abs(in.high - s) < Abs(s - in.low);
+    const VF level = IfThenElse(upper, in.high, in.low);
+    const VI edge = in.number + IfThenElseZero(RebindMask(di, upper), Set(di, 1));
+    const MF exact = And(near, surface_row(view_, view_.exact, edge) > zero);
     const Corners& c = stretch.corners;
     const auto all = [&](VF a, VF b, VF e, VF f)
-                         HWY_ATTR { return hn::And(hn::And(a == level, b == level), hn::And(e == level, f == level)); };
-    const VF off = hn::Set(d, place_off);
+                         HWY_ATTR { return And(And(a == level, b == level), And(e == level, f == level)); };
+    const VF off = Set(d, place_off);
     const auto across = [&](VF place, MF low, MF high) HWY_ATTR {
-      return hn::And(exact, hn::Or(hn::And(hn::Abs(place) < off, low), hn::And(hn::Abs(place - one) < off, high)));
+      return And(exact, Or(And(Abs(place) < off, low), And(Abs(place - one) < off, high)));
     };
     LevelSide side;
-    side.across_i = across(hn::MulAdd(u, lanes_.bx, stretch.field.x), all(c.a00, c.a01, c.b00, c.b01),
-                           all(c.a10, c.a11, c.b10, c.b11));
-    side.across_j = across(hn::MulAdd(u, lanes_.by, stretch.field.y), all(c.a00, c.a10, c.b00, c.b10),
-                           all(c.a01, c.a11, c.b01, c.b11));
-    const MF across_k = hn::And(exact, hn::Or(hn::And(u <= zero, all(c.a00, c.a10, c.a01, c.a11)),
-                                              hn::And(u >= one, all(c.b00, c.b10, c.b01, c.b11))));
-    side.any = hn::Or(across_k, hn::Or(side.across_i, side.across_j));
-    s = hn::IfThenElse(side.any, level, s);
+    side.across_i =
+        across(MulAdd(u, lanes_.bx, stretch.field.x), all(c.a00, c.a01, c.b00, c.b01), all(c.a10, c.a11, c.b10, c.b11));
+    side.across_j =
+        across(MulAdd(u, lanes_.by, stretch.field.y), all(c.a00, c.a10, c.b00, c.b10), all(c.a01, c.a11, c.b01, c.b11));
+    const MF across_k =
+        And(exact, Or(And(u <= zero, all(c.a00, c.a10, c.a01, c.a11)), And(u >= one, all(c.b00, c.b10, c.b01, c.b11))));
+    side.any = Or(across_k, Or(side.across_i, side.across_j));
+    s = IfThenElse(side.any, level, s);
     return side;
   }
 
   HWY_NOINLINE void walk(const VoxelStretch& stretch, MF whole) {
     const DF d;
     const DI di;
-    const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    const VF zero = Zero(d), one = Set(d, 1.0f);
     const Cubic& c = stretch.cubic;
     const CornerRange range(stretch.corners);
-    const VF noise = hn::MulAdd(hn::Set(d, place_off), range.width, hn::Set(d, 0x1p-22f) * range.largest);
+    const VF noise = MulAdd(Set(d, place_off), range.width, Set(d, 0x1p-22f) * range.largest);
     const MF none = zero != zero;
     LevelSide front{none, none, none}, back = front;
-    VF s_0 = c.p_0, s_1 = hn::IfThenElseZero(whole, stretch.piece.s_1);
+    VF s_0 = c.p_0, s_1 = IfThenElseZero(whole, stretch.piece.s_1);
     VF turn_1 = one, turn_2 = one;
-    if (!hn::AllFalse(d, hn::AndNot(is_monotone(c), whole))) find_extrema(c, turn_1, turn_2);
+    if (!AllFalse(d, AndNot(is_monotone(c), whole))) find_extrema(c, turn_1, turn_2);
     Gap in = gap(surface_gap(view_, s_0));
-    if (const MF near = touches(in, s_0, noise, whole); HWY_UNLIKELY(!hn::AllFalse(d, near))) {
+    if (const MF near = touches(in, s_0, noise, whole); HWY_UNLIKELY(!AllFalse(d, near))) {
       if (view_.any_exact) front = level_side(stretch, in, stretch.begin, near, s_0);
       in = gap(surface_gap(view_, s_0));
-      note(hn::AndNot(front.any, near));
+      note(AndNot(front.any, near));
     }
     VF v = zero, s = s_0, lit = zero, s_lit = s_0;  // light has been added up to `lit`
     MF going = whole;
     // Each round ends at a surface, a turn or the stretch's end.
     for (int round = 0; round < 4096; ++round) {
-      const VF turn = hn::IfThenElse(v < turn_1, turn_1, hn::IfThenElse(v < turn_2, turn_2, one));
+      const VF turn = IfThenElse(v < turn_1, turn_1, IfThenElse(v < turn_2, turn_2, one));
       const MF last = turn == one;
-      VF s_turn = hn::IfThenElse(last, s_1, c.at(turn));
-      if (const MF near = touches(in, s_turn, noise, going); HWY_UNLIKELY(!hn::AllFalse(d, near))) {
-        const MF at_back = hn::And(near, last);
-        if (view_.any_exact && !hn::AllFalse(d, at_back)) {
+      VF s_turn = IfThenElse(last, s_1, c.at(turn));
+      if (const MF near = touches(in, s_turn, noise, going); HWY_UNLIKELY(!AllFalse(d, near))) {
+        const MF at_back = And(near, last);
+        if (view_.any_exact && !AllFalse(d, at_back)) {
           add_level(level_side(stretch, in, stretch.begin + stretch.extent, at_back, s_1), back);
-          s_turn = hn::IfThenElse(last, s_1, s_turn);
+          s_turn = IfThenElse(last, s_1, s_turn);
         }
         // Before the surface is met, as it may hide what is behind it.
-        note(hn::AndNot(hn::And(last, back.any), near));
+        note(AndNot(And(last, back.any), near));
       }
       const MF up = s_turn >= s;
-      const MF crosses = hn::And(going, hn::Or(hn::And(up, s_turn >= in.high), hn::AndNot(up, s_turn < in.low)));
-      if (!hn::AllFalse(d, crosses)) {
-        const VF level = hn::IfThenElse(up, in.high, in.low);
-        const VI upward = hn::IfThenElseZero(hn::RebindMask(di, up), hn::Set(di, 1)), edge = in.number + upward;
-        const VF guess = hn::IfThenElse(crosses, find_crossing(c, v, turn, s, s_turn, level, crosses), v);
+      const MF crosses = And(going, Or(And(up, s_turn >= in.high), AndNot(up, s_turn < in.low)));
+      if (!AllFalse(d, crosses)) {
+        const VF level = IfThenElse(up, in.high, in.low);
+        const VI upward = IfThenElseZero(RebindMask(di, up), Set(di, 1)), edge = in.number + upward;
+        const VF guess = IfThenElse(crosses, find_crossing(c, v, turn, s, s_turn, level, crosses), v);
         const Place place = place_of(stretch, v, turn, guess, level, surface_row(view_, view_.rest, edge));
-        const VF at = hn::IfThenElse(crosses, place.at, v);
+        const VF at = IfThenElse(crosses, place.at, v);
         add_light(stretch, lit, at, s_lit, level, crosses);
         // In a level side it is met in this voxel, not beside another one.
-        const MF at_front = hn::And(v == zero, level == s_0), at_back = hn::And(last, level == s_1);
+        const MF at_front = And(v == zero, level == s_0), at_back = And(last, level == s_1);
         const auto beside = [&](MF of_front, MF of_back) HWY_ATTR {
-          return hn::AndNot(hn::Or(hn::And(at_front, of_front), hn::And(at_back, of_back)), crosses);
+          return AndNot(Or(And(at_front, of_front), And(at_back, of_back)), crosses);
         };
         note_beside(stretch, place, beside(front.across_i, back.across_i), beside(front.across_j, back.across_j));
         add_surface(stretch, range, place, edge, level, crosses);
-        lit = hn::IfThenElse(crosses, at, lit), s_lit = hn::IfThenElse(crosses, level, s_lit);
-        v = hn::IfThenElse(crosses, at, v), s = hn::IfThenElse(crosses, level, s);
-        const VI number = edge + (upward - hn::Set(di, 1));
-        in = gap(hn::IfThenElse(hn::RebindMask(di, crosses), number, in.number));
+        lit = IfThenElse(crosses, at, lit), s_lit = IfThenElse(crosses, level, s_lit);
+        v = IfThenElse(crosses, at, v), s = IfThenElse(crosses, level, s);
+        const VI number = edge + (upward - Set(di, 1));
+        in = gap(IfThenElse(RebindMask(di, crosses), number, in.number));
       }
-      const MF ends = hn::AndNot(crosses, going);
-      v = hn::IfThenElse(ends, turn, v), s = hn::IfThenElse(ends, s_turn, s);
-      going = hn::AndNot(hn::And(ends, v >= one), going);
-      if (hn::AllFalse(d, going)) break;
+      const MF ends = AndNot(crosses, going);
+      v = IfThenElse(ends, turn, v), s = IfThenElse(ends, s_turn, s);
+      going = AndNot(And(ends, v >= one), going);
+      if (AllFalse(d, going)) break;
     }
     note(going);
     add_light(stretch, lit, one, s_lit, s_1, whole);
   }
 
   static HWY_INLINE void add_level(const LevelSide& more, LevelSide& side) {
-    side.any = hn::Or(side.any, more.any);
-    side.across_i = hn::Or(side.across_i, more.across_i), side.across_j = hn::Or(side.across_j, more.across_j);
+    side.any = Or(side.any, more.any);
+    side.across_i = Or(side.across_i, more.across_i), side.across_j = Or(side.across_j, more.across_j);
   }
 
   /// Notes that lanes are to be cast again, if something is seen of them.
   HWY_INLINE void note(MF unsure) {
-    const VF seen = progress_.transmittance * hn::Set(DF(), view_.brightest);
-    notes_.error_bound = notes_.error_bound + hn::IfThenElseZero(unsure, seen);
+    const VF seen = progress_.transmittance * Set(DF(), view_.brightest);
+    notes_.error_bound = notes_.error_bound + IfThenElseZero(unsure, seen);
   }
 
   /// A place of the cubic, of the slab, and what the field is like there.
@@ -244,31 +244,31 @@ class SurfaceCast {
   HWY_INLINE Place place_of(const VoxelStretch& stretch, VF v, VF turn, VF at, VF level, VF rest) const {
     VoxelField from_level = stretch.field;
     from_level.a00 = from_level.a00 - level - rest;
-    const VF low = hn::MulAdd(v, stretch.extent, stretch.begin), high = hn::MulAdd(turn, stretch.extent, stretch.begin);
+    const VF low = MulAdd(v, stretch.extent, stretch.begin), high = MulAdd(turn, stretch.extent, stretch.begin);
     Place place;
-    place.u = hn::MulAdd(at, stretch.extent, stretch.begin);
+    place.u = MulAdd(at, stretch.extent, stretch.begin);
     // find_crossing() goes by values that are rounded beside their level: two steps by differences to it, of which the
     // first is near enough for the field's slopes. Where it is level that may be anything.
     for (int n = 0; n < 2; ++n) {
       const VF height = from_level.at(place.u, lanes_.bx, lanes_.by);
       from_level.gradient(place.u, lanes_.bx, lanes_.by, place.g_i, place.g_j, place.g_k);
       stretch.rest.add(stretch.path, stretch.place, lanes_, place.u, place.g_i, place.g_j, place.g_k);
-      place.slope = hn::MulAdd(lanes_.bx, place.g_i, hn::MulAdd(lanes_.by, place.g_j, place.g_k));
+      place.slope = MulAdd(lanes_.bx, place.g_i, MulAdd(lanes_.by, place.g_j, place.g_k));
       const VF next = place.u - height / place.slope;
-      place.u = hn::IfThenElse(hn::And(next >= low, next <= high), next, place.u);
+      place.u = IfThenElse(And(next >= low, next <= high), next, place.u);
     }
     const VF in_stretch = (place.u - stretch.begin) / stretch.extent;
-    place.at = hn::Min(hn::Max(in_stretch, v), turn);
+    place.at = Min(Max(in_stretch, v), turn);
     return place;
   }
 
   HWY_INLINE VF power_of(VF cosine) const {
     const DF d;
     if (HWY_UNLIKELY(view_.whole_shininess < 0)) {
-      const VF c = hn::Max(cosine, hn::Set(d, 1e-30f));
-      return hn::Exp(d, hn::Set(d, view_.shininess) * hn::Log(d, c));
+      const VF c = Max(cosine, Set(d, 1e-30f));
+      return Exp(d, Set(d, view_.shininess) * Log(d, c));
     }
-    VF result = hn::Set(d, 1.0f);
+    VF result = Set(d, 1.0f);
     for (int n = view_.whole_shininess; n > 0; n /= 2, cosine = cosine * cosine)
       if (n % 2 != 0) result = result * cosine;
     return result;
@@ -278,41 +278,41 @@ class SurfaceCast {
   HWY_INLINE VF square_of(const Place& p) const {
     const float flip = axes_.mirrored ? -1.0f : 1.0f;
     const auto times = [&](VF v, int a, int b, float by)
-                           HWY_ATTR { return v * hn::Set(DF(), by * static_cast<float>(view_.metric[a][b])); };
+                           HWY_ATTR { return v * Set(DF(), by * static_cast<float>(view_.metric[a][b])); };
     const VF m_i = times(p.g_i, axes_.i, axes_.i, 1) +
                    (times(p.g_j, axes_.i, axes_.j, 2) + times(p.g_k, axes_.i, axes_.k, 2 * flip));
     const VF m_j = times(p.g_j, axes_.j, axes_.j, 1) + times(p.g_k, axes_.j, axes_.k, 2 * flip);
-    return hn::MulAdd(p.g_i, m_i, hn::MulAdd(p.g_j, m_j, p.g_k * times(p.g_k, axes_.k, axes_.k, 1)));
+    return MulAdd(p.g_i, m_i, MulAdd(p.g_j, m_j, p.g_k * times(p.g_k, axes_.k, axes_.k, 1)));
   }
 
   HWY_INLINE void add_surface(const VoxelStretch& stretch, const CornerRange& range, const Place& place, VI edge,
                               VF level, MF crosses) {
     const DF d;
-    const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    const VF zero = Zero(d), one = Set(d, 1.0f);
     const auto row = [&](const std::vector<float>& of) HWY_ATTR { return surface_row(view_, of, edge); };
     const VF square = square_of(place);
-    const MF flat = hn::Not(square > zero);
-    const VF steepness = hn::Sqrt(hn::IfThenElse(flat, one, square));
-    const VF cosine = hn::IfThenElse(flat, one, hn::Min(one, hn::Abs(place.slope) * per_length_ / steepness));
-    const VF matte = hn::MulAdd(hn::Set(d, view_.diffuse), cosine, hn::Set(d, view_.ambient)),
-             shine = hn::Set(d, view_.specular) * power_of(cosine);
+    const MF flat = Not(square > zero);
+    const VF steepness = Sqrt(IfThenElse(flat, one, square));
+    const VF cosine = IfThenElse(flat, one, Min(one, Abs(place.slope) * per_length_ / steepness));
+    const VF matte = MulAdd(Set(d, view_.diffuse), cosine, Set(d, view_.ambient)),
+             shine = Set(d, view_.specular) * power_of(cosine);
     const VF before = progress_.transmittance;
-    const VF hidden = hn::IfThenElseZero(crosses, before * row(view_.opacity));
+    const VF hidden = IfThenElseZero(crosses, before * row(view_.opacity));
     if (HWY_UNLIKELY(frame_.has_rest)) {
       const float turn = view_.diffuse + view_.specular * std::max(1.0f, view_.shininess);
       const float noise = frame_.rest_noise * turn *
                           static_cast<float>(std::sqrt(view_.metric[0][0] + view_.metric[1][1] + view_.metric[2][2]));
-      const VF error = hn::IfThenElseZero(hn::Not(flat), hn::Set(d, noise) / steepness);
-      notes_.error_bound = hn::MulAdd(hidden, error, notes_.error_bound);
+      const VF error = IfThenElseZero(Not(flat), Set(d, noise) / steepness);
+      notes_.error_bound = MulAdd(hidden, error, notes_.error_bound);
     }
     const auto add = [&](const std::vector<float>& color, VF& sum)
-                         HWY_ATTR { sum = hn::MulAdd(hidden, hn::MulAdd(row(color), matte, shine), sum); };
+                         HWY_ATTR { sum = MulAdd(hidden, MulAdd(row(color), matte, shine), sum); };
     add(view_.red, progress_.red);
     add(view_.green, progress_.green);
     add(view_.blue, progress_.blue);
     progress_.alpha = progress_.alpha + hidden;
     progress_.transmittance = before - hidden;
-    if (HWY_UNLIKELY(!hn::AllTrue(d, notes_.seen)))
+    if (HWY_UNLIKELY(!AllTrue(d, notes_.seen)))
       note_first_light(progress_, stretch.piece.begin - stretch.begin + place.u, notes_);
     note_surface(stretch, range, place, edge, level, steepness, hidden, crosses);
   }
@@ -322,12 +322,11 @@ class SurfaceCast {
   HWY_INLINE void note_beside(const VoxelStretch& stretch, const Place& place, MF beside_i, MF beside_j) {
     const DF d;
     const auto near = [&](VF at, VF slope) HWY_ATTR {
-      const VF in = hn::MulAdd(place.u, slope, at);
-      const VF away = hn::Min(hn::Abs(in), hn::Abs(hn::Set(d, 1.0f) - in));
-      return hn::And(away < hn::Set(d, place_off), slope != hn::Zero(d));
+      const VF in = MulAdd(place.u, slope, at);
+      const VF away = Min(Abs(in), Abs(Set(d, 1.0f) - in));
+      return And(away < Set(d, place_off), slope != Zero(d));
     };
-    note(hn::Or(hn::And(beside_i, near(stretch.field.x, lanes_.bx)),
-                hn::And(beside_j, near(stretch.field.y, lanes_.by))));
+    note(Or(And(beside_i, near(stretch.field.x, lanes_.bx)), And(beside_j, near(stretch.field.y, lanes_.by))));
   }
 
   /// What a surface errs: its normal, and the matter before it that may be behind it.
@@ -335,93 +334,92 @@ class SurfaceCast {
                                VF level, VF steepness, VF hidden, MF crosses) {
     const DF d;
     const VoxelField& f = stretch.field;
-    const VF fx = hn::MulAdd(place.u, lanes_.bx, f.x), fy = hn::MulAdd(place.u, lanes_.by, f.y);
-    const VF bend = hn::Abs(hn::MulAdd(place.u, f.cij, f.aij)) +
-                    (hn::Abs(hn::MulAdd(fy, f.cij, f.ci)) + hn::Abs(hn::MulAdd(fx, f.cij, f.cj)));
-    const VF aside = hn::Set(d, place_mostly_off);
-    const VF values = hn::MulAdd(hn::Set(d, 0x1p-24f), range.width, hn::Set(d, view_.value_noise) * range.largest);
-    const VF noise = hn::MulAdd(aside, range.width, values);
-    const VF per_slope = hn::Set(d, 1.0f) / hn::Max(hn::Abs(place.slope), hn::Set(d, 1e-30f));
+    const VF fx = MulAdd(place.u, lanes_.bx, f.x), fy = MulAdd(place.u, lanes_.by, f.y);
+    const VF bend = Abs(MulAdd(place.u, f.cij, f.aij)) + (Abs(MulAdd(fy, f.cij, f.ci)) + Abs(MulAdd(fx, f.cij, f.cj)));
+    const VF aside = Set(d, place_mostly_off);
+    const VF values = MulAdd(Set(d, 0x1p-24f), range.width, Set(d, view_.value_noise) * range.largest);
+    const VF noise = MulAdd(aside, range.width, values);
+    const VF per_slope = Set(d, 1.0f) / Max(Abs(place.slope), Set(d, 1e-30f));
     // What two steps of Newton's method leave of the error of the place that they begin at.
-    const VF guess = hn::Set(d, 0x1p-22f) * range.largest * per_slope;
-    const VF ratio = hn::Min(guess * bend * per_slope, hn::Set(d, 1.0f));
-    const VF off = hn::MulAdd(noise, per_slope, guess * (ratio * (ratio * ratio)));
-    const VF tilt = hn::MulAdd(bend, off + aside, values);
-    const VF angle = hn::Min(tilt * hn::Set(d, view_.stretched) / steepness, hn::Set(d, 4.0f));
-    const VF error = hn::IfThenElseZero(crosses, hidden * angle * surface_row(view_, view_.angle_weight, edge));
-    notes_.rough = hn::MulAdd(error, error, notes_.rough);
+    const VF guess = Set(d, 0x1p-22f) * range.largest * per_slope;
+    const VF ratio = Min(guess * bend * per_slope, Set(d, 1.0f));
+    const VF off = MulAdd(noise, per_slope, guess * (ratio * (ratio * ratio)));
+    const VF tilt = MulAdd(bend, off + aside, values);
+    const VF angle = Min(tilt * Set(d, view_.stretched) / steepness, Set(d, 4.0f));
+    const VF error = IfThenElseZero(crosses, hidden * angle * surface_row(view_, view_.angle_weight, edge));
+    notes_.rough = MulAdd(error, error, notes_.rough);
     if (HWY_UNLIKELY(frame_.error_bound != nullptr && frame_.error_bound->ends))
       note_matter(off, level, hidden, crosses);
   }
 
   HWY_NOINLINE void note_matter(VF off, VF level, VF hidden, MF crosses) {
     const DF d;
-    const VF zero = hn::Zero(d), scalar = hn::IfThenElseZero(crosses, level);
+    const VF zero = Zero(d), scalar = IfThenElseZero(crosses, level);
     const VI interval = lookup_.locate(scalar, zero == zero);
     const auto index = lookup_.index(interval, crosses);
     const VF from = scalar - lookup_.at(LaneTable::base, index);
-    VF sent = extinction_at(lookup_, index, scalar) * hn::Set(d, view_.brightest);
+    VF sent = extinction_at(lookup_, index, scalar) * Set(d, view_.brightest);
     if (lookup_.independent)
       for (int c = 0; c < 3; ++c)
-        sent = hn::Max(sent, hn::MulAdd(lookup_.at(LaneTable::red_slope + 2 * c, index), from,
-                                        lookup_.at(LaneTable::red + 2 * c, index)));
-    const VF length = hn::Min(off, hn::Set(d, 1.0f)) * lanes_.length;
-    const VF error = hn::Min(length * sent, hn::Set(d, view_.brightest));
-    notes_.error_bound = hn::MulAdd(error, hidden, notes_.error_bound);
+        sent = Max(sent, MulAdd(lookup_.at(LaneTable::red_slope + 2 * c, index), from,
+                                lookup_.at(LaneTable::red + 2 * c, index)));
+    const VF length = Min(off, Set(d, 1.0f)) * lanes_.length;
+    const VF error = Min(length * sent, Set(d, view_.brightest));
+    notes_.error_bound = MulAdd(error, hidden, notes_.error_bound);
   }
 
   /// The light of the stretch from place `a` to `b`, where its field is s_a and s_b.
   HWY_NOINLINE void add_light(const VoxelStretch& stretch, VF a, VF b, VF s_a, VF s_b, MF lanes) {
     const DF d;
-    const VF half = hn::Set(d, 0.5f), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    const VF half = Set(d, 0.5f), zero = Zero(d), one = Set(d, 1.0f);
     const VF extent = b - a, middle = half * (a + b);
     // What nothing gets through to is done, though its packet is not.
-    const MF seen = progress_.transmittance >= hn::Set(d, frame_.least_transmittance);
-    const MF there = hn::And(hn::And(lanes, seen), extent > zero);
-    if (hn::AllFalse(d, there)) return;
-    const auto kept = [&](VF v) HWY_ATTR { return hn::IfThenElseZero(there, v); };
+    const MF seen = progress_.transmittance >= Set(d, frame_.least_transmittance);
+    const MF there = And(And(lanes, seen), extent > zero);
+    if (AllFalse(d, there)) return;
+    const auto kept = [&](VF v) HWY_ATTR { return IfThenElseZero(there, v); };
     const Piece piece{kept(s_a),
                       kept(stretch.cubic.at(middle)),
                       kept(s_b),
                       kept(stretch.cubic.p_3 * (extent * (extent * extent))),
                       kept(extent * stretch.piece.length),
-                      hn::MulAdd(a, stretch.piece.extent, stretch.piece.begin),
+                      MulAdd(a, stretch.piece.extent, stretch.piece.begin),
                       extent * stretch.piece.extent};
     const bool lit_part = frame_.shading != nullptr;
     Progress part{zero, one, zero, zero, zero, zero};
     Progress& target = lit_part ? part : progress_;
     const VF before = progress_.transmittance, through = lit_part ? before : one;
     const VF bump = bump_of(piece.s_0, piece.s_mid, piece.s_1, piece.p_3);
-    const VF low = hn::Min(piece.s_0, piece.s_1) - bump, high = hn::Max(piece.s_0, piece.s_1) + bump;
+    const VF low = Min(piece.s_0, piece.s_1) - bump, high = Max(piece.s_0, piece.s_1) + bump;
     const UniformLookup& uniform = current_.uniform();
     const bool in_one = current_.around(low, high, there);
     if (in_one && current_.clear()) return;
     if (in_one && add_uniform<false>(uniform, piece, target)) {
-      counts_.samples += hn::CountTrue(d, there);
-      if (HWY_UNLIKELY(!hn::AllTrue(d, notes_.seen))) note_first_light(target, piece.begin, notes_);
+      counts_.samples += CountTrue(d, there);
+      if (HWY_UNLIKELY(!AllTrue(d, notes_.seen))) note_first_light(target, piece.begin, notes_);
       if (HWY_UNLIKELY(uniform.ramp > 0))
         note_ramps(uniform, piece.length, before, through * target.transmittance, notes_);
     } else {
       const VF error_bound = notes_.error_bound, rough = notes_.rough;
       notes_.error_bound = notes_.rough = zero;
       add_any(lookup_, frame_, piece, target, notes_, counts_.samples);
-      notes_.error_bound = hn::MulAdd(through, notes_.error_bound, error_bound);
-      notes_.rough = hn::MulAdd(through * through, notes_.rough, rough);
+      notes_.error_bound = MulAdd(through, notes_.error_bound, error_bound);
+      notes_.rough = MulAdd(through * through, notes_.rough, rough);
     }
-    if (lit_part && !hn::AllFalse(d, part.alpha > zero)) put_lit(stretch, middle, there, part, piece.begin);
+    if (lit_part && !AllFalse(d, part.alpha > zero)) put_lit(stretch, middle, there, part, piece.begin);
   }
 
   HWY_NOINLINE void put_lit(const VoxelStretch& stretch, VF middle, MF there, const Progress& part, VF begin) {
     VF g_i, g_j, g_k;
-    const VF u = hn::MulAdd(middle, stretch.extent, stretch.begin);
+    const VF u = MulAdd(middle, stretch.extent, stretch.begin);
     stretch.field.gradient(u, lanes_.bx, lanes_.by, g_i, g_j, g_k);
     stretch.rest.add(stretch.path, stretch.place, lanes_, u, g_i, g_j, g_k);
-    const auto kept = [&](VF v) HWY_ATTR { return hn::IfThenElseZero(hn::And(there, v == v), v); };
+    const auto kept = [&](VF v) HWY_ATTR { return IfThenElseZero(And(there, v == v), v); };
     g_i = kept(g_i), g_j = kept(g_j), g_k = kept(g_k);
-    const VF slope = hn::MulAdd(lanes_.bx, g_i, hn::MulAdd(lanes_.by, g_j, g_k));
+    const VF slope = MulAdd(lanes_.bx, g_i, MulAdd(lanes_.by, g_j, g_k));
     const Lit lit =
         shade(*frame_.shading, axes_, g_i, g_j, g_k, slope, per_length_, lanes_.light_view, frame_.rest_noise);
-    notes_.error_bound = hn::MulAdd(progress_.transmittance * part.alpha, lit.error, notes_.error_bound);
+    notes_.error_bound = MulAdd(progress_.transmittance * part.alpha, lit.error, notes_.error_bound);
     put_behind(part, lit, progress_);
     note_first_light(progress_, begin, notes_);
   }

@@ -35,40 +35,40 @@ struct VoxelField {
     ci = c10 - c00, cj = c01 - c00, cij = c11 - c01 - ci;
   }
   HWY_INLINE VF at(VF u, VF bx, VF by) const {
-    const VF fx = hn::MulAdd(u, bx, x), fy = hn::MulAdd(u, by, y);
-    const VF a = hn::MulAdd(fy, hn::MulAdd(fx, aij, aj), hn::MulAdd(fx, ai, a00));
-    const VF c = hn::MulAdd(fy, hn::MulAdd(fx, cij, cj), hn::MulAdd(fx, ci, c00));
-    return hn::MulAdd(u, c, a);
+    const VF fx = MulAdd(u, bx, x), fy = MulAdd(u, by, y);
+    const VF a = MulAdd(fy, MulAdd(fx, aij, aj), MulAdd(fx, ai, a00));
+    const VF c = MulAdd(fy, MulAdd(fx, cij, cj), MulAdd(fx, ci, c00));
+    return MulAdd(u, c, a);
   }
   /// Changes per voxel along i, j and k.
   HWY_INLINE void gradient(VF u, VF bx, VF by, VF& g_i, VF& g_j, VF& g_k) const {
-    const VF fx = hn::MulAdd(u, bx, x), fy = hn::MulAdd(u, by, y);
-    g_i = hn::MulAdd(fy, hn::MulAdd(u, cij, aij), hn::MulAdd(u, ci, ai));
-    g_j = hn::MulAdd(fx, hn::MulAdd(u, cij, aij), hn::MulAdd(u, cj, aj));
-    g_k = hn::MulAdd(fy, hn::MulAdd(fx, cij, cj), hn::MulAdd(fx, ci, c00));
+    const VF fx = MulAdd(u, bx, x), fy = MulAdd(u, by, y);
+    g_i = MulAdd(fy, MulAdd(u, cij, aij), MulAdd(u, ci, ai));
+    g_j = MulAdd(fx, MulAdd(u, cij, aij), MulAdd(u, cj, aj));
+    g_k = MulAdd(fy, MulAdd(fx, cij, cj), MulAdd(fx, ci, c00));
   }
   /// At u = 0.
-  HWY_INLINE VF at_front() const { return hn::MulAdd(y, hn::MulAdd(x, aij, aj), hn::MulAdd(x, ai, a00)); }
+  HWY_INLINE VF at_front() const { return MulAdd(y, MulAdd(x, aij, aj), MulAdd(x, ai, a00)); }
   /// At u = 1, where the ray is at (x_1, y_1) relative to the chunk's voxel, and this one at (i, j).
   HWY_INLINE VF at_back(VF x_1, VF y_1, VF i, VF j) const {
     const VF fx = x_1 - i, fy = y_1 - j;
-    const VF a = hn::MulAdd(fy, hn::MulAdd(fx, aij, aj), hn::MulAdd(fx, ai, a00));
-    return a + hn::MulAdd(fy, hn::MulAdd(fx, cij, cj), hn::MulAdd(fx, ci, c00));
+    const VF a = MulAdd(fy, MulAdd(fx, aij, aj), MulAdd(fx, ai, a00));
+    return a + MulAdd(fy, MulAdd(fx, cij, cj), MulAdd(fx, ci, c00));
   }
   /// Value at the middle u of a stretch of extent e, and the mean over it: every product of two of x, y and u adds a
   /// twelfth of the product of their changes. `ee` is e^2 / 12.
   HWY_INLINE void middle_and_mean(VF u, VF ee, VF bx, VF by, VF bends, VF& middle, VF& mean) const {
-    const VF fx = hn::MulAdd(u, bx, x), fy = hn::MulAdd(u, by, y);
-    const VF a_y = hn::MulAdd(fx, aij, aj), c_y = hn::MulAdd(fx, cij, cj), c_x = hn::MulAdd(fy, cij, ci);
-    const VF a = hn::MulAdd(fy, a_y, hn::MulAdd(fx, ai, a00)), c = hn::MulAdd(fy, c_y, hn::MulAdd(fx, ci, c00));
-    middle = hn::MulAdd(u, c, a);
-    const VF twist = hn::MulAdd(bends, hn::MulAdd(u, cij, aij), hn::MulAdd(bx, c_x, by * c_y));
-    mean = hn::MulAdd(ee, twist, middle);
+    const VF fx = MulAdd(u, bx, x), fy = MulAdd(u, by, y);
+    const VF a_y = MulAdd(fx, aij, aj), c_y = MulAdd(fx, cij, cj), c_x = MulAdd(fy, cij, ci);
+    const VF a = MulAdd(fy, a_y, MulAdd(fx, ai, a00)), c = MulAdd(fy, c_y, MulAdd(fx, ci, c00));
+    middle = MulAdd(u, c, a);
+    const VF twist = MulAdd(bends, MulAdd(u, cij, aij), MulAdd(bx, c_x, by * c_y));
+    mean = MulAdd(ee, twist, middle);
   }
 };
 
 /// How far off a place in slab n of the chunk may be, slabs: roundings of numbers as large as that.
-HWY_INLINE VF place_noise(VF k) { return (k + hn::Set(DF(), 2.0f)) * hn::Set(DF(), 0x1p-24f); }
+HWY_INLINE VF place_noise(VF k) { return (k + Set(DF(), 2.0f)) * Set(DF(), 0x1p-24f); }
 
 /// Notes what a slab errs, point data, as places where rays begin and end in it are rounded: there is too much or too
 /// little of the matter at its front (scalar line.s_0), behind which there is the slab's own light, and of that at its
@@ -78,11 +78,11 @@ HWY_NOINLINE void note_ends(const LaneErrorBound& bound, const Lookup& lookup, c
                             MF there, VF slab_length, VF before, const VF (&light)[3], const Progress& progress,
                             RayNotes& notes) {
   const DF d;
-  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f), behind = progress.transmittance;
-  const VF off = place_noise(path.k) * slab_length, brightest = hn::Set(d, bound.brightest);
-  const MF good = hn::And(there, line.rho == line.rho);
+  const VF zero = Zero(d), one = Set(d, 1.0f), behind = progress.transmittance;
+  const VF off = place_noise(path.k) * slab_length, brightest = Set(d, bound.brightest);
+  const MF good = And(there, line.rho == line.rho);
   const auto at = [&](VF s, MF ends, bool front) HWY_ATTR {
-    const VF scalar = hn::IfThenElseZero(good, s);
+    const VF scalar = IfThenElseZero(good, s);
     const VI interval = lookup.locate(scalar, zero == zero);
     const auto index = lookup.index(interval, good);
     const VF from = scalar - lookup.at(LaneTable::base, index), dimmed = before - behind;
@@ -90,17 +90,16 @@ HWY_NOINLINE void note_ends(const LaneErrorBound& bound, const Lookup& lookup, c
     VF differs = zero, sent = zero;
     for (int c = 0; c < 3; ++c) {
       const VF color =
-          hn::MulAdd(lookup.at(LaneTable::red_slope + 2 * c, index), from, lookup.at(LaneTable::red + 2 * c, index));
+          MulAdd(lookup.at(LaneTable::red_slope + 2 * c, index), from, lookup.at(LaneTable::red + 2 * c, index));
       const VF own = sums[c] - light[c];
-      differs = hn::Max(differs, lookup.independent ? own : hn::Abs(hn::NegMulAdd(color, dimmed, own)));
-      if (lookup.independent) sent = hn::Max(sent, color);
+      differs = Max(differs, lookup.independent ? own : Abs(NegMulAdd(color, dimmed, own)));
+      if (lookup.independent) sent = Max(sent, color);
     }
     if (!front) differs = zero;
     const VF seen = front ? before : behind;
-    const VF error =
-        hn::MulAdd(extinction_at(lookup, index, scalar), hn::MulAdd(behind, brightest, differs), sent * seen);
-    const VF noted = hn::Min(error * off, seen * hn::Set(d, bound.most));
-    notes.error_bound = notes.error_bound + hn::IfThenElseZero(hn::And(good, ends), noted);
+    const VF error = MulAdd(extinction_at(lookup, index, scalar), MulAdd(behind, brightest, differs), sent * seen);
+    const VF noted = Min(error * off, seen * Set(d, bound.most));
+    notes.error_bound = notes.error_bound + IfThenElseZero(And(good, ends), noted);
   };
   at(line.s_0, path.from > zero, true);
   at(line.s_1, path.to < one, false);
@@ -112,37 +111,37 @@ HWY_NOINLINE void note_planes(const LaneErrorBound& bound, const Lookup& lookup,
                               const SlabPath& path, int n, const Piece& piece, MF there, VF before,
                               const Progress& progress, RayNotes& notes) {
   const DF d;
-  const VF zero = hn::Zero(d), one = hn::Set(d, 1.0f), behind = progress.transmittance;
+  const VF zero = Zero(d), one = Set(d, 1.0f), behind = progress.transmittance;
   const Stretch& stretch = path.stretches[n];
-  const MF good = hn::And(there, piece.s_0 == piece.s_0);
-  const VF scalar = hn::IfThenElseZero(good, piece.s_0);
+  const MF good = And(there, piece.s_0 == piece.s_0);
+  const VF scalar = IfThenElseZero(good, piece.s_0);
   const VI interval = lookup.locate(scalar, zero == zero);
   const auto index = lookup.index(interval, good);
   // A plane of another axis is crossed the less surely the more slowly.
   const auto off = [&](VF i, VF j) HWY_ATTR {
     const auto of = [&](VF place, VF per_slope, MF crossed) HWY_ATTR {
-      const VF noise = (hn::Abs(place) + one) * hn::Set(d, 0x1p-24f);
-      return hn::IfThenElseZero(crossed, noise * hn::Abs(per_slope));
+      const VF noise = (Abs(place) + one) * Set(d, 0x1p-24f);
+      return IfThenElseZero(crossed, noise * Abs(per_slope));
     };
     const VF crossing = of(path.x, lanes.per_bx, i != stretch.i) + of(path.y, lanes.per_by, j != stretch.j);
-    return hn::Min(place_noise(path.k) + crossing, one);
+    return Min(place_noise(path.k) + crossing, one);
   };
   const VF front = n == 0 ? place_noise(path.k) : off(path.stretches[n - 1].i, path.stretches[n - 1].j),
            back = n == 2 ? place_noise(path.k) : off(path.stretches[n + 1].i, path.stretches[n + 1].j);
   const VF both =
-      (hn::IfThenElseZero(stretch.begin > zero, front) + hn::IfThenElseZero(stretch.end < one, back)) * lanes.length;
-  const VF extinction = extinction_at(lookup, index, scalar), brightest = hn::Set(d, bound.brightest);
+      (IfThenElseZero(stretch.begin > zero, front) + IfThenElseZero(stretch.end < one, back)) * lanes.length;
+  const VF extinction = extinction_at(lookup, index, scalar), brightest = Set(d, bound.brightest);
   VF error = extinction * behind * brightest;
   if (lookup.independent) {
     const VF from = scalar - lookup.at(LaneTable::base, index);
     VF sent = zero;
     for (int c = 0; c < 3; ++c)
-      sent = hn::Max(sent, hn::MulAdd(lookup.at(LaneTable::red_slope + 2 * c, index), from,
-                                      lookup.at(LaneTable::red + 2 * c, index)));
-    error = hn::MulAdd(extinction, brightest, sent) * before;
+      sent = Max(
+          sent, MulAdd(lookup.at(LaneTable::red_slope + 2 * c, index), from, lookup.at(LaneTable::red + 2 * c, index)));
+    error = MulAdd(extinction, brightest, sent) * before;
   }
-  const VF noted = hn::Min(error * both, before * hn::Set(d, bound.most));
-  notes.error_bound = notes.error_bound + hn::IfThenElseZero(good, noted);
+  const VF noted = Min(error * both, before * Set(d, bound.most));
+  notes.error_bound = notes.error_bound + IfThenElseZero(good, noted);
 }
 
 /// What floats leave of a slab's samples (SlabBlock::rest), for gradients.
@@ -175,22 +174,22 @@ HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const
                               const UniformLookup* uniform, MF wanted, Progress& progress, RayNotes& notes,
                               TileCounts& counts) {
   const DF d;
-  const VF half = hn::Set(d, 0.5f), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  const VF half = Set(d, 0.5f), zero = Zero(d), one = Set(d, 1.0f);
   const bool lit_part = frame.shading != nullptr && !cell_data;
   for (const Stretch& stretch : path.stretches) {
     const VF extent = stretch.end - stretch.begin;
-    const MF there = hn::And(wanted, extent > hn::Zero(d));
-    const std::size_t voxels = hn::CountTrue(d, there);
+    const MF there = And(wanted, extent > Zero(d));
+    const std::size_t voxels = CountTrue(d, there);
     if (voxels == 0) continue;
     const VI index = window_index(window, path, stretch);
     Piece piece;
     Lit lit{one, zero, zero};
     piece.begin = stretch.begin + path.k;
     piece.extent = extent;
-    piece.length = hn::IfThenElseZero(there, extent * lanes.length);
+    piece.length = IfThenElseZero(there, extent * lanes.length);
     if constexpr (cell_data) {
       piece.s_0 = piece.s_mid = piece.s_1 = window.front(index);
-      piece.p_3 = hn::Zero(d);
+      piece.p_3 = Zero(d);
     } else {
       const VoxelField field(window.corners(index), path.x - stretch.i, path.y - stretch.j);
       piece.s_0 = field.at(stretch.begin, lanes.bx, lanes.by);
@@ -202,10 +201,10 @@ HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const
         const VF middle = half * (stretch.begin + stretch.end);
         field.gradient(middle, lanes.bx, lanes.by, g_i, g_j, g_k);
         rest.add(path, stretch, lanes, middle, g_i, g_j, g_k);
-        const auto kept = [&](VF v) HWY_ATTR { return hn::IfThenElseZero(hn::And(there, v == v), v); };
+        const auto kept = [&](VF v) HWY_ATTR { return IfThenElseZero(And(there, v == v), v); };
         g_i = kept(g_i), g_j = kept(g_j), g_k = kept(g_k);
-        const VF slope = hn::MulAdd(lanes.bx, g_i, hn::MulAdd(lanes.by, g_j, g_k));
-        const VF per_length = hn::Set(d, static_cast<float>(frame.shading->unit / frame.length_unit)) / lanes.length;
+        const VF slope = MulAdd(lanes.bx, g_i, MulAdd(lanes.by, g_j, g_k));
+        const VF per_length = Set(d, static_cast<float>(frame.shading->unit / frame.length_unit)) / lanes.length;
         lit = shade(*frame.shading, axes, g_i, g_j, g_k, slope, per_length, lanes.light_view, frame.rest_noise);
       }
     }
@@ -214,22 +213,21 @@ HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const
     const VF before = progress.transmittance;
     if (uniform != nullptr && HWY_LIKELY(add_uniform<cell_data>(*uniform, piece, target))) {
       counts.samples += voxels;
-      if (HWY_UNLIKELY(!hn::AllTrue(d, notes.seen))) note_first_light(target, piece.begin, notes);
+      if (HWY_UNLIKELY(!AllTrue(d, notes.seen))) note_first_light(target, piece.begin, notes);
       if (HWY_UNLIKELY(uniform->ramp > 0))
         note_ramps(*uniform, piece.length, before, (lit_part ? before : one) * target.transmittance, notes);
     } else {
       const VF through = lit_part ? before : one, error_bound = notes.error_bound, rough = notes.rough;
       notes.error_bound = notes.rough = zero;
       add_any(lookup, frame, piece, target, notes, counts.samples);
-      notes.error_bound = hn::MulAdd(through, notes.error_bound, error_bound);
-      notes.rough = hn::MulAdd(through * through, notes.rough, rough);
+      notes.error_bound = MulAdd(through, notes.error_bound, error_bound);
+      notes.rough = MulAdd(through * through, notes.rough, rough);
     }
     if (cell_data && HWY_UNLIKELY(frame.error_bound != nullptr && frame.error_bound->ends))
       note_planes(*frame.error_bound, lookup, lanes, path, static_cast<int>(&stretch - path.stretches), piece, there,
                   before, progress, notes);
     if (lit_part) {
-      if (HWY_UNLIKELY(frame.has_rest))
-        notes.error_bound = hn::MulAdd(before * part.alpha, lit.error, notes.error_bound);
+      if (HWY_UNLIKELY(frame.has_rest)) notes.error_bound = MulAdd(before * part.alpha, lit.error, notes.error_bound);
       put_behind(part, lit, progress);
       // Within the stretch light is measured from its own front.
       note_first_light(progress, piece.begin, notes);
@@ -241,54 +239,54 @@ HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const
 /// coefficient (ray_piece-inl.h), which bound it together.
 HWY_INLINE VF bump_of(VF s_0, VF middle, VF s_1, VF p_3) {
   const DF d;
-  const VF even = hn::NegMulAdd(hn::Set(d, 0.5f), s_0 + s_1, middle);
-  return hn::MulAdd(hn::Set(d, 0.25f), hn::Abs(p_3), hn::Abs(even));
+  const VF even = NegMulAdd(Set(d, 0.5f), s_0 + s_1, middle);
+  return MulAdd(Set(d, 0.25f), Abs(p_3), Abs(even));
 }
 
 /// The cubic at a stretch's other end: Simpson's rule is exact, mean = (s_0 + 4 middle + s_1) / 6.
 HWY_INLINE VF other_end(VF s, VF middle, VF mean) {
   const DF d;
-  return hn::MulAdd(hn::Set(d, 6.0f), mean, hn::Set(d, -4.0f) * middle) - s;
+  return MulAdd(Set(d, 6.0f), mean, Set(d, -4.0f) * middle) - s;
 }
 
 /// Bound of the field's distance from the slab's line: the borders', and the bumps between. Not a number where the
 /// field is not.
 HWY_INLINE VF distance_bound(VF border_1, VF line_1, VF border_2, VF line_2, const VF (&bump)[3]) {
-  const VF borders = hn::Max(hn::Abs(border_1 - line_1), hn::Abs(border_2 - line_2));
-  const VF bumps = hn::Max(hn::Max(bump[0], bump[1]), bump[2]);
+  const VF borders = Max(Abs(border_1 - line_1), Abs(border_2 - line_2));
+  const VF bumps = Max(Max(bump[0], bump[1]), bump[2]);
   const VF any = bump[0] + bump[1] + (bump[2] + (border_1 + border_2));
-  return hn::MulAdd(hn::Zero(DF()), any, borders + bumps);
+  return MulAdd(Zero(DF()), any, borders + bumps);
 }
 
 /// The line of a slab that lanes may enter or leave anywhere. Lanes that are not there give anything.
 template <class Window>
 HWY_INLINE Line part_line(const Lanes& lanes, const SlabPath& path, const Window& window) {
   const DF d;
-  const VF half = hn::Set(d, 0.5f);
+  const VF half = Set(d, 0.5f);
   const VF extent = path.to - path.from;
-  const VF per_extent = hn::Set(d, 1.0f) / extent;
+  const VF per_extent = Set(d, 1.0f) / extent;
   Line line;
-  VF total = hn::Zero(d);
+  VF total = Zero(d);
   VF middle[3], mean[3], p_3[3];
   line.s_0 = line.s_1 = total;
   for (int p = 0; p < 3; ++p) {
     const Stretch& stretch = path.stretches[p];
     const VoxelField field(window.corners(window_index(window, path, stretch)), path.x - stretch.i, path.y - stretch.j);
     const VF e = stretch.end - stretch.begin, ee = e * e;
-    field.middle_and_mean(half * (stretch.begin + stretch.end), ee * hn::Set(d, 1 / 12.0f), lanes.bx, lanes.by,
-                          lanes.bends, middle[p], mean[p]);
+    field.middle_and_mean(half * (stretch.begin + stretch.end), ee * Set(d, 1 / 12.0f), lanes.bx, lanes.by, lanes.bends,
+                          middle[p], mean[p]);
     p_3[p] = field.cij * lanes.bends * (ee * e);
-    total = hn::MulAdd(e * per_extent, mean[p], total);
+    total = MulAdd(e * per_extent, mean[p], total);
     if (p == 0) line.s_0 = field.at(stretch.begin, lanes.bx, lanes.by);
     if (p == 2) line.s_1 = field.at(stretch.end, lanes.bx, lanes.by);
   }
   line.span = line.s_1 - line.s_0;
-  line.shift = hn::NegMulAdd(half, line.s_0 + line.s_1, total);
+  line.shift = NegMulAdd(half, line.s_0 + line.s_1, total);
   const VF slope = line.span * per_extent;
   const VF border_1 = other_end(line.s_0, middle[0], mean[0]), border_2 = other_end(line.s_1, middle[2], mean[2]);
   const VF bump[3] = {bump_of(line.s_0, middle[0], border_1, p_3[0]), bump_of(border_1, middle[1], border_2, p_3[1]),
                       bump_of(border_2, middle[2], line.s_1, p_3[2])};
-  const auto on_line = [&](VF at) HWY_ATTR { return hn::MulAdd(at - path.from, slope, line.s_0); };
+  const auto on_line = [&](VF at) HWY_ATTR { return MulAdd(at - path.from, slope, line.s_0); };
   line.rho =
       distance_bound(border_1, on_line(path.stretches[1].begin), border_2, on_line(path.stretches[2].begin), bump);
   return line;
@@ -301,53 +299,51 @@ template <class Lookup>
 HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, VF slab_length, const SlabLines& lines,
                                  int m, int n, MF wanted, Progress& progress, RayNotes& notes, TileCounts& counts) {
   const DF d;
-  const VF half = hn::Set(d, 0.5f), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  const VF half = Set(d, 0.5f), zero = Zero(d), one = Set(d, 1.0f);
   const VF u_1 = lines.u_1[m], u_2 = lines.u_2[m], s_end = lines.s[m + 1];
   const VF place[4] = {zero, u_1, u_2, one};
   // Behind a plane that is not crossed there is nothing.
-  const VF value[4] = {lines.s[m], hn::IfThenElse(u_1 < one, lines.f_1[m], s_end),
-                       hn::IfThenElse(u_2 < one, lines.f_2[m], s_end), s_end};
+  const VF value[4] = {lines.s[m], IfThenElse(u_1 < one, lines.f_1[m], s_end),
+                       IfThenElse(u_2 < one, lines.f_2[m], s_end), s_end};
   Piece pieces[3];
   MF there[3], torn = zero != zero;
   const bool has_blanks = frame.ranges->range.blanks > 0;
   for (int k = 0; k < 3; ++k) {
     Piece& p = pieces[k];
     p.extent = place[k + 1] - place[k];
-    there[k] = hn::And(wanted, p.extent > zero);
+    there[k] = And(wanted, p.extent > zero);
     p.s_0 = value[k], p.s_1 = value[k + 1];
-    p.s_mid = hn::NegMulAdd(hn::Set(d, 0.25f), lines.even[k][m], half * (p.s_0 + p.s_1));
+    p.s_mid = NegMulAdd(Set(d, 0.25f), lines.even[k][m], half * (p.s_0 + p.s_1));
     p.p_3 = lines.odd[k][m];
-    p.length = hn::IfThenElseZero(there[k], p.extent * slab_length);
-    p.begin = place[k] + hn::Set(d, static_cast<float>(n));
+    p.length = IfThenElseZero(there[k], p.extent * slab_length);
+    p.begin = place[k] + Set(d, static_cast<float>(n));
     // A voxel that is whole, but whose end is taken from one that is blank, as rounding has the ray pass an edge of
     // both on different sides.
     const VF shape = lines.even[k][m] + lines.odd[k][m];
-    if (HWY_UNLIKELY(has_blanks))
-      torn = hn::Or(torn, hn::AndNot(p.s_mid == p.s_mid, hn::And(there[k], shape == shape)));
+    if (HWY_UNLIKELY(has_blanks)) torn = Or(torn, AndNot(p.s_mid == p.s_mid, And(there[k], shape == shape)));
   }
-  if (HWY_UNLIKELY(has_blanks && !hn::AllFalse(d, torn)))
-    notes.error_bound = notes.error_bound + hn::IfThenElseZero(torn, hn::Set(d, 1e9f));
+  if (HWY_UNLIKELY(has_blanks && !AllFalse(d, torn)))
+    notes.error_bound = notes.error_bound + IfThenElseZero(torn, Set(d, 1e9f));
 #if HWY_TARGET <= HWY_AVX3
-  if (hn::AllTrue(d, hn::Or(notes.seen, hn::Not(wanted)))) {
-    constexpr std::size_t lanes_each = hn::MaxLanes(DF()), most = 4 * lanes_each;
+  if (AllTrue(d, Or(notes.seen, Not(wanted)))) {
+    constexpr std::size_t lanes_each = MaxLanes(DF()), most = 4 * lanes_each;
     HWY_ALIGN float s_0[most], s_mid[most], s_1[most], p_3[most], length[most];
     std::size_t begin[4] = {0, 0, 0, 0};
     for (std::size_t k = 0; k < 3; ++k) {
-      begin[k + 1] = begin[k] + hn::CountTrue(d, there[k]);
-      const auto keep = [&](VF v, float* to) HWY_ATTR {
-        hn::StoreU(VF{_mm512_maskz_compress_ps(there[k].raw, v.raw)}, d, to + begin[k]);
-      };
+      begin[k + 1] = begin[k] + CountTrue(d, there[k]);
+      const auto keep = [&](VF v, float* to)
+                            HWY_ATTR { StoreU(VF{_mm512_maskz_compress_ps(there[k].raw, v.raw)}, d, to + begin[k]); };
       keep(pieces[k].s_0, s_0), keep(pieces[k].s_mid, s_mid), keep(pieces[k].s_1, s_1);
       keep(pieces[k].p_3, p_3), keep(pieces[k].length, length);
     }
     HWY_ALIGN float light[8][most];
     for (std::size_t n_0 = 0; n_0 < begin[3]; n_0 += lanes_each) {
-      const MF used = hn::FirstN(d, begin[3] - n_0);
-      const Piece piece{hn::Load(d, s_0 + n_0),
-                        hn::Load(d, s_mid + n_0),
-                        hn::Load(d, s_1 + n_0),
-                        hn::Load(d, p_3 + n_0),
-                        hn::IfThenElseZero(used, hn::Load(d, length + n_0)),
+      const MF used = FirstN(d, begin[3] - n_0);
+      const Piece piece{Load(d, s_0 + n_0),
+                        Load(d, s_mid + n_0),
+                        Load(d, s_1 + n_0),
+                        Load(d, p_3 + n_0),
+                        IfThenElseZero(used, Load(d, length + n_0)),
                         zero,
                         zero};
       Progress part{zero, one, zero, zero, zero, zero};
@@ -355,20 +351,20 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
       add_any(lookup, frame, piece, part, here, counts.samples);
       const VF parts[8] = {part.alpha, part.transmittance, part.optical_depth, part.red,
                            part.green, part.blue,          here.error_bound,   here.rough};
-      for (int c = 0; c < 8; ++c) hn::Store(parts[c], d, light[c] + n_0);
+      for (int c = 0; c < 8; ++c) Store(parts[c], d, light[c] + n_0);
     }
     for (std::size_t k = 0; k < 3; ++k) {
       const auto part = [&](int c)
                             HWY_ATTR { return VF{_mm512_maskz_expandloadu_ps(there[k].raw, light[c] + begin[k])}; };
       const VF through = progress.transmittance;
-      progress.alpha = hn::MulAdd(through, part(0), progress.alpha);
+      progress.alpha = MulAdd(through, part(0), progress.alpha);
       progress.transmittance = through * VF{_mm512_mask_expandloadu_ps(one.raw, there[k].raw, light[1] + begin[k])};
       progress.optical_depth = progress.optical_depth + part(2);
-      progress.red = hn::MulAdd(through, part(3), progress.red);
-      progress.green = hn::MulAdd(through, part(4), progress.green);
-      progress.blue = hn::MulAdd(through, part(5), progress.blue);
-      notes.error_bound = hn::MulAdd(through, part(6), notes.error_bound);
-      notes.rough = hn::MulAdd(through * through, part(7), notes.rough);
+      progress.red = MulAdd(through, part(3), progress.red);
+      progress.green = MulAdd(through, part(4), progress.green);
+      progress.blue = MulAdd(through, part(5), progress.blue);
+      notes.error_bound = MulAdd(through, part(6), notes.error_bound);
+      notes.rough = MulAdd(through * through, part(7), notes.rough);
     }
     return;
   }
@@ -384,42 +380,42 @@ HWY_NOINLINE MF cast_mixed(const FrameView& frame, const Lookup& lookup, const L
                            VF length, CurrentInterval& current, Progress& progress, RayNotes& notes,
                            TileCounts& counts) {
   const DF d;
-  const VF zero = hn::Zero(d);
-  const VF spread = length * line.rho * hn::MulAdd(hn::Abs(line.span), hn::Set(d, 0.25f), line.rho);
-  const VF low = hn::Min(line.s_0, line.s_1) - line.rho, high = hn::Max(line.s_0, line.s_1) + line.rho;
+  const VF zero = Zero(d);
+  const VF spread = length * line.rho * MulAdd(Abs(line.span), Set(d, 0.25f), line.rho);
+  const VF low = Min(line.s_0, line.s_1) - line.rho, high = Max(line.s_0, line.s_1) + line.rho;
   const VI interval = lookup.locate(low, zero == zero);
   const auto index = lookup.index(interval, there);
-  current.move_to(static_cast<std::size_t>(
-      hn::GetLane(hn::MaxOfLanes(DI(), hn::IfThenElseZero(hn::RebindMask(DI(), there), interval)))));
-  const VF edge = lookup.edge(interval, index, hn::Set(DI(), 1));
+  current.move_to(
+      static_cast<std::size_t>(GetLane(MaxOfLanes(DI(), IfThenElseZero(RebindMask(DI(), there), interval)))));
+  const VF edge = lookup.edge(interval, index, Set(DI(), 1));
   const VF kappa_slope =
-      hn::Abs(lookup.at(LaneTable::half_extinction_slope, index) + lookup.at(LaneTable::half_extinction_slope, index));
-  const VF color_slope = hn::Max(
-      hn::Max(hn::Abs(lookup.at(LaneTable::red_slope, index)), hn::Abs(lookup.at(LaneTable::green_slope, index))),
-      hn::Abs(lookup.at(LaneTable::blue_slope, index)));
-  const VF scale = kappa_slope * hn::Set(d, 1 / frame.piece_tolerance) *
-                   hn::MulAdd(length * kappa_slope, hn::Set(d, 0.03f * frame.largest_color), color_slope);
-  const VF extinction = hn::Max(extinction_at(lookup, index, low), extinction_at(lookup, index, high));
+      Abs(lookup.at(LaneTable::half_extinction_slope, index) + lookup.at(LaneTable::half_extinction_slope, index));
+  const VF color_slope =
+      Max(Max(Abs(lookup.at(LaneTable::red_slope, index)), Abs(lookup.at(LaneTable::green_slope, index))),
+          Abs(lookup.at(LaneTable::blue_slope, index)));
+  const VF scale = kappa_slope * Set(d, 1 / frame.piece_tolerance) *
+                   MulAdd(length * kappa_slope, Set(d, 0.03f * frame.largest_color), color_slope);
+  const VF extinction = Max(extinction_at(lookup, index, low), extinction_at(lookup, index, high));
   const VF dimming = length * extinction * (lookup.independent ? length : length * extinction);
-  const VF dimmed = dimming * color_slope * (line.rho * hn::Set(d, 1 / (9 * frame.piece_tolerance)));
-  MF together = hn::And(hn::And(there, high < edge), hn::MulAdd(spread, scale, dimmed) <= hn::Set(d, 1.0f));
+  const VF dimmed = dimming * color_slope * (line.rho * Set(d, 1 / (9 * frame.piece_tolerance)));
+  MF together = And(And(there, high < edge), MulAdd(spread, scale, dimmed) <= Set(d, 1.0f));
   if (frame.error_bound != nullptr && !frame.error_bound->step.empty()) {
     // What may touch a step is looked at as a cubic.
-    const VF noise = hn::Set(d, frame.error_bound->noise), low_edge = lookup.edge(interval, index, hn::Zero(DI()));
+    const VF noise = Set(d, frame.error_bound->noise), low_edge = lookup.edge(interval, index, Zero(DI()));
     const MF above = low - low_edge >= noise;
-    together = hn::And(together, hn::And(above, edge - high >= noise));
+    together = And(together, And(above, edge - high >= noise));
   }
-  if (!hn::AllFalse(d, together)) {
-    const auto kept = [&](VF v) HWY_ATTR { return hn::IfThenElseZero(together, v); };
+  if (!AllFalse(d, together)) {
+    const auto kept = [&](VF v) HWY_ATTR { return IfThenElseZero(together, v); };
     const VF before = progress.transmittance;
     CL::lanes::add_piece<false>(lookup, index, kept(line.s_0 + line.shift), kept(line.s_1 + line.shift),
                                 kept(line.span), kept(length), progress);
-    counts.samples += hn::CountTrue(d, together);
+    counts.samples += CountTrue(d, together);
     note_first_light(progress, begin, notes);
     if (frame.error_bound != nullptr)
       note_ramps(interval, together, kept(length), *frame.error_bound, before, progress.transmittance, notes);
   }
-  return hn::AndNot(together, there);
+  return AndNot(together, there);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -136,17 +136,15 @@ class GatherWindow {
   HWY_INLINE GatherWindow(const float* a, const float* b, std::ptrdiff_t pitch) : a_(a), b_(b), pitch_(pitch) {}
   /// It would take as long to look as to integrate.
   HWY_INLINE bool all_in(float, float) const { return false; }
-  HWY_INLINE VI index(VF i, VF j) const {
-    return hn::ConvertTo(DI(), hn::MulAdd(j, hn::Set(DF(), static_cast<float>(pitch_)), i));
-  }
-  HWY_INLINE VF front(VI index) const { return hn::GatherIndex(DF(), a_, index); }
-  HWY_INLINE VF back(VI index) const { return hn::GatherIndex(DF(), b_, index); }
+  HWY_INLINE VI index(VF i, VF j) const { return ConvertTo(DI(), MulAdd(j, Set(DF(), static_cast<float>(pitch_)), i)); }
+  HWY_INLINE VF front(VI index) const { return GatherIndex(DF(), a_, index); }
+  HWY_INLINE VF back(VI index) const { return GatherIndex(DF(), b_, index); }
   HWY_INLINE Corners corners(VI index) const {
     const DF d;
-    return {hn::GatherIndex(d, a_, index),          hn::GatherIndex(d, a_ + 1, index),
-            hn::GatherIndex(d, a_ + pitch_, index), hn::GatherIndex(d, a_ + pitch_ + 1, index),
-            hn::GatherIndex(d, b_, index),          hn::GatherIndex(d, b_ + 1, index),
-            hn::GatherIndex(d, b_ + pitch_, index), hn::GatherIndex(d, b_ + pitch_ + 1, index)};
+    return {GatherIndex(d, a_, index),          GatherIndex(d, a_ + 1, index),
+            GatherIndex(d, a_ + pitch_, index), GatherIndex(d, a_ + pitch_ + 1, index),
+            GatherIndex(d, b_, index),          GatherIndex(d, b_ + 1, index),
+            GatherIndex(d, b_ + pitch_, index), GatherIndex(d, b_ + pitch_ + 1, index)};
   }
 
  private:
