@@ -14,17 +14,20 @@
 #include <bit>
 
 #include "integrals/lane_table.hpp"
+#include "scene/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tessera::integrals {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using DF = hn::ScalableTag<float>;
-using DI = hn::RebindToSigned<DF>;
-using VF = hn::Vec<DF>;
-using VI = hn::Vec<DI>;
-using MF = hn::Mask<DF>;
+using scene::HWY_NAMESPACE::DF;
+using scene::HWY_NAMESPACE::DI;
+using scene::HWY_NAMESPACE::lookup_two;
+using scene::HWY_NAMESPACE::MF;
+using scene::HWY_NAMESPACE::truncated;
+using scene::HWY_NAMESPACE::VF;
+using scene::HWY_NAMESPACE::VI;
 
 /// Where the table's rows are: each in one vector, each in two, or in memory.
 enum class TableForm { one_vector, two_vectors, many };
@@ -32,30 +35,6 @@ enum class TableForm { one_vector, two_vectors, many };
 HWY_INLINE TableForm form_of(const LaneTable& table) {
   const std::size_t edges = table.knot_count + 2, lanes = hn::Lanes(DF());
   return edges <= lanes ? TableForm::one_vector : edges <= 2 * lanes ? TableForm::two_vectors : TableForm::many;
-}
-
-/// low[i] for i < lanes, high[i - lanes] above; 0 <= i < 2 lanes.
-HWY_INLINE VF two_table_lookup(VF low, VF high, VI i) {
-  const DF d;
-#if HWY_TARGET <= HWY_AVX3
-  return VF{_mm512_permutex2var_ps(low.raw, i.raw, high.raw)};
-#else
-  const DI di;
-  const auto lanes = Set(di, static_cast<std::int32_t>(hn::Lanes(di)));
-  const auto in_row = IndicesFromVec(d, And(i, lanes - Set(di, 1)));
-  return IfThenElse(RebindMask(d, i < lanes), TableLookupLanes(low, in_row), TableLookupLanes(high, in_row));
-#endif
-}
-
-/// Towards zero, of numbers that integers hold: Highway's ConvertTo mends others, in four instructions more.
-HWY_INLINE VI truncated(VF v) {
-#if HWY_TARGET <= HWY_AVX3
-  return VI{_mm512_cvttps_epi32(v.raw)};
-#elif HWY_TARGET <= HWY_AVX2
-  return VI{_mm256_cvttps_epi32(v.raw)};
-#else
-  return ConvertTo(DI(), v);
-#endif
 }
 
 /// Numbers of intervals by lane. Every form offers:
@@ -149,7 +128,7 @@ class Lookup<TableForm::one_vector> {
     if (HWY_LIKELY(in_registers_)) {
       const VF place = (s - grid_origin_) * grid_scale_;
       const VI cell = truncated(Min(Max(place, Zero(d)), last_cell_));
-      const VI before = BitCast(di, two_table_lookup(low_cells_, high_cells_, cell));
+      const VI before = BitCast(di, lookup_two(low_cells_, high_cells_, cell));
       const VF next = at(LaneTable::edge, before + Set(di, 1));
       return count_if(Or(next < s, And(up, next == s)), before);
     }
@@ -196,7 +175,7 @@ class Lookup<TableForm::two_vectors> {
                   [&](VI i) HWY_ATTR { return at(LaneTable::edge, i); });
   }
   HWY_INLINE Index index(VI interval, MF) const { return interval; }
-  HWY_INLINE VF at(int column, const Index& i) const { return two_table_lookup(low_[column], high_[column], i); }
+  HWY_INLINE VF at(int column, const Index& i) const { return lookup_two(low_[column], high_[column], i); }
   HWY_INLINE VF edge(VI, const Index& i, VI upper) const { return at(LaneTable::edge, i + upper); }
   HWY_INLINE VF edge(VI, const Index& i, MF upper) const { return at(LaneTable::edge, count_if(upper, i)); }
 
@@ -268,7 +247,7 @@ class Lookup<TableForm::many> {
     const float* const row = table_.column(column);
     if (HWY_LIKELY(i.windowed)) {
       const float* const window = row + i.window;
-      return two_table_lookup(LoadU(d, window), LoadU(d, window + hn::Lanes(d)), in_window);
+      return lookup_two(LoadU(d, window), LoadU(d, window + hn::Lanes(d)), in_window);
     }
     return GatherIndex(d, row, interval);
   }

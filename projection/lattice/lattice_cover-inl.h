@@ -41,22 +41,16 @@ constexpr int most_blocks = SegmentWindows::most_pixels / lanes;
 constexpr float outline_uncertainty = 2.0f + 0.75f * static_cast<float>(most_blocks);
 
 /// first, first + 1... (Iota() of what is no constant goes through memory, lane by lane.)
-HWY_INLINE VI numbers_from(int first) { return Iota(I(), 0) + Set(I(), first); }
+HWY_INLINE VI numbers_from(int first) { return Iota(DI(), 0) + Set(DI(), first); }
 
 /// Puts the lanes that are hit, or may be, behind `size` hits; returns how many there are then.
 HWY_INLINE std::size_t push_hits(VF least, MF among, VI hits, HitQueue& queue, std::size_t size) {
-  const F df;
-  const I d;
+  const DF df;
+  const DI d;
   const VF bound = Set(df, outline_uncertainty), minus_bound = Set(df, -outline_uncertainty);
   const VI mark = Set(d, Hit::uncertain);
-#if HWY_TARGET <= HWY_AVX3
-  const MF near{_mm512_mask_cmp_ps_mask(among.raw, least.raw, minus_bound.raw, _CMP_GT_OQ)};
-  const MF uncertain = least <= bound;
-  hits = VI{_mm512_mask_or_epi32(hits.raw, uncertain.raw, hits.raw, mark.raw)};
-#else
-  const MF near = And(among, least > minus_bound);
-  hits = Or(hits, IfThenElseZero(RebindMask(d, least <= bound), mark));
-#endif
+  const MF near = greater_where(among, least, minus_bound);
+  hits = or_where(RebindMask(d, least <= bound), hits, mark);
   const LanePacker pack(RebindMask(d, near));
   StoreU(pack(hits), d, queue.hit + size);
   return size + pack.count();
@@ -71,7 +65,7 @@ struct SmallCells {
   /// Those of `cells` (a bit each of the batch) that are faster this way: up to some size, if the most candidate pixels
   /// of them all cost less than their blocks.
   HWY_INLINE static unsigned worth_while(const CellBatch& batch, unsigned cells, int from) {
-    const I d;
+    const DI d;
     const auto takes = mask_of(cells, from);
     const VI width = IfThenElseZero(takes, Load(d, batch.x1 + from) - Load(d, batch.x0 + from));
     const VI height = IfThenElseZero(takes, Load(d, batch.y1 + from) - Load(d, batch.y0 + from));
@@ -85,7 +79,7 @@ struct SmallCells {
       const int candidates =
           GetLane(MaxOfLanes(d, IfThenElseZero(small, width))) * GetLane(MaxOfLanes(d, IfThenElseZero(small, height)));
       if (candidates * step_cost + start_cost < GetLane(SumOfLanes(d, IfThenElseZero(small, cost))))
-        return cells & lane_bits(RebindMask(F(), small)) << from;
+        return cells & lane_bits(RebindMask(DF(), small)) << from;
     }
     return 0;
   }
@@ -94,8 +88,8 @@ struct SmallCells {
   template <class Drain>
   HWY_INLINE static void cover(const CellBatch& batch, const CellParts& parts, unsigned cells, int from,
                                HitQueue& queue, const Drain& drain) {
-    const I d;
-    const F df;
+    const DI d;
+    const DF df;
     const auto takes = mask_of(cells, from);
     const VI x0 = Load(d, batch.x0 + from), y0 = Load(d, batch.y0 + from);
     const VI width = IfThenElseZero(takes, Load(d, batch.x1 + from) - x0);
@@ -131,10 +125,10 @@ struct SmallCells {
   }
 
  private:
-  HWY_INLINE static hn::Mask<I> mask_of(unsigned cells, int from) {
+  HWY_INLINE static hn::Mask<DI> mask_of(unsigned cells, int from) {
     cells >>= from;
     const std::uint8_t bits[8] = {static_cast<std::uint8_t>(cells), static_cast<std::uint8_t>(cells >> 8)};
-    return LoadMaskBits(I(), bits);
+    return LoadMaskBits(DI(), bits);
   }
 };
 
@@ -146,9 +140,9 @@ class CellBlocks {
   HWY_INLINE void lay(const CellBatch& batch, const CellParts& parts, const scene::PixelRect& rect,
                       const scene::PixelRect& square) {
     right_ = rect.x1 - square.x0, bottom_ = rect.y1 - square.y0;
-    const I d;
-    const F df;
-    const auto number = [](int n) HWY_ATTR { return Set(I(), n); };
+    const DI d;
+    const DF df;
+    const auto number = [](int n) HWY_ATTR { return Set(DI(), n); };
     const VI right = number(right_), bottom = number(bottom_);
     const VI first_x = number(rect.x0 - square.x0), first_y = number(rect.y0 - square.y0);
     const VI center = number(CellBatch::center), one = number(1);
@@ -198,8 +192,8 @@ class CellBlocks {
 
   /// Block after block, row by row, in one loop. (How many blocks a row has is hard to predict.)
   HWY_INLINE void cover(const CellParts& parts, int t, HitQueue& queue) const {
-    const I d;
-    const F df;
+    const DI d;
+    const DF df;
     const BlockShape& shape = block_shapes[shape_[t]];
     const VI column = Load(d, shape.column), row = Load(d, shape.row);
     const VF x = ConvertTo(df, column), y = ConvertTo(df, row);
@@ -231,10 +225,10 @@ class CellBlocks {
  private:
   /// The lanes of a block that lie in the rectangle.
   HWY_NOINLINE MF in_rectangle(const BlockShape& shape, int t, int block) const {
-    const I d;
+    const DI d;
     const VI x = Load(d, shape.column) + Set(d, left_[t] + block % columns_[t] * shape.width);
     const VI y = Load(d, shape.row) + Set(d, top_[t] + block / columns_[t] * shape.height);
-    return RebindMask(F(), And(x < Set(d, right_), y < Set(d, bottom_)));
+    return RebindMask(DF(), And(x < Set(d, right_), y < Set(d, bottom_)));
   }
 
   int right_, bottom_;

@@ -18,36 +18,10 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
 
-using MI = hn::Mask<I>;
-
-/// Of pairs of 16 bits, signed: low times low plus high times high, in one instruction.
-HWY_INLINE VI products(VI a, VI b) {
-#if HWY_TARGET <= HWY_AVX3
-  return VI{_mm512_madd_epi16(a.raw, b.raw)};
-#elif HWY_TARGET <= HWY_AVX2
-  return VI{_mm256_madd_epi16(a.raw, b.raw)};
-#elif HWY_TARGET <= HWY_SSSE3
-  return VI{_mm_madd_epi16(a.raw, b.raw)};
-#else
-  const auto low = [](VI v) HWY_ATTR { return ShiftRight<16>(ShiftLeft<16>(v)); };
-  return low(a) * low(b) + ShiftRight<16>(a) * ShiftRight<16>(b);
-#endif
-}
-
 /// Pairs of 16 bits, added.
 HWY_INLINE VI add_pairs(VI a, VI b) {
-  const hn::Repartition<std::int16_t, I> pairs;
-  return BitCast(I(), BitCast(pairs, a) + BitCast(pairs, b));
-}
-
-/// The lesser of |a| and |b|.
-HWY_INLINE VF least_magnitude(VF a, VF b) {
-#if HWY_TARGET <= HWY_AVX3
-  constexpr int least_absolute = 2, sign_cleared = 2 << 2;
-  return VF{_mm512_range_ps(a.raw, b.raw, least_absolute | sign_cleared)};
-#else
-  return Min(Abs(a), Abs(b));
-#endif
+  const hn::Repartition<std::int16_t, DI> pairs;
+  return BitCast(DI(), BitCast(pairs, a) + BitCast(pairs, b));
 }
 
 #if HWY_TARGET <= HWY_AVX2
@@ -55,8 +29,8 @@ HWY_INLINE VF least_magnitude(VF a, VF b) {
 struct CellFlags {
   VI three, behind;
   HWY_INLINE CellFlags(const CellParts& parts, int from)
-      : three(Set(I(), static_cast<std::int32_t>(parts.three >> from))),
-        behind(Set(I(), static_cast<std::int32_t>(parts.behind >> from))) {}
+      : three(Set(DI(), static_cast<std::int32_t>(parts.three >> from))),
+        behind(Set(DI(), static_cast<std::int32_t>(parts.behind >> from))) {}
 };
 
 /// What lanes ask of their hits' cells: whichever each is of, of as many as there are lanes, from `from` on. Their
@@ -66,7 +40,7 @@ class AnyCell {
  public:
   static constexpr bool may_be_two = two, may_be_three = with_three;
   HWY_INLINE AnyCell(const CellFlags& flags, int from, VI hit)
-      : flags_(flags), from_(from), cell_(And(hit, Set(I(), lanes - 1))), bit_(Shl(Set(I(), 1), cell_)) {}
+      : flags_(flags), from_(from), cell_(And(hit, Set(DI(), lanes - 1))), bit_(Shl(Set(DI(), 1), cell_)) {}
   HWY_INLINE MI three() const { return TestBit(flags_.three, bit_); }
   HWY_INLINE MI behind() const { return TestBit(flags_.behind, bit_); }
   template <class T>
@@ -77,11 +51,9 @@ class AnyCell {
   /// To choose the second of two numbers.
 #if HWY_TARGET <= HWY_AVX3
   using Choice = VI;
-  HWY_INLINE Choice choice(MI second) const {
-    return VI{_mm512_mask_or_epi32(cell_.raw, second.raw, cell_.raw, _mm512_set1_epi32(CellBatch::most))};
-  }
+  HWY_INLINE Choice choice(MI second) const { return or_where(second, cell_, Set(DI(), CellBatch::most)); }
   HWY_INLINE VI number(const std::int32_t* first, const std::int32_t* second, Choice choice) const {
-    return VI{_mm512_permutex2var_epi32(Load(I(), first).raw, choice.raw, Load(I(), second).raw)};
+    return lookup_two(Load(DI(), first), Load(DI(), second), choice);
   }
 #else
   using Choice = MI;
@@ -105,7 +77,7 @@ class OneCell {
   static constexpr bool may_be_two = !is_three, may_be_three = is_three;
   HWY_INLINE OneCell(const CellParts& parts, int t) : parts_(parts), t_(t) {}
   HWY_INLINE MI behind() const {
-    const I d;
+    const DI d;
     return Set(d, -static_cast<std::int32_t>(parts_.behind >> t_ & 1)) < Zero(d);
   }
   template <class T>
@@ -136,9 +108,9 @@ class HitCrossing {
         square_(square),
         out_(out),
         counts_(counts),
-        pixel_step_(Set(I(), rect.width() << 16 | 1)),
-        center_pixel_(Set(
-            I(), (square.y0 + CellBatch::center - rect.y0) * rect.width() + square.x0 + CellBatch::center - rect.x0)) {}
+        pixel_step_(Set(DI(), rect.width() << 16 | 1)),
+        center_pixel_(Set(DI(), (square.y0 + CellBatch::center - rect.y0) * rect.width() + square.x0 +
+                                    CellBatch::center - rect.x0)) {}
 
   /// Whether hits of as many cells as lanes can be crossed together: where lanes find their cells' numbers by
   /// permuting.
@@ -149,7 +121,7 @@ class HitCrossing {
   /// cells may have.
   template <bool two, bool three>
   HWY_INLINE void drain(HitQueue& queue, int from) {
-    const I d;
+    const DI d;
     const CellFlags flags(parts_, from);
     std::size_t i = 0;
     for (; i + lanes <= queue.size; i += lanes)
@@ -162,7 +134,7 @@ class HitCrossing {
   HWY_INLINE void finish(HitQueue& queue, int from) {
     drain<two, three>(queue, from);
     const CellFlags flags(parts_, from);
-    if (queue.size > 0) cross(queue.hit, queue.size, AnyCell<two, three>(flags, from, Load(I(), queue.hit)));
+    if (queue.size > 0) cross(queue.hit, queue.size, AnyCell<two, three>(flags, from, Load(DI(), queue.hit)));
     queue.size = 0;
   }
 #endif
@@ -204,9 +176,9 @@ class HitCrossing {
   // part of it would take nearly all of them as arguments.
   template <class Cells>
   HWY_INLINE void cross(const std::int32_t* hits, std::size_t count, const Cells& cells) {
-    const I d;
-    const F df;
-    const auto number = [](int n) HWY_ATTR { return Set(I(), n); };
+    const DI d;
+    const DF df;
+    const auto number = [](int n) HWY_ATTR { return Set(DI(), n); };
     const VI hit = LoadU(d, hits);
     constexpr std::int32_t side_pair = (SegmentWindows::side - 1) * 0x10001;
     constexpr std::int32_t minus_center_pair = -CellBatch::center * 0x10000 | (-CellBatch::center & 0xffff);
@@ -257,7 +229,7 @@ class HitCrossing {
       const auto at_pixel = [&](const CellParts::Planes& planes) HWY_ATTR {
         const VI start = side([&](int k) { return planes[k].start; });
         const VI low = side([&](int k) { return planes[k].low; }), high = side([&](int k) { return planes[k].high; });
-        return start + products(low, place) + ShiftLeft<16>(products(high, place));
+        return start + dot_of_halves(low, place) + ShiftLeft<16>(dot_of_halves(high, place));
       };
       Crossing c;
       c.depth = at_pixel(parts_.depth);
@@ -276,7 +248,7 @@ class HitCrossing {
     };
     const Crossing first = crossing(first_side);
     Crossing second = crossing(second_side);
-    const VI pixel = products(place, pixel_step_) + center_pixel_;
+    const VI pixel = dot_of_halves(place, pixel_step_) + center_pixel_;
     // Nothing lies between the sides where a ray touches.
     if (HWY_UNLIKELY(!all_hit)) second.depth = IfThenElse(RebindMask(d, touching), first.depth, second.depth);
     const VI front = Min(first.depth, second.depth), back = Max(first.depth, second.depth);
@@ -305,7 +277,7 @@ class HitCrossing {
   };
   /// Exact signs for the uncertain lanes.
   HWY_NOINLINE void settle(unsigned uncertain, const std::int32_t* hits, Unsettled& unsettled) {
-    const F df;
+    const DF df;
     VF(&inner)[3] = unsettled.inner;
     MF &hits_cell = unsettled.hits_cell, &touching = unsettled.touching;
     alignas(64) float inners[3][lanes], hit[lanes], touches[lanes] = {};

@@ -28,8 +28,8 @@ struct CrossedSegments {
 /// The segments from `first` on whose scalars reach from below the last of their cell's surfaces to the first or above.
 HWY_NOINLINE inline CrossedSegments crossed_segments(const SegmentStream& stream, std::size_t first,
                                                      LatticeSurfaces& surfaces) {
-  const I d;
-  const F df;
+  const DI d;
+  const DF df;
   std::int32_t* const crossed = surfaces.numbers(stream.size - first);
   std::size_t count = 0;
   VI cells = Zero(d);

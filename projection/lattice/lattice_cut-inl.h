@@ -25,12 +25,12 @@ struct Doubles {
 };
 HWY_INLINE Doubles in_double(VI v) {
   const D d;
-  const hn::Half<I> half;
+  const hn::Half<DI> half;
   return {PromoteTo(d, LowerHalf(half, v)), PromoteTo(d, UpperHalf(half, v))};
 }
 HWY_INLINE Doubles in_double(VF v) {
   const D d;
-  const hn::Half<F> half;
+  const hn::Half<DF> half;
   return {PromoteTo(d, LowerHalf(half, v)), PromoteTo(d, UpperHalf(half, v))};
 }
 /// f(vectors), for both halves.
@@ -53,7 +53,7 @@ class SurfaceCuts {
         out_(out) {}
 
   HWY_NOINLINE void cut(const CrossedSegments& segments) {
-    const I d;
+    const DI d;
     for (std::size_t i = 0; i < segments.count; i += lanes) {
       const auto here = FirstN(d, segments.count - i);
       const VI segment = LoadU(d, segments.numbers + i);
@@ -62,7 +62,7 @@ class SurfaceCuts {
   }
 
  private:
-  using MI = hn::Mask<I>;
+  using MI = hn::Mask<DI>;
 
   /// Perspective: directions of the square's rays, at its first pixel, and from one to the next.
   struct Rays {
@@ -91,8 +91,8 @@ class SurfaceCuts {
   }
 
   HWY_INLINE void cut_lanes(VI segment, MI here) {
-    const I d;
-    const F df;
+    const DI d;
+    const DF df;
     const VI hit = GatherIndex(d, out_.hit.data(), segment);
     const VI cell = And(hit, Set(d, static_cast<std::int32_t>(LatticeSurfaces::most_cells) - 1));
     const VI front = GatherIndex(d, out_.front.data(), segment), back = GatherIndex(d, out_.back.data(), segment);
@@ -153,51 +153,51 @@ class SurfaceCuts {
 
   using Place = scene::SurfaceSet::Place;
   /// The lowest number of a crossing there.
-  HWY_INLINE VI place(Place p) const { return Set(I(), static_cast<std::int32_t>(p) * numbers_a_place_); }
+  HWY_INLINE VI place(Place p) const { return Set(DI(), static_cast<std::int32_t>(p) * numbers_a_place_); }
 
   /// The surfaces that the cells' segments may cross first.
   HWY_INLINE VF first_values(MI rises, VI cell) const {
-    return IfThenElse(RebindMask(F(), rises), number_of_cell(cells_.low, cell), number_of_cell(cells_.high, cell));
+    return IfThenElse(RebindMask(DF(), rises), number_of_cell(cells_.low, cell), number_of_cell(cells_.high, cell));
   }
 
   /// Whole numbers of 31 bits.
   static HWY_INLINE VI in_steps(Doubles v) {
-    const hn::Half<I> half;
-    return Combine(I(), DemoteTo(half, v.high), DemoteTo(half, v.low));
+    const hn::Half<DI> half;
+    return Combine(DI(), DemoteTo(half, v.high), DemoteTo(half, v.low));
   }
 
   /// LatticeMark::of(the crossing).
   HWY_INLINE VF mark_of(VI surface, MI rises, VI at, VI cosine) const {
-    const I d;
+    const DI d;
     const auto n = static_cast<std::int32_t>(set_.iso_values().size());
     const VI within = IfThenElse(rises, surface, Set(d, 2 * n - 1) - surface);
     const VI bits = Or(ShiftLeft<LatticeMark::cosine_bits>(at + within), cosine);
-    return BitCast(F(), bits + Set(d, static_cast<std::int32_t>(LatticeMark::first_bits)));
+    return BitCast(DF(), bits + Set(d, static_cast<std::int32_t>(LatticeMark::first_bits)));
   }
 
   /// The lower bits of the lanes' marks.
   HWY_INLINE VI cosine_code(VI hit, VI cell) const {
-    const I d;
-    const F df;
+    const DI d;
+    const DF df;
     if (!perspective_) return number_of_cell(cells_.cosine_code, cell);
     const VF codes = cosine_of_rays(hit, cell) * Set(df, static_cast<float>(LatticeMark::cosines));
     return ConvertTo(d, codes + Set(df, 0.5f));
   }
 
   static HWY_INLINE VF in_float(Doubles v) {
-    const hn::Half<F> half;
-    return Combine(F(), DemoteTo(half, v.high), DemoteTo(half, v.low));
+    const hn::Half<DF> half;
+    return Combine(DF(), DemoteTo(half, v.high), DemoteTo(half, v.low));
   }
   static HWY_INLINE Doubles doubles_of_cells(const double* numbers, VI cell) {
     const D d;
     const hn::RebindToSigned<D> di;
-    const hn::Half<I> half;
+    const hn::Half<DI> half;
     return {GatherIndex(d, numbers, PromoteTo(di, LowerHalf(half, cell))),
             GatherIndex(d, numbers, PromoteTo(di, UpperHalf(half, cell)))};
   }
 
   HWY_INLINE VF cosine_of_rays(VI hit, VI cell) const {
-    const I d;
+    const DI d;
     const VI side = Set(d, SegmentWindows::side - 1);
     const Doubles column = in_double(And(ShiftRight<Hit::column_bit>(hit), side));
     const Doubles row = in_double(And(ShiftRight<Hit::row_bit>(hit), side));

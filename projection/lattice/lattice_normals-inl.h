@@ -121,8 +121,8 @@ HWY_NOINLINE inline unsigned find_surfaces(const LatticeView& view, const CellBa
   // Rounding may move a scalar over a value: a float's last place (64 steps at most), the value's own, and a gradient's
   // over the square.
   constexpr float margin = 256;
-  const F df;
-  const I d;
+  const DF df;
+  const DI d;
   const std::span<const float> values = view.projected.iso->surfaces->on_lattice();
   unsigned with = 0;
   for (int from = 0; from < batch.size; from += lanes) {

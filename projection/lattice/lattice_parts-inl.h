@@ -71,9 +71,9 @@ struct CellParts {
 /// table[front faces], 16 numbers.
 HWY_INLINE VI by_front(const std::int32_t* table, VI front) {
   if constexpr (lanes == 16)
-    return TableLookupLanes(Load(I(), table), IndicesFromVec(I(), front));
+    return TableLookupLanes(Load(DI(), table), IndicesFromVec(DI(), front));
   else
-    return GatherIndex(I(), table, front);
+    return GatherIndex(DI(), table, front);
 }
 
 /// Orders the parts of a batch's cells [from, from + lanes).
@@ -82,14 +82,14 @@ class PartOrder {
   HWY_INLINE PartOrder(const CellBatch& batch, int from, CellParts& parts)
       : batch_(batch),
         from_(from),
-        front_(And(BitCast(I(), Load(hn::RebindToUnsigned<I>(), batch.bits + from)), Set(I(), 15))),
+        front_(And(BitCast(DI(), Load(hn::RebindToUnsigned<DI>(), batch.bits + from)), Set(DI(), 15))),
         parts_(parts) {}
 
   /// Sets `three` and `behind`, to be zero before the first. Returns the cells that have candidate pixels, a bit each.
   HWY_INLINE unsigned shapes() const {
-    const I d;
+    const DI d;
     const auto is = [&](const std::int32_t* table) HWY_ATTR { return by_front(table, front_) != Zero(d); };
-    const auto bits = [&](hn::Mask<I> mask) HWY_ATTR { return lane_bits(RebindMask(F(), mask)) << from_; };
+    const auto bits = [&](hn::Mask<DI> mask) HWY_ATTR { return lane_bits(RebindMask(DF(), mask)) << from_; };
     parts_.three |= bits(is(part_table.three));
     parts_.behind |= bits(is(part_table.behind));
     const auto columns = Load(d, batch_.x0 + from_) < Load(d, batch_.x1 + from_);
@@ -108,10 +108,10 @@ class PartOrder {
     if constexpr (!per_cell) planes(face, batch_.scalar, parts_.scalar);
     if constexpr (perspective) {
       planes(face, batch_.weight, parts_.weight);
-      for (int k = 0; k < 4; ++k) Store(number_of(face[k], batch_.depth_c), I(), parts_.depth_c[k] + from_);
+      for (int k = 0; k < 4; ++k) Store(number_of(face[k], batch_.depth_c), DI(), parts_.depth_c[k] + from_);
       if constexpr (!per_cell)
         for (int k = 0; k < 4; ++k)
-          Store(number_of(face[k], reinterpret_cast<const std::int32_t(*)[CellBatch::most]>(batch_.scalar_c)), I(),
+          Store(number_of(face[k], reinterpret_cast<const std::int32_t(*)[CellBatch::most]>(batch_.scalar_c)), DI(),
                 parts_.scalar_c[k] + from_);
     }
   }
@@ -127,7 +127,7 @@ class PartOrder {
   }
   template <int k, bool inner>
   HWY_INLINE void edge(const std::int32_t* part, CellParts::Edge& to) const {
-    const F df;
+    const DF df;
     const VI which = by_front(part, front_);
     // Where there is none, surely not positive.
     VF start = Set(df, -4.0f), x = Zero(df), y = x;
@@ -141,29 +141,29 @@ class PartOrder {
   template <int k, bool inner, int e>
   HWY_INLINE void edge_if(VI which, VF& start, VF& x, VF& y) const {
     if constexpr (occurs(inner ? part_table.inner[k] : part_table.outline[k], e)) {
-      const F df;
-      const MF is = RebindMask(df, which == Set(I(), e));
+      const DF df;
+      const MF is = RebindMask(df, which == Set(DI(), e));
       start = IfThenElse(is, Load(df, batch_.edge[e] + from_), start);
       x = IfThenElse(is, Load(df, batch_.edge_x[e] + from_), x);
       y = IfThenElse(is, Load(df, batch_.edge_y[e] + from_), y);
     }
   }
   HWY_INLINE VI number_of(VI face, const std::int32_t (*all)[CellBatch::most]) const {
-    const I d;
+    const DI d;
     VI v = Load(d, all[0] + from_);
     for (int f = 1; f < 4; ++f) v = IfThenElse(face == Set(d, f), Load(d, all[f] + from_), v);
     return v;
   }
   HWY_INLINE void planes(const VI (&face)[4], const CellBatch::FacePlanes& all, CellParts::Planes& to) const {
-    const I d;
+    const DI d;
     for (int k = 0; k < 4; ++k) {
       const VI x = number_of(face[k], all.x), y = number_of(face[k], all.y);
       Store(number_of(face[k], all.start), d, to[k].start + from_);
       const VI low = Set(d, 0xffff);
       Store(Or(And(x, low), ShiftLeft<16>(y)), d, to[k].low + from_);
       // The lower part is signed: where it is negative the upper one is one more.
-      const auto high = [](VI v) HWY_ATTR { return v + Set(I(), 0x8000); };
-      Store(Or(BitCast(d, ShiftRight<16>(BitCast(hn::RebindToUnsigned<I>(), high(x)))), AndNot(low, high(y))), d,
+      const auto high = [](VI v) HWY_ATTR { return v + Set(DI(), 0x8000); };
+      Store(Or(BitCast(d, ShiftRight<16>(BitCast(hn::RebindToUnsigned<DI>(), high(x)))), AndNot(low, high(y))), d,
             to[k].high + from_);
     }
   }

@@ -15,18 +15,25 @@
 #include "projection/edge_sign.hpp"
 #include "projection/lattice/lattice_setup-inl.h"
 #include "projection/lattice/pack_lanes-inl.h"
+#include "scene/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 #if HWY_TARGET != HWY_SCALAR
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
 
-using F = hn::ScalableTag<float>;
-using I = hn::RebindToSigned<F>;
-using VF = hn::Vec<F>;
-using VI = hn::Vec<I>;
-using MF = hn::Mask<F>;
-constexpr int lanes = static_cast<int>(MaxLanes(F()));
+using scene::HWY_NAMESPACE::DF;
+using scene::HWY_NAMESPACE::DI;
+using scene::HWY_NAMESPACE::dot_of_halves;
+using scene::HWY_NAMESPACE::greater_where;
+using scene::HWY_NAMESPACE::least_magnitude;
+using scene::HWY_NAMESPACE::lookup_two;
+using scene::HWY_NAMESPACE::MF;
+using scene::HWY_NAMESPACE::MI;
+using scene::HWY_NAMESPACE::or_where;
+using scene::HWY_NAMESPACE::VF;
+using scene::HWY_NAMESPACE::VI;
+constexpr int lanes = static_cast<int>(MaxLanes(DF()));
 
 /// Depth (steps) and scalar where the lanes' rays pass one side of the cell.
 struct Crossing {
@@ -37,8 +44,8 @@ struct Crossing {
 /// Appends the lanes of `hit`. Packed in registers and stored as whole vectors: a compressing store is slower on
 /// several processors.
 HWY_INLINE void append(MF hit, VI pixel, VI front, VI back, VF scalar_front, VF scalar_back, SegmentStream& out) {
-  const I d;
-  const F df;
+  const DI d;
+  const DF df;
   const LanePacker pack(RebindMask(d, hit));
   StoreU(pack(pixel), d, out.pixel.data() + out.size);
   StoreU(pack(front), d, out.front.data() + out.size);
@@ -50,7 +57,7 @@ HWY_INLINE void append(MF hit, VI pixel, VI front, VI back, VF scalar_front, VF 
 
 /// The same of what SegmentStream::hit keeps, before append() of the lanes' segments.
 HWY_NOINLINE inline void append_hits(MF hit, VI hits, SegmentStream& out) {
-  const I d;
+  const DI d;
   const LanePacker pack(RebindMask(d, hit));
   StoreU(pack(hits), d, out.hit.data() + out.size);
 }
@@ -137,13 +144,13 @@ inline bool settle_pixel(const LatticeView& view, const CellBatch& batch, int t,
 /// The lanes of a mask, a bit each.
 HWY_INLINE unsigned lane_bits(MF mask) {
   std::uint8_t bits[8] = {0};
-  StoreMaskBits(F(), mask, bits);
+  StoreMaskBits(DF(), mask, bits);
   return bits[0] | static_cast<unsigned>(bits[1]) << 8;
 }
 
 /// The faces' planes as a ray meets one of them: 1 / weight, and with it depth and scalar behind a corner.
 HWY_INLINE VF inverse_weight(VI weight) {
-  const F d;
+  const DF d;
   const VF w = ConvertTo(d, weight);
   // One Newton step makes the estimate (11 to 14 bits) right to float rounding.
   const VF estimate = ApproximateReciprocal(w);

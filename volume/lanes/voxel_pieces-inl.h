@@ -331,8 +331,7 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
     std::size_t begin[4] = {0, 0, 0, 0};
     for (std::size_t k = 0; k < 3; ++k) {
       begin[k + 1] = begin[k] + CountTrue(d, there[k]);
-      const auto keep = [&](VF v, float* to)
-                            HWY_ATTR { StoreU(VF{_mm512_maskz_compress_ps(there[k].raw, v.raw)}, d, to + begin[k]); };
+      const auto keep = [&](VF v, float* to) HWY_ATTR { StoreU(Compress(v, there[k]), d, to + begin[k]); };
       keep(pieces[k].s_0, s_0), keep(pieces[k].s_mid, s_mid), keep(pieces[k].s_1, s_1);
       keep(pieces[k].p_3, p_3), keep(pieces[k].length, length);
     }
@@ -354,11 +353,10 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
       for (int c = 0; c < 8; ++c) Store(parts[c], d, light[c] + n_0);
     }
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto part = [&](int c)
-                            HWY_ATTR { return VF{_mm512_maskz_expandloadu_ps(there[k].raw, light[c] + begin[k])}; };
+      const auto part = [&](int c) HWY_ATTR { return expand_load(there[k], light[c] + begin[k], zero); };
       const VF through = progress.transmittance;
       progress.alpha = MulAdd(through, part(0), progress.alpha);
-      progress.transmittance = through * VF{_mm512_mask_expandloadu_ps(one.raw, there[k].raw, light[1] + begin[k])};
+      progress.transmittance = through * expand_load(there[k], light[1] + begin[k], one);
       progress.optical_depth = progress.optical_depth + part(2);
       progress.red = MulAdd(through, part(3), progress.red);
       progress.green = MulAdd(through, part(4), progress.green);

@@ -26,8 +26,14 @@ namespace hn = hwy::HWY_NAMESPACE;
 namespace CL = integrals::HWY_NAMESPACE;
 using CL::DF;
 using CL::DI;
+using CL::lookup_two;
 using CL::MF;
+using CL::truncated;
 using CL::VF;
+#if HWY_TARGET <= HWY_AVX3
+using scene::HWY_NAMESPACE::expand_load;
+using scene::HWY_NAMESPACE::load_where;
+#endif
 using CL::VI;
 
 /// Samples at a voxel's corners: a in the front slice, b in the back one; first digit along i, second along j.
@@ -37,49 +43,43 @@ struct Corners {
 
 #if HWY_TARGET <= HWY_AVX3
 
+HWY_INLINE MF within(VF v, VF low, VF high) { return And(v >= low, v < high); }
+
 /// 6 columns and 5 rows a slice, in two registers: sample (i, j) is element i + 6 j.
 class SmallWindow {
  public:
   static constexpr int columns = 6, rows = 5;
 
   HWY_INLINE SmallWindow(const float* a, const float* b, std::ptrdiff_t pitch) {
-    load(a, pitch, a0_, a1_);
-    load(b, pitch, b0_, b1_);
+    load(a, pitch, a_0_, a_1_);
+    load(b, pitch, b_0_, b_1_);
   }
   /// Every sample is in [low, high).
   HWY_INLINE bool all_in(float low, float high) const {
-    const __m512 l = _mm512_set1_ps(low), h = _mm512_set1_ps(high);
-    const auto in = [&](__mmask16 used, __m512 s) HWY_ATTR {
-      return _mm512_mask_cmp_ps_mask(_mm512_mask_cmp_ps_mask(used, s, l, _CMP_GE_OQ), s, h, _CMP_LT_OQ);
-    };
-    const unsigned low_half = in(0xFFFF, a0_) & in(0xFFFF, b0_), high_half = in(0x3FFF, a1_) & in(0x3FFF, b1_);
-    return low_half == 0xFFFF && high_half == 0x3FFF;
+    const VF l = Set(DF(), low), h = Set(DF(), high);
+    return AllTrue(DF(), And(And(within(a_0_, l, h), within(b_0_, l, h)), And(within(a_1_, l, h), within(b_1_, l, h))));
   }
-  HWY_INLINE VI index(VF i, VF j) const {
-    return VI{_mm512_cvttps_epi32(_mm512_fmadd_ps(j.raw, _mm512_set1_ps(columns), i.raw))};
-  }
-  HWY_INLINE VF front(VI index) const { return VF{_mm512_permutex2var_ps(a0_, index.raw, a1_)}; }
-  HWY_INLINE VF back(VI index) const { return VF{_mm512_permutex2var_ps(b0_, index.raw, b1_)}; }
-  HWY_INLINE Corners corners(VI index) const {
-    const __m512i i00 = index.raw, i10 = _mm512_add_epi32(i00, _mm512_set1_epi32(1)),
-                  i01 = _mm512_add_epi32(i00, _mm512_set1_epi32(columns)),
-                  i11 = _mm512_add_epi32(i00, _mm512_set1_epi32(columns + 1));
-    const auto a = [&](__m512i i) HWY_ATTR { return VF{_mm512_permutex2var_ps(a0_, i, a1_)}; };
-    const auto b = [&](__m512i i) HWY_ATTR { return VF{_mm512_permutex2var_ps(b0_, i, b1_)}; };
-    return {a(i00), a(i10), a(i01), a(i11), b(i00), b(i10), b(i01), b(i11)};
+  HWY_INLINE VI index(VF i, VF j) const { return truncated(MulAdd(j, Set(DF(), columns), i)); }
+  HWY_INLINE VF front(VI index) const { return lookup_two(a_0_, a_1_, index); }
+  HWY_INLINE VF back(VI index) const { return lookup_two(b_0_, b_1_, index); }
+  HWY_INLINE Corners corners(VI i_00) const {
+    const DI d;
+    const VI i_10 = i_00 + Set(d, 1), i_01 = i_00 + Set(d, columns), i_11 = i_00 + Set(d, columns + 1);
+    return {front(i_00), front(i_10), front(i_01), front(i_11), back(i_00), back(i_10), back(i_01), back(i_11)};
   }
 
  private:
-  static HWY_INLINE void load(const float* s, std::ptrdiff_t pitch, __m512& low, __m512& high) {
+  /// The last two lanes, which nothing looks up, hold samples too, as all_in() looks at all.
+  static HWY_INLINE void load(const float* s, std::ptrdiff_t pitch, VF& low, VF& high) {
     const float *const r1 = s + pitch, *const r2 = r1 + pitch, *const r3 = r2 + pitch, *const r4 = r3 + pitch;
-    low = _mm512_maskz_loadu_ps(0x003F, s);
-    low = _mm512_mask_loadu_ps(low, 0x0FC0, r1 - 6);
-    low = _mm512_mask_loadu_ps(low, 0xF000, r2 - 12);
-    high = _mm512_maskz_loadu_ps(0x0003, r2 + 4);
-    high = _mm512_mask_loadu_ps(high, 0x00FC, r3 - 2);
-    high = _mm512_mask_loadu_ps(high, 0x3F00, r4 - 8);
+    low = load_where(0x003F, s, Zero(DF()));
+    low = load_where(0x0FC0, r1 - 6, low);
+    low = load_where(0xF000, r2 - 12, low);
+    high = load_where(0x0003, r2 + 4, low);
+    high = load_where(0x00FC, r3 - 2, high);
+    high = load_where(0x3F00, r4 - 8, high);
   }
-  __m512 a0_, a1_, b0_, b1_;
+  VF a_0_, a_1_, b_0_, b_1_;
 };
 
 /// 8 columns and 8 rows a slice, in four registers: sample (i, j) is element i + 8 j.
@@ -94,36 +94,29 @@ class LargeWindow {
     }
   }
   HWY_INLINE bool all_in(float low, float high) const {
-    const __m512 l = _mm512_set1_ps(low), h = _mm512_set1_ps(high);
-    unsigned all = 0xFFFF;
-    for (int n = 0; n < 4; ++n) {
-      all &= _mm512_mask_cmp_ps_mask(_mm512_cmp_ps_mask(a_[n], l, _CMP_GE_OQ), a_[n], h, _CMP_LT_OQ);
-      all &= _mm512_mask_cmp_ps_mask(_mm512_cmp_ps_mask(b_[n], l, _CMP_GE_OQ), b_[n], h, _CMP_LT_OQ);
-    }
-    return all == 0xFFFF;
+    const VF l = Set(DF(), low), h = Set(DF(), high);
+    MF all = And(within(a_[0], l, h), within(b_[0], l, h));
+    for (int n = 1; n < 4; ++n) all = And(all, And(within(a_[n], l, h), within(b_[n], l, h)));
+    return AllTrue(DF(), all);
   }
-  HWY_INLINE VI index(VF i, VF j) const {
-    return VI{_mm512_cvttps_epi32(_mm512_fmadd_ps(j.raw, _mm512_set1_ps(columns), i.raw))};
-  }
-  HWY_INLINE VF front(VI index) const { return find(a_, index.raw); }
-  HWY_INLINE VF back(VI index) const { return find(b_, index.raw); }
-  HWY_INLINE Corners corners(VI index) const {
-    const __m512i i00 = index.raw, i10 = _mm512_add_epi32(i00, _mm512_set1_epi32(1)),
-                  i01 = _mm512_add_epi32(i00, _mm512_set1_epi32(columns)),
-                  i11 = _mm512_add_epi32(i00, _mm512_set1_epi32(columns + 1));
-    return {find(a_, i00), find(a_, i10), find(a_, i01), find(a_, i11),
-            find(b_, i00), find(b_, i10), find(b_, i01), find(b_, i11)};
+  HWY_INLINE VI index(VF i, VF j) const { return truncated(MulAdd(j, Set(DF(), columns), i)); }
+  HWY_INLINE VF front(VI index) const { return find(a_, index); }
+  HWY_INLINE VF back(VI index) const { return find(b_, index); }
+  HWY_INLINE Corners corners(VI i_00) const {
+    const DI d;
+    const VI i_10 = i_00 + Set(d, 1), i_01 = i_00 + Set(d, columns), i_11 = i_00 + Set(d, columns + 1);
+    return {front(i_00), front(i_10), front(i_01), front(i_11), back(i_00), back(i_10), back(i_01), back(i_11)};
   }
 
  private:
-  static HWY_INLINE __m512 two_rows(const float* s, std::ptrdiff_t pitch) {
-    return _mm512_mask_loadu_ps(_mm512_maskz_loadu_ps(0x00FF, s), 0xFF00, s + pitch - 8);
+  static HWY_INLINE VF two_rows(const float* s, std::ptrdiff_t pitch) {
+    return load_where(0xFF00, s + pitch - 8, load_where(0x00FF, s, Zero(DF())));
   }
-  static HWY_INLINE VF find(const __m512 (&t)[4], __m512i i) {
-    const __m512 low = _mm512_permutex2var_ps(t[0], i, t[1]), high = _mm512_permutex2var_ps(t[2], i, t[3]);
-    return VF{_mm512_mask_blend_ps(_mm512_test_epi32_mask(i, _mm512_set1_epi32(32)), low, high)};
+  static HWY_INLINE VF find(const VF (&t)[4], VI i) {
+    return IfThenElse(RebindMask(DF(), TestBit(i, Set(DI(), 32))), lookup_two(t[2], t[3], i),
+                      lookup_two(t[0], t[1], i));
   }
-  __m512 a_[4], b_[4];
+  VF a_[4], b_[4];
 };
 
 #endif  // HWY_TARGET <= HWY_AVX3
