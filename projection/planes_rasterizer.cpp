@@ -310,7 +310,7 @@ HWY_INLINE Segments<values> segments_between(const CellLanes& lanes, hn::Mask<D>
     s.value_back[v] = IfThenElse(plus_first, at_minus, at_plus);
   }
   s.hit = And(hit, And(s.back > near_depth, s.front < far_depth));
-  const auto clipped = And(s.hit, Or(s.front<near_depth, s.back> far_depth));
+  const auto clipped = And(s.hit, Or(s.back > far_depth, s.front < near_depth));
   if (HWY_UNLIKELY(!AllFalse(d, clipped))) {
     const V front = Max(s.front, near_depth), back = Min(s.back, far_depth);
     for (int v = 0; v < values; ++v) {

@@ -346,7 +346,7 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds,
   const V zero = Zero(d);
   const Corners corners(view.vertices.data(), tets, square_x, square_y);
   const V(&x)[4] = corners.x, (&y)[4] = corners.y, nearest = corners.nearest, farthest = corners.farthest;
-  M irregular = Or(nearest<number(bounds.near), farthest> number(bounds.far));
+  M irregular = Or(farthest > number(bounds.far), nearest < number(bounds.near));
   V order[4];
   for (int i = 0; i < 4; ++i) order[i] = perspective ? Neg(corners.w[i]) : corners.z[i];
   if constexpr (perspective) {

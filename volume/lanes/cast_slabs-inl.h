@@ -28,32 +28,40 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
+/// What the packets of a tile are cast through and into.
+template <class Lookup>
+struct TileCast {
+  const ChunkView& chunk;
+  const Lookup& lookup;
+  CurrentInterval& current;
+  TileRays& rays;
+  TileCounts& counts;
+};
+
 /// One packet, or some lanes of it, on its way through a chunk.
 template <bool cell_data, class Surfaces, class Window, class Lookup>
 class PacketCast {
  public:
-  HWY_INLINE PacketCast(const ChunkView& chunk, const Lookup& lookup, const PacketSlabs& slabs, const Lanes& lanes,
-                        VF before, CurrentInterval& current, TileCounts& counts)
-      : chunk_(chunk),
-        frame_(chunk.frame),
-        lookup_(lookup),
+  /// `before` is the transmittance up to the chunk, `seen` whether there was light.
+  HWY_INLINE PacketCast(const TileCast<Lookup>& tile, const PacketSlabs& slabs, const Lanes& lanes, VF before, MF seen)
+      : chunk_(tile.chunk),
+        frame_(tile.chunk.frame),
         slabs_(slabs),
         lanes_(lanes),
-        mirrored_(lanes, std::is_same_v<Window, GatherWindow> ? static_cast<int>(chunk.block.pitch) : Window::columns),
-        current_(current),
-        counts_(counts),
-        surfaces_(chunk.frame),
+        mirrored_(lanes, std::is_same_v<Window, GatherWindow> ? static_cast<int>(chunk_.block.pitch) : Window::columns),
+        current_(tile.current),
+        packet_{frame_, chunk_.axes, tile.lookup, lanes_, current_},
+        rays_{start(), {Set(DF(), -1.0f), seen, Zero(DF()), Zero(DF())}, tile.counts},
+        surfaces_(frame_),
         before_(before),
-        has_steps_(chunk.frame.error_bound != nullptr && !chunk.frame.error_bound->step.empty()) {
-    const DF d;
-    const VF zero = Zero(d);
-    progress_ = {zero, Set(d, 1.0f), zero, zero, zero, zero};
-    crossings_ = zero;
+        has_steps_(frame_.error_bound != nullptr && !frame_.error_bound->step.empty()),
+        crossings_(Zero(DF())) {
     find_ends();
   }
+  PacketCast(const PacketCast&) = delete;  // packet_ refers to lanes_
+  PacketCast& operator=(const PacketCast&) = delete;
 
-  Progress progress_;
-  RayNotes notes_;
+  [[nodiscard]] HWY_INLINE const RayState& rays() const { return rays_; }
 
   HWY_INLINE void run(const Reach& reach) {
     const DF d;
@@ -61,18 +69,23 @@ class PacketCast {
     GroupWork work{};
     for (int n = 0; n < chunk_.box.slabs; n += SlabLines::most) {
       if (HWY_UNLIKELY(tallies)) {
-        if (n > 0) work.add_to(chunk_, lanes_, reach, n, progress_, counts_);
-        work = {n, lanes_.k_out, progress_.optical_depth, counts_.samples};
+        if (n > 0) work.add_to(chunk_, lanes_, reach, n, rays_.light, rays_.counts);
+        work = {n, lanes_.k_out, rays_.light.optical_depth, rays_.counts.samples};
       }
       if (!go_on(n)) break;
       if (frame_.some_hidden && !any_visible_ahead(n)) continue;
       group(n, std::min(n + SlabLines::most, chunk_.box.slabs));
     }
-    if (HWY_UNLIKELY(tallies)) work.add_to(chunk_, lanes_, reach, chunk_.box.slabs, progress_, counts_);
-    counts_.voxels_visited += static_cast<std::uint64_t>(GetLane(SumOfLanes(d, crossings_)));
+    if (HWY_UNLIKELY(tallies)) work.add_to(chunk_, lanes_, reach, chunk_.box.slabs, rays_.light, rays_.counts);
+    rays_.counts.voxels_visited += static_cast<std::uint64_t>(GetLane(SumOfLanes(d, crossings_)));
   }
 
  private:
+  static HWY_INLINE Progress start() {
+    const VF zero = Zero(DF());
+    return {zero, Set(DF(), 1.0f), zero, zero, zero, zero};
+  }
+
   /// The slabs that all live lanes cross from plane to plane: [plain_from_, plain_to_).
   HWY_INLINE void find_ends() {
     const DF d;
@@ -86,7 +99,7 @@ class PacketCast {
   /// Rays that let nothing through any more are done. False if all are, or have left the volume.
   HWY_INLINE bool go_on(int n) {
     const DF d;
-    const MF dark = And(mirrored_.live, before_ * progress_.transmittance < Set(d, frame_.least_transmittance));
+    const MF dark = And(mirrored_.live, before_ * rays_.light.transmittance < Set(d, frame_.least_transmittance));
     if (!AllFalse(d, dark)) {
       lanes_.k_out = IfThenElse(dark, Set(d, -1.0f), lanes_.k_out);
       find_ends();
@@ -112,7 +125,8 @@ class PacketCast {
   HWY_INLINE WindowPlace place_of(int n) const {
     const float* const samples = chunk_.block.slice(0);
     const float* const front = samples + slabs_.front[n];
-    return {front, cell_data ? front : samples + slabs_.back[n], slabs_.origin[n], slabs_.border[n] == 0};
+    return {front, cell_data ? front : samples + slabs_.back[n], slabs_.origin[n], chunk_.block.pitch,
+            slabs_.border[n] == 0};
   }
 
   /// Lanes in slab n.
@@ -137,6 +151,7 @@ class PacketCast {
 
   HWY_INLINE void group(int begin, int end) {
     SlabLines lines;
+    lines.first = begin;
     Kind kinds[SlabLines::most + 1];
     for (int n = begin; n < end; ++n) {
       Kind& kind = kinds[n - begin];
@@ -154,9 +169,9 @@ class PacketCast {
         MirroredLanes gathered = mirrored_;
         if (std::is_same_v<Window, GatherWindow>) gathered.live = here(n);
         const MirroredLanes& found = std::is_same_v<Window, GatherWindow> ? gathered : mirrored_;
-        find_line(found, window, place, chunk_.block.pitch, n, n - begin, lines, crossings_);
+        find_line(found, window, place, n, lines, crossings_);
         if (n + 1 == end || kind_of(n + 1) != Kind::lines || frame_.some_clear)
-          find_back(found, window, place, chunk_.block.pitch, n, n - begin, lines);
+          find_back(found, window, place, n, lines);
       }
     }
     kinds[end - begin] = Kind::empty;
@@ -164,7 +179,7 @@ class PacketCast {
       const int m = n - begin;
       if (n == begin + SlabLines::most / 2 && !go_on(n)) return;
       if (kinds[m] == Kind::lines) {
-        if constexpr (!cell_data) n += add_lines(lines, m, n, kinds[m + 1] == Kind::lines && m % 2 == 0);
+        if constexpr (!cell_data) n += add_lines(lines, n, kinds[m + 1] == Kind::lines && m % 2 == 0);
       } else {
         if (kinds[m] == Kind::parts) add_parts(n);
         ++n;
@@ -177,9 +192,10 @@ class PacketCast {
     return {keep(line.s_0), keep(line.s_1), keep(line.span), keep(line.shift), keep(line.rho)};
   }
 
-  /// Adds slab n, in place m of the lines, or n and the next if `two` and they may be taken as one: how many.
-  HWY_INLINE int add_lines(const SlabLines& lines, int m, int n, bool two) {
+  /// Adds slab n, or n and the next if `two` and they may be taken as one: how many.
+  HWY_INLINE int add_lines(const SlabLines& lines, int n, bool two) {
     const DF d;
+    const int m = n - lines.first;
     const VF half = Set(d, 0.5f);
     const bool plain = all_live_ && plain_from_ <= static_cast<float>(n) && static_cast<float>(n + 2) <= plain_to_;
     const UniformLookup& table = current_.uniform();
@@ -226,16 +242,14 @@ class PacketCast {
     const bool uniform = current_.around(low, high, live) || (has_steps_ && on_one_side(n));
     if (HWY_LIKELY(uniform)) {
       if (current_.clear()) return 1;
-      const VF spread = length * a.rho * MulAdd(Abs(a.span), Set(d, 0.25f), a.rho);
       const VF scale = MulAdd(length, Set(d, table.shadow_bound), Set(d, 10 * table.product_bound));
-      const VF dimmed = length * Set(d, table.dimming_bound / 9) * (length * a.rho);
-      if (HWY_LIKELY(AllFalse(d, MulAdd(spread, scale, dimmed) > Set(d, 1.0f)))) {
+      if (HWY_LIKELY(AllFalse(d, MulAdd(spread_of(a, length), scale, dimming_of(a, length)) > Set(d, 1.0f)))) {
         add_uniform_line(a.s_0, a.s_1, a.span, a.shift, length, n);
         return 1;
       }
-      if (!table.independent && add_bent_line(lines, a, m, live, length, spread, dimmed, n)) return 1;
+      if (!table.independent && add_bent_line(lines, a, n, live, length)) return 1;
     }
-    add_slowly(lines, a, m, n, live, length);
+    add_slowly(lines, a, n, live, length);
     return 1;
   }
 
@@ -259,15 +273,24 @@ class PacketCast {
     return all_held();
   }
 
+  /// What the field may add to products of its changes over a slab, where it leaves the line.
+  static HWY_INLINE VF spread_of(const Line& line, VF length) {
+    return length * line.rho * MulAdd(Abs(line.span), Set(DF(), 0.25f), line.rho);
+  }
+  /// What the front may dim the back by more or less than along the line, of the tolerance.
+  HWY_INLINE VF dimming_of(const Line& line, VF length) const {
+    return length * Set(DF(), current_.uniform().dimming_bound / 9) * (length * line.rho);
+  }
+
   /// A slab too rough for a line: a line, and what the field's bend adds to it to first order in the slab's optical
   /// depth. False, and nothing added, if what is left may be too much. Where extinction k and colour c are linear in
   /// the field, light is more by k' c' times the product of its rests, and less by c' k^2 times their covariance with
   /// the way, as the front dims the back.
-  HWY_INLINE bool add_bent_line(const SlabLines& lines, const Line& line, int m, MF live, VF length, VF spread,
-                                VF dimmed, int n) {
+  HWY_INLINE bool add_bent_line(const SlabLines& lines, const Line& line, int n, MF live, VF length) {
     const DF d;
     const UniformLookup& table = current_.uniform();
-    const Bend found = bend_of(lines, m, line);
+    const VF spread = spread_of(line, length), dimmed = dimming_of(line, length);
+    const Bend found = bend_of(lines, n - lines.first, line);
     const auto kept = [&](VF v) HWY_ATTR { return IfThenElseZero(live, v); };
     const VF product = kept(found.product), covariance = kept(found.covariance), odd = kept(found.odd);
     const VF depth = length * Set(d, table.extinction), span = Abs(line.span);
@@ -280,30 +303,29 @@ class PacketCast {
     const VF middle = MulAdd(Set(d, 0.5f), line.span, line.s_0 - Set(d, table.row[LaneTable::base]));
     const VF here = length * MulAdd(Set(d, slope), middle, Set(d, 2 * table.row[LaneTable::half_extinction]));
     const VF more = NegMulAdd(here * here, covariance, length * Set(d, slope) * product);
-    const VF seen = progress_.transmittance * more;
-    progress_.red = MulAdd(seen, Set(d, table.row[LaneTable::red_slope]), progress_.red);
-    progress_.green = MulAdd(seen, Set(d, table.row[LaneTable::green_slope]), progress_.green);
-    progress_.blue = MulAdd(seen, Set(d, table.row[LaneTable::blue_slope]), progress_.blue);
+    const VF seen = rays_.light.transmittance * more;
+    rays_.light.red = MulAdd(seen, Set(d, table.row[LaneTable::red_slope]), rays_.light.red);
+    rays_.light.green = MulAdd(seen, Set(d, table.row[LaneTable::green_slope]), rays_.light.green);
+    rays_.light.blue = MulAdd(seen, Set(d, table.row[LaneTable::blue_slope]), rays_.light.blue);
     add_uniform_line(line.s_0, line.s_1, line.span, line.shift, length, n);
     return true;
   }
 
   HWY_INLINE void add_uniform_line(VF s_0, VF s_1, VF span, VF shift, VF length, int n) {
     const DF d;
-    const VF before = progress_.transmittance;
-    CL::lanes::add_piece<false>(current_.uniform(), 0, s_0 + shift, s_1 + shift, span, length, progress_);
-    counts_.samples += live_count_;
-    if (HWY_UNLIKELY(!AllTrue(d, notes_.seen))) note_first_light(progress_, Set(d, static_cast<float>(n)), notes_);
+    const VF before = rays_.light.transmittance;
+    CL::lanes::add_piece<false>(current_.uniform(), 0, s_0 + shift, s_1 + shift, span, length, rays_.light);
+    rays_.counts.samples += live_count_;
+    if (HWY_UNLIKELY(!AllTrue(d, rays_.notes.seen)))
+      note_first_light(rays_.light, Set(d, static_cast<float>(n)), rays_.notes);
     if (HWY_UNLIKELY(current_.uniform().ramp > 0))
-      note_ramps(current_.uniform(), length, before, progress_.transmittance, notes_);
+      note_ramps(current_.uniform(), length, before, rays_.light.transmittance, rays_.notes);
   }
 
   /// A slab that crosses knots, or is rough.
-  HWY_NOINLINE void add_slowly(const SlabLines& lines, const Line& line, int m, int n, MF live, VF length) {
-    const MF apart = cast_mixed(frame_, lookup_, line, live, Set(DF(), static_cast<float>(n)), length, current_,
-                                progress_, notes_, counts_);
-    if (AllFalse(DF(), apart)) return;
-    cast_stretches(frame_, lookup_, lanes_.length, lines, m, n, apart, progress_, notes_, counts_);
+  HWY_NOINLINE void add_slowly(const SlabLines& lines, const Line& line, int n, MF live, VF length) {
+    const MF apart = cast_mixed(packet_, line, live, Set(DF(), static_cast<float>(n)), length, rays_);
+    if (!AllFalse(DF(), apart)) cast_stretches(packet_, lines, n, apart, rays_);
   }
 
   /// Adds the lanes that may meet surfaces in slab n, where they are between `low` and `high`: those that are left.
@@ -316,8 +338,7 @@ class PacketCast {
   }
   HWY_INLINE RestOfSamples rest_at(const WindowPlace& place) const { return {chunk_.block, place.front, place.back}; }
   HWY_INLINE void add_surfaces(const SlabPath& path, const Window& window, const RestOfSamples& rest, MF lanes) {
-    SurfaceCast<Lookup>(frame_, chunk_.axes, lookup_, lanes_, current_, surfaces_, progress_, notes_, counts_)
-        .cast(path, window, rest, lanes);
+    SurfaceCast<Lookup>(packet_, surfaces_, rays_).cast(path, window, rest, lanes);
   }
 
   /// A slab in which lanes begin or end, cell data, shaded.
@@ -330,21 +351,21 @@ class PacketCast {
     const bool meets_none = surfaces_.none_in(window, *place.front);
     if (uniform && current_.clear() && meets_none) return;
     const SlabPath path = path_of(lanes_, n, slabs_.i_window[n], slabs_.j_window[n]);
-    for (const Stretch& stretch : path.stretches) counts_.voxels_visited += CountTrue(d, stretch.end > stretch.begin);
-    const VF before = progress_.transmittance, light[3] = {progress_.red, progress_.green, progress_.blue};
+    for (const Stretch& stretch : path.stretches)
+      rays_.counts.voxels_visited += CountTrue(d, stretch.end > stretch.begin);
+    const Progress front_light = rays_.light;
     if constexpr (has_surfaces) {
       if (!meets_none) {
         const MF there = path.to > path.from;
         add_surfaces(path, window, rest_at(place), there);
         if (HWY_UNLIKELY(frame_.shading == nullptr && frame_.error_bound != nullptr && frame_.error_bound->ends))
-          note_ends(*frame_.error_bound, lookup_, part_line(lanes_, path, window), path, there, lanes_.length, before,
-                    light, progress_, notes_);
+          note_ends(packet_, part_line(lanes_, path, window), path, there, front_light, rays_);
         return;
       }
     }
     if (cell_data || frame_.shading != nullptr) {
-      cast_voxels<cell_data>(frame_, chunk_.axes, lookup_, lanes_, path, window, rest_at(place),
-                             uniform ? &current_.uniform() : nullptr, path.to > path.from, progress_, notes_, counts_);
+      cast_voxels<cell_data>(packet_, path, SlabSamples<Window>{window, rest_at(place)},
+                             uniform ? &current_.uniform() : nullptr, path.to > path.from, rays_);
       return;
     }
     if constexpr (!cell_data) {
@@ -352,14 +373,12 @@ class PacketCast {
       const VF length = IfThenElseZero(there, lanes_.length * (path.to - path.from));
       const Line line = part_line(lanes_, path, window);
       MF apart = there;
-      if (!(uniform && has_steps_))
-        apart =
-            cast_mixed(frame_, lookup_, line, there, path.from + path.k, length, current_, progress_, notes_, counts_);
+      if (!(uniform && has_steps_)) apart = cast_mixed(packet_, line, there, path.from + path.k, length, rays_);
       if (!AllFalse(d, apart))
-        cast_voxels<false>(frame_, chunk_.axes, lookup_, lanes_, path, window, rest_at(place),
-                           uniform && has_steps_ ? &current_.uniform() : nullptr, apart, progress_, notes_, counts_);
+        cast_voxels<false>(packet_, path, SlabSamples<Window>{window, rest_at(place)},
+                           uniform && has_steps_ ? &current_.uniform() : nullptr, apart, rays_);
       if (HWY_UNLIKELY(frame_.error_bound != nullptr && frame_.error_bound->ends))
-        note_ends(*frame_.error_bound, lookup_, line, path, there, lanes_.length, before, light, progress_, notes_);
+        note_ends(packet_, line, path, there, front_light, rays_);
     }
   }
 
@@ -367,12 +386,12 @@ class PacketCast {
 
   const ChunkView& chunk_;
   const FrameView& frame_;
-  const Lookup& lookup_;
   const PacketSlabs& slabs_;
   Lanes lanes_;
   MirroredLanes mirrored_;
   CurrentInterval& current_;
-  TileCounts& counts_;
+  PacketView<Lookup> packet_;
+  RayState rays_;
   [[no_unique_address]] Surfaces surfaces_;
   VF before_;       ///< transmittance up to the chunk
   bool has_steps_;  ///< of the transfer function, that matter
@@ -384,21 +403,21 @@ class PacketCast {
 
 /// Lanes [ray, ray + Lanes()) of a packet through the chunk.
 template <bool cell_data, class Surfaces, class Window, class Lookup>
-HWY_NOINLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int ray, const Reach& reach,
-                             const PacketSlabs& slabs, CurrentInterval& current, TileRays& rays, TileCounts& counts) {
+HWY_NOINLINE void cast_lanes(const TileCast<Lookup>& tile, int ray, const Reach& reach, const PacketSlabs& slabs) {
   const DF d;
   constexpr std::size_t most = MaxLanes(DF());
   const std::size_t lane_count = hn::Lanes(d);
+  const ChunkView& chunk = tile.chunk;
+  TileRays& rays = tile.rays;
   Lanes lanes = lanes_of(chunk, ray, slabs.i_first[0], slabs.j_first[0], rays);
   const VF before = LoadU(d, rays.transmittance + ray);
   lanes.k_out = IfThenElse(before < Set(d, chunk.frame.least_transmittance), Set(d, -1.0f), lanes.k_out);
-  PacketCast<cell_data, Surfaces, Window, Lookup> cast(chunk, lookup, slabs, lanes, before, current, counts);
-  const VF alpha_before = LoadU(d, rays.alpha + ray);
-  const MF seen_before = alpha_before > Zero(d);
-  cast.notes_ = {Set(d, -1.0f), seen_before, Zero(d), Zero(d)};
+  const MF seen_before = LoadU(d, rays.alpha + ray) > Zero(d);
+  PacketCast<cell_data, Surfaces, Window, Lookup> cast(tile, slabs, lanes, before, seen_before);
   cast.run(reach);
 
-  const Progress& progress = cast.progress_;
+  const Progress& progress = cast.rays().light;
+  const RayNotes& notes = cast.rays().notes;
   const auto add = [&](float* sum, VF part)
                        HWY_ATTR { StoreU(MulAdd(before, part, LoadU(d, sum + ray)), d, sum + ray); };
   add(rays.alpha, progress.alpha);
@@ -406,13 +425,13 @@ HWY_NOINLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int r
   add(rays.green, progress.green);
   add(rays.blue, progress.blue);
   StoreU(before * progress.transmittance, d, rays.transmittance + ray);
-  add(rays.error_bound, cast.notes_.error_bound);
-  const VF rough = before * before * cast.notes_.rough;
+  add(rays.error_bound, notes.error_bound);
+  const VF rough = before * before * notes.rough;
   StoreU(rough + LoadU(d, rays.rough + ray), d, rays.rough + ray);
-  if (!AllFalse(d, AndNot(seen_before, cast.notes_.seen))) {
+  if (!AllFalse(d, AndNot(seen_before, notes.seen))) {
     const auto first_k = static_cast<double>(chunk.box.first_k);
     HWY_ALIGN float place[most];
-    Store(IfThenElse(seen_before, Set(d, -1.0f), cast.notes_.first), d, place);
+    Store(IfThenElse(seen_before, Set(d, -1.0f), notes.first), d, place);
     for (std::size_t l = 0; l < lane_count; ++l)
       if (place[l] >= 0) rays.first_k[static_cast<std::size_t>(ray) + l] = first_k + static_cast<double>(place[l]);
   }
@@ -422,6 +441,7 @@ template <bool cell_data, class Surfaces, CL::TableForm form>
 HWY_NOINLINE void cast_chunk_as(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
   const CL::Lookup<form> lookup(*chunk.frame.table);
   CurrentInterval current(*chunk.frame.table, chunk.frame);
+  const TileCast<CL::Lookup<form>> tile{chunk, lookup, current, rays, counts};
   for (int packet = 0; packet < TileRays::packets; ++packet) {
     const Reach& reach = chunk.reach[packet];
     if (!reach.any) continue;
@@ -432,8 +452,7 @@ HWY_NOINLINE void cast_chunk_as(const ChunkView& chunk, TileRays& rays, TileCoun
     const auto cast = [&]<class Window>() HWY_ATTR {
       slabs.template place_windows<Window>(chunk.block, chunk.box.slabs);
       for (int lane = 0; lane < TileRays::packet_rays; lane += static_cast<int>(hn::Lanes(DF())))
-        cast_lanes<cell_data, Surfaces, Window>(chunk, lookup, packet * TileRays::packet_rays + lane, reach, slabs,
-                                                current, rays, counts);
+        cast_lanes<cell_data, Surfaces, Window>(tile, packet * TileRays::packet_rays + lane, reach, slabs);
     };
 #if HWY_TARGET <= HWY_AVX3
     if (slabs.widest_i <= SmallWindow::columns - 2 && slabs.widest_j <= SmallWindow::rows - 2)

@@ -15,28 +15,13 @@
 
 #include "volume/frame_view.hpp"
 #include "volume/lanes/ray_cubic-inl.h"
+#include "volume/lanes/ray_state-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
-using CL::lanes::Progress;
 using integrals::LaneTable;
-
-/// What is noted of each ray on its way.
-struct RayNotes {
-  VF first;        ///< where light begins, in slabs from the chunk's first
-  MF seen;         ///< whether it has
-  VF error_bound;  ///< errors that may be (lane_error_bound.hpp), as seen from the chunk's front
-  VF rough;        ///< squares of those that roundings make, each its own
-};
-
-HWY_INLINE void note_first_light(const Progress& progress, VF place, RayNotes& notes) {
-  const DF d;
-  const MF now = AndNot(notes.seen, progress.alpha > Zero(d));
-  notes.first = IfThenElse(now, place, notes.first);
-  notes.seen = Or(notes.seen, now);
-}
 
 /// The transfer function where all lanes are in one interval.
 struct UniformLookup {
@@ -55,16 +40,29 @@ HWY_INLINE VF bound_row(const std::vector<float>& row, VI at, MF wanted) {
   return IfThenElseZero(wanted, GatherIndex(d, row.data(), IfThenElseZero(RebindMask(DI(), wanted), at)));
 }
 
+/// The intervals of the transfer function that lanes are in, those that are wanted, and what is known of errors there.
+template <class Lookup>
+struct IntervalLanes {
+  const Lookup& table;
+  typename Lookup::Index index;
+  VI interval;
+  MF wanted;
+  const LaneErrorBound& bound;
+
+  /// A row of the bound at the intervals.
+  HWY_INLINE VF row(const std::vector<float>& of) const { return bound_row(of, interval, wanted); }
+};
+
 /// Notes what a stretch errs by the ramps of its intervals. Of an opaque one the colour's error is seen at its front.
-HWY_INLINE void note_ramps(VI interval, MF wanted, VF length, const LaneErrorBound& bound, VF before, VF behind,
-                           RayNotes& notes) {
-  if (bound.ramp.empty()) return;
+template <class Lookup>
+HWY_INLINE void note_ramps(const IntervalLanes<Lookup>& in, VF length, VF before, VF behind, RayNotes& notes) {
+  if (in.bound.ramp.empty()) return;
   const DF d;
   const VF through = length * behind;
-  const VF color = (before - behind) * bound_row(bound.ramp_color, interval, wanted);
-  const VF ramp = through * bound_row(bound.ramp, interval, wanted), error = Max(ramp, color);
+  const VF color = (before - behind) * in.row(in.bound.ramp_color);
+  const VF ramp = through * in.row(in.bound.ramp), error = Max(ramp, color);
   notes.rough = MulAdd(error, error, notes.rough);
-  notes.error_bound = MulAdd(ramp, Set(d, bound.steady), notes.error_bound);
+  notes.error_bound = MulAdd(ramp, Set(d, in.bound.steady), notes.error_bound);
 }
 HWY_INLINE void note_ramps(const UniformLookup& table, VF length, VF before, VF behind, RayNotes& notes) {
   const DF d;
@@ -82,23 +80,29 @@ struct Touch {
   VF length;
 };
 
-/// Near v: at `s`, the stretch's beginning, an end of an interval, a turn, or a crossing. Field and place are uncertain
-/// by noise / |slope|, or where the cubic is level by the root of 2 noise / |its second derivative|. False if nowhere.
+/// A place of a cubic, and its value there.
+struct CubicPlace {
+  VF v, s;
+};
+
+/// Whether `at`, an end of an interval, a turn or a crossing, is near an edge of its interval. Field and place are
+/// uncertain by noise / |slope|, or where the cubic is level by the root of 2 noise / |its second derivative|.
+/// `length` is the whole cubic's. False, and `touch` not set, if no lane is near.
 template <class Lookup>
-HWY_INLINE bool touches(const Lookup& table, typename Lookup::Index index, VI interval, MF active,
-                        const LaneErrorBound& bound, const Cubic& c, VF v, VF s, VF length, Touch& touch) {
+HWY_INLINE bool touches(const IntervalLanes<Lookup>& in, const Cubic& c, const CubicPlace& at, VF length,
+                        Touch& touch) {
   const DF d;
-  const VF noise = Set(d, bound.noise);
+  const VF noise = Set(d, in.bound.noise);
   const VI below = Zero(DI()), above = Set(DI(), 1);
-  const VF from_low = Abs(s - table.edge(interval, index, below)),
-           from_high = Abs(table.edge(interval, index, above) - s);
+  const VF from_low = Abs(at.s - in.table.edge(in.interval, in.index, below)),
+           from_high = Abs(in.table.edge(in.interval, in.index, above) - at.s);
   const MF to_high = from_high < from_low;
   const VF away = IfThenElse(to_high, from_high, from_low);
-  touch.near = And(active, away < noise);
+  touch.near = And(in.wanted, away < noise);
   if (HWY_LIKELY(AllFalse(d, touch.near))) return false;
-  touch.edge = interval + IfThenElseZero(RebindMask(DI(), to_high), above);
-  const VF bend = Abs(MulAdd(Set(d, 6.0f) * c.p_3, v, c.p_2 + c.p_2));
-  const VF slope = Max(Abs(c.slope(v)), Sqrt((noise + noise) * bend));
+  touch.edge = in.interval + IfThenElseZero(RebindMask(DI(), to_high), above);
+  const VF bend = Abs(MulAdd(Set(d, 6.0f) * c.p_3, at.v, c.p_2 + c.p_2));
+  const VF slope = Max(Abs(c.slope(at.v)), Sqrt((noise + noise) * bend));
   const VF share = Min(noise / Max(slope, Set(d, 1e-30f)), Set(d, 1.0f));
   touch.length = IfThenElseZero(touch.near, share * length);
   return true;
@@ -145,54 +149,59 @@ HWY_INLINE void colors_at(const Lookup& table, typename Lookup::Index index, VF 
                                           table.at(LaneTable::red + 2 * c, index));
 }
 
-/// Adds what a step may err that the cubic is at v on, or nearly.
+/// What a stretch may err, while it is walked through: by bounds, and closely.
+struct ErrorSums {
+  StretchErrors bounds;
+  Excess excess;
+};
+
+/// Adds what a step may err that the cubic is on, or nearly, at a place.
 template <bool closely, class Lookup>
-HWY_NOINLINE void add_step_error(const Lookup& table, typename Lookup::Index index, VI interval, MF active,
-                                 const LaneErrorBound& bound, const Cubic& c, VF v, VF s, VF stretch_length,
-                                 const Progress& progress, StretchErrors& sum, Excess& excess) {
+HWY_NOINLINE void add_step_error(const IntervalLanes<Lookup>& in, const Cubic& c, const CubicPlace& at, VF length,
+                                 const Progress& progress, ErrorSums& sums) {
   const DF d;
+  const LaneErrorBound& bound = in.bound;
   const VF most_depth = Set(d, 1e3f), behind = progress.transmittance;
   Touch touch;
-  if (!touches(table, index, interval, active, bound, c, v, s, stretch_length, touch)) return;
+  if (!touches(in, c, at, length, touch)) return;
   const auto row = [&](const std::vector<float>& of) HWY_ATTR { return bound_row(of, touch.edge, touch.near); };
   const VF weight = row(bound.step);
   if (!closely) {
     const VF error = Min(touch.length * weight, Set(d, bound.most));
-    sum.steps = MulAdd(error, behind, sum.steps);
+    sums.bounds.steps = MulAdd(error, behind, sums.bounds.steps);
   } else {
     const VF length_there = IfThenElseZero(weight > Zero(d), touch.length);
     const VF w = Min(length_there * row(bound.step_extinction), most_depth);
     const VF color[3] = {row(bound.step_red), row(bound.step_green), row(bound.step_blue)};
-    excess.add(w, behind, color, progress);
-    excess.beside_steps = MulAdd(length_there * row(bound.step_light), behind, excess.beside_steps);
+    sums.excess.add(w, behind, color, progress);
+    sums.excess.beside_steps = MulAdd(length_there * row(bound.step_light), behind, sums.excess.beside_steps);
   }
 }
 
-/// Adds what a piece of a ramp errs, closely: of `length`, to which `before` got through.
+/// Adds what a piece of a ramp that ends at s_end errs, closely: of `length`, to which `before` got through.
 template <class Lookup>
-HWY_NOINLINE void add_ramp_excess(const Lookup& table, typename Lookup::Index index, VI interval, MF steep,
-                                  const LaneErrorBound& bound, VF s_end, VF length, VF before, const Progress& progress,
-                                  Excess& excess) {
+HWY_NOINLINE void add_ramp_excess(const IntervalLanes<Lookup>& steep, VF s_end, VF length, VF before,
+                                  const Progress& progress, Excess& excess) {
   const DF d;
   const VF most_depth = Set(d, 1e3f), behind = progress.transmittance;
-  const VF w = Min(length * bound_row(bound.ramp_extinction, interval, steep), most_depth);
+  const VF w = Min(length * steep.row(steep.bound.ramp_extinction), most_depth);
   VF color[3];
-  colors_at(table, index, s_end, color);
+  colors_at(steep.table, steep.index, s_end, color);
   excess.add(w, behind, color, progress);
   excess.ramps = excess.ramps + w;
-  const VF seen = table.independent ? length * before : before - behind;
-  excess.beside_ramps = MulAdd(seen, bound_row(bound.ramp_color, interval, steep), excess.beside_ramps);
+  const VF seen = steep.table.independent ? length * before : before - behind;
+  excess.beside_ramps = MulAdd(seen, steep.row(steep.bound.ramp_color), excess.beside_ramps);
 }
 
 /// Depths that differ are told apart by how much; light beside them is each one's own.
-HWY_INLINE void set_close_errors(const Excess& excess, const Progress& progress, const LaneErrorBound& bound,
-                                 StretchErrors& errors) {
+HWY_INLINE void set_close_errors(const Progress& progress, const LaneErrorBound& bound, ErrorSums& sums) {
   const DF d;
+  const Excess& excess = sums.excess;
   const VF error = excess.error(progress, bound), most_error = Set(d, bound.most);
   const VF share = excess.ramps / Max(excess.depth, Set(d, 1e-30f));
   const VF of_ramps = error * share;
-  errors.ramps = Min(most_error, of_ramps + excess.beside_ramps);
-  errors.steps = Min(most_error, error - of_ramps + excess.beside_steps);
+  sums.bounds.ramps = Min(most_error, of_ramps + excess.beside_ramps);
+  sums.bounds.steps = Min(most_error, error - of_ramps + excess.beside_steps);
 }
 
 }  // namespace HWY_NAMESPACE

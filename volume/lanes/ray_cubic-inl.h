@@ -94,7 +94,7 @@ HWY_INLINE MF is_monotone(const Cubic& c) {
   const VF zero = Zero(d);
   const VF d_1 = c.p_1 + c.p_2, d_2 = d_1 + MulAdd(Set(d, 3.0f), c.p_3, c.p_2);
   const VF least = Min(c.p_1, Min(d_1, d_2)), most = Max(c.p_1, Max(d_1, d_2));
-  return Not(And(least<zero, most> zero));
+  return Not(And(most > zero, least < zero));
 }
 
 }  // namespace HWY_NAMESPACE

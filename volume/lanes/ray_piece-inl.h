@@ -99,8 +99,8 @@ HWY_NOINLINE StretchErrors walk_cubic(const Lookup& table, const FrameView& fram
   const DF d;
   const VF zero = Zero(d), one = Set(d, 1.0f), half = Set(d, 0.5f);
   MF active = And(piece.length > zero, piece.s_mid == piece.s_mid);
-  StretchErrors errors{zero, zero, zero};
-  Excess excess{zero, zero, zero, zero, zero, zero, zero, zero};
+  ErrorSums sums{{zero, zero, zero}, {zero, zero, zero, zero, zero, zero, zero, zero}};
+  StretchErrors& errors = sums.bounds;
   if (AllFalse(d, active)) return errors;
   const Cubic c = cubic_of(piece, active);
   const VF s_0 = c.p_0, s_1 = IfThenElseZero(active, piece.s_1), p_3 = c.p_3;
@@ -161,22 +161,23 @@ HWY_NOINLINE StretchErrors walk_cubic(const Lookup& table, const FrameView& fram
       s_end = IfThenElse(rough, middle, s_end);
     }
     pieces += CountTrue(d, active);
-    if (HWY_UNLIKELY(round == 0 && has_steps))
-      add_step_error<closely>(table, index, interval, active, *frame.error_bound, c, v, s, piece.length, progress,
-                              errors, excess);
+    const auto add_step = [&](const CubicPlace& at) HWY_ATTR {
+      add_step_error<closely>(IntervalLanes<Lookup>{table, index, interval, active, *frame.error_bound}, c, at,
+                              piece.length, progress, sums);
+    };
+    if (HWY_UNLIKELY(round == 0 && has_steps)) add_step({v, s});
     const VF before = progress.transmittance;
     CL::lanes::add_piece<false>(table, index, s + m, s_end + m, s_end - s, length, progress);
     note_first_light(progress, MulAdd(v, piece.extent, piece.begin), notes);
-    if (HWY_UNLIKELY(has_steps))
-      add_step_error<closely>(table, index, interval, active, *frame.error_bound, c, end, s_end, piece.length, progress,
-                              errors, excess);
+    if (HWY_UNLIKELY(has_steps)) add_step({end, s_end});
     if (ramps != nullptr) {
       // Lanes that are done have an interval and no length.
       const VF ramp = GatherIndex(d, ramps, interval);
       if (!closely)
         errors.ramps = MulAdd(length * before, ramp, errors.ramps);
       else if (const MF steep = And(active, ramp > zero); !AllFalse(d, steep))
-        add_ramp_excess(table, index, interval, steep, *frame.error_bound, s_end, length, before, progress, excess);
+        add_ramp_excess(IntervalLanes<Lookup>{table, index, interval, steep, *frame.error_bound}, s_end, length, before,
+                        progress, sums.excess);
     }
     v = IfThenElse(active, end, v);
     s = IfThenElse(active, s_end, s);
@@ -185,7 +186,7 @@ HWY_NOINLINE StretchErrors walk_cubic(const Lookup& table, const FrameView& fram
   }
   // Rounds that do not do.
   errors.left = errors.left + IfThenElseZero(active, progress.transmittance);
-  if (closely) set_close_errors(excess, progress, *frame.error_bound, errors);
+  if (closely) set_close_errors(progress, *frame.error_bound, sums);
   return errors;
 }
 

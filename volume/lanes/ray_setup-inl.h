@@ -85,7 +85,7 @@ HWY_INLINE void clip(V a, V b, double end, V& in, V& out) {
   const hn::DFromV<V> d;
   const V zero = Zero(d), one = Set(d, 1.0), last = Set(d, end);
   const auto level = b == zero;
-  const auto outside = And(level, Or(a<zero, a> last));
+  const auto outside = And(level, Or(a > last, a < zero));
   const V per_b = one / IfThenElse(level, one, b);
   const V first = Neg(a) * per_b, second = (last - a) * per_b;
   in = Max(in, IfThenElse(level, in, Min(first, second)));

@@ -67,6 +67,7 @@ struct MirroredLanes {
 /// What is found of up to eight slabs; s[n] at slab n's front plane.
 struct SlabLines {
   static constexpr int most = 8;
+  int first;  ///< slab of place 0
   VF s[most + 1];
   VF u_1[most], u_2[most], f_1[most], f_2[most];  ///< crossings and the field there
   VF sag[most];                                   ///< sum of e^3 tau / 6
@@ -133,7 +134,8 @@ HWY_INLINE Bend bend_of(const SlabLines& lines, int n, const Line& line) {
 /// Where a slab's window begins, and whether all voxels that may be met have neighbours in the volume.
 struct WindowPlace {
   const float *front, *back;
-  float origin;  ///< element of voxel (i_base, j_base), negative
+  float origin;          ///< element of voxel (i_base, j_base), negative
+  std::ptrdiff_t pitch;  ///< elements of a slice between rows
   bool inner;
 };
 
@@ -154,10 +156,10 @@ struct VoxelAt {
   }
   /// Their element of the window: i + columns j.
   template <class Window>
-  HWY_INLINE VI element(const MirroredLanes& lanes, const WindowPlace& place, std::ptrdiff_t pitch) const {
+  HWY_INLINE VI element(const MirroredLanes& lanes, const WindowPlace& place) const {
     const DF d;
     constexpr bool gathers = std::is_same_v<Window, GatherWindow>;
-    const VF at = MulAdd(Set(d, static_cast<float>(gathers ? pitch : Window::columns)),
+    const VF at = MulAdd(Set(d, static_cast<float>(gathers ? place.pitch : Window::columns)),
                          MulAdd(lanes.sign_j, j, lanes.j), MulAdd(lanes.sign_i, i, lanes.i)) +
                   Set(d, place.origin);
     return ConvertTo(DI(), at);
@@ -168,8 +170,9 @@ struct VoxelAt {
 /// between rows; `voxels` counts, lane by lane, the voxels that live lanes visit.
 // Long: three voxels share corners, differences and places along the ray; in parts, each would be given most of them.
 template <class Window>
-HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, const WindowPlace& place,
-                          std::ptrdiff_t pitch, int n, int m, SlabLines& lines, VF& voxels) {
+HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, const WindowPlace& place, int n,
+                          SlabLines& lines, VF& voxels) {
+  const int m = n - lines.first;
   const DF d;
   const DI di;
   const VF one = Set(d, 1.0f), half = Set(d, 0.5f);
@@ -190,7 +193,7 @@ HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, cons
   const auto if_int = [&](MF mask, VI v) HWY_ATTR { return IfThenElseZero(RebindMask(di, mask), v); };
   VI step_p = IfThenElse(RebindMask(di, i_first), lanes.step_i, lanes.step_j),
      step_q = IfThenElse(RebindMask(di, i_first), lanes.step_j, lanes.step_i);
-  VI at_00 = in.element<Window>(lanes, place, pitch);
+  VI at_00 = in.element<Window>(lanes, place);
   // Lanes that are not there may be anywhere.
   if (gathers) step_p = if_int(lanes.live, step_p), step_q = if_int(lanes.live, step_q);
   if (gathers) at_00 = if_int(lanes.live, at_00);
@@ -273,15 +276,15 @@ HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, cons
 
 /// The field at slab n's back plane, into place m + 1.
 template <class Window>
-HWY_INLINE void find_back(const MirroredLanes& lanes, const Window& window, const WindowPlace& place,
-                          std::ptrdiff_t pitch, int n, int m, SlabLines& lines) {
+HWY_INLINE void find_back(const MirroredLanes& lanes, const Window& window, const WindowPlace& place, int n,
+                          SlabLines& lines) {
+  const int m = n - lines.first;
   const DI di;
   const VoxelAt in(lanes, place, n + 1);
   const VF fx = in.fx, fy = in.fy;
   constexpr bool gathers = std::is_same_v<Window, GatherWindow>;
   const auto kept = [&](VI v) HWY_ATTR { return gathers ? IfThenElseZero(RebindMask(di, lanes.live), v) : v; };
-  const VI at_00 = kept(in.element<Window>(lanes, place, pitch)), step_i = kept(lanes.step_i),
-           step_j = kept(lanes.step_j);
+  const VI at_00 = kept(in.element<Window>(lanes, place)), step_i = kept(lanes.step_i), step_j = kept(lanes.step_j);
   const VI at_10 = at_00 + step_i;
   const VF b_00 = window.back(at_00), b_10 = window.back(at_10), b_01 = window.back(at_00 + step_j),
            b_11 = window.back(at_10 + step_j);

@@ -65,20 +65,18 @@ struct VoxelStretch {
 template <class Lookup>
 class SurfaceCast {
  public:
-  HWY_INLINE SurfaceCast(const FrameView& frame, const RayAxes& axes, const Lookup& lookup, const Lanes& lanes,
-                         const CurrentInterval& current, LaneSurfaces& surfaces, Progress& progress, RayNotes& notes,
-                         TileCounts& counts)
-      : frame_(frame),
-        view_(*frame.surfaces),
-        axes_(axes),
-        lookup_(lookup),
-        lanes_(lanes),
-        current_(current),
+  HWY_INLINE SurfaceCast(const PacketView<Lookup>& packet, LaneSurfaces& surfaces, RayState& rays)
+      : frame_(packet.frame),
+        view_(*packet.frame.surfaces),
+        axes_(packet.axes),
+        lookup_(packet.lookup),
+        lanes_(packet.lanes),
+        current_(packet.current),
         surfaces_(surfaces),
-        progress_(progress),
-        notes_(notes),
-        counts_(counts),
-        per_length_(Set(DF(), static_cast<float>(view_.unit / frame.length_unit)) / lanes.length) {}
+        progress_(rays.light),
+        notes_(rays.notes),
+        counts_(rays.counts),
+        per_length_(Set(DF(), static_cast<float>(view_.unit / frame_.length_unit)) / lanes_.length) {}
 
   /// The lanes that are `wanted` through a slab.
   template <class Window>

@@ -67,19 +67,32 @@ struct VoxelField {
   }
 };
 
+/// What a packet's rays are cast through.
+template <class Lookup>
+struct PacketView {
+  const FrameView& frame;
+  const RayAxes& axes;
+  const Lookup& lookup;
+  const Lanes& lanes;
+  CurrentInterval& current;
+};
+
 /// How far off a place in slab n of the chunk may be, slabs: roundings of numbers as large as that.
 HWY_INLINE VF place_noise(VF k) { return (k + Set(DF(), 2.0f)) * Set(DF(), 0x1p-24f); }
 
 /// Notes what a slab errs, point data, as places where rays begin and end in it are rounded: there is too much or too
 /// little of the matter at its front (scalar line.s_0), behind which there is the slab's own light, and of that at its
-/// back. `before` and `light`: what got through, and had been gathered, in front.
+/// back. `front_light` is the light gathered in front of it.
 template <class Lookup>
-HWY_NOINLINE void note_ends(const LaneErrorBound& bound, const Lookup& lookup, const Line& line, const SlabPath& path,
-                            MF there, VF slab_length, VF before, const VF (&light)[3], const Progress& progress,
-                            RayNotes& notes) {
+HWY_NOINLINE void note_ends(const PacketView<Lookup>& packet, const Line& line, const SlabPath& path, MF there,
+                            const Progress& front_light, RayState& rays) {
   const DF d;
-  const VF zero = Zero(d), one = Set(d, 1.0f), behind = progress.transmittance;
-  const VF off = place_noise(path.k) * slab_length, brightest = Set(d, bound.brightest);
+  const Lookup& lookup = packet.lookup;
+  const LaneErrorBound& bound = *packet.frame.error_bound;
+  const Progress& progress = rays.light;
+  const VF zero = Zero(d), one = Set(d, 1.0f), before = front_light.transmittance, behind = progress.transmittance;
+  const VF light[3] = {front_light.red, front_light.green, front_light.blue};
+  const VF off = place_noise(path.k) * packet.lanes.length, brightest = Set(d, bound.brightest);
   const MF good = And(there, line.rho == line.rho);
   const auto at = [&](VF s, MF ends, bool front) HWY_ATTR {
     const VF scalar = IfThenElseZero(good, s);
@@ -99,21 +112,24 @@ HWY_NOINLINE void note_ends(const LaneErrorBound& bound, const Lookup& lookup, c
     const VF seen = front ? before : behind;
     const VF error = MulAdd(extinction_at(lookup, index, scalar), MulAdd(behind, brightest, differs), sent * seen);
     const VF noted = Min(error * off, seen * Set(d, bound.most));
-    notes.error_bound = notes.error_bound + IfThenElseZero(And(good, ends), noted);
+    rays.notes.error_bound = rays.notes.error_bound + IfThenElseZero(And(good, ends), noted);
   };
   at(line.s_0, path.from > zero, true);
   at(line.s_1, path.to < one, false);
 }
 
-/// The same for stretch n of cell data, which begins and ends at planes of its voxel: `piece`.
+/// The same for stretch n of cell data, which begins and ends at planes of its voxel: `piece`, to which `before` got
+/// through.
 template <class Lookup>
-HWY_NOINLINE void note_planes(const LaneErrorBound& bound, const Lookup& lookup, const Lanes& lanes,
-                              const SlabPath& path, int n, const Piece& piece, MF there, VF before,
-                              const Progress& progress, RayNotes& notes) {
+HWY_NOINLINE void note_planes(const PacketView<Lookup>& packet, const SlabPath& path, int n, const Piece& piece,
+                              VF before, RayState& rays) {
   const DF d;
-  const VF zero = Zero(d), one = Set(d, 1.0f), behind = progress.transmittance;
+  const Lookup& lookup = packet.lookup;
+  const Lanes& lanes = packet.lanes;
+  const LaneErrorBound& bound = *packet.frame.error_bound;
+  const VF zero = Zero(d), one = Set(d, 1.0f), behind = rays.light.transmittance;
   const Stretch& stretch = path.stretches[n];
-  const MF good = And(there, piece.s_0 == piece.s_0);
+  const MF good = And(piece.length > zero, piece.s_0 == piece.s_0);
   const VF scalar = IfThenElseZero(good, piece.s_0);
   const VI interval = lookup.locate(scalar, zero == zero);
   const auto index = lookup.index(interval, good);
@@ -141,7 +157,7 @@ HWY_NOINLINE void note_planes(const LaneErrorBound& bound, const Lookup& lookup,
     error = MulAdd(extinction, brightest, sent) * before;
   }
   const VF noted = Min(error * both, before * Set(d, bound.most));
-  notes.error_bound = notes.error_bound + IfThenElseZero(good, noted);
+  rays.notes.error_bound = rays.notes.error_bound + IfThenElseZero(good, noted);
 }
 
 /// What floats leave of a slab's samples (SlabBlock::rest), for gradients.
@@ -167,12 +183,23 @@ class RestOfSamples {
   GatherWindow window_;
 };
 
-/// Voxel by voxel, for the lanes that are `wanted`.
+/// A slab's samples around the rays, and what floats leave of them.
+template <class Window>
+struct SlabSamples {
+  const Window& window;
+  const RestOfSamples& rest;
+};
+
+/// Voxel by voxel, for the lanes that are `wanted`; `uniform` where all are in one interval, else null.
 template <bool cell_data, class Window, class Lookup>
-HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const Lookup& lookup, const Lanes& lanes,
-                              const SlabPath& path, const Window& window, const RestOfSamples& rest,
-                              const UniformLookup* uniform, MF wanted, Progress& progress, RayNotes& notes,
-                              TileCounts& counts) {
+HWY_NOINLINE void cast_voxels(const PacketView<Lookup>& packet, const SlabPath& path,
+                              const SlabSamples<Window>& samples, const UniformLookup* uniform, MF wanted,
+                              RayState& rays) {
+  const FrameView& frame = packet.frame;
+  const Lanes& lanes = packet.lanes;
+  const Window& window = samples.window;
+  Progress& progress = rays.light;
+  RayNotes& notes = rays.notes;
   const DF d;
   const VF half = Set(d, 0.5f), zero = Zero(d), one = Set(d, 1.0f);
   const bool lit_part = frame.shading != nullptr && !cell_data;
@@ -200,32 +227,31 @@ HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const
         VF g_i, g_j, g_k;
         const VF middle = half * (stretch.begin + stretch.end);
         field.gradient(middle, lanes.bx, lanes.by, g_i, g_j, g_k);
-        rest.add(path, stretch, lanes, middle, g_i, g_j, g_k);
+        samples.rest.add(path, stretch, lanes, middle, g_i, g_j, g_k);
         const auto kept = [&](VF v) HWY_ATTR { return IfThenElseZero(And(there, v == v), v); };
         g_i = kept(g_i), g_j = kept(g_j), g_k = kept(g_k);
         const VF slope = MulAdd(lanes.bx, g_i, MulAdd(lanes.by, g_j, g_k));
         const VF per_length = Set(d, static_cast<float>(frame.shading->unit / frame.length_unit)) / lanes.length;
-        lit = shade(*frame.shading, axes, g_i, g_j, g_k, slope, per_length, lanes.light_view, frame.rest_noise);
+        lit = shade(*frame.shading, packet.axes, g_i, g_j, g_k, slope, per_length, lanes.light_view, frame.rest_noise);
       }
     }
     Progress part{zero, one, zero, zero, zero, zero};
     Progress& target = lit_part ? part : progress;
     const VF before = progress.transmittance;
     if (uniform != nullptr && HWY_LIKELY(add_uniform<cell_data>(*uniform, piece, target))) {
-      counts.samples += voxels;
+      rays.counts.samples += voxels;
       if (HWY_UNLIKELY(!AllTrue(d, notes.seen))) note_first_light(target, piece.begin, notes);
       if (HWY_UNLIKELY(uniform->ramp > 0))
         note_ramps(*uniform, piece.length, before, (lit_part ? before : one) * target.transmittance, notes);
     } else {
       const VF through = lit_part ? before : one, error_bound = notes.error_bound, rough = notes.rough;
       notes.error_bound = notes.rough = zero;
-      add_any(lookup, frame, piece, target, notes, counts.samples);
+      add_any(packet.lookup, frame, piece, target, notes, rays.counts.samples);
       notes.error_bound = MulAdd(through, notes.error_bound, error_bound);
       notes.rough = MulAdd(through * through, notes.rough, rough);
     }
     if (cell_data && HWY_UNLIKELY(frame.error_bound != nullptr && frame.error_bound->ends))
-      note_planes(*frame.error_bound, lookup, lanes, path, static_cast<int>(&stretch - path.stretches), piece, there,
-                  before, progress, notes);
+      note_planes(packet, path, static_cast<int>(&stretch - path.stretches), piece, before, rays);
     if (lit_part) {
       if (HWY_UNLIKELY(frame.has_rest)) notes.error_bound = MulAdd(before * part.alpha, lit.error, notes.error_bound);
       put_behind(part, lit, progress);
@@ -296,8 +322,13 @@ HWY_INLINE Line part_line(const Lanes& lanes, const SlabPath& path, const Window
 /// seen light, are put side by side, integrated from their own fronts sixteen at once, and put behind each other by
 /// lane.
 template <class Lookup>
-HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, VF slab_length, const SlabLines& lines,
-                                 int m, int n, MF wanted, Progress& progress, RayNotes& notes, TileCounts& counts) {
+HWY_NOINLINE void cast_stretches(const PacketView<Lookup>& packet, const SlabLines& lines, int n, MF wanted,
+                                 RayState& rays) {
+  const FrameView& frame = packet.frame;
+  const Lookup& lookup = packet.lookup;
+  Progress& progress = rays.light;
+  RayNotes& notes = rays.notes;
+  const int m = n - lines.first;
   const DF d;
   const VF half = Set(d, 0.5f), zero = Zero(d), one = Set(d, 1.0f);
   const VF u_1 = lines.u_1[m], u_2 = lines.u_2[m], s_end = lines.s[m + 1];
@@ -315,7 +346,7 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
     p.s_0 = value[k], p.s_1 = value[k + 1];
     p.s_mid = NegMulAdd(Set(d, 0.25f), lines.even[k][m], half * (p.s_0 + p.s_1));
     p.p_3 = lines.odd[k][m];
-    p.length = IfThenElseZero(there[k], p.extent * slab_length);
+    p.length = IfThenElseZero(there[k], p.extent * packet.lanes.length);
     p.begin = place[k] + Set(d, static_cast<float>(n));
     // A voxel that is whole, but whose end is taken from one that is blank, as rounding has the ray pass an edge of
     // both on different sides.
@@ -347,7 +378,7 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
                         zero};
       Progress part{zero, one, zero, zero, zero, zero};
       RayNotes here{zero, zero == zero, zero, zero};
-      add_any(lookup, frame, piece, part, here, counts.samples);
+      add_any(lookup, frame, piece, part, here, rays.counts.samples);
       const VF parts[8] = {part.alpha, part.transmittance, part.optical_depth, part.red,
                            part.green, part.blue,          here.error_bound,   here.rough};
       for (int c = 0; c < 8; ++c) Store(parts[c], d, light[c] + n_0);
@@ -367,23 +398,26 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
     return;
   }
 #endif
-  for (const Piece& piece : pieces) add_any(lookup, frame, piece, progress, notes, counts.samples);
+  for (const Piece& piece : pieces) add_any(lookup, frame, piece, progress, notes, rays.counts.samples);
 }
 
 /// A slab, or the part of it that counts, whose lanes are in several intervals, or cross knots: adds the lanes that may
 /// be taken as a line, and gives the others. `length`: of the lanes that are there; `begin`: slabs from the chunk's
 /// first.
 template <class Lookup>
-HWY_NOINLINE MF cast_mixed(const FrameView& frame, const Lookup& lookup, const Line& line, MF there, VF begin,
-                           VF length, CurrentInterval& current, Progress& progress, RayNotes& notes,
-                           TileCounts& counts) {
+HWY_NOINLINE MF cast_mixed(const PacketView<Lookup>& packet, const Line& line, MF there, VF begin, VF length,
+                           RayState& rays) {
+  const FrameView& frame = packet.frame;
+  const Lookup& lookup = packet.lookup;
+  Progress& progress = rays.light;
+  RayNotes& notes = rays.notes;
   const DF d;
   const VF zero = Zero(d);
   const VF spread = length * line.rho * MulAdd(Abs(line.span), Set(d, 0.25f), line.rho);
   const VF low = Min(line.s_0, line.s_1) - line.rho, high = Max(line.s_0, line.s_1) + line.rho;
   const VI interval = lookup.locate(low, zero == zero);
   const auto index = lookup.index(interval, there);
-  current.move_to(
+  packet.current.move_to(
       static_cast<std::size_t>(GetLane(MaxOfLanes(DI(), IfThenElseZero(RebindMask(DI(), there), interval)))));
   const VF edge = lookup.edge(interval, index, Set(DI(), 1));
   const VF kappa_slope =
@@ -408,10 +442,11 @@ HWY_NOINLINE MF cast_mixed(const FrameView& frame, const Lookup& lookup, const L
     const VF before = progress.transmittance;
     CL::lanes::add_piece<false>(lookup, index, kept(line.s_0 + line.shift), kept(line.s_1 + line.shift),
                                 kept(line.span), kept(length), progress);
-    counts.samples += CountTrue(d, together);
+    rays.counts.samples += CountTrue(d, together);
     note_first_light(progress, begin, notes);
     if (frame.error_bound != nullptr)
-      note_ramps(interval, together, kept(length), *frame.error_bound, before, progress.transmittance, notes);
+      note_ramps(IntervalLanes<Lookup>{lookup, index, interval, together, *frame.error_bound}, kept(length), before,
+                 progress.transmittance, notes);
   }
   return AndNot(together, there);
 }
