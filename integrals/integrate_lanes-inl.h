@@ -164,19 +164,24 @@ HWY_NOINLINE inline Passage take_thick_steps(MF thick, bool independent, Passage
   return p;
 }
 
-/// The light of one piece of each lane, from scalar to scalar + span == target, in the intervals of `index`. Lanes
-/// whose length is zero add nothing. In the `first` piece nothing lies before it: the same numbers, without products by
-/// one and sums with zero.
+/// A piece of a segment, over which the scalar goes linearly from `front` to `back` == front + span.
+struct LinearPiece {
+  VF front, back, span, length;
+};
+
+/// The light of one piece of each lane, in the intervals of `index`. Lanes whose length is zero add nothing. In the
+/// `first` piece nothing lies before it: the same numbers, without products by one and sums with zero.
 template <bool first, class Lookup>
-HWY_INLINE void add_piece(const Lookup& table, const typename Lookup::Index& index, VF scalar, VF target, VF span,
-                          VF length, Progress& so_far) {
+HWY_INLINE void add_piece(const Lookup& table, const typename Lookup::Index& index, const LinearPiece& piece,
+                          Progress& so_far) {
   const DF d;
   const VF zero = Zero(d), one = Set(d, 1.0f);
   const VF start = table.at(LaneTable::half_extinction, index),
            slope = table.at(LaneTable::half_extinction_slope, index);
   const VF base = table.at(LaneTable::base, index);
-  const VF from = scalar - base, to = target - base;
-  const Stretch whole{MulAdd(slope, from, start) * length, MulAdd(slope, to, start) * length, from, span, length};
+  const VF from = piece.front - base, to = piece.back - base;
+  const Stretch whole{MulAdd(slope, from, start) * piece.length, MulAdd(slope, to, start) * piece.length, from,
+                      piece.span, piece.length};
   const VF depth = whole.depth_front + whole.depth_back;
   if (table.has_clear && AllFalse(d, depth > zero)) return;
 
@@ -238,7 +243,7 @@ struct Walk {
       const VF end = target(table, index), span = end - scalar;
       const VF length = IfThenElseZero(active, span * length_per_scalar);
       active = And(active, end != back);
-      add_piece<false>(table, index, scalar, end, span, length, so_far);
+      add_piece<false>(table, index, {scalar, end, span, length}, so_far);
       scalar = end;
       active = And(active, so_far.optical_depth < Set(d, opaque_depth));
       if (AllFalse(d, active)) break;
@@ -313,7 +318,7 @@ HWY_INLINE Light integrate_lanes(const Lookup<form>& table, VF length, VF front,
   // What a level segment's division gives is not used.
   walk.length_per_scalar = length / (back - front);
   const VF piece = IfThenElse(walk.active, span * walk.length_per_scalar, length);
-  lanes::add_piece<true>(table, index, front, end, span, piece, so_far);
+  lanes::add_piece<true>(table, index, {front, end, span, piece}, so_far);
   if (!AllFalse(d, walk.active)) {
     walk.scalar = end;
     walk.active = And(walk.active, so_far.optical_depth < Set(d, lanes::opaque_depth));

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A LaneTable in reach of float lanes; included once per instruction set (Highway's include guard idiom).
+//
+// What      The interval of the transfer function that each lane's scalar is in, and the table's numbers for it.
+// How       A column of few knots is held in one vector, or two, where a permutation looks up all lanes. A longer one
+//           stays in memory: two vectors around the first lane's interval mostly have all of them, else they are
+//           gathered. Intervals are found by a grid of equal cells, or by comparing some knots, and a binary search
+//           from there.
+// Bits      All forms of the table give the same.
 
 #if defined(TESSERA_INTEGRALS_LANE_LOOKUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_INTEGRALS_LANE_LOOKUP_INL_H_

@@ -19,17 +19,15 @@ void masked_of_form(const LaneTable& table, FloatBatch& batch) {
   const DF d;
   const DI di;
   const Lookup<form> lookup(table);
-  const VI odd = HN::And(HN::Iota(di, 0), HN::Set(di, 1));
-  const VF nan = HN::Set(d, std::numeric_limits<float>::quiet_NaN());
-  for (std::size_t i = 0; i < batch.size; i += HN::Lanes(d))
+  const VI odd = And(Iota(di, 0), Set(di, 1));
+  const VF nan = Set(d, std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t i = 0; i < batch.size; i += hn::Lanes(d))
     for (const int parity : {0, 1}) {
-      const MF active = HN::And(HN::FirstN(d, batch.size - i), HN::RebindMask(d, HN::Eq(odd, HN::Set(di, parity))));
-      const auto input = [&](const std::vector<float>& a)
-                             HWY_ATTR { return HN::IfThenElse(active, HN::LoadU(d, &a[i]), nan); };
+      const MF active = And(FirstN(d, batch.size - i), RebindMask(d, odd == Set(di, parity)));
+      const auto input = [&](const std::vector<float>& a) HWY_ATTR { return IfThenElse(active, LoadU(d, &a[i]), nan); };
       const Light light =
           integrate_lanes(lookup, input(batch.length), input(batch.scalar_front), input(batch.scalar_back), active);
-      const auto add = [&](std::vector<float>& a, VF x)
-                           HWY_ATTR { HN::StoreU(HN::Add(HN::LoadU(d, &a[i]), x), d, &a[i]); };
+      const auto add = [&](std::vector<float>& a, VF x) HWY_ATTR { StoreU(LoadU(d, &a[i]) + x, d, &a[i]); };
       add(batch.alpha, light.alpha);
       add(batch.optical_depth, light.optical_depth);
       add(batch.red, light.red);

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The interval of the transfer function in which a packet was last; included once per instruction set.
+//
+// What      The table's row of that interval, ready for use by all lanes, and whether scalars are in it.
+// How       Slabs that follow each other are mostly in one interval: a comparison with its ends takes the place of a
+//           search in each lane.
+// Accuracy  Where an interval ends at a step of the function the end is moved in by the field's noise
+//           (lane_error_bound.hpp); for samples it is not, where lanes hold these and the step exactly.
 
 #if defined(TESSERA_VOLUME_CURRENT_INTERVAL_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_CURRENT_INTERVAL_INL_H_

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Between which values of surfaces the field of each lane is; included once per instruction set.
+//
+// What      Whether lanes may meet an iso-surface where their field is within bounds, and the gap between two values
+//           that a scalar is in.
+// How       The gap that each lane was in last is kept, so that mostly two comparisons answer.
+// Accuracy  Gaps are narrower by the field's noise (SurfaceView::noise) at either end: no surface is missed.
+// Bits      Answers do not depend on the gap that is kept.
 
 #if defined(TESSERA_VOLUME_LANE_SURFACES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_LANE_SURFACES_INL_H_

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rays of a tile in index space; included once per instruction set (Highway's include guard idiom).
+//
+// What      Of each ray of one axis code: its places a + b k along axes i and j, and the planes k between which it is
+//           in the volume, in the view's range and on the kept side of clips.
+// How       In double precision, by maps from pixels to origins and directions that are linear (PixelRays).
+// Accuracy  Rays that run in a plane of the lattice, or within 1e-9 voxel of one, are put on the side that they would
+//           be on if they were shifted by a hair of a pixel, so that rounding does not choose.
+// Ends      k_in >= k_out where a ray has another axis code or misses the volume.
 
 #if defined(TESSERA_VOLUME_RAY_SETUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_RAY_SETUP_INL_H_
