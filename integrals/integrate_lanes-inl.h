@@ -19,7 +19,7 @@
 // Bits      A lane's result depends on that lane alone: what only some lanes need is blended in by lane. Products and
 //           sums are fused where MulAdd is written and nowhere else, so that every copy of this code rounds alike:
 //           sources that include it are compiled with -ffp-contract=off.
-// Ends      Where the optical depth passes 20, what lies behind is left out (2e-9 of the light); optical_depth then
+// Ends      Where the optical depth passes 20, what is behind is left out (2e-9 of the light); optical_depth then
 //           counts the pieces so far and is at least 20.
 
 #if defined(TESSERA_INTEGRALS_INTEGRATE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -112,7 +112,7 @@ struct Progress {
   VF alpha, transmittance, optical_depth, red, green, blue;
 };
 
-/// A stretch, what was gathered before it, and the sums over its piece, already dimmed by what lies before them.
+/// A stretch, what was gathered before it, and the sums over its piece, already dimmed by what is in front of them.
 struct Passage {
   Stretch rest;
   VF alpha, transmittance, weight, moment;
@@ -156,7 +156,7 @@ HWY_NOINLINE inline Passage take_thick_steps(MF thick, bool independent, Passage
     cut(s.from, s.from + step.rest.span);
     cut(s.span, s.span * left);
     cut(s.length, s.length * left);
-    // A lane that nothing shows through any more is done: an empty stretch adds nothing.
+    // A lane that nothing shows through is done: an empty stretch adds nothing.
     const MF dark = And(thick, p.transmittance < transmittance_left);
     for (VF* x : {&s.depth_front, &s.depth_back, &s.length}) *x = IfThenElse(dark, zero, *x);
     thick = And(thick, s.depth_front + s.depth_back > bound);
@@ -170,7 +170,7 @@ struct LinearPiece {
 };
 
 /// The light of one piece of each lane, in the intervals of `index`. Lanes whose length is zero add nothing. In the
-/// `first` piece nothing lies before it: the same numbers, without products by one and sums with zero.
+/// `first` piece nothing is in front of it: the same numbers, without products by one and sums with zero.
 template <bool first, class Lookup>
 HWY_INLINE void add_piece(const Lookup& table, const typename Lookup::Index& index, const LinearPiece& piece,
                           Progress& so_far) {

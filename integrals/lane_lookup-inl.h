@@ -46,7 +46,7 @@ HWY_INLINE TableForm form_of(const LaneTable& table) {
 
 /// Numbers of intervals by lane. Every form offers:
 ///   locate(s, up)   the interval in which a ray at s goes on: the knots at or below s where `up`, else those below s;
-///   index(i, active) makes intervals ready for look-ups, of which those of active lanes must be right;
+///   index(i, active) makes intervals ready for look-ups; those of active lanes must be right;
 ///   at(column, index), and edge(i, index, upper) where intervals end: their upper edges where `upper` is 1 or true;
 ///   most_pieces     of a segment.
 template <TableForm form>

@@ -20,10 +20,10 @@ struct FrameWork {
   std::vector<TileTime> tiles;  ///< without the rays that were cast again
 };
 
-/// Casts the rays of the pixels `wanted`, rectangles of which no two share a tile, through `part` of the volume in one
-/// go, tile by tile: a picture, the default way, where that is all of it. Every ray that meets the part comes to `sink`
-/// as one fragment; those that float lanes are not sure of after `in_double` has cast them again. Throws
-/// scene::FrameStopped once `stop` is asked for, within a tile of rays. Uses the calling thread's arena.
+/// Casts the rays of the pixels `wanted` through `part` of the volume in one pass, tile by tile; no two of these
+/// rectangles share a tile. Every ray that meets the part comes to `sink` as one fragment; uncertain ones after
+/// `in_double` has cast them again. Throws scene::FrameStopped once `stop` is asked for, within a tile of rays. Uses
+/// the calling thread's arena.
 FrameWork cast_frame(const FrameSetup& setup, const VoxelBox& part, std::span<const scene::PixelRect> wanted,
                      FragmentSink& sink, VoxelCaster& in_double, const std::stop_token& stop);
 

@@ -108,7 +108,7 @@ std::vector<std::array<glm::dvec3, 2>> Renderer::visible_bricks(
 
 namespace {
 
-/// A picture's view, and what is seen of it.
+/// A view, and what of it is cast.
 struct View {
   const scene::Camera& camera;
   scene::ImageSize size;
@@ -116,7 +116,7 @@ struct View {
   VoxelBox part;
 };
 
-/// What a cast gives beside its light.
+/// What a cast gives in addition to its light.
 struct Cast {
   std::vector<std::uint8_t> brick_visible;
   FrameWork work;

@@ -44,13 +44,13 @@ struct RenderStatistics : GridCounters {
 /// Regions that begin and end at multiples of this many pixels share no work with their neighbours.
 inline constexpr int region_grain = 4;
 
-/// What of a picture is cast, and what is kept besides it.
+/// What of an image is cast, and what is kept in addition to it.
 struct CastRequest {
-  /// Of which no two share a tile; by default all of the picture.
+  /// No two share a tile; by default the whole image.
   std::vector<scene::PixelRect> regions{{0, 0, std::numeric_limits<int>::max(), std::numeric_limits<int>::max()}};
   /// Sort-last: the light of a part of the volume, as if the rest of it were empty. The regions hold all that it may
-  /// cover (footprint() in cost_map.hpp). Pictures of parts that make up the volume, composited front to back, are the
-  /// picture to rounding. Bricks that hold voxels of the part are read, no others. IntegratorKind::preintegrated would
+  /// cover (footprint() in cost_map.hpp). Images of parts that make up the volume, composited front to back, are the
+  /// image to rounding. Bricks that hold voxels of the part are read, no others. IntegratorKind::preintegrated would
   /// miss steps from one part to the next.
   std::optional<VoxelBox> part{};
   bool error_bounds = false, tile_times = false;
@@ -67,7 +67,7 @@ struct Frame {
   std::vector<TileTime> tile_times;  ///< if asked for; none of rectilinear grids
 };
 
-/// A pilot pass: of the tiles of a region (none: of the picture) one in `turns` is cast, another with each `number`.
+/// A pilot pass: of the tiles of a region (none: the image) one in `turns` is cast, another with each `number`.
 struct PilotPass {
   std::optional<scene::PixelRect> region{};
   std::size_t number = 0, turns = 1;
@@ -104,7 +104,7 @@ class Renderer {
   Frame render(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
                const CastRequest& request = {}, scene::FrameWatch* watch = nullptr);
 
-  /// The pilot pass: casts every 32nd ray of the picture (more of a small one), and counts where in the volume the work
+  /// The pilot pass: casts every 32nd ray of the image (more of a small one), and counts where in the volume the work
   /// was (learned_work.hpp); makes no light. As render() otherwise.
   void sample_work(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
                    WorkTally& tally, const PilotPass& pass = {}, scene::FrameWatch* watch = nullptr);
@@ -115,7 +115,7 @@ class Renderer {
   [[nodiscard]] CostMap cost_map(const scene::Camera& camera, scene::ImageSize size,
                                  const scene::TransferFunction& transfer_function, CostSettings settings) const;
 
-  /// The volume cut into boxes for so many processes, for this transfer function (object_split.hpp).
+  /// The volume cut into boxes for `processes`, for this transfer function (object_split.hpp).
   [[nodiscard]] ObjectSplit object_split(const scene::TransferFunction& transfer_function, int processes) const;
 
   /// Of the whole volume, blank samples left out.

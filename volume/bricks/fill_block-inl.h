@@ -214,7 +214,7 @@ struct Target {
   }
 };
 
-/// One block being filled: what samples it takes, and of which the transfer function shows something.
+/// One block being filled: the samples it takes, and whether the transfer function hides some of them.
 class BlockFill {
  public:
   HWY_INLINE BlockFill(const FrameView& frame, const RayAxes& axes, const ChunkBox& box, SlabBlock& block)

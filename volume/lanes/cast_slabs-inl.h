@@ -12,7 +12,7 @@
 //           the tolerance of a piece; a Bend adds what the distance does to first order.
 // Bits      They depend on the rays of a vector and the chunk alone: whether lanes are taken together depends on all of
 //           them. So they differ between instruction sets.
-// Ends      Lanes that let nothing through any more are taken out every four slabs.
+// Ends      Lanes that no longer let anything through are taken out every four slabs.
 
 #if defined(TESSERA_VOLUME_CAST_SLABS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_CAST_SLABS_INL_H_
@@ -102,7 +102,7 @@ class PacketCast {
     plain_to_ = GetLane(MinOfLanes(d, IfThenElse(mirrored_.live, lanes_.k_out, Set(d, 64.0f))));
   }
 
-  /// Rays that let nothing through any more are done. False if all are, or have left the volume.
+  /// Rays that no longer let anything through are done. False if all are, or have left the volume.
   HWY_INLINE bool go_on(int n) {
     const DF d;
     const MF dark = And(mirrored_.live, before_ * rays_.light.transmittance < Set(d, frame_.least_transmittance));

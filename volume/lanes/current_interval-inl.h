@@ -47,14 +47,14 @@ class CurrentInterval {
     const float* const knots = table_.column(LaneTable::edge) + 1;
     return static_cast<std::size_t>(std::upper_bound(knots, knots + table_.knot_count, s) - knots);
   }
-  /// Whether [low, high] lies in the current interval, and for certain if that ends at a step, in the lanes that are
+  /// Whether [low, high] is in the current interval, and for certain if that ends at a step, in the lanes that are
   /// live.
   [[nodiscard]] HWY_INLINE bool around(VF low, VF high, MF live) const {
     const DF d;
     const MF below = high < Set(d, guarded_high_);
     return AllFalse(d, AndNot(And(low >= Set(d, guarded_low_), below), live));
   }
-  /// Whether a sample lies in the current interval for certain.
+  /// Whether a sample is in the current interval for certain.
   [[nodiscard]] HWY_INLINE bool holds(float s) const { return held_low_ <= s && s < held_high_; }
   /// Makes a sample's interval the current one; that of a blank is the first.
   HWY_INLINE void begin_at(float sample) { move_to(sample == sample ? interval_of(sample) : 0); }

@@ -33,7 +33,7 @@ HWY_INLINE VF surface_row(const SurfaceView& view, const std::vector<float>& row
   return GatherIndex(d, row.data(), edge);
 }
 
-/// The gap that a scalar is in (SurfaceView); the first for what is none.
+/// The gap that a scalar is in (SurfaceView); the first for what is not a number.
 HWY_INLINE VI surface_gap(const SurfaceView& view, VF s) {
   const DF d;
   const DI di;
@@ -54,7 +54,7 @@ struct NoSurfaces {
 };
 
 /// The gap between two surfaces' values in which each lane's field was last, narrower by the field's noise at either
-/// end, and one for all samples of a window. They only make it quick to tell that there is no surface: whatever they
+/// end, and one for all samples of a window. They only make it quick to find that there is no surface: whatever they
 /// are, answers are the same.
 class LaneSurfaces {
  public:

@@ -75,7 +75,7 @@ struct GroupWork {
   VF k_out, depth_before;
   std::uint64_t samples_before;
 
-  /// As the work stands before slab `next`, or where the packet stopped.
+  /// The work before slab `next`, or where the packet stopped.
   HWY_NOINLINE void add_to(const ChunkView& chunk, const Lanes& lanes, const Reach& reach, int next,
                            const Progress& progress, const TileCounts& counts) const {
     const DF d;

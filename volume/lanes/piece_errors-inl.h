@@ -81,7 +81,7 @@ HWY_INLINE void note_ramps(const UniformLookup& table, VF length, VF before, VF 
   notes.error_bound = MulAdd(through, Set(d, table.ramp_steady), notes.error_bound);
 }
 
-/// Where lanes cannot tell on which side of a step the cubic is: for how long, and the steps' edges.
+/// Where the side of a step that the cubic is on is uncertain: for how long, and the steps' edges.
 struct Touch {
   MF near;
   VI edge;
@@ -118,11 +118,11 @@ struct StretchErrors {
 };
 
 /// Optical depths w that are too much or too few at places to which T gets through, of a medium of colour c, where what
-/// lies in front sends L: with a = T c + L and all the stretch's light E they change it by less than the sum of
+/// is in front sends L: with a = T c + L and all the stretch's light E they change it by less than the sum of
 /// w |a - E|, and that is less than the root of (sum of w) (sum of w |a - E|^2) by Cauchy and Schwarz.
 struct Excess {
   VF depth, ramps, red, green, blue, square;  ///< sums of w, of those of ramps, of w a and of w |a|^2
-  VF beside_steps, beside_ramps;              ///< light that differs whatever lies behind
+  VF beside_steps, beside_ramps;              ///< light that differs whatever is behind
 
   HWY_INLINE void add(VF w, VF through, const VF (&color)[3], const Progress& progress) {
     const VF a[3] = {MulAdd(through, color[0], progress.red), MulAdd(through, color[1], progress.green),
@@ -194,7 +194,7 @@ HWY_NOINLINE void add_ramp_excess(const IntervalLanes<Lookup>& steep, VF s_end, 
   excess.beside_ramps = MulAdd(seen, steep.row(steep.bound->ramp_color), excess.beside_ramps);
 }
 
-/// Depths that differ are told apart by how much; light beside them is each one's own.
+/// Shares the error of depths out in proportion to these; the light that differs in addition is each one's own.
 HWY_INLINE void set_close_errors(const Excess& excess, const Progress& progress, const LaneErrorBound& bound,
                                  StretchErrors& errors) {
   const DF d;

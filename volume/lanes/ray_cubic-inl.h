@@ -64,7 +64,7 @@ HWY_INLINE void find_extrema(const Cubic& c, VF& first, VF& second) {
   second = Max(a, b);
 }
 
-/// v between two places where the cubic, monotone there, has the value `level`, which lies between theirs.
+/// v between two places where the cubic, monotone there, has the value `level`, between theirs.
 HWY_INLINE VF find_crossing(const Cubic& c, const CubicPlace& from, const CubicPlace& to, VF level, MF wanted) {
   const DF d;
   const VF half = Set(d, 0.5f);
@@ -74,7 +74,7 @@ HWY_INLINE VF find_crossing(const Cubic& c, const CubicPlace& from, const CubicP
   for (int step = 0; step < 12; ++step) {
     const VF excess = c.at(v) - level;
     const MF above = excess > Zero(d);
-    // What lies on the far side becomes the bracket's end.
+    // A place on the far side becomes the bracket's end.
     const MF beyond = Xor(above, Not(rises));
     high = IfThenElse(beyond, v, high);
     low = IfThenElse(beyond, low, v);

@@ -200,7 +200,7 @@ HWY_NOINLINE StretchErrors walk_cubic(const Lookup& table, const FrameView& fram
     const MF up = to.s >= at.s;
     const VI interval = table.locate(at.s, up);
     const auto index = table.index(interval, active);
-    // Made anew for functions that are not inlined: what these refer to is kept in memory.
+    // Made again for functions that are not inlined: what these refer to is kept in memory.
     const auto lanes_in = [&](MF lanes) HWY_ATTR {
       return IntervalLanes<Lookup>{table, index, interval, lanes, frame.error_bound};
     };

@@ -177,7 +177,7 @@ struct ScalarStep {
   VF front, back, length;
 };
 
-/// Of a step by the table; of those that are the ray's last and shorter, as the table is made.
+/// Of a step by the table; the ray's last step, which is shorter, is integrated as the table is made.
 template <class Lookup>
 HWY_INLINE StepLight preintegrated_step(const PreintegratedTable& table, const Lookup& lookup, const ScalarStep& step,
                                         MF active, MF last) {
@@ -190,7 +190,7 @@ HWY_INLINE StepLight preintegrated_step(const PreintegratedTable& table, const L
   StepLight light;
   light.depth = IfThenElseZero(good, found[0]);
   for (int c = 0; c < 3; ++c) light.color[c] = IfThenElseZero(good, found[c + 1]);
-  // The last step is shorter than the table's, and its light is no share of theirs: integrated as the table is.
+  // The last step is shorter than the table's, and its light is not a share of theirs: integrated as the table is.
   const MF final_one = And(good, last);
   if (!AllFalse(d, final_one)) {
     const CL::Light exact = CL::integrate_lanes(lookup, step.length, front, back, final_one);

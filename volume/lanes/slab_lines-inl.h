@@ -118,7 +118,7 @@ HWY_INLINE Line line_of(const SlabLines& lines, int n) {
   const VF u_1 = lines.u_1[n], u_2 = lines.u_2[n];
   const VF d_1 = IfThenElseZero(u_1 < one, lines.f_1[n] - MulAdd(u_1, line.span, line.s_0)),
            d_2 = IfThenElseZero(u_2 < one, lines.f_2[n] - MulAdd(u_2, line.span, line.s_0));
-  // Trapezia: the ends' weights are half the stretches beside them.
+  // Trapezia: the ends' weights are half the stretches next to them.
   const VF kinks = MulAdd(d_1, u_2, d_2 * (one - u_1));
   line.shift = half * kinks - lines.sag[n];
   line.rho = Max(Abs(d_1), Abs(d_2)) + lines.bump[n];
@@ -226,7 +226,7 @@ struct Slopes {
   VF p, q, product;
 };
 
-/// In a voxel of which two sides along one axis differ by `near` and, one further along the other axis, by `far`.
+/// In a voxel whose samples differ by `near` along one axis and, one further along the other axis, by `far`.
 HWY_INLINE Curvature curvature(const Slopes& slope, const SamplePair& near, const SamplePair& far,
                                const SideDifferences& sides) {
   const VF d_pq = far.a - near.a, third = far.b - near.b - d_pq;
@@ -316,7 +316,7 @@ HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, cons
   }
   lines.f_2[m] = s_11.moved(p_2, along_p).at(u_2);
   {
-    // Sides q = 1 and p = 1 again, of which the latter begins at 11.
+    // Sides q = 1 and p = 1 again; the latter now begins at 11.
     const SamplePair s_12 = samples(at_12), near = s_12 - s_11;
     const VF p_middle = MulAdd(half * (one - u_2), slope.p, p_2);
     const VF offset = MulAdd(slope.q, p_middle, slope.product);

@@ -7,7 +7,7 @@
 // Roots     of differences from the value, so that what they err is a part of what the field changes by in the voxel.
 // Unsure    whether a surface is met at all, or in which of two voxels, where the field is near its value at a turn, in
 //           a side of a voxel or at a ray's end: those rays are cast again in double precision (SurfaceWalk).
-// Level     sides of voxels all of whose corners have the value, as whole numbers often do, are no such places: where
+// Level     sides of voxels all of whose corners have the value, as whole numbers often do, are not uncertain: where
 //           lanes and value are exact the field has the value there, hence is not below it.
 // Errors    of places and normals go with those of ramps: roundings, each its own (piece_errors-inl.h).
 
@@ -120,12 +120,12 @@ class SurfaceCast {
     return {number, surface_row(view_, view_.edge, number), surface_row(view_, view_.edge, number + Set(DI(), 1))};
   }
 
-  /// Lanes whose field `s` is nearer to a value that ends the gap than noise lets tell.
+  /// Lanes whose field `s` is nearer to a value that ends the gap than the noise.
   static HWY_INLINE MF touches(const Gap& in, VF s, VF noise, MF lanes) {
     return And(lanes, Or(Abs(s - in.low) < noise, Abs(in.high - s) < noise));
   }
 
-  /// Where a stretch begins or ends in a level side (see Level above), and along which axes that lies.
+  /// Where a stretch begins or ends in a level side (see Level above), and which axes are across it.
   struct LevelSide {
     MF any, across_i, across_j;
   };
@@ -199,7 +199,7 @@ class SurfaceCast {
         const Place place = place_of(stretch, v, turn, guess, level, surface_row(view_, view_.rest, edge));
         const VF at = IfThenElse(crosses, place.at, v);
         add_light(stretch, lit, at, s_lit, level, crosses);
-        // In a level side it is met in this voxel, not beside another one.
+        // In a level side it is met in this voxel, not next to another one.
         const MF at_front = And(v == zero, level == s_0), at_back = And(last, level == s_1);
         const auto beside = [&](MF of_front, MF of_back) HWY_ATTR {
           return AndNot(Or(And(at_front, of_front), And(at_back, of_back)), crosses);
@@ -253,8 +253,8 @@ class SurfaceCast {
     const VF low = MulAdd(v, stretch.extent, stretch.begin), high = MulAdd(turn, stretch.extent, stretch.begin);
     Place place;
     place.u = MulAdd(at, stretch.extent, stretch.begin);
-    // find_crossing() goes by values that are rounded beside their level: two steps by differences to it, of which the
-    // first is near enough for the field's slopes. Where it is level that may be anything.
+    // find_crossing() goes by values that are rounded off their level: two steps by differences to it. The first place
+    // is near enough for the field's slopes. Where it is level that may be anything.
     for (int n = 0; n < 2; ++n) {
       const VF height = from_level.at(place.u, lanes_);
       place.gradient = from_level.gradient(place.u, lanes_);
@@ -323,8 +323,8 @@ class SurfaceCast {
     note_surface(stretch, range, hit, steepness, hidden);
   }
 
-  /// Lanes that meet a surface beside another voxel, where normals differ, but for rays that are put on their side of a
-  /// plane (keep_side()).
+  /// Lanes that meet a surface next to another voxel, where normals differ, but for rays that are put on their side of
+  /// a plane (keep_side()).
   HWY_INLINE void note_beside(const VoxelStretch& stretch, const Place& place, MF beside_i, MF beside_j) {
     const DF d;
     const auto near = [&](VF at, VF slope) HWY_ATTR {

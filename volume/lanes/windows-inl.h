@@ -6,7 +6,7 @@
 //           that window fit into vector registers, where a permutation finds a corner of sixteen voxels in one
 //           instruction (a gather takes fifteen times as long on processors that guard it against sampling). Wider
 //           windows, and all where vectors are shorter than AVX-512's, are gathered from memory.
-// Ends      An index must be in the window: who gathers puts lanes that are not there to element 0.
+// Ends      An index must be in the window: callers that gather put lanes that are not there to element 0.
 
 #if defined(TESSERA_VOLUME_WINDOWS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_WINDOWS_INL_H_

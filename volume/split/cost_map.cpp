@@ -179,7 +179,7 @@ class Costs {
 
   [[nodiscard]] glm::dvec3 direction(double px, double py) const {
     glm::dvec3 d = rays_.direction + px * rays_.direction_x + py * rays_.direction_y;
-    // Along an axis the slabs of the others hold all of the ray or none: a tiny slope says so without 0 / 0.
+    // Along an axis the slabs of the others hold all of the ray or none: a tiny slope gives that without 0 / 0.
     const double least = 1e-12 * std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
     for (int a = 0; a < 3; ++a)
       if (std::abs(d[a]) < least) d[a] = least;
