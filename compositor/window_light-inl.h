@@ -16,7 +16,7 @@
 
 #include "compositor/surface_lights-inl.h"
 #include "compositor/window_kernel.hpp"
-#include "projection/lattice/pack_lanes-inl.h"
+#include "scene/lanes/pack_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 #if HWY_TARGET != HWY_SCALAR
@@ -63,7 +63,7 @@ struct LightRows {
     const MF is_mark = And(RebindMask(d, is_final), scalar_from >= Set(d, Mark::first));
     if (AllFalse(d, is_mark)) return scalar_from;
     const auto takes = And(RebindMask(di, is_mark), open);
-    const projection::HWY_NAMESPACE::LanePacker pack(takes);
+    const scene::HWY_NAMESPACE::LanePacker pack(takes);
     if (pack.count() > 0) {
       StoreU(pack(Iota(di, 0) + Set(di, static_cast<std::int32_t>(row * hn::Lanes(d)))), di, marked_at + marked);
       StoreU(pack(scalar_from), d, mark + marked);
@@ -115,7 +115,7 @@ struct LightRows {
   }
   HWY_INLINE void defer(MF more, VI places) {
     const DI d;
-    const projection::HWY_NAMESPACE::LanePacker pack(RebindMask(d, more));
+    const scene::HWY_NAMESPACE::LanePacker pack(RebindMask(d, more));
     StoreU(pack(places), d, waiting_at + waiting);
     waiting += pack.count();
   }

@@ -21,7 +21,7 @@
 #include <bit>
 
 #include "integrals/lane_table.hpp"
-#include "scene/lanes-inl.h"
+#include "scene/lanes/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tessera::integrals {

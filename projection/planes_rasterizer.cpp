@@ -14,15 +14,12 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "projection/lattice/pack_lanes-inl.h"
+#include "scene/lanes/pack_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::ScalableTag<double>;
-using V = hn::Vec<D>;
+using namespace scene::HWY_NAMESPACE;  // vectors and operations on their lanes
 
 // Edges by their corners i < j, and faces by their corners a < b < c and the edges bc, ac, ab.
 constexpr int edge_from[6] = {0, 0, 0, 1, 1, 2}, edge_to[6] = {1, 2, 3, 2, 3, 3};
@@ -150,20 +147,20 @@ HWY_NOINLINE EyeOnEdge eye_on_edge(const PixelVertex (&corner)[4], double pixels
 
 /// Candidate pixels of a cell, one a lane.
 struct Pixels {
-  V x, y;
-  hn::Mask<D> in_box;
+  VD x, y;
+  MD in_box;
 };
 
 /// What stays the same for all pixels of a cell, in registers as far as they go.
 struct CellLanes {
-  V width, inverse_width, left, top, count;  ///< of the box
-  V near_depth, far_depth, tile_left, tile_top, tile_width, bound;
-  hn::Vec<hn::RebindToUnsigned<D>> tet;
+  VD width, inverse_width, left, top, count;  ///< of the box
+  VD near_depth, far_depth, tile_left, tile_top, tile_width, bound;
+  hn::Vec<hn::RebindToUnsigned<DD>> tet;
 
   template <int values>
   HWY_INLINE CellLanes(const ProjectedMesh& projected, const Cell<values>& cell, std::uint32_t number,
                        const scene::PixelRect& rect) {
-    const D d;
+    const DD d;
     width = Set(d, cell.box.width());
     inverse_width = Set(d, 1.0 / cell.box.width());
     left = Set(d, cell.box.x0 + 0.5);
@@ -175,30 +172,30 @@ struct CellLanes {
     tile_top = Set(d, rect.y0 + 0.5);
     tile_width = Set(d, rect.width());
     bound = Set(d, cell.error_bound);
-    tet = Set(hn::RebindToUnsigned<D>(), static_cast<std::uint64_t>(number) << 32);
+    tet = Set(hn::RebindToUnsigned<DD>(), static_cast<std::uint64_t>(number) << 32);
   }
 
   /// Candidates base, base + 1... of the box, row after row.
   HWY_INLINE Pixels pixels_from(int base) const {
-    const D d;
-    const V k = Iota(d, base);
-    const V row = Floor((k + Set(d, 0.5)) * inverse_width);  // k < 2^20: exact
+    const DD d;
+    const VD k = Iota(d, base);
+    const VD row = Floor((k + Set(d, 0.5)) * inverse_width);  // k < 2^20: exact
     return {NegMulAdd(row, width, k) + left, row + top, k < count};
   }
 };
 
 /// The six edge functions at these pixels, with the exact signs.
 template <int values>
-HWY_INLINE void edge_functions(const Cell<values>& cell, const CellLanes& lanes, const Pixels& pixels, V (&edge)[6],
+HWY_INLINE void edge_functions(const Cell<values>& cell, const CellLanes& lanes, const Pixels& pixels, VD (&edge)[6],
                                RasterCounts& counts) {
-  const D d;
-  V qx[4], qy[4];
+  const DD d;
+  VD qx[4], qy[4];
   for (int i = 0; i < 4; ++i) {
-    const V w = Set(d, cell.corner[i].w);
+    const VD w = Set(d, cell.corner[i].w);
     qx[i] = NegMulAdd(pixels.x, w, Set(d, cell.corner[i].x));
     qy[i] = NegMulAdd(pixels.y, w, Set(d, cell.corner[i].y));
   }
-  V least = Set(d, HUGE_VAL);
+  VD least = Set(d, HUGE_VAL);
   for (int e = 0; e < 6; ++e) {
     const int a = edge_from[e], b = edge_to[e];
     edge[e] = MulSub(qx[a], qy[b], qx[b] * qy[a]);
@@ -207,12 +204,10 @@ HWY_INLINE void edge_functions(const Cell<values>& cell, const CellLanes& lanes,
   const auto uncertain = And(pixels.in_box, least <= lanes.bound);
   if (HWY_UNLIKELY(!AllFalse(d, uncertain))) {
     alignas(64) double x[8], y[8], settled[6][8];
-    std::uint8_t bits[8] = {0};
-    StoreMaskBits(d, uncertain, bits);
     Store(pixels.x, d, x);
     Store(pixels.y, d, y);
     for (int e = 0; e < 6; ++e) Store(edge[e], d, settled[e]);
-    settle_signs(cell, x, y, bits[0], settled, counts);
+    settle_signs(cell, x, y, lane_bits(uncertain), settled, counts);
     for (int e = 0; e < 6; ++e) edge[e] = Load(d, settled[e]);
   }
 }
@@ -220,17 +215,17 @@ HWY_INLINE void edge_functions(const Cell<values>& cell, const CellLanes& lanes,
 /// Numerators and denominators of the pierced face of either orientation, gathered face by face.
 template <int values>
 struct Crossed {
-  V depth_sum, value_sum[values], weight, depth_c, value_c[values];
-  hn::Mask<D> any;
+  VD depth_sum, value_sum[values], weight, depth_c, value_c[values];
+  MD any;
 
   HWY_INLINE Crossed() {
-    const V zero = Zero(D());
+    const VD zero = Zero(DD());
     depth_sum = depth_c = zero;
     for (int v = 0; v < values; ++v) value_sum[v] = value_c[v] = zero;
-    weight = Set(D(), 1.0);
+    weight = Set(DD(), 1.0);
     any = zero < zero;
   }
-  HWY_INLINE void gather(hn::Mask<D> pierced, const Crossed& face) {
+  HWY_INLINE void gather(MD pierced, const Crossed& face) {
     depth_sum = IfThenElse(pierced, face.depth_sum, depth_sum);
     weight = IfThenElse(pierced, face.weight, weight);
     depth_c = IfThenElse(pierced, face.depth_c, depth_c);
@@ -243,18 +238,18 @@ struct Crossed {
 };
 
 /// a * (at_a - at_c) + b * (at_b - at_c).
-HWY_INLINE V weighted(V a, V b, double at_a, double at_b, double at_c) {
-  return MulAdd(a, Set(D(), at_a - at_c), b * Set(D(), at_b - at_c));
+HWY_INLINE VD weighted(VD a, VD b, double at_a, double at_b, double at_c) {
+  return MulAdd(a, Set(DD(), at_a - at_c), b * Set(DD(), at_b - at_c));
 }
 
 /// The cell's faces that rays pierce from one side (`plus`) and the other.
 template <int values>
-HWY_INLINE void cross_faces(const Cell<values>& cell, const V (&edge)[6], Crossed<values>& plus,
+HWY_INLINE void cross_faces(const Cell<values>& cell, const VD (&edge)[6], Crossed<values>& plus,
                             Crossed<values>& minus) {
-  const D d;
-  const V zero = Zero(d);
-  hn::Mask<D> positive[6], negative[6];
-  V weight[6];
+  const DD d;
+  const VD zero = Zero(d);
+  MD positive[6], negative[6];
+  VD weight[6];
   for (int e = 0; e < 6; ++e) {
     positive[e] = edge[e] > zero;
     negative[e] = edge[e] < zero;
@@ -269,7 +264,7 @@ HWY_INLINE void cross_faces(const Cell<values>& cell, const V (&edge)[6], Crosse
     Crossed<values> here;
     // Relative to corner c, so that a face of one value or depth keeps it to the bit: a transfer function may step
     // there.
-    const V a = weight[face.bc], b = weight[face.ac];
+    const VD a = weight[face.bc], b = weight[face.ac];
     here.depth_c = Set(d, cell.corner[face.c].depth);
     here.depth_sum = weighted(a, b, cell.corner[face.a].depth, cell.corner[face.b].depth, cell.corner[face.c].depth);
     for (int v = 0; v < values; ++v) {
@@ -286,36 +281,36 @@ HWY_INLINE void cross_faces(const Cell<values>& cell, const V (&edge)[6], Crosse
 /// Segments of the candidate pixels that have one.
 template <int values>
 struct Segments {
-  hn::Mask<D> hit;
-  V front, back, value_front[values], value_back[values];
+  MD hit;
+  VD front, back, value_front[values], value_back[values];
 };
 
 /// From the nearer crossing to the farther one, inside the clipping range.
 template <int values>
-HWY_INLINE Segments<values> segments_between(const CellLanes& lanes, hn::Mask<D> hit, const Crossed<values>& plus,
+HWY_INLINE Segments<values> segments_between(const CellLanes& lanes, MD hit, const Crossed<values>& plus,
                                              const Crossed<values>& minus) {
-  const D d;
-  const V near_depth = lanes.near_depth, far_depth = lanes.far_depth;
-  const V plus_inverse = Set(d, 1.0) / plus.weight, minus_inverse = Set(d, 1.0) / minus.weight;
-  const V plus_depth = MulAdd(plus.depth_sum, plus_inverse, plus.depth_c);
-  const V minus_depth = MulAdd(minus.depth_sum, minus_inverse, minus.depth_c);
+  const DD d;
+  const VD near_depth = lanes.near_depth, far_depth = lanes.far_depth;
+  const VD plus_inverse = Set(d, 1.0) / plus.weight, minus_inverse = Set(d, 1.0) / minus.weight;
+  const VD plus_depth = MulAdd(plus.depth_sum, plus_inverse, plus.depth_c);
+  const VD minus_depth = MulAdd(minus.depth_sum, minus_inverse, minus.depth_c);
   const auto plus_first = plus_depth <= minus_depth;
   Segments<values> s;
   s.front = Min(plus_depth, minus_depth);
   s.back = Max(plus_depth, minus_depth);
   for (int v = 0; v < values; ++v) {
-    const V at_plus = MulAdd(plus.value_sum[v], plus_inverse, plus.value_c[v]);
-    const V at_minus = MulAdd(minus.value_sum[v], minus_inverse, minus.value_c[v]);
+    const VD at_plus = MulAdd(plus.value_sum[v], plus_inverse, plus.value_c[v]);
+    const VD at_minus = MulAdd(minus.value_sum[v], minus_inverse, minus.value_c[v]);
     s.value_front[v] = IfThenElse(plus_first, at_plus, at_minus);
     s.value_back[v] = IfThenElse(plus_first, at_minus, at_plus);
   }
   s.hit = And(hit, And(s.back > near_depth, s.front < far_depth));
   const auto clipped = And(s.hit, Or(s.back > far_depth, s.front < near_depth));
   if (HWY_UNLIKELY(!AllFalse(d, clipped))) {
-    const V front = Max(s.front, near_depth), back = Min(s.back, far_depth);
+    const VD front = Max(s.front, near_depth), back = Min(s.back, far_depth);
     for (int v = 0; v < values; ++v) {
-      const V slope = (s.value_back[v] - s.value_front[v]) / (s.back - s.front);
-      const V from = s.value_front[v];
+      const VD slope = (s.value_back[v] - s.value_front[v]) / (s.back - s.front);
+      const VD from = s.value_front[v];
       s.value_front[v] = IfThenElse(s.front < near_depth, MulAdd(front - s.front, slope, from), from);
       s.value_back[v] = IfThenElse(s.back > far_depth, MulAdd(back - s.front, slope, from), s.value_back[v]);
     }
@@ -327,10 +322,10 @@ HWY_INLINE Segments<values> segments_between(const CellLanes& lanes, hn::Mask<D>
 
 template <int values>
 HWY_INLINE void append(const Segments<values>& s, const CellLanes& lanes, const Pixels& pixels, RaySegments& out) {
-  const D d;
-  const hn::RebindToUnsigned<D> du;
-  const hn::RebindToSigned<D> di;
-  const V in_tile = MulAdd(pixels.y - lanes.tile_top, lanes.tile_width, pixels.x - lanes.tile_left);
+  const DD d;
+  const hn::RebindToUnsigned<DD> du;
+  const hn::RebindToSigned<DD> di;
+  const VD in_tile = MulAdd(pixels.y - lanes.tile_top, lanes.tile_width, pixels.x - lanes.tile_left);
   const auto packed = Or(BitCast(du, ConvertTo(di, in_tile)), lanes.tet);
   const WideLanePacker pack(RebindMask(du, s.hit));
   StoreU(pack(packed), du, out.pixel_and_tet.data() + out.size);
@@ -349,12 +344,12 @@ HWY_INLINE void append(const Segments<values>& s, const CellLanes& lanes, const 
 template <int values>
 void rasterize_cell(const ProjectedMesh& projected, const Cell<values>& cell, std::uint32_t tet,
                     const scene::PixelRect& rect, RaySegments& out, RasterCounts& counts) {
-  const D d;
+  const DD d;
   const CellLanes lanes(projected, cell, tet, rect);
   const int count = cell.box.area();
   for (int base = 0; base < count; base += static_cast<int>(hn::Lanes(d))) {
     const Pixels pixels = lanes.pixels_from(base);
-    V edge[6];
+    VD edge[6];
     edge_functions(cell, lanes, pixels, edge, counts);
     Crossed<values> plus, minus;
     cross_faces(cell, edge, plus, minus);

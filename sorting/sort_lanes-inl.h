@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Depth order of sixteen (or eight, or four) pixels at once, a pixel a lane. Included once per instruction set
 // (Highway's include guard idiom).
+//
+// What   A key holds a segment's depth and its row in the lane's list. Sorting networks sort every lane's keys at once:
+//        an exchange of two rows is a minimum and a maximum, with no branch.
+// How    Batcher's odd-even merge sort in registers, 16 rows at a time; then bitonic merges of such runs.
+// Bits   Keys are compared, not computed: the order is the same on every instruction set.
+// Ends   Depths that agree in a key's bits are left to the caller (PackedKeys::level()).
 
 #if defined(TESSERA_SORTING_SORT_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_SORTING_SORT_LANES_INL_H_
@@ -17,15 +23,12 @@
 #include <cstdint>
 #include <utility>
 
+#include "scene/lanes/lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tessera::sorting {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using SortTag = hn::ScalableTag<float>;
-using SortVec = hn::Vec<SortTag>;
-using KeyTag = hn::RebindToSigned<SortTag>;
-using KeyVec = hn::Vec<KeyTag>;
+using namespace scene::HWY_NAMESPACE;  // vectors and operations on their lanes
 
 /// A row is one vector of keys: element r of every lane's list.
 constexpr int sort_chunk = 16;
@@ -40,37 +43,37 @@ class PackedKeys {
  public:
   /// For depths from `nearest` to `farthest` (by lane, 32-bit steps; a lane that is empty: nearest > farthest) in
   /// `rows` rows, at most most_sort_chunks * sort_chunk.
-  HWY_INLINE PackedKeys(KeyVec nearest, KeyVec farthest, std::size_t rows) : nearest_(nearest) {
-    const KeyTag d;
-    const hn::RebindToUnsigned<KeyTag> bits;
-    const KeyVec range = IfThenZeroElse(farthest < nearest, farthest - nearest);
+  HWY_INLINE PackedKeys(VI nearest, VI farthest, std::size_t rows) : nearest_(nearest) {
+    const DI d;
+    const hn::RebindToUnsigned<DI> bits;
+    const VI range = IfThenZeroElse(farthest < nearest, farthest - nearest);
     const auto range_bits = static_cast<int>(std::bit_width(GetLane(MaxOfLanes(bits, BitCast(bits, range)))));
     const auto row_bits = static_cast<int>(std::bit_width(rows - 1));
     up_ = std::min(row_bits, key_bits - range_bits);
     row_mask_ = Set(d, (1 << row_bits) - 1);
   }
-  HWY_INLINE KeyVec pack(KeyVec depth, std::size_t row) const {
-    const KeyTag d;
-    const hn::RebindToUnsigned<KeyTag> bits;
+  HWY_INLINE VI pack(VI depth, std::size_t row) const {
+    const DI d;
+    const hn::RebindToUnsigned<DI> bits;
     const auto behind = BitCast(bits, depth - nearest_);
     const auto shifted = up_ >= 0 ? ShiftLeftSame(behind, up_) : ShiftRightSame(behind, -up_);
-    const KeyVec number = Set(d, static_cast<std::int32_t>(row));
+    const VI number = Set(d, static_cast<std::int32_t>(row));
     return Or(AndNot(row_mask_, BitCast(d, shifted)), number) + Set(d, least_normal);
   }
   /// A key behind all others, for rows beyond a list's end.
-  static HWY_INLINE KeyVec behind_all(std::size_t row) {
-    return Set(KeyTag(), most_key + static_cast<std::int32_t>(row * sort_chunk * most_sort_chunks));
+  static HWY_INLINE VI behind_all(std::size_t row) {
+    return Set(DI(), most_key + static_cast<std::int32_t>(row * sort_chunk * most_sort_chunks));
   }
   /// The row that a key was packed with; of keys behind all others, any.
-  HWY_INLINE KeyVec row(KeyVec key) const { return And(key, row_mask_); }
+  HWY_INLINE VI row(VI key) const { return And(key, row_mask_); }
   /// Whether the keys do not tell which depth is nearer.
-  HWY_INLINE hn::Mask<KeyTag> level(KeyVec a, KeyVec b) const { return Xor(a, b) < row_mask_ + Set(KeyTag(), 1); }
+  HWY_INLINE MI level(VI a, VI b) const { return Xor(a, b) < row_mask_ + Set(DI(), 1); }
 
  private:
   static constexpr int key_bits = 30;
   static constexpr std::int32_t least_normal = 0x00800000, most_key = least_normal + (1 << key_bits);
 
-  KeyVec nearest_, row_mask_;
+  VI nearest_, row_mask_;
   int up_;
 };
 
@@ -106,23 +109,23 @@ inline constexpr auto sort_network = odd_even_merge_sort();
 inline constexpr auto merge_network = bitonic_merge();
 static_assert(sort_network.count == 63 && merge_network.count == 32);
 
-HWY_INLINE void exchange(SortVec& a, SortVec& b) {
-  const SortVec low = Min(a, b);
+HWY_INLINE void exchange(VF& a, VF& b) {
+  const VF low = Min(a, b);
   b = Max(a, b);
   a = low;
 }
 
 template <const auto& network, int... step>
-HWY_INLINE void run_network(SortVec (&key)[sort_chunk], std::integer_sequence<int, step...>) {
+HWY_INLINE void run_network(VF (&key)[sort_chunk], std::integer_sequence<int, step...>) {
   (exchange(key[network.low[step]], key[network.high[step]]), ...);
 }
 
 /// Runs a network on 16 rows, in registers.
 template <const auto& network>
 HWY_INLINE void run_on_rows(float* keys) {
-  const SortTag d;
+  const DF d;
   const std::size_t lanes = hn::Lanes(d);
-  SortVec key[sort_chunk];
+  VF key[sort_chunk];
   for (int i = 0; i < sort_chunk; ++i) key[i] = LoadU(d, keys + static_cast<std::size_t>(i) * lanes);
   run_network<network>(key, std::make_integer_sequence<int, network.count>());
   for (int i = 0; i < sort_chunk; ++i) StoreU(key[i], d, keys + static_cast<std::size_t>(i) * lanes);
@@ -131,11 +134,11 @@ HWY_INLINE void run_on_rows(float* keys) {
 /// Exchanges row `low` + i with row `high` + i (reversed: `high` - i), i < rows.
 template <bool reversed>
 HWY_INLINE void exchange_rows(float* keys, int low, int high, int rows) {
-  const SortTag d;
+  const DF d;
   const auto lanes = static_cast<int>(hn::Lanes(d));
   for (int i = 0; i < rows; ++i) {
     float *a = keys + (low + i) * lanes, *b = keys + (reversed ? high - i : high + i) * lanes;
-    SortVec key_a = LoadU(d, a), key_b = LoadU(d, b);
+    VF key_a = LoadU(d, a), key_b = LoadU(d, b);
     exchange(key_a, key_b);
     StoreU(key_a, d, a), StoreU(key_b, d, b);
   }
@@ -148,7 +151,7 @@ HWY_INLINE void exchange_rows(float* keys, int low, int high, int rows) {
 /// Runs of 16 rows are merged by Batcher's bitonic sorter in the form in which all comparisons point one way: rows
 /// beyond the last would hold largest keys, so that what would meet them stays.
 HWY_INLINE void sort_lanes(float* keys, int chunks) {
-  const auto row = static_cast<std::size_t>(hn::Lanes(SortTag()));
+  const auto row = static_cast<std::size_t>(hn::Lanes(DF()));
   const auto at = [&](int chunk) { return static_cast<std::size_t>(chunk * sort_chunk) * row; };
   for (int c = 0; c < chunks; ++c) run_on_rows<sort_network>(keys + at(c));
   for (int run = 1; run < chunks; run *= 2) {

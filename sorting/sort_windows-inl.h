@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Depth order of the windows that the default frame composites from: as many neighbouring pixels' lists at once as a
 // vector has lanes. Included once per instruction set (Highway's include guard idiom).
+//
+// What   In every lane the slots of its pixel's segments, in the order of before(): front, back, then the scalars.
+// How    The networks of sort_lanes-inl.h order keys of the fronts; what their bits leave open, and lists longer than
+//        the networks, is sorted lane by lane.
+// Ends   Segments with equal fields are interchangeable: any order of theirs gives the same pixel.
 
 #if defined(TESSERA_SORTING_SORT_WINDOWS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_SORTING_SORT_WINDOWS_INL_H_
@@ -39,9 +44,7 @@ HWY_INLINE const projection::LatticeSegment& segment_at(const projection::Lattic
 }
 
 /// Lanes whose lists have this row.
-HWY_INLINE hn::Mask<KeyTag> has_row(std::size_t row, KeyVec count) {
-  return Set(KeyTag(), static_cast<std::int32_t>(row)) < count;
-}
+HWY_INLINE MI has_row(std::size_t row, VI count) { return Set(DI(), static_cast<std::int32_t>(row)) < count; }
 
 /// Puts in order what the network left nearly so: keys do not tell all of a segment, nor always all of its depth.
 HWY_NOINLINE inline void settle_ties(const projection::LatticeSegment* list, std::size_t count, std::size_t lanes,
@@ -70,10 +73,10 @@ HWY_NOINLINE inline void sort_long(const projection::LatticeSegment* list, std::
 /// list's length.
 HWY_INLINE std::size_t sort_windows(const projection::LatticeSegment* list, std::size_t stride,
                                     const std::uint32_t* counts, WindowOrder& order) {
-  const KeyTag d;
-  const SortTag df;
+  const DI d;
+  const DF df;
   const std::size_t lanes = hn::Lanes(d);
-  const KeyVec count = LoadU(d, reinterpret_cast<const std::int32_t*>(counts));
+  const VI count = LoadU(d, reinterpret_cast<const std::int32_t*>(counts));
   const auto most = static_cast<std::size_t>(GetLane(MaxOfLanes(d, count)));
   if (most == 0) return 0;
   const std::size_t chunks = (most + sort_chunk - 1) / sort_chunk;
@@ -85,14 +88,14 @@ HWY_INLINE std::size_t sort_windows(const projection::LatticeSegment* list, std:
     return most;
   }
 
-  KeyVec nearest = Set(d, 0x7fffffff), farthest = Set(d, -0x7fffffff);
+  VI nearest = Set(d, 0x7fffffff), farthest = Set(d, -0x7fffffff);
   for (std::size_t row = 0; row < most; ++row) {
     const std::size_t first = row * stride;
     const auto quarter = [&](std::size_t q) HWY_ATTR {
       return LoadU(d, reinterpret_cast<const std::int32_t*>(list + first + q * lanes / 4));
     };
-    const KeyVec low = ConcatEven(d, quarter(1), quarter(0)), high = ConcatEven(d, quarter(3), quarter(2));
-    const KeyVec front = ConcatEven(d, high, low);
+    const VI low = ConcatEven(d, quarter(1), quarter(0)), high = ConcatEven(d, quarter(3), quarter(2));
+    const VI front = ConcatEven(d, high, low);
     const auto here = has_row(row, count);
     nearest = Min(nearest, IfThenElse(here, front, nearest));
     farthest = Max(farthest, IfThenElse(here, front, farthest));
@@ -102,25 +105,23 @@ HWY_INLINE std::size_t sort_windows(const projection::LatticeSegment* list, std:
   const PackedKeys packed(nearest, farthest, rows);
   float* keys = order.keys.data();
   for (std::size_t row = 0; row < rows; ++row) {
-    KeyVec key = packed.behind_all(row);
+    VI key = packed.behind_all(row);
     if (row < most) key = IfThenElse(has_row(row, count), packed.pack(LoadU(d, slots + row * lanes), row), key);
     StoreU(BitCast(df, key), df, keys + row * lanes);
   }
   sort_lanes(keys, static_cast<int>(chunks));
-  const KeyVec bytes = Set(d, static_cast<std::int32_t>(stride * sizeof *list));
+  const VI bytes = Set(d, static_cast<std::int32_t>(stride * sizeof *list));
   auto ties = count < Zero(d);
-  KeyVec previous = Zero(d);
+  VI previous = Zero(d);
   for (std::size_t row = 0; row < most; ++row) {
-    const KeyVec key = BitCast(d, LoadU(df, keys + row * lanes));
+    const VI key = BitCast(d, LoadU(df, keys + row * lanes));
     StoreU(packed.row(key) * bytes, d, slots + row * lanes);
     ties = Or(ties, packed.level(previous, key));
     previous = key;
   }
   if (!AllFalse(d, ties)) {
-    std::uint8_t bits[8] = {0};
-    StoreMaskBits(d, ties, bits);
-    for (std::uint64_t left = bits[0] | static_cast<std::uint64_t>(bits[1]) << 8; left != 0; left &= left - 1) {
-      const auto lane = static_cast<std::size_t>(__builtin_ctzll(left));
+    for (unsigned left = lane_bits(ties); left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::size_t>(__builtin_ctz(left));
       settle_ties(list + lane, counts[lane], lanes, slots + lane);
     }
   }

@@ -14,8 +14,8 @@
 
 #include "projection/edge_sign.hpp"
 #include "projection/lattice/lattice_setup-inl.h"
-#include "projection/lattice/pack_lanes-inl.h"
-#include "scene/lanes-inl.h"
+#include "scene/lanes/lanes-inl.h"
+#include "scene/lanes/pack_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 #if HWY_TARGET != HWY_SCALAR
@@ -26,6 +26,7 @@ using scene::HWY_NAMESPACE::DF;
 using scene::HWY_NAMESPACE::DI;
 using scene::HWY_NAMESPACE::dot_of_halves;
 using scene::HWY_NAMESPACE::greater_where;
+using scene::HWY_NAMESPACE::LanePacker;
 using scene::HWY_NAMESPACE::least_magnitude;
 using scene::HWY_NAMESPACE::lookup_two;
 using scene::HWY_NAMESPACE::MF;

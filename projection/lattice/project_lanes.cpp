@@ -6,43 +6,42 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "scene/lanes/lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
+using namespace scene::HWY_NAMESPACE;  // vectors and operations on their lanes
 
 #if HWY_TARGET == HWY_SCALAR
 std::size_t project_points(const LinearMap&, const double*, std::size_t, PixelVertex*) { return 0; }
 #else
-using D = hn::ScalableTag<double>;
-using V = hn::Vec<D>;
-
 /// A dot product as glm takes it: no fused sums, left to right.
-HWY_INLINE V along(const double (&axis)[3], V x, V y, V z) {
-  const D d;
+HWY_INLINE VD along(const double (&axis)[3], VD x, VD y, VD z) {
+  const DD d;
   return Set(d, axis[0]) * x + Set(d, axis[1]) * y + Set(d, axis[2]) * z;
 }
 
-HWY_INLINE V on_grid(V pixel) {
-  const D d;
-  const V scaled = pixel * Set(d, 0x1p32);
+HWY_INLINE VD on_grid(VD pixel) {
+  const DD d;
+  const VD scaled = pixel * Set(d, 0x1p32);
   return IfThenElse(IsFinite(scaled), Round(scaled) * Set(d, 0x1p-32), pixel);
 }
 
 std::size_t project_points(const LinearMap& map, const double* points, std::size_t count, PixelVertex* out) {
-  const D d;
+  const DD d;
   const std::size_t lanes = hn::Lanes(d);
-  const V half_width = Set(d, map.half_width), half_height = Set(d, map.half_height);
-  const V scale = Set(d, map.pixels_per_unit);
+  const VD half_width = Set(d, map.half_width), half_height = Set(d, map.half_height);
+  const VD scale = Set(d, map.pixels_per_unit);
   std::size_t i = 0;
   for (; i + lanes <= count; i += lanes) {
-    V x, y, z;
+    VD x, y, z;
     LoadInterleaved3(d, points + 3 * i, x, y, z);
     x = x - Set(d, map.position[0]);
     y = y - Set(d, map.position[1]);
     z = z - Set(d, map.position[2]);
-    const V across = along(map.right, x, y, z) * scale, upward = along(map.up, x, y, z) * scale;
-    const V depth = along(map.forward, x, y, z);
+    const VD across = along(map.right, x, y, z) * scale, upward = along(map.up, x, y, z) * scale;
+    const VD depth = along(map.forward, x, y, z);
     if (map.perspective)
       StoreInterleaved4(half_width * depth + across, half_height * depth - upward, depth, depth, d, &out[i].x);
     else

@@ -24,35 +24,35 @@ std::size_t pack_and_sort(std::int32_t*, const std::int32_t*, std::int32_t*, std
 /// Returns the number of lanes.
 std::size_t sort_rows(float* keys, int chunks) {
   sort_lanes(keys, chunks);
-  return hn::Lanes(SortTag());
+  return hn::Lanes(DF());
 }
 
 /// Sorts `rows` rows of depths, counts[i] of them in lane i, like windows: places[] are the rows in sorted order, and
 /// level[row] has bits set in lanes where that row's key equals the previous one.
 std::size_t pack_and_sort(std::int32_t* depths, const std::int32_t* counts, std::int32_t* places, std::int32_t* level,
                           std::size_t rows) {
-  const KeyTag d;
+  const DI d;
   const std::size_t lanes = hn::Lanes(d);
-  const KeyVec count = hn::LoadU(d, counts);
+  const VI count = hn::LoadU(d, counts);
   const auto has = [&](std::size_t row)
-                       HWY_ATTR { return hn::Lt(hn::Set(KeyTag(), static_cast<std::int32_t>(row)), count); };
-  KeyVec nearest = hn::Set(d, 0x7fffffff), farthest = hn::Set(d, -0x7fffffff);
+                       HWY_ATTR { return hn::Lt(hn::Set(DI(), static_cast<std::int32_t>(row)), count); };
+  VI nearest = hn::Set(d, 0x7fffffff), farthest = hn::Set(d, -0x7fffffff);
   for (std::size_t row = 0; row < rows; ++row) {
-    const KeyVec depth = hn::LoadU(d, depths + row * lanes);
+    const VI depth = hn::LoadU(d, depths + row * lanes);
     nearest = hn::Min(nearest, hn::IfThenElse(has(row), depth, nearest));
     farthest = hn::Max(farthest, hn::IfThenElse(has(row), depth, farthest));
   }
   const PackedKeys packed(nearest, farthest, rows);
   std::vector<float> keys(rows * lanes);
   for (std::size_t row = 0; row < rows; ++row) {
-    const KeyVec depth = hn::LoadU(d, depths + row * lanes);
-    const KeyVec key = hn::IfThenElse(has(row), packed.pack(depth, row), packed.behind_all(row));
-    hn::StoreU(hn::BitCast(SortTag(), key), SortTag(), &keys[row * lanes]);
+    const VI depth = hn::LoadU(d, depths + row * lanes);
+    const VI key = hn::IfThenElse(has(row), packed.pack(depth, row), packed.behind_all(row));
+    hn::StoreU(hn::BitCast(DF(), key), DF(), &keys[row * lanes]);
   }
   sort_lanes(keys.data(), static_cast<int>(rows) / sort_chunk);
-  KeyVec before = hn::Zero(d);
+  VI before = hn::Zero(d);
   for (std::size_t row = 0; row < rows; ++row) {
-    const KeyVec key = hn::BitCast(d, hn::LoadU(SortTag(), &keys[row * lanes]));
+    const VI key = hn::BitCast(d, hn::LoadU(DF(), &keys[row * lanes]));
     hn::StoreU(packed.row(key), d, places + row * lanes);
     hn::StoreU(hn::VecFromMask(d, packed.level(before, key)), d, level + row * lanes);
     before = key;

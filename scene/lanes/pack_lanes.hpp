@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-namespace tessera::projection {
+namespace tessera::scene {
 
 /// Which lane comes i-th when the lanes of a mask are moved to the front: order[mask bits][i], for 8 lanes of 32 bits,
 /// and for 4 as the bytes of a shuffle. (Highway 1.0's Compress copies its tables to the stack at every call under some
@@ -29,4 +29,4 @@ struct PackingOrders {
 };
 inline constexpr PackingOrders packing_orders;
 
-}  // namespace tessera::projection
+}  // namespace tessera::scene

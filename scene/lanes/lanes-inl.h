@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The lanes of the kernels: floats and integers of 32 bits, as many as a vector register has, and the operations on
-// them that Highway 1.0.3 does not have or has only in a slower form. Included once per instruction set (Highway's
-// include guard idiom). No other file has intrinsics.
+// The lanes of the kernels: floats and integers of 32 bits, as many as a vector register has, doubles, half as many,
+// and the operations on them that Highway 1.0.3 does not have or has only in a slower form. Included once per
+// instruction set (Highway's include guard idiom). No other file has intrinsics.
 //
 // Bits   an operation gives the same bits on every instruction set, unless it states otherwise.
 
-#if defined(TESSERA_SCENE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef TESSERA_SCENE_LANES_INL_H_
-#undef TESSERA_SCENE_LANES_INL_H_
+#if defined(TESSERA_SCENE_LANES_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_SCENE_LANES_LANES_INL_H_
+#undef TESSERA_SCENE_LANES_LANES_INL_H_
 #else
-#define TESSERA_SCENE_LANES_INL_H_
+#define TESSERA_SCENE_LANES_LANES_INL_H_
 #endif
 
 #include <hwy/highway.h>
@@ -27,6 +27,30 @@ using VF = hn::Vec<DF>;
 using VI = hn::Vec<DI>;
 using MF = hn::Mask<DF>;
 using MI = hn::Mask<DI>;
+using DD = hn::ScalableTag<double>;
+using VD = hn::Vec<DD>;
+using MD = hn::Mask<DD>;
+
+/// The lanes of a mask, a bit each.
+template <class D>
+HWY_INLINE unsigned bits_of_mask(D d, hn::Mask<D> mask) {
+  std::uint8_t bits[8] = {0};
+  StoreMaskBits(d, mask, bits);
+  return MaxLanes(d) > 8 ? bits[0] | static_cast<unsigned>(bits[1]) << 8 : bits[0];
+}
+HWY_INLINE unsigned lane_bits(MF mask) { return bits_of_mask(DF(), mask); }
+HWY_INLINE unsigned lane_bits(MI mask) { return bits_of_mask(DI(), mask); }
+HWY_INLINE unsigned lane_bits(MD mask) { return bits_of_mask(DD(), mask); }
+
+/// table[i], 16 numbers; 0 <= i < 16.
+template <class T>
+HWY_INLINE hn::Vec<hn::ScalableTag<T>> lookup_16(const T* table, VI i) {
+  const hn::ScalableTag<T> d;
+  if constexpr (MaxLanes(d) == 16)
+    return TableLookupLanes(Load(d, table), IndicesFromVec(d, i));
+  else
+    return GatherIndex(d, table, i);
+}
 
 /// Towards zero, of numbers that integers can represent. Highway's ConvertTo also handles others, in four instructions
 /// more.
