@@ -102,7 +102,7 @@ void measure(const std::string& name, const scene::TetMesh& mesh, const scene::C
     const scene::PixelRect rect = grid.rect(tile);
     const auto entries = lists.tile(tile);
     for (std::size_t next = 0; next < entries.size();) {
-      next += paper ? rasterize_scanline(projected, edge, entries.subspan(next), rect, buffers, segments, counts)
+      next += paper ? rasterize_scanline({projected, edge}, entries.subspan(next), rect, buffers, segments, counts)
                     : rasterize_planes(projected, entries.subspan(next), rect, segments, counts);
       if (next < entries.size()) segments.reserve(2 * segments.capacity() + 8192);
     }

@@ -128,7 +128,7 @@ void show_reads(benchmark::State& state, const Stage& s, const projection::TileL
 void cull(benchmark::State& state, Stage& s, const scene::TransferFunction& function) {
   projection::TileListReads reads;
   measure(state, "cpu_ns_a_tet", [&] {
-    projection::TileLists lists(s.projected, s.grid, function, false, nullptr, &s.buffers);
+    projection::TileLists lists(s.projected, s.grid, function, false, {.buffers = &s.buffers});
     reads = lists.reads();
     return s.mesh.tets.size();
   });
@@ -139,7 +139,8 @@ void fill(benchmark::State& state, Stage& s, const scene::TransferFunction& func
   // The arena that culls determines the number of runs.
   tbb::task_arena arena(static_cast<int>(state.range(0)));
   std::optional<projection::TileLists> made;
-  arena.execute([&] { made.emplace(s.projected, s.grid, function, false, nullptr, &s.buffers); });
+  arena.execute(
+      [&] { made.emplace(s.projected, s.grid, function, false, projection::TileListSettings{.buffers = &s.buffers}); });
   projection::TileLists& lists = *made;
   projection::TileListReads before, after;
   measure(state, "cpu_ns_a_tet", [&] {
@@ -153,7 +154,7 @@ void fill(benchmark::State& state, Stage& s, const scene::TransferFunction& func
 }
 
 void order(benchmark::State& state, Stage& s) {
-  projection::TileLists lists(s.projected, s.grid, s.figures, false, nullptr, &s.buffers);
+  projection::TileLists lists(s.projected, s.grid, s.figures, false, {.buffers = &s.buffers});
   lists.fill(0, s.grid.count());
   std::vector<projection::TileEntry> entries;
   std::vector<std::size_t> starts{0};

@@ -10,19 +10,21 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "scene/lanes/lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
+using namespace scene::HWY_NAMESPACE;  // vectors and operations on their lanes
 
 double smallest(const PixelVertex* vertices, std::size_t count) {
   double least = std::numeric_limits<double>::max();
   std::size_t v = 0;
 #if HWY_TARGET != HWY_SCALAR
-  const hn::ScalableTag<double> d;
-  auto least_lanes = Set(d, least);
+  const DD d;
+  VD least_lanes = Set(d, least);
   for (; v + hn::Lanes(d) <= count; v += hn::Lanes(d)) {
-    hn::Vec<decltype(d)> x, y, w, depth;
+    VD x, y, w, depth;
     LoadInterleaved4(d, &vertices[v].x, x, y, w, depth);
     least_lanes = Min(depth, least_lanes);
   }
@@ -53,10 +55,9 @@ void make_vertices(const PixelVertex* vertices, const double* scalars, std::size
     out[v] = cull_vertex(vertices[v], scalars != nullptr ? scalars[v] : 0, depth_origin);
 }
 
-CulledBlock cull(const CullView&, const CullVertex*, const scene::Tet*, std::size_t count, const double*,
-                 const ClearFloats*, std::size_t, std::uint32_t*, float*) {
+CulledBlock cull(const CullView&, const CellBlock& cells, std::uint32_t*, float*) {
   CulledBlock block;
-  block.unsure = ~std::uint64_t{0} >> (cull_block_cells - count);
+  block.unsure = ~std::uint64_t{0} >> (cull_block_cells - cells.tets.size());
   return block;
 }
 
@@ -64,13 +65,13 @@ CulledBlock cull(const CullView&, const CullVertex*, const scene::Tet*, std::siz
 
 void make_vertices(const PixelVertex* vertices, const double* scalars, std::size_t count, double depth_origin,
                    CullVertex* out) {
-  const hn::ScalableTag<double> dd;
-  const hn::Rebind<float, decltype(dd)> df;
+  const DD dd;
+  const hn::Rebind<float, DD> df;
   const std::size_t lanes = hn::Lanes(dd);
   const auto origin = Set(dd, depth_origin), origin_size = Abs(origin);
   std::size_t v = 0;
   for (; v + lanes <= count; v += lanes) {
-    hn::Vec<decltype(dd)> x, y, w, depth;
+    VD x, y, w, depth;
     LoadInterleaved4(dd, &vertices[v].x, x, y, w, depth);
     const auto offset = depth - origin - (Abs(depth) + origin_size) * Set(dd, 4e-16);
     const auto lower = offset - Abs(offset) * Set(dd, 0x1p-23) - Set(dd, 0x1p-149);
@@ -81,38 +82,30 @@ void make_vertices(const PixelVertex* vertices, const double* scalars, std::size
   for (; v < count; ++v) out[v] = cull_vertex(vertices[v], scalars != nullptr ? scalars[v] : 0, depth_origin);
 }
 
-using D = hn::ScalableTag<float>;
-using V = hn::Vec<D>;
-using M = hn::Mask<D>;
-
-HWY_INLINE std::uint64_t bits_of(M mask) {
-  std::uint64_t bits = 0;
-  StoreMaskBits(D(), mask, reinterpret_cast<std::uint8_t*>(&bits));
-  return bits;
-}
+HWY_INLINE std::uint64_t bits_of(MF mask) { return lane_bits(mask); }
 
 /// Interval of whole numbers [low, high) of pixels whose centres lie in [least, most], and whether floats are sure.
 struct Covered {
-  V low, high;
-  M empty, sure;  ///< empty: certainly
+  VF low, high;
+  MF empty, sure;  ///< empty: certainly
 };
 
 /// Ten times the rounding of a float pixel position and of what is added to it here, and of footprint()'s slack.
-HWY_INLINE V slack_of(V pixel) { return MulAdd(Abs(pixel), Set(D(), 0x1p-22f), Set(D(), 1e-6f)); }
+HWY_INLINE VF slack_of(VF pixel) { return MulAdd(Abs(pixel), Set(DF(), 0x1p-22f), Set(DF(), 1e-6f)); }
 
-HWY_INLINE Covered covered(V least, V most, V side) {
-  const D d;
-  const V half = Set(d, 0.5f), zero = Zero(d);
-  const auto in_window = [&](V v) HWY_ATTR { return Min(Max(v, zero), side); };
-  const V from = least - half, from_slack = slack_of(least);
-  const V to = most + half, to_slack = slack_of(most);  // floor(most - 1/2) + 1
-  const V first = in_window(Ceil(from - from_slack)), last = in_window(Floor(to + to_slack));
-  const M first_sure = first == in_window(Ceil(from + from_slack));
-  const M last_sure = last == in_window(Floor(to - to_slack));
+HWY_INLINE Covered covered(VF least, VF most, VF side) {
+  const DF d;
+  const VF half = Set(d, 0.5f), zero = Zero(d);
+  const auto in_window = [&](VF v) HWY_ATTR { return Min(Max(v, zero), side); };
+  const VF from = least - half, from_slack = slack_of(least);
+  const VF to = most + half, to_slack = slack_of(most);  // floor(most - 1/2) + 1
+  const VF first = in_window(Ceil(from - from_slack)), last = in_window(Floor(to + to_slack));
+  const MF first_sure = first == in_window(Ceil(from + from_slack));
+  const MF last_sure = last == in_window(Floor(to - to_slack));
   return {first, last, first >= last, And(first_sure, last_sure)};
 }
 
-/// Boxes of cells, a cell after the other: smallest and largest of x, y, depth, scalar.
+/// Boxes of `count` cells, a cell after the other: smallest and largest of x, y, depth, scalar.
 HWY_INLINE void boxes_of(const CullVertex* vertices, const scene::Tet* tets, std::size_t count, float* low,
                          float* high) {
   const hn::FixedTag<float, 4> d;
@@ -126,10 +119,10 @@ HWY_INLINE void boxes_of(const CullVertex* vertices, const scene::Tet* tets, std
 
 /// A vector of cells.
 struct Boxes {
-  V x_low, y_low, depth_low, scalar_low, x_high, y_high, depth_high, scalar_high;
+  VF x_low, y_low, depth_low, scalar_low, x_high, y_high, depth_high, scalar_high;
 
   HWY_INLINE Boxes(const float* low, const float* high) {
-    const D d;
+    const DF d;
     LoadInterleaved4(d, low, x_low, y_low, depth_low, scalar_low);
     LoadInterleaved4(d, high, x_high, y_high, depth_high, scalar_high);
   }
@@ -137,16 +130,14 @@ struct Boxes {
 
 /// Cells of which the transfer function shows nothing: certainly, perhaps.
 struct Hidden {
-  M surely, maybe;
+  MF surely, maybe;
 
-  HWY_INLINE Hidden(const Boxes& boxes, const ClearFloats* clear, std::size_t clear_count) {
-    const D d;
+  HWY_INLINE Hidden(const Boxes& boxes, std::span<const ClearFloats> clear) {
+    const DF d;
     surely = maybe = Zero(d) < Zero(d);
-    for (std::size_t i = 0; i < clear_count; ++i) {
-      surely = Or(surely,
-                  And(boxes.scalar_low >= Set(d, clear[i].sure_low), boxes.scalar_high <= Set(d, clear[i].sure_high)));
-      maybe = Or(maybe,
-                 And(boxes.scalar_low >= Set(d, clear[i].maybe_low), boxes.scalar_high <= Set(d, clear[i].maybe_high)));
+    for (const ClearFloats& c : clear) {
+      surely = Or(surely, And(boxes.scalar_low >= Set(d, c.sure_low), boxes.scalar_high <= Set(d, c.sure_high)));
+      maybe = Or(maybe, And(boxes.scalar_low >= Set(d, c.maybe_low), boxes.scalar_high <= Set(d, c.maybe_high)));
     }
   }
 };
@@ -154,26 +145,26 @@ struct Hidden {
 /// Where cells lie against the clipping range and the window.
 struct Placed {
   Covered columns, rows;
-  M too_near, too_far, in_depth, empty, covers, tame, inside, outside;
+  MF too_near, too_far, in_depth, empty, covers, tame, inside, outside;
 
   HWY_INLINE Placed(const CullView& view, const Boxes& b) {
-    const D d;
+    const DF d;
     // The farthest that a vertex of this CullVertex::depth may lie.
-    const auto at_most = [&](V v) HWY_ATTR { return MulAdd(Abs(v), Set(d, 4e-7f), v) + Set(d, view.depth_slack); };
+    const auto at_most = [&](VF v) HWY_ATTR { return MulAdd(Abs(v), Set(d, 4e-7f), v) + Set(d, view.depth_slack); };
     too_near = at_most(b.depth_high) < Set(d, view.near_low);
     too_far = b.depth_low > Set(d, view.far_high);
     in_depth = And(b.depth_low > Set(d, view.near_high), at_most(b.depth_low) < Set(d, view.far_low));
 
-    const V width = Set(d, view.width), height = Set(d, view.height);
+    const VF width = Set(d, view.width), height = Set(d, view.height);
     columns = covered(b.x_low, b.x_high, width), rows = covered(b.y_low, b.y_high, height);
     // A sum, which is no number where one of them is none.
-    const V widest = Abs(b.x_low) + Abs(b.x_high) + (Abs(b.y_low) + Abs(b.y_high));
+    const VF widest = Abs(b.x_low) + Abs(b.x_high) + (Abs(b.y_low) + Abs(b.y_high));
     tame = widest < Set(d, 1e30f);
     empty = Or(columns.empty, rows.empty);
     covers = AndNot(empty, And(columns.sure, rows.sure));
-    const auto within = [&](V least, V most, V side)
+    const auto within = [&](VF least, VF most, VF side)
                             HWY_ATTR { return And(least > slack_of(least), most + slack_of(most) < side); };
-    const auto beyond = [&](V least, V most, V side)
+    const auto beyond = [&](VF least, VF most, VF side)
                             HWY_ATTR { return Or(most + slack_of(most) < Zero(d), least - slack_of(least) > side); };
     inside = And(within(b.x_low, b.x_high, width), within(b.y_low, b.y_high, height));
     outside = Or(beyond(b.x_low, b.x_high, width), beyond(b.y_low, b.y_high, height));
@@ -182,13 +173,13 @@ struct Placed {
 
 /// Writes the places of cells with these boxes of pixels; returns which of them lie in one tile.
 HWY_INLINE std::uint64_t store_places(const CullView& view, const Placed& placed, std::uint32_t* places) {
-  const D d;
-  const hn::RebindToSigned<D> di;
+  const DF d;
+  const DI di;
   // Whole numbers up to 65536 plus a half, over the tile's size: floats are off by less than half a pixel.
-  const V inverse = Set(d, view.inverse_tile_size), half = Set(d, 0.5f);
-  const auto tile = [&](V pixel) HWY_ATTR { return Floor(pixel * inverse); };
-  const V column0 = tile(placed.columns.low + half), column1 = tile(placed.columns.high - half);
-  const V row0 = tile(placed.rows.low + half), row1 = tile(placed.rows.high - half);
+  const VF inverse = Set(d, view.inverse_tile_size), half = Set(d, 0.5f);
+  const auto tile = [&](VF pixel) HWY_ATTR { return Floor(pixel * inverse); };
+  const VF column0 = tile(placed.columns.low + half), column1 = tile(placed.columns.high - half);
+  const VF row0 = tile(placed.rows.low + half), row1 = tile(placed.rows.high - half);
   const auto first = ConvertTo(di, MulAdd(row0, Set(d, view.columns), column0));
   const auto more_columns = ConvertTo(di, column1 - column0);
   const auto more_rows = ConvertTo(di, row1 - row0);
@@ -199,21 +190,20 @@ HWY_INLINE std::uint64_t store_places(const CullView& view, const Placed& placed
   return bits_of(RebindMask(d, Or(more_columns, more_rows) == Zero(di)));
 }
 
-CulledBlock cull(const CullView& view, const CullVertex* vertices, const scene::Tet* tets, std::size_t count,
-                 const double* cell_scalars, const ClearFloats* clear, std::size_t clear_count, std::uint32_t* places,
-                 float* near_depths) {
-  CulledBlock block;
+CulledBlock cull(const CullView& view, const CellBlock& block, std::uint32_t* places, float* near_depths) {
+  CulledBlock culled;
+  const std::size_t count = block.tets.size();
   const std::uint64_t cells = ~std::uint64_t{0} >> (cull_block_cells - count);
   if (view.nothing_sure) {
-    block.unsure = cells;
-    return block;
+    culled.unsure = cells;
+    return culled;
   }
   alignas(64) float low[4 * cull_block_cells], high[4 * cull_block_cells], scalars[cull_block_cells];
-  boxes_of(vertices, tets, count, low, high);
-  if (cell_scalars != nullptr)
-    for (std::size_t t = 0; t < count; ++t) scalars[t] = static_cast<float>(cell_scalars[t]);
+  boxes_of(block.vertices, block.tets.data(), count, low, high);
+  if (block.cell_scalars != nullptr)
+    for (std::size_t t = 0; t < count; ++t) scalars[t] = static_cast<float>(block.cell_scalars[t]);
 
-  const D d;
+  const DF d;
   const std::size_t lanes = hn::Lanes(d);
   for (std::size_t t = count; t < (count + lanes - 1) / lanes * lanes; ++t) {  // any numbers
     for (std::size_t i = 0; i < 4; ++i) low[4 * t + i] = high[4 * t + i] = 0;
@@ -221,8 +211,8 @@ CulledBlock cull(const CullView& view, const CullVertex* vertices, const scene::
   }
   for (std::size_t t = 0; t < count; t += lanes) {
     Boxes boxes(low + 4 * t, high + 4 * t);
-    if (cell_scalars != nullptr) boxes.scalar_low = boxes.scalar_high = Load(d, scalars + t);
-    const Hidden hidden(boxes, clear, clear_count);
+    if (block.cell_scalars != nullptr) boxes.scalar_low = boxes.scalar_high = Load(d, scalars + t);
+    const Hidden hidden(boxes, block.clear);
     const Placed placed(view, boxes);
 
     const std::uint64_t here = cells >> t & (~std::uint64_t{0} >> (64 - lanes)), visible = ~bits_of(hidden.maybe);
@@ -230,15 +220,15 @@ CulledBlock cull(const CullView& view, const CullVertex* vertices, const scene::
     const std::uint64_t empty = drawn & bits_of(placed.empty), projected = drawn & bits_of(placed.covers) & here;
     const std::uint64_t outside =
         ((visible & bits_of(Or(placed.too_near, placed.too_far))) | (empty & bits_of(placed.outside))) & here;
-    block.projected |= projected << t;
-    block.invisible |= (bits_of(hidden.surely) & here) << t;
-    block.outside_view |= outside << t;
-    block.between_pixels |= (empty & bits_of(placed.inside) & ~outside & here) << t;
-    block.in_one_tile |= (projected & store_places(view, placed, places + t)) << t;
+    culled.projected |= projected << t;
+    culled.invisible |= (bits_of(hidden.surely) & here) << t;
+    culled.outside_view |= outside << t;
+    culled.between_pixels |= (empty & bits_of(placed.inside) & ~outside & here) << t;
+    culled.in_one_tile |= (projected & store_places(view, placed, places + t)) << t;
     StoreU(Max(boxes.depth_low, Set(d, view.near_low)), d, near_depths + t);
   }
-  block.unsure = cells & ~(block.projected | block.invisible | block.outside_view | block.between_pixels);
-  return block;
+  culled.unsure = cells & ~(culled.projected | culled.invisible | culled.outside_view | culled.between_pixels);
+  return culled;
 }
 
 #endif  // HWY_TARGET == HWY_SCALAR
@@ -309,11 +299,8 @@ CullView::CullView(double near_depth, double far_depth, double depth_origin, sce
   depth_slack = not_below(2e-15 * std::abs(depth_origin) + 0x1p-146);
 }
 
-CulledBlock cull_cells(const CullView& view, const CullVertex* vertices, std::span<const scene::Tet> tets,
-                       const double* cell_scalars, std::span<const ClearFloats> clear, std::uint32_t* places,
-                       float* near_depths) {
-  return HWY_DYNAMIC_DISPATCH(cull)(view, vertices, tets.data(), tets.size(), cell_scalars, clear.data(), clear.size(),
-                                    places, near_depths);
+CulledBlock cull_cells(const CullView& view, const CellBlock& block, std::uint32_t* places, float* near_depths) {
+  return HWY_DYNAMIC_DISPATCH(cull)(view, block, places, near_depths);
 }
 
 }  // namespace tessera::projection

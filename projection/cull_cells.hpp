@@ -70,11 +70,15 @@ struct CulledBlock {
 
 constexpr std::size_t cull_block_cells = 64;
 
-/// Culls `tets` (at most 64) whose first is tet `first` of the mesh. `cell_scalars`: theirs, or null for point data.
-/// `clear`: the clear intervals that have values in common with these cells' scalars; none if `all visible`. Writes the
-/// places and near depths of projected cells; both arrays have room for 64.
-CulledBlock cull_cells(const CullView& view, const CullVertex* vertices, std::span<const scene::Tet> tets,
-                       const double* cell_scalars, std::span<const ClearFloats> clear, std::uint32_t* places,
-                       float* near_depths);
+/// At most 64 neighbouring cells of a mesh.
+struct CellBlock {
+  const CullVertex* vertices;  ///< all of the mesh
+  std::span<const scene::Tet> tets;
+  const double* cell_scalars;          ///< theirs; null for point data
+  std::span<const ClearFloats> clear;  ///< the clear intervals that have values in common with these cells' scalars
+};
+
+/// Culls a block. Writes the places and near depths of projected cells; both arrays have room for 64.
+CulledBlock cull_cells(const CullView& view, const CellBlock& block, std::uint32_t* places, float* near_depths);
 
 }  // namespace tessera::projection

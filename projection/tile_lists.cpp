@@ -98,16 +98,15 @@ void TileLists::for_each_tile(std::size_t tet, Visit visit) const {
 
 TileLists::TileLists(const ProjectedMesh& projected, const TileGrid& grid,
                      const scene::TransferFunction& transfer_function, bool emits_without_extinction,
-                     scene::Trace* trace, TileListBuffers* buffers, bool cull_invisible, std::stop_token stop,
-                     scene::Team* team)
+                     TileListSettings settings)
     : projected_(&projected),
-      trace_(trace),
+      trace_(settings.trace),
       grid_(grid),
-      stop_(std::move(stop)),
-      team_(team),
+      stop_(std::move(settings.stop)),
+      team_(settings.team),
       columns_(static_cast<std::size_t>(grid.columns())),
-      buffers_(buffers != nullptr ? buffers : &own_),
-      depth_origin_(nearest_depth(projected, team)),
+      buffers_(settings.buffers != nullptr ? settings.buffers : &own_),
+      depth_origin_(nearest_depth(projected, team_)),
       view_(projected.near_depth, projected.far_depth, depth_origin_, grid.image, grid.tile_size),
       projected_tets_(projected.mesh->block_count()),
       in_one_tile_(projected_tets_.size()),
@@ -133,9 +132,10 @@ TileLists::TileLists(const ProjectedMesh& projected, const TileGrid& grid,
   });
 
   const ClearIntervals clear =
-      cull_invisible ? ClearIntervals(transfer_function, emits_without_extinction,
-                                      projected.iso != nullptr ? projected.iso->values() : std::span<const double>())
-                     : ClearIntervals();
+      settings.cull_invisible
+          ? ClearIntervals(transfer_function, emits_without_extinction,
+                           projected.iso != nullptr ? projected.iso->values() : std::span<const double>())
+          : ClearIntervals();
   if (team_ != nullptr) team_->barrier();
   const scene::Share blocks = scene::share_of(projected_tets_.size(), team_);
   runs_.resize(run_count(blocks.size(), grid.count()));
@@ -213,8 +213,9 @@ void TileLists::cull(Run& run, const ClearIntervals& clear) {
     clear_here.clear();
     for (const ClearIntervals::Interval& interval : clear.meeting(low, high))
       clear_here.push_back(clear_floats(interval, prepared.scalars_are_floats()));
-    CulledBlock culled = cull_cells(view_, buffers_->vertices.data(), std::span(mesh.tets).subspan(first, n),
-                                    per_cell ? mesh.scalars.data() + first : nullptr, clear_here,
+    CulledBlock culled = cull_cells(view_,
+                                    {buffers_->vertices.data(), std::span(mesh.tets).subspan(first, n),
+                                     per_cell ? mesh.scalars.data() + first : nullptr, clear_here},
                                     &buffers_->places[first], &buffers_->near_depths[first]);
     counts.invisible += static_cast<std::uint64_t>(std::popcount(culled.invisible));
     counts.outside_view += static_cast<std::uint64_t>(std::popcount(culled.outside_view));

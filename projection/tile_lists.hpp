@@ -51,6 +51,15 @@ struct TileListBuffers {
   LargeArray<TileEntry> entries;     ///< the lists
 };
 
+/// How TileLists are made.
+struct TileListSettings {
+  scene::Trace* trace = nullptr;       ///< gets spans `cull` and `bin` of the threads that help
+  TileListBuffers* buffers = nullptr;  ///< must outlive the lists and serve no others meanwhile; null: their own
+  bool cull_invisible = true;          ///< leave out cells of which the transfer function shows nothing
+  std::stop_token stop{};              ///< both passes throw scene::FrameStopped once it is asked for
+  scene::Team* team = nullptr;         ///< whose members make the lists together; null: none
+};
+
 /// The cells of each tile, for one view and transfer function.
 ///
 /// Two passes, count and fill, so that lists have their final size at once and are the same whatever the threads
@@ -61,17 +70,13 @@ struct TileListBuffers {
 /// time.
 class TileLists {
  public:
-  /// First pass: culls and counts. Work runs in the caller's task arena (oneTBB); `trace`, if any, gets spans `cull`
-  /// and `bin` of the threads that help. `buffers`, if any, must outlive this object and serve no other meanwhile.
-  /// Without `cull_invisible` cells of which the transfer function shows nothing are listed like others. Both passes
-  /// throw scene::FrameStopped once `stop` is asked for.
+  /// First pass: culls and counts. Work runs in the caller's task arena (oneTBB).
   ///
   /// With a team the members make the lists together: each culls and fills its share of the blocks and counts its own
   /// cells and reads, and all have all lists. The mesh and `projected.vertices` are in shared memory, of the latter
   /// each member's share is there.
   TileLists(const ProjectedMesh& projected, const TileGrid& grid, const scene::TransferFunction& transfer_function,
-            bool emits_without_extinction, scene::Trace* trace = nullptr, TileListBuffers* buffers = nullptr,
-            bool cull_invisible = true, std::stop_token stop = {}, scene::Team* team = nullptr);
+            bool emits_without_extinction, TileListSettings settings = {});
   TileLists(const TileLists&) = delete;
   TileLists& operator=(const TileLists&) = delete;
 

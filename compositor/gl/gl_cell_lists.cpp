@@ -90,19 +90,19 @@ void GlCellLists::fill(const Batch& batch, const Buffer& keys, const Buffer& val
   rasterizer_.fill(jobs, {&next_, &keys, &values, &scalars_});
 }
 
-void GlCellLists::complete(const Buffer& keys, const Buffer& tables, const Buffer& lights, GLuint first_list,
-                           GLuint lists, GlIntegrals& integrals, const GlRules& rules) {
+void GlCellLists::complete(const Lists& lists, const Buffer& keys, const Buffer& lights, GlIntegrals& integrals,
+                           const GlRules& rules) {
   const gl::Functions& gl = context_->gl();
   gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   first_crossings_.use();
   integrals.prepare(first_crossings_, rules);
-  first_crossings_.set(0, first_list);
-  first_crossings_.set(1, lists);
+  first_crossings_.set(0, lists.first);
+  first_crossings_.set(1, lists.count);
   keys.bind(0);
   scalars_.bind(1);
-  tables.bind(4);
+  lists.tables.bind(4);
   lights.bind(5);
-  gl.DispatchCompute((lists + 63) / 64, 1, 1);
+  gl.DispatchCompute((lists.count + 63) / 64, 1, 1);
 }
 
 }  // namespace tessera::compositor

@@ -37,10 +37,15 @@ class GlCellLists {
   /// Queues commands that fill both, which have room for all fragments.
   void fill(const Batch& batch, const gl::Buffer& keys, const gl::Buffer& values);
 
-  /// Queues what completes the lights (GlLight::rasterized_one) of the batch that was filled last. `tables`: list
-  /// entries from `first_list` on, as composite.comp has them, with the number of fragments given last.
-  void complete(const gl::Buffer& keys, const gl::Buffer& tables, const gl::Buffer& lights, GLuint first_list,
-                GLuint lists, GlIntegrals& integrals, const GlRules& rules);
+  /// Lists of a batch: entries of `tables` from `first` on, as composite.comp has them.
+  struct Lists {
+    const gl::Buffer& tables;
+    GLuint first, count;
+  };
+  /// Queues what completes the lights (GlLight::rasterized_one) of the batch that was filled last, with the number of
+  /// fragments given last.
+  void complete(const Lists& lists, const gl::Buffer& keys, const gl::Buffer& lights, GlIntegrals& integrals,
+                const GlRules& rules);
 
  private:
   const gl::Context* context_;

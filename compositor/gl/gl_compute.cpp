@@ -90,7 +90,7 @@ class ComputeKernel final : public GlKernel {
     lights_.bind(5);
     gl.DispatchCompute(groups(slot.lists, group_of_lists), 1, 1);
     if (slot.pixels > 0)
-      cell_lists().complete(keys_, tables_, lights_, slot.first_list, static_cast<GLuint>(slot.lists), integrals_,
+      cell_lists().complete({tables_, slot.first_list, static_cast<GLuint>(slot.lists)}, keys_, lights_, integrals_,
                             rules);
     gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     slot.timer.record("composite");

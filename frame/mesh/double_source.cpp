@@ -91,7 +91,7 @@ template <class Segments>
 std::size_t DoubleSourceOf<Segments>::rasterize(std::span<const projection::TileEntry> entries) {
   if constexpr (std::is_same_v<Segments, projection::RaySegments>)
     if (context_.rasterizer == Rasterizer::scanline)
-      return projection::rasterize_scanline(*context_.projected, context_.longest_edge, entries, rect_, scanline_,
+      return projection::rasterize_scanline({*context_.projected, context_.longest_edge}, entries, rect_, scanline_,
                                             lists_.segments, counts_->raster);
   if (context_.faces != nullptr && marks_.size() > 0) return rasterize_at_faces(entries);
   if (context_.at_steps != nullptr) return rasterize_at_steps(entries);

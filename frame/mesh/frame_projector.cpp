@@ -410,8 +410,11 @@ FrameProjector::Culled FrameProjector::cull(const FrameTask& frame, const projec
   using Faces = std::optional<projection::FrameFaces>;
   return {.steps = std::move(steps),
           .at_steps = std::move(at_steps),
-          .lists = {projected, frame.grid, *frame.function, shows_color_alone, settings_.trace, &list_buffers_,
-                    settings_.use.culling, stop, team.team},
+          .lists = {projected,
+                    frame.grid,
+                    *frame.function,
+                    shows_color_alone,
+                    {settings_.trace, &list_buffers_, settings_.use.culling, stop, team.team}},
           .faces = frame.faces.empty() ? Faces() : Faces(std::in_place, frame.faces, *frame.space, frame.grid)};
 }
 

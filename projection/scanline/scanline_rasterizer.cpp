@@ -18,12 +18,13 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // The paper's four SSE lanes, on wider machines too; fewer only on those that have no four.
-using F = hn::CappedTag<float, 4>;
-using I = hn::CappedTag<std::int32_t, 4>;
-using VF = hn::Vec<F>;
-constexpr std::size_t most_lanes = MaxLanes(F());
+using DF4 = hn::CappedTag<float, 4>;
+using DI4 = hn::CappedTag<std::int32_t, 4>;
+using VF4 = hn::Vec<DF4>;
+using MF4 = hn::Mask<DF4>;
+constexpr std::size_t most_lanes = MaxLanes(DF4());
 
-HWY_INLINE int lane_count() { return static_cast<int>(hn::Lanes(F())); }
+HWY_INLINE int lane_count() { return static_cast<int>(hn::Lanes(DF4())); }
 
 constexpr std::int32_t taken = 0;  ///< owner of a fragment that is paired already, or was never written
 
@@ -33,12 +34,13 @@ struct Vertex {
   int row;  ///< counted from the rectangle's top
 };
 
-/// The arrays of ScanlineBuffers and RaySegments by plain pointers. A SIMD store may alias anything, so through the
-/// vectors every store would cost the next one a reload of its pointer.
+/// The arrays of ScanlineBuffers and RaySegments by plain pointers, for one rectangle of pixels. A SIMD store may alias
+/// anything, so through the vectors every store would cost the next one a reload of its pointer.
 struct EdgeArrays {
   float *x, *z, *s;
 };
 struct Arrays {
+  int x0, y0, width;  ///< of the rectangle
   EdgeArrays left, right;
   std::int32_t *first, *last;
   float* inverse_width;
@@ -66,21 +68,21 @@ HWY_INLINE int first_centre(float position, int low, int high) {
   return static_cast<int>(std::clamp(std::ceil(position - 0.5f), static_cast<float>(low), static_cast<float>(high)));
 }
 
-/// Intersections of the edge start -> end (start.y <= end.y) with the scanlines of the cell's box, four at a time. The
-/// arrays have four elements more than the rectangle has rows: the last step may write past the edge's end, where
-/// either the next edge overwrites or nothing is read.
-HWY_INLINE void walk_edge(const Vertex& start, const Vertex& end, int rect_y0, const EdgeArrays& side) {
+/// Intersections of the edge start -> end (start.y <= end.y) with the scanlines of the cell's box, four at a time; row
+/// 0 is the image's row y0. The arrays have four elements more than the rectangle has rows: the last step may write
+/// past the edge's end, where either the next edge overwrites or nothing is read.
+HWY_INLINE void walk_edge(const Vertex& start, const Vertex& end, int y0, const EdgeArrays& side) {
   if (start.row >= end.row) return;
-  const F f;
+  const DF4 f;
   const float per_row = 1 / (end.y - start.y);
-  const VF inverse_dy = Set(f, per_row), inverse_slope = Set(f, (end.x - start.x) * per_row);
-  const VF x_start = Set(f, start.x), z_start = Set(f, start.z), s_start = Set(f, start.s);
-  const VF dz = Set(f, end.z - start.z), ds = Set(f, end.s - start.s);
-  const VF y_start = Set(f, start.y), stride = Set(f, static_cast<float>(lane_count()));
-  VF y = Iota(f, static_cast<float>(rect_y0 + start.row) + 0.5f);  // exact: below 2^20
+  const VF4 inverse_dy = Set(f, per_row), inverse_slope = Set(f, (end.x - start.x) * per_row);
+  const VF4 x_start = Set(f, start.x), z_start = Set(f, start.z), s_start = Set(f, start.s);
+  const VF4 dz = Set(f, end.z - start.z), ds = Set(f, end.s - start.s);
+  const VF4 y_start = Set(f, start.y), stride = Set(f, static_cast<float>(lane_count()));
+  VF4 y = Iota(f, static_cast<float>(y0 + start.row) + 0.5f);  // exact: below 2^20
   for (int row = start.row; row < end.row; row += lane_count(), y = y + stride) {
-    const VF step = y - y_start;  // of the first: the sub-pixel pre-step
-    const VF factor = step * inverse_dy;
+    const VF4 step = y - y_start;  // of the first: the sub-pixel pre-step
+    const VF4 factor = step * inverse_dy;
     StoreU(MulAdd(step, inverse_slope, x_start), f, side.x + row);
     StoreU(MulAdd(factor, dz, z_start), f, side.z + row);
     StoreU(MulAdd(factor, ds, s_start), f, side.s + row);
@@ -89,13 +91,13 @@ HWY_INLINE void walk_edge(const Vertex& start, const Vertex& end, int rect_y0, c
 
 /// Integer ends and inverse width of the face's rows, four rows at a time, before the rows are filled.
 HWY_INLINE void set_up_rows(int row0, int row1, const scene::PixelRect& box, const Arrays& to) {
-  const F f;
-  const I i;
-  const VF half = Set(f, 0.5f), one = Set(f, 1.0f);
-  const VF x0 = Set(f, static_cast<float>(box.x0)), x1 = Set(f, static_cast<float>(box.x1));
-  const auto first_pixel = [&](VF x) { return ConvertTo(i, Min(Max(Ceil(x - half), x0), x1)); };
+  const DF4 f;
+  const DI4 i;
+  const VF4 half = Set(f, 0.5f), one = Set(f, 1.0f);
+  const VF4 x0 = Set(f, static_cast<float>(box.x0)), x1 = Set(f, static_cast<float>(box.x1));
+  const auto first_pixel = [&](VF4 x) { return ConvertTo(i, Min(Max(Ceil(x - half), x0), x1)); };
   for (int row = row0; row < row1; row += lane_count()) {
-    const VF left = LoadU(f, to.left.x + row), right = LoadU(f, to.right.x + row);
+    const VF4 left = LoadU(f, to.left.x + row), right = LoadU(f, to.right.x + row);
     StoreU(first_pixel(left), i, to.first + row);
     StoreU(first_pixel(right), i, to.last + row);
     StoreU(one / (right - left), f, to.inverse_width + row);
@@ -120,15 +122,20 @@ HWY_INLINE void store_segments(const Lanes& lanes, std::uint64_t pixel_and_tet, 
   to.size += count;
 }
 
+/// Where lanes' rays leave and enter a cell.
+struct Crossings {
+  VF4 z_back, z_front, s_front, s_back;
+};
+
 /// The lanes one by one: where some have no partner in B, or the clipping range cuts.
-HWY_NOINLINE void store_some(VF z_back, VF z_front, VF s_front, VF s_back, hn::Mask<F> paired,
-                             std::uint64_t pixel_and_tet, const Cell& cell, Arrays& to) {
-  const F f;
+HWY_NOINLINE void store_some(const Crossings& crossings, MF4 paired, std::uint64_t pixel_and_tet, const Cell& cell,
+                             Arrays& to) {
+  const DF4 f;
   alignas(16) float zb[4], zf[4], sf[4], sb[4], mine[4];
-  Store(z_back, f, zb);
-  Store(z_front, f, zf);
-  Store(s_front, f, sf);
-  Store(s_back, f, sb);
+  Store(crossings.z_back, f, zb);
+  Store(crossings.z_front, f, zf);
+  Store(crossings.s_front, f, sf);
+  Store(crossings.s_back, f, sb);
   Store(IfThenElseZero(paired, Set(f, 1.0f)), f, mine);
   for (std::size_t k = 0; k < hn::Lanes(f); ++k) {
     if (mine[k] == 0) continue;
@@ -147,32 +154,32 @@ enum class Side { back, front };
 
 /// Fills the face's rows, four pixels at a time.
 template <Side side>
-HWY_INLINE void fill_rows(int row0, int row1, const Cell& cell, const scene::PixelRect& rect, Arrays& to) {
-  const F f;
-  const I i;
+HWY_INLINE void fill_rows(int row0, int row1, const Cell& cell, Arrays& to) {
+  const DF4 f;
+  const DI4 i;
   const int step = lane_count();
   const auto owner = Set(i, cell.owner);
-  const VF stride = Set(f, static_cast<float>(step)), nearest = Set(f, cell.nearest),
-           inverse_edge = Set(f, 1 / cell.longest_edge);
+  const VF4 stride = Set(f, static_cast<float>(step)), nearest = Set(f, cell.nearest),
+            inverse_edge = Set(f, 1 / cell.longest_edge);
   for (int row = row0; row < row1; ++row) {
     const int first = to.first[row];
     int left = to.last[row] - first;
     if (left <= 0) continue;
-    const VF x_left = Set(f, to.left.x[row]), inverse_width = Set(f, to.inverse_width[row]);
-    const VF z_left = Set(f, to.left.z[row]), s_left = Set(f, to.left.s[row]);
-    const VF dz = Set(f, to.right.z[row] - to.left.z[row]), ds = Set(f, to.right.s[row] - to.left.s[row]);
-    int at = row * rect.width() + first - rect.x0;
-    VF x = Iota(f, static_cast<float>(first) + 0.5f);
+    const VF4 x_left = Set(f, to.left.x[row]), inverse_width = Set(f, to.inverse_width[row]);
+    const VF4 z_left = Set(f, to.left.z[row]), s_left = Set(f, to.left.s[row]);
+    const VF4 dz = Set(f, to.right.z[row] - to.left.z[row]), ds = Set(f, to.right.s[row] - to.left.s[row]);
+    int at = row * to.width + first - to.x0;
+    VF4 x = Iota(f, static_cast<float>(first) + 0.5f);
     for (; left > 0; left -= step, at += step, x = x + stride) {
-      const VF factor = (x - x_left) * inverse_width;
-      const VF z = MulAdd(factor, dz, z_left), s = MulAdd(factor, ds, s_left);
+      const VF4 factor = (x - x_left) * inverse_width;
+      const VF4 z = MulAdd(factor, dz, z_left), s = MulAdd(factor, ds, s_left);
       const auto lanes = FirstN(i, static_cast<std::size_t>(left));
       if constexpr (side == Side::back) {
         BlendedStore(Max(z, nearest), RebindMask(f, lanes), f, to.b_z + at);
         BlendedStore(s, RebindMask(f, lanes), f, to.b_s + at);
         BlendedStore(owner, lanes, i, to.b_owner + at);
       } else {
-        const VF z_back = LoadU(f, to.b_z + at), s_back = LoadU(f, to.b_s + at);
+        const VF4 z_back = LoadU(f, to.b_z + at), s_back = LoadU(f, to.b_s + at);
         const auto paired = And(lanes, LoadU(i, to.b_owner + at) == owner);
         BlendedStore(Set(i, taken), paired, i, to.b_owner + at);
         const auto wanted = static_cast<std::size_t>(std::min(left, step)), found = CountTrue(i, paired);
@@ -186,17 +193,22 @@ HWY_INLINE void fill_rows(int row0, int row1, const Cell& cell, const scene::Pix
           store_segments(segments, pixel_and_tet, wanted, cell.longest_edge, to);
         } else {
           to.unpaired += wanted - found;
-          store_some(z_back, z, s, s_back, RebindMask(f, paired), pixel_and_tet, cell, to);
+          store_some({z_back, z, s, s_back}, RebindMask(f, paired), pixel_and_tet, cell, to);
         }
       }
     }
   }
 }
 
-/// Scan-converts one face. `area` is twice its signed area in (x, y), not zero.
-HWY_INLINE void rasterize_face(const Vertex& a, const Vertex& b, const Vertex& c, double area, Side side,
-                               const Cell& cell, const scene::PixelRect& rect, Arrays& to) {
-  const Vertex *min = &a, *mid = &b, *max = &c;
+/// A face in the image; `area` is twice its signed area.
+struct Triangle {
+  const Vertex &a, &b, &c;
+  double area;
+};
+
+/// Scan-converts one face, whose area is not zero.
+HWY_INLINE void rasterize_face(const Triangle& face, Side side, const Cell& cell, Arrays& to) {
+  const Vertex *min = &face.a, *mid = &face.b, *max = &face.c;
   bool turned = false;  // an odd permutation turns the area's sign
   const auto sort = [&](const Vertex*& p, const Vertex*& q) {
     if (q->y < p->y) std::swap(p, q), turned = !turned;
@@ -204,16 +216,16 @@ HWY_INLINE void rasterize_face(const Vertex& a, const Vertex& b, const Vertex& c
   sort(min, mid), sort(mid, max), sort(min, mid);
   if (min->row >= max->row) return;
   // y points down, so of a positive area (min, mid, max) the long edge is the left one.
-  const bool long_left = (area > 0) != turned;
+  const bool long_left = (face.area > 0) != turned;
   const EdgeArrays &long_side = long_left ? to.left : to.right, &short_side = long_left ? to.right : to.left;
-  walk_edge(*min, *mid, rect.y0, short_side);
-  walk_edge(*mid, *max, rect.y0, short_side);
-  walk_edge(*min, *max, rect.y0, long_side);
+  walk_edge(*min, *mid, to.y0, short_side);
+  walk_edge(*mid, *max, to.y0, short_side);
+  walk_edge(*min, *max, to.y0, long_side);
   set_up_rows(min->row, max->row, cell.box, to);
   if (side == Side::back)
-    fill_rows<Side::back>(min->row, max->row, cell, rect, to);
+    fill_rows<Side::back>(min->row, max->row, cell, to);
   else
-    fill_rows<Side::front>(min->row, max->row, cell, rect, to);
+    fill_rows<Side::front>(min->row, max->row, cell, to);
 }
 
 // Faces by their corners; `outward` as in planes: seen from outside, (a, b, c) turns the way that (0, 1, 2) does.
@@ -223,8 +235,7 @@ struct Face {
 };
 constexpr Face faces[4] = {{0, 1, 2, true}, {0, 1, 3, false}, {0, 2, 3, true}, {1, 2, 3, false}};
 
-void rasterize_cell(const std::array<PixelVertex, 4>& corners, const Vertex (&v)[4], const Cell& cell,
-                    const scene::PixelRect& rect, Arrays& to) {
+void rasterize_cell(const std::array<PixelVertex, 4>& corners, const Vertex (&v)[4], const Cell& cell, Arrays& to) {
   // Six times the signed volume: which way the cell's faces turn. In double, as a thin cell's would be noise in float.
   const auto across = [&](int i) { return corners[i].x - corners[0].x; };
   const auto down = [&](int i) { return corners[i].y - corners[0].y; };
@@ -246,16 +257,20 @@ void rasterize_cell(const std::array<PixelVertex, 4>& corners, const Vertex (&v)
   for (const Side side : {Side::back, Side::front})
     for (int k = 0; k < 4; ++k)
       if (area[k] != 0 && front[k] == (side == Side::front))
-        rasterize_face(v[faces[k].a], v[faces[k].b], v[faces[k].c], area[k], side, cell, rect, to);
+        rasterize_face({v[faces[k].a], v[faces[k].b], v[faces[k].c], area[k]}, side, cell, to);
 }
 
-std::size_t rasterize(const ProjectedMesh& projected, float longest_edge, std::span<const TileEntry> entries,
-                      const scene::PixelRect& rect, ScanlineBuffers& buffers, RaySegments& out, RasterCounts& counts) {
+std::size_t rasterize(const ScanlineView& view, std::span<const TileEntry> entries, const scene::PixelRect& rect,
+                      ScanlineBuffers& buffers, RaySegments& out, RasterCounts& counts) {
+  const ProjectedMesh& projected = view.projected;
   const scene::TetMeshView& mesh = projected.mesh->mesh();
   const bool per_cell = mesh.association == scene::Association::cell;
   const auto room = static_cast<std::size_t>(rect.area());
   const auto side = [](ScanlineBuffers::EdgeArrays& e) { return EdgeArrays{e.x.data(), e.z.data(), e.s.data()}; };
-  Arrays to{side(buffers.left),
+  Arrays to{rect.x0,
+            rect.y0,
+            rect.width(),
+            side(buffers.left),
             side(buffers.right),
             buffers.first.data(),
             buffers.last.data(),
@@ -291,14 +306,14 @@ std::size_t rasterize(const ProjectedMesh& projected, float longest_edge, std::s
     cell.near_clip = static_cast<float>(projected.near_depth);
     cell.far_clip = static_cast<float>(projected.far_depth);
     cell.clipped = nearest < cell.near_clip || farthest > cell.far_clip;
-    cell.longest_edge = longest_edge;
+    cell.longest_edge = view.longest_edge;
     cell.tet = tet;
     if (++buffers.cells == std::numeric_limits<std::int32_t>::max()) {
       std::fill(buffers.owner.begin(), buffers.owner.end(), taken);
       buffers.cells = 1;
     }
     cell.owner = buffers.cells;
-    rasterize_cell(corners, v, cell, rect, to);
+    rasterize_cell(corners, v, cell, to);
   }
   out.size = to.size;
   counts.unpaired += to.unpaired;
@@ -325,7 +340,7 @@ std::size_t ScanlineBuffers::bytes_for(const scene::PixelRect& rect) {
          (static_cast<std::size_t>(rect.height()) + padding) * (7 * sizeof(float) + 2 * sizeof(std::int32_t));
 }
 
-std::size_t rasterize_scanline(const ProjectedMesh& projected, float longest_edge, std::span<const TileEntry> entries,
+std::size_t rasterize_scanline(const ScanlineView& view, std::span<const TileEntry> entries,
                                const scene::PixelRect& rect, ScanlineBuffers& buffers, RaySegments& out,
                                RasterCounts& counts) {
   const std::size_t pixels = static_cast<std::size_t>(rect.area()) + padding,
@@ -343,7 +358,7 @@ std::size_t rasterize_scanline(const ProjectedMesh& projected, float longest_edg
     buffers.last.resize(rows);
     buffers.inverse_width.resize(rows);
   }
-  return HWY_DYNAMIC_DISPATCH(rasterize)(projected, longest_edge, entries, rect, buffers, out, counts);
+  return HWY_DYNAMIC_DISPATCH(rasterize)(view, entries, rect, buffers, out, counts);
 }
 
 bool fits_scanline(const ProjectedMesh& projected, float longest_edge) {

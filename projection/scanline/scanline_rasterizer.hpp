@@ -16,6 +16,12 @@ namespace tessera::projection {
 /// least 1e-30.
 bool fits_scanline(const ProjectedMesh& projected, float longest_edge);
 
+/// What the scanline rasterizer reads of a frame.
+struct ScanlineView {
+  const ProjectedMesh& projected;
+  float longest_edge;  ///< of the data set (segment_tuple.hpp)
+};
+
 /// Working memory of rasterize_scanline(), kept from call to call. Content carries nothing over.
 struct ScanlineBuffers {
   /// Where a face's edges on one side meet the scanlines: x, depth and scalar by row of the rectangle.
@@ -62,7 +68,7 @@ struct ScanlineBuffers {
 ///
 /// Takes cells as rasterize_planes() does; at most one segment a cell and pixel. Requires fits_scanline(). Writes stay
 /// inside the buffers whatever the coordinates are.
-std::size_t rasterize_scanline(const ProjectedMesh& projected, float longest_edge, std::span<const TileEntry> entries,
+std::size_t rasterize_scanline(const ScanlineView& view, std::span<const TileEntry> entries,
                                const scene::PixelRect& rect, ScanlineBuffers& buffers, RaySegments& out,
                                RasterCounts& counts);
 

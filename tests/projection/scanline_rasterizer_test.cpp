@@ -61,7 +61,7 @@ Rays rasterized(const Frame& frame, scene::ImageSize size, int tile, Way way = W
         out.size = 0;
         const auto rest = std::span(entries).subspan(next);
         const std::size_t taken =
-            way == Way::scanline ? rasterize_scanline(frame.projected, frame.edge, rest, rect, buffers, out, counts)
+            way == Way::scanline ? rasterize_scanline({frame.projected, frame.edge}, rest, rect, buffers, out, counts)
                                  : rasterize_planes(frame.projected, rest, rect, out, counts);
         if (taken == 0) throw std::runtime_error("no progress");
         next += taken;
@@ -317,7 +317,7 @@ TEST(SegmentTuple, GivesBackTheFloatsThatTheRasterizerMade) {
       back.reserve(1);
       ScanlineBuffers buffers;
       RasterCounts counts;
-      rasterize_scanline(frame.projected, frame.edge, entries, {0, 0, 32, 32}, buffers, out, counts);
+      rasterize_scanline({frame.projected, frame.edge}, entries, {0, 0, 32, 32}, buffers, out, counts);
       ASSERT_GT(out.size, 10'000u);
       for (std::size_t i = 0; i < out.size; ++i) {
         const SegmentTuple tuple = to_tuple(out, i, frame.edge);

@@ -204,7 +204,7 @@ void expect_lists(const scene::TetMesh& mesh, const View& view, const scene::Tra
   const Expected expected = expected_lists(projected, grid, function, independent);
   TileListBuffers buffers;
   for (const bool again : {false, true}) {
-    TileLists lists(projected, grid, function, independent, nullptr, again ? &buffers : nullptr);
+    TileLists lists(projected, grid, function, independent, {.buffers = again ? &buffers : nullptr});
     EXPECT_EQ(lists.counts().invisible, expected.counts.invisible) << where;
     EXPECT_EQ(lists.counts().outside_view, expected.counts.outside_view) << where;
     EXPECT_EQ(lists.counts().between_pixels, expected.counts.between_pixels) << where;
