@@ -122,7 +122,7 @@ void run_tiles(Frame& f, Stages& stages) {
       const auto cells = entries.subspan(from, std::min(at_once, entries.size() - from));
       stream.size = 0;
       auto start = Clock::now();
-      rasterize_lattice(f.view, cells, entries.subspan(from + cells.size()), rect, open, scratch, stream, counts);
+      rasterize_lattice(f.view, {cells, entries.subspan(from + cells.size())}, {rect, open}, scratch, stream, counts);
       stages.rasterize += seconds_since(start);
       const double near = f.lists->depth_origin() + cells.front().near_depth - f.slack[tile] - f.lattice.depth_origin;
       const auto before = static_cast<std::int64_t>(std::floor(near / f.lattice.depth_unit)) - 64;

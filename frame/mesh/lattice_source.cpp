@@ -51,7 +51,7 @@ bool LatticeSource::fill(const compositor::TileSink<Encoding>& sink) {
     from_ = cells_;
     cells_ += cells.size();
     stream_.size = placed_ = 0;
-    projection::rasterize_lattice(view_, cells, entries.subspan(cells_), rect_, sink.open(), scratch_, stream_,
+    projection::rasterize_lattice(view_, {cells, entries.subspan(cells_)}, {rect_, sink.open()}, scratch_, stream_,
                                   counts_->raster);
   }
 }

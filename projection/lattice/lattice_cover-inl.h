@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which pixels a batch's cells cover: the outline's edges alone, a cell a lane or a pixel a lane; included once per
+// Which pixels a batch's cells cover: the outline's edges alone, a cell a lane or a pixel a lane. Included once per
 // instruction set (Highway's include guard idiom).
+//
+// What      Hits: pixels whose centre is inside the cell's outline, where the least of its four edge functions is
+//           positive. They are packed into the queue, those near an edge marked as uncertain.
+// How       Edge functions are linear, so from one block of pixels to the next each grows by a constant: four additions
+//           a block. Cells of a few pixels go through theirs together instead, a cell a lane.
+// Accuracy  Float. The sums' rounding is below outline_uncertainty; within it lattice_cross-inl.h settles the sign.
+// Ends      Blocks reach over the rectangle only where it is narrower than a block: lanes there are masked.
 
 #if defined(TESSERA_PROJECTION_LATTICE_COVER_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_LATTICE_COVER_INL_H_
@@ -125,7 +132,7 @@ struct SmallCells {
   }
 
  private:
-  HWY_INLINE static hn::Mask<DI> mask_of(unsigned cells, int from) {
+  HWY_INLINE static MI mask_of(unsigned cells, int from) {
     cells >>= from;
     const std::uint8_t bits[8] = {static_cast<std::uint8_t>(cells), static_cast<std::uint8_t>(cells >> 8)};
     return LoadMaskBits(DI(), bits);
@@ -135,16 +142,16 @@ struct SmallCells {
 /// Blocks of pixels over each of a batch's cells.
 class CellBlocks {
  public:
-  /// Lays blocks over all cells at once. Blocks that would reach out of the rectangle move inwards: what is not the
-  /// cell's its edges tell. Only in the narrowest of rectangles does that not help; those are `clipped`.
-  HWY_INLINE void lay(const CellBatch& batch, const CellParts& parts, const scene::PixelRect& rect,
-                      const scene::PixelRect& square) {
-    right_ = rect.x1 - square.x0, bottom_ = rect.y1 - square.y0;
+  /// Lays blocks over all cells at once. `rect`: the pixels, counted from the square's corner. Blocks that would reach
+  /// out of it move inwards: the edge functions exclude what is not the cell's. Only in the narrowest of rectangles
+  /// does that not help; those are `clipped`.
+  HWY_INLINE void lay(const CellBatch& batch, const CellParts& parts, const scene::PixelRect& rect) {
+    right_ = rect.x1, bottom_ = rect.y1;
     const DI d;
     const DF df;
     const auto number = [](int n) HWY_ATTR { return Set(DI(), n); };
     const VI right = number(right_), bottom = number(bottom_);
-    const VI first_x = number(rect.x0 - square.x0), first_y = number(rect.y0 - square.y0);
+    const VI first_x = number(rect.x0), first_y = number(rect.y0);
     const VI center = number(CellBatch::center), one = number(1);
     for (int t = 0; t < CellBatch::most; t += lanes) {
       const VI x0 = Load(d, batch.x0 + t), y0 = Load(d, batch.y0 + t);
@@ -223,7 +230,7 @@ class CellBlocks {
   }
 
  private:
-  /// The lanes of a block that lie in the rectangle.
+  /// The lanes of a block that are in the rectangle.
   HWY_NOINLINE MF in_rectangle(const BlockShape& shape, int t, int block) const {
     const DI d;
     const VI x = Load(d, shape.column) + Set(d, left_[t] + block % columns_[t] * shape.width);

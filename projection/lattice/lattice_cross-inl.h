@@ -1,6 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where rays pass a cell: the segments of a queue of hits, a hit a lane, whichever cell it is of; included once per
+// Where rays pass a cell: the segments of a queue of hits, a hit a lane, whichever cell it is of. Included once per
 // instruction set (Highway's include guard idiom).
+//
+// What      The signs of the inner edge functions E (lattice_shapes-inl.h) select the two faces that a ray passes:
+//             two and two     face 0 or 1 by the sign of E_1, face 2 or 3 by that of E_2;
+//             one and three   face 0, and of the three: 1 where E_0 and E_1 are positive, else 2 or 3 by that of E_2.
+//           A face is a plane over the square's pixels: depth = start + x d_x + y d_y, scalar and weight likewise, with
+//           (x, y) the pixel counted from the square's centre. The nearer of the two depths is the segment's front.
+// How       Columns and rows are 16-bit halves of one number, gradients too, so that a pair of products is one
+//           instruction (dot_of_halves); a gradient's upper 16 bits take a second one. Under perspective the planes are
+//           those of 1 / w and q / w, relative to corner c of the face: q = q_c + plane / weight.
+// Bits      Integers, and float operations of one lane: cells with a common face compute the same bits there.
+// Ends      Signs that float does not decide are settled exactly, out of line (30 hits in a million).
 
 #if defined(TESSERA_PROJECTION_LATTICE_CROSS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_LATTICE_CROSS_INL_H_
@@ -100,17 +111,12 @@ template <bool perspective, bool per_cell>
 class HitCrossing {
  public:
   HWY_INLINE HitCrossing(const LatticeView& view, const CellBatch& batch, const CellParts& parts,
-                         const scene::PixelRect& rect, const scene::PixelRect& square, SegmentStream& out,
-                         RasterCounts& counts)
-      : view_(view),
-        batch_(batch),
-        parts_(parts),
-        square_(square),
-        out_(out),
-        counts_(counts),
-        pixel_step_(Set(DI(), rect.width() << 16 | 1)),
-        center_pixel_(Set(DI(), (square.y0 + CellBatch::center - rect.y0) * rect.width() + square.x0 +
-                                    CellBatch::center - rect.x0)) {}
+                         const MaskedRect& pixels, SegmentStream& out, RasterCounts& counts)
+      : view_(view), batch_(batch), parts_(parts), pixels_(pixels), out_(out), counts_(counts) {
+    const scene::PixelRect rect = pixels.in_square();
+    pixel_step_ = Set(DI(), rect.width() << 16 | 1);
+    center_pixel_ = Set(DI(), (CellBatch::center - rect.y0) * rect.width() + CellBatch::center - rect.x0);
+  }
 
   /// Whether hits of as many cells as lanes can be crossed together: where lanes find their cells' numbers by
   /// permuting.
@@ -172,117 +178,168 @@ class HitCrossing {
   }
 #endif
 
-  // Long: the two crossings of sixteen hits, whose dozen vectors stay in registers from the first line to the last; a
-  // part of it would take nearly all of them as arguments.
+  /// Appends the segments of `count` hits, of the cells that `cells` finds numbers of.
   template <class Cells>
   HWY_INLINE void cross(const std::int32_t* hits, std::size_t count, const Cells& cells) {
     const DI d;
     const DF df;
-    const auto number = [](int n) HWY_ATTR { return Set(DI(), n); };
     const VI hit = LoadU(d, hits);
-    constexpr std::int32_t side_pair = (SegmentWindows::side - 1) * 0x10001;
-    constexpr std::int32_t minus_center_pair = -CellBatch::center * 0x10000 | (-CellBatch::center & 0xffff);
-    // Column and row from the centre, 16 bits each.
-    const VI place = add_pairs(And(ShiftRight<Hit::column_bit>(hit), number(side_pair)), number(minus_center_pair));
-    const VF xf = ConvertTo(df, ShiftRight<16>(ShiftLeft<16>(place)));
-    const VF yf = ConvertTo(df, ShiftRight<16>(place)), zero = Zero(df);
-    const auto inner_at = [&](const CellParts::Edge& edge) HWY_ATTR {
-      return MulAdd(cells.number(edge.x), xf, MulAdd(cells.number(edge.y), yf, cells.number(edge.start)));
-    };
-    VF inner0 = zero, inner1 = inner_at(parts_.inner[1]), inner2 = inner_at(parts_.inner[2]);
-    VF sure = least_magnitude(inner1, inner2);
-    if constexpr (Cells::may_be_three) {
-      inner0 = inner_at(parts_.inner[0]);
-      sure = least_magnitude(sure, inner0);
-    }
-    MF hits_cell = FirstN(df, count), touching = hits_cell;
-    const MF flagged = RebindMask(df, TestBit(hit, number(Hit::uncertain)));
-    const MF uncertain = And(hits_cell, Or(sure <= Set(df, 1.0f), flagged));
-    bool all_hit = true;
-    if (HWY_UNLIKELY(!AllFalse(df, uncertain))) {
-      Unsettled unsettled{{inner0, inner1, inner2}, hits_cell, touching};  // what settle() changes lies in memory
-      settle(lane_bits(uncertain), hits, unsettled);
-      inner0 = unsettled.inner[0], inner1 = unsettled.inner[1], inner2 = unsettled.inner[2];
-      hits_cell = unsettled.hits_cell, touching = unsettled.touching;
-      all_hit = false;
+    const VI place = place_of(hit);
+    InnerEdges inner = inner_edges(hit, place, count, cells);
+    // What settle() changes is in memory: a copy, so that what it does not change stays in registers.
+    const bool settled = HWY_UNLIKELY(!AllFalse(df, inner.uncertain));
+    if (settled) {
+      InnerEdges exact = inner;
+      settle(lane_bits(inner.uncertain), hits, exact);
+      inner = exact;
     }
 
-    // Of one face against three the first side is the one face; of the three it is the one on whose side of its edges
-    // with the others the ray passes.
-    const auto last = cells.choice(RebindMask(d, inner2 <= zero));
-    MI second_of_two = RebindMask(d, inner1 <= zero);
-    if constexpr (Cells::may_be_three && Cells::may_be_two) second_of_two = AndNot(cells.three(), second_of_two);
-    const auto first_choice = cells.choice(second_of_two);
-    const auto first_side = [&](const auto& number_of) HWY_ATTR {
-      if constexpr (!Cells::may_be_two)
-        return cells.number(number_of(0));
-      else
-        return cells.number(number_of(0), number_of(1), first_choice);
-    };
-    const MI first_of_three = RebindMask(d, And(inner0 > zero, inner1 > zero));
-    const auto second_side = [&](const auto& number_of) HWY_ATTR {
-      const VI others = cells.number(number_of(2), number_of(3), last);
-      if constexpr (!Cells::may_be_three) return others;
-      return IfThenElse(first_of_three, cells.number(number_of(1)), others);
-    };
-    const auto crossing = [&](const auto& side) HWY_ATTR {
-      const auto at_pixel = [&](const CellParts::Planes& planes) HWY_ATTR {
-        const VI start = side([&](int k) { return planes[k].start; });
-        const VI low = side([&](int k) { return planes[k].low; }), high = side([&](int k) { return planes[k].high; });
-        return start + dot_of_halves(low, place) + ShiftLeft<16>(dot_of_halves(high, place));
-      };
-      Crossing c;
-      c.depth = at_pixel(parts_.depth);
-      if constexpr (per_cell)
-        c.scalar = cells.number(batch_.cell_scalar);
-      else
-        c.scalar = ConvertTo(df, at_pixel(parts_.scalar));
-      if constexpr (perspective) {
-        const VF inverse = inverse_weight(at_pixel(parts_.weight));
-        const auto numbers_of = [&](const std::int32_t(*all)[CellBatch::most])
-                                    HWY_ATTR { return side([&](int k) { return all[k]; }); };
-        c.depth = NearestInt(ConvertTo(df, c.depth) * inverse) + numbers_of(parts_.depth_c);
-        if constexpr (!per_cell) c.scalar = MulAdd(c.scalar, inverse, BitCast(df, numbers_of(parts_.scalar_c)));
-      }
-      return c;
-    };
-    const Crossing first = crossing(first_side);
-    Crossing second = crossing(second_side);
-    const VI pixel = dot_of_halves(place, pixel_step_) + center_pixel_;
-    // Nothing lies between the sides where a ray touches.
-    if (HWY_UNLIKELY(!all_hit)) second.depth = IfThenElse(RebindMask(d, touching), first.depth, second.depth);
-    const VI front = Min(first.depth, second.depth), back = Max(first.depth, second.depth);
+    const PassedFaces<Cells> faces(cells, inner.edge);
+    const Crossing first = crossing([&](const CellParts::ByFace& n) HWY_ATTR { return faces.first(n); }, place, cells);
+    Crossing second = crossing([&](const CellParts::ByFace& n) HWY_ATTR { return faces.second(n); }, place, cells);
+    // A ray that only touches the cell is inside it for no distance.
+    if (settled) second.depth = IfThenElse(RebindMask(d, inner.touching), first.depth, second.depth);
     const MF swapped = RebindMask(df, cells.behind());
-    const VF scalar_front = IfThenElse(swapped, second.scalar, first.scalar);
-    const VF scalar_back = IfThenElse(swapped, first.scalar, second.scalar);
-    if (HWY_UNLIKELY(!all_hit)) {
-      if (HWY_UNLIKELY(out_.keeps_hits)) append_hits(hits_cell, hit, out_);
-      append(hits_cell, pixel, front, back, scalar_front, scalar_back, out_);
-      return;
+    const SegmentLanes segments{Min(first.depth, second.depth), Max(first.depth, second.depth),
+                                IfThenElse(swapped, second.scalar, first.scalar),
+                                IfThenElse(swapped, first.scalar, second.scalar)};
+    const VI pixel = dot_of_halves(place, pixel_step_) + center_pixel_;
+    if (settled) {
+      if (HWY_UNLIKELY(out_.keeps_hits)) append_hits(inner.hits_cell, hit, out_);
+      append(inner.hits_cell, pixel, segments, out_);
+    } else {
+      append_all(count, hit, pixel, segments);
     }
+  }
+
+  /// Column and row of hits from the square's centre, 16 bits each.
+  static HWY_INLINE VI place_of(VI hit) {
+    const auto number = [](int n) HWY_ATTR { return Set(DI(), n); };
+    constexpr std::int32_t side_pair = (SegmentWindows::side - 1) * 0x10001;
+    constexpr std::int32_t minus_center_pair = -CellBatch::center * 0x10000 | (-CellBatch::center & 0xffff);
+    return add_pairs(And(ShiftRight<Hit::column_bit>(hit), number(side_pair)), number(minus_center_pair));
+  }
+
+  /// The inner edge functions at hits, and which of the hits are of their cells after all.
+  struct InnerEdges {
+    VF edge[3];              ///< CellParts::inner; the first is zero where no cell has three
+    MF uncertain;            ///< where float does not decide a sign
+    MF hits_cell, touching;  ///< set by settle(); before it all lanes with a hit
+  };
+  template <class Cells>
+  HWY_INLINE InnerEdges inner_edges(VI hit, VI place, std::size_t count, const Cells& cells) const {
+    const DI d;
+    const DF df;
+    const VF x = ConvertTo(df, ShiftRight<16>(ShiftLeft<16>(place))), y = ConvertTo(df, ShiftRight<16>(place));
+    const auto at_pixel = [&](const CellParts::Edge& edge) HWY_ATTR {
+      return MulAdd(cells.number(edge.x), x, MulAdd(cells.number(edge.y), y, cells.number(edge.start)));
+    };
+    InnerEdges inner;
+    inner.edge[0] = Zero(df), inner.edge[1] = at_pixel(parts_.inner[1]), inner.edge[2] = at_pixel(parts_.inner[2]);
+    VF least = least_magnitude(inner.edge[1], inner.edge[2]);
+    if constexpr (Cells::may_be_three) {
+      inner.edge[0] = at_pixel(parts_.inner[0]);
+      least = least_magnitude(least, inner.edge[0]);
+    }
+    inner.hits_cell = inner.touching = FirstN(df, count);
+    const MF flagged = RebindMask(df, TestBit(hit, Set(d, Hit::uncertain)));
+    inner.uncertain = And(inner.hits_cell, Or(least <= Set(df, 1.0f), flagged));
+    return inner;
+  }
+
+  /// The two faces that lanes' rays pass, by their places in Roles::face.
+  template <class Cells>
+  class PassedFaces {
+   public:
+    HWY_INLINE PassedFaces(const Cells& cells, const VF (&inner)[3])
+        : cells_(cells),
+          first_of_two_(cells.choice(second_of_two(cells, inner))),
+          last_(cells.choice(RebindMask(DI(), inner[2] <= Zero(DF())))),
+          first_of_three_(RebindMask(DI(), And(inner[0] > Zero(DF()), inner[1] > Zero(DF())))) {}
+
+    /// The front faces', or that of one face against three.
+    HWY_INLINE VI first(const CellParts::ByFace& numbers) const {
+      if constexpr (!Cells::may_be_two)
+        return cells_.number(numbers[0]);
+      else
+        return cells_.number(numbers[0], numbers[1], first_of_two_);
+    }
+    /// The back faces', or that of the three on whose side of its edges with the others the ray passes.
+    HWY_INLINE VI second(const CellParts::ByFace& numbers) const {
+      const VI others = cells_.number(numbers[2], numbers[3], last_);
+      if constexpr (!Cells::may_be_three) return others;
+      return IfThenElse(first_of_three_, cells_.number(numbers[1]), others);
+    }
+
+   private:
+    static HWY_INLINE MI second_of_two(const Cells& cells, const VF (&inner)[3]) {
+      const MI second = RebindMask(DI(), inner[1] <= Zero(DF()));
+      if constexpr (Cells::may_be_three && Cells::may_be_two) return AndNot(cells.three(), second);
+      return second;
+    }
+
+    const Cells& cells_;
+    typename Cells::Choice first_of_two_, last_;
+    MI first_of_three_;
+  };
+
+  /// Depth (steps) and scalar where the lanes' rays pass one side of the cell.
+  struct Crossing {
+    VI depth;
+    VF scalar;
+  };
+  /// `of_face(numbers)`: in every lane that of the face that its ray passes.
+  template <class OfFace, class Cells>
+  HWY_INLINE Crossing crossing(const OfFace& of_face, VI place, const Cells& cells) const {
+    const DF df;
+    const auto at_pixel = [&](const CellParts::Planes& planes) HWY_ATTR {
+      return of_face(planes.start) + dot_of_halves(of_face(planes.low), place) +
+             ShiftLeft<16>(dot_of_halves(of_face(planes.high), place));
+    };
+    Crossing c;
+    c.depth = at_pixel(parts_.depth);
+    if constexpr (per_cell)
+      c.scalar = cells.number(batch_.cell_scalar);
+    else
+      c.scalar = ConvertTo(df, at_pixel(parts_.scalar));
+    if constexpr (perspective) {
+      const VF inverse = inverse_weight(at_pixel(parts_.weight));
+      c.depth = NearestInt(ConvertTo(df, c.depth) * inverse) + of_face(parts_.depth_c);
+      if constexpr (!per_cell) c.scalar = MulAdd(c.scalar, inverse, BitCast(df, of_face(parts_.scalar_c)));
+    }
+    return c;
+  }
+
+  /// 1 / weight, of a plane's integers.
+  static HWY_INLINE VF inverse_weight(VI weight) {
+    const DF d;
+    const VF w = ConvertTo(d, weight);
+    // One Newton step makes the estimate (11 to 14 bits) right to float rounding.
+    const VF estimate = ApproximateReciprocal(w);
+    return estimate * NegMulAdd(w, estimate, Set(d, 2.0f)) * Set(d, CellBatch::weight_one);
+  }
+
+  /// Appends the first `count` lanes.
+  HWY_INLINE void append_all(std::size_t count, VI hit, VI pixel, const SegmentLanes& segments) {
+    const DI d;
+    const DF df;
     // Read before the first store, which might be to any of them as far as a compiler can tell.
     const std::size_t at = out_.size;
     std::int32_t *const pixels = out_.pixel.data(), *const fronts = out_.front.data(), *const backs = out_.back.data();
     float *const scalar_fronts = out_.scalar_front.data(), *const scalar_backs = out_.scalar_back.data();
     StoreU(pixel, d, pixels + at);
-    StoreU(front, d, fronts + at), StoreU(back, d, backs + at);
-    StoreU(scalar_front, df, scalar_fronts + at), StoreU(scalar_back, df, scalar_backs + at);
+    StoreU(segments.front, d, fronts + at), StoreU(segments.back, d, backs + at);
+    StoreU(segments.scalar_front, df, scalar_fronts + at), StoreU(segments.scalar_back, df, scalar_backs + at);
     if (HWY_UNLIKELY(out_.keeps_hits)) StoreU(hit, d, out_.hit.data() + at);
     out_.size = at + count;
   }
 
-  struct Unsettled {
-    VF inner[3];
-    MF hits_cell, touching;
-  };
   /// Exact signs for the uncertain lanes.
-  HWY_NOINLINE void settle(unsigned uncertain, const std::int32_t* hits, Unsettled& unsettled) {
+  HWY_NOINLINE void settle(unsigned uncertain, const std::int32_t* hits, InnerEdges& inner) {
     const DF df;
-    VF(&inner)[3] = unsettled.inner;
-    MF &hits_cell = unsettled.hits_cell, &touching = unsettled.touching;
     alignas(64) float inners[3][lanes], hit[lanes], touches[lanes] = {};
-    for (int k = 0; k < 3; ++k) Store(inner[k], df, inners[k]);
-    Store(IfThenElseZero(hits_cell, Set(df, 1.0f)), df, hit);
+    for (int k = 0; k < 3; ++k) Store(inner.edge[k], df, inners[k]);
+    Store(IfThenElseZero(inner.hits_cell, Set(df, 1.0f)), df, hit);
     for (; uncertain != 0; uncertain &= uncertain - 1) {
       const int lane = __builtin_ctz(uncertain), t = hits[lane] & (CellBatch::most - 1);
       const int column = hits[lane] >> Hit::column_bit & (SegmentWindows::side - 1);
@@ -300,22 +357,22 @@ class HitCrossing {
             {edge[roles.outline[0]], edge[roles.outline[1]], edge[roles.outline[2]], edge[roles.outline[3]]});
       };
       if (outline() > -1 && !certain)
-        touches[lane] = static_cast<float>(
-            settle_pixel(view_, batch_, t, square_.x0 + column + 0.5, square_.y0 + row + 0.5, edge, 1, counts_));
+        touches[lane] = static_cast<float>(settle_pixel(
+            view_, batch_, t, {pixels_.square_x() + column + 0.5, pixels_.square_y() + row + 0.5}, edge, counts_));
       hit[lane] = outline() > 0 ? 1.0f : 0.0f;
       if (roles.three != 0) inners[0][lane] = edge[roles.inner[0]];
       inners[1][lane] = edge[roles.three != 0 ? roles.inner[1] : roles.inner[0]];
       inners[2][lane] = edge[roles.three != 0 ? roles.inner[2] : roles.inner[1]];
     }
-    for (int k = 0; k < 3; ++k) inner[k] = Load(df, inners[k]);
-    hits_cell = Load(df, hit) > Zero(df);
-    touching = Load(df, touches) > Zero(df);
+    for (int k = 0; k < 3; ++k) inner.edge[k] = Load(df, inners[k]);
+    inner.hits_cell = Load(df, hit) > Zero(df);
+    inner.touching = Load(df, touches) > Zero(df);
   }
 
   const LatticeView& view_;
   const CellBatch& batch_;
   const CellParts& parts_;
-  const scene::PixelRect& square_;
+  const MaskedRect& pixels_;
   SegmentStream& out_;
   RasterCounts& counts_;
   VI pixel_step_, center_pixel_;  ///< a row's pixels and one in 16 bits each; of column and row 0

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which of a batch's segments may cross a surface; included once per instruction set (Highway's include guard idiom).
+// Which of a batch's segments may cross a surface. Included once per instruction set (Highway's include guard idiom).
+//
+// What   The numbers of the segments whose scalars reach from below the highest of their cell's surfaces to the lowest
+//        or above, packed; and their cells.
+// Ends   A superset: lattice_cut-inl.h compares with each surface's value.
 
 #if defined(TESSERA_PROJECTION_LATTICE_CROSSED_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_LATTICE_CROSSED_INL_H_
@@ -18,7 +22,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
 
-/// Numbers of segments, as many as `count` says and then any for a vector of lanes, and their cells, a bit each.
+/// Numbers of `count` segments, followed by any for a vector of lanes, and their cells, a bit each.
 struct CrossedSegments {
   const std::int32_t* numbers;
   std::size_t count;
@@ -34,18 +38,12 @@ HWY_NOINLINE inline CrossedSegments crossed_segments(const SegmentStream& stream
   std::size_t count = 0;
   VI cells = Zero(d);
   VI number = Iota(d, 0) + Set(d, static_cast<std::int32_t>(first));
-  const auto of_cell = [&](const float* numbers, VI cell) HWY_ATTR {
-    if constexpr (lanes == static_cast<int>(LatticeSurfaces::most_cells))
-      return TableLookupLanes(Load(df, numbers), IndicesFromVec(df, cell));
-    else
-      return GatherIndex(df, numbers, cell);
-  };
   for (std::size_t i = first; i < stream.size; i += lanes) {
     const VI cell =
         And(LoadU(d, stream.hit.data() + i), Set(d, static_cast<std::int32_t>(LatticeSurfaces::most_cells) - 1));
     const VF from = LoadU(df, stream.scalar_front.data() + i), to = LoadU(df, stream.scalar_back.data() + i);
     const auto reaches =
-        And(Max(from, to) >= of_cell(surfaces.low, cell), Min(from, to) < of_cell(surfaces.high, cell));
+        And(Max(from, to) >= lookup_16(surfaces.low, cell), Min(from, to) < lookup_16(surfaces.high, cell));
     const auto is = And(reaches, FirstN(df, stream.size - i));
     // Without a branch, which would go either way.
     const LanePacker pack(RebindMask(d, is));

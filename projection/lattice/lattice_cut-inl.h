@@ -1,6 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cuts segments where they cross surfaces, a segment a lane; included once per instruction set (Highway's include guard
-// idiom).
+// Cuts segments where they cross iso-surfaces, a segment a lane. Included once per instruction set (Highway's include
+// guard idiom).
+//
+// What      A segment from depth z_0 to z_1 with scalars s_0 to s_1 crosses the surface of value v, if v is between
+//           them, at the depth z_0 + (v - s_0) (z_1 - z_0) / (s_1 - s_0), rounded to a step of the lattice. It becomes
+//           the parts between its crossings; a part's front scalar is the mark of the crossing that it begins at
+//           (surface_crossings.hpp).
+// Accuracy  Depths in double precision, half a step. Cosines of normal and ray in double, stored in LatticeMark's bits.
+// Bits      Values and scalars are rounded as the vertices' are, so cells with a common face agree whether a ray
+//           crosses a surface in it.
+// Ends      A crossing at a segment's back end is a segment of its own, as is the first of two at its front.
 
 #if defined(TESSERA_PROJECTION_LATTICE_CUT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_LATTICE_CUT_INL_H_
@@ -12,44 +21,26 @@
 #include <hwy/highway.h>
 
 #include "projection/lattice/lattice_crossed-inl.h"
+#include "projection/lattice/segment_lanes-inl.h"
 #include "projection/surface_crossings.hpp"
+#include "scene/lanes/doubles-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 #if HWY_TARGET != HWY_SCALAR
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
 
-/// Lane values in double: two vectors.
-struct Doubles {
-  V low, high;
-};
-HWY_INLINE Doubles in_double(VI v) {
-  const D d;
-  const hn::Half<DI> half;
-  return {PromoteTo(d, LowerHalf(half, v)), PromoteTo(d, UpperHalf(half, v))};
-}
-HWY_INLINE Doubles in_double(VF v) {
-  const D d;
-  const hn::Half<DF> half;
-  return {PromoteTo(d, LowerHalf(half, v)), PromoteTo(d, UpperHalf(half, v))};
-}
-/// f(vectors), for both halves.
-template <class Function, class... Args>
-HWY_INLINE Doubles in_halves(const Function& f, const Args&... v) {
-  return {f(v.low...), f(v.high...)};
-}
-
 /// Cuts segments of the batch whose cells find_surfaces() and find_normals() were called for, and appends what is
 /// before a crossing, or the crossing itself (surface_crossings.hpp). A segment's own place holds its last part.
-/// Square: whose first pixel is (x0, y0).
 class SurfaceCuts {
  public:
-  HWY_INLINE SurfaceCuts(const LatticeView& view, const LatticeSurfaces& surfaces, int x0, int y0, SegmentStream& out)
+  HWY_INLINE SurfaceCuts(const LatticeView& view, const LatticeSurfaces& surfaces, const MaskedRect& pixels,
+                         SegmentStream& out)
       : perspective_(view.perspective),
         set_(*view.projected.iso->surfaces),
         cells_(surfaces),
         numbers_a_place_(static_cast<std::int32_t>(2 * set_.iso_values().size() + set_.faces())),
-        rays_(*view.projected.iso->space, x0, y0),
+        rays_(*view.projected.iso->space, pixels.square_x(), pixels.square_y()),
         out_(out) {}
 
   HWY_NOINLINE void cut(const CrossedSegments& segments) {
@@ -62,8 +53,6 @@ class SurfaceCuts {
   }
 
  private:
-  using MI = hn::Mask<DI>;
-
   /// Perspective: directions of the square's rays, at its first pixel, and from one to the next.
   struct Rays {
     glm::dvec3 corner{}, right{}, down{};
@@ -81,15 +70,6 @@ class SurfaceCuts {
     VF scalar;
   };
 
-  template <class T>
-  static HWY_INLINE hn::Vec<hn::ScalableTag<T>> number_of_cell(const T* numbers, VI cell) {
-    const hn::ScalableTag<T> d;
-    if constexpr (lanes == static_cast<int>(LatticeSurfaces::most_cells))
-      return TableLookupLanes(Load(d, numbers), IndicesFromVec(d, cell));
-    else
-      return GatherIndex(d, numbers, cell);
-  }
-
   HWY_INLINE void cut_lanes(VI segment, MI here) {
     const DI d;
     const DF df;
@@ -99,8 +79,8 @@ class SurfaceCuts {
     const VF from = GatherIndex(df, out_.scalar_front.data(), segment),
              to = GatherIndex(df, out_.scalar_back.data(), segment);
     const VI pixel = GatherIndex(d, out_.pixel.data(), segment);
-    const VI first = number_of_cell(cells_.first, cell);
-    const VI count = IfThenElseZero(here, number_of_cell(cells_.count, cell));
+    const VI first = lookup_16(cells_.first, cell);
+    const VI count = IfThenElseZero(here, lookup_16(cells_.count, cell));
     const auto most = static_cast<std::size_t>(GetLane(MaxOfLanes(d, count)));
     // Each crossing appends one.
     if (out_.size + most * lanes > out_.front.size() - SegmentStream::padding)
@@ -108,8 +88,8 @@ class SurfaceCuts {
 
     const MI rises = RebindMask(d, from < to);
     const VI cosine = cosine_code(hit, cell);
-    const Doubles steps = in_double(back - front), start = in_double(front), scalar = in_double(from);
-    const Doubles slope = in_halves([](V s, V a, V b) HWY_ATTR { return s / (b - a); }, steps, scalar, in_double(to));
+    const Doubles steps = promote(back - front), start = promote(front), scalar = promote(from);
+    const Doubles slope = steps / (promote(to) - scalar);
     const VI limit = Max(front, back - Set(d, back_end_steps));
     const VI at_limit = IfThenElse(limit > front, place(Place::back_end), place(Place::inside));
     const MI level = front == back;
@@ -122,11 +102,9 @@ class SurfaceCuts {
       const VF value = k == 0 ? first_values(rises, cell) : GatherIndex(df, set_.on_lattice().data(), surface);
       const MI crossed = And(has, RebindMask(d, Xor(from >= value, to >= value)));
       if (AllFalse(d, crossed)) continue;
-      const auto depth_at = [](V v, V f, V s, V l, V z) HWY_ATTR {
-        const V along = (v - f) * s;
-        return Round(z + Min(Max(along, Zero(D())), l));
-      };
-      VI depth = in_steps(in_halves(depth_at, in_double(value), scalar, slope, steps, start));
+      const auto depth_at = [](VD along, VD length, VD z)
+                                HWY_ATTR { return Round(z + Min(Max(along, Zero(DD())), length)); };
+      VI depth = in_integers(in_halves(depth_at, (promote(value) - scalar) * slope, steps, start));
       const MI at_back = Not(depth < limit);
       const VI at =
           IfThenElse(at_back, at_limit, IfThenElse(depth == front, place(Place::front_end), place(Place::inside)));
@@ -140,7 +118,7 @@ class SurfaceCuts {
       const MI parts = Or(alone, AndNot(AndNot(marked, at_front), before));
       const VI begin = IfThenElse(alone, depth, part.front);
       const VF begin_scalar = IfThenElse(RebindMask(df, alone), mark, part.scalar);
-      append(RebindMask(df, parts), pixel, begin, depth, begin_scalar, value, out_);
+      append(RebindMask(df, parts), pixel, {begin, depth, begin_scalar, value}, out_);
       part.front = IfThenElse(before, depth, part.front);
       part.scalar = IfThenElse(RebindMask(df, before), mark, part.scalar);
     }
@@ -157,13 +135,7 @@ class SurfaceCuts {
 
   /// The surfaces that the cells' segments may cross first.
   HWY_INLINE VF first_values(MI rises, VI cell) const {
-    return IfThenElse(RebindMask(DF(), rises), number_of_cell(cells_.low, cell), number_of_cell(cells_.high, cell));
-  }
-
-  /// Whole numbers of 31 bits.
-  static HWY_INLINE VI in_steps(Doubles v) {
-    const hn::Half<DI> half;
-    return Combine(DI(), DemoteTo(half, v.high), DemoteTo(half, v.low));
+    return IfThenElse(RebindMask(DF(), rises), lookup_16(cells_.low, cell), lookup_16(cells_.high, cell));
   }
 
   /// LatticeMark::of(the crossing).
@@ -179,42 +151,24 @@ class SurfaceCuts {
   HWY_INLINE VI cosine_code(VI hit, VI cell) const {
     const DI d;
     const DF df;
-    if (!perspective_) return number_of_cell(cells_.cosine_code, cell);
+    if (!perspective_) return lookup_16(cells_.cosine_code, cell);
     const VF codes = cosine_of_rays(hit, cell) * Set(df, static_cast<float>(LatticeMark::cosines));
     return ConvertTo(d, codes + Set(df, 0.5f));
   }
 
-  static HWY_INLINE VF in_float(Doubles v) {
-    const hn::Half<DF> half;
-    return Combine(DF(), DemoteTo(half, v.high), DemoteTo(half, v.low));
-  }
-  static HWY_INLINE Doubles doubles_of_cells(const double* numbers, VI cell) {
-    const D d;
-    const hn::RebindToSigned<D> di;
-    const hn::Half<DI> half;
-    return {GatherIndex(d, numbers, PromoteTo(di, LowerHalf(half, cell))),
-            GatherIndex(d, numbers, PromoteTo(di, UpperHalf(half, cell)))};
-  }
-
   HWY_INLINE VF cosine_of_rays(VI hit, VI cell) const {
-    const DI d;
-    const VI side = Set(d, SegmentWindows::side - 1);
-    const Doubles column = in_double(And(ShiftRight<Hit::column_bit>(hit), side));
-    const Doubles row = in_double(And(ShiftRight<Hit::row_bit>(hit), side));
+    const VI side = Set(DI(), SegmentWindows::side - 1);
+    const Doubles column = promote(And(ShiftRight<Hit::column_bit>(hit), side));
+    const Doubles row = promote(And(ShiftRight<Hit::row_bit>(hit), side));
     const auto on_ray = [&](int axis) HWY_ATTR {
-      const V corner = Set(D(), rays_.corner[axis]), right = Set(D(), rays_.right[axis]),
-              down = Set(D(), rays_.down[axis]);
-      return in_halves([&](V c, V r) HWY_ATTR { return corner + right * c + down * r; }, column, row);
+      return doubles(rays_.corner[axis]) + doubles(rays_.right[axis]) * column + doubles(rays_.down[axis]) * row;
     };
     const Doubles x = on_ray(0), y = on_ray(1), z = on_ray(2);
-    const auto between = [](V ax, V ay, V az, V bx, V by, V bz, V without) HWY_ATTR {
-      const V along = ax * bx + ay * by + az * bz;
-      const V length = ax * ax + ay * ay + az * az;
-      return Min(Max(Abs(along) / Sqrt(length), without), Set(D(), 1));
-    };
-    return in_float(in_halves(between, x, y, z, doubles_of_cells(cells_.normal[0], cell),
-                              doubles_of_cells(cells_.normal[1], cell), doubles_of_cells(cells_.normal[2], cell),
-                              doubles_of_cells(cells_.least_cosine, cell)));
+    const Doubles along =
+        x * gather(cells_.normal[0], cell) + y * gather(cells_.normal[1], cell) + z * gather(cells_.normal[2], cell);
+    const auto cosine = [](VD a, VD square, VD least)
+                            HWY_ATTR { return Min(Max(Abs(a) / Sqrt(square), least), Set(DD(), 1)); };
+    return demote(in_halves(cosine, along, x * x + y * y + z * z, gather(cells_.least_cosine, cell)));
   }
 
   bool perspective_;

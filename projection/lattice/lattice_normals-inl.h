@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which cells of a batch have surfaces, and how these lie, a cell a lane; included once per instruction set (Highway's
-// include guard idiom).
+// Which cells of a batch have iso-surfaces, and their normals, a cell a lane. Included once per instruction set
+// (Highway's include guard idiom).
+//
+// How       The field of a cell is s(p) = s_0 + g . (p - p_0). With the edges e_i = p_i - p_0 from corner 0, and the
+//           changes c_i of the scalar along them, e_i . g = c_i; Cramer's rule gives the direction of the gradient,
+//             g ~ c_1 (e_2 x e_3) + c_2 (e_3 x e_1) + c_3 (e_1 x e_2),
+//           which is all that shading needs: a normal has unit length, and both its sides are lit.
+// Accuracy  Double precision; edges and changes are scaled to one first, so that no product leaves its range.
+// Ends      A cell that is flat, of no size or of one scalar has no normal (zero).
 
 #if defined(TESSERA_PROJECTION_LATTICE_NORMALS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_LATTICE_NORMALS_INL_H_
@@ -24,37 +31,36 @@ namespace HWY_NAMESPACE {
 
 /// Three coordinates of as many cells as lanes.
 struct Vectors {
-  V x, y, z;
+  VD x, y, z;
 };
-HWY_INLINE Vectors difference(const Vectors& a, const Vectors& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-HWY_INLINE Vectors product(const Vectors& a, V b) { return {a.x * b, a.y * b, a.z * b}; }
-HWY_INLINE V dot(const Vectors& a, const Vectors& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+HWY_INLINE Vectors operator+(const Vectors& a, const Vectors& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+HWY_INLINE Vectors operator-(const Vectors& a, const Vectors& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+HWY_INLINE Vectors operator*(const Vectors& a, VD b) { return {a.x * b, a.y * b, a.z * b}; }
+HWY_INLINE VD dot(const Vectors& a, const Vectors& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 HWY_INLINE Vectors cross(const Vectors& a, const Vectors& b) {
   return {a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y};
 }
-HWY_INLINE V largest(const Vectors& v) { return Max(Max(Abs(v.x), Abs(v.y)), Abs(v.z)); }
+HWY_INLINE VD largest(const Vectors& v) { return Max(Max(Abs(v.x), Abs(v.y)), Abs(v.z)); }
 
 /// unit(gradient_direction()) of surface_crossings.hpp but for rounding, a cell a lane.
-HWY_INLINE Vectors unit_gradient(const Vectors (&corner)[4], const V (&scalar)[4]) {
-  const V zero = Zero(D());
+HWY_INLINE Vectors unit_gradient(const Vectors (&corner)[4], const VD (&scalar)[4]) {
+  const VD zero = Zero(DD());
   Vectors edge[3];
-  V change[3], size = zero, most = zero;
+  VD change[3], size = zero, most = zero;
   for (std::size_t i = 0; i < 3; ++i) {
-    edge[i] = difference(corner[i + 1], corner[0]);
+    edge[i] = corner[i + 1] - corner[0];
     change[i] = scalar[i + 1] - scalar[0];
     size = Max(size, largest(edge[i])), most = Max(most, Abs(change[i]));
   }
   // Edges of size one: of no mesh do squares or products of them leave a double's range.
-  const V one = Set(D(), 1), per_size = one / size, per_change = one / most;
-  const Vectors e0 = product(edge[0], per_size), e1 = product(edge[1], per_size), e2 = product(edge[2], per_size);
-  const Vectors n0 = cross(e1, e2), n1 = cross(e2, e0), n2 = cross(e0, e1);
-  const V c0 = change[0] * per_change, c1 = change[1] * per_change, c2 = change[2] * per_change;
-  const auto sum = [&](V a, V b, V c) HWY_ATTR { return c0 * a + c1 * b + c2 * c; };
-  const Vectors direction{sum(n0.x, n1.x, n2.x), sum(n0.y, n1.y, n2.y), sum(n0.z, n1.z, n2.z)};
-  const V square = dot(direction, direction);
-  const Vectors unit = product(direction, one / Sqrt(square));
+  const VD one = Set(DD(), 1), per_size = one / size, per_change = one / most;
+  const Vectors e1 = edge[0] * per_size, e2 = edge[1] * per_size, e3 = edge[2] * per_size;
+  const VD c1 = change[0] * per_change, c2 = change[1] * per_change, c3 = change[2] * per_change;
+  const Vectors direction = cross(e2, e3) * c1 + cross(e3, e1) * c2 + cross(e1, e2) * c3;
+  const VD square = dot(direction, direction);
+  const Vectors unit = direction * (one / Sqrt(square));
   // Of a cell of no size, of one scalar, or flat, divisions gave no numbers.
-  const V least = Set(D(), 1e-300);
+  const VD least = Set(DD(), 1e-300);
   const auto is = And(square > zero, And(size > least, most > least));
   return {IfThenElseZero(is, unit.x), IfThenElseZero(is, unit.y), IfThenElseZero(is, unit.z)};
 }
@@ -63,9 +69,9 @@ HWY_INLINE Vectors unit_gradient(const Vectors (&corner)[4], const V (&scalar)[4
 /// their time.
 HWY_NOINLINE inline void find_normals(const LatticeView& view, const CellBatch& batch, unsigned cells,
                                       LatticeSurfaces& surfaces) {
-  const D d;
-  const hn::RebindToSigned<D> di;
-  constexpr std::size_t most = MaxLanes(D());
+  const DD d;
+  const hn::RebindToSigned<DD> di;
+  constexpr std::size_t most = MaxLanes(DD());
   const PreparedMesh& prepared = *view.projected.mesh;
   const scene::TetMeshView& mesh = prepared.mesh();
   const double* const positions = &mesh.positions.front().x;
@@ -82,7 +88,7 @@ HWY_NOINLINE inline void find_normals(const LatticeView& view, const CellBatch& 
       for (std::size_t i = 0; i < 4; ++i) vertices[i][count] = corners[i];
     }
     Vectors corner[4];
-    V scalar[4];
+    VD scalar[4];
     for (std::size_t i = 0; i < 4; ++i) {
       const auto vertex = Load(di, vertices[i]);
       const auto first = vertex + vertex + vertex;
@@ -91,8 +97,8 @@ HWY_NOINLINE inline void find_normals(const LatticeView& view, const CellBatch& 
       scalar[i] = GatherIndex(d, mesh.scalars.data(), vertex);
     }
     const Vectors normal = unit_gradient(corner, scalar);
-    const V one = Set(d, 1), zero = Zero(d);
-    const V least = IfThenElse(largest(normal) > zero, zero, one);
+    const VD one = Set(d, 1), zero = Zero(d);
+    const VD least = IfThenElse(largest(normal) > zero, zero, one);
     alignas(64) double found[5][most];
     Store(normal.x, d, found[0]), Store(normal.y, d, found[1]), Store(normal.z, d, found[2]);
     Store(least, d, found[3]);

@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A batch's cells with their edges and faces in the order of the parts that they play, so that lanes with unlike cells
-// do the same; included once per instruction set (Highway's include guard idiom).
+// A batch's cells with their edges and faces in the order of the parts that they play (lattice_shapes-inl.h), so that
+// lanes with unlike cells do the same. Included once per instruction set (Highway's include guard idiom).
+//
+// What   CellParts: outline, inner edges and face planes by part, a cell a lane; and the queue of hits between
+//        lattice_cover-inl.h, which finds them, and lattice_cross-inl.h, which makes them segments.
+// How    The part that an edge or a face plays follows from the four bits of the front faces: a table of 16 entries
+//        names the edge or face, and selects move its numbers to the part's place.
+// Bits   Numbers are moved, not computed. A face plane's steps are cut in 16-bit halves, whose products with a column
+//        or row are exact in 32 bits.
 
 #if defined(TESSERA_PROJECTION_LATTICE_PARTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_LATTICE_PARTS_INL_H_
@@ -14,6 +21,7 @@
 #include <utility>
 
 #include "projection/lattice/lattice_shapes-inl.h"
+#include "projection/lattice/segment_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 #if HWY_TARGET != HWY_SCALAR
@@ -56,25 +64,17 @@ struct CellParts {
   struct Edge {
     alignas(64) float start[CellBatch::most], x[CellBatch::most], y[CellBatch::most];
   };
-  struct Plane {
-    alignas(64) std::int32_t start[CellBatch::most], low[CellBatch::most], high[CellBatch::most];
+  /// Numbers of the faces in the order of Roles::face.
+  using ByFace = std::int32_t[4][CellBatch::most];
+  struct Planes {
+    alignas(64) ByFace start, low, high;
   };
-  /// A quantity on the faces in the order of Roles::face.
-  using Planes = Plane[4];
 
   Edge outline[4], inner[3];
   Planes depth, scalar, weight;
-  alignas(64) std::int32_t depth_c[4][CellBatch::most], scalar_c[4][CellBatch::most];  ///< the latter floats
-  unsigned three, behind;  ///< bit t: one face against three; that one is the back face
+  alignas(64) ByFace depth_c, scalar_c;  ///< the latter floats
+  unsigned three, behind;                ///< bit t: one face against three; that one is the back face
 };
-
-/// table[front faces], 16 numbers.
-HWY_INLINE VI by_front(const std::int32_t* table, VI front) {
-  if constexpr (lanes == 16)
-    return TableLookupLanes(Load(DI(), table), IndicesFromVec(DI(), front));
-  else
-    return GatherIndex(DI(), table, front);
-}
 
 /// Orders the parts of a batch's cells [from, from + lanes).
 class PartOrder {
@@ -88,8 +88,8 @@ class PartOrder {
   /// Sets `three` and `behind`, to be zero before the first. Returns the cells that have candidate pixels, a bit each.
   HWY_INLINE unsigned shapes() const {
     const DI d;
-    const auto is = [&](const std::int32_t* table) HWY_ATTR { return by_front(table, front_) != Zero(d); };
-    const auto bits = [&](hn::Mask<DI> mask) HWY_ATTR { return lane_bits(RebindMask(DF(), mask)) << from_; };
+    const auto is = [&](const std::int32_t* table) HWY_ATTR { return lookup_16(table, front_) != Zero(d); };
+    const auto bits = [&](MI mask) HWY_ATTR { return lane_bits(mask) << from_; };
     parts_.three |= bits(is(part_table.three));
     parts_.behind |= bits(is(part_table.behind));
     const auto columns = Load(d, batch_.x0 + from_) < Load(d, batch_.x1 + from_);
@@ -103,7 +103,7 @@ class PartOrder {
     edges<0>(), edges<1>(), edges<2>(), edges<3>();
     inner_edges<0>(), inner_edges<1>(), inner_edges<2>();
     VI face[4];
-    for (int k = 0; k < 4; ++k) face[k] = by_front(part_table.face[k], front_);
+    for (int k = 0; k < 4; ++k) face[k] = lookup_16(part_table.face[k], front_);
     planes(face, batch_.depth, parts_.depth);
     if constexpr (!per_cell) planes(face, batch_.scalar, parts_.scalar);
     if constexpr (perspective) {
@@ -128,7 +128,7 @@ class PartOrder {
   template <int k, bool inner>
   HWY_INLINE void edge(const std::int32_t* part, CellParts::Edge& to) const {
     const DF df;
-    const VI which = by_front(part, front_);
+    const VI which = lookup_16(part, front_);
     // Where there is none, surely not positive.
     VF start = Set(df, -4.0f), x = Zero(df), y = x;
     edges_of<k, inner>(which, start, x, y, std::make_integer_sequence<int, 6>());
@@ -158,13 +158,13 @@ class PartOrder {
     const DI d;
     for (int k = 0; k < 4; ++k) {
       const VI x = number_of(face[k], all.x), y = number_of(face[k], all.y);
-      Store(number_of(face[k], all.start), d, to[k].start + from_);
+      Store(number_of(face[k], all.start), d, to.start[k] + from_);
       const VI low = Set(d, 0xffff);
-      Store(Or(And(x, low), ShiftLeft<16>(y)), d, to[k].low + from_);
+      Store(Or(And(x, low), ShiftLeft<16>(y)), d, to.low[k] + from_);
       // The lower part is signed: where it is negative the upper one is one more.
       const auto high = [](VI v) HWY_ATTR { return v + Set(DI(), 0x8000); };
       Store(Or(BitCast(d, ShiftRight<16>(BitCast(hn::RebindToUnsigned<DI>(), high(x)))), AndNot(low, high(y))), d,
-            to[k].high + from_);
+            to.high[k] + from_);
     }
   }
 
@@ -175,7 +175,7 @@ class PartOrder {
 };
 
 /// Pixels that rays of a batch's cells may hit, a number each: the cell, and column and row in the square, 16 bits
-/// apart as in CellParts. `uncertain` marks those at an edge of the outline, where float does not tell.
+/// apart as in CellParts. `uncertain` marks those at an edge of the outline, where float does not decide.
 struct Hit {
   static constexpr int column_bit = 4, row_bit = column_bit + 16;
   static constexpr std::int32_t uncertain = 1 << 15;

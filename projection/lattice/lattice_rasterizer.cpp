@@ -22,37 +22,43 @@ namespace HWY_NAMESPACE {
 bool available() { return HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128; }
 
 #if HWY_TARGET == HWY_SCALAR
-void rasterize(const LatticeView&, std::span<const TileEntry>, std::span<const TileEntry>, const scene::PixelRect&,
-               const OpenPixels&, LatticeScratch&, SegmentStream&, RasterCounts&) {}
+void rasterize(const LatticeView&, const ListedCells&, const MaskedRect&, LatticeScratch&, SegmentStream&,
+               RasterCounts&) {}
 #else
-template <bool perspective, bool per_cell>
-void rasterize_cells(const LatticeView& view, CellBatch& batch, const scene::PixelRect& rect,
-                     const scene::PixelRect& square, const OpenPixels& open, CoverScratch& scratch, SegmentStream& out,
-                     RasterCounts& counts) {
-  HitQueue& hits = scratch.hits;
-  const std::uint32_t all = static_cast<std::uint32_t>((std::uint64_t{1} << rect.width()) - 1) << (rect.x0 - square.x0);
+/// Those of `cells` (a bit each of the batch) whose candidate pixels are not all closed.
+HWY_INLINE unsigned open_cells(const CellBatch& batch, const MaskedRect& pixels, unsigned cells) {
+  const scene::PixelRect rect = pixels.in_square();
+  const std::uint32_t all = static_cast<std::uint32_t>((std::uint64_t{1} << rect.width()) - 1) << rect.x0;
   bool all_open = true;
-  for (int y = rect.y0 - square.y0; y < rect.y1 - square.y0; ++y) all_open = all_open && open[y] == all;
+  for (int y = rect.y0; y < rect.y1; ++y) all_open = all_open && pixels.open[y] == all;
+  if (all_open) return cells;
   const auto shut = [&](int t) {
     std::uint32_t takes = 0;
-    for (int y = batch.y0[t]; y < batch.y1[t]; ++y) takes |= open[y];
+    for (int y = batch.y0[t]; y < batch.y1[t]; ++y) takes |= pixels.open[y];
     const std::uint64_t columns = (std::uint64_t{1} << batch.x1[t]) - (std::uint64_t{1} << batch.x0[t]);
     return (takes & columns) == 0;
   };
+  for (unsigned left = cells; left != 0; left &= left - 1)
+    if (shut(__builtin_ctz(left))) cells &= ~(left & -left);
+  return cells;
+}
+
+/// A batch that is set up: covers the pixels of its regular cells and appends their segments.
+template <bool perspective, bool per_cell>
+void rasterize_cells(const LatticeView& view, const CellBatch& batch, const MaskedRect& pixels, CoverScratch& scratch,
+                     SegmentStream& out, RasterCounts& counts) {
+  HitQueue& hits = scratch.hits;
   unsigned cells = 0;
   CellParts parts;
   parts.three = parts.behind = 0;
   for (int from = 0; from < batch.size; from += lanes) cells |= PartOrder(batch, from, parts).shapes();
-  cells &= ~batch.irregular & ((1u << batch.size) - 1);
-  if (!all_open)
-    for (unsigned left = cells; left != 0; left &= left - 1)
-      if (shut(__builtin_ctz(left))) cells &= ~(left & -left);
+  cells = open_cells(batch, pixels, cells & ~batch.irregular & ((1u << batch.size) - 1));
   if (cells == 0) return;
 
   for (int from = 0; from < batch.size; from += lanes)
     PartOrder(batch, from, parts).template order<perspective, per_cell>();
   using Crossing = HitCrossing<perspective, per_cell>;
-  Crossing crossing(view, batch, parts, rect, square, out, counts);
+  Crossing crossing(view, batch, parts, pixels, out, counts);
   if constexpr (Crossing::together) {
     for (int from = 0; from < batch.size; from += lanes) {
       const unsigned small = SmallCells::worth_while(batch, cells, from);
@@ -64,7 +70,7 @@ void rasterize_cells(const LatticeView& view, CellBatch& batch, const scene::Pix
     }
   }
   if (cells == 0) return;
-  scratch.blocks.lay(batch, parts, rect, square);
+  scratch.blocks.lay(batch, parts, pixels.in_square());
   // Cells of one shape after the other, so that branches go the same way.
   const auto cover = [&](unsigned of_shape) HWY_ATTR {
     for (; of_shape != 0; of_shape &= of_shape - 1) {
@@ -102,38 +108,37 @@ HWY_NOINLINE void rasterize_irregular(const LatticeView& view, const TileEntry& 
   }
 }
 
-void rasterize(const LatticeView& view, std::span<const TileEntry> entries, std::span<const TileEntry> ahead,
-               const scene::PixelRect& rect, const OpenPixels& open, LatticeScratch& scratch, SegmentStream& out,
-               RasterCounts& counts) {
-  const scene::PixelRect square{rect.x0 & ~(SegmentWindows::side - 1), rect.y0 & ~(SegmentWindows::side - 1), 0, 0};
+void rasterize(const LatticeView& view, const ListedCells& list, const MaskedRect& pixels, LatticeScratch& scratch,
+               SegmentStream& out, RasterCounts& counts) {
   const bool per_cell = view.projected.mesh->mesh().association == scene::Association::cell;
   CellBatch batch;
   CoverScratch cover_scratch;
   LatticeSurfaces surfaces;
-  for (std::size_t from = 0; from < entries.size(); from += CellBatch::most) {
-    const auto cells = entries.subspan(from, std::min<std::size_t>(CellBatch::most, entries.size() - from));
-    if (from == 0) prefetch_cells(view, ahead);
+  for (std::size_t from = 0; from < list.cells.size(); from += CellBatch::most) {
+    const auto cells = list.cells.subspan(from, std::min<std::size_t>(CellBatch::most, list.cells.size() - from));
+    if (from == 0) prefetch_cells(view, list.next);
     if (view.perspective)
-      set_up_cells<true>(view, cells, rect, batch);
+      set_up_cells<true>(view, cells, pixels, batch);
     else
-      set_up_cells<false>(view, cells, rect, batch);
+      set_up_cells<false>(view, cells, pixels, batch);
     for (unsigned irregular = batch.irregular; irregular != 0; irregular &= irregular - 1)
-      rasterize_irregular(view, cells[static_cast<std::size_t>(__builtin_ctz(irregular))], rect, scratch, out, counts);
+      rasterize_irregular(view, cells[static_cast<std::size_t>(__builtin_ctz(irregular))], pixels.rect, scratch, out,
+                          counts);
     const unsigned crossed = view.projected.iso != nullptr ? find_surfaces(view, batch, surfaces) : 0;
     const std::size_t first = out.size;
     out.keeps_hits = crossed != 0;
-    out.reserve(out.size + cells.size() * static_cast<std::size_t>(rect.area()));
+    out.reserve(out.size + cells.size() * static_cast<std::size_t>(pixels.rect.area()));
     if (view.perspective)
-      per_cell ? rasterize_cells<true, true>(view, batch, rect, square, open, cover_scratch, out, counts)
-               : rasterize_cells<true, false>(view, batch, rect, square, open, cover_scratch, out, counts);
+      per_cell ? rasterize_cells<true, true>(view, batch, pixels, cover_scratch, out, counts)
+               : rasterize_cells<true, false>(view, batch, pixels, cover_scratch, out, counts);
     else
-      per_cell ? rasterize_cells<false, true>(view, batch, rect, square, open, cover_scratch, out, counts)
-               : rasterize_cells<false, false>(view, batch, rect, square, open, cover_scratch, out, counts);
+      per_cell ? rasterize_cells<false, true>(view, batch, pixels, cover_scratch, out, counts)
+               : rasterize_cells<false, false>(view, batch, pixels, cover_scratch, out, counts);
     if (crossed == 0) continue;
     const CrossedSegments segments = crossed_segments(out, first, surfaces);
     if (segments.count == 0) continue;
     find_normals(view, batch, segments.cells, surfaces);
-    SurfaceCuts(view, surfaces, square.x0, square.y0, out).cut(segments);
+    SurfaceCuts(view, surfaces, pixels, out).cut(segments);
   }
 }
 #endif  // HWY_SCALAR
@@ -161,10 +166,9 @@ void make_lattice_vertices(std::span<const PixelVertex> vertices, std::span<cons
 
 bool lattice_available() { return HWY_DYNAMIC_DISPATCH(available)(); }
 
-void rasterize_lattice(const LatticeView& view, std::span<const TileEntry> entries, std::span<const TileEntry> ahead,
-                       const scene::PixelRect& rect, const OpenPixels& open, LatticeScratch& scratch,
-                       SegmentStream& out, RasterCounts& counts) {
-  HWY_DYNAMIC_DISPATCH(rasterize)(view, entries, ahead, rect, open, scratch, out, counts);
+void rasterize_lattice(const LatticeView& view, const ListedCells& list, const MaskedRect& pixels,
+                       LatticeScratch& scratch, SegmentStream& out, RasterCounts& counts) {
+  HWY_DYNAMIC_DISPATCH(rasterize)(view, list, pixels, scratch, out, counts);
 }
 
 }  // namespace tessera::projection

@@ -45,8 +45,27 @@ struct LatticeScratch {
 /// Bit x of rows[y]: pixel (x, y) of the square still takes segments.
 using OpenPixels = std::array<std::uint32_t, SegmentWindows::side>;
 
-/// The `planes` rasterizer on the integer lattice: cells to ray segments for the pixels of `rect`, which lies in one
-/// square of 32 x 32 pixels aligned to multiples of 32. Appends to `out`.
+/// The pixels to rasterize for: a rectangle in one square of 32 x 32 pixels aligned to multiples of 32, and which of
+/// its pixels are open.
+struct MaskedRect {
+  scene::PixelRect rect;
+  const OpenPixels& open;
+
+  [[nodiscard]] int square_x() const { return rect.x0 & ~(SegmentWindows::side - 1); }
+  [[nodiscard]] int square_y() const { return rect.y0 & ~(SegmentWindows::side - 1); }
+  /// The rectangle, counted from the square's corner.
+  [[nodiscard]] scene::PixelRect in_square() const {
+    return {rect.x0 - square_x(), rect.y0 - square_y(), rect.x1 - square_x(), rect.y1 - square_y()};
+  }
+};
+
+/// A stretch of a tile's list: the cells to rasterize, and those that come next, whose numbers are fetched meanwhile.
+struct ListedCells {
+  std::span<const TileEntry> cells, next;
+};
+
+/// The `planes` rasterizer on the integer lattice: cells to ray segments for the pixels of a rectangle. Appends to
+/// `out`.
 ///
 /// Sixteen cells are set up at once, a cell a lane, in double precision. Then, in two steps:
 ///   1. Which pixels does each cover (lattice_cover-inl.h)? The edges of its outline alone tell: four additions for a
@@ -79,11 +98,9 @@ using OpenPixels = std::array<std::uint32_t, SegmentWindows::side>;
 /// float quotients give: DepthLimits says which are too thin, CellsAtSteps where steps of the transfer function are
 /// too near. Their depths differ from their neighbours' by a few steps, and no segment of them crosses a step.
 ///
-/// Cells behind closed pixels alone are skipped; single closed pixels still get segments. `ahead` are the entries that
-/// will come next: their numbers are fetched meanwhile.
-void rasterize_lattice(const LatticeView& view, std::span<const TileEntry> entries, std::span<const TileEntry> ahead,
-                       const scene::PixelRect& rect, const OpenPixels& open, LatticeScratch& scratch,
-                       SegmentStream& out, RasterCounts& counts);
+/// Cells behind closed pixels alone are skipped; single closed pixels still get segments.
+void rasterize_lattice(const LatticeView& view, const ListedCells& list, const MaskedRect& pixels,
+                       LatticeScratch& scratch, SegmentStream& out, RasterCounts& counts);
 
 /// Whether this processor's instruction set has lanes (SSE4 or better).
 bool lattice_available();

@@ -1,6 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Set-up of the lattice rasterizer: sixteen cells at once, a cell a lane, in double precision. Included once per
 // instruction set (Highway's include guard idiom).
+//
+// What      Of every cell the pixels it may cover, its front faces, six edge functions in float, and its four faces'
+//           planes of depth, scalar and (perspective) weight in integers.
+//
+//                 3            Edges 0 to 5 = 01, 02, 03, 12, 13, 23, each of two faces.
+//                /|\           Faces 0 to 3 = 012, 013, 023, 123.
+//               / | \          The edge function of ab at a pixel p is twice the signed area of (a, b, p). With
+//              0..|..2         u x v = u_x v_y - u_y v_x,
+//               \ | /            E(p) = (a - p) x (b - p) = a x b + (a_y - b_y) p_x + (b_x - a_x) p_y.
+//                \|/           Its sign is the side of the edge on which the ray passes.
+//                 1
+//
+// How       A face (a, b, c) has the area A = (b - a) x (c - a). It is a front face if A, turned outward, has the sign
+//           of the cell's volume in (x, y, order), where order grows with depth: depth itself, or -1 / depth under
+//           perspective, which is linear in the image as depth is not. A quantity q that is linear on the face has, by
+//           Cramer's rule, these steps from pixel to pixel:
+//             q_x = ((q_b - q_a) (c - a)_y - (q_c - q_a) (b - a)_y) / A,
+//             q_y = ((b - a)_x (q_c - q_a) - (c - a)_x (q_b - q_a)) / A.
+// Accuracy  E is divided by the bound of its rounding error: |E| > 1 is certain. Planes are rounded to whole steps of
+//           the lattice a pixel: 16 steps within the square at most.
+// Bits      Corners are in canonical order and each quotient depends on one face alone, so that cells which share a
+//           face have equal planes. -ffp-contract=off: areas of edge-on faces come out zero.
+// Ends      Cells that this precision does not suffice for are `irregular`, left to rasterize_planes().
 
 #if defined(TESSERA_PROJECTION_LATTICE_SETUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_LATTICE_SETUP_INL_H_
@@ -14,19 +37,15 @@
 #include <algorithm>
 
 #include "projection/lattice/lattice_rasterizer.hpp"
+#include "scene/lanes/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 #if HWY_TARGET != HWY_SCALAR
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
+using namespace scene::HWY_NAMESPACE;  // vectors and operations on their lanes
 
-using D = hn::ScalableTag<double>;
-using V = hn::Vec<D>;
-using M = hn::Mask<D>;
-
-// Edges by their corners i < j with the two faces they lie in, and faces by their corners a < b < c with the edges bc,
-// ac, ab.
+// Edges by their corners i < j with the two faces they are in, and faces by their corners a < b < c.
 constexpr int edge_from[6] = {0, 0, 0, 1, 1, 2}, edge_to[6] = {1, 2, 3, 2, 3, 3};
 constexpr int edge_faces[6][2] = {{0, 1}, {0, 2}, {1, 2}, {0, 3}, {1, 3}, {2, 3}};
 constexpr int face_corners[4][3] = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
@@ -49,7 +68,7 @@ struct CellBatch {
   unsigned irregular;  ///< bit t: left to the double-precision rasterizer
   std::uint32_t tet[most];
   alignas(64) std::int32_t x0[most], x1[most], y0[most], y1[most];  ///< candidate pixels, half open
-  alignas(64) std::uint32_t bits[most];                             ///< see front_faces() and so on
+  alignas(64) std::uint32_t bits[most];                             ///< front_faces(), edge_on(), flipped()
   // E / (its rounding error), positive inside the first of the edge's faces.
   alignas(64) float edge[6][most], edge_x[6][most], edge_y[6][most];
   // Planes of faces 0 to 3: depth (perspective: depth behind corner c, times weight), scalar likewise, and weight (w of
@@ -60,53 +79,51 @@ struct CellBatch {
   alignas(64) float cell_scalar[most];
   alignas(64) float scalar_low[most], scalar_high[most];  ///< of a cell's corners; where there are surfaces alone
 
-  /// Bit f: a front face. Of an irregular cell it says nothing.
-  [[nodiscard]] unsigned front_faces(int t) const { return bits[t] & 15; }
+  static constexpr int front_bit = 0, edge_on_bit = 8, flipped_bit = 16;
+  /// Bit f: a front face. Meaningless for an irregular cell.
+  [[nodiscard]] unsigned front_faces(int t) const { return bits[t] >> front_bit & 15; }
   /// Bit f: seen edge-on.
-  [[nodiscard]] unsigned edge_on(int t) const { return bits[t] >> 8 & 15; }
+  [[nodiscard]] unsigned edge_on(int t) const { return bits[t] >> edge_on_bit & 15; }
   /// Bit e: the stored edge function is -E.
-  [[nodiscard]] unsigned flipped(int t) const { return bits[t] >> 16 & 63; }
+  [[nodiscard]] unsigned flipped(int t) const { return bits[t] >> flipped_bit & 63; }
 };
 
 /// Nearest integers modulo 2^32 of |v| < 2^51: in the sum with 1.5 * 2^52 the lowest bit counts ones.
-HWY_INLINE hn::Vec<hn::Rebind<std::int32_t, D>> wrapped(V v) {
-  const D d;
-  const hn::RebindToUnsigned<D> du;
-  const hn::Rebind<std::uint32_t, D> du32;
-  const hn::Rebind<std::int32_t, D> di32;
+HWY_INLINE hn::Vec<hn::Rebind<std::int32_t, DD>> wrapped(VD v) {
+  const DD d;
+  const hn::RebindToUnsigned<DD> du;
+  const hn::Rebind<std::uint32_t, DD> du32;
+  const hn::Rebind<std::int32_t, DD> di32;
   return BitCast(di32, TruncateTo(du32, BitCast(du, v + Set(d, 0x1.8p52))));
 }
 
 /// A plane over the square: value at its centre and steps.
 struct Plane {
-  V start, x, y;
+  VD start, x, y;
+};
+
+/// A face as a triangle in the image: its first corner, the edges to the others, and twice its signed area.
+struct FaceShape {
+  VD ax, ay, x1, y1, x2, y2, area;
+  VD inverse_area;  ///< set by find_sides()
 };
 
 /// The face's plane through the values q at its corners.
-struct FaceShape {
-  V ax, ay, x1, y1, x2, y2, inverse_area;
-};
-HWY_INLINE Plane plane_of(const FaceShape& s, V qa, V qb, V qc) {
-  const V q1 = qb - qa, q2 = qc - qa;
-  Plane p;
-  p.x = (q1 * s.y2 - q2 * s.y1) * s.inverse_area;
-  p.y = (s.x1 * q2 - s.x2 * q1) * s.inverse_area;
-  p.start = NegMulAdd(p.x, s.ax, NegMulAdd(p.y, s.ay, qa));
-  return p;
+HWY_INLINE Plane plane_of(const FaceShape& face, VD at_a, VD at_b, VD at_c) {
+  const VD to_b = at_b - at_a, to_c = at_c - at_a;
+  Plane plane;
+  plane.x = (to_b * face.y2 - to_c * face.y1) * face.inverse_area;
+  plane.y = (face.x1 * to_c - face.x2 * to_b) * face.inverse_area;
+  plane.start = NegMulAdd(plane.x, face.ax, NegMulAdd(plane.y, face.ay, at_a));
+  return plane;
 }
 
 /// Those of face f, of the cells from `from` on.
 HWY_INLINE void store_plane(const Plane& plane, int f, int from, CellBatch::FacePlanes& out) {
-  const hn::Rebind<std::int32_t, D> d;
+  const hn::Rebind<std::int32_t, DD> d;
   StoreU(wrapped(plane.start), d, out.start[f] + from);
   StoreU(wrapped(plane.x), d, out.x[f] + from);
   StoreU(wrapped(plane.y), d, out.y[f] + from);
-}
-
-HWY_INLINE unsigned bits_of(M mask) {
-  std::uint8_t bits[8] = {0};
-  StoreMaskBits(D(), mask, bits);
-  return bits[0];
 }
 
 /// Depths outside these are, or may be, outside the clipping range.
@@ -124,101 +141,75 @@ struct DepthBounds {
 
 /// Of cells that are deeper than DepthLimits::least_extent: those that are too thin for their rounding (DepthLimits).
 template <bool perspective>
-HWY_NOINLINE M rounded_visibly(const LatticeView& view, V extent, V volume, V twice_area, V w_product) {
-  const auto number = [](double v) HWY_ATTR { return Set(D(), v); };
+HWY_NOINLINE MD rounded_visibly(const LatticeView& view, VD extent, VD volume, VD twice_area, VD w_product) {
+  const auto number = [](double v) HWY_ATTR { return Set(DD(), v); };
   const DepthLimits& limits = view.depth_limits;
   // The longest way through the cell: a third of it times the area that the cell covers is the volume.
-  V chord = Abs(volume) / (twice_area * number(0.5));
+  VD chord = Abs(volume) / (twice_area * number(0.5));
   if constexpr (perspective)  // `volume` is of inverse depths there
     chord = chord / (w_product * number(view.lattice.depth_unit));
-  const V light = number(limits.light_per_step);
-  const V error = light * MulAdd(extent, number(perspective ? DepthLimits::usual_quotient_error : 0),
-                                 number(DepthLimits::usual_plane_error));
-  M thin = And(error > number(DepthLimits::least_error),
-               Not(error * error <= number(DepthLimits::most_error_squared) * (light * chord)));
+  const VD light = number(limits.light_per_step);
+  const VD error = light * MulAdd(extent, number(perspective ? DepthLimits::usual_quotient_error : 0),
+                                  number(DepthLimits::usual_plane_error));
+  MD thin = And(error > number(DepthLimits::least_error),
+                Not(error * error <= number(DepthLimits::most_error_squared) * (light * chord)));
   if constexpr (perspective)
     thin = Or(thin, light * (extent * number(DepthLimits::most_quotient_error)) > number(DepthLimits::most_error));
   return thin;
 }
 
 /// Whether the faces may be seen edge-on.
-HWY_INLINE M thin_face(const FaceShape& n, V area) {
-  const V span = Abs(n.x1) + Abs(n.y1) + (Abs(n.x2) + Abs(n.y2));
-  return Abs(area) <= span * Set(D(), 0x1p-9);
+HWY_INLINE MD thin_face(const FaceShape& face) {
+  const VD span = Abs(face.x1) + Abs(face.y1) + (Abs(face.x2) + Abs(face.y2));
+  return Abs(face.area) <= span * Set(DD(), 0x1p-9);
 }
 
-/// Which faces are front faces, and the edge functions. `thin`: some face may be edge-on, which few are.
+/// Whether a face is edge-on for certain: orthographic coordinates and their differences are exact, and the products of
+/// its area are zeros or have the same factors, as where two corners coincide or all line up along an axis.
+HWY_INLINE MD edge_on_for_certain(const FaceShape& face) {
+  const auto both_zero = [](VD p, VD q) HWY_ATTR { return And(p == Zero(DD()), q == Zero(DD())); };
+  return Or(
+      Or(both_zero(face.x1, face.x2), both_zero(face.y1, face.y2)),
+      Or(Or(both_zero(face.x1, face.y1), both_zero(face.x2, face.y2)), And(face.x1 == face.x2, face.y1 == face.y2)));
+}
+
+/// How the faces of a vector of cells are turned.
+struct Sides {
+  MD upright;     ///< the cell's volume in (x, y, order) is not negative
+  MD front[4];    ///< faces through which rays enter
+  MD edge_on[4];  ///< faces that no ray passes: none but of orthographic views' thin faces
+};
+
+/// Finds which faces are front faces, and sets their inverse areas. `thin`: some face may be edge-on, which few are;
+/// where that is not certain, the cell becomes irregular.
 template <bool perspective, bool thin>
-HWY_INLINE void set_up_sides(FaceShape (&shape)[4], const V (&area)[4], M upright, const V (&x)[4], const V (&y)[4],
-                             V span, int from, M& irregular, CellBatch& batch) {
-  const D d;
-  const hn::RebindToUnsigned<D> du64;
-  const hn::Rebind<std::uint32_t, D> du32;
-  const hn::Rebind<float, D> df;
-  const auto number = [](double v) HWY_ATTR { return Set(D(), v); };
-  const V zero = Zero(d), one = number(1);
-  const M none = zero < zero;
-  M is_zero[4] = {none, none, none, none}, front[4];
-  // What is true of a cell, a bit each: front faces from bit 0, edge-on faces from 8, flipped edges from 16.
-  auto bits = Zero(du64);
-  const auto add_bit = [&](M mask, int bit) HWY_ATTR {
-    bits = Or(bits, IfThenElseZero(RebindMask(du64, mask), Set(du64, std::uint64_t{1} << bit)));
-  };
+HWY_INLINE Sides find_sides(MD upright, FaceShape (&faces)[4], MD& irregular) {
+  const VD zero = Zero(DD()), one = Set(DD(), 1);
+  const MD none = zero < zero;
+  Sides sides{upright, {}, {none, none, none, none}};
   for (int f = 0; f < 4; ++f) {
-    FaceShape& n = shape[f];
+    FaceShape& face = faces[f];
+    MD& edge_on = sides.edge_on[f];
     if constexpr (thin) {
-      // Edge-on for certain: orthographic coordinates and their differences are exact, and the products are zeros or
-      // have the same factors, as where two corners coincide or all line up along an axis.
-      if constexpr (!perspective) {
-        const auto both_zero = [&](V p, V q) HWY_ATTR { return And(p == zero, q == zero); };
-        is_zero[f] = Or(Or(both_zero(n.x1, n.x2), both_zero(n.y1, n.y2)),
-                        Or(Or(both_zero(n.x1, n.y1), both_zero(n.x2, n.y2)), And(n.x1 == n.x2, n.y1 == n.y2)));
-      }
-      irregular = Or(irregular, AndNot(is_zero[f], thin_face(n, area[f])));
-      n.inverse_area = IfThenZeroElse(is_zero[f], one / IfThenElse(is_zero[f], one, area[f]));
+      if constexpr (!perspective) edge_on = edge_on_for_certain(face);
+      irregular = Or(irregular, AndNot(edge_on, thin_face(face)));
+      face.inverse_area = IfThenZeroElse(edge_on, one / IfThenElse(edge_on, one, face.area));
     } else {
-      n.inverse_area = one / area[f];
+      face.inverse_area = one / face.area;
     }
-    const M positive = face_outward[f] ? area[f] > zero : area[f] < zero;
-    front[f] = Not(Xor(positive, upright));
+    const MD positive = face_outward[f] ? face.area > zero : face.area < zero;
+    sides.front[f] = Not(Xor(positive, upright));
   }
   if constexpr (thin) {
     // Edge-on faces, which no ray passes, fill up the sides: the first counts as a front face, others as back faces.
-    M seen_zero = none;
+    MD seen = none;
     for (int f = 0; f < 4; ++f) {
-      front[f] = Or(AndNot(is_zero[f], front[f]), And(is_zero[f], Not(seen_zero)));
-      seen_zero = Or(seen_zero, is_zero[f]);
-      add_bit(is_zero[f], 8 + f);
+      const MD edge_on = sides.edge_on[f];
+      sides.front[f] = Or(AndNot(edge_on, sides.front[f]), AndNot(seen, edge_on));
+      seen = Or(seen, edge_on);
     }
   }
-  for (int f = 0; f < 4; ++f) add_bit(front[f], f);
-
-  // Edge functions over a bound of the six rounding errors, from the largest start and the box; 2^-23 would do, the
-  // rest is margin.
-  V start[6], along_x[6], along_y[6], error = number(1e-290);
-  for (int e = 0; e < 6; ++e) {
-    const int a = edge_from[e], b = edge_to[e];
-    start[e] = MulSub(x[a], y[b], x[b] * y[a]);
-    along_x[e] = y[a] - y[b], along_y[e] = x[b] - x[a];
-    error = Max(error, Abs(start[e]));
-  }
-  const V scale = number(0x1p22) / MulAdd(span, number(CellBatch::center + 1), error);
-  for (int e = 0; e < 6; ++e) {
-    const M inward = edge_inward[e] ? upright : Not(upright);
-    const M flip = Xor(inward, front[edge_faces[e][0]]);
-    add_bit(flip, 16 + e);
-    const V signed_scale = IfThenElse(flip, Neg(scale), scale);
-    V scaled = start[e] * signed_scale;
-    if constexpr (thin) {
-      // An edge without sides lies between two edge-on faces; it never decides.
-      const M without_sides = And(along_x[e] == zero, along_y[e] == zero);
-      scaled = IfThenElse(without_sides, number(4), scaled);
-    }
-    StoreU(DemoteTo(df, scaled), df, batch.edge[e] + from);
-    StoreU(DemoteTo(df, along_x[e] * signed_scale), df, batch.edge_x[e] + from);
-    StoreU(DemoteTo(df, along_y[e] * signed_scale), df, batch.edge_y[e] + from);
-  }
-  StoreU(TruncateTo(du32, bits), du32, batch.bits + from);
+  return sides;
 }
 
 /// `count` numbers: of vertices first, first + 2, first + 4... the first two or the second two (`pair` 0 or 1). Beside
@@ -234,94 +225,135 @@ HWY_INLINE auto load_every_second(const Vertex& vertex, int first, int pair) {
   }
 }
 
-/// A vector of cells' corners: place in the picture from the square's centre, depth and scalar in steps, weight.
+/// A vector of cells' corners: pixel position from the square's centre, depth and scalar in steps, weight.
 struct Corners {
-  V x[4], y[4], z[4], s[4], w[4];
-  V nearest, farthest;  ///< of z
+  VD x[4], y[4], depth[4], scalar[4], weight[4];
+  VD nearest, farthest;  ///< depth
 
-  HWY_INLINE Corners(const LatticeVertex* vertices, const scene::Tet* const* tets, int square_x, int square_y) {
-    const D d;
-    const hn::Rebind<std::int32_t, D> di32;
-    const hn::RebindToUnsigned<D> du64;
-    const hn::Rebind<std::uint32_t, D> du32;
+  HWY_INLINE Corners(const LatticeVertex* vertices, const scene::Tet* const* tets, const MaskedRect& pixels) {
+    const DD d;
+    const hn::Rebind<std::int32_t, DD> di32;
+    const hn::RebindToUnsigned<DD> du64;
+    const hn::Rebind<std::uint32_t, DD> du32;
     nearest = Set(d, HUGE_VAL), farthest = Set(d, -HUGE_VAL);
     for (int i = 0; i < 4; ++i) {
       const auto vertex = [&](int lane) HWY_ATTR { return &vertices[(*tets[lane])[static_cast<std::size_t>(i)]]; };
-      const auto even = [&](int pair) HWY_ATTR { return load_every_second<MaxLanes(D())>(vertex, 0, pair); };
-      const auto odd = [&](int pair) HWY_ATTR { return load_every_second<MaxLanes(D())>(vertex, 1, pair); };
-      const V xy_even = even(0), xy_odd = odd(0), rest_even = even(1), rest_odd = odd(1);
+      const auto even = [&](int pair) HWY_ATTR { return load_every_second<MaxLanes(DD())>(vertex, 0, pair); };
+      const auto odd = [&](int pair) HWY_ATTR { return load_every_second<MaxLanes(DD())>(vertex, 1, pair); };
+      const VD xy_even = even(0), xy_odd = odd(0), rest_even = even(1), rest_odd = odd(1);
       x[i] = InterleaveLower(d, xy_even, xy_odd), y[i] = InterleaveUpper(d, xy_even, xy_odd);
-      w[i] = InterleaveLower(d, rest_even, rest_odd);
+      weight[i] = InterleaveLower(d, rest_even, rest_odd);
       const auto both = BitCast(du64, InterleaveUpper(d, rest_even, rest_odd));
-      z[i] = PromoteTo(d, BitCast(di32, TruncateTo(du32, both)));
-      s[i] = PromoteTo(d, BitCast(di32, TruncateTo(du32, ShiftRight<32>(both))));
-      x[i] = x[i] - Set(d, square_x + CellBatch::center + 0.5);
-      y[i] = y[i] - Set(d, square_y + CellBatch::center + 0.5);
-      nearest = Min(nearest, z[i]), farthest = Max(farthest, z[i]);
+      depth[i] = PromoteTo(d, BitCast(di32, TruncateTo(du32, both)));
+      scalar[i] = PromoteTo(d, BitCast(di32, TruncateTo(du32, ShiftRight<32>(both))));
+      x[i] = x[i] - Set(d, pixels.square_x() + CellBatch::center + 0.5);
+      y[i] = y[i] - Set(d, pixels.square_y() + CellBatch::center + 0.5);
+      nearest = Min(nearest, depth[i]), farthest = Max(farthest, depth[i]);
     }
   }
-  [[nodiscard]] HWY_INLINE V least_weight() const { return Min(Min(w[0], w[1]), Min(w[2], w[3])); }
-  [[nodiscard]] HWY_INLINE V most_weight() const { return Max(Max(w[0], w[1]), Max(w[2], w[3])); }
+  [[nodiscard]] HWY_INLINE VD least_weight() const { return Min(Min(weight[0], weight[1]), Min(weight[2], weight[3])); }
+  [[nodiscard]] HWY_INLINE VD most_weight() const { return Max(Max(weight[0], weight[1]), Max(weight[2], weight[3])); }
 };
 
-/// Stores the candidate pixels: centres inside the bounding box, widened by far more than rounding. Returns the box's
-/// width and height together; cells too far off to be set up become irregular.
-HWY_INLINE V set_up_box(const Corners& corners, const scene::PixelRect& rect, int square_x, int square_y, int from,
-                        M& irregular, CellBatch& batch) {
-  const hn::Rebind<std::int32_t, D> di32;
-  const auto number = [](double v) HWY_ATTR { return Set(D(), v); };
-  const V(&x)[4] = corners.x, (&y)[4] = corners.y;
-  const V x_low = Min(Min(x[0], x[1]), Min(x[2], x[3]));
-  const V x_high = Max(Max(x[0], x[1]), Max(x[2], x[3]));
-  const V y_low = Min(Min(y[0], y[1]), Min(y[2], y[3]));
-  const V y_high = Max(Max(y[0], y[1]), Max(y[2], y[3]));
-  const V reach = Max(Max(Neg(x_low), x_high), Max(Neg(y_low), y_high));
+/// Stores the edge functions and what is true of the cells. `span`: the boxes' width and height together.
+template <bool thin>
+HWY_INLINE void set_up_edges(const Corners& corners, const Sides& sides, VD span, int from, CellBatch& batch) {
+  const DD d;
+  const hn::RebindToUnsigned<DD> du64;
+  const hn::Rebind<std::uint32_t, DD> du32;
+  const hn::Rebind<float, DD> df;
+  const auto number = [](double v) HWY_ATTR { return Set(DD(), v); };
+  const VD(&x)[4] = corners.x, (&y)[4] = corners.y, zero = Zero(d);
+  auto bits = Zero(du64);
+  const auto add_bit = [&](MD mask, int bit) HWY_ATTR {
+    bits = Or(bits, IfThenElseZero(RebindMask(du64, mask), Set(du64, std::uint64_t{1} << bit)));
+  };
+  for (int f = 0; f < 4; ++f) {
+    add_bit(sides.front[f], CellBatch::front_bit + f);
+    if constexpr (thin) add_bit(sides.edge_on[f], CellBatch::edge_on_bit + f);
+  }
+
+  // Over a bound of the six rounding errors, from the largest start and the box; 2^-23 would do, the rest is margin.
+  VD start[6], along_x[6], along_y[6], error = number(1e-290);
+  for (int e = 0; e < 6; ++e) {
+    const int a = edge_from[e], b = edge_to[e];
+    start[e] = MulSub(x[a], y[b], x[b] * y[a]);
+    along_x[e] = y[a] - y[b], along_y[e] = x[b] - x[a];
+    error = Max(error, Abs(start[e]));
+  }
+  const VD scale = number(0x1p22) / MulAdd(span, number(CellBatch::center + 1), error);
+  for (int e = 0; e < 6; ++e) {
+    const MD inward = edge_inward[e] ? sides.upright : Not(sides.upright);
+    const MD flip = Xor(inward, sides.front[edge_faces[e][0]]);
+    add_bit(flip, CellBatch::flipped_bit + e);
+    const VD signed_scale = IfThenElse(flip, Neg(scale), scale);
+    VD scaled = start[e] * signed_scale;
+    if constexpr (thin) {
+      // An edge without sides is between two edge-on faces; it never decides.
+      const MD without_sides = And(along_x[e] == zero, along_y[e] == zero);
+      scaled = IfThenElse(without_sides, number(4), scaled);
+    }
+    StoreU(DemoteTo(df, scaled), df, batch.edge[e] + from);
+    StoreU(DemoteTo(df, along_x[e] * signed_scale), df, batch.edge_x[e] + from);
+    StoreU(DemoteTo(df, along_y[e] * signed_scale), df, batch.edge_y[e] + from);
+  }
+  StoreU(TruncateTo(du32, bits), du32, batch.bits + from);
+}
+
+/// Stores the candidate pixels of `rect`, which is counted from the square's corner: centres inside the bounding box,
+/// widened by far more than rounding. Returns the boxes' width and height together; cells too far off to be set up
+/// become irregular.
+HWY_INLINE VD set_up_box(const Corners& corners, const scene::PixelRect& rect, int from, MD& irregular,
+                         CellBatch& batch) {
+  const hn::Rebind<std::int32_t, DD> di32;
+  const auto number = [](double v) HWY_ATTR { return Set(DD(), v); };
+  const VD(&x)[4] = corners.x, (&y)[4] = corners.y;
+  const VD x_low = Min(Min(x[0], x[1]), Min(x[2], x[3]));
+  const VD x_high = Max(Max(x[0], x[1]), Max(x[2], x[3]));
+  const VD y_low = Min(Min(y[0], y[1]), Min(y[2], y[3]));
+  const VD y_high = Max(Max(y[0], y[1]), Max(y[2], y[3]));
+  const VD reach = Max(Max(Neg(x_low), x_high), Max(Neg(y_low), y_high));
   irregular = Or(irregular, Not(reach < number(16384)));
-  const V slack = number(1e-6), center = number(CellBatch::center), behind = number(CellBatch::center + 1);
-  const auto store_bound = [&](V v, int low, int high, std::int32_t* out) HWY_ATTR {
+  const VD slack = number(1e-6), center = number(CellBatch::center), behind = number(CellBatch::center + 1);
+  const auto store_bound = [&](VD v, int low, int high, std::int32_t* out) HWY_ATTR {
     StoreU(DemoteTo(di32, Min(Max(v, number(low)), number(high))), di32, out + from);
   };
-  const int left = rect.x0 - square_x, right = rect.x1 - square_x, top = rect.y0 - square_y,
-            bottom = rect.y1 - square_y;
-  store_bound(Ceil(x_low - slack) + center, left, right, batch.x0);
-  store_bound(Floor(x_high + slack) + behind, left, right, batch.x1);
-  store_bound(Ceil(y_low - slack) + center, top, bottom, batch.y0);
-  store_bound(Floor(y_high + slack) + behind, top, bottom, batch.y1);
+  store_bound(Ceil(x_low - slack) + center, rect.x0, rect.x1, batch.x0);
+  store_bound(Floor(x_high + slack) + behind, rect.x0, rect.x1, batch.x1);
+  store_bound(Ceil(y_low - slack) + center, rect.y0, rect.y1, batch.y0);
+  store_bound(Floor(y_high + slack) + behind, rect.y0, rect.y1, batch.y1);
   return x_high - x_low + (y_high - y_low);
 }
 
-/// Stores the faces' planes: depth and, of point data, scalar.
+/// Stores the faces' planes: depth and, of point data, scalar. Under perspective a quantity q is not linear in the
+/// image, but the weight u (w of the face's nearest corner over w) and u (q - q_c) are: their planes' quotient is q -
+/// q_c.
 template <bool perspective>
-HWY_INLINE void set_up_planes(const Corners& corners, const FaceShape (&shape)[4], bool per_cell, int from,
+HWY_INLINE void set_up_planes(const Corners& corners, const FaceShape (&faces)[4], bool per_cell, int from,
                               CellBatch& batch) {
-  const D d;
-  const hn::Rebind<float, D> df;
-  const hn::Rebind<std::int32_t, D> di32;
-  const V(&z)[4] = corners.z, (&s)[4] = corners.s, (&w)[4] = corners.w;
-  if constexpr (!perspective) {
-    const auto planes = [&](const V(&q)[4], CellBatch::FacePlanes& out) HWY_ATTR {
-      for (int f = 0; f < 4; ++f)
-        store_plane(plane_of(shape[f], q[face_corners[f][0]], q[face_corners[f][1]], q[face_corners[f][2]]), f, from,
-                    out);
-    };
-    planes(z, batch.depth);
-    if (!per_cell) planes(s, batch.scalar);
-  } else {
-    for (int f = 0; f < 4; ++f) {
-      const V wa = w[face_corners[f][0]], wb = w[face_corners[f][1]], wc = w[face_corners[f][2]];
-      const V most = Max(wa, Max(wb, wc)), full = Set(d, CellBatch::weight_one);
-      const V weight[3] = {wa / most, wb / most, wc / most};
-      store_plane(plane_of(shape[f], weight[0] * full, weight[1] * full, weight[2] * full), f, from, batch.weight);
-      const auto relative = [&](const V(&q)[4], V qc) HWY_ATTR {
-        return plane_of(shape[f], weight[0] * (q[face_corners[f][0]] - qc), weight[1] * (q[face_corners[f][1]] - qc),
-                        weight[2] * (q[face_corners[f][2]] - qc));
+  const DD d;
+  const hn::Rebind<float, DD> df;
+  const hn::Rebind<std::int32_t, DD> di32;
+  const VD(&depth)[4] = corners.depth, (&scalar)[4] = corners.scalar, (&weight)[4] = corners.weight;
+  for (int f = 0; f < 4; ++f) {
+    const int a = face_corners[f][0], b = face_corners[f][1], c = face_corners[f][2];
+    const FaceShape& face = faces[f];
+    if constexpr (!perspective) {
+      store_plane(plane_of(face, depth[a], depth[b], depth[c]), f, from, batch.depth);
+      if (!per_cell) store_plane(plane_of(face, scalar[a], scalar[b], scalar[c]), f, from, batch.scalar);
+    } else {
+      const VD most = Max(weight[a], Max(weight[b], weight[c])), full = Set(d, CellBatch::weight_one);
+      const VD u_a = weight[a] / most, u_b = weight[b] / most, u_c = weight[c] / most;
+      store_plane(plane_of(face, u_a * full, u_b * full, u_c * full), f, from, batch.weight);
+      const auto relative = [&](const VD(&q)[4], VD q_c) HWY_ATTR {
+        return plane_of(face, u_a * (q[a] - q_c), u_b * (q[b] - q_c), u_c * (q[c] - q_c));
       };
-      const V depth_c = Round(z[face_corners[f][2]]);
-      store_plane(relative(z, depth_c), f, from, batch.depth);
+      const VD depth_c = Round(depth[c]);
+      store_plane(relative(depth, depth_c), f, from, batch.depth);
       StoreU(wrapped(depth_c), di32, batch.depth_c[f] + from);
       if (per_cell) continue;
-      const V scalar_c = Round(s[face_corners[f][2]]);
-      store_plane(relative(s, scalar_c), f, from, batch.scalar);
+      const VD scalar_c = Round(scalar[c]);
+      store_plane(relative(scalar, scalar_c), f, from, batch.scalar);
       StoreU(DemoteTo(df, scalar_c), df, batch.scalar_c[f] + from);
     }
   }
@@ -329,73 +361,70 @@ HWY_INLINE void set_up_planes(const Corners& corners, const FaceShape (&shape)[4
 
 /// Stores the lowest and the highest of the corners' scalars.
 HWY_INLINE void store_scalar_range(const Corners& corners, int from, CellBatch& batch) {
-  const hn::Rebind<float, D> df;
-  const V(&s)[4] = corners.s;
+  const hn::Rebind<float, DD> df;
+  const VD(&s)[4] = corners.scalar;
   StoreU(DemoteTo(df, Min(Min(s[0], s[1]), Min(s[2], s[3]))), df, batch.scalar_low + from);
   StoreU(DemoteTo(df, Max(Max(s[0], s[1]), Max(s[2], s[3]))), df, batch.scalar_high + from);
 }
 
-/// One vector of cells: the first of them is cell `from` of the batch. `cell_scalar` is read of cell data only.
+/// One vector of cells: the first of them is cell `from` of the batch. `rect`: as set_up_box() takes it.
 template <bool perspective>
-HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds, const scene::Tet* const* tets,
-                             const double* cell_scalar, const scene::PixelRect& rect, int square_x, int square_y,
-                             int from, CellBatch& batch) {
-  const D d;
-  const hn::Rebind<float, D> df;
-  const auto number = [](double v) HWY_ATTR { return Set(D(), v); };
-  const V zero = Zero(d);
-  const Corners corners(view.vertices.data(), tets, square_x, square_y);
-  const V(&x)[4] = corners.x, (&y)[4] = corners.y, nearest = corners.nearest, farthest = corners.farthest;
-  M irregular = Or(farthest > number(bounds.far), nearest < number(bounds.near));
-  V order[4];
-  for (int i = 0; i < 4; ++i) order[i] = perspective ? Neg(corners.w[i]) : corners.z[i];
+HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds, const Corners& corners,
+                             const scene::PixelRect& rect, int from, CellBatch& batch) {
+  const DD d;
+  const auto number = [](double v) HWY_ATTR { return Set(DD(), v); };
+  const VD zero = Zero(d);
+  const VD(&x)[4] = corners.x, (&y)[4] = corners.y, nearest = corners.nearest, farthest = corners.farthest;
+  MD irregular = Or(farthest > number(bounds.far), nearest < number(bounds.near));
   if constexpr (perspective) {
-    for (const V& w : corners.w) irregular = Or(irregular, Not(w > zero));
+    for (const VD& w : corners.weight) irregular = Or(irregular, Not(w > zero));
     irregular = Or(irregular, corners.most_weight() > corners.least_weight() * number(16));
   }
-  const V span = set_up_box(corners, rect, square_x, square_y, from, irregular, batch);
+  const VD span = set_up_box(corners, rect, from, irregular, batch);
 
-  // Faces: area, which side of the cell, planes.
-  M thin = zero < zero;
-  FaceShape shape[4];
-  V area[4];
+  MD thin = zero < zero;
+  FaceShape faces[4];
   for (int f = 0; f < 4; ++f) {
     const int a = face_corners[f][0], b = face_corners[f][1], c = face_corners[f][2];
-    FaceShape& n = shape[f];
-    n.ax = x[a], n.ay = y[a];
-    n.x1 = x[b] - x[a], n.y1 = y[b] - y[a];
-    n.x2 = x[c] - x[a], n.y2 = y[c] - y[a];
-    area[f] = n.x1 * n.y2 - n.x2 * n.y1;
-    thin = Or(thin, thin_face(n, area[f]));
+    FaceShape& face = faces[f];
+    face.ax = x[a], face.ay = y[a];
+    face.x1 = x[b] - x[a], face.y1 = y[b] - y[a];
+    face.x2 = x[c] - x[a], face.y2 = y[c] - y[a];
+    face.area = face.x1 * face.y2 - face.x2 * face.y1;
+    thin = Or(thin, thin_face(face));
   }
-  // The cell's volume has the sign of a front face's outward area: order grows with depth, and is linear on faces.
-  const V z1 = order[1] - order[0], z2 = order[2] - order[0], z3 = order[3] - order[0];
-  const V X1 = shape[0].x1, Y1 = shape[0].y1, X2 = shape[0].x2, Y2 = shape[0].y2, X3 = shape[1].x2, Y3 = shape[1].y2;
-  const V volume =
-      MulAdd(z1, MulSub(X2, Y3, X3 * Y2), MulAdd(z2, MulSub(X3, Y1, X1 * Y3), z3 * MulSub(X1, Y2, X2 * Y1)));
-  const M upright = volume >= zero;
-  const V extent = farthest - nearest;
-  const M deep = extent > number(view.depth_limits.least_extent);
+  // Six times the volume: the determinant of the edges from corner 0, in (x, y, order).
+  VD order[4];
+  for (int i = 0; i < 4; ++i) order[i] = perspective ? Neg(corners.weight[i]) : corners.depth[i];
+  const VD z1 = order[1] - order[0], z2 = order[2] - order[0], z3 = order[3] - order[0];
+  const VD x1 = faces[0].x1, y1 = faces[0].y1, x2 = faces[0].x2, y2 = faces[0].y2, x3 = faces[1].x2, y3 = faces[1].y2;
+  const VD volume =
+      MulAdd(z1, MulSub(x2, y3, x3 * y2), MulAdd(z2, MulSub(x3, y1, x1 * y3), z3 * MulSub(x1, y2, x2 * y1)));
+  const VD extent = farthest - nearest;
+  const MD deep = extent > number(view.depth_limits.least_extent);
   if (HWY_UNLIKELY(!AllFalse(d, deep))) {
-    const V twice_area = Abs(area[0]) + Abs(area[1]) + (Abs(area[2]) + Abs(area[3]));
+    const VD twice_area = Abs(faces[0].area) + Abs(faces[1].area) + (Abs(faces[2].area) + Abs(faces[3].area));
     irregular = Or(irregular, And(deep, rounded_visibly<perspective>(view, extent, volume, twice_area,
                                                                      corners.most_weight() * corners.least_weight())));
   }
+  const MD upright = volume >= zero;
   if (HWY_UNLIKELY(!AllFalse(d, thin)))
-    set_up_sides<perspective, true>(shape, area, upright, x, y, span, from, irregular, batch);
+    set_up_edges<true>(corners, find_sides<perspective, true>(upright, faces, irregular), span, from, batch);
   else
-    set_up_sides<perspective, false>(shape, area, upright, x, y, span, from, irregular, batch);
+    set_up_edges<false>(corners, find_sides<perspective, false>(upright, faces, irregular), span, from, batch);
 
   const bool per_cell = view.projected.mesh->mesh().association == scene::Association::cell;
-  set_up_planes<perspective>(corners, shape, per_cell, from, batch);
-  if (per_cell) {
-    const V scalar =
-        (LoadU(d, cell_scalar) - number(view.lattice.scalar_origin)) * number(1 / view.lattice.scalar_unit);
-    StoreU(DemoteTo(df, Round(scalar)), df, batch.cell_scalar + from);
-  }
-
+  set_up_planes<perspective>(corners, faces, per_cell, from, batch);
   if (HWY_UNLIKELY(view.projected.iso != nullptr)) store_scalar_range(corners, from, batch);
-  batch.irregular |= bits_of(irregular) << from;
+  batch.irregular |= lane_bits(irregular) << from;
+}
+
+/// Stores the scalars of cell data.
+HWY_INLINE void store_cell_scalars(const scene::Lattice& lattice, const double* scalars, int from, CellBatch& batch) {
+  const DD d;
+  const hn::Rebind<float, DD> df;
+  const VD scalar = (LoadU(d, scalars) - Set(d, lattice.scalar_origin)) * Set(d, 1 / lattice.scalar_unit);
+  StoreU(DemoteTo(df, Round(scalar)), df, batch.cell_scalar + from);
 }
 
 /// Lists name cells all over the mesh: fetch the next batches' corner indices, and their vertices, while this batch is
@@ -416,13 +445,12 @@ HWY_INLINE void prefetch_cells(const LatticeView& view, std::span<const TileEntr
 
 /// Sets up at most CellBatch::most cells.
 template <bool perspective>
-HWY_INLINE void set_up_cells(const LatticeView& view, std::span<const TileEntry> cells, const scene::PixelRect& rect,
+HWY_INLINE void set_up_cells(const LatticeView& view, std::span<const TileEntry> cells, const MaskedRect& pixels,
                              CellBatch& batch) {
-  const int square_x = rect.x0 & ~(SegmentWindows::side - 1), square_y = rect.y0 & ~(SegmentWindows::side - 1);
   const PreparedMesh& prepared = *view.projected.mesh;
   const bool per_cell = prepared.mesh().association == scene::Association::cell;
   const DepthBounds bounds(view);
-  const auto lanes = static_cast<int>(hn::Lanes(D()));
+  const auto lanes = static_cast<int>(hn::Lanes(DD()));
   const std::span<const scene::Tet> tets = prepared.tets();
   const CellsAtSteps* const at_steps = view.at_steps;
   batch.size = static_cast<int>(cells.size());
@@ -438,7 +466,9 @@ HWY_INLINE void set_up_cells(const LatticeView& view, std::span<const TileEntry>
       corners[lane] = &tets[tet];
       if (per_cell) cell_scalar[lane] = prepared.mesh().scalars[tet];
     }
-    set_up_lanes<perspective>(view, bounds, corners, cell_scalar, rect, square_x, square_y, from, batch);
+    set_up_lanes<perspective>(view, bounds, Corners(view.vertices.data(), corners, pixels), pixels.in_square(), from,
+                              batch);
+    if (per_cell) store_cell_scalars(view.lattice, cell_scalar, from, batch);
   }
   batch.irregular &= (1u << batch.size) - 1;
 }

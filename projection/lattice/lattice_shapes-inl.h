@@ -1,6 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the lattice rasterizer's steps share: types, the parts that a cell's edges and faces play, the exact sign of an
-// edge function. Included once per instruction set (Highway's include guard idiom).
+// The parts that a cell's edges and faces play in its image, and the exact sign of an edge function. Included once per
+// instruction set (Highway's include guard idiom).
+//
+// What   Seen from the eye a cell has two front and two back faces, or one face on one side and three on the other:
+//
+//          two and two        one and three
+//               .                   .
+//              /|\                 /|\            outline  edges between a front and a back face
+//             / | \               / | \           inner    two and two: the edge between the front faces and that
+//            .--|--.             /  |  \                   between the back faces, which cross in the image;
+//             \ | /             /  .'.  \                  one and three: the three edges between the three, which
+//              \|/             / .'   '. \                 meet in the corner that the one face does not have
+//               '             '-----------'
+//
+//        A ray meets the cell where the edge functions of the outline are positive; those of the inner edges
+//        select the faces that it passes (lattice_cross-inl.h).
+// Bits   Signs are those of exact arithmetic with the tie rule (edge_sign.hpp) wherever float does not decide.
 
 #if defined(TESSERA_PROJECTION_LATTICE_SHAPES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_LATTICE_SHAPES_INL_H_
@@ -11,57 +26,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/vec2.hpp>
 
 #include "projection/edge_sign.hpp"
 #include "projection/lattice/lattice_setup-inl.h"
-#include "scene/lanes/lanes-inl.h"
-#include "scene/lanes/pack_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 #if HWY_TARGET != HWY_SCALAR
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
 
-using scene::HWY_NAMESPACE::DF;
-using scene::HWY_NAMESPACE::DI;
-using scene::HWY_NAMESPACE::dot_of_halves;
-using scene::HWY_NAMESPACE::greater_where;
-using scene::HWY_NAMESPACE::LanePacker;
-using scene::HWY_NAMESPACE::least_magnitude;
-using scene::HWY_NAMESPACE::lookup_two;
-using scene::HWY_NAMESPACE::MF;
-using scene::HWY_NAMESPACE::MI;
-using scene::HWY_NAMESPACE::or_where;
-using scene::HWY_NAMESPACE::VF;
-using scene::HWY_NAMESPACE::VI;
 constexpr int lanes = static_cast<int>(MaxLanes(DF()));
-
-/// Depth (steps) and scalar where the lanes' rays pass one side of the cell.
-struct Crossing {
-  VI depth;
-  VF scalar;
-};
-
-/// Appends the lanes of `hit`. Packed in registers and stored as whole vectors: a compressing store is slower on
-/// several processors.
-HWY_INLINE void append(MF hit, VI pixel, VI front, VI back, VF scalar_front, VF scalar_back, SegmentStream& out) {
-  const DI d;
-  const DF df;
-  const LanePacker pack(RebindMask(d, hit));
-  StoreU(pack(pixel), d, out.pixel.data() + out.size);
-  StoreU(pack(front), d, out.front.data() + out.size);
-  StoreU(pack(back), d, out.back.data() + out.size);
-  StoreU(pack(scalar_front), df, out.scalar_front.data() + out.size);
-  StoreU(pack(scalar_back), df, out.scalar_back.data() + out.size);
-  out.size += pack.count();
-}
-
-/// The same of what SegmentStream::hit keeps, before append() of the lanes' segments.
-HWY_NOINLINE inline void append_hits(MF hit, VI hits, SegmentStream& out) {
-  const DI d;
-  const LanePacker pack(RebindMask(d, hit));
-  StoreU(pack(hits), d, out.hit.data() + out.size);
-}
 
 /// Which edges and faces play which part, by the set of front faces (bit f of the index).
 struct Roles {
@@ -118,44 +93,27 @@ constexpr RoleTable make_role_table() {
 }
 constexpr RoleTable role_table = make_role_table();
 
-/// Replaces edge functions of the batch's cell t at (px, py) that are not certain by +-2, with the sign of exact
-/// arithmetic and the tie rule; edges are `stride` apart. Returns whether the ray meets an edge of the outline between
-/// two faces that it passes: it is in the cell for no way at all, which rounded planes would not say.
-inline bool settle_pixel(const LatticeView& view, const CellBatch& batch, int t, double px, double py, float* edges,
-                         int stride, RasterCounts& counts) {
+/// Replaces edge functions of the batch's cell t at a pixel that are not certain by +-2, with the sign of exact
+/// arithmetic and the tie rule. Returns whether the ray meets an edge of the outline between two faces that it passes:
+/// it is in the cell for no distance at all, which rounded planes would not show.
+inline bool settle_pixel(const LatticeView& view, const CellBatch& batch, int t, const glm::dvec2& pixel,
+                         float (&edges)[6], RasterCounts& counts) {
   const scene::Tet& corners = view.projected.mesh->tets()[batch.tet[t]];
   const Roles& roles = role_table.roles[batch.front_faces(t)];
   bool touching = false;
   for (int e = 0; e < 6; ++e) {
-    float& edge = edges[e * stride];
-    if (std::abs(edge) > 1) continue;
+    if (std::abs(edges[e]) > 1) continue;
     bool on_edge = false;
     const int sign =
-        edge_sign(view.projected.vertices[corners[edge_from[e]]], view.projected.vertices[corners[edge_to[e]]], px, py,
-                  view.projected.pixels_per_tangent, &on_edge);
+        edge_sign(view.projected.vertices[corners[edge_from[e]]], view.projected.vertices[corners[edge_to[e]]], pixel.x,
+                  pixel.y, view.projected.pixels_per_tangent, &on_edge);
     const unsigned edge_on = batch.edge_on(t) >> edge_faces[e][0] | batch.edge_on(t) >> edge_faces[e][1];
     if (on_edge && (edge_on & 1) == 0 && std::find(roles.outline, roles.outline + 4, e) != roles.outline + 4)
       touching = true;
     ++counts.exact_sign_tests;
-    edge = static_cast<float>(2 * ((batch.flipped(t) >> e & 1) != 0 ? -sign : sign));
+    edges[e] = static_cast<float>(2 * ((batch.flipped(t) >> e & 1) != 0 ? -sign : sign));
   }
   return touching;
-}
-
-/// The lanes of a mask, a bit each.
-HWY_INLINE unsigned lane_bits(MF mask) {
-  std::uint8_t bits[8] = {0};
-  StoreMaskBits(DF(), mask, bits);
-  return bits[0] | static_cast<unsigned>(bits[1]) << 8;
-}
-
-/// The faces' planes as a ray meets one of them: 1 / weight, and with it depth and scalar behind a corner.
-HWY_INLINE VF inverse_weight(VI weight) {
-  const DF d;
-  const VF w = ConvertTo(d, weight);
-  // One Newton step makes the estimate (11 to 14 bits) right to float rounding.
-  const VF estimate = ApproximateReciprocal(w);
-  return estimate * NegMulAdd(w, estimate, Set(d, 2.0f)) * Set(d, CellBatch::weight_one);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -79,7 +79,7 @@ Rays rasterized(const Scene& scene, int tile, RasterCounts* counts_out = nullptr
         const auto cells = std::span(entries).subspan(from, std::min(together, entries.size() - from));
         const std::uint32_t t = together == 1 ? cells.front().tet : 0;
         stream.size = 0;
-        rasterize_lattice(view, cells, {}, rect, open, scratch, stream, counts);
+        rasterize_lattice(view, {cells, {}}, {rect, open}, scratch, stream, counts);
         for (std::size_t i = 0; i < stream.size; ++i) {
           const int px = x + stream.pixel[i] % rect.width(), py = y + stream.pixel[i] / rect.width();
           rays[static_cast<std::size_t>(py) * scene.size.width + px].push_back(
