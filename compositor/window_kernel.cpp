@@ -26,13 +26,9 @@ std::uint64_t composite_windows(const WindowRules&, projection::SegmentWindows&,
 using sorting::HWY_NAMESPACE::has_row;
 using sorting::HWY_NAMESPACE::segment_at;
 
-/// One field of four segments a lane each, in lanes 4 j + i of vector i: transposed in registers, which takes a quarter
-/// of the time of gathers.
-struct Fields {
-  VI front, back;
-  VF scalar_front, scalar_back;
-};
-HWY_INLINE Fields transposed(VI v0, VI v1, VI v2, VI v3) {
+/// Four segments to every fourth lane of four vectors, transposed in registers to their fields: a quarter of the time
+/// of gathers. Segment i of vector k goes to lane 4 i + k.
+HWY_INLINE SegmentLanes transposed(VI v0, VI v1, VI v2, VI v3) {
   const DI d;
   const hn::RepartitionToWide<DI> wide;
   const auto pairs = [&](VI v) HWY_ATTR { return BitCast(wide, v); };
@@ -43,7 +39,7 @@ HWY_INLINE Fields transposed(VI v0, VI v1, VI v2, VI v3) {
           BitCast(df, InterleaveLower(wide, high01, high23)), BitCast(df, InterleaveUpper(wide, high01, high23))};
 }
 
-/// Those of load_fields(), `lanes` / 4 of them: lanes first, first + 4, first + 8...
+/// Those of load_segments(), `lanes` / 4 of them: lanes first, first + 4, first + 8...
 template <std::size_t lanes>
 HWY_INLINE auto load_every_fourth(const projection::LatticeSegment* list, const std::int32_t* slots, int first) {
   if constexpr (lanes == 4) {
@@ -57,7 +53,7 @@ HWY_INLINE auto load_every_fourth(const projection::LatticeSegment* list, const 
 }
 
 /// In every lane the segment that its slot names, counted from list[lane].
-HWY_INLINE Fields load_fields(const projection::LatticeSegment* list, const std::int32_t* slots) {
+HWY_INLINE SegmentLanes load_segments(const projection::LatticeSegment* list, const std::int32_t* slots) {
   return transposed(load_every_fourth<most_lanes>(list, slots, 0), load_every_fourth<most_lanes>(list, slots, 1),
                     load_every_fourth<most_lanes>(list, slots, 2), load_every_fourth<most_lanes>(list, slots, 3));
 }
@@ -96,22 +92,21 @@ class PixelGroup {
     const VI count = this->count();
     if constexpr (runs) run_back = Load(d, &state_.back[pixel_]);
     for (std::size_t row = from; row < to; ++row) {
-      const Fields s = load_fields(list_, state_.order.slots.data() + row * lanes);
+      SegmentLanes s = load_segments(list_, state_.order.slots.data() + row * lanes);
       const VI front = s.front;
-      const auto is_final = And(front < end, has_row(row, count));
+      const MI is_final = And(front < end, has_row(row, count));
       if (AllFalse(d, is_final)) {
         to = row;
         break;
       }
       done_ = count_if(RebindMask(df, is_final), done_);
-      VF scalar_front = s.scalar_front;
       if constexpr (with_surfaces)
-        scalar_front =
-            light_.set_aside_surfaces(surfaces->on_lattice_by_number(), is_final, open, scalar_front, row - from);
-      const VF length = ConvertTo(df, s.back - front) * length_per_step;
-      const auto takes = And(is_final, open);
-      light_.put_segment(IfThenElseZero(RebindMask(df, takes), length), IfThenElse(takes, front, none), s.back,
-                         scalar_front, s.scalar_back, table_.locate(scalar_front, s.scalar_back >= scalar_front),
+        s.scalar_front =
+            light_.set_aside_surfaces(surfaces->on_lattice_by_number(), is_final, open, s.scalar_front, row - from);
+      const MI takes = And(is_final, open);
+      const VF length = IfThenElseZero(RebindMask(df, takes), ConvertTo(df, s.back - front) * length_per_step);
+      s.front = IfThenElse(takes, front, none);
+      light_.put_segment(s, length, table_.locate(s.scalar_front, s.scalar_back >= s.scalar_front),
                          (row - from) * lanes);
       if constexpr (runs) {
         // A lane in no run begins one in the first of these rows, or takes nothing from any: its list has no holes.

@@ -1,6 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The light of windows' rows on its way into pixels, or runs; included once per instruction set (Highway's include
+// The light of windows' rows on its way into pixels, or runs. Included once per instruction set (Highway's include
 // guard idiom).
+//
+// What      Of sixteen pixels, a pixel a lane, sorted segments row by row: row i is the i-th segment of every pixel.
+//           LightRows integrates rows to light C and opacity alpha; GroupLight composites them front to back,
+//             color += T C,  T -= T alpha,
+//           where T is the transmittance so far. A run is a stretch of segments that touch: for a picture the whole
+//           ray, for fragments it ends where the next segment begins elsewhere.
+// How       Segments of one piece are integrated in place; those that are cut into several wait until they fill the
+//           lanes. A surface's light is put before that of the segment behind it.
+// Bits      Sums in double, segment after segment: they depend neither on windows nor on the lanes' neighbours.
+// Ends      A pixel whose T falls below the least that can show closes with that segment and takes no more.
 
 #if defined(TESSERA_COMPOSITOR_WINDOW_LIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_COMPOSITOR_WINDOW_LIGHT_INL_H_
@@ -16,20 +26,18 @@
 
 #include "compositor/surface_lights-inl.h"
 #include "compositor/window_kernel.hpp"
-#include "scene/lanes/pack_lanes-inl.h"
+#include "projection/lattice/segment_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 #if HWY_TARGET != HWY_SCALAR
 namespace tessera::compositor {
 namespace HWY_NAMESPACE {
 
+using projection::HWY_NAMESPACE::SegmentLanes;
 constexpr std::int32_t no_key = WindowState::not_yet;  // behind all keys
 
 /// -1 where the mask is set, else 0.
-HWY_INLINE VI lanes_of(hn::Mask<DD> low, hn::Mask<DD> high) {
-  const VD yes = Set(DD(), -1);
-  return ConvertTo(DI(), demote({IfThenElseZero(low, yes), IfThenElseZero(high, yes)}));
-}
+HWY_INLINE VI lanes_of(DoubleMasks mask) { return ConvertTo(DI(), demote(IfThenElseZero(mask, doubles(-1)))); }
 
 /// What a block of rows, a segment of every pixel in each, sends to the eye: numbers [row * lanes + lane].
 struct LightRows {
@@ -55,15 +63,15 @@ struct LightRows {
 
   /// Of a row, whose lanes that are final and open take a segment. Returns its front scalars, with the surfaces' values
   /// where they are marks.
-  HWY_INLINE VF set_aside_surfaces(std::span<const float> by_number, hn::Mask<DI> is_final, hn::Mask<DI> open,
-                                   VF scalar_from, std::size_t row) {
+  HWY_INLINE VF set_aside_surfaces(std::span<const float> by_number, MI is_final, MI open, VF scalar_from,
+                                   std::size_t row) {
     using Mark = projection::LatticeMark;
     const DF d;
     const DI di;
     const MF is_mark = And(RebindMask(d, is_final), scalar_from >= Set(d, Mark::first));
     if (AllFalse(d, is_mark)) return scalar_from;
     const auto takes = And(RebindMask(di, is_mark), open);
-    const scene::HWY_NAMESPACE::LanePacker pack(takes);
+    const LanePacker pack(takes);
     if (pack.count() > 0) {
       StoreU(pack(Iota(di, 0) + Set(di, static_cast<std::int32_t>(row * hn::Lanes(d)))), di, marked_at + marked);
       StoreU(pack(scalar_from), d, mark + marked);
@@ -101,12 +109,12 @@ struct LightRows {
     marked = 0;
   }
 
-  HWY_INLINE void put_segment(VF l, VI from, VI to, VF scalar_from, VF scalar_to, VI scalar_interval, std::size_t at) {
+  HWY_INLINE void put_segment(const SegmentLanes& s, VF segment_length, VI scalar_interval, std::size_t at) {
     const DF d;
     const DI di;
-    Store(l, d, length + at);
-    Store(scalar_from, d, scalar_front + at), Store(scalar_to, d, scalar_back + at);
-    Store(from, di, front + at), Store(to, di, back + at), Store(scalar_interval, di, interval + at);
+    Store(segment_length, d, length + at);
+    Store(s.scalar_front, d, scalar_front + at), Store(s.scalar_back, d, scalar_back + at);
+    Store(s.front, di, front + at), Store(s.back, di, back + at), Store(scalar_interval, di, interval + at);
   }
   HWY_INLINE void put(const Light& light, std::size_t at) {
     const DF d;
@@ -115,7 +123,7 @@ struct LightRows {
   }
   HWY_INLINE void defer(MF more, VI places) {
     const DI d;
-    const scene::HWY_NAMESPACE::LanePacker pack(RebindMask(d, more));
+    const LanePacker pack(RebindMask(d, more));
     StoreU(pack(places), d, waiting_at + waiting);
     waiting += pack.count();
   }
@@ -170,6 +178,28 @@ struct LightRows {
   }
 };
 
+/// The light that lanes' rays, or runs, have gathered so far, and what they let through.
+struct RayLight {
+  Doubles red, green, blue, transmittance;
+
+  HWY_INLINE RayLight(const WindowState& state, std::size_t p)
+      : red(load(&state.red[p])),
+        green(load(&state.green[p])),
+        blue(load(&state.blue[p])),
+        transmittance(load(&state.transmittance[p])) {}
+  HWY_INLINE void save(WindowState& state, std::size_t p) const {
+    store(red, &state.red[p]), store(green, &state.green[p]), store(blue, &state.blue[p]);
+    store(transmittance, &state.transmittance[p]);
+  }
+  /// Adds the light that begins at `at`. `weight`: the transmittance, or zero where a lane takes nothing.
+  HWY_INLINE void add(const LightRows& light, std::size_t at, Doubles weight) {
+    red = MulAdd(weight, load(light.red + at), red);
+    green = MulAdd(weight, load(light.green + at), green);
+    blue = MulAdd(weight, load(light.blue + at), blue);
+    transmittance = NegMulAdd(weight, load(light.alpha + at), transmittance);
+  }
+};
+
 /// Adds rows of light to the rays of the pixels [pixel, pixel + lanes) of a square.
 class GroupLight {
  public:
@@ -188,29 +218,19 @@ class GroupLight {
   /// Rows that go on with what each pixel has: with the whole picture, or with its run.
   template <bool runs>
   HWY_INLINE bool add_touching(std::size_t count, const WindowRules& rules) {
-    const DF df;
-    const DD dd;
-    const std::size_t p = pixel_;
-    Doubles red = load(&state_.red[p]), green = load(&state_.green[p]), blue = load(&state_.blue[p]);
-    Doubles transmittance = load(&state_.transmittance[p]);
-    const Doubles least =
-        runs ? least_of_runs(rules) : Doubles{Set(dd, rules.least_transmittance), Set(dd, rules.least_transmittance)};
+    RayLight ray(state_, pixel_);
+    const Doubles least = runs ? least_of_runs(rules) : doubles(rules.least_transmittance);
     // A pixel that closes takes no more: it has no weight.
-    Open open = load_open();
+    DoubleMasks open = load_open();
     for (std::size_t row = 0; row < count; ++row) {
       if (!light_.lit[row]) continue;
-      const std::size_t at = row * hn::Lanes(df);
-      const Doubles weight{IfThenElseZero(open.low, transmittance.low), IfThenElseZero(open.high, transmittance.high)};
-      add(weight, light_.red + at, red), add(weight, light_.green + at, green), add(weight, light_.blue + at, blue);
-      take(weight, light_.alpha + at, transmittance);
+      ray.add(light_, row * hn::Lanes(DF()), IfThenElseZero(open, ray.transmittance));
       // After each segment, not each window: where a ray ends must not depend on how its segments were cut.
-      open.low = And(open.low, transmittance.low >= least.low);
-      open.high = And(open.high, transmittance.high >= least.high);
+      open = And(open, ray.transmittance >= least);
     }
-    store(red, &state_.red[p]), store(green, &state_.green[p]), store(blue, &state_.blue[p]);
-    store(transmittance, &state_.transmittance[p]);
+    ray.save(state_, pixel_);
     note_first<runs>(count);
-    if constexpr (runs) Store(Load(DI(), light_.run_back), DI(), &state_.back[p]);
+    if constexpr (runs) Store(Load(DI(), light_.run_back), DI(), &state_.back[pixel_]);
     const VI open_lanes = store_open(open);
     return !AllFalse(DI(), open_lanes < Zero(DI()));
   }
@@ -240,107 +260,111 @@ class GroupLight {
 
   /// What the lanes' runs must let through to stay open, behind the runs before them.
   HWY_INLINE Doubles least_of_runs(const WindowRules& rules) const {
-    const DD d;
-    if (rules.least_transmittance == 0) return {Zero(d), Zero(d)};
-    const Doubles before = load(&state_.ray_transmittance[pixel_]);
-    const VD most = Set(d, rules.least_transmittance);
-    return {most / before.low, most / before.high};
+    if (rules.least_transmittance == 0) return doubles(0);
+    return doubles(rules.least_transmittance) / load(&state_.ray_transmittance[pixel_]);
   }
 
-  /// The same in runs, a lane's run in registers while it goes on. Whether some pixel stays open may change only where
-  /// `closes`.
-  // Long: one loop over rows whose state stays in registers; a part of it would get that state through memory.
+  /// The runs that lanes are in, while rows are added to them.
+  struct Runs {
+    RayLight light;
+    Doubles least;     ///< transmittance; where lanes close
+    VI back;           ///< where the run ends; no_run: in none
+    MI seen, several;  ///< whether a segment of it shows, and more than one
+  };
+  static constexpr std::int32_t no_run = -no_key;
+
+  template <bool closes>
+  HWY_INLINE Runs resume(const WindowRules& rules) const {
+    const DI d;
+    const VI none = Set(d, no_key), back = Load(d, &state_.back[pixel_]);
+    return {RayLight(state_, pixel_), closes ? least_of_runs(rules) : doubles(0),
+            IfThenElse(back == none, Set(d, no_run), back), Load(d, &state_.first_back[pixel_]) != none,
+            Load(d, &state_.several[pixel_]) != Zero(d)};
+  }
+  HWY_INLINE void save(const Runs& runs) {
+    const DI d;
+    runs.light.save(state_, pixel_);
+    Store(IfThenElse(runs.back == Set(d, no_run), Set(d, no_key), runs.back), d, &state_.back[pixel_]);
+    Store(VecFromMask(d, runs.several), d, &state_.several[pixel_]);
+  }
+
+  /// Adds rows to runs. Whether some pixel stays open may change only where `closes`.
   template <bool closes>
   HWY_INLINE bool add_to_runs(std::size_t count, const WindowRules& rules) {
     const DI d;
     const DF df;
-    const DD dd;
-    const std::size_t p = pixel_;
-    const VI none = Set(d, no_key), no_run = Set(d, -no_key), zero = Zero(d);
-    Doubles red, green, blue, transmittance, least;
-    VI run_back;  // no_run: no run
-    hn::Mask<DI> seen, several;
-    const auto resume = [&]() HWY_ATTR {
-      red = load(&state_.red[p]), green = load(&state_.green[p]), blue = load(&state_.blue[p]);
-      transmittance = load(&state_.transmittance[p]);
-      if constexpr (closes) least = least_of_runs(rules);
-      run_back = Load(d, &state_.back[p]);
-      run_back = IfThenElse(run_back == none, no_run, run_back);
-      several = Load(d, &state_.several[p]) != zero;
-      seen = Load(d, &state_.first_back[p]) != none;
-    };
-    const auto save = [&]() HWY_ATTR {
-      store(red, &state_.red[p]), store(green, &state_.green[p]), store(blue, &state_.blue[p]);
-      store(transmittance, &state_.transmittance[p]);
-      Store(IfThenElse(run_back == no_run, none, run_back), d, &state_.back[p]);
-      Store(VecFromMask(d, several), d, &state_.several[p]);
-    };
-    Open open = load_open();
-    auto open_lanes = Load(d, &state_.open[p]) < zero;
-    resume();
+    DoubleMasks open = load_open();
+    MI open_lanes = Load(d, &state_.open[pixel_]) < Zero(d);
+    Runs runs = resume<closes>(rules);
     for (std::size_t row = 0; row < count; ++row) {
       const std::size_t at = row * hn::Lanes(d);
       const VI front = Load(d, light_.front + at);
-      const auto takes = And(front != none, open_lanes);
-      const auto absorbs = And(takes, RebindMask(d, Load(df, light_.optical_depth + at) > Zero(df)));
-      // Runs end where the next segment does not touch.
-      const auto in_run = And(takes, run_back != no_run);
-      auto ends = And(in_run, Abs(front - run_back) > Set(d, touching_steps));
-      if (independent_) {
-        // Light without extinction does not share a run with what absorbs behind it either: a run's front is where
-        // absorption begins.
-        const VD one = Set(dd, 1);
-        const auto clear = lanes_of(transmittance.low >= one, transmittance.high >= one) != zero;
-        ends = Or(ends, And(And(in_run, absorbs), And(seen, clear)));
-      }
+      const MI takes = And(front != Set(d, no_key), open_lanes);
+      const MI absorbs = And(takes, RebindMask(d, Load(df, light_.optical_depth + at) > Zero(df)));
+      const MI ends = ending(runs, front, takes, absorbs);
       if (HWY_UNLIKELY(!AllFalse(d, ends))) {
-        save();
+        save(runs);
         end_runs(ends);
-        resume();
+        runs = resume<closes>(rules);
       }
       // All that take one are in a run up to its back. Irregular cells' depths are a few steps off: a run does not go
       // back.
-      run_back = IfThenElse(takes, Max(run_back, Load(d, light_.back + at)), run_back);
+      runs.back = IfThenElse(takes, Max(runs.back, Load(d, light_.back + at)), runs.back);
       if (!light_.lit[row]) continue;
-
-      auto shows = absorbs;
-      if (independent_) {
-        // A run begins where it shows, if only by light.
-        const auto color = [&](const float* c) HWY_ATTR { return Abs(Load(df, c + at)); };
-        const VF colors = color(light_.red) + (color(light_.green) + color(light_.blue));
-        shows = Or(shows, And(takes, RebindMask(d, colors > Zero(df))));
-      }
-      several = Or(several, And(shows, seen));
-      const auto appears = AndNot(seen, shows);
-      if (!AllFalse(d, appears)) keep_first(appears, row);
-      seen = Or(seen, appears);
+      note_shown(runs, takes, absorbs, row);
       // Lanes that took nothing from the start have no light; lanes that have closed since have.
-      Doubles weight = transmittance;
-      if constexpr (closes) weight = {IfThenElseZero(open.low, weight.low), IfThenElseZero(open.high, weight.high)};
-      add(weight, light_.red + at, red), add(weight, light_.green + at, green), add(weight, light_.blue + at, blue);
-      take(weight, light_.alpha + at, transmittance);
+      Doubles weight = runs.light.transmittance;
+      if constexpr (closes) weight = IfThenElseZero(open, weight);
+      runs.light.add(light_, at, weight);
       if constexpr (closes) {
-        const auto dark_low = AndNot(transmittance.low >= least.low, open.low);
-        const auto dark_high = AndNot(transmittance.high >= least.high, open.high);
-        if (HWY_UNLIKELY(!AllFalse(dd, Or(dark_low, dark_high)))) {
-          open = {AndNot(dark_low, open.low), AndNot(dark_high, open.high)};
-          open_lanes = store_open(open) < zero;
+        const DoubleMasks dark = AndNot(runs.light.transmittance >= runs.least, open);
+        if (HWY_UNLIKELY(!all_false(dark))) {
+          open = AndNot(dark, open);
+          open_lanes = store_open(open) < Zero(d);
         }
       }
     }
-    save();
+    save(runs);
     return !AllFalse(d, open_lanes);
   }
 
-  HWY_NOINLINE void end_runs(hn::Mask<DI> lanes) {
-    std::uint8_t bits[8] = {0};
-    StoreMaskBits(DI(), lanes, bits);
-    for (std::uint64_t left = bits[0] | static_cast<std::uint64_t>(bits[1]) << 8; left != 0; left &= left - 1)
-      state_.end_run(pixel_ + static_cast<std::size_t>(__builtin_ctzll(left)));
+  /// The lanes whose run does not go on with the segment that they take: it does not touch the run's back.
+  HWY_INLINE MI ending(const Runs& runs, VI front, MI takes, MI absorbs) const {
+    const DI d;
+    const MI in_run = And(takes, runs.back != Set(d, no_run));
+    const MI apart = And(in_run, Abs(front - runs.back) > Set(d, touching_steps));
+    if (!independent_) return apart;
+    // Light without extinction does not share a run with what absorbs behind it either: a run's front is where
+    // absorption begins.
+    const MI clear = lanes_of(runs.light.transmittance >= doubles(1)) != Zero(d);
+    return Or(apart, And(And(in_run, absorbs), And(runs.seen, clear)));
+  }
+
+  /// Notes what of the row shows in lanes' runs.
+  HWY_INLINE void note_shown(Runs& runs, MI takes, MI absorbs, std::size_t row) {
+    const DI d;
+    const DF df;
+    MI shows = absorbs;
+    if (independent_) {
+      // A run begins where it shows, if only by light.
+      const std::size_t at = row * hn::Lanes(d);
+      const auto color = [&](const float* c) HWY_ATTR { return Abs(Load(df, c + at)); };
+      const VF colors = color(light_.red) + (color(light_.green) + color(light_.blue));
+      shows = Or(shows, And(takes, RebindMask(d, colors > Zero(df))));
+    }
+    runs.several = Or(runs.several, And(shows, runs.seen));
+    const MI appears = AndNot(runs.seen, shows);
+    if (!AllFalse(d, appears)) keep_first(appears, row);
+    runs.seen = Or(runs.seen, appears);
+  }
+
+  HWY_NOINLINE void end_runs(MI ends) {
+    for (unsigned left = lane_bits(ends); left != 0; left &= left - 1)
+      state_.end_run(pixel_ + static_cast<std::size_t>(__builtin_ctz(left)));
   }
 
   /// Notes the row's segments as those in which lanes begin to show.
-  HWY_NOINLINE void keep_first(hn::Mask<DI> appears, std::size_t row) {
+  HWY_NOINLINE void keep_first(MI appears, std::size_t row) {
     const DI d;
     const DF df;
     const std::size_t at = row * hn::Lanes(d), p = pixel_;
@@ -351,11 +375,7 @@ class GroupLight {
     BlendedStore(Load(df, light_.scalar_back + at), scalars, df, &state_.first_scalar_back[p]);
   }
 
-  using HalfMask = hn::Mask<DD>;
-  struct Open {
-    HalfMask low, high;
-  };
-  HWY_INLINE Open load_open() const {
+  HWY_INLINE DoubleMasks load_open() const {
     const hn::Rebind<std::int32_t, DD> di32;
     const DD dd;
     const auto half = [&](std::size_t from)
@@ -363,21 +383,10 @@ class GroupLight {
     return {half(0), half(hn::Lanes(dd))};
   }
   /// Returns what is stored: -1 or 0.
-  HWY_INLINE VI store_open(const Open& open) {
-    const DI d;
-    const VI lanes = lanes_of(open.low, open.high);
-    Store(lanes, d, &state_.open[pixel_]);
+  HWY_INLINE VI store_open(const DoubleMasks& open) {
+    const VI lanes = lanes_of(open);
+    Store(lanes, DI(), &state_.open[pixel_]);
     return lanes;
-  }
-  /// sum += weight * v, transmittance -= weight * alpha.
-  HWY_INLINE static void add(Doubles weight, const float* v, Doubles& sum) {
-    const Doubles x = load(v);
-    sum = {MulAdd(weight.low, x.low, sum.low), MulAdd(weight.high, x.high, sum.high)};
-  }
-  HWY_INLINE static void take(Doubles weight, const float* alpha, Doubles& transmittance) {
-    const Doubles x = load(alpha);
-    transmittance = {NegMulAdd(weight.low, x.low, transmittance.low),
-                     NegMulAdd(weight.high, x.high, transmittance.high)};
   }
 
   WindowState& state_;
