@@ -58,7 +58,7 @@ build_examples() {  # build_examples FOLDER PREFIX [OPTION...]
   if [ "$APPS" = 1 ]; then # must be the program's image of the same state in TOML
     printf '%s\n' 'size = "64x48"' 'view = "front"' 'transfer-function = "viridis:rise"' 'iso = [300, "500:red:0.5"]' \
       >"$SCRATCH/state.toml"
-    quietly "$first/bin/tessera" render "$SCRATCH/grid.nrrd" --config "$SCRATCH/state.toml" -o "$SCRATCH/picture.png" --quiet
+    quietly "$prefix/bin/tessera" render "$SCRATCH/grid.nrrd" --config "$SCRATCH/state.toml" -o "$SCRATCH/picture.png" --quiet
     cmp "$folder/picture.png" "$SCRATCH/picture.png" || failed "$folder/picture_of_state draws another picture than the program"
   fi
   if [ "$CAIRO" = 1 ]; then
