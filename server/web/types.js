@@ -53,7 +53,7 @@
  * @property {string} [tessera]
  * @property {Preset[]} presets
  * @property {string[]} opacities
- * @property {{formats: string[], problem: string|null}} possible films, and why some are missing
+ * @property {{formats: string[], problem: string|null}} films that can be made, and why others cannot
  * @property {State} defaults
  *
  * @typedef {object} FunctionReply the reply of api/function; colours are sRGB, 0 to 1
