@@ -191,7 +191,7 @@ ROWS = [
     ),
     damaged("a.nrrd", TEXT, b" 8", b"", "of 8 numbers; the file is truncated or damaged"),
     damaged("a.nrrd", TEXT, b" 8", b" 999", "the file is damaged or of another type, write it again"),
-    damaged("a.nrrd", HEX, b"07", b"0g", "no hexadecimal digit; write it again"),
+    damaged("a.nrrd", HEX, b"07", b"0g", "not a hexadecimal digit; write it again"),
     row(
         "info a.nrrd.gz",
         "unpack it with gunzip",

@@ -83,7 +83,7 @@ TEST(Surfaces, OfFacesAreRefusedInOneLineThatSaysWhy) {
   refused({"--surface", "skin.ply"}, "'skin.ply' is neither boundary nor a file that is there");
   refused({"--surface", "boundary:reddish"}, "not a colour");
   refused({"--surface", "boundary:red:2"}, "opacity 2");
-  refused({"--surface", mesh}, "no surface of triangles");
+  refused({"--surface", mesh}, "not a surface of triangles");
   refused({"--surface", "boundary", "--rasterizer", "scanline"}, "--surface: ");
   refused({"--surface", folder.file("broken.ply", "ply\nformat ascii 1.0\n")}, "broken.ply");
 }

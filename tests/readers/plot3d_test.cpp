@@ -212,7 +212,7 @@ TEST(Plot3d, TextThatVtkWouldMisreadIsRefused) {
   };
   refuse(with("2*1.0"), {"g.xyz: line 2", "'2*1.0'", "repeated"});
   refuse(with("1.0D+00"), {"g.xyz: line 2", "'1.0D+00'", "with E"});
-  refuse(with("x"), {"g.xyz: line 2", "'x'", "no number"});
+  refuse(with("x"), {"g.xyz: line 2", "'x'", "not a number"});
   refuse(with("1 2"), {"g.xyz: no layout"});
   refuse(grid.substr(0, grid.size() / 2), {"g.xyz: no layout"});
   layout.iblank = true;

@@ -49,11 +49,11 @@ std::filesystem::path write_cube_case(const TemporaryFolder& folder) {
 TEST(InputFiles, PipesAreRefusedByThemselves) {
   const TemporaryFolder folder;
   for (const char* name : {"p.vtu", "p.vtk", "p.stl", "p.ply", "p.tets", "p.mesh", "p.su2", "p.bdf", "p.dat", "p.ele"})
-    expect_bad_input([&] { read_mesh(make_pipe(folder / name)); }, {name, "no regular file"});
+    expect_bad_input([&] { read_mesh(make_pipe(folder / name)); }, {name, "not a regular file"});
   for (const char* name : {"p.nrrd", "p.nhdr", "p.mha", "p.mhd", "p.nii", "p.vti", "p_4x4x4_uint8.raw"})
-    expect_bad_input([&] { open_volume(make_pipe(folder / name)); }, {name, "no regular file"});
+    expect_bad_input([&] { open_volume(make_pipe(folder / name)); }, {name, "not a regular file"});
   for (const char* name : {"p.pvd", "p.series"})
-    expect_bad_input([&] { read_time_series(make_pipe(folder / name)); }, {name, "no regular file"});
+    expect_bad_input([&] { read_time_series(make_pipe(folder / name)); }, {name, "not a regular file"});
 }
 
 TEST(InputFiles, PipesAreRefusedWhereAFileNamesThem) {
@@ -85,10 +85,10 @@ TEST(InputFiles, PipesAreRefusedWhereAFileNamesThem) {
       std::filesystem::remove(entry.path());
       make_pipe(entry.path());
     }
-  expect_bad_input([&] { read_mesh(plot); }, {"Cell_D", "no regular file"});
+  expect_bad_input([&] { read_mesh(plot); }, {"Cell_D", "not a regular file"});
   folder.write("a.ele", "1 4 0\n1 1 2 3 4\n");
   make_pipe(folder / "a.node");
-  expect_bad_input([&] { read_mesh(folder / "a.ele"); }, {"a.node", "no regular file"});
+  expect_bad_input([&] { read_mesh(folder / "a.ele"); }, {"a.node", "not a regular file"});
 }
 
 TEST(InputFiles, PipesAreRefusedWhereReaderProgramsFindThem) {
@@ -96,10 +96,10 @@ TEST(InputFiles, PipesAreRefusedWhereReaderProgramsFindThem) {
   const TemporaryFolder folder;
   make_pipe(folder / "pipe");
   const std::string ensight = "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: ";
-  expect_bad_input([&] { read_mesh(folder.write("a.case", ensight + "pipe\n")); }, {"pipe", "no regular file"});
+  expect_bad_input([&] { read_mesh(folder.write("a.case", ensight + "pipe\n")); }, {"pipe", "not a regular file"});
   folder.write("a.geo", "x\ny\nnode id assign\nelement id assign\npart\n1\nz\ncoordinates\n0\n");
   expect_bad_input([&] { read_mesh(folder.write("b.case", ensight + "a.geo\nVARIABLE\nscalar per node: s pipe\n")); },
-                   {"pipe", "no regular file"});
+                   {"pipe", "not a regular file"});
   const auto cube = write_cube_case(folder);
   EXPECT_EQ(read_mesh(cube).counts.cells_read, 1u);
   std::filesystem::remove(cube / "constant/polyMesh/points");
@@ -108,7 +108,7 @@ TEST(InputFiles, PipesAreRefusedWhereReaderProgramsFindThem) {
 }
 
 TEST(InputFiles, OtherFilesThatAreNoneAreRefused) {
-  expect_bad_input([] { require_file("/dev/zero"); }, {"no regular file"});
+  expect_bad_input([] { require_file("/dev/zero"); }, {"not a regular file"});
   expect_bad_input([] { require_file("/proc/self/maps"); }, {"it is empty"});
   expect_bad_input([] { system::PositionalFile(std::string(300, 'y')); }, {"there is no such file"});
 }

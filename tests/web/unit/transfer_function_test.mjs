@@ -109,6 +109,6 @@ test("colours are written as hex and read back", () => {
 
 test("a file of ParaView's is taken, and another is refused with a sentence", () => {
   assert.deepEqual(functions.imported_function(JSON.stringify([{ ...json, Creator: "x" }])), json);
-  assert.throws(() => functions.imported_function("{"), /no JSON/);
+  assert.throws(() => functions.imported_function("{"), /not JSON/);
   assert.throws(() => functions.imported_function("[]"), /no RGBPoints/);
 });
