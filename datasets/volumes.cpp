@@ -40,7 +40,7 @@ constexpr std::array<Kind, 5> kinds{{
     {"ripples", "volume of a smooth field on [-1, 1]^3, as the benchmarks use it", smooth_field, 64},
     {"radial", "volume that decreases from its middle to its corners", radial_field, 64},
     {"head", "volume of a skull in a case, about half of it empty: show values above 0.25", head_field, 64},
-    {"turbulence", "volume of two fluids that mix, rough everywhere: show 0.3 to 0.7 for the region between",
+    {"turbulence", "volume of two fluids that mix, rough everywhere: 0.3 to 0.7 shows the region between",
      turbulence_field, 64},
     {"checker", "volume that alternates 0 and 1 from point to point", nullptr, 16},
 }};

@@ -152,15 +152,15 @@ class Rewriting {
       const std::vector<xmlNode*> found = path.empty() ? std::vector<xmlNode*>() : all(path, target);
       const std::string name(reinterpret_cast<const char*>(node->name));
       if (found.empty() || name != reinterpret_cast<const char*>(found.front()->name))
-        throw scene::bad_input(fmt::format("{}: a <{}> refers to another element, {}, where there is none; {}", source_,
+        throw scene::bad_input(fmt::format("{}: a <{}> refers by Reference to {}, which does not exist; {}", source_,
                                            name, scene::quote(path), remedy));
       target = found.front();
       if (!property(target, "Reference")) break;
     }
     for (const xmlNode* outer = node; outer != nullptr; outer = outer->parent)
       if (outer == target || property(target, "Reference"))
-        throw scene::bad_input(
-            fmt::format("{}: a <{}> refers to itself; {}", source_, reinterpret_cast<const char*>(node->name), remedy));
+        throw scene::bad_input(fmt::format("{}: a <{}> refers by Reference to itself; {}", source_,
+                                           reinterpret_cast<const char*>(node->name), remedy));
     return target;
   }
 

@@ -38,7 +38,7 @@ export class PicturePanel {
     this.kind = choice("", () => this.#show_film(), [["orbit", "full orbit"], ["views", "along key views"]]);
     this.frames = typed("", (text) => parsed_number(text) >= 2, { value: "120", class: "short", inputmode: "numeric" });
     this.rate = typed("Frames a second", (text) => parsed_number(text) > 0, { value: "25", class: "short" });
-    this.film_format = choice("Video format", () => {});
+    this.film_format = choice("Video encoding", () => {});
     this.view_list = element("ol", { class: "key-views" });
     this.view_part = element("div", { class: "group", hidden: true }, this.view_list, element("div", { class: "buttons" }, button("Add this view", () => this.#add_view())));
     this.film_button = button("Make film", () => void this.#film(), { class: "primary" });

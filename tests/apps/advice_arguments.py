@@ -36,7 +36,7 @@ ROWS = [
     row("info empty.vtu", "write it again", "info m.vtu", {"empty.vtu": ""}),
     # the view
     row(R + "--view sideways", "use front, back, left", R + "--view left"),
-    row(R + "--up 0,0,0", "say which way is up", R + "--up 0,1,0"),
+    row(R + "--up 0,0,0", "give the direction that is up", R + "--up 0,1,0"),
     row(R + "--fit", "name one, or leave it out", R),
     row(R + "--camera c.json --view front", "leave one of the two out", R + "--camera c.json"),
     row(R + "--camera c.json --projection orthographic", "leave one of the two out", R + "--projection orthographic"),

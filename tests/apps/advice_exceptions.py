@@ -28,7 +28,7 @@ EXCEPTIONS = {
     r"this build leaves (out|\.(jpg|tif) out); build with": (6, OTHER_BUILD),
     r"this build has no server; configure": (1, OTHER_BUILD),
     r"^api/options/state_words\.cpp:\d+: state|^apps/commands/serve_scene\.cpp:\d+": (9, SERVER),
-    r"^api/options/state_(of_values|values)\.cpp|^api/options/state_text\.cpp:\d+: (\{\}: \{\} is (no \{\}|empty; leave)|state: )": (
+    r"^api/options/state_(of_values|values)\.cpp|^api/options/state_text\.cpp:\d+: (\{\}: \{\} is (not \{\}|empty; leave)|state: )": (
         6,
         STATE,
     ),
@@ -74,7 +74,7 @@ EXCEPTIONS = {
     r"^io/mesh/tecplot_numbers\.cpp:\d+: the zone has \{\} values": (1, RARE),
     r"^readers/gmsh/gmsh_elements\.cpp:\d+: \{\}: its cells of": (1, RARE),
     r"^io/foreign/client/(helper_process\.[ch]pp|foreign_fill\.cpp:\d+: filling)|^readers/common/(serve|limits)": (9, HELPER),
-    r"^(io/foreign/client/foreign_fill\.cpp:\d+: mend|cells/block_tets\.cpp:\d+: .*order_tolerance|cells/amr/amr_leaves\.cpp:\d+: .*many pieces)": (
+    r"^(io/foreign/client/foreign_fill\.cpp:\d+: correct|cells/block_tets\.cpp:\d+: .*order_tolerance|cells/amr/amr_leaves\.cpp:\d+: .*many pieces)": (
         5,
         TIME,
     ),
@@ -95,5 +95,5 @@ NO_ADVICE = [
     r"io/formats/format_table\.cpp",
     r"readers/dicom/dicom_main\.cpp:\d+: \{\} samples are in several segments",
     r"readers/dicom/dicom_series\.cpp:\d+: (some places have|slices are|values are)",
-    r"io/scene/text_transfer_function\.cpp:\d+:  \(extinctions as they stand",
+    r"io/scene/text_transfer_function\.cpp:\d+:  \(extinctions as given",
 ]

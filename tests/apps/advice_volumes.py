@@ -77,7 +77,7 @@ ROWS = [
     row(
         "info v.raw --dims 9x9x9 --type float32", "give the right dimensions", "info v.raw --dims 8x8x8 --type float32"
     ),
-    row(V + "--dims 8x8x8", "this one says them itself", V),
+    row(V + "--dims 8x8x8", "this one states them itself", V),
     row("info v.vti --check", "leave it out", "info v.vti"),
     # NRRD
     row(
@@ -152,7 +152,7 @@ ROWS = [
     nrrd_axes("kinds: time domain domain domain\nsizes: 70000 2 2 2", "write at most 65536"),
     row(
         "info a.nrrd",
-        "say where they begin",
+        "state where they begin",
         None,
         {"a.nrrd": TEXT.replace(b"ascii\n", b"ascii\nbyte skip: -1\n")},
         {"a.nrrd": TEXT.replace(b"ascii\n", b"ascii\nbyte skip: 0\n")},
@@ -262,7 +262,7 @@ ROWS = [
     # .raw
     row(
         "info b.raw --dims 2x2x2",
-        "does not say its type; give --dims WxHxD --type uint8",
+        "does not state its type; give --dims WxHxD --type uint8",
         "info b.raw --dims 2x2x2 --type uint8",
         {"b.raw": SAMPLES},
     ),
@@ -358,6 +358,6 @@ ROWS = [
         {"b.raw": b"12345" + SAMPLES},
     ),
     row(
-        "info b.raw", "does not say its dimensions and type", "info b.raw --dims 2x2x2 --type uint8", {"b.raw": SAMPLES}
+        "info b.raw", "does not state its dimensions and type", "info b.raw --dims 2x2x2 --type uint8", {"b.raw": SAMPLES}
     ),
 ]

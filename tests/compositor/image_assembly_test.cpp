@@ -333,7 +333,7 @@ TEST(ImageAssembly, ATileThatComesTwiceIsRefused) {
         for (exchange::Message& message : messages) EXPECT_FALSE(assembly.accept(std::move(message)).has_value());
       FAIL() << "it was taken";
     } catch (const scene::Error& error) {
-      EXPECT_NE(std::string(error.what()).find("brings tile 3 once more"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("sends tile 3 again"), std::string::npos) << error.what();
     }
   }
 }

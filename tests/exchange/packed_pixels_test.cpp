@@ -166,7 +166,7 @@ TEST(PackedPixels, RefuseWhatIsNoPicture) {
   EXPECT_NE(refusal(few, rect).find("fewer widths"), std::string::npos) << refusal(few, rect);
   Bytes endless = bytes;
   endless[3] = std::byte{0xff};
-  EXPECT_NE(refusal(endless, rect).find("shorter than it says"), std::string::npos) << refusal(endless, rect);
+  EXPECT_NE(refusal(endless, rect).find("shorter than it states"), std::string::npos) << refusal(endless, rect);
   // For another rectangle.
   EXPECT_NE(refusal(bytes, {7, 1, 39, 59}), "");
   EXPECT_NE(refusal(bytes, {7, 0, 39, 60}), "");

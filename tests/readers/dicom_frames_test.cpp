@@ -146,7 +146,7 @@ TEST_F(DicomFrameFiles, WithoutPlacesAreSpacedByWhatTheFileSaysAndANoteSaysSo) {
   const VolumeFile nothing = open(file);
   EXPECT_EQ(nothing.source->geometry().spacing.z, 1);
   EXPECT_EQ(all_samples(*nothing.source), wanted(3));
-  EXPECT_TRUE(has_note(nothing, "do not say where they are nor how far apart"));
+  EXPECT_TRUE(has_note(nothing, "state neither their positions nor their distance"));
   file.above = dicom_element(0x18, 0x50, "DS", "4");
   EXPECT_EQ(open(file).source->geometry().spacing.z, 4);
   EXPECT_TRUE(has_note(open(file), "4 mm apart as its slice thickness"));

@@ -83,11 +83,11 @@ TEST_F(Hdf5References, ToOtherFoldersAreRefused) {
   const std::string outside = (folder / "outside.vtkhdf").string();
   for (const std::string& to : {outside, std::string("../outside.vtkhdf")}) {
     expect_refused(linked("a.vtkhdf", to), "leads to 'outside.vtkhdf', which is neither next to it nor below");
-    expect_refused(with_virtual_field("v.vtkhdf", to.c_str(), "/VTKHDF/PointData/f"), "neither beside it nor below");
+    expect_refused(with_virtual_field("v.vtkhdf", to.c_str(), "/VTKHDF/PointData/f"), "neither next to it nor below");
   }
-  expect_refused(with_external_field("e.vtkhdf", outside.c_str()), "neither beside it nor below");
+  expect_refused(with_external_field("e.vtkhdf", outside.c_str()), "neither next to it nor below");
   std::filesystem::create_symlink(outside, in / "link.vtkhdf");
-  expect_refused(linked("s.vtkhdf", "link.vtkhdf"), "neither beside it nor below");
+  expect_refused(linked("s.vtkhdf", "link.vtkhdf"), "neither next to it nor below");
   static_cast<void>(linked("b.vtkhdf", outside));
   expect_refused(linked("c.vtkhdf", "b.vtkhdf"), "in 'b.vtkhdf': it leads to 'outside.vtkhdf'");
 }

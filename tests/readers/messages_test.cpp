@@ -212,7 +212,7 @@ TEST_F(Messages, ListsOfSurfacesAndPlaneMeshesAreRefusedForWhatTheyAre) {
   }
   const auto untyped = write("b.msh", "(0 \"solid\")\n(2 3)\n(10 (0 1 5 0 3))\n(12 (0 1 3 0))\n(12 (2 1 3 1))\n");
   const std::string message = message_of([&] { read_mesh(untyped); });
-  EXPECT_NE(message.find("the section of cells of zone 2 does not say what they are"), std::string::npos) << message;
+  EXPECT_NE(message.find("the section of cells of zone 2 does not state what they are"), std::string::npos) << message;
 }
 
 TEST_F(Messages, CellsWithTheirNodesInAnotherOrderAreWarnedOf) {

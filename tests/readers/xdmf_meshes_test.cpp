@@ -125,8 +125,8 @@ TEST_F(XdmfMeshes, ReferencesStandForWhatTheyName) {
     const std::string text = "<Topology Reference=\"" + path + "\"/>" + geometry;
     test::expect_bad_input([&] { read(mesh_grid + series("u", step(text, "u", 0, 0))); }, words);
   };
-  refused("/Xdmf/Domain/Grid[7]/Topology", {"a.xdmf: ", "<Topology>", "by Reference", "Grid[7]", "there is none"});
-  refused("/Xdmf/Domain/Grid[1]/Geometry", {"by Reference", "there is none"});
+  refused("/Xdmf/Domain/Grid[7]/Topology", {"a.xdmf: ", "<Topology>", "by Reference", "Grid[7]", "does not exist"});
+  refused("/Xdmf/Domain/Grid[1]/Geometry", {"by Reference", "does not exist"});
   refused("/Xdmf/Domain/Grid/Grid/Topology", {"stands for itself"});
 }
 

@@ -222,7 +222,7 @@ TEST_F(Xdmf, BinaryNumbersLieBeside) {
   // Files elsewhere are not opened, and files that are too short are refused.
   const test::TemporaryFolder other;
   other.write("a.bin", test::bytes_of(points) + test::bytes_of(values));
-  expect_refused(grid((other / "a.bin").string()), {"neither beside it nor below"});
+  expect_refused(grid((other / "a.bin").string()), {"neither next to it nor below"});
   expect_refused(grid("absent.bin"), {"'absent.bin', which is not there"});
   folder.write("data/a.bin", test::bytes_of(points));
   expect_refused(grid("data/a.bin"), {});

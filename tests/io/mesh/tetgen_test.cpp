@@ -72,7 +72,7 @@ TEST(NodeEle, BadTextIsToldByLine) {
   expect_bad_input(parse("99999999999999999999 3 0 0\n", ele_text), {"too large"});
   expect_bad_input(parse("1 2 0 0\n0 0 0 0\n", ele_text), {"2 coordinates"});
   expect_bad_input(parse("1 3 0 0\n5 0 0 0\n", ele_text), {"numbered from 5"});
-  expect_bad_input(parse("2 3 0 0\n0 0 0 0\n2 0 0 0\n", ele_text), {"point 2 stands where 1"});
+  expect_bad_input(parse("2 3 0 0\n0 0 0 0\n2 0 0 0\n", ele_text), {"point 2 is listed where 1"});
   expect_bad_input(parse("1 3 0 0\n0 0 0\n", ele_text), {"m.node: line 2: z is missing"});
   expect_bad_input(parse("1 3 0 0\n0 0 zero 0\n", ele_text), {"'zero' is not a number"});
   expect_bad_input(parse(node_text, "2 4 0\n1 1 2 3 4\n"), {"m.ele: line", "a tet"});

@@ -149,7 +149,7 @@ TEST(CameraFile, RefusesBrokenJson) {
   } cases[] = {
       {"{\"position\": [0,0", {"not valid JSON", "line 1"}},
       {"{" + good + ", \"fov\": 3}", {"'fov' is not a word"}},
-      {"{" + good + ", \"view_angle\": 3}", {"'view_angle' stands twice"}},
+      {"{" + good + ", \"view_angle\": 3}", {"'view_angle' is given twice"}},
       {"{" + good + ", \"parallel_scale\": 3}", {"both given"}},
       {"{" + good + ", \"view_up\": [0,1]}", {"view_up has 2 numbers"}},
       {"{" + good + ", \"view_up\": \"y\"}", {"'view_up'", "not a finite number"}},

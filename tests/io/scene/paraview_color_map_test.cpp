@@ -233,7 +233,7 @@ TEST(ParaViewColorMap, ValuesStandUnlessRescaled) {
   const auto as_is = parse(text, options);
   EXPECT_EQ(as_is.function.knots().front().value, 0);
   EXPECT_EQ(as_is.function.knots().back().value, 4);
-  EXPECT_NE(as_is.name.find("lies outside"), std::string::npos) << as_is.name;
+  EXPECT_NE(as_is.name.find("is outside"), std::string::npos) << as_is.name;
 
   options.rescale = true;
   const auto rescaled = parse(text, options);
@@ -287,7 +287,7 @@ TEST(ParaViewColorMap, RefusesBrokenFilesInOneLine) {
       {R"({"RGBPoints": [0,0,0,"x"]})", {"item 4 is not a finite number"}},
       {R"({"RGBPoints": [0,0,0,1e999]})", {"not valid JSON"}},
       {R"({"RGBPoints": [0,255,128,0]})", {"point 1", "not bytes"}},
-      {R"({"RGBPoints": [0,0,0,0], "RGBPoints": [1,1,1,1]})", {"'RGBPoints' stands twice"}},
+      {R"({"RGBPoints": [0,0,0,0], "RGBPoints": [1,1,1,1]})", {"'RGBPoints' is given twice"}},
       {R"({"IndexedColors": [1,0,0], "Annotations": ["0","a"]})", {"IndexedColors only"}},
       {R"({"ColorSpace": "CMYK", "RGBPoints": [0,0,0,0]})", {"'CMYK' is not known", "Diverging"}},
       {R"({"ColorSpace": 3, "RGBPoints": [0,0,0,0]})", {"ColorSpace is not a string"}},

@@ -123,7 +123,7 @@ TEST_F(VolumeSteps, NiftiVectorsAreInPlanes) {
   for (int c = 0; c < 3; ++c) EXPECT_EQ(samples(named, {.field = fmt::format("samples:{}", c)}), from(24.0 * c));
   EXPECT_NEAR(samples(named)[1], std::sqrt(1.0 + 25.0 * 25 + 49.0 * 49), 1e-5);  // stored as floats
   put<std::int16_t>(file, 48, 2);
-  expect_no_volume(folder.write("both.nii", file), "beside 2 steps");
+  expect_no_volume(folder.write("both.nii", file), "3 components and 2 steps");
 }
 
 TEST_F(VolumeSteps, HeaderAndSamplesMayBeTwoFiles) {

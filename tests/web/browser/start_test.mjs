@@ -139,7 +139,7 @@ test("cuts and surfaces are removed, and the colours are edited", async () => {
   await control("Unit distance", "input[type=text]").fill("0.7");
   await control("Unit distance", "input[type=text]").press("Enter");
   await answered(page);
-  assert.equal((await texts(["Unit distance"])).Distance, "0.7");
+  assert.equal((await texts(["Unit distance"]))["Unit distance"], "0.7");
 });
 
 test("another field goes without the values of the one that the server was started with", async () => {
