@@ -127,7 +127,7 @@ TEST_F(XdmfMeshes, ReferencesStandForWhatTheyName) {
   };
   refused("/Xdmf/Domain/Grid[7]/Topology", {"a.xdmf: ", "<Topology>", "by Reference", "Grid[7]", "does not exist"});
   refused("/Xdmf/Domain/Grid[1]/Geometry", {"by Reference", "does not exist"});
-  refused("/Xdmf/Domain/Grid/Grid/Topology", {"stands for itself"});
+  refused("/Xdmf/Domain/Grid/Grid/Topology", {"refers by Reference to itself"});
 }
 
 TEST_F(XdmfMeshes, TheSameNumbersInAFileBesideAreOneMesh) {
