@@ -105,9 +105,7 @@ inline constexpr const char* views[] = {"oblique", "from -x", "from y", "along z
 inline scene::Image render(const Volume& v, const scene::Camera& camera, const scene::TransferFunction& function,
                            volume::RenderSettings settings = {}, volume::RenderStatistics* statistics = nullptr) {
   if (settings.threads == 0) settings.threads = 2;
-  volume::Frame frame = volume::Renderer(*v.source, settings).render(camera, size, function);
-  if (statistics != nullptr) *statistics = frame.statistics;
-  return std::move(frame.image);
+  return volume::Renderer(*v.source, settings).render(camera, size, function, statistics);
 }
 
 inline volume::RenderSettings exact() {

@@ -41,7 +41,8 @@ void VoxelLayers::add(const VoxelRay& ray, std::vector<integrals::RayLayer>& lay
     part.end = crossing.z;
     walk_.walk(part, *this);
     put();
-    layers_.add_surface(crossing.z, crossing.light, open_, layers);
+    const scene::SurfaceSet::Light& light = crossing.light;
+    layers_.add_surface(crossing.z, light.red, light.green, light.blue, light.opacity, open_, layers);
     part.begin = crossing.z;
   }
   part.end = ray.end;
