@@ -129,9 +129,15 @@ std::string State::json() const {
     if (row.is(Trait::camera | Trait::function) && is_json_text(words.front()))
       if (api::Json object = api::Json::parse(words.front(), nullptr, false); !object.is_discarded())
         value = std::move(object);
+    try {
+      (void)value.dump();
+    } catch (const api::Json::type_error&) {
+      throw bad_input(
+          fmt::format("state: {} is not UTF-8, which JSON requires; write TOML instead", scene::quote(key)));
+    }
     state[key] = std::move(value);
   }
-  return state.dump(2, ' ', false, api::Json::error_handler_t::replace);
+  return state.dump(2);
 }
 
 std::string State::toml() const {

@@ -53,6 +53,7 @@ class TESSERA_EXPORT State {
   /// an unknown option, and for a value of the wrong type.
   static State from_json(std::string_view text, const std::string& name = "state");
   static State from_toml(std::string_view text, const std::string& name = "state");
+  /// Throws Error(bad_input) for a value that is not UTF-8, like a path of other bytes; toml() keeps its bytes.
   [[nodiscard]] std::string json() const;
   [[nodiscard]] std::string toml() const;
 

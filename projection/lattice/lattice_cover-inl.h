@@ -215,7 +215,7 @@ class CellBlocks {
     std::size_t size = queue.size;
     for (int block = 0, count = blocks_[t]; block < count; ++block) {
       const VF least = Min(Min(edge[0], edge[1]), Min(edge[2], edge[3]));
-      MF among = x == x;
+      MF among = Eq(x, x);
       if (HWY_UNLIKELY(clipped)) among = in_rectangle(shape, t, block);
       size = push_hits(least, among, hits, queue, size);
       // All ones behind the last of a row. (A comparison's result would come in a part of a register: it would wait for

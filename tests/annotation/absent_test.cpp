@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "tessera/annotation.hpp"
 #include "tessera/error.hpp"
 
@@ -10,22 +12,37 @@ namespace tessera {
 namespace {
 
 TEST(AnnotationAbsent, SaysThatTheBuildLacksCairo) {
+  Annotation annotation;
+  annotation.color_bar = true;
   Image picture({8, 8});
-  for (const auto& draw : {+[](Image& image) {
-                             annotate(image, {}, {{}, {8, 8}}, {}, {});
-                           },
-                           +[](Image& image) {
-                             (void)annotation_layer(image, {}, {{}, {8, 8}}, {}, {});
-                           },
-                           +[](Image&) { validate(Annotation{}, TransferFunction{}); }}) {
+  const std::function<void()> all[] = {
+      [&] {
+        annotate(picture, annotation, {{}, {8, 8}}, {}, {});
+      },
+      [&] {
+        (void)annotation_layer(picture, annotation, {{}, {8, 8}}, {}, {});
+      },
+      [&] { validate(annotation, TransferFunction{}); },
+  };
+  for (const auto& draw : all) {
     try {
-      draw(picture);
+      draw();
       FAIL() << "it drew";
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::bad_input);
       EXPECT_NE(std::string(error.what()).find("Cairo"), std::string::npos) << error.what();
     }
   }
+}
+
+TEST(AnnotationAbsent, AnAnnotationOfNothingIsValidAndChangesNothing) {
+  Image picture({8, 8});
+  picture.rgba.front() = 0.5F;
+  const Image before = picture;
+  EXPECT_NO_THROW(validate(Annotation{}, TransferFunction{}));
+  annotate(picture, {}, {{}, {8, 8}}, {}, {});
+  EXPECT_EQ(picture.rgba, before.rgba);
+  EXPECT_EQ(annotation_layer(picture, {}, {{}, {8, 8}}, {}, {}).rgba, Image({8, 8}).rgba);
 }
 
 }  // namespace

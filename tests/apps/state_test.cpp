@@ -239,6 +239,15 @@ TEST(State, RefusesValuesWithoutWords) {
   EXPECT_NE(fault_of([&] { state.set(annotation); }).find("`axes`"), std::string::npos);
 }
 
+TEST(State, KeepsOtherBytesThanUtf8InTomlOnly) {
+  State state;
+  state.set("save-config", std::string("x.toml"));
+  state.set("output", "caf\xE9.png");
+  EXPECT_EQ(fault_of([&] { (void)state.json(); }),
+            "state: 'output' is not UTF-8, which JSON requires; write TOML instead");
+  EXPECT_EQ(State::from_toml(state.toml()).words().at("output").front(), "caf\xE9.png");
+}
+
 TEST(State, OpensDataInMemoryToo) {
   const std::vector<double> points = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, values = {0, 1, 2, 3};
   const std::vector<std::uint32_t> tets = {0, 1, 2, 3};

@@ -73,7 +73,7 @@ HWY_INLINE void convert(const T* from, std::int64_t count, std::int64_t readable
         if constexpr (std::is_same_v<T, float>) {
           const auto sample = LoadU(df, from + at);
           const auto lane = sample * scale;
-          return (lanes.whole ? Round(lane) : lane) + (sample - sample);
+          return (lanes.whole ? Round(lane) : lane) + Sub(sample, sample);
         } else {
           const hn::RebindToSigned<decltype(df)> di;
           const auto sample = ConvertTo(df, PromoteTo(di, LoadU(hn::Rebind<T, decltype(df)>(), from + at)));
@@ -99,7 +99,7 @@ HWY_INLINE void convert(const T* from, std::int64_t count, std::int64_t readable
     const auto sample = load_doubles(p);
     const auto exact = MulAdd(sample * lift, factor, term), lane = lanes.whole ? Round(exact) : exact;
     // inf - inf and NaN - NaN are NaN, x - x is 0: blanks become NaN.
-    const auto rounded = DemoteTo(DFH(), lane + (sample - sample));
+    const auto rounded = DemoteTo(DFH(), lane + Sub(sample, sample));
     StoreU(rounded, DFH(), out);
     if (rounded_off != nullptr) StoreU(DemoteTo(DFH(), exact - PromoteTo(d, rounded)), DFH(), rounded_off);
   };
