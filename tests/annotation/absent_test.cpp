@@ -13,7 +13,7 @@ namespace {
 
 TEST(AnnotationAbsent, SaysThatTheBuildLacksCairo) {
   Annotation annotation;
-  annotation.color_bar = true;
+  annotation.color_bar.emplace();
   Image picture({8, 8});
   const std::function<void()> all[] = {
       [&] {
