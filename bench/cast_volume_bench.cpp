@@ -61,10 +61,9 @@ void cast(benchmark::State& state, volume::RenderSettings settings, int bits, co
   camera.position = {3.1, 2.3, 4.2};
   camera.parallel_scale = 1.8;
   const scene::TransferFunction f = function(kind, bits == 8 ? 255 : 1);
-  volume::RenderStatistics statistics;
-  renderer.render(camera, {1024, 1024}, f);
+  const volume::RenderStatistics statistics = renderer.render(camera, {1024, 1024}, f).statistics;
   const double before = bench::process_seconds();
-  for (auto _ : state) benchmark::DoNotOptimize(renderer.render(camera, {1024, 1024}, f, &statistics));
+  for (auto _ : state) benchmark::DoNotOptimize(renderer.render(camera, {1024, 1024}, f));
   const double each = (bench::process_seconds() - before) / static_cast<double>(state.iterations());
   state.counters["cpu_ms"] = 1e3 * each;
   state.counters["ns_voxel"] = 1e9 * each / static_cast<double>(statistics.voxels_visited);

@@ -324,13 +324,13 @@ void of_volume(const Run& run) {
     for (std::size_t v = 0; v < views.size(); ++v) {
       Parts& parts = views[v];
       const scene::Camera camera = camera_at(run, static_cast<int>(v), bounds(renderer.geometry()));
-      parts.whole = renderer.render(camera, size, function);
+      parts.whole = renderer.render(camera, size, function).image;
       parts.area = volume::footprint(camera, size, renderer.geometry());
       parts.order = split.front_to_back(renderer.geometry(), camera);
       for (const volume::VoxelBox& box : split.boxes()) {
         parts.own.push_back(scene::common(parts.area, volume::footprint(camera, size, renderer.geometry(), box)));
         parts.images.push_back(
-            renderer.render_part(box, camera, size, function, nullptr, parts.own.back(), nullptr, nullptr));
+            renderer.render(camera, size, function, {.regions = {parts.own.back()}, .part = box}).image);
       }
     }
     print_composited(run, ranks, views);

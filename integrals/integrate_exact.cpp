@@ -82,13 +82,18 @@ HWY_INLINE V lookup(const std::vector<double>& table, VI interval) {
   return GatherIndex(d, table.data(), interval);
 }
 
+/// A piece of a segment: extinction at its front and back, linear between them, its length and its optical depth.
+struct Piece {
+  V kappa0, kappa1, length, depth;
+};
+
 /// Where a piece is thicker than `most_depth`, how much of it has that depth; elsewhere 1. The root u of q(u) = that,
 /// in the form without cancellation.
-HWY_INLINE V part_of_depth(V kappa0, V kappa1, V piece, V twice_most_depth, hn::Mask<D> thick) {
+HWY_INLINE V part_of_depth(const Piece& piece, V twice_most_depth, hn::Mask<D> thick) {
   const D d;
   const V one = Set(d, 1.0);
-  const V linear = kappa0 * piece;
-  const V root = Sqrt(Max(Zero(d), MulAdd(linear, linear, twice_most_depth * ((kappa1 - kappa0) * piece))));
+  const V linear = piece.kappa0 * piece.length, rise = (piece.kappa1 - piece.kappa0) * piece.length;
+  const V root = Sqrt(Max(Zero(d), MulAdd(linear, linear, twice_most_depth * rise)));
   return IfThenElse(thick, Min(one, twice_most_depth / (linear + root)), one);
 }
 
@@ -100,25 +105,24 @@ struct Passage {
 
 /// `varies`: where the colour does. Thin or not is decided lane by lane, so that a segment's bits do not depend on its
 /// neighbours in the batch.
-HWY_INLINE Passage pass(V kappa0, V kappa1, V piece, V depth, hn::Mask<D> varies, hn::Mask<D> active,
-                        bool emits_by_extinction) {
+HWY_INLINE Passage pass(const Piece& piece, hn::Mask<D> varies, hn::Mask<D> active, bool emits_by_extinction) {
   const D d;
-  const auto thin = depth < Set(d, 0.05);
+  const auto thin = piece.depth < Set(d, 0.05);
   const auto needs_exp = AndNot(thin, active);
   const bool some_thin = !AllTrue(d, needs_exp), some_thick = !AllFalse(d, needs_exp);
   const bool some_vary = !emits_by_extinction || !AllFalse(d, And(varies, active));
-  const V linear = kappa0 * piece;
-  const V quadratic = Set(d, 0.5) * ((kappa1 - kappa0) * piece);
+  const V linear = piece.kappa0 * piece.length;
+  const V quadratic = Set(d, 0.5) * ((piece.kappa1 - piece.kappa0) * piece.length);
   Passage p{Set(d, 1.0), {Zero(d), Zero(d)}};
   if (some_thin) {
-    p.through = thin_exp(depth);
+    p.through = thin_exp(piece.depth);
     if (!emits_by_extinction)
       p.m = moments(linear, quadratic, nodes3, weights3);
     else if (some_vary)
       p.m.zeroth = thin_zeroth(linear, quadratic);
   }
   if (some_thick) {
-    p.through = IfThenElse(thin, p.through, Exp(d, Neg(depth)));
+    p.through = IfThenElse(thin, p.through, Exp(d, Neg(piece.depth)));
     if (some_vary) {
       const Moments fine = moments(linear, quadratic, nodes6, weights6);
       p.m = {IfThenElse(thin, p.m.zeroth, fine.zeroth), IfThenElse(thin, p.m.first, fine.first)};
@@ -130,10 +134,10 @@ HWY_INLINE Passage pass(V kappa0, V kappa1, V piece, V depth, hn::Mask<D> varies
 /// Light of one colour that leaves the piece's front. By extinction it is
 ///   c0 (1 - M) + c1 (M - T) = c0 (1 - T) + (c1 - c0) (M - T),
 /// the second term left out where the colour is constant.
-HWY_INLINE V light_of(V color0, V color1, V piece, const Passage& p, hn::Mask<D> varies, bool emits_by_extinction) {
+HWY_INLINE V light_of(V color0, V color1, V length, const Passage& p, hn::Mask<D> varies, bool emits_by_extinction) {
   const D d;
   const V change = color1 - color0;
-  if (!emits_by_extinction) return piece * MulAdd(change, p.m.first, color0 * p.m.zeroth);
+  if (!emits_by_extinction) return length * MulAdd(change, p.m.first, color0 * p.m.zeroth);
   const V light = color0 * (Set(d, 1.0) - p.through);
   return IfThenElse(varies, MulAdd(change, p.m.zeroth - p.through, light), light);
 }
@@ -168,7 +172,8 @@ void exact(const PiecewiseTable& table, scene::Emission emission, const ExactPie
       V target = IfThenElse(up, Min(knot, back), Max(knot, back));
       target = IfThenElse(constant, back, target);
       auto last = target == back;
-      V piece = IfThenElse(last, left, Min(left, (target - scalar) * length_per_scalar));
+      Piece piece;
+      piece.length = IfThenElse(last, left, Min(left, (target - scalar) * length_per_scalar));
 
       const V base = lookup<in_register>(table.base, interval);
       const V from = scalar - base;
@@ -179,17 +184,16 @@ void exact(const PiecewiseTable& table, scene::Emission emission, const ExactPie
         at_from = MulAdd(slope, from, start);
         at_to = MulAdd(slope, to, start);
       };
-      V kappa0, kappa1;
-      channel(0, kappa0, kappa1);
-      V depth = piece * (half * (kappa0 + kappa1));
-      const auto thick = depth > most_depth;
+      channel(0, piece.kappa0, piece.kappa1);
+      piece.depth = piece.length * (half * (piece.kappa0 + piece.kappa1));
+      const auto thick = piece.depth > most_depth;
       if (!AllFalse(d, thick)) {
-        const V u = part_of_depth(kappa0, kappa1, piece, twice_most_depth, thick);
-        piece = piece * u;
-        kappa1 = IfThenElse(thick, MulAdd(kappa1 - kappa0, u, kappa0), kappa1);
+        const V u = part_of_depth(piece, twice_most_depth, thick);
+        piece.length = piece.length * u;
+        piece.kappa1 = IfThenElse(thick, MulAdd(piece.kappa1 - piece.kappa0, u, piece.kappa0), piece.kappa1);
         target = IfThenElse(thick, MulAdd(target - scalar, u, scalar), target);
         to = target - base;
-        depth = piece * (half * (kappa0 + kappa1));
+        piece.depth = piece.length * (half * (piece.kappa0 + piece.kappa1));
         last = AndNot(thick, last);
       }
       V color0[3], color1[3];
@@ -198,14 +202,14 @@ void exact(const PiecewiseTable& table, scene::Emission emission, const ExactPie
         channel(c + 1, color0[c], color1[c]);
         varies = Or(varies, color0[c] != color1[c]);
       }
-      const Passage passage = pass(kappa0, kappa1, piece, depth, varies, active, emits_by_extinction);
+      const Passage passage = pass(piece, varies, active, emits_by_extinction);
       for (int c = 0; c < 3; ++c) {
-        const V light = light_of(color0[c], color1[c], piece, passage, varies, emits_by_extinction);
+        const V light = light_of(color0[c], color1[c], piece.length, passage, varies, emits_by_extinction);
         color[c] = IfThenElse(active, MulAdd(transmittance, light, color[c]), color[c]);
       }
-      optical_depth = IfThenElse(active, optical_depth + depth, optical_depth);
+      optical_depth = IfThenElse(active, optical_depth + piece.depth, optical_depth);
       transmittance = IfThenElse(active, transmittance * passage.through, transmittance);
-      left = left - piece;
+      left = left - piece.length;
       scalar = target;
       active = AndNot(Or(last, transmittance < least_transmittance), active);
       const auto on = RebindMask(di, AndNot(thick, active));

@@ -19,7 +19,7 @@
 // Bits      A lane's result depends on that lane alone: what only some lanes need is blended in by lane. Products and
 //           sums are fused where MulAdd is written and nowhere else, so that every copy of this code rounds alike:
 //           sources that include it are compiled with -ffp-contract=off.
-// Ends      Where the optical depth passes 20, what lies behind is left out (2e-9 of the light); optical_depth then
+// Ends      Where the optical depth passes 20, what is behind is left out (2e-9 of the light); optical_depth then
 //           counts the pieces so far and is at least 20.
 
 #if defined(TESSERA_INTEGRALS_INTEGRATE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -112,7 +112,7 @@ struct Progress {
   VF alpha, transmittance, optical_depth, red, green, blue;
 };
 
-/// A stretch, what was gathered before it, and the sums over its piece, already dimmed by what lies before them.
+/// A stretch, what was gathered before it, and the sums over its piece, already dimmed by what is in front of them.
 struct Passage {
   Stretch rest;
   VF alpha, transmittance, weight, moment;
@@ -156,7 +156,7 @@ HWY_NOINLINE inline Passage take_thick_steps(MF thick, bool independent, Passage
     cut(s.from, s.from + step.rest.span);
     cut(s.span, s.span * left);
     cut(s.length, s.length * left);
-    // A lane that nothing shows through any more is done: an empty stretch adds nothing.
+    // A lane that nothing shows through is done: an empty stretch adds nothing.
     const MF dark = And(thick, p.transmittance < transmittance_left);
     for (VF* x : {&s.depth_front, &s.depth_back, &s.length}) *x = IfThenElse(dark, zero, *x);
     thick = And(thick, s.depth_front + s.depth_back > bound);
@@ -164,19 +164,24 @@ HWY_NOINLINE inline Passage take_thick_steps(MF thick, bool independent, Passage
   return p;
 }
 
-/// The light of one piece of each lane, from scalar to scalar + span == target, in the intervals of `index`. Lanes
-/// whose length is zero add nothing. In the `first` piece nothing lies before it: the same numbers, without products by
-/// one and sums with zero.
+/// A piece of a segment, over which the scalar goes linearly from `front` to `back` == front + span.
+struct LinearPiece {
+  VF front, back, span, length;
+};
+
+/// The light of one piece of each lane, in the intervals of `index`. Lanes whose length is zero add nothing. In the
+/// `first` piece nothing is in front of it: the same numbers, without products by one and sums with zero.
 template <bool first, class Lookup>
-HWY_INLINE void add_piece(const Lookup& table, const typename Lookup::Index& index, VF scalar, VF target, VF span,
-                          VF length, Progress& so_far) {
+HWY_INLINE void add_piece(const Lookup& table, const typename Lookup::Index& index, const LinearPiece& piece,
+                          Progress& so_far) {
   const DF d;
   const VF zero = Zero(d), one = Set(d, 1.0f);
   const VF start = table.at(LaneTable::half_extinction, index),
            slope = table.at(LaneTable::half_extinction_slope, index);
   const VF base = table.at(LaneTable::base, index);
-  const VF from = scalar - base, to = target - base;
-  const Stretch whole{MulAdd(slope, from, start) * length, MulAdd(slope, to, start) * length, from, span, length};
+  const VF from = piece.front - base, to = piece.back - base;
+  const Stretch whole{MulAdd(slope, from, start) * piece.length, MulAdd(slope, to, start) * piece.length, from,
+                      piece.span, piece.length};
   const VF depth = whole.depth_front + whole.depth_back;
   if (table.has_clear && AllFalse(d, depth > zero)) return;
 
@@ -238,7 +243,7 @@ struct Walk {
       const VF end = target(table, index), span = end - scalar;
       const VF length = IfThenElseZero(active, span * length_per_scalar);
       active = And(active, end != back);
-      add_piece<false>(table, index, scalar, end, span, length, so_far);
+      add_piece<false>(table, index, {scalar, end, span, length}, so_far);
       scalar = end;
       active = And(active, so_far.optical_depth < Set(d, opaque_depth));
       if (AllFalse(d, active)) break;
@@ -313,7 +318,7 @@ HWY_INLINE Light integrate_lanes(const Lookup<form>& table, VF length, VF front,
   // What a level segment's division gives is not used.
   walk.length_per_scalar = length / (back - front);
   const VF piece = IfThenElse(walk.active, span * walk.length_per_scalar, length);
-  lanes::add_piece<true>(table, index, front, end, span, piece, so_far);
+  lanes::add_piece<true>(table, index, {front, end, span, piece}, so_far);
   if (!AllFalse(d, walk.active)) {
     walk.scalar = end;
     walk.active = And(walk.active, so_far.optical_depth < Set(d, lanes::opaque_depth));

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A LaneTable in reach of float lanes; included once per instruction set (Highway's include guard idiom).
+//
+// What      The interval of the transfer function that each lane's scalar is in, and the table's numbers for it.
+// How       A column of few knots is held in one vector, or two, where a permutation looks up all lanes. A longer one
+//           stays in memory: two vectors around the first lane's interval mostly have all of them, else they are
+//           gathered. Intervals are found by a grid of equal cells, or by comparing some knots, and a binary search
+//           from there.
+// Bits      All forms of the table give the same.
 
 #if defined(TESSERA_INTEGRALS_LANE_LOOKUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_INTEGRALS_LANE_LOOKUP_INL_H_
@@ -39,7 +46,7 @@ HWY_INLINE TableForm form_of(const LaneTable& table) {
 
 /// Numbers of intervals by lane. Every form offers:
 ///   locate(s, up)   the interval in which a ray at s goes on: the knots at or below s where `up`, else those below s;
-///   index(i, active) makes intervals ready for look-ups, of which those of active lanes must be right;
+///   index(i, active) makes intervals ready for look-ups; those of active lanes must be right;
 ///   at(column, index), and edge(i, index, upper) where intervals end: their upper edges where `upper` is 1 or true;
 ///   most_pieces     of a segment.
 template <TableForm form>

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lane code shared by the integrators; included once per instruction set (Highway's include guard idiom).
+// Lanes of doubles, and the interval of a PiecewiseTable that each is in; included once per instruction set (Highway's
+// include guard idiom).
+//
+// What      How many knots a ray at scalar s has passed: those at or below s if it goes up or is level, else those
+//           below s.
+// How       Few knots are all compared, which is cheaper than the gathers of a binary search.
 
 #if defined(TESSERA_INTEGRALS_PIECEWISE_TABLE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_INTEGRALS_PIECEWISE_TABLE_INL_H_
@@ -23,8 +28,7 @@ using DI = hwy::HWY_NAMESPACE::RebindToSigned<D>;
 using V = hwy::HWY_NAMESPACE::Vec<D>;
 using VI = hwy::HWY_NAMESPACE::Vec<DI>;
 
-/// The interval in which a ray at scalar s goes on: lanes going up (or level) count the knots at or below s, those
-/// going down the knots below s. Comparing all knots is cheaper than log2 gathers while they are few.
+/// The interval in which a ray at scalar s goes on.
 HWY_INLINE VI locate(const PiecewiseTable& table, V s, hwy::HWY_NAMESPACE::Mask<D> up) {
   namespace hn = hwy::HWY_NAMESPACE;
   const D d;

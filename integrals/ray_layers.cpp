@@ -129,16 +129,16 @@ void RayLayers::append(const Stretch& stretch, const SegmentBatch& batch, std::s
   layer.transmittance *= batch.transmittance[k];
 }
 
-void RayLayers::add_surface(double depth, double red, double green, double blue, double opacity, OpenLayer& layer,
+void RayLayers::add_surface(double depth, const scene::SurfaceSet::Light& light, OpenLayer& layer,
                             std::vector<RayLayer>& ended) const {
-  if (!(opacity > 0)) return;
+  if (!(light.opacity > 0)) return;
   if (std::isinf(layer.front)) layer.front = depth;
   layer.last_front = layer.last_back = depth;
-  layer.red += layer.transmittance * red;
-  layer.green += layer.transmittance * green;
-  layer.blue += layer.transmittance * blue;
-  layer.optical_depth -= std::log1p(-opacity);  // infinite where it is opaque
-  layer.transmittance *= 1 - opacity;
+  layer.red += layer.transmittance * light.red;
+  layer.green += layer.transmittance * light.green;
+  layer.blue += layer.transmittance * light.blue;
+  layer.optical_depth -= std::log1p(-light.opacity);  // infinite where it is opaque
+  layer.transmittance *= 1 - light.opacity;
   if (is_last(layer) || !is_full(layer.optical_depth)) return;
   const int number = layer.number;
   end(layer, ended);

@@ -9,6 +9,7 @@
 #include "integrals/segment_batch.hpp"
 #include "integrals/segment_integrator.hpp"
 #include "scene/optical_model.hpp"
+#include "scene/surface_set.hpp"
 #include "scene/transfer_function.hpp"
 #include "tessera/settings.hpp"
 
@@ -60,8 +61,8 @@ class RayLayers {
   void add(const Stretch& stretch, const SegmentBatch& batch, std::size_t k, OpenLayer& layer,
            std::vector<RayLayer>& ended);
 
-  /// A surface of no thickness: premultiplied light, as lit.
-  void add_surface(double depth, double red, double green, double blue, double opacity, OpenLayer& layer,
+  /// A surface of no thickness.
+  void add_surface(double depth, const scene::SurfaceSet::Light& light, OpenLayer& layer,
                    std::vector<RayLayer>& ended) const;
 
   /// The ray's end: appends the last layer if it has any light or opacity.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Interpolation in tables of floats by lanes of doubles; included once per instruction set (Highway's include guard
 // idiom).
+//
+// What      The entries on either side of a place along an axis, and the line between them, in double precision.
+// Ends      Places are kept within the table; NaN is its first entry.
 
 #if defined(TESSERA_INTEGRALS_TABLE_LOOKUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_INTEGRALS_TABLE_LOOKUP_INL_H_

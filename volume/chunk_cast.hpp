@@ -22,7 +22,7 @@ class Renderer;
 ///   early termination   go on while any_open()
 ///   occlusion           close() rays that something else hides, between chunks
 ///   sort-last           advance() through one's chunks, emit() the fragments to whoever composites them front to back
-///                       (a process that has one box casts it in one go: Renderer::render_part())
+///                       (a process that has one box casts it in one go: CastRequest::part)
 ///   shadows             a camera at the light; transmittance() after each chunk is the light that reaches what is next
 ///
 ///     ChunkCast cast(renderer, camera, size, function);

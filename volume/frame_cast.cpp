@@ -29,6 +29,9 @@ struct Worker {
   std::vector<TileTime> times;
 };
 
+using Workers = tbb::enumerable_thread_specific<std::unique_ptr<Worker>>;
+std::unique_ptr<Worker> new_worker() { return std::make_unique<Worker>(); }
+
 /// Processor time of this thread: what others that share its core take of it does not count.
 double thread_microseconds() {
   timespec t{};
@@ -36,60 +39,75 @@ double thread_microseconds() {
   return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
 }
 
-}  // namespace
-
-TileCounts cast_frame(const FrameSetup& setup, const VoxelBox& part, std::span<const scene::PixelRect> wanted,
-                      FragmentSink* sink, VoxelCaster* in_double, const std::stop_token& stop, PilotTurns turns,
-                      std::vector<TileTime>* times) {
-  const FrameView& frame = setup.view();
-  const bool all = part == VoxelBox{{0, 0, 0}, frame.voxels};
-  auto tiles = tiles_of(wanted);
-  std::size_t n_th = 0;
-  std::erase_if(tiles, [&](const auto&) { return n_th++ % turns.of != turns.number % turns.of; });
-  tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers([] { return std::make_unique<Worker>(); });
+/// Calls f(number of the tile, the thread's worker) for all tiles.
+template <class F>
+void for_tiles(const FrameView& frame, std::size_t tiles, Workers& workers, const std::stop_token& stop, const F& f) {
   tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, tiles.size(), 1),
+      tbb::blocked_range<std::size_t>(0, tiles, 1),
       [&](const auto& some) {
         const scene::TraceScope scope(frame.trace, frame.tally == nullptr ? "project" : "partition");
         for (std::size_t n = some.begin(); n != some.end(); ++n) {
           scene::throw_if_stopped(stop);
-          Worker& worker = *workers.local();
-          const double begin = times == nullptr ? 0 : thread_microseconds();
-          const std::uint64_t rays_before = worker.counts.rays;
-          worker.tile.begin(frame, tiles[n].x, tiles[n].y, wanted[tiles[n].region], worker.counts);
-          cast_tile(frame, part, worker.tile, worker.memory, worker.counts);
-          if (sink == nullptr) continue;
-          const std::size_t uncertain_before = worker.uncertain.size();
-          worker.fragments.clear();
-          worker.tile.fragments(frame, worker.fragments, worker.uncertain);
-          sink->take(worker.fragments);
-          // begin() counts those that meet the volume.
-          const std::size_t met = worker.fragments.size() + worker.uncertain.size() - uncertain_before;
-          if (!all) worker.counts.rays = rays_before + met;
-          if (times != nullptr)
-            worker.times.push_back({worker.tile.pixels(), static_cast<float>(thread_microseconds() - begin)});
-          if (worker.uncertain.size() == uncertain_before)
-            sink->finished(worker.tile.pixels());
-          else
-            worker.late.push_back(worker.tile.pixels());
+          f(n, *workers.local());
         }
       },
       tbb::auto_partitioner());
-  TileCounts counts;
+}
+
+}  // namespace
+
+FrameWork cast_frame(const FrameSetup& setup, const VoxelBox& part, std::span<const scene::PixelRect> wanted,
+                     FragmentSink& sink, VoxelCaster& in_double, const std::stop_token& stop) {
+  const FrameView& frame = setup.view();
+  const bool all = part == VoxelBox{{0, 0, 0}, frame.voxels};
+  const auto tiles = tiles_of(wanted);
+  Workers workers(new_worker);
+  for_tiles(frame, tiles.size(), workers, stop, [&](std::size_t n, Worker& worker) {
+    const double begin = thread_microseconds();
+    const std::uint64_t rays_before = worker.counts.rays;
+    worker.tile.begin(frame, tiles[n].x, tiles[n].y, wanted[tiles[n].region], worker.counts);
+    cast_tile(frame, part, worker.tile, worker.memory, worker.counts);
+    const std::size_t uncertain_before = worker.uncertain.size();
+    worker.fragments.clear();
+    worker.tile.fragments(frame, worker.fragments, worker.uncertain);
+    sink.take(worker.fragments);
+    // begin() counts those that meet the volume.
+    const std::size_t met = worker.fragments.size() + worker.uncertain.size() - uncertain_before;
+    if (!all) worker.counts.rays = rays_before + met;
+    worker.times.push_back({worker.tile.pixels(), static_cast<float>(thread_microseconds() - begin)});
+    if (worker.uncertain.size() == uncertain_before)
+      sink.finished(worker.tile.pixels());
+    else
+      worker.late.push_back(worker.tile.pixels());
+  });
+  FrameWork work;
   std::vector<UncertainRay> uncertain;
   for (const auto& worker : workers) {
     uncertain.insert(uncertain.end(), worker->uncertain.begin(), worker->uncertain.end());
-    counts += worker->counts;
-    if (times != nullptr) times->insert(times->end(), worker->times.begin(), worker->times.end());
+    work.counts += worker->counts;
+    work.tiles.insert(work.tiles.end(), worker->times.begin(), worker->times.end());
   }
   if (!uncertain.empty()) {
     const scene::TraceScope scope(frame.trace, "project");
-    in_double->cast(uncertain, *sink, stop);
-    counts.again = uncertain.size();
+    in_double.cast(uncertain, sink, stop);
+    work.counts.again = uncertain.size();
   }
   for (const auto& worker : workers)
-    for (const scene::PixelRect& pixels : worker->late) sink->finished(pixels);
-  return counts;
+    for (const scene::PixelRect& pixels : worker->late) sink.finished(pixels);
+  return work;
+}
+
+void cast_pilot(const FrameSetup& setup, const scene::PixelRect& pixels, const PilotPass& pass,
+                const std::stop_token& stop) {
+  const FrameView& frame = setup.view();
+  auto tiles = tiles_of({&pixels, 1});
+  std::size_t n_th = 0;
+  std::erase_if(tiles, [&](const auto&) { return n_th++ % pass.turns != pass.number % pass.turns; });
+  Workers workers(new_worker);
+  for_tiles(frame, tiles.size(), workers, stop, [&](std::size_t n, Worker& worker) {
+    worker.tile.begin(frame, tiles[n].x, tiles[n].y, pixels, worker.counts);
+    cast_tile(frame, {{0, 0, 0}, frame.voxels}, worker.tile, worker.memory, worker.counts);
+  });
 }
 
 }  // namespace tessera::volume

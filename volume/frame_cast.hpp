@@ -14,16 +14,21 @@
 
 namespace tessera::volume {
 
-/// Casts the rays of the pixels `wanted`, rectangles of which no two share a tile, through `part` of the volume in one
-/// go, tile by tile: a picture, the default way, where that is all of it. Every ray that meets the part comes to `sink`
-/// as one fragment; those that float lanes are not sure of after `in_double` has cast them again. A pilot pass needs
-/// neither, and casts the tiles of `turns`. Throws scene::FrameStopped once `stop` is asked for, within a tile of rays.
-/// Uses the calling thread's arena.
-///
-/// Gives what it counted; TileCounts::again of rays were cast again. `times` gets what each tile took, those rays left
-/// out.
-TileCounts cast_frame(const FrameSetup& setup, const VoxelBox& part, std::span<const scene::PixelRect> wanted,
-                      FragmentSink* sink, VoxelCaster* in_double, const std::stop_token& stop, PilotTurns turns = {},
-                      std::vector<TileTime>* times = nullptr);
+/// What a frame's rays took.
+struct FrameWork {
+  TileCounts counts;            ///< `again` of the rays were cast again
+  std::vector<TileTime> tiles;  ///< without the rays that were cast again
+};
+
+/// Casts the rays of the pixels `wanted` through `part` of the volume in one pass, tile by tile; no two of these
+/// rectangles share a tile. Every ray that meets the part comes to `sink` as one fragment; uncertain ones after
+/// `in_double` has cast them again. Throws scene::FrameStopped once `stop` is asked for, within a tile of rays. Uses
+/// the calling thread's arena.
+FrameWork cast_frame(const FrameSetup& setup, const VoxelBox& part, std::span<const scene::PixelRect> wanted,
+                     FragmentSink& sink, VoxelCaster& in_double, const std::stop_token& stop);
+
+/// A pilot pass (FrameView::tally) through the tiles of `pixels` whose turn it is. Stops and threads as cast_frame().
+void cast_pilot(const FrameSetup& setup, const scene::PixelRect& pixels, const PilotPass& pass,
+                const std::stop_token& stop);
 
 }  // namespace tessera::volume

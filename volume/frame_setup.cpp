@@ -42,7 +42,11 @@ constexpr float noise_of_rest = 0x1p-18f;
 
 ShadingView shading_view(const scene::Shading& s, const scene::Camera& camera, const scene::GridGeometry& geometry,
                          double voxel_side) {
-  ShadingView view{s.ambient, s.diffuse, s.specular, s.shininess, voxel_side, {}, {}, {}};
+  const auto number = [](double v) { return static_cast<float>(v); };
+  ShadingView view{};
+  view.ambient = number(s.ambient), view.diffuse = number(s.diffuse);
+  view.specular = number(s.specular), view.shininess = number(s.shininess);
+  view.unit = voxel_side;
   const scene::ViewBasis basis = scene::view_basis(camera);
   const glm::dvec3 l = glm::normalize(s.to_light);
   const glm::dvec3 light = s.camera_light ? basis.right * l.x + basis.up * l.y - basis.forward * l.z : l;
@@ -50,9 +54,13 @@ ShadingView shading_view(const scene::Shading& s, const scene::Camera& camera, c
   view.light_eye[2] = -glm::dot(light, basis.forward);
   const std::array<glm::dvec3, 3> rows = index_rows(geometry, voxel_side);
   for (std::size_t a = 0; a < 3; ++a) {
-    view.light[a] = glm::dot(rows[a], light);
-    for (std::size_t b = 0; b < 3; ++b) view.metric[a][b] = glm::dot(rows[a], rows[b]);
+    view.light[a] = number(glm::dot(rows[a], light));
+    for (std::size_t b = 0; b < 3; ++b) view.metric[a][b] = number(glm::dot(rows[a], rows[b]));
   }
+  // A unit normal turns by no more than the noise's part of the gradient, and light changes by this much a turn.
+  const double turn = s.diffuse + s.specular * std::max(1.0, s.shininess);
+  view.light_per_noise =
+      number(turn * std::sqrt(glm::dot(rows[0], rows[0]) + glm::dot(rows[1], rows[1]) + glm::dot(rows[2], rows[2])));
   return view;
 }
 

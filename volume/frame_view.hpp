@@ -46,11 +46,12 @@ struct PixelRays {
 /// Light and material as kernels want them. Gradients are per voxel along the grid's axes; with W the linear part of
 /// the map from world to index times `unit`, a world gradient is W^T g.
 struct ShadingView {
-  double ambient, diffuse, specular, shininess;
-  double unit;          ///< world units a world gradient is taken per: a voxel's side, so that squares fit a float
-  double metric[3][3];  ///< W W^T: squares of world gradients
-  double light[3];      ///< W l, l the unit vector towards the light: products with it
-  double light_eye[3];  ///< l along the camera's right and up axes and towards the eye
+  float ambient, diffuse, specular, shininess;
+  float metric[3][3];     ///< W W^T: squares of world gradients
+  float light[3];         ///< W l, l the unit vector towards the light: products with it
+  float light_per_noise;  ///< by how much light may change with a gradient's components, times the gradient's length
+  double unit;            ///< world units a world gradient is taken per: a voxel's side, so that squares fit a float
+  double light_eye[3];    ///< l along the camera's right and up axes and towards the eye
 };
 
 /// All that one frame's tiles share; read-only while they are made.

@@ -23,10 +23,9 @@
 namespace tessera::volume {
 namespace {
 
-scene::PixelRect within(scene::ImageSize size, const std::optional<scene::PixelRect>& region) {
-  if (!region) return {0, 0, size.width, size.height};
-  return {std::max(0, region->x0), std::max(0, region->y0), std::min(size.width, region->x1),
-          std::min(size.height, region->y1)};
+scene::PixelRect within(scene::ImageSize size, const scene::PixelRect& region) {
+  return {std::max(0, region.x0), std::max(0, region.y0), std::min(size.width, region.x1),
+          std::min(size.height, region.y1)};
 }
 
 /// The rectangle round all of them.
@@ -39,12 +38,11 @@ scene::PixelRect around(std::span<const scene::PixelRect> regions) {
 
 /// Pixels of a map, each with its ray's planes of the lattice.
 CostMap cost_of_planes(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,
-                       std::span<const scene::HalfSpace> clip, double resolution,
-                       const std::optional<scene::PixelRect>& region) {
+                       std::span<const scene::HalfSpace> clip, const CostSettings& settings) {
   CostMap map;
-  map.resolution = resolution;
+  const double resolution = map.resolution = settings.resolution;
   map.size = map_size(image, resolution);
-  map.region = region.value_or(scene::PixelRect{0, 0, map.size.width, map.size.height});
+  map.region = settings.region.value_or(scene::PixelRect{0, 0, map.size.width, map.size.height});
   const VoxelRays rays(camera, image, geometry, clip);
   for (int y = map.region.y0; y < map.region.y1; ++y)
     for (int x = map.region.x0; x < map.region.x1; ++x)
@@ -108,19 +106,20 @@ std::vector<std::array<glm::dvec3, 2>> Renderer::visible_bricks(
   return boxes;
 }
 
-/// What is to be cast.
-struct CastRequest {
-  VoxelBox part;
-  std::vector<scene::PixelRect> regions;   ///< no two share a tile
-  std::vector<TileTime>* times = nullptr;  ///< null: not asked for
-};
-
 namespace {
 
-/// What a cast gives beside its light.
+/// A view, and what of it is cast.
+struct View {
+  const scene::Camera& camera;
+  scene::ImageSize size;
+  std::vector<scene::PixelRect> regions;
+  VoxelBox part;
+};
+
+/// What a cast gives in addition to its light.
 struct Cast {
   std::vector<std::uint8_t> brick_visible;
-  TileCounts counts;
+  FrameWork work;
   std::uint64_t cull_us = 0;
   std::uint64_t blocks_read = 0, block_bytes = 0;  ///< rectilinear grids
 };
@@ -135,18 +134,17 @@ std::vector<std::uint8_t> bricks_in(const VoxelBox& part, const BrickLayout& lay
   return shown;
 }
 
-Cast cast_regular(RendererState& state, const scene::Camera& camera, scene::ImageSize size,
-                  const scene::TransferFunction& function, const CastRequest& wanted, FragmentSink& sink,
+Cast cast_regular(RendererState& state, const View& view, const scene::TransferFunction& function, FragmentSink& sink,
                   const std::stop_token& stop) {
   Cast cast;
   tbb::task_arena arena(scene::threads_for(state.settings.threads));
   arena.execute([&] {
-    const FrameSetup setup(state, camera, size, function, nullptr);
-    const std::vector<std::uint8_t> of_part = bricks_in(wanted.part, state.bricks.layout(), setup.brick_visible());
+    const FrameSetup setup(state, view.camera, view.size, function, nullptr);
+    const std::vector<std::uint8_t> of_part = bricks_in(view.part, state.bricks.layout(), setup.brick_visible());
     if (state.look_ahead) state.look_ahead->frame_shows(of_part);
-    VoxelCaster in_double(state.source, camera, size, function,
+    VoxelCaster in_double(state.source, view.camera, view.size, function,
                           state.voxel_settings(function, setup.visible(), setup.surfaces()));
-    cast.counts = cast_frame(setup, wanted.part, wanted.regions, &sink, &in_double, stop, {}, wanted.times);
+    cast.work = cast_frame(setup, view.part, view.regions, sink, in_double, stop);
     cast.brick_visible = setup.brick_visible();
     cast.cull_us = setup.cull_us();
     if (state.look_ahead) state.look_ahead->frame_cast(of_part);
@@ -154,9 +152,8 @@ Cast cast_regular(RendererState& state, const scene::Camera& camera, scene::Imag
   return cast;
 }
 
-Cast cast_rectilinear(RendererState& state, const scene::Camera& camera, scene::ImageSize size,
-                      const scene::TransferFunction& function, const CastRequest& wanted, FragmentSink& sink,
-                      const std::stop_token& stop) {
+Cast cast_rectilinear(RendererState& state, const View& view, const scene::TransferFunction& function,
+                      FragmentSink& sink, const std::stop_token& stop) {
   Cast cast;
   const integrals::LaneTable table = state.table_of(function);
   tbb::task_arena arena(scene::threads_for(state.settings.threads));
@@ -167,11 +164,12 @@ Cast cast_rectilinear(RendererState& state, const scene::Camera& camera, scene::
     cast.cull_us = microseconds_since(begin);
     const scene::TraceScope scope(state.settings.trace, "project");
     const GridSurfaces surfaces = state.surfaces_of(function);
-    VoxelCaster caster(state.source, camera, size, function, state.voxel_settings(function, visible, &surfaces));
-    for (const scene::PixelRect& region : wanted.regions) caster.cast(wanted.part, region, sink, stop);
+    VoxelCaster caster(state.source, view.camera, view.size, function,
+                       state.voxel_settings(function, visible, &surfaces));
+    for (const scene::PixelRect& region : view.regions) caster.cast(view.part, region, sink, stop);
     const VoxelCastCounts counts = caster.counts();
-    cast.counts.rays = counts.rays, cast.counts.voxels_visited = counts.voxels;
-    cast.counts.samples = counts.lines;
+    TileCounts& cast_counts = cast.work.counts;
+    cast_counts.rays = counts.rays, cast_counts.voxels_visited = counts.voxels, cast_counts.samples = counts.lines;
     cast.blocks_read = counts.blocks_read, cast.block_bytes = counts.bytes_read;
   });
   return cast;
@@ -185,104 +183,77 @@ ObjectSplit Renderer::object_split(const scene::TransferFunction& transfer_funct
           processes};
 }
 
-scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size,
-                              const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
-                              std::optional<scene::PixelRect> region, std::vector<float>* error_bounds,
-                              scene::FrameWatch* watch) {
+Frame Renderer::render(const scene::Camera& camera, scene::ImageSize size,
+                       const scene::TransferFunction& transfer_function, const CastRequest& request,
+                       scene::FrameWatch* watch) {
   scene::validate(size);
-  return cast({VoxelBox::all_of(geometry()), {within(size, region)}}, camera, size, transfer_function, statistics,
-              error_bounds, watch);
-}
-
-scene::Image Renderer::render_regions(const scene::Camera& camera, scene::ImageSize size,
-                                      const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
-                                      std::span<const scene::PixelRect> regions, std::vector<float>* error_bounds,
-                                      scene::FrameWatch* watch, std::vector<TileTime>* times) {
-  scene::validate(size);
-  CastRequest wanted{VoxelBox::all_of(geometry()), {}, times};
-  for (const scene::PixelRect& region : regions) wanted.regions.push_back(within(size, region));
-  return cast(wanted, camera, size, transfer_function, statistics, error_bounds, watch);
-}
-
-scene::Image Renderer::render_part(const VoxelBox& part, const scene::Camera& camera, scene::ImageSize size,
-                                   const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
-                                   const scene::PixelRect& region, std::vector<float>* error_bounds,
-                                   scene::FrameWatch* watch) {
-  scene::validate(size);
-  return cast({part, {within(size, region)}}, camera, size, transfer_function, statistics, error_bounds, watch);
-}
-
-scene::Image Renderer::cast(const CastRequest& wanted, const scene::Camera& camera, scene::ImageSize size,
-                            const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
-                            std::vector<float>* error_bounds, scene::FrameWatch* watch) {
   scene::validate(camera);
   RendererState& state = *state_;
+  View view{camera, size, {}, request.part.value_or(VoxelBox::all_of(geometry()))};
+  view.regions.reserve(request.regions.size());
+  for (const scene::PixelRect& region : request.regions) view.regions.push_back(within(size, region));
   const BrickCache::Counts before = state.counts_before;
-  if (state.look_ahead) state.look_ahead->begin(camera, size, around(wanted.regions));
+  if (state.look_ahead) state.look_ahead->begin(camera, size, around(view.regions));
   scene::FrameWatch nobody;
   if (watch == nullptr) watch = &nobody;
   watch->check();
-  scene::Image image(size);
-  if (error_bounds != nullptr) error_bounds->assign(image.depth.size(), 0.0f);
-  ImageSink sink(image, error_bounds == nullptr ? nullptr : error_bounds->data(), *watch);
+  Frame frame;
+  frame.image = scene::Image(size);
+  if (request.error_bounds) frame.error_bounds.assign(frame.image.depth.size(), 0.0f);
+  ImageSink sink(frame.image, request.error_bounds ? frame.error_bounds.data() : nullptr, *watch);
   const bool rectilinear = state.source.geometry().rectilinear();
-  const auto cast_by = rectilinear ? cast_rectilinear : cast_regular;
-  const Cast done = cast_by(state, camera, size, transfer_function, wanted, sink, watch->stop());
+  Cast done = (rectilinear ? cast_rectilinear : cast_regular)(state, view, transfer_function, sink, watch->stop());
   const BrickCache::Counts after = state.bricks.counts();
   state.counts_before = after;
-  if (statistics != nullptr) {
-    RenderStatistics s;
-    s.rays = done.counts.rays, s.voxels_visited = done.counts.voxels_visited, s.samples = done.counts.samples;
-    s.bricks_total = done.brick_visible.size();
-    s.bricks_invisible =
-        static_cast<std::uint64_t>(std::count(done.brick_visible.begin(), done.brick_visible.end(), 0));
-    s.brick_hits = after.hits - before.hits, s.bricks_loaded = after.loads - before.loads;
-    s.bricks_evicted = after.evictions - before.evictions, s.bytes_loaded = after.bytes_loaded - before.bytes_loaded;
-    s.bytes_resident = after.bytes, s.peak_bytes = after.peak_bytes;
-    s.bricks_preloaded = after.preloads - before.preloads, s.load_us = (after.load_ns - before.load_ns) / 1000;
-    s.cull_us = done.cull_us, s.evict_us = (after.evict_ns - before.evict_ns) / 1000;
-    if (rectilinear) s.bricks_loaded = done.blocks_read, s.bytes_loaded = done.block_bytes;
-    s.pixels_again = done.counts.again;
-    s.blank_samples = state.ranges.range.blanks;
-    const std::int64_t sets = hwy::SupportedTargets() & HWY_TARGETS;
-    s.instruction_set = hwy::TargetName(sets & -sets);
-    *statistics = s;
-  }
-  return image;
+  RenderStatistics& s = frame.statistics;
+  const TileCounts& counts = done.work.counts;
+  s.rays = counts.rays, s.voxels_visited = counts.voxels_visited, s.samples = counts.samples;
+  s.bricks_total = done.brick_visible.size();
+  s.bricks_invisible = static_cast<std::uint64_t>(std::count(done.brick_visible.begin(), done.brick_visible.end(), 0));
+  s.brick_hits = after.hits - before.hits, s.bricks_loaded = after.loads - before.loads;
+  s.bricks_evicted = after.evictions - before.evictions, s.bytes_loaded = after.bytes_loaded - before.bytes_loaded;
+  s.bytes_resident = after.bytes, s.peak_bytes = after.peak_bytes;
+  s.bricks_preloaded = after.preloads - before.preloads, s.load_us = (after.load_ns - before.load_ns) / 1000;
+  s.cull_us = done.cull_us, s.evict_us = (after.evict_ns - before.evict_ns) / 1000;
+  if (rectilinear) s.bricks_loaded = done.blocks_read, s.bytes_loaded = done.block_bytes;
+  s.pixels_again = counts.again;
+  s.blank_samples = state.ranges.range.blanks;
+  const std::int64_t sets = hwy::SupportedTargets() & HWY_TARGETS;
+  s.instruction_set = hwy::TargetName(sets & -sets);
+  if (request.tile_times) frame.tile_times = std::move(done.work.tiles);
+  return frame;
 }
 
 void Renderer::sample_work(const scene::Camera& camera, scene::ImageSize size,
-                           const scene::TransferFunction& transfer_function, WorkTally& tally,
-                           std::optional<scene::PixelRect> region, scene::FrameWatch* watch, PilotTurns turns) {
+                           const scene::TransferFunction& transfer_function, WorkTally& tally, const PilotPass& pass,
+                           scene::FrameWatch* watch) {
   scene::validate(camera);
   scene::validate(size);
   if (state_->source.geometry().rectilinear()) return;
   tbb::task_arena arena(scene::threads_for(state_->settings.threads));
   arena.execute([&] {
     const FrameSetup setup(*state_, camera, size, transfer_function, &tally);
-    const scene::PixelRect pixels = within(size, region);
-    cast_frame(setup, VoxelBox::all_of(geometry()), {&pixels, 1}, nullptr, nullptr,
-               watch == nullptr ? std::stop_token() : watch->stop(), turns);
+    const scene::PixelRect all{0, 0, size.width, size.height};
+    cast_pilot(setup, within(size, pass.region.value_or(all)), pass,
+               watch == nullptr ? std::stop_token() : watch->stop());
   });
 }
 
 CostMap Renderer::cost_map(const scene::Camera& camera, scene::ImageSize size,
-                           const scene::TransferFunction& transfer_function, CostMethod method, double resolution,
-                           std::optional<scene::PixelRect> region, const WorkRates* learned) const {
+                           const scene::TransferFunction& transfer_function, CostSettings settings) const {
   const RendererState& state = *state_;
   const scene::GridGeometry& geometry = state.source.geometry();
-  if (geometry.rectilinear()) return cost_of_planes(camera, size, geometry, state_->settings.clip, resolution, region);
+  if (geometry.rectilinear()) return cost_of_planes(camera, size, geometry, state_->settings.clip, settings);
   const std::vector<std::uint8_t> visible = cells_shown(state, transfer_function);
-  const bool by_voxels = !in_steps(state.settings.integrator.kind);
   std::vector<CostBox> bricks;
-  if (method != CostMethod::visited) bricks = bricks_shown(state, visible);
+  if (settings.method != CostMethod::visited) bricks = bricks_shown(state, visible);
+  settings.by_voxels = !in_steps(state.settings.integrator.kind);
+  settings.length_unit = state.length_unit;
+  settings.most_depth = -std::log(static_cast<double>(state.least_transmittance(transfer_function)));
   CostMap map;
   tbb::task_arena arena(scene::threads_for(state.settings.threads));
   arena.execute([&] {
-    map = volume::cost_map(camera, size, geometry, {state.ranges.cells, visible}, bricks,
-                           {method, resolution, by_voxels, learned, state.length_unit,
-                            -std::log(static_cast<double>(state.least_transmittance(transfer_function)))},
-                           region);
+    map = volume::cost_map(camera, size, geometry, {state.ranges.cells, visible}, bricks, settings);
   });
   return map;
 }

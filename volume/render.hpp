@@ -4,9 +4,9 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +19,8 @@
 #include "scene/transfer_function.hpp"
 #include "tessera/settings.hpp"
 #include "tessera/statistics.hpp"
+#include "volume/split/tile_costs.hpp"
+#include "volume/split/voxel_box.hpp"
 
 namespace tessera::volume {
 
@@ -42,21 +44,41 @@ struct RenderStatistics : GridCounters {
 /// Regions that begin and end at multiples of this many pixels share no work with their neighbours.
 inline constexpr int region_grain = 4;
 
-/// Which tiles a pilot pass casts.
-struct PilotTurns {
-  std::size_t number = 0, of = 1;
+/// What of an image is cast, and what is kept in addition to it.
+struct CastRequest {
+  /// No two share a tile; by default the whole image.
+  std::vector<scene::PixelRect> regions{{0, 0, std::numeric_limits<int>::max(), std::numeric_limits<int>::max()}};
+  /// Sort-last: the light of a part of the volume, as if the rest of it were empty. The regions hold all that it may
+  /// cover (footprint() in cost_map.hpp). Images of parts that make up the volume, composited front to back, are the
+  /// image to rounding. Bricks that hold voxels of the part are read, no others. IntegratorKind::preintegrated would
+  /// miss steps from one part to the next.
+  std::optional<VoxelBox> part{};
+  bool error_bounds = false, tile_times = false;
+};
+
+/// A frame of a volume.
+struct Frame {
+  scene::Image image;  ///< of pixels outside of the regions nothing
+  RenderStatistics statistics;
+  /// If asked for: by pixel, what float lanes may err there in linear RGBA, so far as they add it up
+  /// (lane_error_bound.hpp); above half the accuracy asked a pixel was cast again in double precision. Zero where no
+  /// ray was cast, and all over rectilinear grids.
+  std::vector<float> error_bounds;
+  std::vector<TileTime> tile_times;  ///< if asked for; none of rectilinear grids
+};
+
+/// A pilot pass: of the tiles of a region (none: the image) one in `turns` is cast, another with each `number`.
+struct PilotPass {
+  std::optional<scene::PixelRect> region{};
+  std::size_t number = 0, turns = 1;
 };
 
 struct CellRanges;
 struct CostMap;
+struct CostSettings;
 struct RendererState;
 class WorkTally;
-class WorkRates;
 class ObjectSplit;
-struct VoxelBox;
-struct TileTime;
-struct CastRequest;
-enum class CostMethod;
 
 /// Casts rays through one volume many times, in one process, by the ranges of values in its cells, by which empty space
 /// is skipped (cell_ranges.hpp). The source must outlive the renderer.
@@ -76,49 +98,24 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// The composited image in memory; only the pixels of `region` if there is one, the others stay empty. Throws
-  /// Error(bad_input) for an invalid camera or size; Error(system_failure) if the budget does not hold the bricks that
-  /// the threads need at one time. `error_bounds` gets, by pixel, what float lanes may err there in linear RGBA, so far
-  /// as they add it up (lane_error_bound.hpp); above half the accuracy asked a pixel was cast again in double
-  /// precision. Zero where no ray was cast, and all over rectilinear grids. `watch` hears of finished tiles of the
-  /// region; once it is asked to stop, render() throws scene::FrameStopped within a tile of rays, and can be called
-  /// again.
-  scene::Image render(const scene::Camera& camera, scene::ImageSize size,
-                      const scene::TransferFunction& transfer_function, RenderStatistics* statistics = nullptr,
-                      std::optional<scene::PixelRect> region = std::nullopt, std::vector<float>* error_bounds = nullptr,
-                      scene::FrameWatch* watch = nullptr);
+  /// Throws Error(bad_input) for an invalid camera or size; Error(system_failure) if the budget does not hold the
+  /// bricks that the threads need at one time. `watch` is called with finished tiles of the regions; once it is asked
+  /// to stop, render() throws scene::FrameStopped within a tile of rays, and can be called again.
+  Frame render(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
+               const CastRequest& request = {}, scene::FrameWatch* watch = nullptr);
 
-  /// Several regions, of which no two share a tile. `times` gets what each tile took (tile_costs.hpp); nothing of
-  /// rectilinear grids. As render() otherwise.
-  scene::Image render_regions(const scene::Camera& camera, scene::ImageSize size,
-                              const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
-                              std::span<const scene::PixelRect> regions, std::vector<float>* error_bounds,
-                              scene::FrameWatch* watch, std::vector<TileTime>* times);
-
-  /// Sort-last: the light of a part of the volume, as if the rest of it were empty, of the pixels of `region`, which
-  /// hold all that the part may cover (footprint() in cost_map.hpp). Pictures of parts that make up the volume,
-  /// composited front to back, are the picture to rounding. Reads bricks that hold voxels of the part, no others.
-  /// IntegratorKind::preintegrated would miss steps from one part to the next. As render() otherwise.
-  scene::Image render_part(const VoxelBox& part, const scene::Camera& camera, scene::ImageSize size,
-                           const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
-                           const scene::PixelRect& region, std::vector<float>* error_bounds, scene::FrameWatch* watch);
-
-  /// The pilot pass: casts every 32nd ray of the picture (more of a small one), or of a region of it, and counts where
-  /// in the volume the work was (learned_work.hpp); makes no light. Of tiles of rays one in `turns.of` is cast, another
-  /// with each `turns.number`. As render() otherwise.
+  /// The pilot pass: casts every 32nd ray of the image (more of a small one), and counts where in the volume the work
+  /// was (learned_work.hpp); makes no light. As render() otherwise.
   void sample_work(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
-                   WorkTally& tally, std::optional<scene::PixelRect> region = std::nullopt,
-                   scene::FrameWatch* watch = nullptr, PilotTurns turns = {});
+                   WorkTally& tally, const PilotPass& pass = {}, scene::FrameWatch* watch = nullptr);
 
   /// What each pixel will cost, for the split of the image between processes (cost_map.hpp): from the cells of 8^3
-  /// voxels, or the bricks, that the transfer function shows, and from what a pilot pass has taught, if given.
-  /// `region`: in map pixels.
+  /// voxels, or the bricks, that the transfer function shows. What this renderer knows of `settings` (voxels or
+  /// lengths, the length unit, where rays end) is its own.
   [[nodiscard]] CostMap cost_map(const scene::Camera& camera, scene::ImageSize size,
-                                 const scene::TransferFunction& transfer_function, CostMethod method, double resolution,
-                                 std::optional<scene::PixelRect> region = std::nullopt,
-                                 const WorkRates* learned = nullptr) const;
+                                 const scene::TransferFunction& transfer_function, CostSettings settings) const;
 
-  /// The volume cut into boxes for so many processes, for this transfer function (object_split.hpp).
+  /// The volume cut into boxes for `processes`, for this transfer function (object_split.hpp).
   [[nodiscard]] ObjectSplit object_split(const scene::TransferFunction& transfer_function, int processes) const;
 
   /// Of the whole volume, blank samples left out.
@@ -131,9 +128,6 @@ class Renderer {
 
  private:
   friend class ChunkCast;
-  scene::Image cast(const CastRequest& wanted, const scene::Camera& camera, scene::ImageSize size,
-                    const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
-                    std::vector<float>* error_bounds, scene::FrameWatch* watch);
 
   std::unique_ptr<RendererState> state_;
 };

@@ -37,19 +37,6 @@ std::uint64_t packets_in(int x0, int y0, const scene::PixelRect& region) {
   return wanted;
 }
 
-/// Cuts [from, to) to where a + b k is in [low, high). Boxes that share a plane find it at the same k. A ray along the
-/// plane is on its far side, but for the volume's last plane, at `end`.
-void cut(double a, double b, double low, double high, double end, double& from, double& to) {
-  if (b == 0) {
-    if (a < low || (a >= high && high < end)) to = -1;
-    return;
-  }
-  const double at_low = (low - a) / b, at_high = (high - a) / b;
-  // At the volume's ends k_in and k_out have it.
-  if (low > 0) (b > 0 ? from : to) = b > 0 ? std::max(from, at_low) : std::min(to, at_low);
-  if (high < end) (b > 0 ? to : from) = b > 0 ? std::min(to, at_high) : std::max(from, at_high);
-}
-
 bool has_all(const VoxelBox& chunk, const scene::GridIndex& voxels) {
   return chunk.low == scene::GridIndex{0, 0, 0} && chunk.high == voxels;
 }
@@ -91,10 +78,23 @@ bool TileState::enter(const FrameView& frame, const VoxelBox& chunk, int code) {
   bool any = false;
   for (int r = 0; r < TileRays::count; ++r) {
     double from = rays.k_in[r], to = rays.closed[r] != 0 ? -1 : rays.k_out[r];
+    // Cuts [from, to) to where a + b k is in the chunk. Chunks that share a plane find it at the same k. A ray along
+    // the plane is on its far side, but for the volume's last plane.
+    const auto cut = [&](double a, double b, std::size_t axis) {
+      const double low = number(chunk.low[axis]), high = number(chunk.high[axis]), end = number(frame.voxels[axis]);
+      if (b == 0) {
+        if (a < low || (a >= high && high < end)) to = -1;
+        return;
+      }
+      const double at_low = (low - a) / b, at_high = (high - a) / b;
+      // At the volume's ends k_in and k_out have it.
+      if (low > 0) (b > 0 ? from : to) = b > 0 ? std::max(from, at_low) : std::min(to, at_low);
+      if (high < end) (b > 0 ? to : from) = b > 0 ? std::min(to, at_high) : std::max(from, at_high);
+    };
     if (!all && from < to) {
       from = std::max(from, low_k), to = std::min(to, high_k);
-      cut(rays.ax[r], rays.bx[r], number(chunk.low[i]), number(chunk.high[i]), number(frame.voxels[i]), from, to);
-      cut(rays.ay[r], rays.by[r], number(chunk.low[j]), number(chunk.high[j]), number(frame.voxels[j]), from, to);
+      cut(rays.ax[r], rays.bx[r], i);
+      cut(rays.ay[r], rays.by[r], j);
     }
     rays.from[r] = from, rays.to[r] = to;
     if (!(from < to)) continue;

@@ -98,7 +98,7 @@ void PeelSink::add(std::size_t k) {
   if (is_crossing(w)) {
     const projection::Crossing crossing = projection::crossing_of(w.scalar_front);
     const scene::SurfaceSet::Light light = scene_.surfaces->light(crossing.number, crossing.cosine, w.scalar_back);
-    layers_.add_surface(w.front, light.red, light.green, light.blue, light.opacity, ray, ended_);
+    layers_.add_surface(w.front, light, ray, ended_);
   } else {
     integrals::RayLayers::Stretch stretch{w.front, w.back, w.scalar_front, w.scalar_back, batch_.length[k]};
     if (scene_.light != nullptr && batch_.optical_depth[k] > 0) {

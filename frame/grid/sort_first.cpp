@@ -100,17 +100,16 @@ class SortFirst::State {
     }();
     const std::vector<PixelRect> mine = split.parts(transport_.rank());
     const double cpu_before = process_cpu_seconds();
-    volume::RenderStatistics statistics;
-    std::vector<float> error_bounds;
-    std::vector<volume::TileTime> times;
-    scene::Image image;
+    volume::Frame made;
     bool stopped = false;
     try {
-      image = renderer.render_regions(job.camera, job.size, function, &statistics, mine,
-                                      frame_.keep_uncertainty ? &error_bounds : nullptr, &watch,
-                                      goes_by_times() ? &times : nullptr);
+      made = renderer.render(job.camera, job.size, function,
+                             {.regions = mine, .error_bounds = frame_.keep_uncertainty, .tile_times = goes_by_times()},
+                             &watch);
     } catch (const scene::FrameStopped&) {
       stopped = true;
+      made.image = scene::Image(job.size);
+      if (frame_.keep_uncertainty) made.error_bounds.resize(made.image.depth.size());
     }
     const double cpu = process_cpu_seconds() - cpu_before;
     if (settings_.balance == Balance::previous) share_times(cpu);
@@ -118,15 +117,15 @@ class SortFirst::State {
     last_split_ = split;
     last_size_ = job.size;
     VolumePart part;
-    part.header = {number, split.region(transport_.rank()), statistics,
+    part.header = {number, split.region(transport_.rank()), made.statistics,
                    cpu,    cpu_before - cpu_at_first,       stopped ? 1u : 0u};
     part.rectangles = mine;
-    part.finished.image = stopped ? scene::Image(job.size) : std::move(image);
-    part.finished.error_bounds = std::move(error_bounds);
-    part.finished.statistics = statistics;
+    part.finished.image = std::move(made.image);
+    part.finished.error_bounds = std::move(made.error_bounds);
+    part.finished.statistics = std::move(made.statistics);
     part.finished.split = split;
     part.finished.cost = std::move(cost_);
-    if (goes_by_times()) timed_ = job, times_here_ = {!stopped, process_token(), cpu, std::move(times)};
+    if (goes_by_times()) timed_ = job, times_here_ = {!stopped, process_token(), cpu, std::move(made.tile_times)};
     return part;
   }
 
@@ -215,8 +214,11 @@ class SortFirst::State {
     const int processes = transport_.size();
     const Balance balance = settings_.balance;
     const auto cost_of = [&](double resolution, std::optional<PixelRect> part) {
-      return renderer.cost_map(job.camera, job.size, function, method_of(balance), resolution, part,
-                               rates_ ? &*rates_ : nullptr);
+      return renderer.cost_map(job.camera, job.size, function,
+                               {.method = method_of(balance),
+                                .resolution = resolution,
+                                .learned = rates_ ? &*rates_ : nullptr,
+                                .region = part});
     };
     const bool by_times = balance == Balance::previous && !times_.empty();
     if (frame_.keep_cost && transport_.rank() == 0)
@@ -259,7 +261,7 @@ class SortFirst::State {
     learned_view_ = job.camera;
     constexpr std::size_t turns = 4;
     try {
-      renderer.sample_work(job.camera, job.size, function, *tally_, part, &watch, {pilots_, turns});
+      renderer.sample_work(job.camera, job.size, function, *tally_, {part, pilots_, turns}, &watch);
     } catch (const scene::FrameStopped&) {
       // The other ranks wait for this rank's result; the frame is dropped anyway.
     }

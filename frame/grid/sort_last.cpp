@@ -90,11 +90,8 @@ class SortLast::State {
   }
 
  private:
-  /// A rank's image of its part.
-  struct Picture {
-    scene::Image image;
-    std::vector<float> error_bounds;
-    volume::RenderStatistics statistics;
+  /// A rank's frame of its part.
+  struct Picture : volume::Frame {
     double cpu_seconds = 0;
     bool stopped = false;
   };
@@ -115,8 +112,9 @@ class SortLast::State {
     const double cpu_before = process_cpu_seconds();
     try {
       if (!region.empty())
-        mine.image = renderer.render_part(part, job.camera, job.size, function, &mine.statistics, region,
-                                          keeps_error_bounds_ ? &mine.error_bounds : nullptr, &quiet);
+        static_cast<volume::Frame&>(mine) =
+            renderer.render(job.camera, job.size, function,
+                            {.regions = {region}, .part = part, .error_bounds = keeps_error_bounds_}, &quiet);
       mine.stopped = watch.stopped();
     } catch (const scene::FrameStopped&) {
       mine.stopped = true;

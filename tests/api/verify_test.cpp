@@ -92,9 +92,9 @@ Scene of_grid(std::unique_ptr<scene::MemorySource> source, const scene::Camera& 
   volume::RenderSettings settings;
   settings.threads = 2;
   Scene scene;
-  std::vector<float> error_bounds;
-  scene.image = volume::Renderer(*kept, settings).render(camera, size, function, nullptr, std::nullopt, &error_bounds);
-  scene.suspects = [=](const scene::Image& image) {
+  volume::Frame frame = volume::Renderer(*kept, settings).render(camera, size, function, {.error_bounds = true});
+  scene.image = std::move(frame.image);
+  scene.suspects = [=, error_bounds = std::move(frame.error_bounds)](const scene::Image& image) {
     return api::suspects(image, *kept, camera, function, settings, error_bounds, looked_at);
   };
   return scene;

@@ -221,7 +221,7 @@ TEST(ClipPicture, OfVolumesIsThatOfRaysCutShort) {
     settings.clip = clip;
     settings.threads = 1;
     if (random.chance(0.3)) settings.grid.shading.emplace();
-    const scene::Image image = volume::Renderer(source, settings).render(camera, size, function);
+    const scene::Image image = volume::Renderer(source, settings).render(camera, size, function).image;
     const reference::GridReference reference(source, camera, size, function, Emission::absorption,
                                              settings.grid.shading, clip);
     const reference::Judgement judged = reference::judge(image, reference, 1e-5);

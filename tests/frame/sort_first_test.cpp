@@ -64,7 +64,7 @@ TEST(SortFirst, AnyNumberOfProcessesAndAnyBalanceGivesTheBitsOfOne) {
   alone.threads = 2;
   volume::Renderer renderer(*source, alone);
   std::vector<scene::Image> expected;
-  for (const VolumeJob& job : jobs) expected.push_back(renderer.render(job.camera, job.size, haze()));
+  for (const VolumeJob& job : jobs) expected.push_back(renderer.render(job.camera, job.size, haze()).image);
   test::SomeCases some(5);
   for (const int ranks : {1, 2, 3, 6})
     for (const Balance balance : {Balance::learned, Balance::accurate, Balance::backface, Balance::splatting,
@@ -105,8 +105,8 @@ TEST(SortFirst, EveryCounterIsThatOfAllRanksTogether) {
   GridCounters together;
   for (int rank = 0; rank < 3; ++rank) {
     volume::Renderer renderer(*source, alone);
-    volume::RenderStatistics part;
-    renderer.render(jobs[0].camera, jobs[0].size, haze(), &part, frames[0].split.region(rank));
+    const volume::RenderStatistics part =
+        renderer.render(jobs[0].camera, jobs[0].size, haze(), {.regions = {frames[0].split.region(rank)}}).statistics;
     EXPECT_GT(part.samples, 0u) << rank;
     together += part;
   }
@@ -170,7 +170,8 @@ TEST(SortFirst, LearnedBalanceGoesByTheTimesOfTilesWhereViewsAreNear) {
     for (std::size_t i = 0; i < jobs.size(); ++i) {
       // Only edges derived from times have steps.
       EXPECT_EQ(!frames[i].split.steps.empty(), i == 1 || i == 3) << i;
-      EXPECT_EQ(frames[i].image.rgba, renderer.render(jobs[i].camera, jobs[i].size, haze()).rgba) << ranks << ' ' << i;
+      EXPECT_EQ(frames[i].image.rgba, renderer.render(jobs[i].camera, jobs[i].size, haze()).image.rgba)
+          << ranks << ' ' << i;
     }
   }
 }

@@ -172,7 +172,7 @@ TEST(Balance, TheTwoStageSearchInPartsFindsTheSplitOfOneProcess) {
   settings.threads = 1;
   const Renderer renderer(*source, settings);
   for (const scene::Camera& camera : animation()) {
-    const CostMap whole = renderer.cost_map(camera, image, haze(), CostMethod::visited, 0.5);
+    const CostMap whole = renderer.cost_map(camera, image, haze(), {CostMethod::visited, 0.5});
     const ImageSplit expected = split(whole, image, std::vector<double>(6, 1.0), region_grain);
     // As in the first frame: each process computes the cost of an equal tile of the map.
     const scene::PixelRect area = footprint(camera, image, source->geometry());
@@ -181,7 +181,7 @@ TEST(Balance, TheTwoStageSearchInPartsFindsTheSplitOfOneProcess) {
     std::vector<CostMap> maps;
     std::vector<RowSums> rows;
     for (int p = 0; p < 6; ++p) {
-      maps.push_back(renderer.cost_map(camera, image, haze(), CostMethod::visited, 0.5, tiles.region(p)));
+      maps.push_back(renderer.cost_map(camera, image, haze(), {.resolution = 0.5, .region = tiles.region(p)}));
       rows.push_back(SplitSearch::row_sums(maps.back(), SummedArea(maps.back())));
     }
     SplitSearch search(image, 0.5, whole.size, std::vector<double>(6, 1.0), region_grain);
@@ -229,9 +229,9 @@ TEST(Balance, MapsOfQuarterResolutionGiveProcessesTheSameWork) {
   double visited = 0, accurate = 0, backface = 0, splatting = 0, even = 0;
   const std::vector<scene::Camera> cameras = animation();
   for (const scene::Camera& camera : cameras) {
-    const CostMap full = renderer.cost_map(camera, image, haze(), CostMethod::visited, 1);
+    const CostMap full = renderer.cost_map(camera, image, haze(), {CostMethod::visited, 1});
     const auto of = [&](CostMethod method) {
-      const CostMap map = renderer.cost_map(camera, image, haze(), method, 0.5);
+      const CostMap map = renderer.cost_map(camera, image, haze(), {method, 0.5});
       return deviation(work_of(full, split(map, image, std::vector<double>(6, 1.0))));
     };
     visited += of(CostMethod::visited);

@@ -161,7 +161,7 @@ TEST(VolumeCaster, VerySmallDoublesLookLikeOthers) {
     for (scene::Knot& knot : knots) knot.value *= scale;
     scene::Grid grid = v.grid;
     const auto source = scene::MemorySource::of(grid, values);
-    return volume::Renderer(*source, exact()).render(view("oblique"), size, scene::TransferFunction(knots));
+    return volume::Renderer(*source, exact()).render(view("oblique"), size, scene::TransferFunction(knots)).image;
   };
   const scene::Image expected = picture(1);
   for (const double scale : {0x1p-900, 0x1p-975, 0x1p-1009}) EXPECT_TRUE(same_bits(picture(scale), expected)) << scale;
@@ -206,7 +206,7 @@ TEST(VolumeCaster, ARegionHasThePixelsOfTheWhole) {
   const scene::Image whole = render(v, view("oblique"), smooth_function());
   volume::Renderer renderer(*v.source, {});
   const scene::PixelRect region{13, 7, 61, 50};
-  const scene::Image part = renderer.render(view("oblique"), size, smooth_function(), nullptr, region);
+  const scene::Image part = renderer.render(view("oblique"), size, smooth_function(), {.regions = {region}}).image;
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x) {
       const bool inside = x >= region.x0 && x < region.x1 && y >= region.y0 && y < region.y1;
@@ -223,7 +223,7 @@ TEST(VolumeCaster, PacketsManyVoxelsWideAreWithin1e5) {
     const scene::ImageSize coarse{8, 7};
     const tests::DoubleCaster caster{v.grid.geometry, [&](auto i, auto j, auto k) { return v.at(i, j, k); },
                                      smooth_function()};
-    const scene::Image image = volume::Renderer(*v.source, exact()).render(camera, coarse, smooth_function());
+    const scene::Image image = volume::Renderer(*v.source, exact()).render(camera, coarse, smooth_function()).image;
     for (int y = 0; y < coarse.height; ++y)
       for (int x = 0; x < coarse.width; ++x) {
         const auto pixel = caster.cast(camera, coarse, x + 0.5, y + 0.5);

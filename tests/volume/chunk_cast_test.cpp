@@ -412,7 +412,7 @@ TEST(ChunkCast, StopsAndRefusesWhatIsNoChunk) {
   std::stop_source stop;
   stop.request_stop();
   EXPECT_THROW(cast.advance(VoxelBox::all_of(v.grid.geometry), stop.get_token()), scene::FrameStopped);
-  const scene::Image after = renderer.render(view("oblique"), size, smooth_function());
+  const scene::Image after = renderer.render(view("oblique"), size, smooth_function()).image;
   EXPECT_TRUE(same_bits(after, render(v, view("oblique"), smooth_function(), exact())));
 }
 

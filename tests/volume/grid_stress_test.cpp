@@ -61,7 +61,7 @@ std::vector<scene::Camera> views_of(const scene::SampleSource& source) {
 double error_of(const scene::SampleSource& source, const scene::Camera& camera, const scene::TransferFunction& function,
                 volume::RenderSettings settings, double bound) {
   settings.threads = 2;
-  const scene::Image image = volume::Renderer(source, settings).render(camera, size, function);
+  const scene::Image image = volume::Renderer(source, settings).render(camera, size, function).image;
   const reference::GridReference truth(source, camera, size, function, settings.emission);
   std::vector<reference::PixelIndex> pixels;
   for (int y = 1; y < size.height; y += 5)
@@ -116,19 +116,20 @@ TEST(GridStress, RaysThatTouchAStepAreCastAgain) {
       volume::RenderSettings settings = automatic(1e-4);
       if (exact) settings.integrator.kind = IntegratorKind::exact;
       const double bound = exact ? 1e-5 : 1e-4;
-      volume::RenderStatistics statistics;
-      const scene::Image image = volume::Renderer(*source, settings).render(camera, all, function, &statistics);
+      const volume::Frame frame = volume::Renderer(*source, settings).render(camera, all, function);
+      const scene::Image& image = frame.image;
       const auto judgement = reference::judge(image, truth, bound, pixels, 2);
       EXPECT_LE(judgement.max_error, bound) << extinction;
-      EXPECT_GT(statistics.pixels_again, 0u);
-      EXPECT_LT(statistics.pixels_again, pixels.size());
+      EXPECT_GT(frame.statistics.pixels_again, 0u);
+      EXPECT_LT(frame.statistics.pixels_again, pixels.size());
 
       settings.grid.brick_size = 3, settings.threads = 1;
-      const scene::Image other = volume::Renderer(*source, settings).render(camera, all, function);
+      const scene::Image other = volume::Renderer(*source, settings).render(camera, all, function).image;
       EXPECT_EQ(other.rgba, image.rgba);
       EXPECT_EQ(other.depth, image.depth);
       const scene::PixelRect region{8, 12, 40, 64};
-      const scene::Image part = volume::Renderer(*source, settings).render(camera, all, function, nullptr, region);
+      const scene::Image part =
+          volume::Renderer(*source, settings).render(camera, all, function, {.regions = {region}}).image;
       for (int y = region.y0; y < region.y1; ++y)
         for (std::size_t n = 4 * image.index(region.x0, y); n < 4 * image.index(region.x1 - 1, y) + 4; ++n)
           ASSERT_EQ(part.rgba[n], image.rgba[n]);

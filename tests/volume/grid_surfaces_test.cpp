@@ -78,7 +78,7 @@ TEST(GridSurface, OfARampIsAPlaneLitByItsAngleAtTheDepthWhereTheFieldHasItsValue
   for (const double value : {0.625, 0.6}) {  // in a plane of the lattice, and between two
     surfaces.iso = {{value, glm::dvec3(0.5, 0.25, 0), 0.4}};
     const scene::Camera camera = from({2, 0, 4});
-    const scene::Image image = volume::Renderer(*source, exact_with(surfaces)).render(camera, small, clear());
+    const scene::Image image = volume::Renderer(*source, exact_with(surfaces)).render(camera, small, clear()).image;
     const std::size_t middle = image.index(12, 12);
     const double cosine = 4 / std::sqrt(20.0);
     const double matte = 0.2 + 0.8 * cosine, shine = 0.2 * std::pow(cosine, 32);
@@ -102,7 +102,7 @@ TEST(GridSurface, LiesBetweenWhatIsBeforeAndBehindIt) {
     for (const double opacity : {1.0, 0.25}) {
       surfaces.iso = {{0.5, glm::dvec3(1, 0, 0), opacity}};
       const auto image =
-          volume::Renderer(*source, exact_with(surfaces)).render(from({0, 0, 4 * side}), small, grey_fog());
+          volume::Renderer(*source, exact_with(surfaces)).render(from({0, 0, 4 * side}), small, grey_fog()).image;
       const std::size_t middle = 4 * image.index(4, 4);
       const double through = std::exp(-0.7), fog = 1 - through;  // one unit of it on either side, half of it grey
       const double behind = through * (1 - opacity);
@@ -128,7 +128,7 @@ TEST(GridSurface, AtTheValueOfSamplesIsMetOnce) {
       for (const double scale : {1.5, 33 / 32.0}) {
         scene::Camera camera = from({0, 0, 4 * side});
         camera.parallel_scale = scale;
-        const auto image = volume::Renderer(*source, exact_with(surfaces)).render(camera, small, clear());
+        const auto image = volume::Renderer(*source, exact_with(surfaces)).render(camera, small, clear()).image;
         for (int y = 6; y < 27; ++y)
           for (int x = 6; x < 27; ++x) EXPECT_NEAR(image.rgba[4 * image.index(x, y) + 3], 0.5, 1e-6) << x << ' ' << y;
       }
@@ -149,7 +149,7 @@ TEST(GridSurface, ManyInOneVoxelAreAllMetInTheirOrder) {
     for (const double side : {1.0, -1.0}) {
       volume::RenderSettings settings = exact_with(surfaces);
       if (shaded) settings.grid.shading.emplace();
-      const auto image = volume::Renderer(*source, settings).render(from({1, 0.7, 4 * side}), {24, 24}, clear());
+      const auto image = volume::Renderer(*source, settings).render(from({1, 0.7, 4 * side}), {24, 24}, clear()).image;
       const std::size_t middle = 4 * image.index(12, 12);
       EXPECT_NEAR(image.rgba[middle], side > 0 ? first : last, 1e-6);
       EXPECT_NEAR(image.rgba[middle + 1], side > 0 ? last : first, 1e-6);
@@ -163,8 +163,8 @@ TEST(GridSurface, FewRaysThatMeetThemAreCastAgainInDoublePrecision) {
   for (int n = 1; n < 10; ++n)
     surfaces.iso.push_back({0.1 * n + 0.037, std::nullopt, 0.3});  // not at a side of the volume
   for (const char* name : {"oblique", "perspective"}) {
-    volume::RenderStatistics statistics;
-    volume::Renderer(*volume.source, exact_with(surfaces)).render(view(name), size, smooth_function(), &statistics);
+    const volume::RenderStatistics statistics =
+        volume::Renderer(*volume.source, exact_with(surfaces)).render(view(name), size, smooth_function()).statistics;
     EXPECT_LT(static_cast<double>(statistics.pixels_again), 0.005 * static_cast<double>(statistics.rays)) << name;
   }
 }
@@ -189,18 +189,17 @@ TEST(GridSurface, OfWholeNumbersAreFoundInLanesWhereSidesOfVoxelsHaveTheirValue)
   camera.position = {50, 33, 61};
   camera.projection = ProjectionKind::orthographic;
   camera.parallel_scale = 25;
-  volume::RenderStatistics statistics;
-  const auto image = volume::Renderer(*source, exact_with(surfaces)).render(camera, size, function, &statistics);
+  const volume::Frame frame = volume::Renderer(*source, exact_with(surfaces)).render(camera, size, function);
   const reference::GridReference truth(*source, camera, size, function, scene::Emission::absorption, {}, {}, surfaces);
-  EXPECT_LE(reference::judge(image, truth, promised_error, {}, 2).max_error_not_excused, promised_error);
-  EXPECT_LT(static_cast<double>(statistics.pixels_again), 0.05 * static_cast<double>(statistics.rays));
+  EXPECT_LE(reference::judge(frame.image, truth, promised_error, {}, 2).max_error_not_excused, promised_error);
+  EXPECT_LT(static_cast<double>(frame.statistics.pixels_again), 0.05 * static_cast<double>(frame.statistics.rays));
 }
 
 TEST(GridSurface, BeyondTheFieldsRangeOrOnlyOnTheBoundaryIsNone) {
   Surfaces surfaces;
   surfaces.iso = {{-0.1, {}, 1}, {1.1, {}, 1}, {0, {}, 1}};
   const auto source = volume_of(cube(), ramp);
-  const auto image = volume::Renderer(*source, exact_with(surfaces)).render(from({2, 1, 4}), {16, 16}, clear());
+  const auto image = volume::Renderer(*source, exact_with(surfaces)).render(from({2, 1, 4}), {16, 16}, clear()).image;
   for (const float v : image.rgba) EXPECT_EQ(v, 0.0f);
 }
 
@@ -213,7 +212,7 @@ TEST(GridSurface, InAClipsPlaneIsSeenAllOverWhatLiesBelowItsValueAndNowhereAbove
     for (const double kept : {1.0, -1.0}) {
       volume::RenderSettings settings = exact_with(surfaces);
       settings.clip = {{{0, 0, 0.3}, {0, 0, kept}}};
-      const auto image = volume::Renderer(*source, settings).render(from({1, 0.7, 4 * side}), {24, 24}, clear());
+      const auto image = volume::Renderer(*source, settings).render(from({1, 0.7, 4 * side}), {24, 24}, clear()).image;
       for (int y = 9; y < 15; ++y)
         for (int x = 9; x < 15; ++x)
           EXPECT_NEAR(image.rgba[4 * image.index(x, y) + 3], kept < 0 ? 0.5 : 0, 1e-6) << side << ' ' << kept;
@@ -348,7 +347,7 @@ TEST(GridSurface, RandomOnesKeepThePromise) {
     if (!some.next()) continue;
     ++tried;
     const Case c = random_case(static_cast<unsigned>(number));
-    const auto image = volume::Renderer(*c.source, c.settings).render(c.camera, small, c.function);
+    const auto image = volume::Renderer(*c.source, c.settings).render(c.camera, small, c.function).image;
     const reference::GridReference truth(*c.source, c.camera, small, c.function, c.settings.emission,
                                          c.settings.grid.shading, c.settings.clip, c.settings.surfaces);
     const auto judged = reference::judge(image, truth, promised_error, {}, 2);
@@ -358,7 +357,7 @@ TEST(GridSurface, RandomOnesKeepThePromise) {
         << (c.settings.clip.empty() ? "" : " clipped");
     volume::RenderSettings without = c.settings;
     without.surfaces = {};
-    seen += volume::Renderer(*c.source, without).render(c.camera, small, c.function).rgba != image.rgba ? 1 : 0;
+    seen += volume::Renderer(*c.source, without).render(c.camera, small, c.function).image.rgba != image.rgba ? 1 : 0;
     worst = std::max(worst, judged.max_error_not_excused), excused += judged.excused, pixels += judged.pixels_checked;
   }
   EXPECT_LE(static_cast<double>(excused), 1e-4 * static_cast<double>(pixels) + 3);
@@ -373,7 +372,7 @@ TEST(GridSurface, RandomOnesKeepThePromiseOnEveryInstructionSet) {
   for_each_instruction_set([&](const std::string& name) {
     for (unsigned number = 0; number < 24; ++number) {
       const Case c = random_case(number);
-      const auto image = volume::Renderer(*c.source, c.settings).render(c.camera, small, c.function);
+      const auto image = volume::Renderer(*c.source, c.settings).render(c.camera, small, c.function).image;
       const reference::GridReference truth(*c.source, c.camera, small, c.function, c.settings.emission,
                                            c.settings.grid.shading, c.settings.clip, c.settings.surfaces);
       EXPECT_LE(reference::judge(image, truth, promised_error, {}, 2).max_error_not_excused, promised_error)
@@ -400,8 +399,9 @@ TEST(GridSurface, BitsDoNotDependOnBricksThreadsOrRegionsNorLightOnSkippedSpace)
       const scene::Image all = render(volume, view(name), sharp_function(), other);
       for (std::size_t n = 0; n < image.rgba.size(); ++n) ASSERT_NEAR(all.rgba[n], image.rgba[n], 1e-6) << name;
       const scene::PixelRect region{12, 20, 64, 72};
-      const scene::Image part =
-          volume::Renderer(*volume.source, settings).render(view(name), size, sharp_function(), nullptr, region);
+      const scene::Image part = volume::Renderer(*volume.source, settings)
+                                    .render(view(name), size, sharp_function(), {.regions = {region}})
+                                    .image;
       for (int y = region.y0; y < region.y1; ++y)
         for (std::size_t n = 4 * image.index(region.x0, y); n < 4 * image.index(region.x1 - 1, y) + 4; ++n)
           ASSERT_EQ(part.rgba[n], image.rgba[n]) << name;
@@ -414,7 +414,7 @@ TEST(GridSurface, GoesInChunksToo) {
   surfaces.iso = {{0.4, glm::dvec3(1, 0.4, 0), 0.3}, {0.75, glm::dvec3(0, 1, 0.2), 1}};
   volume::Renderer renderer(*volume.source, exact_with(surfaces));
   for (const char* name : {"oblique", "perspective"}) {
-    const scene::Image whole = renderer.render(view(name), size, smooth_function());
+    const scene::Image whole = renderer.render(view(name), size, smooth_function()).image;
     scene::Image image(size);
     scene::FrameWatch nobody;
     volume::ImageSink sink(image, nullptr, nobody);

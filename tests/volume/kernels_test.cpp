@@ -29,13 +29,12 @@ void expect_right(const std::string& what, const scene::SampleSource& source, co
     const auto pixels = reference::random_pixels(size, 60, 3);
     int sets = 0;
     for_each_instruction_set([&](const char* name) {
-      volume::RenderStatistics statistics;
-      const scene::Image image = volume::Renderer(source, settings).render(camera, size, function, &statistics);
-      const auto judged = reference::judge(image, truth, bound, pixels);
+      const volume::Frame frame = volume::Renderer(source, settings).render(camera, size, function);
+      const auto judged = reference::judge(frame.image, truth, bound, pixels);
       EXPECT_TRUE(judged.passed) << what << ' ' << from << ' ' << name << ": " << judged.max_error << " at "
                                  << judged.worst_x << ' ' << judged.worst_y << ", excused " << judged.excused;
-      EXPECT_EQ(statistics.instruction_set, name);
-      EXPECT_GT(statistics.samples, 0u) << what << ' ' << from << ' ' << name;
+      EXPECT_EQ(frame.statistics.instruction_set, name);
+      EXPECT_GT(frame.statistics.samples, 0u) << what << ' ' << from << ' ' << name;
       ++sets;
     });
     EXPECT_GT(sets, 0);

@@ -155,13 +155,14 @@ TEST(LookAhead, GoesOnFromFrameToFrameAndChangesNoBit) {
   std::uint64_t loads = 0, loads_ahead = 0, loads_by_need = 0;
   int frame = 0;
   const auto render_next = [&] {
-    volume::RenderStatistics with, without;
-    const scene::Image image = ahead.render(turned(frame), size, smooth_function(), &with);
-    EXPECT_TRUE(same_bits(image, by_need.render(turned(frame), size, smooth_function(), &without))) << frame;
+    const volume::Frame with = ahead.render(turned(frame), size, smooth_function()),
+                        without = by_need.render(turned(frame), size, smooth_function());
+    EXPECT_TRUE(same_bits(with.image, without.image)) << frame;
     // The limit applies to a frame; bricks planned for the previous one may have been in flight.
-    EXPECT_LE(with.bricks_preloaded, 2u * 60 + 1);
+    EXPECT_LE(with.statistics.bricks_preloaded, 2u * 60 + 1);
     if (++frame <= 2) return false;
-    loads += with.bricks_loaded, loads_ahead += with.bricks_preloaded, loads_by_need += without.bricks_loaded;
+    loads += with.statistics.bricks_loaded, loads_ahead += with.statistics.bricks_preloaded;
+    loads_by_need += without.statistics.bricks_loaded;
     return frame >= 16 && loads_ahead > 0 && loads < loads_by_need;
   };
   EXPECT_TRUE(test::await(render_next)) << "no brick was there before it was needed: " << loads << " loads of "
@@ -179,11 +180,7 @@ TEST(LookAhead, LoadsWhileFramesFollowEachOtherAtOnce) {
   // Some frame of an endless turn finds the loading thread busy.
   int frame = 0;
   EXPECT_TRUE(test::await(
-      [&] {
-        volume::RenderStatistics statistics;
-        renderer.render(turned(frame++), size, smooth_function(), &statistics);
-        return statistics.bricks_preloaded > 0;
-      },
+      [&] { return renderer.render(turned(frame++), size, smooth_function()).statistics.bricks_preloaded > 0; },
       std::chrono::milliseconds(0)));
 }
 
@@ -209,12 +206,12 @@ TEST(VolumeCaster, AVolumeFourTimesTheBudgetStaysWithinItAndPreloadsBetweenFrame
     s.grid.cache = cache;
     s.grid.preload_limit = cache == CachePolicy::proximity ? 6 : 0;
     volume::Renderer renderer(*v.source, s);
-    volume::RenderStatistics statistics;
-    for (int frame = 0; frame < 3; ++frame) {
-      EXPECT_TRUE(same_bits(renderer.render(view("perspective"), size, smooth_function(), &statistics), whole));
-      EXPECT_LE(statistics.peak_bytes, s.memory_bytes);
-      EXPECT_GT(statistics.bricks_loaded, 0u);
-      EXPECT_GT(statistics.bricks_evicted, 0u);
+    for (int n = 0; n < 3; ++n) {
+      const volume::Frame frame = renderer.render(view("perspective"), size, smooth_function());
+      EXPECT_TRUE(same_bits(frame.image, whole));
+      EXPECT_LE(frame.statistics.peak_bytes, s.memory_bytes);
+      EXPECT_GT(frame.statistics.bricks_loaded, 0u);
+      EXPECT_GT(frame.statistics.bricks_evicted, 0u);
     }
     // The last frame's preloading may still continue: the renderer ends it.
   }

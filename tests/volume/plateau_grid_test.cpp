@@ -66,7 +66,7 @@ void expect_right(const scene::SampleSource& source, const std::vector<scene::Kn
       settings.integrator.kind = method;
       settings.threads = 2;
       const double bound = method == IntegratorKind::exact ? 1e-5 : 1e-4;
-      const scene::Image image = volume::Renderer(source, settings).render(camera, size, function);
+      const scene::Image image = volume::Renderer(source, settings).render(camera, size, function).image;
       const auto judgement = reference::judge(image, truth, bound, {}, 2);
       EXPECT_LE(judgement.max_error_not_excused, bound)
           << what << ", view " << number << ", bound " << bound << ", worst at " << judgement.worst_x << ' '
@@ -103,12 +103,12 @@ TEST(PlateauGrid, RegionsHaveTheBitsOfTheWhole) {
     volume::RenderSettings settings;
     settings.threads = 2;
     volume::Renderer renderer(*noise, settings);
-    const scene::Image whole = renderer.render(camera, size, function);
+    const scene::Image whole = renderer.render(camera, size, function).image;
     for (int i = 0; i < 6; ++i) {
       const int x = static_cast<int>(random() % 22) * 4, y = static_cast<int>(random() % 18) * 4;
       const scene::PixelRect region{x, y, std::min(x + 4 + 4 * static_cast<int>(random() % 9), size.width),
                                     std::min(y + 4 + 4 * static_cast<int>(random() % 9), size.height)};
-      const scene::Image part = renderer.render(camera, size, function, nullptr, region);
+      const scene::Image part = renderer.render(camera, size, function, {.regions = {region}}).image;
       for (int v = region.y0; v < region.y1; ++v)
         for (int u = region.x0; u < region.x1; ++u)
           for (std::size_t c = 0; c < 4; ++c)
@@ -200,7 +200,7 @@ TEST(PlateauGrid, LastPlacesOfDoublesAreNumbersLikeOthers) {
       volume::RenderSettings settings;
       settings.integrator.kind = IntegratorKind::exact;
       settings.threads = 2;
-      const scene::Image image = volume::Renderer(*near, settings).render(camera, size, near_function);
+      const scene::Image image = volume::Renderer(*near, settings).render(camera, size, near_function).image;
       const auto judgement = reference::judge(image, truth, 1e-5, {}, 2);
       EXPECT_LE(judgement.max_error, 1e-5) << judgement.worst_x << ' ' << judgement.worst_y;
       for (int y = 0; y < size.height; y += 3)
@@ -293,7 +293,7 @@ TEST(PlateauGrid, RaysInALatticePlaneHaveItsValues) {
       const reference::GridReference truth(*source, camera, size, function, scene::Emission::absorption);
       volume::RenderSettings settings;
       settings.integrator.kind = IntegratorKind::exact;
-      const scene::Image image = volume::Renderer(*source, settings).render(camera, size, function);
+      const scene::Image image = volume::Renderer(*source, settings).render(camera, size, function).image;
       const std::size_t middle = image.index(4, 4);
       const double alpha = 1 - std::exp(-2 * extinction);  // the middle pixel's ray goes along x through the whole grid
       EXPECT_NEAR(image.rgba[4 * middle + 3], alpha, 1e-5);
@@ -325,7 +325,7 @@ TEST(PlateauGrid, RaysInALatticePlaneStayOnOneSide) {
             volume::RenderSettings settings;
             settings.integrator.kind = IntegratorKind::exact;
             settings.threads = 2;
-            const scene::Image image = volume::Renderer(*source, settings).render(camera, size, function);
+            const scene::Image image = volume::Renderer(*source, settings).render(camera, size, function).image;
             const auto judgement = reference::judge(image, truth, 1e-5, {}, 2);
             EXPECT_LE(judgement.max_error_not_excused, 1e-5)
                 << axis << ' ' << side << ' ' << turned << ' ' << perspective << ", worst at " << judgement.worst_x
@@ -351,7 +351,7 @@ void expect_lit_right(const scene::SampleSource& source, const std::string& what
       settings.grid.shading = shading;
       settings.surfaces = shown;
       const reference::GridReference truth(source, camera, size, grey, scene::Emission::absorption, shading, {}, shown);
-      const scene::Image image = volume::Renderer(source, settings).render(camera, size, grey);
+      const scene::Image image = volume::Renderer(source, settings).render(camera, size, grey).image;
       EXPECT_LE(reference::judge(image, truth, 1e-5, {}, 2).max_error_not_excused, 1e-5)
           << what << ", view " << number++ << ", surface " << has_surface;
     }

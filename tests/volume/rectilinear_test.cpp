@@ -80,7 +80,7 @@ TEST(Rectilinear, PicturesKeepTheirPromiseHoweverUnequalTheSpacings) {
               s.integrator.kind = shaded ? IntegratorKind::automatic : IntegratorKind::exact;
               if (shaded) s.grid.shading = scene::Shading{.to_light = {0.3, 0.8, 0.5}, .camera_light = perspective};
               const scene::Camera camera = view(perspective, eye);
-              const scene::Image image = volume::Renderer(*source, s).render(camera, size, steep());
+              const scene::Image image = volume::Renderer(*source, s).render(camera, size, steep()).image;
               const reference::GridReference truth(*source, camera, size, steep(), s.emission, s.grid.shading);
               const auto pixels = reference::random_pixels(size, 300, 7);
               const auto judged = reference::judge(image, truth, shaded ? 1e-4 : 1e-5, pixels);
@@ -105,7 +105,7 @@ TEST(Rectilinear, PeaksAHundredthOfTheRangeWideKeepThePromise) {
       volume::RenderSettings s;
       s.integrator.kind = IntegratorKind::exact;
       const scene::Camera camera = view(false, {1.9, 1.3, 2.6});
-      const scene::Image image = volume::Renderer(*source, s).render(camera, size, peaks);
+      const scene::Image image = volume::Renderer(*source, s).render(camera, size, peaks).image;
       const reference::GridReference truth(*source, camera, size, peaks, s.emission);
       const auto judged = reference::judge(image, truth, 1e-5, reference::random_pixels(size, 1500, 7));
       EXPECT_LE(judged.max_error, 1e-5) << ratio << ' ' << smooth << ", excused " << judged.excused;
@@ -127,8 +127,8 @@ TEST(Rectilinear, EqualSpacingsGiveTheRegularGridsPicture) {
   s.integrator.kind = IntegratorKind::exact;
   for (const bool perspective : {false, true}) {
     const scene::Camera camera = view(perspective, {2, 1.5, 2.5});
-    const scene::Image a = volume::Renderer(*listed, s).render(camera, size, steep());
-    const scene::Image b = volume::Renderer(*regular, s).render(camera, size, steep());
+    const scene::Image a = volume::Renderer(*listed, s).render(camera, size, steep()).image;
+    const scene::Image b = volume::Renderer(*regular, s).render(camera, size, steep()).image;
     double worst = 0;
     for (std::size_t n = 0; n < a.rgba.size(); ++n) worst = std::max(worst, double(std::abs(a.rgba[n] - b.rgba[n])));
     EXPECT_LT(worst, 2e-5);  // each promises 1e-5
@@ -147,29 +147,28 @@ TEST(Rectilinear, RegionsThreadsAndWhatIsSkippedShowInNoBit) {
   const scene::Camera camera = view(true, {2, 1.5, 2.5});
   volume::RenderSettings s;
   s.threads = 1;
-  volume::RenderStatistics statistics;
-  const scene::Image whole = volume::Renderer(*source, s).render(camera, size, steep(), &statistics);
-  EXPECT_GT(statistics.rays, 0u);
-  EXPECT_GT(statistics.voxels_visited, statistics.rays);
+  const volume::Frame whole = volume::Renderer(*source, s).render(camera, size, steep());
+  EXPECT_GT(whole.statistics.rays, 0u);
+  EXPECT_GT(whole.statistics.voxels_visited, whole.statistics.rays);
   s.threads = 3, s.grid.brick_size = 5;
   s.use.culling = s.use.skipping = false;
   volume::Renderer renderer(*source, s);
   scene::Image pieces(size);
   for (const scene::PixelRect& part :
        {scene::PixelRect{0, 0, 20, 53}, scene::PixelRect{20, 0, 61, 28}, scene::PixelRect{20, 28, 61, 53}}) {
-    const scene::Image image = renderer.render(camera, size, steep(), nullptr, part);
+    const scene::Image image = renderer.render(camera, size, steep(), {.regions = {part}}).image;
     for (int y = part.y0; y < part.y1; ++y)
       for (int x = part.x0; x < part.x1; ++x)
         std::copy_n(&image.rgba[4 * image.index(x, y)], 4, &pieces.rgba[4 * pieces.index(x, y)]);
   }
-  EXPECT_EQ(std::memcmp(pieces.rgba.data(), whole.rgba.data(), whole.rgba.size() * sizeof(float)), 0);
+  EXPECT_EQ(std::memcmp(pieces.rgba.data(), whole.image.rgba.data(), whole.image.rgba.size() * sizeof(float)), 0);
 }
 
 TEST(Rectilinear, CostIsWhereVoxelsAre) {
   const auto source = graded(30, scene::Association::point, true);
   const volume::Renderer renderer(*source, {});
   const volume::CostMap map =
-      renderer.cost_map(view(false, {0, 0, 5}), size, steep(), volume::CostMethod::visited, 0.5);
+      renderer.cost_map(view(false, {0, 0, 5}), size, steep(), {volume::CostMethod::visited, 0.5});
   const auto at = [&](int x, int y) { return map.cost[static_cast<std::size_t>(y * map.size.width + x)]; };
   EXPECT_EQ(at(0, 0), 0u);
   EXPECT_GE(at(map.size.width / 2, map.size.height / 2), 64u * 20);  // all planes of z except the first

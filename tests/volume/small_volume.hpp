@@ -105,7 +105,9 @@ inline constexpr const char* views[] = {"oblique", "from -x", "from y", "along z
 inline scene::Image render(const Volume& v, const scene::Camera& camera, const scene::TransferFunction& function,
                            volume::RenderSettings settings = {}, volume::RenderStatistics* statistics = nullptr) {
   if (settings.threads == 0) settings.threads = 2;
-  return volume::Renderer(*v.source, settings).render(camera, size, function, statistics);
+  volume::Frame frame = volume::Renderer(*v.source, settings).render(camera, size, function);
+  if (statistics != nullptr) *statistics = frame.statistics;
+  return std::move(frame.image);
 }
 
 inline volume::RenderSettings exact() {

@@ -73,12 +73,11 @@ Outcome outcome_of(const scene::SampleSource& source, const scene::Camera& camer
     else
       settings.integrator.accuracy = accuracy;
     const double bound = accuracy == 0 ? 1e-5 : accuracy;
-    volume::RenderStatistics statistics;
-    const scene::Image image = volume::Renderer(source, settings).render(camera, size, function, &statistics);
-    const auto judgement = reference::judge(image, truth, bound, pixels, 2);
+    const volume::Frame frame = volume::Renderer(source, settings).render(camera, size, function);
+    const auto judgement = reference::judge(frame.image, truth, bound, pixels, 2);
     EXPECT_EQ(judgement.excused, 0u);
     worst.error = std::max(worst.error, judgement.max_error_not_excused / bound);
-    worst.in_double = std::max(worst.in_double, statistics.pixels_again);
+    worst.in_double = std::max(worst.in_double, frame.statistics.pixels_again);
   }
   return worst;
 }

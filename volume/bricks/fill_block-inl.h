@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Samples from bricks into a SlabBlock, as lane scalars; included once per instruction set.
 //
-// Cells of 8^3 voxels that the transfer function hides are not read: their samples become the cell's smallest value,
-// which the function hides as well. Whether a sample is read depends on those cells alone, not on bricks.
+// What      A block has the slices of a chunk that a tile's rays meet, along the rays' axes; bricks are native boxes.
+// How       Cells of 8^3 voxels that the transfer function hides are not read: their samples become the cell's smallest
+//           value, which the function hides as well, or blank if the volume has blanks. Of the others rows of samples
+//           are converted a vector at a time.
+// Accuracy  LaneSamples::lane(), rounded to float; what that leaves off goes to SlabBlock::rest where gradients need
+//           it.
+// Bits      Whether a sample is read depends on cells alone, not on bricks, and conversion is LaneSamples::lane() to
+//           the bit: blocks are alike for any brick size.
+// Ends      Blanks are NaN. Columns and rows beyond the box repeat its last ones.
 
 #if defined(TESSERA_VOLUME_FILL_BLOCK_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_FILL_BLOCK_INL_H_
@@ -73,7 +80,7 @@ HWY_INLINE void convert(const T* from, std::int64_t count, std::int64_t readable
         if constexpr (std::is_same_v<T, float>) {
           const auto sample = LoadU(df, from + at);
           const auto lane = sample * scale;
-          return (lanes.whole ? Round(lane) : lane) + Sub(sample, sample);
+          return (lanes.whole ? Round(lane) : lane) + Sub(sample, sample);  // NaN where it is not finite
         } else {
           const hn::RebindToSigned<decltype(df)> di;
           const auto sample = ConvertTo(df, PromoteTo(di, LoadU(hn::Rebind<T, decltype(df)>(), from + at)));
@@ -134,15 +141,6 @@ HWY_INLINE void with_type(scene::SampleType type, const F& f) {
     case scene::SampleType::float64:
       return f(double{});
   }
-}
-
-/// Samples [first, first + count) of a brick of `samples`.
-HWY_INLINE void convert_any(const std::byte* from, scene::SampleType type, std::int64_t first, std::int64_t count,
-                            std::int64_t samples, const LaneSamples& lanes, float* to, float* rest) {
-  with_type(type, [&](auto kind) HWY_ATTR {
-    using T = decltype(kind);
-    convert(reinterpret_cast<const T*>(from) + first, count, samples - first, lanes, to, rest);
-  });
 }
 
 /// Native boxes and where their samples go in the block.
@@ -216,7 +214,7 @@ struct Target {
   }
 };
 
-/// One block being filled: what samples it takes, and of which the transfer function shows something.
+/// One block being filled: the samples it takes, and whether the transfer function hides some of them.
 class BlockFill {
  public:
   HWY_INLINE BlockFill(const FrameView& frame, const RayAxes& axes, const ChunkBox& box, SlabBlock& block)
@@ -376,13 +374,19 @@ class BlockFill {
   /// Of a brick's samples those that are seen. It is not acquired if none is.
   HWY_INLINE void take_seen_of(const scene::GridIndex& place, std::vector<float>& row_memory) const {
     const BrickLayout& layout = frame_.bricks->layout();
-    const scene::SampleType type = frame_.bricks->source().grid().type;
     const scene::SampleBox brick = layout.box(place);
     const scene::GridIndex room = layout.room(place);
     std::int64_t from[3], to[3];
     part_in(brick, from, to);
-    const std::int64_t in_brick = room[0] * room[1] * room[2];
     const std::byte* bytes = nullptr;
+    // Samples [first, first + count) of the brick.
+    const auto convert_some = [&](std::int64_t first, std::int64_t count, float* out, float* rest) HWY_ATTR {
+      with_type(frame_.bricks->source().grid().type, [&](auto kind) HWY_ATTR {
+        using T = decltype(kind);
+        const std::int64_t readable = room[0] * room[1] * room[2] - first;
+        convert(reinterpret_cast<const T*>(bytes) + first, count, readable, frame_.lanes, out, rest);
+      });
+    };
     for (std::int64_t z = from[2]; z <= to[2]; ++z)
       for (std::int64_t y = from[1]; y <= to[1]; ++y) {
         std::int64_t x = from[0];
@@ -394,13 +398,13 @@ class BlockFill {
           const std::int64_t row_start = ((z - brick.low[2]) * room[1] + (y - brick.low[1])) * room[0] - brick.low[0];
           if (axes_.k != 0) {
             target_.row(y, z, x, end, [&](std::int64_t xa, std::int64_t xb, float* out) HWY_ATTR {
-              convert_any(bytes, type, row_start + xa, xb - xa + 1, in_brick, frame_.lanes, out, block_.rest_of(out));
+              convert_some(row_start + xa, xb - xa + 1, out, block_.rest_of(out));
             });
           } else {
             const auto count = static_cast<std::size_t>(end - x + 1);
             row_memory.resize(2 * count);
-            convert_any(bytes, type, row_start + x, end - x + 1, in_brick, frame_.lanes, row_memory.data(),
-                        block_.has_rest ? row_memory.data() + count : nullptr);
+            convert_some(row_start + x, end - x + 1, row_memory.data(),
+                         block_.has_rest ? row_memory.data() + count : nullptr);
             target_.row(y, z, x, end, [&](std::int64_t xa, std::int64_t, float* out) HWY_ATTR {
               *out = row_memory[static_cast<std::size_t>(xa - x)];
               if (block_.has_rest) *block_.rest_of(out) = row_memory[count + static_cast<std::size_t>(xa - x)];

@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Packets of rays through one chunk of 32 slabs; included once per instruction set.
+// Packets of rays through one chunk of 32 slabs, by exact integrals; included once per instruction set.
 //
-// Slabs go in groups of eight. First the field of all slabs in the group that every live ray crosses from plane to
-// plane is found as lines (slab_lines-inl.h), one slab independent of the next, then their light is added front to
-// back: so the processor overlaps slabs. Where the field is smooth enough for it, one line stands for two slabs. Slabs
-// in which rays begin or end, shaded ones and cell data go voxel by voxel (voxel_pieces-inl.h); so do lanes whose field
-// may meet the value of a surface (surface_pieces-inl.h), while the others of their slab go on as they are.
+// What      The light that each ray gathers in the chunk, added behind what it had (TileRays), and a bound of its
+//           error.
+// How       Slabs go in groups of eight. First the field of those that every live ray crosses from plane to plane is
+//           found as lines (slab_lines-inl.h), one slab independent of the next, then their light is added front to
+//           back: so the processor overlaps slabs. Where the field is smooth, one line stands for two slabs. Slabs in
+//           which rays begin or end, shaded ones and cell data go voxel by voxel (voxel_pieces-inl.h); so do lanes
+//           whose field may meet the value of a surface (surface_pieces-inl.h).
+// Accuracy  A line stands for a slab where ray_piece-inl.h's bound of what the field's distance from it errs is below
+//           the tolerance of a piece; a Bend adds what the distance does to first order.
+// Bits      They depend on the rays of a vector and the chunk alone: whether lanes are taken together depends on all of
+//           them. So they differ between instruction sets.
+// Ends      Lanes that no longer let anything through are taken out every four slabs.
 
 #if defined(TESSERA_VOLUME_CAST_SLABS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_CAST_SLABS_INL_H_
@@ -17,7 +24,6 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "volume/lanes/packet_slabs-inl.h"
 #include "volume/lanes/slab_lines-inl.h"
@@ -96,7 +102,7 @@ class PacketCast {
     plain_to_ = GetLane(MinOfLanes(d, IfThenElse(mirrored_.live, lanes_.k_out, Set(d, 64.0f))));
   }
 
-  /// Rays that let nothing through any more are done. False if all are, or have left the volume.
+  /// Rays that no longer let anything through are done. False if all are, or have left the volume.
   HWY_INLINE bool go_on(int n) {
     const DF d;
     const MF dark = And(mirrored_.live, before_ * rays_.light.transmittance < Set(d, frame_.least_transmittance));
@@ -187,47 +193,54 @@ class PacketCast {
     }
   }
 
-  static HWY_INLINE Line kept(const Line& line, MF live) {
-    const auto keep = [&](VF v) HWY_ATTR { return IfThenElseZero(live, v); };
-    return {keep(line.s_0), keep(line.s_1), keep(line.span), keep(line.shift), keep(line.rho)};
+  /// Two slabs as one line from front to back. The field leaves it by a tent, as high as a's back is above the middle
+  /// of the ends, and by no more than r beyond that:
+  ///
+  ///          . a.s_1                    tent = a.s_1 - (a.s_0 + b.s_1) / 2
+  ///        .   .                        r    = what a and b leave their own lines by
+  ///      .       . b.s_1
+  ///    .   . - '
+  ///   a.s_0
+  ///
+  /// The tent is even about the middle, so of its product with the line's tilt nothing is left, only of r's. False, and
+  /// nothing added, if what is left may be too much.
+  HWY_INLINE bool add_pair(const Line& a, const Line& b, int n) {
+    const DF d;
+    const VF half = Set(d, 0.5f);
+    const UniformLookup& table = current_.uniform();
+    // Not a number where either slab's field is not, which Max alone may leave out.
+    const VF r = MulAdd(Zero(d), a.rho + b.rho, Max(a.rho, b.rho));
+    const VF low = Min(Min(a.s_0, a.s_1), b.s_1) - r, high = Max(Max(a.s_0, a.s_1), b.s_1) + r;
+    if (HWY_UNLIKELY(!current_.around(low, high, mirrored_.live)) || !surfaces_.none_between(low, high, mirrored_.live))
+      return false;
+    if (current_.clear()) return true;
+    const VF length = lanes_.length + lanes_.length, span = b.s_1 - a.s_0;
+    const VF tent = a.s_1 - half * (a.s_0 + b.s_1);
+    const VF rho = Abs(tent) + r, tilt = Abs(span) * Set(d, 0.25f);
+    const VF product = MulAdd(rho, rho, r * tilt), shadow = rho * (rho + tilt);
+    const VF dimmed = length * Set(d, table.dimming_bound) *
+                      MulAdd(Abs(tent) * (length * Set(d, table.extinction)), Set(d, 1 / 60.0f), r * Set(d, 0.25f));
+    const VF error = MulAdd(
+        length, dimmed,
+        length * MulAdd(Set(d, 10 * table.product_bound), product, length * Set(d, table.shadow_bound) * shadow));
+    if (!AllTrue(d, error <= Set(d, 1.0f))) return false;
+    add_uniform_line(a.s_0, b.s_1, span, half * (tent + (a.shift + b.shift)), length, n);
+    return true;
   }
 
   /// Adds slab n, or n and the next if `two` and they may be taken as one: how many.
   HWY_INLINE int add_lines(const SlabLines& lines, int n, bool two) {
     const DF d;
     const int m = n - lines.first;
-    const VF half = Set(d, 0.5f);
     const bool plain = all_live_ && plain_from_ <= static_cast<float>(n) && static_cast<float>(n + 2) <= plain_to_;
-    const UniformLookup& table = current_.uniform();
     Line a = line_of(lines, m);
-    if (two && plain) {
-      const Line b = line_of(lines, m + 1);
-      // Not a number where either slab's field is not, which Max alone may leave out.
-      const VF r = MulAdd(Zero(d), a.rho + b.rho, Max(a.rho, b.rho));
-      const VF low = Min(Min(a.s_0, a.s_1), b.s_1) - r, high = Max(Max(a.s_0, a.s_1), b.s_1) + r;
-      if (HWY_LIKELY(current_.around(low, high, mirrored_.live)) && surfaces_.none_between(low, high, mirrored_.live)) {
-        if (current_.clear()) return 2;
-        const VF length = lanes_.length + lanes_.length, span = b.s_1 - a.s_0;
-        const VF middle = half * (a.s_0 + b.s_1), tent = a.s_1 - middle;
-        const VF rho = Abs(tent) + r, tilt = Abs(span) * Set(d, 0.25f);
-        const VF even = MulAdd(rho, rho, r * tilt), any = rho * (rho + tilt);
-        const VF dimmed = length * Set(d, table.dimming_bound) *
-                          MulAdd(Abs(tent) * (length * Set(d, table.extinction)), Set(d, 1 / 60.0f), r * Set(d, 0.25f));
-        const VF error =
-            MulAdd(length, dimmed,
-                   length * MulAdd(Set(d, 10 * table.product_bound), even, length * Set(d, table.shadow_bound) * any));
-        if (AllTrue(d, error <= Set(d, 1.0f))) {
-          const VF shift = half * (tent + (a.shift + b.shift));
-          add_uniform_line(a.s_0, b.s_1, span, shift, length, n);
-          return 2;
-        }
-      }
-    }
+    if (two && plain && add_pair(a, line_of(lines, m + 1), n)) return 2;
+    const UniformLookup& table = current_.uniform();
     VF length = lanes_.length;
     MF live = mirrored_.live;
     if (!plain) {
       live = here(n);
-      a = kept(a, live);
+      a = a.kept(live);
       length = IfThenElseZero(live, length);
     }
     const VF low = Min(a.s_0, a.s_1) - a.rho, high = Max(a.s_0, a.s_1) + a.rho;
@@ -235,7 +248,7 @@ class PacketCast {
       if (HWY_UNLIKELY(!surfaces_.none_between(low, high, live))) {
         live = add_met(n, low, high, live);
         if (AllFalse(d, live)) return 1;
-        a = kept(a, live);
+        a = a.kept(live);
         length = IfThenElseZero(live, length);
       }
     }
@@ -314,7 +327,7 @@ class PacketCast {
   HWY_INLINE void add_uniform_line(VF s_0, VF s_1, VF span, VF shift, VF length, int n) {
     const DF d;
     const VF before = rays_.light.transmittance;
-    CL::lanes::add_piece<false>(current_.uniform(), 0, s_0 + shift, s_1 + shift, span, length, rays_.light);
+    CL::lanes::add_piece<false>(current_.uniform(), 0, {s_0 + shift, s_1 + shift, span, length}, rays_.light);
     rays_.counts.samples += live_count_;
     if (HWY_UNLIKELY(!AllTrue(d, rays_.notes.seen)))
       note_first_light(rays_.light, Set(d, static_cast<float>(n)), rays_.notes);

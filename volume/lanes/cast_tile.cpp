@@ -66,8 +66,10 @@ HWY_INLINE bool lay_out(const FrameView& frame, const RayAxes& axes, const Reach
   std::int64_t low[3] = {1 << 30, 1 << 30, 1 << 30}, high[3] = {-1, -1, -1};
   for (int n = 0; n < slabs; ++n) {
     const auto s = static_cast<std::size_t>(n);
-    slab_range(tile.x_low, tile.x_high, n, box.i_low, box.i_last, block.slab_i[s], block.slab_i_last[s]);
-    slab_range(tile.y_low, tile.y_high, n, box.j_low, box.j_last, block.slab_j[s], block.slab_j_last[s]);
+    const VoxelRange i = slab_range(tile.x_low, tile.x_high, n, {box.i_low, box.i_last}),
+                     j = slab_range(tile.y_low, tile.y_high, n, {box.j_low, box.j_last});
+    block.slab_i[s] = i.first, block.slab_i_last[s] = i.last;
+    block.slab_j[s] = j.first, block.slab_j_last[s] = j.last;
     low[ia] = std::min<std::int64_t>(low[ia], block.slab_i[s]);
     high[ia] = std::max<std::int64_t>(high[ia], block.slab_i_last[s]);
     low[ja] = std::min<std::int64_t>(low[ja], block.slab_j[s]);
@@ -108,10 +110,13 @@ HWY_INLINE void cast_by_form(const ChunkView& chunk, TileRays& rays, TileCounts&
   }
 }
 
-/// Rays of one axis code through a chunk of the volume. Packets that `wanted` leaves out are laid out, as what others
-/// find must not depend on them, but not cast.
-HWY_INLINE void cast_rays(const FrameView& frame, const RayAxes& axes, const VoxelBox& voxels, std::uint64_t wanted,
-                          TileRays& rays, TileMemory& memory, TileCounts& counts) {
+/// Rays of one axis code through a chunk of the volume. Packets that are not wanted are laid out, as what others find
+/// must not depend on them, but not cast.
+void cast_rays(const FrameView& frame, const VoxelBox& voxels, TileState& tile, int code, TileMemory& memory,
+               TileCounts& counts) {
+  const RayAxes axes = RayAxes::of(code);
+  const std::uint64_t wanted = tile.wanted();
+  TileRays& rays = tile.rays(code);
   double first = 1e30, last = -1e30;
   for (int r = 0; r < TileRays::count; ++r) {
     if (!(rays.from[r] < rays.to[r])) continue;
@@ -137,23 +142,23 @@ HWY_INLINE void cast_rays(const FrameView& frame, const RayAxes& axes, const Vox
     box.first_k = k;
     box.first_slab = static_cast<int>(std::max<std::int64_t>(0, begin_k - k));
     box.slabs = static_cast<int>(std::min<std::int64_t>(SlabBlock::slabs, end_k - k));
-    Reach tile{{1e30f, 1e30f}, {-1e30f, -1e30f}, {1e30f, 1e30f}, {-1e30f, -1e30f}, false};
+    Reach all{{1e30f, 1e30f}, {-1e30f, -1e30f}, {1e30f, 1e30f}, {-1e30f, -1e30f}, false};
     for (int p = 0; p < TileRays::packets; ++p) {
       const auto first_k = static_cast<double>(k);
       reach[p].any = false;
       if (frame.tally != nullptr && (wanted >> p & 1) == 0) continue;  // a pilot pass makes no light
       reach[p] = reach_of(frame, rays, p, first_k, first_k + box.slabs);
       if (!reach[p].any) continue;
-      tile.any = true;
+      all.any = true;
       for (int e = 0; e < 2; ++e) {
-        tile.x_low[e] = std::min(tile.x_low[e], reach[p].x_low[e]);
-        tile.x_high[e] = std::max(tile.x_high[e], reach[p].x_high[e]);
-        tile.y_low[e] = std::min(tile.y_low[e], reach[p].y_low[e]);
-        tile.y_high[e] = std::max(tile.y_high[e], reach[p].y_high[e]);
+        all.x_low[e] = std::min(all.x_low[e], reach[p].x_low[e]);
+        all.x_high[e] = std::max(all.x_high[e], reach[p].x_high[e]);
+        all.y_low[e] = std::min(all.y_low[e], reach[p].y_low[e]);
+        all.y_high[e] = std::max(all.y_high[e], reach[p].y_high[e]);
       }
     }
-    if (!tile.any) continue;
-    if (!lay_out(frame, axes, tile, box, memory.block)) {
+    if (!all.any) continue;
+    if (!lay_out(frame, axes, all, box, memory.block)) {
       if (frame.preintegrated != nullptr) skip_chunk_in_steps({frame, axes, memory.block, box, reach}, rays);
       continue;
     }
@@ -169,11 +174,6 @@ HWY_INLINE void cast_rays(const FrameView& frame, const RayAxes& axes, const Vox
   }
 }
 
-void cast_rays_here(const FrameView& frame, const RayAxes& axes, const VoxelBox& voxels, std::uint64_t wanted,
-                    TileRays& rays, TileMemory& memory, TileCounts& counts) {
-  cast_rays(frame, axes, voxels, wanted, rays, memory, counts);
-}
-
 unsigned axis_codes_here(const PixelRays& rays, int x0, int y0) { return axis_codes(rays, x0, y0); }
 
 void set_up_here(const FrameView& frame, int x0, int y0, int code, TileRays& rays) {
@@ -187,17 +187,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tessera::volume {
 
-HWY_EXPORT(cast_rays_here);
+HWY_EXPORT(cast_rays);
 HWY_EXPORT(axis_codes_here);
 HWY_EXPORT(set_up_here);
 
 void cast_tile(const FrameView& frame, const VoxelBox& chunk, TileState& tile, TileMemory& memory, TileCounts& counts) {
-  const auto cast = [&](int code) {
-    HWY_DYNAMIC_DISPATCH(cast_rays_here)
-    (frame, RayAxes::of(code), chunk, tile.wanted(), tile.rays(code), memory, counts);
-  };
   for (int code = 0; code < RayAxes::codes; ++code)
-    if ((tile.codes() >> code & 1) != 0 && tile.enter(frame, chunk, code)) cast(code);
+    if ((tile.codes() >> code & 1) != 0 && tile.enter(frame, chunk, code))
+      HWY_DYNAMIC_DISPATCH(cast_rays)(frame, chunk, tile, code, memory, counts);
 }
 
 unsigned axis_codes_of_tile(const PixelRays& rays, int x0, int y0) {

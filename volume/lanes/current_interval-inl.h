@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The interval of the transfer function in which a packet was last; included once per instruction set.
+//
+// What      The table's row of that interval, ready for use by all lanes, and whether scalars are in it.
+// How       Slabs that follow each other are mostly in one interval: a comparison with its ends takes the place of a
+//           search in each lane.
+// Accuracy  Where an interval ends at a step of the function the end is moved in by the field's noise
+//           (lane_error_bound.hpp); for samples it is not, where lanes hold these and the step exactly.
 
 #if defined(TESSERA_VOLUME_CURRENT_INTERVAL_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_CURRENT_INTERVAL_INL_H_
@@ -41,14 +47,14 @@ class CurrentInterval {
     const float* const knots = table_.column(LaneTable::edge) + 1;
     return static_cast<std::size_t>(std::upper_bound(knots, knots + table_.knot_count, s) - knots);
   }
-  /// Whether [low, high] lies in the current interval, and for certain if that ends at a step, in the lanes that are
+  /// Whether [low, high] is in the current interval, and for certain if that ends at a step, in the lanes that are
   /// live.
   [[nodiscard]] HWY_INLINE bool around(VF low, VF high, MF live) const {
     const DF d;
     const MF below = high < Set(d, guarded_high_);
     return AllFalse(d, AndNot(And(low >= Set(d, guarded_low_), below), live));
   }
-  /// Whether a sample lies in the current interval for certain.
+  /// Whether a sample is in the current interval for certain.
   [[nodiscard]] HWY_INLINE bool holds(float s) const { return held_low_ <= s && s < held_high_; }
   /// Makes a sample's interval the current one; that of a blank is the first.
   HWY_INLINE void begin_at(float sample) { move_to(sample == sample ? interval_of(sample) : 0); }

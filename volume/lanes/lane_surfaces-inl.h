@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Between which values of surfaces the field of each lane is; included once per instruction set.
+//
+// What      Whether lanes may meet an iso-surface where their field is within bounds, and the gap between two values
+//           that a scalar is in.
+// How       The gap that each lane was in last is kept, so that mostly two comparisons answer.
+// Accuracy  Gaps are narrower by the field's noise (SurfaceView::noise) at either end: no surface is missed.
+// Bits      Answers do not depend on the gap that is kept.
 
 #if defined(TESSERA_VOLUME_LANE_SURFACES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_LANE_SURFACES_INL_H_
@@ -27,7 +33,7 @@ HWY_INLINE VF surface_row(const SurfaceView& view, const std::vector<float>& row
   return GatherIndex(d, row.data(), edge);
 }
 
-/// The gap that a scalar is in (SurfaceView); the first for what is none.
+/// The gap that a scalar is in (SurfaceView); the first for what is not a number.
 HWY_INLINE VI surface_gap(const SurfaceView& view, VF s) {
   const DF d;
   const DI di;
@@ -48,7 +54,7 @@ struct NoSurfaces {
 };
 
 /// The gap between two surfaces' values in which each lane's field was last, narrower by the field's noise at either
-/// end, and one for all samples of a window. They only make it quick to tell that there is no surface: whatever they
+/// end, and one for all samples of a window. They only make it quick to find that there is no surface: whatever they
 /// are, answers are the same.
 class LaneSurfaces {
  public:

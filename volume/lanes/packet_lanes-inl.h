@@ -2,11 +2,13 @@
 // A packet's rays in one chunk of 32 slabs: where they may be, where each is, and its way through a slab voxel by
 // voxel; included once per instruction set.
 //
-// In a slab a ray (|bx|, |by| <= 1) crosses at most one plane of either other axis: three stretches at most, each in
-// one voxel.
-//
-// Numbers  positions are float, relative to the voxel in which the ray is at the chunk's first plane, from double at
-//          each chunk: 2e-6 voxel at most. So they depend on ray and chunk only.
+// What      Along axis k a ray goes from slab to slab; along i and j it is at (x, y) + (bx, by) k.
+// How       |bx|, |by| <= 1: in a slab a ray crosses at most one plane of either other axis. That makes three stretches
+//           at most, each in one voxel.
+// Accuracy  Positions are float, relative to the voxel in which the ray is at the chunk's first plane, from double at
+//           each chunk: 2e-6 voxel at most.
+// Bits      So they depend on ray and chunk only.
+// Ends      Crossings are kept within the part of the slab that counts: no stretch is of negative length.
 
 #if defined(TESSERA_VOLUME_PACKET_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_PACKET_LANES_INL_H_
@@ -27,17 +29,22 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
-/// Lowest and highest voxel of [least, most] that rays in slab n may be in along an axis.
-HWY_INLINE void slab_range(const float (&low)[2], const float (&high)[2], int n, int least, int most, int& first,
-                           int& last) {
+/// Voxels along an axis.
+struct VoxelRange {
+  int first, last;
+};
+
+/// Of `box` those that rays in slab n may be in, which are between `low` and `high` at the chunk's first and last
+/// plane.
+HWY_INLINE VoxelRange slab_range(const float (&low)[2], const float (&high)[2], int n, const VoxelRange& box) {
   constexpr float each = 1.0f / SlabBlock::slabs, slack = 2e-3f;
   const float l0 = low[0] + (low[1] - low[0]) * (each * static_cast<float>(n)),
               l1 = low[0] + (low[1] - low[0]) * (each * static_cast<float>(n + 1)),
               h0 = high[0] + (high[1] - high[0]) * (each * static_cast<float>(n)),
               h1 = high[0] + (high[1] - high[0]) * (each * static_cast<float>(n + 1));
-  const float begin = static_cast<float>(least), end = static_cast<float>(most);
-  first = static_cast<int>(std::min(std::max(std::min(l0, l1) - slack, begin), end));
-  last = static_cast<int>(std::min(std::max(std::max(h0, h1) + slack, begin), end));
+  const float begin = static_cast<float>(box.first), end = static_cast<float>(box.last);
+  return {static_cast<int>(std::min(std::max(std::min(l0, l1) - slack, begin), end)),
+          static_cast<int>(std::min(std::max(std::max(h0, h1) + slack, begin), end))};
 }
 
 /// A packet's lanes at one chunk.

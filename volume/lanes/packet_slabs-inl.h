@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a packet's lanes share in a chunk: the voxels they may meet slab by slab, and the work they are counted for;
 // included once per instruction set.
+//
+// What      By slab the range of voxels along i and j, where the window that holds their corners is in the block, and
+//           whether the range reaches the box's border.
+// How       Rays are straight, so bounds of a packet at the chunk's first and last plane (Reach) bound it between them.
 
 #if defined(TESSERA_VOLUME_PACKET_SLABS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_PACKET_SLABS_INL_H_
@@ -32,10 +36,14 @@ struct PacketSlabs {
   HWY_ALIGN float origin[slabs];
 
   HWY_INLINE PacketSlabs(const Reach& reach, const ChunkBox& box) {
-    for (int n = 0; n < slabs; ++n)
-      slab_range(reach.x_low, reach.x_high, n, box.i_low, box.i_last, i_first[n], i_last[n]);
-    for (int n = 0; n < slabs; ++n)
-      slab_range(reach.y_low, reach.y_high, n, box.j_low, box.j_last, j_first[n], j_last[n]);
+    for (int n = 0; n < slabs; ++n) {
+      const VoxelRange range = slab_range(reach.x_low, reach.x_high, n, {box.i_low, box.i_last});
+      i_first[n] = range.first, i_last[n] = range.last;
+    }
+    for (int n = 0; n < slabs; ++n) {
+      const VoxelRange range = slab_range(reach.y_low, reach.y_high, n, {box.j_low, box.j_last});
+      j_first[n] = range.first, j_last[n] = range.last;
+    }
     for (int n = 0; n < slabs; ++n) {
       widest_i = std::max(widest_i, i_last[n] - i_first[n]);
       widest_j = std::max(widest_j, j_last[n] - j_first[n]);
@@ -67,7 +75,7 @@ struct GroupWork {
   VF k_out, depth_before;
   std::uint64_t samples_before;
 
-  /// As the work stands before slab `next`, or where the packet stopped.
+  /// The work before slab `next`, or where the packet stopped.
   HWY_NOINLINE void add_to(const ChunkView& chunk, const Lanes& lanes, const Reach& reach, int next,
                            const Progress& progress, const TileCounts& counts) const {
     const DF d;

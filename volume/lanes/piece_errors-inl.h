@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What rays note on their way beside their light: where it begins, and what float lanes may err in it by steps and
-// ramps of the transfer function (lane_error_bound.hpp); included once per instruction set.
+// What float lanes may err by steps and ramps of the transfer function (lane_error_bound.hpp), noted by rays on their
+// way; included once per instruction set.
+//
+// What      Of each stretch of a ray inside a voxel the light that may be too much or too little, as field and places
+//           are rounded.
+// How       On the wrong side of a step a ray is for a length of noise / |slope| of the field, or of the root of 2
+//           noise / |second derivative| where it is level (Touch); a ramp errs as long as the ray is on it. Both are
+//           first bounded by the light that gets through. Where that is too much, Excess finds more closely what the
+//           excess of matter changes, by Cauchy and Schwarz.
+// Accuracy  tests/volume/steep_function_test.cpp holds what comes of it against double precision.
 
 #if defined(TESSERA_VOLUME_PIECE_ERRORS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_PIECE_ERRORS_INL_H_
@@ -47,7 +55,7 @@ struct IntervalLanes {
   typename Lookup::Index index;
   VI interval;
   MF wanted;
-  const LaneErrorBound& bound;
+  const LaneErrorBound* bound;  ///< null: not asked for
 
   /// A row of the bound at the intervals.
   HWY_INLINE VF row(const std::vector<float>& of) const { return bound_row(of, interval, wanted); }
@@ -56,13 +64,13 @@ struct IntervalLanes {
 /// Notes what a stretch errs by the ramps of its intervals. Of an opaque one the colour's error is seen at its front.
 template <class Lookup>
 HWY_INLINE void note_ramps(const IntervalLanes<Lookup>& in, VF length, VF before, VF behind, RayNotes& notes) {
-  if (in.bound.ramp.empty()) return;
+  if (in.bound->ramp.empty()) return;
   const DF d;
   const VF through = length * behind;
-  const VF color = (before - behind) * in.row(in.bound.ramp_color);
-  const VF ramp = through * in.row(in.bound.ramp), error = Max(ramp, color);
+  const VF color = (before - behind) * in.row(in.bound->ramp_color);
+  const VF ramp = through * in.row(in.bound->ramp), error = Max(ramp, color);
   notes.rough = MulAdd(error, error, notes.rough);
-  notes.error_bound = MulAdd(ramp, Set(d, in.bound.steady), notes.error_bound);
+  notes.error_bound = MulAdd(ramp, Set(d, in.bound->steady), notes.error_bound);
 }
 HWY_INLINE void note_ramps(const UniformLookup& table, VF length, VF before, VF behind, RayNotes& notes) {
   const DF d;
@@ -73,16 +81,11 @@ HWY_INLINE void note_ramps(const UniformLookup& table, VF length, VF before, VF 
   notes.error_bound = MulAdd(through, Set(d, table.ramp_steady), notes.error_bound);
 }
 
-/// Where lanes cannot tell on which side of a step the cubic is: for how long, and the steps' edges.
+/// Where the side of a step that the cubic is on is uncertain: for how long, and the steps' edges.
 struct Touch {
   MF near;
   VI edge;
   VF length;
-};
-
-/// A place of a cubic, and its value there.
-struct CubicPlace {
-  VF v, s;
 };
 
 /// Whether `at`, an end of an interval, a turn or a crossing, is near an edge of its interval. Field and place are
@@ -92,7 +95,7 @@ template <class Lookup>
 HWY_INLINE bool touches(const IntervalLanes<Lookup>& in, const Cubic& c, const CubicPlace& at, VF length,
                         Touch& touch) {
   const DF d;
-  const VF noise = Set(d, in.bound.noise);
+  const VF noise = Set(d, in.bound->noise);
   const VI below = Zero(DI()), above = Set(DI(), 1);
   const VF from_low = Abs(at.s - in.table.edge(in.interval, in.index, below)),
            from_high = Abs(in.table.edge(in.interval, in.index, above) - at.s);
@@ -115,11 +118,11 @@ struct StretchErrors {
 };
 
 /// Optical depths w that are too much or too few at places to which T gets through, of a medium of colour c, where what
-/// lies in front sends L: with a = T c + L and all the stretch's light E they change it by less than the sum of
+/// is in front sends L: with a = T c + L and all the stretch's light E they change it by less than the sum of
 /// w |a - E|, and that is less than the root of (sum of w) (sum of w |a - E|^2) by Cauchy and Schwarz.
 struct Excess {
   VF depth, ramps, red, green, blue, square;  ///< sums of w, of those of ramps, of w a and of w |a|^2
-  VF beside_steps, beside_ramps;              ///< light that differs whatever lies behind
+  VF beside_steps, beside_ramps;              ///< light that differs whatever is behind
 
   HWY_INLINE void add(VF w, VF through, const VF (&color)[3], const Progress& progress) {
     const VF a[3] = {MulAdd(through, color[0], progress.red), MulAdd(through, color[1], progress.green),
@@ -149,33 +152,31 @@ HWY_INLINE void colors_at(const Lookup& table, typename Lookup::Index index, VF 
                                           table.at(LaneTable::red + 2 * c, index));
 }
 
-/// What a stretch may err, while it is walked through: by bounds, and closely.
-struct ErrorSums {
-  StretchErrors bounds;
-  Excess excess;
-};
-
-/// Adds what a step may err that the cubic is on, or nearly, at a place.
-template <bool closely, class Lookup>
+/// Adds what a step may err that the cubic is on, or nearly, at a place: a bound.
+template <class Lookup>
 HWY_NOINLINE void add_step_error(const IntervalLanes<Lookup>& in, const Cubic& c, const CubicPlace& at, VF length,
-                                 const Progress& progress, ErrorSums& sums) {
-  const DF d;
-  const LaneErrorBound& bound = in.bound;
-  const VF most_depth = Set(d, 1e3f), behind = progress.transmittance;
+                                 const Progress& progress, StretchErrors& errors) {
   Touch touch;
   if (!touches(in, c, at, length, touch)) return;
+  const VF weight = bound_row(in.bound->step, touch.edge, touch.near);
+  const VF error = Min(touch.length * weight, Set(DF(), in.bound->most));
+  errors.steps = MulAdd(error, progress.transmittance, errors.steps);
+}
+/// The same, closely.
+template <class Lookup>
+HWY_NOINLINE void add_step_error(const IntervalLanes<Lookup>& in, const Cubic& c, const CubicPlace& at, VF length,
+                                 const Progress& progress, Excess& excess) {
+  const DF d;
+  Touch touch;
+  if (!touches(in, c, at, length, touch)) return;
+  const LaneErrorBound& bound = *in.bound;
   const auto row = [&](const std::vector<float>& of) HWY_ATTR { return bound_row(of, touch.edge, touch.near); };
-  const VF weight = row(bound.step);
-  if (!closely) {
-    const VF error = Min(touch.length * weight, Set(d, bound.most));
-    sums.bounds.steps = MulAdd(error, behind, sums.bounds.steps);
-  } else {
-    const VF length_there = IfThenElseZero(weight > Zero(d), touch.length);
-    const VF w = Min(length_there * row(bound.step_extinction), most_depth);
-    const VF color[3] = {row(bound.step_red), row(bound.step_green), row(bound.step_blue)};
-    sums.excess.add(w, behind, color, progress);
-    sums.excess.beside_steps = MulAdd(length_there * row(bound.step_light), behind, sums.excess.beside_steps);
-  }
+  const VF most_depth = Set(d, 1e3f), behind = progress.transmittance;
+  const VF length_there = IfThenElseZero(row(bound.step) > Zero(d), touch.length);
+  const VF w = Min(length_there * row(bound.step_extinction), most_depth);
+  const VF color[3] = {row(bound.step_red), row(bound.step_green), row(bound.step_blue)};
+  excess.add(w, behind, color, progress);
+  excess.beside_steps = MulAdd(length_there * row(bound.step_light), behind, excess.beside_steps);
 }
 
 /// Adds what a piece of a ramp that ends at s_end errs, closely: of `length`, to which `before` got through.
@@ -184,24 +185,24 @@ HWY_NOINLINE void add_ramp_excess(const IntervalLanes<Lookup>& steep, VF s_end, 
                                   const Progress& progress, Excess& excess) {
   const DF d;
   const VF most_depth = Set(d, 1e3f), behind = progress.transmittance;
-  const VF w = Min(length * steep.row(steep.bound.ramp_extinction), most_depth);
+  const VF w = Min(length * steep.row(steep.bound->ramp_extinction), most_depth);
   VF color[3];
   colors_at(steep.table, steep.index, s_end, color);
   excess.add(w, behind, color, progress);
   excess.ramps = excess.ramps + w;
   const VF seen = steep.table.independent ? length * before : before - behind;
-  excess.beside_ramps = MulAdd(seen, steep.row(steep.bound.ramp_color), excess.beside_ramps);
+  excess.beside_ramps = MulAdd(seen, steep.row(steep.bound->ramp_color), excess.beside_ramps);
 }
 
-/// Depths that differ are told apart by how much; light beside them is each one's own.
-HWY_INLINE void set_close_errors(const Progress& progress, const LaneErrorBound& bound, ErrorSums& sums) {
+/// Shares the error of depths out in proportion to these; the light that differs in addition is each one's own.
+HWY_INLINE void set_close_errors(const Excess& excess, const Progress& progress, const LaneErrorBound& bound,
+                                 StretchErrors& errors) {
   const DF d;
-  const Excess& excess = sums.excess;
   const VF error = excess.error(progress, bound), most_error = Set(d, bound.most);
   const VF share = excess.ramps / Max(excess.depth, Set(d, 1e-30f));
   const VF of_ramps = error * share;
-  sums.bounds.ramps = Min(most_error, of_ramps + excess.beside_ramps);
-  sums.bounds.steps = Min(most_error, error - of_ramps + excess.beside_steps);
+  errors.ramps = Min(most_error, of_ramps + excess.beside_ramps);
+  errors.steps = Min(most_error, error - of_ramps + excess.beside_steps);
 }
 
 }  // namespace HWY_NAMESPACE

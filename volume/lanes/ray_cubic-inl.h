@@ -1,6 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The field along a stretch of a ray in one voxel, a cubic a lane: where it turns and where it crosses a value;
 // included once per instruction set.
+//
+// What      The trilinear field of a voxel along a ray is a cubic, of v in [0, 1] over the stretch: known by its values
+//           at the ends and in the middle, and its leading coefficient, p_3.
+// How       It turns at the roots of its slope, in the form without cancellation: where its slope's Bezier coefficients
+//           are of one sign it turns nowhere, which most do. Between turns it is monotone, and Newton's method, kept
+//           within a bracket, finds where it crosses a value.
+// Accuracy  A crossing is right to 1e-6 of the stretch where the slope is known that well: near a turn, where the cubic
+//           is level, to 3e-4 (lane_error_bound.hpp).
+// Bits      A lane's numbers do not depend on the other lanes but by how many steps Newton's method takes.
+// Ends      Lanes that are not active are the cubic 0.
 
 #if defined(TESSERA_VOLUME_RAY_CUBIC_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_RAY_CUBIC_INL_H_
@@ -33,6 +43,11 @@ struct Cubic {
   }
 };
 
+/// A place of a cubic, and its value there.
+struct CubicPlace {
+  VF v, s;
+};
+
 /// Places of the cubic's extrema in (0, 1), 1 where there are none.
 HWY_INLINE void find_extrema(const Cubic& c, VF& first, VF& second) {
   const DF d;
@@ -49,16 +64,17 @@ HWY_INLINE void find_extrema(const Cubic& c, VF& first, VF& second) {
   second = Max(a, b);
 }
 
-/// v in [low, high] where the cubic, monotone there, has the value `level`, which lies between its ends'.
-HWY_INLINE VF find_crossing(const Cubic& c, VF low, VF high, VF s_low, VF s_high, VF level, MF wanted) {
+/// v between two places where the cubic, monotone there, has the value `level`, between theirs.
+HWY_INLINE VF find_crossing(const Cubic& c, const CubicPlace& from, const CubicPlace& to, VF level, MF wanted) {
   const DF d;
   const VF half = Set(d, 0.5f);
-  const MF rises = s_high > s_low;
-  VF v = MulAdd(high - low, (level - s_low) / (s_high - s_low), low);
+  const MF rises = to.s > from.s;
+  VF low = from.v, high = to.v;
+  VF v = MulAdd(high - low, (level - from.s) / (to.s - from.s), low);
   for (int step = 0; step < 12; ++step) {
     const VF excess = c.at(v) - level;
     const MF above = excess > Zero(d);
-    // What lies on the far side becomes the bracket's end.
+    // A place on the far side becomes the bracket's end.
     const MF beyond = Xor(above, Not(rises));
     high = IfThenElse(beyond, v, high);
     low = IfThenElse(beyond, low, v);
@@ -96,6 +112,19 @@ HWY_INLINE MF is_monotone(const Cubic& c) {
   const VF least = Min(c.p_1, Min(d_1, d_2)), most = Max(c.p_1, Max(d_1, d_2));
   return Not(And(most > zero, least < zero));
 }
+
+/// A cubic's turns in (0, 1), and its end: 1 where there are none. Between two of them it is monotone.
+struct Turns {
+  VF first, second;
+
+  HWY_INLINE Turns(const Cubic& c, MF active) : first(Set(DF(), 1.0f)), second(first) {
+    if (!AllFalse(DF(), AndNot(is_monotone(c), active))) find_extrema(c, first, second);
+  }
+  /// The next turn behind v, or the end.
+  HWY_INLINE VF after(VF v) const {
+    return IfThenElse(v < first, first, IfThenElse(v < second, second, Set(DF(), 1.0f)));
+  }
+};
 
 }  // namespace HWY_NAMESPACE
 }  // namespace tessera::volume

@@ -56,26 +56,21 @@ HWY_INLINE VF roughness(VF length, VF m, VF p_3, VF span, const RoughnessBounds&
   return length * error;
 }
 
-/// Whether a stretch errs more than the tolerance.
-HWY_INLINE MF too_rough(VF length, VF m, VF p_3, VF span, const RoughnessBounds& bounds) {
-  return roughness(length, m, p_3, span, bounds) > Set(DF(), 1.0f);
-}
-
 /// Adds the stretches if they are smooth enough; false, and nothing added, if not.
 template <bool cell_data>
 HWY_INLINE bool add_uniform(const UniformLookup& table, const Piece& piece, Progress& progress) {
   const DF d;
   const VF span = piece.s_1 - piece.s_0;
   if (cell_data) {
-    CL::lanes::add_piece<false>(table, 0, piece.s_0, piece.s_1, span, piece.length, progress);
+    CL::lanes::add_piece<false>(table, 0, {piece.s_0, piece.s_1, span, piece.length}, progress);
     return true;
   }
   const VF m = (piece.s_mid + piece.s_mid - (piece.s_0 + piece.s_1)) * Set(d, 1 / 3.0f);
-  const MF rough = too_rough(
+  const VF error = roughness(
       piece.length, m, piece.p_3, span,
       {Set(d, table.product_bound), Set(d, table.shadow_bound), Set(d, table.dimming_bound), Set(d, table.extinction)});
-  if (HWY_UNLIKELY(!AllFalse(d, rough))) return false;
-  CL::lanes::add_piece<false>(table, 0, piece.s_0 + m, piece.s_1 + m, span, piece.length, progress);
+  if (HWY_UNLIKELY(!AllFalse(d, error > Set(d, 1.0f)))) return false;
+  CL::lanes::add_piece<false>(table, 0, {piece.s_0 + m, piece.s_1 + m, span, piece.length}, progress);
   return true;
 }
 
@@ -87,34 +82,45 @@ HWY_INLINE VF extinction_at(const Lookup& table, typename Lookup::Index index, V
   return half + half;
 }
 
+/// How much extinction and colour change with the scalar, at most, in the interval that each lane is in.
+struct FunctionSlopes {
+  VF extinction, color;
+};
+
+template <class Lookup>
+HWY_INLINE FunctionSlopes slopes_in(const Lookup& table, typename Lookup::Index index) {
+  const auto slope = [&](int column) HWY_ATTR { return Abs(table.at(column, index)); };
+  return {Set(DF(), 2.0f) * slope(LaneTable::half_extinction_slope),
+          Max(Max(slope(LaneTable::red_slope), slope(LaneTable::green_slope)), slope(LaneTable::blue_slope))};
+}
+
 /// A stretch is halved no more often; 4096 of an optical depth of 1e4 are still thin.
 constexpr int most_halvings = 12;
 
 /// Stretches that cross knots, are rough, or whose lanes are in different intervals, and what they may err: a bound, or
 /// `closely`, where `progress` is that of the stretch alone. NaN samples are blank.
-// Long: a round's values stay in registers; its parts as inlined functions cost 1.3 % of its instructions.
+// Long: a round's values stay in registers. With its steps as inlined functions a frame takes 11 % longer (AVX-512).
 template <bool closely, class Lookup>
 HWY_NOINLINE StretchErrors walk_cubic(const Lookup& table, const FrameView& frame, const Piece& piece,
                                       Progress& progress, RayNotes& notes, std::uint64_t& pieces) {
   const DF d;
   const VF zero = Zero(d), one = Set(d, 1.0f), half = Set(d, 0.5f);
   MF active = And(piece.length > zero, piece.s_mid == piece.s_mid);
-  ErrorSums sums{{zero, zero, zero}, {zero, zero, zero, zero, zero, zero, zero, zero}};
-  StretchErrors& errors = sums.bounds;
+  StretchErrors errors{zero, zero, zero};
   if (AllFalse(d, active)) return errors;
+  [[maybe_unused]] Excess excess;
+  if (closely) excess = {zero, zero, zero, zero, zero, zero, zero, zero};
   const Cubic c = cubic_of(piece, active);
-  const VF s_0 = c.p_0, s_1 = IfThenElseZero(active, piece.s_1), p_3 = c.p_3;
-  VF turn_1 = one, turn_2 = one;
-  if (!AllFalse(d, AndNot(is_monotone(c), active))) find_extrema(c, turn_1, turn_2);
-
+  const Turns turns(c, active);
   const VF per_tolerance = Set(d, 1 / frame.piece_tolerance);
+  const VF s_1 = IfThenElseZero(active, piece.s_1);
   const bool has_steps = frame.error_bound != nullptr && !frame.error_bound->step.empty();
   const float* const ramps =
       frame.error_bound != nullptr && !frame.error_bound->ramp.empty() ? frame.error_bound->ramp.data() : nullptr;
-  VF v = zero, s = s_0;
+  VF v = zero, s = c.p_0;
   // Each round ends at a knot, an extremum, a halving or the stretch's end; knots are few but for wild functions.
   for (int round = 0; round < 4096; ++round) {
-    const VF turn = IfThenElse(v < turn_1, turn_1, IfThenElse(v < turn_2, turn_2, one));
+    const VF turn = turns.after(v);
     const VF s_turn = IfThenElse(turn == one, s_1, c.at(turn));
     const MF up = s_turn >= s;
     const VI to_far_edge = IfThenElseZero(RebindMask(DI(), up), Set(DI(), 1));
@@ -124,69 +130,67 @@ HWY_NOINLINE StretchErrors walk_cubic(const Lookup& table, const FrameView& fram
     const MF crosses = And(active, Or(And(up, knot < s_turn), AndNot(up, knot > s_turn)));
     VF end = turn, s_end = s_turn;
     if (!AllFalse(d, crosses)) {
-      const VF at_knot = find_crossing(c, v, turn, s, s_turn, knot, crosses);
-      end = IfThenElse(crosses, at_knot, end);
+      end = IfThenElse(crosses, find_crossing(c, {v, s}, {turn, s_turn}, knot, crosses), end);
       s_end = IfThenElse(crosses, knot, s_end);
     }
-    const VF slope = Set(d, 2.0f) * Abs(table.at(LaneTable::half_extinction_slope, index));
-    const VF color_slope =
-        Max(Max(Abs(table.at(LaneTable::red_slope, index)), Abs(table.at(LaneTable::green_slope, index))),
-            Abs(table.at(LaneTable::blue_slope, index)));
+    const FunctionSlopes slope = slopes_in(table, index);
     RoughnessBounds bounds;
-    bounds.product = Set(d, 0.1f) * (slope * color_slope);
-    if (table.independent) bounds.product = zero;
-    bounds.product = bounds.product * per_tolerance;
-    bounds.shadow = slope * slope * Set(d, 0.03f * frame.largest_color) * per_tolerance;
+    bounds.product = table.independent ? zero : Set(d, 0.1f) * (slope.extinction * slope.color) * per_tolerance;
+    bounds.shadow = slope.extinction * slope.extinction * Set(d, 0.03f * frame.largest_color) * per_tolerance;
     // What is dimmed already needs no care: behind 14 optical depths any of it is right.
-    const VF seen = per_tolerance * (color_slope * progress.transmittance);
-    VF extent, m, length;
+    const VF seen = per_tolerance * (slope.color * progress.transmittance);
+    VF m, length;
     for (int halvings = 0;; ++halvings) {
-      extent = end - v;
-      const VF middle = c.at(MulAdd(half, extent, v));
-      m = (middle + middle - (s + s_end)) * Set(d, 1 / 3.0f);
+      const VF extent = end - v, middle = MulAdd(half, extent, v), s_middle = c.at(middle);
+      m = (s_middle + s_middle - (s + s_end)) * Set(d, 1 / 3.0f);
       length = IfThenElseZero(active, extent * piece.length);
-      const VF cubed = p_3 * (extent * (extent * extent));
       // Between two places where the cubic does not turn, extinction is largest at one of them.
       bounds.extinction = Max(extinction_at(table, index, s), extinction_at(table, index, s_end));
       bounds.dimming = seen * (table.independent ? bounds.extinction : bounds.extinction * bounds.extinction);
-      const MF rough = too_rough(length, m, cubed, s_end - s, bounds);
+      const VF error = roughness(length, m, c.p_3 * (extent * (extent * extent)), s_end - s, bounds);
+      const MF rough = error > one;
       if (AllFalse(d, rough)) break;
       if (HWY_UNLIKELY(halvings == most_halvings)) {
-        // What is left is noted as it is seen.
-        const VF error = roughness(length, m, cubed, s_end - s, bounds) * Set(d, frame.piece_tolerance);
-        errors.left = MulAdd(IfThenElseZero(rough, Min(error, one)), progress.transmittance, errors.left);
+        // What is still not smooth counts as it is seen.
+        const VF capped = Min(error * Set(d, frame.piece_tolerance), one);
+        errors.left = MulAdd(IfThenElseZero(rough, capped), progress.transmittance, errors.left);
         break;
       }
-      end = IfThenElse(rough, MulAdd(half, extent, v), end);
-      s_end = IfThenElse(rough, middle, s_end);
+      end = IfThenElse(rough, middle, end);
+      s_end = IfThenElse(rough, s_middle, s_end);
     }
     pieces += CountTrue(d, active);
+    const auto lanes_in = [&](MF lanes) HWY_ATTR {
+      return IntervalLanes<Lookup>{table, index, interval, lanes, frame.error_bound};
+    };
     const auto add_step = [&](const CubicPlace& at) HWY_ATTR {
-      add_step_error<closely>(IntervalLanes<Lookup>{table, index, interval, active, *frame.error_bound}, c, at,
-                              piece.length, progress, sums);
+      if constexpr (closely)
+        add_step_error(lanes_in(active), c, at, piece.length, progress, excess);
+      else
+        add_step_error(lanes_in(active), c, at, piece.length, progress, errors);
     };
     if (HWY_UNLIKELY(round == 0 && has_steps)) add_step({v, s});
     const VF before = progress.transmittance;
-    CL::lanes::add_piece<false>(table, index, s + m, s_end + m, s_end - s, length, progress);
+    CL::lanes::add_piece<false>(table, index, {s + m, s_end + m, s_end - s, length}, progress);
     note_first_light(progress, MulAdd(v, piece.extent, piece.begin), notes);
     if (HWY_UNLIKELY(has_steps)) add_step({end, s_end});
     if (ramps != nullptr) {
       // Lanes that are done have an interval and no length.
       const VF ramp = GatherIndex(d, ramps, interval);
-      if (!closely)
+      if (!closely) {
         errors.ramps = MulAdd(length * before, ramp, errors.ramps);
-      else if (const MF steep = And(active, ramp > zero); !AllFalse(d, steep))
-        add_ramp_excess(IntervalLanes<Lookup>{table, index, interval, steep, *frame.error_bound}, s_end, length, before,
-                        progress, sums.excess);
+      } else if (const MF steep = And(active, ramp > zero); !AllFalse(d, steep)) {
+        add_ramp_excess(lanes_in(steep), s_end, length, before, progress, excess);
+      }
     }
     v = IfThenElse(active, end, v);
     s = IfThenElse(active, s_end, s);
     active = And(active, v < one);
     if (AllFalse(d, active)) break;
   }
-  // Rounds that do not do.
+  // What 4096 rounds did not reach counts as an error.
   errors.left = errors.left + IfThenElseZero(active, progress.transmittance);
-  if (closely) set_close_errors(progress, *frame.error_bound, sums);
+  if (closely) set_close_errors(excess, progress, *frame.error_bound, errors);
   return errors;
 }
 

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rays of a tile in index space; included once per instruction set (Highway's include guard idiom).
+//
+// What      Of each ray of one axis code: its places a + b k along axes i and j, and the planes k between which it is
+//           in the volume, in the view's range and on the kept side of clips.
+// How       In double precision, by maps from pixels to origins and directions that are linear (PixelRays).
+// Accuracy  Rays that run in a plane of the lattice, or within 1e-9 voxel of one, are put on the side that they would
+//           be on if they were shifted by a hair of a pixel, so that rounding does not choose.
+// Ends      k_in >= k_out where a ray has another axis code or misses the volume.
 
 #if defined(TESSERA_VOLUME_RAY_SETUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_RAY_SETUP_INL_H_
@@ -46,7 +53,7 @@ constexpr double in_plane_within = 1e-9;
 
 /// Where such rays go instead, voxels along an axis: to the side that they would be on if they were shifted by (e, e^2)
 /// pixel, e infinitely small. Below a plane by a float's last place before 1, as places are floats in [0, 1) within a
-/// voxel; above it by what doubles of 65,536 voxels still tell.
+/// voxel; above it by what doubles of 65,536 voxels still resolve.
 HWY_INLINE double side_of_plane(const PixelRays& rays, bool perspective, int axis) {
   const double by_x = perspective ? rays.direction_x[axis] : rays.origin_x[axis],
                by_y = perspective ? rays.direction_y[axis] : rays.origin_y[axis];
@@ -67,7 +74,7 @@ HWY_NOINLINE inline bool crosses_planes(const PixelRays& rays, int x0, int y0, i
   return std::max(least, -most) > 4 * in_plane_within * largest;
 }
 
-/// Puts rays a + b k that run in a plane of the lattice beside it, by `side`; `reach`: farthest of k from their origin.
+/// Puts rays a + b k that run in a plane of the lattice `side` off it; `reach`: farthest of k from their origin.
 template <class V>
 HWY_INLINE void keep_side(V reach, double side, V& a, V& b) {
   namespace hn = hwy::HWY_NAMESPACE;
@@ -93,7 +100,7 @@ HWY_INLINE void clip(V a, V b, double end, V& in, V& out) {
   out = IfThenElse(outside, Set(d, -1.0), out);
 }
 
-/// Cuts [in, out] to where a + b k >= 0. A ray that runs in that plane is on the side that `inside` says.
+/// Cuts [in, out] to where a + b k >= 0. A ray that runs in that plane is on the side given by `inside`.
 template <class V>
 HWY_INLINE void clip_half(V a, V b, V reach, bool inside, V& in, V& out) {
   namespace hn = hwy::HWY_NAMESPACE;
@@ -177,7 +184,7 @@ HWY_NOINLINE inline void set_up_rays(const FrameView& frame, int x0, int y0, int
     const auto length = Sqrt(MulAdd(tx, tx, MulAdd(ty, ty, one))) * per_k * set(1 / frame.length_unit);
     if (frame.shading != nullptr) {
       const double(&l)[3] = frame.shading->light_eye;
-      // Towards the eye along the ray: (-tx, ty, 1) in the camera's frame, y being down the picture.
+      // Towards the eye along the ray: (-tx, ty, 1) in the camera's frame, y being down the image.
       const auto towards = NegMulAdd(tx, set(l[0]), MulAdd(ty, set(l[1]), set(l[2])));
       const auto cosine = towards / Sqrt(MulAdd(tx, tx, MulAdd(ty, ty, one)));
       Store(DemoteTo(hn::Rebind<float, decltype(d)>(), cosine), hn::Rebind<float, decltype(d)>(), out.light_view + ray);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a packet's rays have gathered on their way through a chunk; included once per instruction set.
+//
+// What      Of each lane its light since the chunk's front, where that begins, and a bound of its error.
 
 #if defined(TESSERA_VOLUME_RAY_STATE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_RAY_STATE_INL_H_

@@ -172,11 +172,17 @@ HWY_INLINE StepLight sampled_step(const Lookup& lookup, VF s, VF extent, VF leng
   return light;
 }
 
-/// Of a step between two scalars by the table; of those that are the ray's last and shorter, as the table is made.
+/// A step between two scalars.
+struct ScalarStep {
+  VF front, back, length;
+};
+
+/// Of a step by the table; the ray's last step, which is shorter, is integrated as the table is made.
 template <class Lookup>
-HWY_INLINE StepLight preintegrated_step(const PreintegratedTable& table, const Lookup& lookup, VF front, VF back,
-                                        VF length, MF active, MF last) {
+HWY_INLINE StepLight preintegrated_step(const PreintegratedTable& table, const Lookup& lookup, const ScalarStep& step,
+                                        MF active, MF last) {
   const DF d;
+  const VF front = step.front, back = step.back;
   // Blank samples give NaN, at either end.
   const MF good = And(active, And(back == back, front == front));
   VF found[4];
@@ -184,10 +190,10 @@ HWY_INLINE StepLight preintegrated_step(const PreintegratedTable& table, const L
   StepLight light;
   light.depth = IfThenElseZero(good, found[0]);
   for (int c = 0; c < 3; ++c) light.color[c] = IfThenElseZero(good, found[c + 1]);
-  // The last step is shorter than the table's, and its light is no share of theirs: integrated as the table is.
+  // The last step is shorter than the table's, and its light is not a share of theirs: integrated as the table is.
   const MF final_one = And(good, last);
   if (!AllFalse(d, final_one)) {
-    const CL::Light exact = CL::integrate_lanes(lookup, length, front, back, final_one);
+    const CL::Light exact = CL::integrate_lanes(lookup, step.length, front, back, final_one);
     light.depth = IfThenElse(final_one, exact.optical_depth, light.depth);
     const VF own[] = {exact.red, exact.green, exact.blue};
     for (int c = 0; c < 3; ++c) light.color[c] = IfThenElse(final_one, own[c], light.color[c]);
@@ -231,7 +237,7 @@ HWY_INLINE void sample_lanes(const ChunkView& chunk, const Lookup& lookup, const
       step = sampled_step(lookup, s, extent, lanes.length, active);
     } else {
       const VF back = field_in_block<cell_data>(chunk, slice_offsets, lanes, k + extent, active);
-      step = preintegrated_step(*table, lookup, carried, back, extent * lanes.length, active, last);
+      step = preintegrated_step(*table, lookup, {carried, back, extent * lanes.length}, active, last);
       carried = IfThenElse(active, back, carried);
     }
     for (int c = 0; c < 3; ++c) light[c] = MulAdd(through, step.color[c], light[c]);

@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Blinn-Phong shading of stretches inside voxels; included once per instruction set.
+//
+// What      A stretch's own colour times ambient + diffuse |n l|, and white light of specular |n h|^shininess for each
+//           unit of its opacity: n along the field's gradient in the middle of the stretch, h half way between light l
+//           and view.
+// How       With W from ShadingView, a world gradient is W^T g, its square g W W^T g, and its product with the light g
+//           W l: no world vector is made. Its product with the view is the field's change along the ray.
+// Accuracy  What floats leave of the samples (SlabBlock::rest) is in the gradients; what even that rounds off is noted
+//           as an error.
+// Ends      Where the gradient is zero the colour stays as it is, without shine.
 
 #if defined(TESSERA_VOLUME_SHADING_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_SHADING_INL_H_
@@ -11,10 +20,8 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "volume/frame_view.hpp"
+#include "volume/lanes/packet_lanes-inl.h"
 #include "volume/lanes/ray_piece-inl.h"
 #include "volume/tile_rays.hpp"
 
@@ -28,38 +35,45 @@ struct Lit {
   VF error;  ///< of light for each unit of opacity, as the gradient is rounded
 };
 
-/// From the gradient along (i, j, k) of the ray's axes. Its length in the world and its products with light and view
-/// need no world vectors: the light's come from ShadingView, the view's is the field's change along the ray.
-/// `slope_k` is that change per k, `per_length` the shading's unit over the ray's length per k. `noise`: what rounding
-/// makes of the gradient's components.
-HWY_INLINE Lit shade(const ShadingView& shading, const RayAxes& axes, VF g_i, VF g_j, VF g_k, VF slope_k, VF per_length,
-                     VF light_view, float noise) {
+/// How the field changes per voxel along the ray's axes.
+struct Gradient {
+  VF i, j, k;
+
+  /// Its change along the ray, per slab.
+  HWY_INLINE VF along(const Lanes& lanes) const { return MulAdd(lanes.bx, i, MulAdd(lanes.by, j, k)); }
+  /// Zero where it is not a number, and elsewhere than in `lanes`.
+  HWY_INLINE Gradient kept(MF lanes) const {
+    const auto finite = [&](VF v) HWY_ATTR { return IfThenElseZero(And(lanes, v == v), v); };
+    return {finite(i), finite(j), finite(k)};
+  }
+};
+
+/// From the gradient g. Its length in the world and its products with light and view need no world vectors: the light's
+/// come from ShadingView, the view's is the field's change along the ray, `along` for each of the shading's unit.
+/// `light_view` is the cosine between light and view.
+HWY_INLINE Lit shade(const FrameView& frame, const RayAxes& axes, const Gradient& g, VF along, VF light_view) {
   const DF d;
+  const ShadingView& shading = *frame.shading;
   const VF zero = Zero(d), one = Set(d, 1.0f);
   const float flip = axes.mirrored ? -1.0f : 1.0f;
-  const auto metric = [&](int a, int b) HWY_ATTR { return static_cast<float>(shading.metric[a][b]); };
+  const auto metric = [&](int a, int b) { return shading.metric[a][b]; };
   const auto times = [&](VF v, float s) HWY_ATTR { return v * Set(d, s); };
-  const VF m_i = times(g_i, metric(axes.i, axes.i)) +
-                 (times(g_j, 2 * metric(axes.i, axes.j)) + times(g_k, 2 * flip * metric(axes.i, axes.k)));
-  const VF m_j = times(g_j, metric(axes.j, axes.j)) + times(g_k, 2 * flip * metric(axes.j, axes.k));
-  const VF square = MulAdd(g_i, m_i, MulAdd(g_j, m_j, times(g_k * g_k, metric(axes.k, axes.k))));
+  const VF m_i = times(g.i, metric(axes.i, axes.i)) +
+                 (times(g.j, 2 * metric(axes.i, axes.j)) + times(g.k, 2 * flip * metric(axes.i, axes.k)));
+  const VF m_j = times(g.j, metric(axes.j, axes.j)) + times(g.k, 2 * flip * metric(axes.j, axes.k));
+  const VF square = MulAdd(g.i, m_i, MulAdd(g.j, m_j, times(g.k * g.k, metric(axes.k, axes.k))));
   const MF flat = Not(square > zero);
   const VF per_norm = one / Sqrt(IfThenElse(flat, one, square));
-  const auto toward = [&](int a) HWY_ATTR { return static_cast<float>(shading.light[a]); };
+  const float* const light = shading.light;
   const VF n_l =
-      per_norm * (times(g_i, toward(axes.i)) + (times(g_j, toward(axes.j)) + times(g_k, flip * toward(axes.k))));
-  const VF n_v = Neg(per_norm * (slope_k * per_length));
+      per_norm * (times(g.i, light[axes.i]) + (times(g.j, light[axes.j]) + times(g.k, flip * light[axes.k])));
+  const VF n_v = Neg(per_norm * along);
   const VF half_length = Sqrt(Max(Set(d, 1e-12f), MulAdd(Set(d, 2.0f), light_view, Set(d, 2.0f))));
   const VF n_h = Min(one, Max(Set(d, 1e-6f), Abs((n_l + n_v) / half_length)));
-  const VF shine = Exp(d, Set(d, static_cast<float>(shading.shininess)) * Log(d, n_h));
-  const VF own =
-      MulAdd(Abs(n_l), Set(d, static_cast<float>(shading.diffuse)), Set(d, static_cast<float>(shading.ambient)));
-  // A unit normal turns by no more than the noise's part of the gradient, and light changes by this much a turn.
-  const double turn = shading.diffuse + shading.specular * std::max(1.0, shading.shininess);
-  const float world_noise =
-      noise * static_cast<float>(turn * std::sqrt(shading.metric[0][0] + shading.metric[1][1] + shading.metric[2][2]));
-  return {IfThenElse(flat, one, own), IfThenElseZero(Not(flat), times(shine, static_cast<float>(shading.specular))),
-          IfThenElseZero(Not(flat), times(per_norm, world_noise))};
+  const VF shine = times(Exp(d, times(Log(d, n_h), shading.shininess)), shading.specular);
+  const VF own = MulAdd(Abs(n_l), Set(d, shading.diffuse), Set(d, shading.ambient));
+  const VF error = times(per_norm, frame.rest_noise * shading.light_per_noise);
+  return {IfThenElse(flat, one, own), IfThenElseZero(Not(flat), shine), IfThenElseZero(Not(flat), error)};
 }
 
 /// Puts a stretch, integrated by itself, behind what there is.

@@ -1,16 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The field along a packet's rays in slabs that they cross from plane to plane; included once per instruction set.
 //
-// Way       Axes i and j are mirrored, lane by lane, where a ray moves down, so that all slopes are positive. p is the
-//           axis whose plane a ray crosses first in the slab (at u_1), q the other (at u_2; 1: not crossed). A lane
-//           meets at most eight lattice points a slice, numbered by their places along p and q from the voxel it
-//           enters: 00 10 01 11 there, 20 21 behind p's plane, 12 22 behind q's.
-// Field     Inside a voxel it is a cubic of u; half its second derivative in the middle of a stretch, tau, times
-//           e^2 / 6 is what the stretch's mean lies below the middle of its ends (Simpson's rule, which cubics obey
-//           exactly), e being the stretch's share of the slab. So the slab's mean follows from its values at planes and
-//           crossings and three taus. tau = b_p b_q D_pq + b_p D_pk + b_q D_qk, products of differences and slopes.
+// What      Of up to eight slabs: the field where a ray meets the slab's front plane, its back plane and the planes of
+//           axes i and j between them, and the shape of the cubic that it is from one of these to the next. So lines
+//           (line_of()) stand for slabs, or stretches one by one (voxel_pieces-inl.h).
+// Axes      i and j are mirrored, lane by lane, where a ray moves down, so that all slopes are positive. p is the axis
+//           whose plane a ray crosses first, at u_1 of the slab, and q the other, at u_2; 1: not crossed. A ray that
+//           crosses both goes through three voxels of the slab and meets eight lattice points in either slice, which
+//           are numbered by their places along p and q from the voxel it enters:
+//
+//             q = 2       12 ------ 22
+//                          |    x    |       * where it enters
+//                          |  third  |       1 p's plane, at u_1
+//             q = 1 01 -- 11 --2--- 21       2 q's plane, at u_2
+//                    |first|  second |       x where it leaves
+//                    | *   1         |
+//             q = 0 00 -- 10 ------ 20
+//                   p = 0  1         2
+//
+//           a_pq is the sample at such a point in the slab's front slice, b_pq that behind it in the back slice.
+// Cubic     Inside a voxel the field is trilinear in p, q and u, along the ray hence a cubic of u. Half its second
+//           derivative is, with the ray's slopes p' and q',
+//             tau = p' q' D_pq + p' D_pk + q' D_qk.
+//           Each D is a mixed difference of the voxel's samples, linear along the third axis with the slope D_pqk; so
+//           where D_pk and D_qk are taken at sides q_s and p_s, and D_pq in the front slice, the middle (p, q, u) of a
+//           stretch has D_pqk (p' q' u + p' (q - q_s) + q' (p - p_s)) more. Stretches that share a side share its
+//           differences. The mean of a stretch that takes e of the slab is tau e^2 / 6 below the middle of its ends
+//           (Simpson's rule, which is exact for cubics).
 // Line      The field is the line between the slab's ends and a rest: at the crossings d_1 and d_2, and between them
-//           the cubics' bumps, at most e^2 |tau| / 4 of the even part and e^3 b_p b_q |D_pqk| / 4 of the odd (Bezier).
+//           the cubics' bumps, at most e^2 |tau| / 4 of the even part and e^3 p' q' |D_pqk| / 4 of the odd (Bezier).
+// Bits      A lane's numbers depend on its ray, the chunk and the samples, not on the window that these come from.
+// Ends      What is not a number, as samples are blank, stays so in `bump` and `rho`.
 
 #if defined(TESSERA_VOLUME_SLAB_LINES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_SLAB_LINES_INL_H_
@@ -29,39 +49,41 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
-/// A packet's lanes in mirrored axes; see Way above.
+/// Axis i or j of a packet's lanes, mirrored; see Axes above.
+struct MirroredAxis {
+  VF start, slope, per_slope;  ///< place at the chunk's first plane; per slab, not negative; its inverse, finite
+  VF least, most;              ///< voxels of the volume
+  VF sign;                     ///< +1, or -1 where mirrored
+  VF origin;                   ///< lattice point 0, relative to the packet's i_base or j_base
+  VI step;                     ///< elements of the window from a lattice point to the next
+
+  /// Of a ray at `place` + `change` k; `stride`: elements of the window between points that are not mirrored.
+  HWY_INLINE MirroredAxis(VF place, VF change, VF first, VF last, VF point_0, int stride) : origin(point_0) {
+    const DF d;
+    const VF one = Set(d, 1.0f);
+    const MF down = change < Zero(d);
+    sign = IfThenElse(down, Neg(one), one);
+    start = sign * place;
+    slope = Abs(change);
+    per_slope = one / Max(slope, Set(d, 1e-30f));
+    least = IfThenElse(down, Neg(last) - one, first);
+    most = IfThenElse(down, Neg(first) - one, last);
+    step = ConvertTo(DI(), Set(d, static_cast<float>(stride)) * sign);
+  }
+};
+
+/// A packet's lanes in mirrored axes.
 struct MirroredLanes {
-  VF x, y, bx, by, per_bx, per_by;      ///< slopes not negative, their inverses finite
-  VF i_least, i_most, j_least, j_most;  ///< voxels of the volume
-  VF sign_i, sign_j;                    ///< +1, or -1 where mirrored
-  VF i, j;                              ///< lattice point 0 of the axes, relative to (i_base, j_base)
-  VI step_i, step_j;                    ///< elements of the window from a lattice point to the next
+  MirroredAxis i, j;
   MF live;
-  VF bends;
+  VF slopes_product;
 
   /// `columns` of the window.
-  HWY_INLINE MirroredLanes(const Lanes& lanes, int columns) {
-    const DF d;
-    const DI di;
-    const VF zero = Zero(d), one = Set(d, 1.0f);
-    const auto axis = [&](VF position, VF slope, VF least, VF most, VF& x_out, VF& b_out, VF& per, VF& sign,
-                          VF& least_out, VF& most_out) HWY_ATTR {
-      const MF down = slope < zero;
-      sign = IfThenElse(down, Neg(one), one);
-      x_out = sign * position;
-      b_out = Abs(slope);
-      per = one / Max(b_out, Set(d, 1e-30f));
-      least_out = IfThenElse(down, Neg(most) - one, least);
-      most_out = IfThenElse(down, Neg(least) - one, most);
-    };
-    axis(lanes.x, lanes.bx, lanes.i_least, lanes.i_most, x, bx, per_bx, sign_i, i_least, i_most);
-    axis(lanes.y, lanes.by, lanes.j_least, lanes.j_most, y, by, per_by, sign_j, j_least, j_most);
-    i = lanes.i, j = lanes.j;
-    step_i = ConvertTo(di, sign_i);
-    step_j = ConvertTo(di, Set(d, static_cast<float>(columns)) * sign_j);
-    bends = bx * by;
-    live = lanes.k_in < lanes.k_out;
-  }
+  HWY_INLINE MirroredLanes(const Lanes& lanes, int columns)
+      : i(lanes.x, lanes.bx, lanes.i_least, lanes.i_most, lanes.i, 1),
+        j(lanes.y, lanes.by, lanes.j_least, lanes.j_most, lanes.j, columns),
+        live(lanes.k_in < lanes.k_out),
+        slopes_product(i.slope * j.slope) {}
 };
 
 /// What is found of up to eight slabs; s[n] at slab n's front plane.
@@ -79,6 +101,12 @@ struct SlabLines {
 /// where the field is not.
 struct Line {
   VF s_0, s_1, span, shift, rho;
+
+  /// Zero elsewhere than in `lanes`.
+  HWY_INLINE Line kept(MF lanes) const {
+    const auto keep = [&](VF v) HWY_ATTR { return IfThenElseZero(lanes, v); };
+    return {keep(s_0), keep(s_1), keep(span), keep(shift), keep(rho)};
+  }
 };
 
 HWY_INLINE Line line_of(const SlabLines& lines, int n) {
@@ -90,9 +118,9 @@ HWY_INLINE Line line_of(const SlabLines& lines, int n) {
   const VF u_1 = lines.u_1[n], u_2 = lines.u_2[n];
   const VF d_1 = IfThenElseZero(u_1 < one, lines.f_1[n] - MulAdd(u_1, line.span, line.s_0)),
            d_2 = IfThenElseZero(u_2 < one, lines.f_2[n] - MulAdd(u_2, line.span, line.s_0));
-  // Trapezia: the ends' weights are half the stretches beside them.
+  // Trapezia: the ends' weights are half the stretches next to them.
   const VF kinks = MulAdd(d_1, u_2, d_2 * (one - u_1));
-  line.shift = NegMulAdd(Set(d, 1.0f), lines.sag[n], half * kinks);
+  line.shift = half * kinks - lines.sag[n];
   line.rho = Max(Abs(d_1), Abs(d_2)) + lines.bump[n];
   return line;
 }
@@ -139,20 +167,20 @@ struct WindowPlace {
   bool inner;
 };
 
-/// The voxels that lanes are in at plane n of the chunk, and where in them.
+/// The voxels that lanes are in at plane n of the chunk, in mirrored axes, and where in them.
 struct VoxelAt {
-  VF i, j;    ///< mirrored axes
-  VF fx, fy;  ///< from its corner, 0 to 1
+  VF i, j;
+  VF part_i, part_j;  ///< from the voxel's corner, 0 to 1
 
   HWY_INLINE VoxelAt(const MirroredLanes& lanes, const WindowPlace& place, int n) {
     const VF k = Set(DF(), static_cast<float>(n));
-    const VF x = MulAdd(k, lanes.bx, lanes.x), y = MulAdd(k, lanes.by, lanes.y);
-    i = Floor(x), j = Floor(y);
+    const VF at_i = MulAdd(k, lanes.i.slope, lanes.i.start), at_j = MulAdd(k, lanes.j.slope, lanes.j.start);
+    i = Floor(at_i), j = Floor(at_j);
     if (HWY_UNLIKELY(!place.inner)) {
-      i = Min(Max(i, lanes.i_least), lanes.i_most);
-      j = Min(Max(j, lanes.j_least), lanes.j_most);
+      i = Min(Max(i, lanes.i.least), lanes.i.most);
+      j = Min(Max(j, lanes.j.least), lanes.j.most);
     }
-    fx = x - i, fy = y - j;
+    part_i = at_i - i, part_j = at_j - j;
   }
   /// Their element of the window: i + columns j.
   template <class Window>
@@ -160,15 +188,75 @@ struct VoxelAt {
     const DF d;
     constexpr bool gathers = std::is_same_v<Window, GatherWindow>;
     const VF at = MulAdd(Set(d, static_cast<float>(gathers ? place.pitch : Window::columns)),
-                         MulAdd(lanes.sign_j, j, lanes.j), MulAdd(lanes.sign_i, i, lanes.i)) +
+                         MulAdd(lanes.j.sign, j, lanes.j.origin), MulAdd(lanes.i.sign, i, lanes.i.origin)) +
                   Set(d, place.origin);
     return ConvertTo(DI(), at);
   }
 };
 
-/// The field of slab n of the chunk into place m of `lines`, but for its back plane. `pitch` elements of a slice lie
-/// between rows; `voxels` counts, lane by lane, the voxels that live lanes visit.
-// Long: three voxels share corners, differences and places along the ray; in parts, each would be given most of them.
+/// The samples at a lattice point in a slab's front and back slice, or a difference of two such pairs.
+struct SamplePair {
+  VF a, b;
+
+  friend HWY_INLINE SamplePair operator-(const SamplePair& to, const SamplePair& from) {
+    return {to.a - from.a, to.b - from.b};
+  }
+  HWY_INLINE VF change() const { return b - a; }
+  /// At u between the slices.
+  HWY_INLINE VF at(VF u) const { return MulAdd(u, b - a, a); }
+  /// `part` of `step` further.
+  HWY_INLINE SamplePair moved(VF part, const SamplePair& step) const {
+    return {MulAdd(part, step.a, a), MulAdd(part, step.b, b)};
+  }
+};
+
+/// The shape of the cubic over a stretch: tau in its middle, and D_pqk.
+struct Curvature {
+  VF tau, third;
+};
+
+/// What tau is made of, but for D_pq; see Cubic above.
+struct SideDifferences {
+  VF d_pk, d_qk;
+  VF offset;  ///< p' q' u + p' (q - q_s) + q' (p - p_s), of the stretch's middle
+};
+
+/// A ray's slopes along p and q.
+struct Slopes {
+  VF p, q, product;
+};
+
+/// In a voxel whose samples differ by `near` along one axis and, one further along the other axis, by `far`.
+HWY_INLINE Curvature curvature(const Slopes& slope, const SamplePair& near, const SamplePair& far,
+                               const SideDifferences& sides) {
+  const VF d_pq = far.a - near.a, third = far.b - near.b - d_pq;
+  const VF tau = MulAdd(slope.product, d_pq, MulAdd(third, sides.offset, slope.q * sides.d_qk));
+  return {MulAdd(slope.p, sides.d_pk, tau), third};
+}
+
+/// Into place m of `lines`: the crossings, and the shapes of the stretches between them.
+HWY_INLINE void set_stretches(VF u_1, VF u_2, VF slopes_product, const Curvature (&shape)[3], int m, SlabLines& lines) {
+  const DF d;
+  const VF extent[3] = {u_1, u_2 - u_1, Set(d, 1.0f) - u_2};
+  VF even[3], odd[3];
+  for (int k = 0; k < 3; ++k) {
+    const VF squared = extent[k] * extent[k];
+    even[k] = squared * shape[k].tau;
+    odd[k] = slopes_product * extent[k] * squared * shape[k].third;
+    lines.even[k][m] = even[k], lines.odd[k][m] = odd[k];
+  }
+  lines.u_1[m] = u_1, lines.u_2[m] = u_2;
+  const VF sag = MulAdd(extent[0], even[0], MulAdd(extent[1], even[1], extent[2] * even[2]));
+  lines.sag[m] = Set(d, 1 / 6.0f) * sag;
+  const VF most_even = Max(Max(Abs(even[0]), Abs(even[1])), Abs(even[2])),
+           most_odd = Max(Max(Abs(odd[0]), Abs(odd[1])), Abs(odd[2]));
+  // Not a number where any of them is not: Max may leave that out.
+  const VF all = odd[0] + odd[1] + (odd[2] + lines.sag[m]);
+  lines.bump[m] = Set(d, 0.25f) * MulAdd(Zero(d), all, most_odd + most_even);
+}
+
+/// The field of slab n of the chunk into place m of `lines`, but for its back plane. `voxels` counts, lane by lane, the
+/// voxels that live lanes visit.
 template <class Window>
 HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, const WindowPlace& place, int n,
                           SlabLines& lines, VF& voxels) {
@@ -177,101 +265,64 @@ HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, cons
   const DI di;
   const VF one = Set(d, 1.0f), half = Set(d, 0.5f);
   const VoxelAt in(lanes, place, n);
-  const VF fx = in.fx, fy = in.fy;
-  VF u_i = Min((one - fx) * lanes.per_bx, one), u_j = Min((one - fy) * lanes.per_by, one);
+  VF u_i = Min((one - in.part_i) * lanes.i.per_slope, one), u_j = Min((one - in.part_j) * lanes.j.per_slope, one);
   if (HWY_UNLIKELY(!place.inner)) {
-    u_i = IfThenElse(in.i == lanes.i_most, one, u_i);
-    u_j = IfThenElse(in.j == lanes.j_most, one, u_j);
+    u_i = IfThenElse(in.i == lanes.i.most, one, u_i);
+    u_j = IfThenElse(in.j == lanes.j.most, one, u_j);
   }
   const VF u_1 = Min(u_i, u_j), u_2 = Max(u_i, u_j);
-  const MF i_first = u_i < u_j, cross_1 = u_1 < one, cross_2 = u_2 < one;
-  const auto first = [&](VF a, VF b) HWY_ATTR { return IfThenElse(i_first, a, b); };
+  const MF i_is_p = u_i < u_j, crosses_p = u_1 < one, crosses_q = u_2 < one;
   const VF voxel = IfThenElseZero(lanes.live, one);
-  voxels = voxels + voxel + (IfThenElseZero(cross_1, voxel) + IfThenElseZero(cross_2, voxel));
+  voxels = voxels + voxel + (IfThenElseZero(crosses_p, voxel) + IfThenElseZero(crosses_q, voxel));
 
   constexpr bool gathers = std::is_same_v<Window, GatherWindow>;
   const auto if_int = [&](MF mask, VI v) HWY_ATTR { return IfThenElseZero(RebindMask(di, mask), v); };
-  VI step_p = IfThenElse(RebindMask(di, i_first), lanes.step_i, lanes.step_j),
-     step_q = IfThenElse(RebindMask(di, i_first), lanes.step_j, lanes.step_i);
+  VI step_p = IfThenElse(RebindMask(di, i_is_p), lanes.i.step, lanes.j.step),
+     step_q = IfThenElse(RebindMask(di, i_is_p), lanes.j.step, lanes.i.step);
   VI at_00 = in.element<Window>(lanes, place);
   // Lanes that are not there may be anywhere.
   if (gathers) step_p = if_int(lanes.live, step_p), step_q = if_int(lanes.live, step_q);
   if (gathers) at_00 = if_int(lanes.live, at_00);
   const VI at_10 = at_00 + step_p, at_01 = at_00 + step_q, at_11 = at_10 + step_q;
   // What is not crossed has nothing behind it: no step, so that nothing but the voxel's own points is read.
-  const VI beyond_p = if_int(cross_1, step_p), beyond_q = if_int(cross_2, step_q);
+  const VI beyond_p = if_int(crosses_p, step_p), beyond_q = if_int(crosses_q, step_q);
   const VI at_20 = at_10 + beyond_p, at_21 = at_11 + beyond_p, at_12 = at_11 + beyond_q, at_22 = at_21 + beyond_q;
+  const auto samples = [&](VI at) HWY_ATTR { return SamplePair{window.front(at), window.back(at)}; };
 
-  const VF b_p = first(lanes.bx, lanes.by), b_q = first(lanes.by, lanes.bx);
-  const VF p_0 = first(fx, fy), q_0 = first(fy, fx);
-  const VF e_0 = u_1, e_1 = u_2 - u_1, e_2 = one - u_2;
-  const VF q_1 = MulAdd(u_1, b_q, q_0), p_2 = e_1 * b_p;
+  const auto first = [&](VF of_i, VF of_j) HWY_ATTR { return IfThenElse(i_is_p, of_i, of_j); };
+  const Slopes slope{first(lanes.i.slope, lanes.j.slope), first(lanes.j.slope, lanes.i.slope), lanes.slopes_product};
+  const VF p_0 = first(in.part_i, in.part_j), q_0 = first(in.part_j, in.part_i);
+  const VF q_1 = MulAdd(u_1, slope.q, q_0), p_2 = (u_2 - u_1) * slope.p;  // the latter behind p's plane
 
-  // The voxel it enters.
-  const VF a_10 = window.front(at_10), b_10 = window.back(at_10), a_11 = window.front(at_11), b_11 = window.back(at_11);
-  const VF qa = a_11 - a_10, qb = b_11 - b_10, d_qk = qb - qa;
-  VF tau_0, third_0;
+  Curvature shape[3];
+  const SamplePair s_10 = samples(at_10), s_11 = samples(at_11), along_q = s_11 - s_10;
   {
-    const VF a_00 = window.front(at_00), b_00 = window.back(at_00), a_01 = window.front(at_01),
-             b_01 = window.back(at_01);
-    const VF pa_0 = a_10 - a_00, pa_1 = a_11 - a_01, pb_0 = b_10 - b_00, pb_1 = b_11 - b_01;
-    const VF front_0 = MulAdd(p_0, pa_0, a_00), front_1 = MulAdd(p_0, pa_1, a_01);
+    const SamplePair s_00 = samples(at_00), s_01 = samples(at_01), near = s_10 - s_00, far = s_11 - s_01;
+    const VF front_0 = MulAdd(p_0, near.a, s_00.a), front_1 = MulAdd(p_0, far.a, s_01.a);
     lines.s[m] = MulAdd(q_0, front_1 - front_0, front_0);
-    const VF d_pq = pa_1 - pa_0;
-    third_0 = pb_1 - pb_0 - d_pq;
-    const VF p_middle = MulAdd(half * u_1, b_p, p_0);
-    const VF weight = NegMulAdd(b_q, one - p_middle, b_p * q_1);
-    tau_0 = MulAdd(lanes.bends, d_pq, MulAdd(third_0, weight, b_q * d_qk));
-    tau_0 = MulAdd(b_p, pb_0 - pa_0, tau_0);
+    // Sides q = 0 and p = 1.
+    const VF p_middle = MulAdd(half * u_1, slope.p, p_0);
+    const VF offset = NegMulAdd(slope.q, one - p_middle, slope.p * q_1);
+    shape[0] = curvature(slope, near, far, {near.change(), along_q.change(), offset});
   }
-  {
-    const VF a = MulAdd(q_1, qa, a_10), b = MulAdd(q_1, qb, b_10);
-    lines.f_1[m] = MulAdd(u_1, b - a, a);
-  }
+  lines.f_1[m] = s_10.moved(q_1, along_q).at(u_1);
 
-  // Behind p's plane.
-  const VF a_21 = window.front(at_21), b_21 = window.back(at_21);
-  const VF pa_1 = a_21 - a_11, pb_1 = b_21 - b_11, d_pk = pb_1 - pa_1;
-  VF tau_1, third_1;
+  const SamplePair s_21 = samples(at_21), along_p = s_21 - s_11;
   {
-    const VF a_20 = window.front(at_20), b_20 = window.back(at_20);
-    const VF d_pq = pa_1 - (a_20 - a_10);
-    third_1 = pb_1 - (b_20 - b_10) - d_pq;
-    const VF q_middle = MulAdd(half * e_1, b_q, q_1);
-    const VF weight = NegMulAdd(b_p, one - q_middle, lanes.bends * u_2);
-    tau_1 = MulAdd(lanes.bends, d_pq, MulAdd(third_1, weight, b_q * d_qk));
-    tau_1 = MulAdd(b_p, d_pk, tau_1);
-    const VF a = MulAdd(p_2, pa_1, a_11), b = MulAdd(p_2, pb_1, b_11);
-    lines.f_2[m] = MulAdd(u_2, b - a, a);
+    // Sides q = 1 and p = 1.
+    const VF q_middle = MulAdd(half * (u_2 - u_1), slope.q, q_1);
+    const VF offset = NegMulAdd(slope.p, one - q_middle, slope.product * u_2);
+    shape[1] = curvature(slope, samples(at_20) - s_10, along_p, {along_p.change(), along_q.change(), offset});
   }
-
-  // Behind q's plane.
-  VF tau_2, third_2;
+  lines.f_2[m] = s_11.moved(p_2, along_p).at(u_2);
   {
-    const VF a_12 = window.front(at_12), b_12 = window.back(at_12), a_22 = window.front(at_22),
-             b_22 = window.back(at_22);
-    const VF qa_1 = a_12 - a_11, qb_1 = b_12 - b_11;
-    const VF d_pq = a_22 - a_21 - qa_1;
-    third_2 = b_22 - b_21 - qb_1 - d_pq;
-    const VF p_middle = MulAdd(half * e_2, b_p, p_2);
-    const VF weight = MulAdd(b_q, p_middle, lanes.bends);
-    tau_2 = MulAdd(lanes.bends, d_pq, MulAdd(third_2, weight, b_q * (qb_1 - qa_1)));
-    tau_2 = MulAdd(b_p, d_pk, tau_2);
+    // Sides q = 1 and p = 1 again; the latter now begins at 11.
+    const SamplePair s_12 = samples(at_12), near = s_12 - s_11;
+    const VF p_middle = MulAdd(half * (one - u_2), slope.p, p_2);
+    const VF offset = MulAdd(slope.q, p_middle, slope.product);
+    shape[2] = curvature(slope, near, samples(at_22) - s_21, {along_p.change(), near.change(), offset});
   }
-
-  const VF ee_0 = e_0 * e_0, ee_1 = e_1 * e_1, ee_2 = e_2 * e_2;
-  const VF w_0 = ee_0 * tau_0, w_1 = ee_1 * tau_1, w_2 = ee_2 * tau_2;
-  lines.u_1[m] = u_1, lines.u_2[m] = u_2;
-  lines.sag[m] = Set(d, 1 / 6.0f) * MulAdd(e_0, w_0, MulAdd(e_1, w_1, e_2 * w_2));
-  lines.even[0][m] = w_0, lines.even[1][m] = w_1, lines.even[2][m] = w_2;
-  const VF odd_0 = lanes.bends * e_0 * ee_0 * third_0, odd_1 = lanes.bends * e_1 * ee_1 * third_1,
-           odd_2 = lanes.bends * e_2 * ee_2 * third_2;
-  lines.odd[0][m] = odd_0, lines.odd[1][m] = odd_1, lines.odd[2][m] = odd_2;
-  const VF even = Max(Max(Abs(w_0), Abs(w_1)), Abs(w_2)), odd = Max(Max(Abs(odd_0), Abs(odd_1)), Abs(odd_2));
-  // Not a number where any of them is not: Max may leave that out.
-  const VF all = odd_0 + odd_1 + (odd_2 + lines.sag[m]);
-  const VF any = MulAdd(Zero(d), all, odd + even);
-  lines.bump[m] = Set(d, 0.25f) * any;
+  set_stretches(u_1, u_2, slope.product, shape, m, lines);
 }
 
 /// The field at slab n's back plane, into place m + 1.
@@ -281,15 +332,14 @@ HWY_INLINE void find_back(const MirroredLanes& lanes, const Window& window, cons
   const int m = n - lines.first;
   const DI di;
   const VoxelAt in(lanes, place, n + 1);
-  const VF fx = in.fx, fy = in.fy;
   constexpr bool gathers = std::is_same_v<Window, GatherWindow>;
   const auto kept = [&](VI v) HWY_ATTR { return gathers ? IfThenElseZero(RebindMask(di, lanes.live), v) : v; };
-  const VI at_00 = kept(in.element<Window>(lanes, place)), step_i = kept(lanes.step_i), step_j = kept(lanes.step_j);
+  const VI at_00 = kept(in.element<Window>(lanes, place)), step_i = kept(lanes.i.step), step_j = kept(lanes.j.step);
   const VI at_10 = at_00 + step_i;
   const VF b_00 = window.back(at_00), b_10 = window.back(at_10), b_01 = window.back(at_00 + step_j),
            b_11 = window.back(at_10 + step_j);
-  const VF back_0 = MulAdd(fx, b_10 - b_00, b_00), back_1 = MulAdd(fx, b_11 - b_01, b_01);
-  lines.s[m + 1] = MulAdd(fy, back_1 - back_0, back_0);
+  const VF back_0 = MulAdd(in.part_i, b_10 - b_00, b_00), back_1 = MulAdd(in.part_i, b_11 - b_01, b_01);
+  lines.s[m + 1] = MulAdd(in.part_j, back_1 - back_0, back_0);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -7,7 +7,7 @@
 // Roots     of differences from the value, so that what they err is a part of what the field changes by in the voxel.
 // Unsure    whether a surface is met at all, or in which of two voxels, where the field is near its value at a turn, in
 //           a side of a voxel or at a ray's end: those rays are cast again in double precision (SurfaceWalk).
-// Level     sides of voxels all of whose corners have the value, as whole numbers often do, are no such places: where
+// Level     sides of voxels all of whose corners have the value, as whole numbers often do, are not uncertain: where
 //           lanes and value are exact the field has the value there, hence is not below it.
 // Errors    of places and normals go with those of ramps: roundings, each its own (piece_errors-inl.h).
 
@@ -92,9 +92,9 @@ class SurfaceCast {
           VoxelField(corners, path.x - s.i, path.y - s.j), corners, s.begin, extent, {}, {}, path, s, rest};
       const VoxelField& field = stretch.field;
       Piece& piece = stretch.piece;
-      piece.s_0 = field.at(s.begin, lanes_.bx, lanes_.by);
-      piece.s_mid = field.at(half * (s.begin + s.end), lanes_.bx, lanes_.by);
-      piece.s_1 = field.at(s.end, lanes_.bx, lanes_.by);
+      piece.s_0 = field.at(s.begin, lanes_);
+      piece.s_mid = field.at(half * (s.begin + s.end), lanes_);
+      piece.s_1 = field.at(s.end, lanes_);
       piece.p_3 = field.cij * lanes_.bends * (extent * (extent * extent));
       piece.length = IfThenElseZero(there, extent * lanes_.length);
       piece.begin = s.begin + path.k;
@@ -120,12 +120,12 @@ class SurfaceCast {
     return {number, surface_row(view_, view_.edge, number), surface_row(view_, view_.edge, number + Set(DI(), 1))};
   }
 
-  /// Lanes whose field `s` is nearer to a value that ends the gap than noise lets tell.
+  /// Lanes whose field `s` is nearer to a value that ends the gap than the noise.
   static HWY_INLINE MF touches(const Gap& in, VF s, VF noise, MF lanes) {
     return And(lanes, Or(Abs(s - in.low) < noise, Abs(in.high - s) < noise));
   }
 
-  /// Where a stretch begins or ends in a level side (see Level above), and along which axes that lies.
+  /// Where a stretch begins or ends in a level side (see Level above), and which axes are across it.
   struct LevelSide {
     MF any, across_i, across_j;
   };
@@ -167,8 +167,7 @@ class SurfaceCast {
     const MF none = zero != zero;
     LevelSide front{none, none, none}, back = front;
     VF s_0 = c.p_0, s_1 = IfThenElseZero(whole, stretch.piece.s_1);
-    VF turn_1 = one, turn_2 = one;
-    if (!AllFalse(d, AndNot(is_monotone(c), whole))) find_extrema(c, turn_1, turn_2);
+    const Turns turns(c, whole);
     Gap in = gap(surface_gap(view_, s_0));
     if (const MF near = touches(in, s_0, noise, whole); HWY_UNLIKELY(!AllFalse(d, near))) {
       if (view_.any_exact) front = level_side(stretch, in, stretch.begin, near, s_0);
@@ -179,7 +178,7 @@ class SurfaceCast {
     MF going = whole;
     // Each round ends at a surface, a turn or the stretch's end.
     for (int round = 0; round < 4096; ++round) {
-      const VF turn = IfThenElse(v < turn_1, turn_1, IfThenElse(v < turn_2, turn_2, one));
+      const VF turn = turns.after(v);
       const MF last = turn == one;
       VF s_turn = IfThenElse(last, s_1, c.at(turn));
       if (const MF near = touches(in, s_turn, noise, going); HWY_UNLIKELY(!AllFalse(d, near))) {
@@ -196,17 +195,17 @@ class SurfaceCast {
       if (!AllFalse(d, crosses)) {
         const VF level = IfThenElse(up, in.high, in.low);
         const VI upward = IfThenElseZero(RebindMask(di, up), Set(di, 1)), edge = in.number + upward;
-        const VF guess = IfThenElse(crosses, find_crossing(c, v, turn, s, s_turn, level, crosses), v);
+        const VF guess = IfThenElse(crosses, find_crossing(c, {v, s}, {turn, s_turn}, level, crosses), v);
         const Place place = place_of(stretch, v, turn, guess, level, surface_row(view_, view_.rest, edge));
         const VF at = IfThenElse(crosses, place.at, v);
         add_light(stretch, lit, at, s_lit, level, crosses);
-        // In a level side it is met in this voxel, not beside another one.
+        // In a level side it is met in this voxel, not next to another one.
         const MF at_front = And(v == zero, level == s_0), at_back = And(last, level == s_1);
         const auto beside = [&](MF of_front, MF of_back) HWY_ATTR {
           return AndNot(Or(And(at_front, of_front), And(at_back, of_back)), crosses);
         };
         note_beside(stretch, place, beside(front.across_i, back.across_i), beside(front.across_j, back.across_j));
-        add_surface(stretch, range, place, edge, level, crosses);
+        add_surface(stretch, range, {place, edge, level, crosses});
         lit = IfThenElse(crosses, at, lit), s_lit = IfThenElse(crosses, level, s_lit);
         v = IfThenElse(crosses, at, v), s = IfThenElse(crosses, level, s);
         const VI number = edge + (upward - Set(di, 1));
@@ -235,7 +234,16 @@ class SurfaceCast {
   /// A place of the cubic, of the slab, and what the field is like there.
   struct Place {
     VF at, u;
-    VF g_i, g_j, g_k, slope;
+    Gradient gradient;
+    VF slope;  ///< along the ray, per slab
+  };
+
+  /// Where lanes meet a surface.
+  struct Hit {
+    Place place;
+    VI edge;   ///< the surface's, among the values
+    VF level;  ///< its value
+    MF lanes;
   };
 
   /// The place near `at`, between v and `turn`, where the field has a surface's value: its level and rest.
@@ -245,13 +253,13 @@ class SurfaceCast {
     const VF low = MulAdd(v, stretch.extent, stretch.begin), high = MulAdd(turn, stretch.extent, stretch.begin);
     Place place;
     place.u = MulAdd(at, stretch.extent, stretch.begin);
-    // find_crossing() goes by values that are rounded beside their level: two steps by differences to it, of which the
-    // first is near enough for the field's slopes. Where it is level that may be anything.
+    // find_crossing() goes by values that are rounded off their level: two steps by differences to it. The first place
+    // is near enough for the field's slopes. Where it is level that may be anything.
     for (int n = 0; n < 2; ++n) {
-      const VF height = from_level.at(place.u, lanes_.bx, lanes_.by);
-      from_level.gradient(place.u, lanes_.bx, lanes_.by, place.g_i, place.g_j, place.g_k);
-      stretch.rest.add(stretch.path, stretch.place, lanes_, place.u, place.g_i, place.g_j, place.g_k);
-      place.slope = MulAdd(lanes_.bx, place.g_i, MulAdd(lanes_.by, place.g_j, place.g_k));
+      const VF height = from_level.at(place.u, lanes_);
+      place.gradient = from_level.gradient(place.u, lanes_);
+      stretch.rest.add(stretch.path, stretch.place, lanes_, place.u, place.gradient);
+      place.slope = place.gradient.along(lanes_);
       const VF next = place.u - height / place.slope;
       place.u = IfThenElse(And(next >= low, next <= high), next, place.u);
     }
@@ -273,29 +281,29 @@ class SurfaceCast {
   }
 
   /// Squares of world gradients: their products with the metric, in the ray's axes.
-  HWY_INLINE VF square_of(const Place& p) const {
+  HWY_INLINE VF square_of(const Gradient& g) const {
     const float flip = axes_.mirrored ? -1.0f : 1.0f;
     const auto times = [&](VF v, int a, int b, float by)
                            HWY_ATTR { return v * Set(DF(), by * static_cast<float>(view_.metric[a][b])); };
-    const VF m_i = times(p.g_i, axes_.i, axes_.i, 1) +
-                   (times(p.g_j, axes_.i, axes_.j, 2) + times(p.g_k, axes_.i, axes_.k, 2 * flip));
-    const VF m_j = times(p.g_j, axes_.j, axes_.j, 1) + times(p.g_k, axes_.j, axes_.k, 2 * flip);
-    return MulAdd(p.g_i, m_i, MulAdd(p.g_j, m_j, p.g_k * times(p.g_k, axes_.k, axes_.k, 1)));
+    const VF m_i =
+        times(g.i, axes_.i, axes_.i, 1) + (times(g.j, axes_.i, axes_.j, 2) + times(g.k, axes_.i, axes_.k, 2 * flip));
+    const VF m_j = times(g.j, axes_.j, axes_.j, 1) + times(g.k, axes_.j, axes_.k, 2 * flip);
+    return MulAdd(g.i, m_i, MulAdd(g.j, m_j, g.k * times(g.k, axes_.k, axes_.k, 1)));
   }
 
-  HWY_INLINE void add_surface(const VoxelStretch& stretch, const CornerRange& range, const Place& place, VI edge,
-                              VF level, MF crosses) {
+  HWY_INLINE void add_surface(const VoxelStretch& stretch, const CornerRange& range, const Hit& hit) {
     const DF d;
+    const Place& place = hit.place;
     const VF zero = Zero(d), one = Set(d, 1.0f);
-    const auto row = [&](const std::vector<float>& of) HWY_ATTR { return surface_row(view_, of, edge); };
-    const VF square = square_of(place);
+    const auto row = [&](const std::vector<float>& of) HWY_ATTR { return surface_row(view_, of, hit.edge); };
+    const VF square = square_of(place.gradient);
     const MF flat = Not(square > zero);
     const VF steepness = Sqrt(IfThenElse(flat, one, square));
     const VF cosine = IfThenElse(flat, one, Min(one, Abs(place.slope) * per_length_ / steepness));
     const VF matte = MulAdd(Set(d, view_.diffuse), cosine, Set(d, view_.ambient)),
              shine = Set(d, view_.specular) * power_of(cosine);
     const VF before = progress_.transmittance;
-    const VF hidden = IfThenElseZero(crosses, before * row(view_.opacity));
+    const VF hidden = IfThenElseZero(hit.lanes, before * row(view_.opacity));
     if (HWY_UNLIKELY(frame_.has_rest)) {
       const float turn = view_.diffuse + view_.specular * std::max(1.0f, view_.shininess);
       const float noise = frame_.rest_noise * turn *
@@ -312,11 +320,11 @@ class SurfaceCast {
     progress_.transmittance = before - hidden;
     if (HWY_UNLIKELY(!AllTrue(d, notes_.seen)))
       note_first_light(progress_, stretch.piece.begin - stretch.begin + place.u, notes_);
-    note_surface(stretch, range, place, edge, level, steepness, hidden, crosses);
+    note_surface(stretch, range, hit, steepness, hidden);
   }
 
-  /// Lanes that meet a surface beside another voxel, where normals differ, but for rays that are put on their side of a
-  /// plane (keep_side()).
+  /// Lanes that meet a surface next to another voxel, where normals differ, but for rays that are put on their side of
+  /// a plane (keep_side()).
   HWY_INLINE void note_beside(const VoxelStretch& stretch, const Place& place, MF beside_i, MF beside_j) {
     const DF d;
     const auto near = [&](VF at, VF slope) HWY_ATTR {
@@ -327,10 +335,12 @@ class SurfaceCast {
     note(Or(And(beside_i, near(stretch.field.x, lanes_.bx)), And(beside_j, near(stretch.field.y, lanes_.by))));
   }
 
-  /// What a surface errs: its normal, and the matter before it that may be behind it.
-  HWY_INLINE void note_surface(const VoxelStretch& stretch, const CornerRange& range, const Place& place, VI edge,
-                               VF level, VF steepness, VF hidden, MF crosses) {
+  /// What a surface errs: its normal, and the matter before it that may be behind it. `steepness` is the gradient's
+  /// length, `hidden` what the surface hides.
+  HWY_INLINE void note_surface(const VoxelStretch& stretch, const CornerRange& range, const Hit& hit, VF steepness,
+                               VF hidden) {
     const DF d;
+    const Place& place = hit.place;
     const VoxelField& f = stretch.field;
     const VF fx = MulAdd(place.u, lanes_.bx, f.x), fy = MulAdd(place.u, lanes_.by, f.y);
     const VF bend = Abs(MulAdd(place.u, f.cij, f.aij)) + (Abs(MulAdd(fy, f.cij, f.ci)) + Abs(MulAdd(fx, f.cij, f.cj)));
@@ -344,10 +354,10 @@ class SurfaceCast {
     const VF off = MulAdd(noise, per_slope, guess * (ratio * (ratio * ratio)));
     const VF tilt = MulAdd(bend, off + aside, values);
     const VF angle = Min(tilt * Set(d, view_.stretched) / steepness, Set(d, 4.0f));
-    const VF error = IfThenElseZero(crosses, hidden * angle * surface_row(view_, view_.angle_weight, edge));
+    const VF error = IfThenElseZero(hit.lanes, hidden * angle * surface_row(view_, view_.angle_weight, hit.edge));
     notes_.rough = MulAdd(error, error, notes_.rough);
     if (HWY_UNLIKELY(frame_.error_bound != nullptr && frame_.error_bound->ends))
-      note_matter(off, level, hidden, crosses);
+      note_matter(off, hit.level, hidden, hit.lanes);
   }
 
   HWY_NOINLINE void note_matter(VF off, VF level, VF hidden, MF crosses) {
@@ -408,15 +418,11 @@ class SurfaceCast {
   }
 
   HWY_NOINLINE void put_lit(const VoxelStretch& stretch, VF middle, MF there, const Progress& part, VF begin) {
-    VF g_i, g_j, g_k;
     const VF u = MulAdd(middle, stretch.extent, stretch.begin);
-    stretch.field.gradient(u, lanes_.bx, lanes_.by, g_i, g_j, g_k);
-    stretch.rest.add(stretch.path, stretch.place, lanes_, u, g_i, g_j, g_k);
-    const auto kept = [&](VF v) HWY_ATTR { return IfThenElseZero(And(there, v == v), v); };
-    g_i = kept(g_i), g_j = kept(g_j), g_k = kept(g_k);
-    const VF slope = MulAdd(lanes_.bx, g_i, MulAdd(lanes_.by, g_j, g_k));
-    const Lit lit =
-        shade(*frame_.shading, axes_, g_i, g_j, g_k, slope, per_length_, lanes_.light_view, frame_.rest_noise);
+    Gradient gradient = stretch.field.gradient(u, lanes_);
+    stretch.rest.add(stretch.path, stretch.place, lanes_, u, gradient);
+    gradient = gradient.kept(there);
+    const Lit lit = shade(frame_, axes_, gradient, gradient.along(lanes_) * per_length_, lanes_.light_view);
     notes_.error_bound = MulAdd(progress_.transmittance * part.alpha, lit.error, notes_.error_bound);
     put_behind(part, lit, progress_);
     note_first_light(progress_, begin, notes_);

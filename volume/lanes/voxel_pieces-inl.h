@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rays through a slab voxel by voxel, and slabs that cross knots; included once per instruction set.
+//
+// What      The light of lanes that no line of slab_lines-inl.h stands for: where rays begin or end in a slab, of
+//           shaded stretches, of cell data, and where the field crosses knots of the transfer function or is rough.
+// How       In a voxel the field along the ray is a cubic: its values at the ends and in the middle of a stretch and
+//           its leading coefficient give the light (ray_piece-inl.h). Of a slab that crosses knots cast_mixed() still
+//           takes the lanes that do not as lines; the stretches of the others are put side by side in full vectors
+//           (cast_stretches()).
+// Accuracy  That of ray_piece-inl.h. Where matter is so dense that it shows, note_ends() and note_planes() add what
+//           rounding does to the places where rays begin and end.
+// Ends      NaN samples are blank: their stretches add nothing.
 
 #if defined(TESSERA_VOLUME_VOXEL_PIECES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_VOXEL_PIECES_INL_H_
@@ -34,18 +44,16 @@ struct VoxelField {
     c00 = s.b00 - s.a00;
     ci = c10 - c00, cj = c01 - c00, cij = c11 - c01 - ci;
   }
-  HWY_INLINE VF at(VF u, VF bx, VF by) const {
-    const VF fx = MulAdd(u, bx, x), fy = MulAdd(u, by, y);
+  HWY_INLINE VF at(VF u, const Lanes& lanes) const {
+    const VF fx = MulAdd(u, lanes.bx, x), fy = MulAdd(u, lanes.by, y);
     const VF a = MulAdd(fy, MulAdd(fx, aij, aj), MulAdd(fx, ai, a00));
     const VF c = MulAdd(fy, MulAdd(fx, cij, cj), MulAdd(fx, ci, c00));
     return MulAdd(u, c, a);
   }
-  /// Changes per voxel along i, j and k.
-  HWY_INLINE void gradient(VF u, VF bx, VF by, VF& g_i, VF& g_j, VF& g_k) const {
-    const VF fx = MulAdd(u, bx, x), fy = MulAdd(u, by, y);
-    g_i = MulAdd(fy, MulAdd(u, cij, aij), MulAdd(u, ci, ai));
-    g_j = MulAdd(fx, MulAdd(u, cij, aij), MulAdd(u, cj, aj));
-    g_k = MulAdd(fy, MulAdd(fx, cij, cj), MulAdd(fx, ci, c00));
+  HWY_INLINE Gradient gradient(VF u, const Lanes& lanes) const {
+    const VF fx = MulAdd(u, lanes.bx, x), fy = MulAdd(u, lanes.by, y);
+    return {MulAdd(fy, MulAdd(u, cij, aij), MulAdd(u, ci, ai)), MulAdd(fx, MulAdd(u, cij, aij), MulAdd(u, cj, aj)),
+            MulAdd(fy, MulAdd(fx, cij, cj), MulAdd(fx, ci, c00))};
   }
   /// At u = 0.
   HWY_INLINE VF at_front() const { return MulAdd(y, MulAdd(x, aij, aj), MulAdd(x, ai, a00)); }
@@ -55,15 +63,18 @@ struct VoxelField {
     const VF a = MulAdd(fy, MulAdd(fx, aij, aj), MulAdd(fx, ai, a00));
     return a + MulAdd(fy, MulAdd(fx, cij, cj), MulAdd(fx, ci, c00));
   }
+  struct MiddleAndMean {
+    VF middle, mean;
+  };
   /// Value at the middle u of a stretch of extent e, and the mean over it: every product of two of x, y and u adds a
   /// twelfth of the product of their changes. `ee` is e^2 / 12.
-  HWY_INLINE void middle_and_mean(VF u, VF ee, VF bx, VF by, VF bends, VF& middle, VF& mean) const {
-    const VF fx = MulAdd(u, bx, x), fy = MulAdd(u, by, y);
+  HWY_INLINE MiddleAndMean middle_and_mean(VF u, VF ee, const Lanes& lanes) const {
+    const VF fx = MulAdd(u, lanes.bx, x), fy = MulAdd(u, lanes.by, y);
     const VF a_y = MulAdd(fx, aij, aj), c_y = MulAdd(fx, cij, cj), c_x = MulAdd(fy, cij, ci);
     const VF a = MulAdd(fy, a_y, MulAdd(fx, ai, a00)), c = MulAdd(fy, c_y, MulAdd(fx, ci, c00));
-    middle = MulAdd(u, c, a);
-    const VF twist = MulAdd(bends, MulAdd(u, cij, aij), MulAdd(bx, c_x, by * c_y));
-    mean = MulAdd(ee, twist, middle);
+    const VF middle = MulAdd(u, c, a);
+    const VF twist = MulAdd(lanes.bends, MulAdd(u, cij, aij), MulAdd(lanes.bx, c_x, lanes.by * c_y));
+    return {middle, MulAdd(ee, twist, middle)};
   }
 };
 
@@ -167,15 +178,13 @@ class RestOfSamples {
   HWY_INLINE RestOfSamples(const SlabBlock& block, const float* front, const float* back)
       : there_(block.has_rest), window_(block.rest_of(front), block.rest_of(back), block.pitch) {}
 
-  /// Adds the share that it has in a gradient.
-  HWY_INLINE void add(const SlabPath& path, const Stretch& stretch, const Lanes& lanes, VF u, VF& g_i, VF& g_j,
-                      VF& g_k) const {
+  /// Adds the share that it has in the gradient at u.
+  HWY_INLINE void add(const SlabPath& path, const Stretch& stretch, const Lanes& lanes, VF u, Gradient& g) const {
     if (HWY_LIKELY(!there_)) return;
     const VoxelField rest(window_.corners(window_index(window_, path, stretch)), path.x - stretch.i,
                           path.y - stretch.j);
-    VF r_i, r_j, r_k;
-    rest.gradient(u, lanes.bx, lanes.by, r_i, r_j, r_k);
-    g_i = g_i + r_i, g_j = g_j + r_j, g_k = g_k + r_k;
+    const Gradient more = rest.gradient(u, lanes);
+    g = {g.i + more.i, g.j + more.j, g.k + more.k};
   }
 
  private:
@@ -219,20 +228,17 @@ HWY_NOINLINE void cast_voxels(const PacketView<Lookup>& packet, const SlabPath& 
       piece.p_3 = Zero(d);
     } else {
       const VoxelField field(window.corners(index), path.x - stretch.i, path.y - stretch.j);
-      piece.s_0 = field.at(stretch.begin, lanes.bx, lanes.by);
-      piece.s_mid = field.at(half * (stretch.begin + stretch.end), lanes.bx, lanes.by);
-      piece.s_1 = field.at(stretch.end, lanes.bx, lanes.by);
+      const VF middle = half * (stretch.begin + stretch.end);
+      piece.s_0 = field.at(stretch.begin, lanes);
+      piece.s_mid = field.at(middle, lanes);
+      piece.s_1 = field.at(stretch.end, lanes);
       piece.p_3 = field.cij * lanes.bends * (extent * (extent * extent));
       if (lit_part) {
-        VF g_i, g_j, g_k;
-        const VF middle = half * (stretch.begin + stretch.end);
-        field.gradient(middle, lanes.bx, lanes.by, g_i, g_j, g_k);
-        samples.rest.add(path, stretch, lanes, middle, g_i, g_j, g_k);
-        const auto kept = [&](VF v) HWY_ATTR { return IfThenElseZero(And(there, v == v), v); };
-        g_i = kept(g_i), g_j = kept(g_j), g_k = kept(g_k);
-        const VF slope = MulAdd(lanes.bx, g_i, MulAdd(lanes.by, g_j, g_k));
+        Gradient gradient = field.gradient(middle, lanes);
+        samples.rest.add(path, stretch, lanes, middle, gradient);
+        gradient = gradient.kept(there);
         const VF per_length = Set(d, static_cast<float>(frame.shading->unit / frame.length_unit)) / lanes.length;
-        lit = shade(*frame.shading, packet.axes, g_i, g_j, g_k, slope, per_length, lanes.light_view, frame.rest_noise);
+        lit = shade(frame, packet.axes, gradient, gradient.along(lanes) * per_length, lanes.light_view);
       }
     }
     Progress part{zero, one, zero, zero, zero, zero};
@@ -293,41 +299,91 @@ HWY_INLINE Line part_line(const Lanes& lanes, const SlabPath& path, const Window
   const VF per_extent = Set(d, 1.0f) / extent;
   Line line;
   VF total = Zero(d);
-  VF middle[3], mean[3], p_3[3];
+  VoxelField::MiddleAndMean of[3];
+  VF p_3[3];
   line.s_0 = line.s_1 = total;
   for (int p = 0; p < 3; ++p) {
     const Stretch& stretch = path.stretches[p];
     const VoxelField field(window.corners(window_index(window, path, stretch)), path.x - stretch.i, path.y - stretch.j);
     const VF e = stretch.end - stretch.begin, ee = e * e;
-    field.middle_and_mean(half * (stretch.begin + stretch.end), ee * Set(d, 1 / 12.0f), lanes.bx, lanes.by, lanes.bends,
-                          middle[p], mean[p]);
+    of[p] = field.middle_and_mean(half * (stretch.begin + stretch.end), ee * Set(d, 1 / 12.0f), lanes);
     p_3[p] = field.cij * lanes.bends * (ee * e);
-    total = MulAdd(e * per_extent, mean[p], total);
-    if (p == 0) line.s_0 = field.at(stretch.begin, lanes.bx, lanes.by);
-    if (p == 2) line.s_1 = field.at(stretch.end, lanes.bx, lanes.by);
+    total = MulAdd(e * per_extent, of[p].mean, total);
+    if (p == 0) line.s_0 = field.at(stretch.begin, lanes);
+    if (p == 2) line.s_1 = field.at(stretch.end, lanes);
   }
   line.span = line.s_1 - line.s_0;
   line.shift = NegMulAdd(half, line.s_0 + line.s_1, total);
   const VF slope = line.span * per_extent;
-  const VF border_1 = other_end(line.s_0, middle[0], mean[0]), border_2 = other_end(line.s_1, middle[2], mean[2]);
-  const VF bump[3] = {bump_of(line.s_0, middle[0], border_1, p_3[0]), bump_of(border_1, middle[1], border_2, p_3[1]),
-                      bump_of(border_2, middle[2], line.s_1, p_3[2])};
+  const VF border_1 = other_end(line.s_0, of[0].middle, of[0].mean),
+           border_2 = other_end(line.s_1, of[2].middle, of[2].mean);
+  const VF bump[3] = {bump_of(line.s_0, of[0].middle, border_1, p_3[0]),
+                      bump_of(border_1, of[1].middle, border_2, p_3[1]),
+                      bump_of(border_2, of[2].middle, line.s_1, p_3[2])};
   const auto on_line = [&](VF at) HWY_ATTR { return MulAdd(at - path.from, slope, line.s_0); };
   line.rho =
       distance_bound(border_1, on_line(path.stretches[1].begin), border_2, on_line(path.stretches[2].begin), bump);
   return line;
 }
 
-/// The stretches of a slab (slab_lines-inl.h) one by one, for the lanes that are `wanted`. Few lanes, all of which have
-/// seen light, are put side by side, integrated from their own fronts sixteen at once, and put behind each other by
-/// lane.
+/// The stretches of a slab, one behind the other, of the lanes that are there.
+struct SlabPieces {
+  Piece pieces[3];
+  MF there[3];
+};
+
+#if HWY_TARGET <= HWY_AVX3
+/// Adds pieces of lanes all of which have seen light: put side by side, integrated from their own fronts sixteen at
+/// once, and put behind each other by lane.
+template <class Lookup>
+HWY_INLINE void add_side_by_side(const PacketView<Lookup>& packet, const SlabPieces& slab, RayState& rays) {
+  const DF d;
+  const VF zero = Zero(d), one = Set(d, 1.0f);
+  constexpr std::size_t lanes_each = MaxLanes(DF()), most = 4 * lanes_each;
+  HWY_ALIGN float s_0[most], s_mid[most], s_1[most], p_3[most], length[most];
+  std::size_t begin[4] = {0, 0, 0, 0};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Piece& piece = slab.pieces[k];
+    const MF there = slab.there[k];
+    begin[k + 1] = begin[k] + CountTrue(d, there);
+    const auto keep = [&](VF v, float* to) HWY_ATTR { StoreU(Compress(v, there), d, to + begin[k]); };
+    keep(piece.s_0, s_0), keep(piece.s_mid, s_mid), keep(piece.s_1, s_1);
+    keep(piece.p_3, p_3), keep(piece.length, length);
+  }
+  HWY_ALIGN float light[8][most];
+  for (std::size_t n = 0; n < begin[3]; n += lanes_each) {
+    const VF used = IfThenElseZero(FirstN(d, begin[3] - n), Load(d, length + n));
+    const Piece piece{Load(d, s_0 + n), Load(d, s_mid + n), Load(d, s_1 + n), Load(d, p_3 + n), used, zero, zero};
+    Progress part{zero, one, zero, zero, zero, zero};
+    RayNotes here{zero, zero == zero, zero, zero};
+    add_any(packet.lookup, packet.frame, piece, part, here, rays.counts.samples);
+    const VF parts[8] = {part.alpha, part.transmittance, part.optical_depth, part.red,
+                         part.green, part.blue,          here.error_bound,   here.rough};
+    for (int c = 0; c < 8; ++c) Store(parts[c], d, light[c] + n);
+  }
+  Progress& progress = rays.light;
+  RayNotes& notes = rays.notes;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const MF there = slab.there[k];
+    const auto part = [&](int c) HWY_ATTR { return expand_load(there, light[c] + begin[k], zero); };
+    const VF through = progress.transmittance;
+    progress.alpha = MulAdd(through, part(0), progress.alpha);
+    progress.transmittance = through * expand_load(there, light[1] + begin[k], one);
+    progress.optical_depth = progress.optical_depth + part(2);
+    progress.red = MulAdd(through, part(3), progress.red);
+    progress.green = MulAdd(through, part(4), progress.green);
+    progress.blue = MulAdd(through, part(5), progress.blue);
+    notes.error_bound = MulAdd(through, part(6), notes.error_bound);
+    notes.rough = MulAdd(through * through, part(7), notes.rough);
+  }
+}
+#endif
+
+/// The stretches of a slab (slab_lines-inl.h) one by one, for the lanes that are `wanted`.
 template <class Lookup>
 HWY_NOINLINE void cast_stretches(const PacketView<Lookup>& packet, const SlabLines& lines, int n, MF wanted,
                                  RayState& rays) {
   const FrameView& frame = packet.frame;
-  const Lookup& lookup = packet.lookup;
-  Progress& progress = rays.light;
-  RayNotes& notes = rays.notes;
   const int m = n - lines.first;
   const DF d;
   const VF half = Set(d, 0.5f), zero = Zero(d), one = Set(d, 1.0f);
@@ -336,69 +392,30 @@ HWY_NOINLINE void cast_stretches(const PacketView<Lookup>& packet, const SlabLin
   // Behind a plane that is not crossed there is nothing.
   const VF value[4] = {lines.s[m], IfThenElse(u_1 < one, lines.f_1[m], s_end),
                        IfThenElse(u_2 < one, lines.f_2[m], s_end), s_end};
-  Piece pieces[3];
-  MF there[3], torn = zero != zero;
+  SlabPieces slab;
+  MF torn = zero != zero;
   const bool has_blanks = frame.ranges->range.blanks > 0;
   for (int k = 0; k < 3; ++k) {
-    Piece& p = pieces[k];
+    Piece& p = slab.pieces[k];
     p.extent = place[k + 1] - place[k];
-    there[k] = And(wanted, p.extent > zero);
+    slab.there[k] = And(wanted, p.extent > zero);
     p.s_0 = value[k], p.s_1 = value[k + 1];
     p.s_mid = NegMulAdd(Set(d, 0.25f), lines.even[k][m], half * (p.s_0 + p.s_1));
     p.p_3 = lines.odd[k][m];
-    p.length = IfThenElseZero(there[k], p.extent * packet.lanes.length);
+    p.length = IfThenElseZero(slab.there[k], p.extent * packet.lanes.length);
     p.begin = place[k] + Set(d, static_cast<float>(n));
     // A voxel that is whole, but whose end is taken from one that is blank, as rounding has the ray pass an edge of
     // both on different sides.
     const VF shape = lines.even[k][m] + lines.odd[k][m];
-    if (HWY_UNLIKELY(has_blanks)) torn = Or(torn, AndNot(p.s_mid == p.s_mid, And(there[k], shape == shape)));
+    if (HWY_UNLIKELY(has_blanks)) torn = Or(torn, AndNot(p.s_mid == p.s_mid, And(slab.there[k], shape == shape)));
   }
   if (HWY_UNLIKELY(has_blanks && !AllFalse(d, torn)))
-    notes.error_bound = notes.error_bound + IfThenElseZero(torn, Set(d, 1e9f));
+    rays.notes.error_bound = rays.notes.error_bound + IfThenElseZero(torn, Set(d, 1e9f));
 #if HWY_TARGET <= HWY_AVX3
-  if (AllTrue(d, Or(notes.seen, Not(wanted)))) {
-    constexpr std::size_t lanes_each = MaxLanes(DF()), most = 4 * lanes_each;
-    HWY_ALIGN float s_0[most], s_mid[most], s_1[most], p_3[most], length[most];
-    std::size_t begin[4] = {0, 0, 0, 0};
-    for (std::size_t k = 0; k < 3; ++k) {
-      begin[k + 1] = begin[k] + CountTrue(d, there[k]);
-      const auto keep = [&](VF v, float* to) HWY_ATTR { StoreU(Compress(v, there[k]), d, to + begin[k]); };
-      keep(pieces[k].s_0, s_0), keep(pieces[k].s_mid, s_mid), keep(pieces[k].s_1, s_1);
-      keep(pieces[k].p_3, p_3), keep(pieces[k].length, length);
-    }
-    HWY_ALIGN float light[8][most];
-    for (std::size_t n_0 = 0; n_0 < begin[3]; n_0 += lanes_each) {
-      const MF used = FirstN(d, begin[3] - n_0);
-      const Piece piece{Load(d, s_0 + n_0),
-                        Load(d, s_mid + n_0),
-                        Load(d, s_1 + n_0),
-                        Load(d, p_3 + n_0),
-                        IfThenElseZero(used, Load(d, length + n_0)),
-                        zero,
-                        zero};
-      Progress part{zero, one, zero, zero, zero, zero};
-      RayNotes here{zero, zero == zero, zero, zero};
-      add_any(lookup, frame, piece, part, here, rays.counts.samples);
-      const VF parts[8] = {part.alpha, part.transmittance, part.optical_depth, part.red,
-                           part.green, part.blue,          here.error_bound,   here.rough};
-      for (int c = 0; c < 8; ++c) Store(parts[c], d, light[c] + n_0);
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto part = [&](int c) HWY_ATTR { return expand_load(there[k], light[c] + begin[k], zero); };
-      const VF through = progress.transmittance;
-      progress.alpha = MulAdd(through, part(0), progress.alpha);
-      progress.transmittance = through * expand_load(there[k], light[1] + begin[k], one);
-      progress.optical_depth = progress.optical_depth + part(2);
-      progress.red = MulAdd(through, part(3), progress.red);
-      progress.green = MulAdd(through, part(4), progress.green);
-      progress.blue = MulAdd(through, part(5), progress.blue);
-      notes.error_bound = MulAdd(through, part(6), notes.error_bound);
-      notes.rough = MulAdd(through * through, part(7), notes.rough);
-    }
-    return;
-  }
+  if (AllTrue(d, Or(rays.notes.seen, Not(wanted)))) return add_side_by_side(packet, slab, rays);
 #endif
-  for (const Piece& piece : pieces) add_any(lookup, frame, piece, progress, notes, rays.counts.samples);
+  for (const Piece& piece : slab.pieces)
+    add_any(packet.lookup, frame, piece, rays.light, rays.notes, rays.counts.samples);
 }
 
 /// A slab, or the part of it that counts, whose lanes are in several intervals, or cross knots: adds the lanes that may
@@ -420,16 +437,12 @@ HWY_NOINLINE MF cast_mixed(const PacketView<Lookup>& packet, const Line& line, M
   packet.current.move_to(
       static_cast<std::size_t>(GetLane(MaxOfLanes(DI(), IfThenElseZero(RebindMask(DI(), there), interval)))));
   const VF edge = lookup.edge(interval, index, Set(DI(), 1));
-  const VF kappa_slope =
-      Abs(lookup.at(LaneTable::half_extinction_slope, index) + lookup.at(LaneTable::half_extinction_slope, index));
-  const VF color_slope =
-      Max(Max(Abs(lookup.at(LaneTable::red_slope, index)), Abs(lookup.at(LaneTable::green_slope, index))),
-          Abs(lookup.at(LaneTable::blue_slope, index)));
-  const VF scale = kappa_slope * Set(d, 1 / frame.piece_tolerance) *
-                   MulAdd(length * kappa_slope, Set(d, 0.03f * frame.largest_color), color_slope);
+  const FunctionSlopes slope = slopes_in(lookup, index);
+  const VF scale = slope.extinction * Set(d, 1 / frame.piece_tolerance) *
+                   MulAdd(length * slope.extinction, Set(d, 0.03f * frame.largest_color), slope.color);
   const VF extinction = Max(extinction_at(lookup, index, low), extinction_at(lookup, index, high));
   const VF dimming = length * extinction * (lookup.independent ? length : length * extinction);
-  const VF dimmed = dimming * color_slope * (line.rho * Set(d, 1 / (9 * frame.piece_tolerance)));
+  const VF dimmed = dimming * slope.color * (line.rho * Set(d, 1 / (9 * frame.piece_tolerance)));
   MF together = And(And(there, high < edge), MulAdd(spread, scale, dimmed) <= Set(d, 1.0f));
   if (frame.error_bound != nullptr && !frame.error_bound->step.empty()) {
     // What may touch a step is looked at as a cubic.
@@ -440,12 +453,13 @@ HWY_NOINLINE MF cast_mixed(const PacketView<Lookup>& packet, const Line& line, M
   if (!AllFalse(d, together)) {
     const auto kept = [&](VF v) HWY_ATTR { return IfThenElseZero(together, v); };
     const VF before = progress.transmittance;
-    CL::lanes::add_piece<false>(lookup, index, kept(line.s_0 + line.shift), kept(line.s_1 + line.shift),
-                                kept(line.span), kept(length), progress);
+    const CL::lanes::LinearPiece piece{kept(line.s_0 + line.shift), kept(line.s_1 + line.shift), kept(line.span),
+                                       kept(length)};
+    CL::lanes::add_piece<false>(lookup, index, piece, progress);
     rays.counts.samples += CountTrue(d, together);
     note_first_light(progress, begin, notes);
     if (frame.error_bound != nullptr)
-      note_ramps(IntervalLanes<Lookup>{lookup, index, interval, together, *frame.error_bound}, kept(length), before,
+      note_ramps(IntervalLanes<Lookup>{lookup, index, interval, together, frame.error_bound}, kept(length), before,
                  progress.transmittance, notes);
   }
   return AndNot(together, there);

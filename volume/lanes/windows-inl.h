@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Corner samples of the voxels that the lanes of a packet are in; included once per instruction set.
 //
-// A packet's rays are close together: in one slab they meet a window of few columns and rows. Two slices of that window
-// fit into vector registers, where a permutation finds a corner of sixteen voxels in one instruction (a gather takes
-// fifteen times as long on processors that guard it against sampling). Wider windows are gathered from memory.
+// What      Of two neighbouring slices the samples at the corners of each lane's voxel.
+// How       A packet's rays are close together: in one slab they meet a window of few columns and rows. Two slices of
+//           that window fit into vector registers, where a permutation finds a corner of sixteen voxels in one
+//           instruction (a gather takes fifteen times as long on processors that guard it against sampling). Wider
+//           windows, and all where vectors are shorter than AVX-512's, are gathered from memory.
+// Ends      An index must be in the window: callers that gather put lanes that are not there to element 0.
 
 #if defined(TESSERA_VOLUME_WINDOWS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_WINDOWS_INL_H_

@@ -92,7 +92,7 @@ bool SurfaceWalk::find(const VoxelRay& ray, double least, std::vector<SurfaceCro
       continue;
     }
     if (at.begin() < at.end()) {
-      through = cross(ray, voxel, at.begin(), at.end(), through, least, found);
+      through = cross(ray, at, through, least, found);
       if (through < least) return true;
     }
     at.step();
@@ -138,9 +138,10 @@ double SurfaceWalk::cosine(const VoxelRay& ray, const Stretch& stretch, double u
   return std::min(1.0, std::abs(glm::dot(gradient / steepness, along)) / glm::length(along));
 }
 
-double SurfaceWalk::cross(const VoxelRay& ray, const scene::GridIndex& voxel, double z0, double z1, double through,
-                          double least, std::vector<SurfaceCrossing>& found) {
-  const std::array<double, 8> corner = blocks_.corners(voxel);
+double SurfaceWalk::cross(const VoxelRay& ray, const VoxelSteps& at, double through, double least,
+                          std::vector<SurfaceCrossing>& found) {
+  const double z0 = at.begin(), z1 = at.end();
+  const std::array<double, 8> corner = blocks_.corners(at.voxel());
   double low = corner[0], high = corner[0], all = 0;
   for (const double s : corner) low = std::min(low, s), high = std::max(high, s), all += s;
   if (std::isnan(all)) return through;
@@ -152,7 +153,7 @@ double SurfaceWalk::cross(const VoxelRay& ray, const scene::GridIndex& voxel, do
              last = static_cast<std::size_t>(std::upper_bound(values.begin(), values.end(), high + slack) -
                                              values.begin());
   if (first >= last) return through;
-  const Stretch stretch = stretch_of(ray, voxel, z0, z1, corner);
+  const Stretch stretch = stretch_of(ray, at.voxel(), z0, z1, corner);
   // All values are counted from the first one, and again from their own where rounding might matter.
   const std::array<double, 8> from_first = differences(corner, values[first]);
   const std::array<double, 4> cubic = cubic_of(from_first, stretch.front, stretch.back - stretch.front);

@@ -13,6 +13,8 @@
 
 namespace tessera::volume {
 
+class VoxelSteps;
+
 /// Where a ray crosses a surface (planar depth), and what that sends to the eye.
 struct SurfaceCrossing {
   double z;
@@ -43,8 +45,8 @@ class SurfaceWalk {
  private:
   struct Stretch;
 
-  /// In one voxel. Gives what is left of `through`.
-  double cross(const VoxelRay& ray, const scene::GridIndex& voxel, double z0, double z1, double through, double least,
+  /// In the voxel that the ray is in. Gives what is left of `through`.
+  double cross(const VoxelRay& ray, const VoxelSteps& at, double through, double least,
                std::vector<SurfaceCrossing>& found);
   [[nodiscard]] Stretch stretch_of(const VoxelRay& ray, const scene::GridIndex& voxel, double z0, double z1,
                                    const std::array<double, 8>& corner) const;

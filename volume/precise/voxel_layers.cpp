@@ -41,8 +41,7 @@ void VoxelLayers::add(const VoxelRay& ray, std::vector<integrals::RayLayer>& lay
     part.end = crossing.z;
     walk_.walk(part, *this);
     put();
-    const scene::SurfaceSet::Light& light = crossing.light;
-    layers_.add_surface(crossing.z, light.red, light.green, light.blue, light.opacity, open_, layers);
+    layers_.add_surface(crossing.z, crossing.light, open_, layers);
     part.begin = crossing.z;
   }
   part.end = ray.end;

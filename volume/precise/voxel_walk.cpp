@@ -46,6 +46,14 @@ struct VoxelWalk::FieldCubic {
   }
 };
 
+/// A ray's stretch in one voxel, from depth z0 to z1.
+struct VoxelWalk::CubicStretch {
+  FieldCubic field;
+  double z0, z1, length;
+
+  [[nodiscard]] double depth(double u) const { return u == 0 ? z0 : u == 1 ? z1 : z0 + (z1 - z0) * u; }
+};
+
 scene::TransferFunction over_knot_numbers(const scene::TransferFunction& function) {
   std::vector<scene::Knot> knots(function.knots().begin(), function.knots().end());
   for (std::size_t k = 0; k < knots.size(); ++k) knots[k].value = static_cast<double>(k);
@@ -100,8 +108,9 @@ void VoxelWalk::cross(const VoxelRay& ray, const scene::GridIndex& voxel, double
   }
   std::array<double, 8> differences;
   std::transform(corner.begin(), corner.end(), differences.begin(), [&](double s) { return s - origin_; });
-  const FieldCubic field{cubic_of(differences, stretch.front, stretch.rise)};
-  const double length = (z1 - z0) * ray.length_per_depth;
+  const CubicStretch cubic{
+      {cubic_of(differences, stretch.front, stretch.rise)}, z0, z1, (z1 - z0) * ray.length_per_depth};
+  const FieldCubic& field = cubic.field;
 
   std::array<double, 4> ends{0, 1, 1, 1};
   std::size_t count = 1;
@@ -116,7 +125,7 @@ void VoxelWalk::cross(const VoxelRay& ray, const scene::GridIndex& voxel, double
       const double knot = next_knot(s, u > ends[e] ? last_knot_ : std::nan(""), up);
       const double next = (up ? knot < s_stop : knot > s_stop) ? field.crossing(u, stop, knot) : stop;
       last_knot_ = knot;
-      if (next > u) add_smooth(field, u, next, length, z0, z1, 0, sink);
+      if (next > u) add_smooth(cubic, u, next, 0, sink);
       if (!(next > u) && next != stop) {  // the crossing is here: past the knot
         u = std::nextafter(u, 2.0);
         continue;
@@ -157,8 +166,8 @@ double VoxelWalk::knot_number(std::size_t above, double s) const {
 }
 
 /// A monotone stretch in one interval of the transfer function: halved until a line through its mean is enough.
-void VoxelWalk::add_smooth(const FieldCubic& p, double u0, double u1, double length, double z0, double z1, int halvings,
-                           WalkSink& sink) const {
+void VoxelWalk::add_smooth(const CubicStretch& stretch, double u0, double u1, int halvings, WalkSink& sink) const {
+  const FieldCubic& p = stretch.field;
   const double s_0 = p.at(u0), s_1 = p.at(u1), middle = p.at((u0 + u1) / 2), e = u1 - u0;
   const std::size_t above = knots_above(middle);
   // The line that stands for the stretch is its chord, moved to the mean.
@@ -172,7 +181,7 @@ void VoxelWalk::add_smooth(const FieldCubic& p, double u0, double u1, double len
     const glm::dvec3 change = glm::abs(b.color - a.color) / width;
     const double color_slope = std::max({change.x, change.y, change.z});
     const double color = std::max({a.color.x, a.color.y, a.color.z, b.color.x, b.color.y, b.color.z});
-    const double l = e * length, span = std::abs(s_1 - s_0), even = std::abs(middle - (s_0 + s_1) / 2);
+    const double l = e * stretch.length, span = std::abs(s_1 - s_0), even = std::abs(middle - (s_0 + s_1) / 2);
     const double odd = std::abs(p.c[3]) * e * e * e, rho = even + odd / 4;
     const double tau = kappa * l, weight = independent_ ? l : tau;
     // Beyond the interval's ends, which lines are kept in, goes what the move takes there.
@@ -182,13 +191,12 @@ void VoxelWalk::add_smooth(const FieldCubic& p, double u0, double u1, double len
                          l * rho * (rho + 0.3 * span) * (0.1 * slope * color_slope + 0.03 * slope * slope * color * l) +
                          color_slope * weight * tau * (odd / 120 + tau * even / 90);
     if (error * sink.transmittance() > settings_.tolerance) {
-      add_smooth(p, u0, (u0 + u1) / 2, length, z0, z1, halvings + 1, sink);
-      add_smooth(p, (u0 + u1) / 2, u1, length, z0, z1, halvings + 1, sink);
+      add_smooth(stretch, u0, (u0 + u1) / 2, halvings + 1, sink);
+      add_smooth(stretch, (u0 + u1) / 2, u1, halvings + 1, sink);
       return;
     }
   }
-  const auto depth = [&](double u) { return u == 0 ? z0 : u == 1 ? z1 : z0 + (z1 - z0) * u; };
-  sink.line(depth(u0), depth(u1), knot_number(above, s_0 + shift), knot_number(above, s_1 + shift));
+  sink.line(stretch.depth(u0), stretch.depth(u1), knot_number(above, s_0 + shift), knot_number(above, s_1 + shift));
 }
 
 /// Whether anything between two values shows.

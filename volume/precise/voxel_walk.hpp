@@ -68,13 +68,13 @@ class VoxelWalk {
 
  private:
   struct FieldCubic;
+  struct CubicStretch;
 
   void cross(const VoxelRay& ray, const scene::GridIndex& voxel, double z0, double z1, WalkSink& sink);
   [[nodiscard]] double next_knot(double s, double crossed, bool up) const;
   [[nodiscard]] std::size_t knots_above(double s) const;
   [[nodiscard]] double knot_number(std::size_t above, double s) const;
-  void add_smooth(const FieldCubic& field, double u0, double u1, double length, double z0, double z1, int halvings,
-                  WalkSink& sink) const;
+  void add_smooth(const CubicStretch& stretch, double u0, double u1, int halvings, WalkSink& sink) const;
   [[nodiscard]] bool shows(double low, double high) const;
 
   const scene::GridGeometry& geometry_;

@@ -29,6 +29,12 @@ struct Outline {
   double total;  ///< cost of the whole box, by depth at its centre
 };
 
+/// Rows [y0, y1) of the map's region, and what each of their pixels costs so far.
+struct Band {
+  int y0, y1;
+  std::vector<double> cost;  ///< row by row
+};
+
 /// Maps, rays and boxes of one frame.
 class Costs {
  public:
@@ -71,10 +77,9 @@ class Costs {
     return o;
   }
 
-  /// Adds each ray's way through the box to rows [y0, y1) of `cost`.
-  void add_way(const CostBox& box, const Outline& o, int y0, int y1, double* cost) const {
-    for (int y = std::max(o.y0, y0); y < std::min(o.y1, y1); ++y) {
-      double* row = cost + static_cast<std::ptrdiff_t>(y - y0) * (region_.x1 - region_.x0) - region_.x0;
+  /// Adds each ray's way through the box.
+  void add_way(const CostBox& box, const Outline& o, Band& band) const {
+    for (int y = std::max(o.y0, band.y0); y < std::min(o.y1, band.y1); ++y)
       for (int x = o.x0; x < o.x1; ++x) {
         const double px = (x + 0.5) / settings_.resolution, py = (y + 0.5) / settings_.resolution;
         const glm::dvec3 origin = rays_.origin + px * rays_.origin_x + py * rays_.origin_y;
@@ -83,20 +88,19 @@ class Costs {
         const glm::dvec3 enter = glm::min(a, b), leave = glm::max(a, b);
         const double from = std::max({enter.x, enter.y, enter.z, rays_.near_depth});
         const double to = std::min({leave.x, leave.y, leave.z, rays_.far_depth});
-        if (to > from) row[x] += (to - from) * rate(px, py);
+        if (to > from) at(band, x, y) += (to - from) * rate(px, py);
       }
-    }
   }
 
-  /// Adds what the caster visits of each ray, for rows [y0, y1).
-  void add_visited(const VisibleCells& cells, int y0, int y1, double* cost) const {
-    for (int y = y0; y < y1; ++y)
+  /// Adds what the caster visits of each ray.
+  void add_visited(const VisibleCells& cells, Band& band) const {
+    for (int y = band.y0; y < band.y1; ++y)
       for (int x = region_.x0; x < region_.x1; ++x)
-        *cost++ += visited(cells, (x + 0.5) / settings_.resolution, (y + 0.5) / settings_.resolution);
+        at(band, x, y) += visited(cells, (x + 0.5) / settings_.resolution, (y + 0.5) / settings_.resolution);
   }
 
   /// A sphere round the box, its chords scaled to the box's total.
-  void add_splat(const Outline& o, int y0, int y1, double* cost) const {
+  void add_splat(const Outline& o, Band& band) const {
     double diameter = 0;
     for (int c = 0; c < 4; ++c)
       diameter = std::max(
@@ -111,19 +115,18 @@ class Costs {
                            glm::length(o.corner[static_cast<std::size_t>(a)] - o.corner[static_cast<std::size_t>(b)]));
     const double radius = std::max({0.5 * diameter, 0.5 * longest, 0.75});
     const double scale = o.total / (4 * std::numbers::pi / 3 * radius * radius * radius);
-    const int width = region_.x1 - region_.x0;
-    const int first_y = std::max(y0, static_cast<int>(std::floor(centre.y - radius)));
-    const int last_y = std::min(y1, static_cast<int>(std::ceil(centre.y + radius)) + 1);
+    const int first_y = std::max(band.y0, static_cast<int>(std::floor(centre.y - radius)));
+    const int last_y = std::min(band.y1, static_cast<int>(std::ceil(centre.y + radius)) + 1);
     for (int y = first_y; y < last_y; ++y)
       for (int x = std::max(region_.x0, static_cast<int>(std::floor(centre.x - radius)));
            x < std::min(region_.x1, static_cast<int>(std::ceil(centre.x + radius)) + 1); ++x) {
         const glm::dvec2 d = glm::dvec2(x + 0.5, y + 0.5) - centre;
         const double left = radius * radius - glm::dot(d, d);
-        if (left > 0) cost[static_cast<std::ptrdiff_t>(y - y0) * width + x - region_.x0] += scale * 2 * std::sqrt(left);
+        if (left > 0) at(band, x, y) += scale * 2 * std::sqrt(left);
       }
   }
 
-  void add_back_faces(const CostBox& box, const Outline& o, int y0, int y1, double* cost) const {
+  void add_back_faces(const CostBox& box, const Outline& o, Band& band) const {
     // A face is a back face if the eye is on its inner side.
     bool back[3][2];
     for (int a = 0; a < 3; ++a) {
@@ -140,15 +143,12 @@ class Costs {
       for (int a = 0; a < 3; ++a) all = all && back[a][corner >> a & 1];
       return all;
     };
-    struct Triangle {
-      std::array<int, 3> corner;
-    };
-    std::array<Triangle, 12> triangles{};
-    int count = 0;
+    std::array<std::array<int, 3>, 12> triangles{};
+    std::size_t count = 0;
     double sum = 0;
     const auto weight = [&](int corner) { return inner(corner) ? 1.0 : silhouette_weight; };
     const auto add_triangle = [&](int a, int b, int c) {
-      triangles[static_cast<std::size_t>(count++)] = {{a, b, c}};
+      triangles[count++] = {a, b, c};
       const glm::dvec2 p = at(o, b) - at(o, a), q = at(o, c) - at(o, a);
       sum += 0.5 * std::abs(p.x * q.y - p.y * q.x) * (weight(a) + weight(b) + weight(c)) / 3;
     };
@@ -164,19 +164,22 @@ class Costs {
         add_triangle(ring[0], ring[2], ring[3]);
       }
     if (!(sum > 0)) return;
-    for (int t = 0; t < count; ++t) {
-      const auto [a, b, c] = triangles[static_cast<std::size_t>(t)].corner;
-      fill(at(o, a), at(o, b), at(o, c), glm::dvec3(weight(a), weight(b), weight(c)) * (o.total / sum), o, y0, y1,
-           cost);
+    for (std::size_t t = 0; t < count; ++t) {
+      const auto [a, b, c] = triangles[t];
+      fill({at(o, a), at(o, b), at(o, c)}, glm::dvec3(weight(a), weight(b), weight(c)) * (o.total / sum), o, band);
     }
   }
 
  private:
+  [[nodiscard]] double& at(Band& band, int x, int y) const {
+    return band.cost[static_cast<std::size_t>(y - band.y0) * static_cast<std::size_t>(region_.width()) +
+                     static_cast<std::size_t>(x - region_.x0)];
+  }
   static const glm::dvec2& at(const Outline& o, int corner) { return o.corner[static_cast<std::size_t>(corner)]; }
 
   [[nodiscard]] glm::dvec3 direction(double px, double py) const {
     glm::dvec3 d = rays_.direction + px * rays_.direction_x + py * rays_.direction_y;
-    // Along an axis the slabs of the others hold all of the ray or none: a tiny slope says so without 0 / 0.
+    // Along an axis the slabs of the others hold all of the ray or none: a tiny slope gives that without 0 / 0.
     const double least = 1e-12 * std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
     for (int a = 0; a < 3; ++a)
       if (std::abs(d[a]) < least) d[a] = least;
@@ -254,21 +257,21 @@ class Costs {
     return d.x + d.y + d.z;
   }
 
-  void fill(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c, const glm::dvec3& weights, const Outline& o,
-            int y0, int y1, double* cost) const {
+  /// Adds a triangle within a box's outline, `weights` at its corners and linear between.
+  void fill(const std::array<glm::dvec2, 3>& corners, const glm::dvec3& weights, const Outline& o, Band& band) const {
+    const auto& [a, b, c] = corners;
     const double area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
     if (area == 0) return;
     const auto first = [](double v) { return static_cast<int>(std::ceil(v - 0.5)); };
-    const int bottom = std::min({o.y1, y1, first(std::max({a.y, b.y, c.y})) + 1});
+    const int bottom = std::min({o.y1, band.y1, first(std::max({a.y, b.y, c.y})) + 1});
     const int right = std::min(o.x1, first(std::max({a.x, b.x, c.x})) + 1);
-    for (int y = std::max({o.y0, y0, first(std::min({a.y, b.y, c.y}))}); y < bottom; ++y)
+    for (int y = std::max({o.y0, band.y0, first(std::min({a.y, b.y, c.y}))}); y < bottom; ++y)
       for (int x = std::max(o.x0, first(std::min({a.x, b.x, c.x}))); x < right; ++x) {
         const glm::dvec2 p(x + 0.5, y + 0.5);
         const double u = ((b.x - p.x) * (c.y - p.y) - (c.x - p.x) * (b.y - p.y)) / area;
         const double v = ((c.x - p.x) * (a.y - p.y) - (a.x - p.x) * (c.y - p.y)) / area, w = 1 - u - v;
         if (u < 0 || v < 0 || w < 0) continue;
-        cost[static_cast<std::ptrdiff_t>(y - y0) * (region_.x1 - region_.x0) + x - region_.x0] +=
-            u * weights.x + v * weights.y + w * weights.z;
+        at(band, x, y) += u * weights.x + v * weights.y + w * weights.z;
       }
   }
 
@@ -315,12 +318,11 @@ scene::PixelRect footprint(const scene::Camera& camera, scene::ImageSize image, 
 }
 
 CostMap cost_map(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,
-                 const VisibleCells& cells, std::span<const CostBox> bricks, const CostSettings& settings,
-                 std::optional<scene::PixelRect> region) {
+                 const VisibleCells& cells, std::span<const CostBox> bricks, const CostSettings& settings) {
   CostMap map;
   map.resolution = settings.resolution;
   map.size = map_size(image, settings.resolution);
-  map.region = region.value_or(scene::PixelRect{0, 0, map.size.width, map.size.height});
+  map.region = settings.region.value_or(scene::PixelRect{0, 0, map.size.width, map.size.height});
   map.cost.assign(
       static_cast<std::size_t>(std::max(0, map.width())) * static_cast<std::size_t>(std::max(0, map.height())), 0);
   if (map.cost.empty()) return map;
@@ -329,22 +331,22 @@ CostMap cost_map(const scene::Camera& camera, scene::ImageSize image, const scen
   std::vector<Outline> outlines(boxes.size());
   tbb::parallel_for(std::size_t{0}, boxes.size(), [&](std::size_t i) { outlines[i] = costs.outline(boxes[i]); });
   const int bands = (map.height() + band_rows - 1) / band_rows;
-  tbb::parallel_for(0, bands, [&](int band) {
-    const int y0 = map.region.y0 + band * band_rows, y1 = std::min(map.region.y1, y0 + band_rows);
-    std::vector<double> cost(static_cast<std::size_t>(y1 - y0) * static_cast<std::size_t>(map.width()));
-    if (settings.method == CostMethod::visited) costs.add_visited(cells, y0, y1, cost.data());
+  tbb::parallel_for(0, bands, [&](int number) {
+    const int y0 = map.region.y0 + number * band_rows, y1 = std::min(map.region.y1, y0 + band_rows);
+    Band band{y0, y1, std::vector<double>(static_cast<std::size_t>(y1 - y0) * static_cast<std::size_t>(map.width()))};
+    if (settings.method == CostMethod::visited) costs.add_visited(cells, band);
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       const Outline& o = outlines[i];
       if (o.behind_eye || settings.method == CostMethod::accurate)
-        costs.add_way(boxes[i], o, y0, y1, cost.data());
+        costs.add_way(boxes[i], o, band);
       else if (settings.method == CostMethod::backface)
-        costs.add_back_faces(boxes[i], o, y0, y1, cost.data());
+        costs.add_back_faces(boxes[i], o, band);
       else
-        costs.add_splat(o, y0, y1, cost.data());
+        costs.add_splat(o, band);
     }
     std::uint32_t* out =
         map.cost.data() + static_cast<std::size_t>(y0 - map.region.y0) * static_cast<std::size_t>(map.width());
-    for (const double c : cost) *out++ = static_cast<std::uint32_t>(std::min(std::lround(c * units), 0xffffffffL));
+    for (const double c : band.cost) *out++ = static_cast<std::uint32_t>(std::min(std::lround(c * units), 0xffffffffL));
   });
   return map;
 }

@@ -42,8 +42,9 @@ struct CostSettings {
   bool by_voxels = true;
   /// visited, not null: samples a slab as a pilot pass has taught, and rays end where they let nothing through.
   const WorkRates* learned = nullptr;
-  double length_unit = 1;   ///< world units, of the optical depths learned
-  double most_depth = 1e9;  ///< optical depth at which rays end
+  double length_unit = 1;                    ///< world units, of the optical depths learned
+  double most_depth = 1e9;                   ///< optical depth at which rays end
+  std::optional<scene::PixelRect> region{};  ///< map pixels; none: all
 };
 
 /// Size of the map of an image.
@@ -55,7 +56,7 @@ scene::PixelRect footprint(const scene::Camera& camera, scene::ImageSize image, 
 scene::PixelRect footprint(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,
                            const VoxelBox& part);
 
-/// The cost of the map pixels of `region` (default: all), in 1/64 voxels (or mean voxel sides).
+/// The cost of the map's pixels, in 1/64 voxels (or mean voxel sides).
 ///
 /// `visited` marches the ray of each map pixel's centre as the caster does: eight slabs of voxels at a time, which
 /// count if a packet of 4 x 4 pixels round the ray may meet a visible cell in them; with what was learned, samples
@@ -67,7 +68,6 @@ scene::PixelRect footprint(const scene::Camera& camera, scene::ImageSize image, 
 ///
 /// Throws Error(bad_input) for a resolution out of range. Uses the calling thread's arena.
 CostMap cost_map(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,
-                 const VisibleCells& cells, std::span<const CostBox> bricks, const CostSettings& settings,
-                 std::optional<scene::PixelRect> region = std::nullopt);
+                 const VisibleCells& cells, std::span<const CostBox> bricks, const CostSettings& settings);
 
 }  // namespace tessera::volume
