@@ -11,12 +11,12 @@
 
 namespace tessera::sorting {
 
-/// Ray segments on their way from a rasterizer into pixels are written in one of two encodings. What does not depend on
-/// numbers (tile renderer, sinks, mergers) is one source over both, with these names:
+/// Ray segments between rasterizer and pixels have one of two encodings. The code that does not depend on the number
+/// format (tile renderer, sinks, mergers) is a template over an encoding, which declares:
 ///
-///   Store  where segments wait, by pixel, until what is final of them is taken
-///   Depth  along the view direction; `end` lies behind all
-///   Open   which pixels of a rectangle still take anything
+///   Store  where segments wait, by pixel, until those that are final are taken
+///   Depth  along the view direction; `end` is greater than all depths
+///   Open   which pixels of a rectangle still accept segments
 ///
 /// Double precision: any frame. Depths in world units, scalars in the field's own.
 template <class Segments>
@@ -29,17 +29,17 @@ struct DoubleEncodingOf {
 };
 using DoubleEncoding = DoubleEncodingOf<projection::RaySegments>;
 
-/// The same with an attribute beside the scalar (projection::ProjectedMesh::attribute). What is compiled for
-/// DoubleEncoding does not change by it.
+/// The same with an attribute in addition to the scalar (projection::ProjectedMesh::attribute). A type of its own keeps
+/// the code compiled for DoubleEncoding as it is.
 using AttributeEncoding = DoubleEncodingOf<projection::AttributeSegments>;
 
-/// The integer lattice (scene/lattice.hpp): frames that fit it, 16 pixels or cells at a time.
+/// The integer lattice (scene/lattice.hpp): for frames that fit it, 16 pixels or cells at a time.
 struct LatticeEncoding {
   using Store = projection::SegmentWindows;
   using Depth = std::int64_t;
   using Open = projection::OpenPixels;
   static constexpr Depth end = std::numeric_limits<std::int64_t>::max();
-  static constexpr int square = projection::SegmentWindows::side;  ///< rectangles lie in squares of this side
+  static constexpr int square = projection::SegmentWindows::side;  ///< each rectangle is within one square of this side
 };
 
 }  // namespace tessera::sorting

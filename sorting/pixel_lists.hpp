@@ -11,10 +11,10 @@ namespace tessera::sorting {
 
 /// The ray segments of a tile, listed pixel by pixel in visibility order.
 ///
-/// Order is total, so it does not depend on how the segments arrived: front, then back, then, of crossings of surfaces
-/// (projection/surface_crossings.hpp), their number and what else they hold, then tet index. Or, in the mode of the
-/// `scanline` rasterizer, the back alone (Juliachs et al. 2007, 4.3: z_back is the key), then tet index. Any list
-/// length.
+/// The order is total, so it does not depend on the order in which the segments arrived. It is by front, then back,
+/// then, for crossings of surfaces (projection/surface_crossings.hpp), their number and their other fields, then tet
+/// index. In the mode of the `scanline` rasterizer, back replaces front and back (z_back is the key in Juliachs et al.
+/// 2007, 4.3). Lists have any length.
 class PixelLists {
  public:
   enum class Key { front, back };
@@ -23,13 +23,13 @@ class PixelLists {
   /// their cells' nearest depth) cost one comparison each.
   void sort(const projection::RaySegments& segments, std::size_t pixel_count, Key key = Key::front);
 
-  /// A segment in a list. Its key stands beside the index: comparing neighbours then touches no other memory.
+  /// A segment in a list. The key is stored with the index: comparing neighbours then reads no other memory.
   struct Entry {
-    double depth;           ///< front, or back if that is the key
-    std::uint32_t segment;  ///< index into the segments given last
+    double depth;           ///< front, or back with Key::back
+    std::uint32_t segment;  ///< index into the segments passed to sort()
   };
 
-  /// The pixel's segments, first to last along its ray.
+  /// The pixel's segments in order along its ray.
   [[nodiscard]] std::span<const Entry> pixel(std::size_t pixel) const {
     return std::span(entries_).subspan(begin_[pixel], begin_[pixel + 1] - begin_[pixel]);
   }

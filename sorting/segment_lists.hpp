@@ -11,32 +11,32 @@
 
 namespace tessera::sorting {
 
-/// The ray segments of a rectangle's pixels in double precision, as a rasterizer appends them, and their lists pixel by
-/// pixel in visibility order: what projection::SegmentWindows is on the integer lattice.
-/// `Segments`: projection::RaySegments, or AttributeSegments.
+/// The ray segments of a rectangle's pixels in double precision, in the order in which a rasterizer appends them, and
+/// their lists in visibility order, one per pixel. On the integer lattice, projection::SegmentWindows has this role.
+/// `Segments`: projection::RaySegments or AttributeSegments.
 template <class Segments>
 class SegmentListsOf {
  public:
   using Key = PixelLists::Key;
   static constexpr std::size_t bytes_each = Segments::bytes_each + PixelLists::bytes_each;
 
-  /// Empties the lists: one for each of `pixels` pixels, ordered by `key`. Capacity stays.
+  /// Empties the lists and prepares one for each of `pixels` pixels, ordered by `key`. Capacity stays.
   void reset(std::size_t pixels, Key key = Key::front) {
     pixels_ = pixels;
     key_ = key;
     segments.size = 0;
   }
 
-  /// Rasterizers append here; room is the caller's business.
+  /// Rasterizers append here; the caller ensures that there is room.
   Segments segments;
 
-  /// Lists what is in `segments` now.
+  /// Builds the lists of what is in `segments` now.
   void sort() { lists_.sort(segments, pixels_, key_); }
   [[nodiscard]] std::span<const PixelLists::Entry> pixel(std::size_t p) const { return lists_.pixel(p); }
   [[nodiscard]] std::size_t pixels() const { return pixels_; }
 
-  /// Removes segments whose key lies before `final_depth`, and those of pixels p with open[p] == 0 (empty: all are
-  /// open); the others keep their order. Returns how many are gone. The lists are those of before.
+  /// Removes segments whose key is less than `final_depth`, and those of pixels p with open[p] == 0 (empty: all are
+  /// open); the others keep their order. Returns the number of removed segments. The lists are not updated.
   std::size_t remove(double final_depth, std::span<const std::uint8_t> open);
 
  private:

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Depth order of sixteen (or eight, or four) pixels at once, a pixel a lane. Included once per instruction set
+// Depth order of sixteen (or eight, or four) pixels at once, one pixel per lane. Included once per instruction set
 // (Highway's include guard idiom).
 //
-// What   A key holds a segment's depth and its row in the lane's list. Sorting networks sort every lane's keys at once:
-//        an exchange of two rows is a minimum and a maximum, with no branch.
-// How    Batcher's odd-even merge sort in registers, 16 rows at a time; then bitonic merges of such runs.
-// Bits   Keys are compared, not computed: the order is the same on every instruction set.
-// Ends   Depths that agree in a key's bits are left to the caller (PackedKeys::level()).
+// What   A key contains a segment's depth and its row in the lane's list. Sorting networks sort the keys of all lanes
+//        at once: an exchange of two rows is a minimum and a maximum, without a branch.
+// How    Batcher's odd-even merge sort in registers, 16 rows at a time; then bitonic merges of these runs.
+// Bits   Keys are only compared: the order is the same on every instruction set.
+// Ends   The caller orders depths whose keys have equal bits (PackedKeys::level()).
 
 #if defined(TESSERA_SORTING_SORT_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_SORTING_SORT_LANES_INL_H_
@@ -30,19 +30,19 @@ namespace tessera::sorting {
 namespace HWY_NAMESPACE {
 using namespace scene::HWY_NAMESPACE;  // vectors and operations on their lanes
 
-/// A row is one vector of keys: element r of every lane's list.
+/// A row is one vector of keys: element r of every lane's list. Networks in registers sort this many rows.
 constexpr int sort_chunk = 16;
 
-/// Beyond this many chunks a merge of n log^2 n exchanges loses to sorting lane after lane.
+/// Beyond this many chunks, a merge of n log^2 n exchanges is slower than sorting lane by lane.
 constexpr int most_sort_chunks = 64;
 
-/// Depth and place in the list in one number, so that an exchange is a minimum and a maximum: the depth behind the
-/// lane's nearest above, as many bits of it as there is room for, the row below. Keys are the bits of positive normal
-/// floats, whose order is the same.
+/// Depth and row in one number, so that an exchange is a minimum and a maximum. The high bits are the distance behind
+/// the lane's nearest depth, as many bits as there is room for; the low bits are the row. Keys are the bits of positive
+/// normal floats, which have the same order.
 class PackedKeys {
  public:
-  /// For depths from `nearest` to `farthest` (by lane, 32-bit steps; a lane that is empty: nearest > farthest) in
-  /// `rows` rows, at most most_sort_chunks * sort_chunk.
+  /// For depths from `nearest` to `farthest` (per lane, in 32-bit steps; nearest > farthest in an empty lane) in `rows`
+  /// rows, at most most_sort_chunks * sort_chunk.
   HWY_INLINE PackedKeys(VI nearest, VI farthest, std::size_t rows) : nearest_(nearest) {
     const DI d;
     const hn::RebindToUnsigned<DI> bits;
@@ -64,9 +64,9 @@ class PackedKeys {
   static HWY_INLINE VI behind_all(std::size_t row) {
     return Set(DI(), most_key + static_cast<std::int32_t>(row * sort_chunk * most_sort_chunks));
   }
-  /// The row that a key was packed with; of keys behind all others, any.
+  /// The row that a key was packed with; unspecified for keys of behind_all().
   HWY_INLINE VI row(VI key) const { return And(key, row_mask_); }
-  /// Whether the keys do not tell which depth is nearer.
+  /// Whether two keys have equal depth bits, so that they do not decide which depth is nearer.
   HWY_INLINE MI level(VI a, VI b) const { return Xor(a, b) < row_mask_ + Set(DI(), 1); }
 
  private:
@@ -96,7 +96,7 @@ constexpr Network<64> odd_even_merge_sort() {
   return n;
 }
 
-/// Sorts 16 elements that rise and then fall.
+/// Sorts 16 elements that ascend and then descend.
 constexpr Network<32> bitonic_merge() {
   Network<32> n;
   for (int stride = sort_chunk / 2; stride >= 1; stride /= 2)
@@ -131,7 +131,7 @@ HWY_INLINE void run_on_rows(float* keys) {
   for (int i = 0; i < sort_chunk; ++i) StoreU(key[i], d, keys + static_cast<std::size_t>(i) * lanes);
 }
 
-/// Exchanges row `low` + i with row `high` + i (reversed: `high` - i), i < rows.
+/// Compares and exchanges rows `low` + i and `high` + i (reversed: `high` - i), i < rows.
 template <bool reversed>
 HWY_INLINE void exchange_rows(float* keys, int low, int high, int rows) {
   const DF d;
@@ -144,12 +144,13 @@ HWY_INLINE void exchange_rows(float* keys, int low, int high, int rows) {
   }
 }
 
-/// Sorts every lane's keys, ascending: `chunks` (1 to most_sort_chunks) times 16 rows; lists that are shorter are
-/// filled up with largest keys. Not stable. Sorting 16 rows takes 63 exchanges of two instructions for all lanes, so
-/// about half an instruction an element; each doubling adds two thirds of that and more.
+/// Sorts every lane's keys in ascending order: `chunks` (1 to most_sort_chunks) times 16 rows; shorter lists are padded
+/// with keys of behind_all(). Not stable. Sorting 16 rows takes 63 exchanges of two instructions for all lanes, which
+/// is about half an instruction per element with 16 lanes. Each doubling of the rows adds two thirds of that or more.
 ///
-/// Runs of 16 rows are merged by Batcher's bitonic sorter in the form in which all comparisons point one way: rows
-/// beyond the last would hold largest keys, so that what would meet them stays.
+/// Runs of 16 rows are merged by Batcher's bitonic sorter in the form in which all comparisons have the same direction.
+/// Rows beyond the last would contain the largest keys, so that comparisons with them would exchange nothing and are
+/// left out.
 HWY_INLINE void sort_lanes(float* keys, int chunks) {
   const auto row = static_cast<std::size_t>(hn::Lanes(DF()));
   const auto at = [&](int chunk) { return static_cast<std::size_t>(chunk * sort_chunk) * row; };

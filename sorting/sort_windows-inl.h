@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Depth order of the windows that the default frame composites from: as many neighbouring pixels' lists at once as a
-// vector has lanes. Included once per instruction set (Highway's include guard idiom).
+// Depth order of the windows from which the default frame is composited: the lists of as many neighbouring pixels at
+// once as a vector has lanes. Included once per instruction set (Highway's include guard idiom).
 //
-// What   In every lane the slots of its pixel's segments, in the order of before(): front, back, then the scalars.
-// How    The networks of sort_lanes-inl.h order keys of the fronts; what their bits leave open, and lists longer than
-//        the networks, is sorted lane by lane.
-// Ends   Segments with equal fields are interchangeable: any order of theirs gives the same pixel.
+// What   For every lane, the slots of its pixel's segments in the order of before(): front, back, then the scalars.
+// How    The networks of sort_lanes-inl.h order keys of the fronts. Segments whose keys have equal depth bits, and
+//        lists longer than the networks, are sorted lane by lane.
+// Ends   Segments with equal fields are interchangeable: any order of them gives the same pixel.
 
 #if defined(TESSERA_SORTING_SORT_WINDOWS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_SORTING_SORT_WINDOWS_INL_H_
@@ -30,7 +30,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::sorting {
 namespace HWY_NAMESPACE {
 
-/// Order of one pixel's segments: front, back, then the scalars, so that what is equal is interchangeable.
+/// Order of one pixel's segments: front, back, then the scalars. Segments equal in all four are interchangeable.
 HWY_INLINE bool before(const projection::LatticeSegment& a, const projection::LatticeSegment& b) {
   if (a.front != b.front) return a.front < b.front;
   if (a.back != b.back) return a.back < b.back;
@@ -38,15 +38,16 @@ HWY_INLINE bool before(const projection::LatticeSegment& a, const projection::La
   return a.scalar_back < b.scalar_back;
 }
 
-/// The segment `slot` bytes behind `list`. Slots in bytes spare the address a shift.
+/// The segment `slot` bytes behind `list`. Slots are in bytes because this saves a shift in the address.
 HWY_INLINE const projection::LatticeSegment& segment_at(const projection::LatticeSegment* list, std::int32_t slot) {
   return *reinterpret_cast<const projection::LatticeSegment*>(reinterpret_cast<const char*>(list) + slot);
 }
 
-/// Lanes whose lists have this row.
+/// The lanes whose lists have this row.
 HWY_INLINE MI has_row(std::size_t row, VI count) { return Set(DI(), static_cast<std::int32_t>(row)) < count; }
 
-/// Puts in order what the network left nearly so: keys do not tell all of a segment, nor always all of its depth.
+/// Completes the order of a list that the network left nearly sorted: keys contain only the front, and not always all
+/// of its bits.
 HWY_NOINLINE inline void settle_ties(const projection::LatticeSegment* list, std::size_t count, std::size_t lanes,
                                      std::int32_t* slots) {
   for (std::size_t i = 1; i < count; ++i) {
@@ -58,7 +59,7 @@ HWY_NOINLINE inline void settle_ties(const projection::LatticeSegment* list, std
   }
 }
 
-/// Lists longer than the networks: one lane after the other.
+/// Sorts one lane's list that is too long for the networks.
 HWY_NOINLINE inline void sort_long(const projection::LatticeSegment* list, std::size_t stride, std::size_t count,
                                    std::size_t lanes, std::int32_t* slots) {
   std::vector<std::int32_t> order(count);
@@ -68,9 +69,9 @@ HWY_NOINLINE inline void sort_long(const projection::LatticeSegment* list, std::
   for (std::size_t i = 0; i < count; ++i) slots[i * lanes] = order[i];
 }
 
-/// Sorts the lists of the pixels first, first + 1... of the windows, a lane each. `list` is where the first one's
-/// begins, `stride` and `counts` are the windows' own, counted from that pixel. Returns the number of rows: the longest
-/// list's length.
+/// Sorts the lists of as many consecutive pixels of the windows as a vector has lanes, one per lane. `list` is the
+/// first pixel's list; `stride` and `counts` are those of the windows, `counts` from that pixel on. Returns the number
+/// of rows, which is the length of the longest list.
 HWY_INLINE std::size_t sort_windows(const projection::LatticeSegment* list, std::size_t stride,
                                     const std::uint32_t* counts, WindowOrder& order) {
   const DI d;
@@ -99,7 +100,7 @@ HWY_INLINE std::size_t sort_windows(const projection::LatticeSegment* list, std:
     const auto here = has_row(row, count);
     nearest = Min(nearest, IfThenElse(here, front, nearest));
     farthest = Max(farthest, IfThenElse(here, front, farthest));
-    // Fronts for now; what is beyond a list's end is not used.
+    // The fronts, until the sorted slots replace them; values beyond a list's end are not used.
     StoreU(front, d, slots + row * lanes);
   }
   const PackedKeys packed(nearest, farthest, rows);

@@ -6,9 +6,9 @@
 
 namespace tessera::sorting {
 
-/// Depth order of a group of neighbouring pixels' windows (projection::SegmentWindows), a pixel a lane, as
-/// sort_windows-inl.h leaves it: element [row * lanes + lane] of `slots` says where in the lane's list its segment
-/// number `row` is, in bytes from the list's beginning.
+/// Depth order of the windows (projection::SegmentWindows) of a group of neighbouring pixels, one pixel per lane, as
+/// sort_windows-inl.h returns it: `slots[row * lanes + lane]` is the position of segment number `row` in the lane's
+/// list, in bytes from the list's beginning.
 struct WindowOrder {
   std::vector<std::int32_t> slots;
   std::vector<float> keys;  ///< working memory, of the same shape

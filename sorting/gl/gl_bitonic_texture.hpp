@@ -11,8 +11,8 @@
 
 namespace tessera::sorting {
 
-/// An element of the sorting texture: a ray segment as Juliachs et al. 2007, 4.3 have it, and what settles equal
-/// depths, in a texture of its own.
+/// An element of the sorting texture: a ray segment as in Juliachs et al. 2007, 4.3. TextureTie, in a second texture,
+/// orders segments of equal depth.
 struct TextureSegment {
   float scalar_front, scalar_back, length, z_back;
 };
@@ -20,26 +20,28 @@ struct TextureTie {
   std::uint32_t tie, place;
 };
 
-/// Sorts lists of ray segments by decreasing z_back in a texture, as printed: ping-pong fragment passes of bitonic sort
-/// over lists padded with null elements to a power of two. (The print's power is 2^(ceil(log2 S) + 1), one too large;
-/// its null elements are {0, 0, 0, 0}, which assumes z_back > 0: here their z_back is null_depth.)
+/// Sorts lists of ray segments by decreasing z_back in a texture, as in the paper: ping-pong fragment passes of a
+/// bitonic sort over lists padded with null elements to a power of two. Two differences: the paper's power of two is
+/// 2^(ceil(log2 S) + 1), which is one too large, and its null elements are {0, 0, 0, 0}, which assumes z_back > 0.
+/// Here, the z_back of a null element is null_depth.
 ///
-/// A list that is longer than the texture is wide takes several rows, so the paper's limit on depth complexity is gone;
-/// the number of lists that fit one texture shrinks instead.
+/// A list longer than the width of the texture takes several rows. This removes the paper's limit on depth complexity;
+/// fewer lists fit into one texture instead.
 class GlBitonicTexture {
  public:
   static constexpr float null_depth = -3.4e38f;
 
-  /// `limit`: largest side of a texture; 0: the device's.
+  /// `limit`: largest side of a texture; 0: the largest that the device supports.
   explicit GlBitonicTexture(const gl::Context& context, int limit = 0);
 
-  /// The vertex stage of a triangle that covers the viewport; `column` is the instance's number.
+  /// The vertex stage of a triangle that covers the viewport; its output `column` is the instance number.
   static gl::ShaderSource whole_target();
 
-  /// How lists of up to `longest` elements lie in the texture. Throws Error(system_failure) if one does not fit.
+  /// The layout of lists of up to `longest` elements in the texture. Throws Error(system_failure) if one list does not
+  /// fit.
   struct Layout {
-    std::uint32_t log2_size, log2_width;  ///< elements of a padded list, and of a row
-    int rows_a_list, lists;               ///< rows of a list; lists that fit
+    std::uint32_t log2_size, log2_width;  ///< of a padded list, and of a row, in elements
+    int rows_a_list, lists;               ///< rows of a list; lists that fit into the texture
     [[nodiscard]] std::size_t stride() const { return std::size_t{1} << log2_size; }
   };
   [[nodiscard]] Layout layout(std::uint32_t longest) const;
@@ -48,7 +50,7 @@ class GlBitonicTexture {
   /// textures are bound to units 0 and 1. Returns the number of passes.
   std::uint32_t sort(const Layout& layout, int lists, std::span<const TextureSegment> segments,
                      std::span<const TextureTie> ties);
-  /// What sort() left: rows of width().
+  /// The ties in sorted order, list after list, in rows of 2^Layout::log2_width elements.
   [[nodiscard]] const gl::Texture& sorted_ties() const { return targets_[sorted_].ties; }
 
  private:

@@ -5,8 +5,8 @@
 
 namespace tessera::sorting {
 
-/// What a device sorts by: front, then back, then `tie`, each an integer in the order of what it stands for; then
-/// `element`, the element's number, which makes the order total.
+/// The sort key on a device: `front`, then `back`, then `tie`, each an unsigned integer in the order of the value that
+/// it encodes. The element's number comes last and makes the order total.
 struct GlKey {
   std::uint32_t front, back, tie, element;
 };

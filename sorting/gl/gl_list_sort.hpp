@@ -11,30 +11,31 @@
 
 namespace tessera::sorting {
 
-/// A list of keys: which ones.
+/// A list: the range [begin, begin + count) of the keys.
 struct GlList {
   std::uint32_t begin, count;
 };
 static_assert(sizeof(GlList) == 8);
 
-/// Sorts many lists of any length at once by compute shaders: bitonic networks in shared memory (up to 1024 elements),
-/// then as many merge passes as the longest list needs, back and forth between two buffers.
+/// Sorts many lists of any length at once by compute shaders: bitonic networks in shared memory for pieces of up to
+/// 1024 elements, then as many merge passes as the longest list needs, alternating between two buffers.
 ///
-/// Used on the context's thread. The lists are told beforehand (plan), so that tables can go up with the keys.
+/// Only for the context's thread. plan() comes before sort(), so that its tables can be uploaded together with the
+/// keys.
 class GlListSort {
  public:
   static constexpr std::uint32_t piece_size = 1024;
 
   explicit GlListSort(const gl::Context& context);
 
-  /// What to do with these lists. Afterwards `tables()` are to be copied into a device buffer.
+  /// Prepares the passes for these lists. The caller then copies `tables()` into a device buffer.
   void plan(std::span<const GlList> lists);
   [[nodiscard]] std::span<const std::uint32_t> tables() const { return tables_; }
-  /// Which of the two buffers a list of this length ends up in.
+  /// Which of the two buffers contains a list of this length after sorting.
   [[nodiscard]] static std::uint32_t buffer_of(std::uint32_t count);
 
-  /// Queues the passes. `keys` holds unsorted keys; sorted ones lie in `buffers[buffer_of(count)]`, where the list lay.
-  /// Returns the number of passes over the elements.
+  /// Queues the passes. `keys` contains the unsorted keys; the sorted ones are in `buffers[buffer_of(count)]`, each
+  /// list in the range that it had before. Returns the number of passes over the elements.
   std::uint32_t sort(const gl::Buffer& keys, const gl::Buffer* const (&buffers)[2], const gl::Buffer& tables) const;
 
  private:
@@ -47,8 +48,8 @@ class GlListSort {
   const gl::Context* context_;
   gl::Program sort_, merge_;
   std::vector<std::uint32_t> tables_;
-  std::vector<Pieces> pieces_;  ///< by the logarithm of their size
-  std::vector<Merges> merges_;  ///< by pass; `first` in units of a table's entry
+  std::vector<Pieces> pieces_;  ///< index: log2 of the size of a piece, rounded up
+  std::vector<Merges> merges_;  ///< index: the pass; `first` counts entries of four integers
 };
 
 }  // namespace tessera::sorting
