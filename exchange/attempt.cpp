@@ -14,7 +14,7 @@ namespace tessera::exchange {
 namespace {
 
 constexpr auto kind = MessageKind::attempt_end;
-/// Who waits on one channel sees so soon what came on another.
+/// Within this time, a thread that waits on one channel notices an end that came on another.
 constexpr std::chrono::milliseconds slice(50);
 
 bool is_end(const Bytes& message) {
@@ -74,7 +74,7 @@ class AttemptTransport final : public Transport {
   }
   [[nodiscard]] Traffic sent(Channel channel) const override { return beneath_.sent(channel); }
 
-  /// The end of this rank's part: waits for the others', and leaves nothing behind.
+  /// Ends this rank's part: waits for the ends of the others, and leaves no messages behind.
   void settle() {
     {
       const std::lock_guard lock(mutex_);
@@ -94,9 +94,10 @@ class AttemptTransport final : public Transport {
   }
 
  private:
-  /// Who left sooner might send what another, still waiting for a third rank's end, would take for a leftover. So all
-  /// tell rank 0 by a second end that they have everybody's, and leave when it answers by one: on the channel of
-  /// agreement, where messages come from rank 0 or go to it, and none overtakes.
+  /// A rank that left earlier might send a message that another, which still waits for a third rank's end, would
+  /// discard as a leftover. Therefore every rank, once it has all ends, sends rank 0 a second end, and leaves when rank
+  /// 0 answers with one. This uses the channel of agreement, where all messages come from rank 0 or go to it, so that
+  /// none overtakes another.
   void leave_together() {
     const Bytes message = end_message();
     if (rank() != 0) {
@@ -152,7 +153,7 @@ class AttemptTransport final : public Transport {
   mutable std::mutex mutex_;
   std::atomic<bool> failed_ = false;
   bool ended_ = false;
-  int settled_ = 0;  ///< of rank 0: how many others have everybody's end
+  int settled_ = 0;  ///< on rank 0: the number of other ranks that have all ends
   std::optional<scene::Error> own_error_;
   std::vector<std::optional<scene::Error>> errors_;    ///< by rank
   std::array<std::vector<bool>, channel_count> ends_;  ///< by rank, whether it has ended on the channel
@@ -165,7 +166,7 @@ void attempt(Transport& beneath, const std::function<void(Transport&)>& work) {
   try {
     work(transport);
   } catch (...) {
-    beneath.check();  // the run's own
+    beneath.check();  // throws the run's own error
     transport.fail(error_of(std::current_exception()));
   }
   transport.settle();

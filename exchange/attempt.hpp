@@ -7,12 +7,12 @@
 
 namespace tessera::exchange {
 
-/// Runs `work` on every rank with a transport whose errors are its own: what one rank throws or fail()s with is thrown
-/// here on all of them, the same everywhere, and the transport beneath can be used on, as if nothing had been sent. An
-/// error of the transport beneath stays the run's. Collective.
+/// Runs `work` on every rank with a transport that has errors of its own: an error that one rank throws or passes to
+/// fail() is thrown here on all ranks, the same one everywhere. Afterwards the underlying transport works as if nothing
+/// had been sent. Errors of the underlying transport remain the run's errors. Collective.
 ///
-/// How  a rank that is through, well or not, says so to all on every channel, behind all that it has sent, and takes
-///      what there is until all have said so; then they leave together.
+/// How  A rank that has finished or failed sends an end to all ranks on every channel, behind all its other messages,
+///      and receives until it has the ends of all ranks. Then all ranks leave together.
 void attempt(Transport& beneath, const std::function<void(Transport&)>& work);
 
 }  // namespace tessera::exchange

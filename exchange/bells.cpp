@@ -7,7 +7,7 @@
 namespace tessera::exchange {
 namespace {
 
-/// Each on a cache line of its own.
+/// On a cache line of its own.
 struct alignas(64) Bell {
   std::atomic<std::uint32_t> rung = 0;
 };

@@ -11,20 +11,20 @@
 
 namespace tessera::exchange {
 
-/// Bells of ranks of one machine, in memory that they share: who sends to a rank rings, so that the rank need not look
-/// for messages all the time. A look at MPI costs 20 to 30 microseconds.
+/// Wake-ups between ranks of one machine, in shared memory: a rank that sends a message rings the receiver's bell, so
+/// that the receiver need not poll MPI all the time. One poll of MPI costs 20 to 30 microseconds.
 class Bells {
  public:
-  /// Those of this rank's machine; null if it has no other ranks or no shared memory. Collective over all ranks.
+  /// The bells of this rank's machine; null if it has no other ranks or no shared memory. Collective over all ranks.
   static std::shared_ptr<Bells> hung(Transport& transport);
 
   /// Whether every rank of the transport is on this machine.
   [[nodiscard]] bool of_all() const { return of_all_; }
-  /// Wakes a rank; nothing if it is not on this machine.
+  /// Wakes a rank; no effect if it is on another machine.
   void ring(int rank);
-  /// Of this rank, before it looks for what the bell may have rung for.
+  /// The state of this rank's bell, to be read before checking for what the bell announces.
   [[nodiscard]] std::uint32_t heard() const;
-  /// Returns when this rank's bell has rung since heard(), or after `most`.
+  /// Returns when this rank's bell has rung since `heard()`, or after `most`.
   void wait(std::uint32_t heard, std::chrono::microseconds most);
 
  private:
@@ -32,7 +32,7 @@ class Bells {
   [[nodiscard]] std::atomic<std::uint32_t>& bell(int place) const;
 
   SharedPages pages_;
-  std::vector<int> places_;  ///< of each rank among those of this machine; -1: it is elsewhere
+  std::vector<int> places_;  ///< the index of each rank among those of this machine; -1: on another machine
   int own_;
   bool of_all_;
 };

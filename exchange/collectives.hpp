@@ -5,17 +5,17 @@
 
 #include "exchange/message.hpp"
 
-/// What all ranks do together. Every rank calls these in the same order (channel `agreement`), with a message of the
-/// same kind: a rank that is elsewhere in its program is found by the kind, and ends the run.
+/// Collective operations. Every rank calls these in the same order (channel `agreement`), with a message of the same
+/// kind: a rank that is elsewhere in its program is found by the kind, and ends the run.
 namespace tessera::exchange {
 
-/// The message of rank `root`, on every rank; of the others' it matters nothing.
+/// The message of rank `root`, on every rank; those of the others are ignored.
 Bytes broadcast(Transport& transport, int root, Bytes message);
 
 /// Every rank's message, in rank order, on every rank.
 std::vector<Bytes> gather_all(Transport& transport, Bytes message);
 
-/// Returns when all ranks have come here.
+/// Returns when all ranks have called it.
 void barrier(Transport& transport);
 
 /// The value of rank `root`, on every rank.

@@ -19,7 +19,7 @@ rlim_t address_space() {
   return getrlimit(RLIMIT_AS, &space) == 0 ? space.rlim_cur : RLIM_INFINITY;
 }
 
-/// Words with a zero behind each, which no argument has.
+/// The words, each followed by a zero, which no argument contains.
 std::string joined(const std::vector<std::string>& words) {
   std::string all;
   for (const std::string& word : words) all.append(word).push_back('\0');
@@ -33,7 +33,7 @@ std::vector<std::string_view> split(std::string_view all) {
   return words;
 }
 
-/// The first argument that two ranks do not share.
+/// The error for two ranks' first different argument.
 scene::Error differ(int rank, int size, std::string_view own, std::string_view other) {
   const auto ours = split(own), theirs = split(other);
   const auto at = static_cast<std::size_t>(std::mismatch(ours.begin(), ours.end(), theirs.begin(), theirs.end()).first -
@@ -51,7 +51,7 @@ class Contact {
   Contact(Transport& transport, std::chrono::milliseconds patience, const std::vector<std::string>& arguments)
       : transport_(transport), patience_(patience), end_(Clock::now() + patience), arguments_(joined(arguments)) {}
 
-  /// Until all others have said something, on rank 0; on others until rank 0 has.
+  /// Receives one message from each other rank on rank 0; one from rank 0 on others.
   void hear() {
     for (int missing = transport_.rank() == 0 ? transport_.size() - 1 : 1; missing > 0;)
       if (const auto message = transport_.receive(Channel::agreement, std::chrono::milliseconds(100))) {
@@ -100,7 +100,8 @@ void make_first_contact(Transport& transport, std::chrono::milliseconds patience
                         const std::vector<std::string>& arguments) {
   if (transport.size() == 1) return;
   Contact contact(transport, patience, arguments);
-  // Twice, so that rank 0 knows too that it was heard: who goes on alone would wait where nobody looks at the time.
+  // Twice, so that rank 0 also knows that its message arrived: a rank that continued alone would wait without a time
+  // limit.
   for (int round = 0; round < 2; ++round)
     if (transport.rank() == 0) {
       contact.hear();

@@ -10,33 +10,36 @@
 
 namespace tessera::exchange {
 
-/// What one compositor has received of one frame, and what it still lacks: bookkeeping without threads or sends.
+/// The parts of one frame that one compositor has received, and those still missing: bookkeeping without threads or
+/// sends.
 class FrameCollector {
  public:
-  /// Of `projectors` projectors, numbered 0 .. N-1; tiles of `compositor` in the map, which must outlive this.
+  /// For `projectors` projectors, numbered 0 .. N-1, and the tiles of `compositor` in the map, which must outlive this.
   FrameCollector(int projectors, const TileMap& map, int compositor);
 
   void begin(int projector, const FrameBegin& begin, std::span<const std::byte> bits);
   void end(const FrameEnd& sums);
-  /// Returns the depth from which on the part adds to the tile: where the projector's part before it was complete.
+  /// Returns the depth from which on the part adds to the tile: the depth to which the projector's previous part was
+  /// complete.
   double add(int projector, TilePart part);
 
   [[nodiscard]] bool has_all_begins() const { return begins_ == projectors_; }
-  /// Of the projectors whose ends come here.
+  /// Of the projectors that send their ends to this compositor.
   [[nodiscard]] bool has_all_ends() const { return ends_ == ends_awaited_; }
   [[nodiscard]] double longest_ray() const { return longest_ray_; }
   [[nodiscard]] float longest_edge() const { return longest_edge_; }
-  /// Of the frame's lattice segments; units of 0 without.
+  /// Of the frame's lattice segments; units of 0 if it has none.
   [[nodiscard]] const scene::Lattice& lattice() const { return lattice_; }
   [[nodiscard]] const FrameEnd& sums() const { return sums_; }
 
   /// Parts of a tile that wait to be merged.
   struct Waiting {
-    std::vector<TilePart> parts;  ///< by start_depth: before one is added, all before its start_depth has been
+    std::vector<TilePart> parts;  ///< ascending by start_depth: each may be added once all segments before its
+                                  ///< start_depth have been
     double final_depth;           ///< the tile is complete before this planar depth; infinity: complete
     bool all;                     ///< no more parts will come
   };
-  /// Whether there is work on a tile: it is complete and not merged yet, or enough of it can be merged to free memory.
+  /// Whether a tile can be worked on: it is complete and not merged yet, or enough of it can be merged to free memory.
   [[nodiscard]] bool has_work(std::uint32_t tile) const;
   Waiting take(std::uint32_t tile);
 
@@ -44,15 +47,16 @@ class FrameCollector {
   void finish(std::uint32_t tile);
   [[nodiscard]] bool finished() const;  ///< all tiles are, and all ends have come
 
-  /// Bytes of a part are owed to their projector while the part is ahead: its tile comes after the first one that is
-  /// not composited, or it begins deeper in that tile than other projectors have come. pay() returns what is due now.
+  /// A part's bytes are owed to its projector while the part is ahead: its tile comes after the first one that is not
+  /// composited, or it begins deeper in that tile than all projectors are complete. pay() returns the bytes that are
+  /// due now.
   void owe(int projector, std::uint32_t tile, double start_depth, std::uint64_t bytes);
   std::uint64_t pay(int projector);
 
  private:
   struct Tile {
     int contributors = 0, ended = 0;
-    std::vector<double> final_depth;  ///< by projector: -infinity to begin with, +infinity where nothing comes
+    std::vector<double> final_depth;  ///< by projector: initially -infinity, +infinity for those without parts
     std::vector<TilePart> parts;
     std::uint64_t bytes = 0;
     double merged_to = -std::numeric_limits<double>::infinity();
@@ -66,7 +70,7 @@ class FrameCollector {
 
   int projectors_;
   const std::vector<std::uint32_t>* numbers_;  ///< this compositor's tiles in order
-  std::vector<Tile> tiles_;                    ///< likewise
+  std::vector<Tile> tiles_;                    ///< in the same order
   std::size_t first_unfinished_ = 0;
   int begins_ = 0, ends_ = 0, ends_awaited_ = 0;
   double longest_ray_ = 0;

@@ -12,16 +12,17 @@
 
 namespace tessera::exchange {
 
-/// What members tell each other.
+/// What members communicate.
 struct HostTeam::Control {
   struct alignas(64) Member {
-    std::atomic<std::uint64_t> at = 0;    ///< the barrier that it has come to: epoch << 32 | step
+    std::atomic<std::uint64_t> at = 0;    ///< the barrier that it has reached: epoch << 32 | step
     std::atomic<std::uint64_t> left = 0;  ///< the epoch that it left last
-    std::uint64_t words[2] = {};          ///< of gather(), of even and odd steps: who is one step on does not overwrite
+    std::uint64_t words[2] = {};          ///< of gather(), of even and odd steps: a member that is one step ahead does
+                                          ///< not overwrite
   };
   std::atomic<std::uint32_t> changes = 0;
   std::atomic<std::uint64_t> drawn = 0;       ///< epoch << 32 | numbers drawn
-  std::atomic<std::int32_t> descriptor = -1;  ///< of the first member, of the pages that are being handed out
+  std::atomic<std::int32_t> descriptor = -1;  ///< the first member's descriptor of the pages that are being shared
   alignas(64) Member members[1];
 
   static std::size_t bytes(std::size_t members) { return sizeof(Control) + (members - 1) * sizeof(Member); }
@@ -70,7 +71,7 @@ void HostTeam::arrive(bool may_stop) {
     bool all = true;
     for (std::size_t m = 0; m < ranks_.size(); ++m) {
       const Control::Member& member = shared.members[m];
-      // First whether it has left: it may be in the next epoch already.
+      // Check whether it has left first: it may already be in the next epoch.
       if (may_stop && member.left.load(std::memory_order_acquire) == epoch_) throw scene::FrameStopped{};
       all = all && member.at.load(std::memory_order_acquire) >= here;
     }
@@ -112,14 +113,14 @@ std::byte* HostTeam::memory(Room room, std::size_t bytes) {
     try {
       pages = SharedPages::made(bytes);
       descriptor = pages->descriptor();
-    } catch (const scene::Error&) {  // told by the descriptor
+    } catch (const scene::Error&) {  // reported by the descriptor
     }
     shared.descriptor.store(descriptor, std::memory_order_release);
   }
   barrier();
   const std::int32_t descriptor = shared.descriptor.load(std::memory_order_acquire);
   if (rank_ != 0 && descriptor >= 0) pages = SharedPages::opened(process, descriptor, bytes);
-  // Each member its share, so that it lies in memory near to it.
+  // Each member allocates its share, so that this part is in memory close to it.
   const scene::Share own = scene::share_of(bytes, this);
   bool good = pages && pages->reserve(own.first, own.last);
   if (scene::least_of(std::uint64_t{good}, this) == 0) throw no_shared_memory(bytes);

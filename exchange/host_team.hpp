@@ -14,15 +14,15 @@
 
 namespace tessera::exchange {
 
-/// Ranks of one machine that make frames together. The team's members wait for each other in shared memory, and find
-/// the run's error, another's death included, through the transport; ranks of other machines take no part.
+/// Ranks of one machine that render frames together. The members wait for each other in shared memory, and get the
+/// run's error, which includes another rank's death, from the transport. Ranks of other machines take no part.
 ///
-/// An epoch is a frame, or whatever else they do together: all members begin the same ones in the same order. Who
-/// leaves one early says so; who waits for it in that epoch then throws FrameStopped.
+/// An epoch is a frame or another joint task: all members begin the same epochs in the same order. A member that leaves
+/// an epoch early calls leave(); members that wait for it in this epoch then throw FrameStopped.
 class HostTeam final : public scene::Team {
  public:
-  /// The team of this rank and the others of its machine that join; null if there are none, they may not see each
-  /// other's memory, or this rank does not join. Collective over all ranks. `transport` must outlive the team.
+  /// The team of this rank and the other ranks of its machine that join; null if there are no others, if they cannot
+  /// share memory, or if this rank does not join. Collective over all ranks. `transport` must outlive the team.
   static std::unique_ptr<HostTeam> form(Transport& transport, bool joins);
   ~HostTeam() override;
   HostTeam(const HostTeam&) = delete;
@@ -30,12 +30,12 @@ class HostTeam final : public scene::Team {
 
   [[nodiscard]] int rank() const override { return rank_; }
   [[nodiscard]] int size() const override { return static_cast<int>(ranks_.size()); }
-  /// The transport's ranks of the members.
+  /// The members' ranks in the transport.
   [[nodiscard]] const std::vector<int>& ranks() const { return ranks_; }
 
-  /// Begins the next epoch, once all members are through with the last. Throws the run's error.
+  /// Begins the next epoch once all members have finished the last one. Throws the run's error.
   void begin();
-  /// This member will not go on with the epoch.
+  /// This member does not continue the epoch.
   void leave();
 
   void barrier() override;

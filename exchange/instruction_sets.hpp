@@ -6,8 +6,8 @@
 namespace tessera::exchange {
 
 /// Restricts every rank's kernels to the instruction sets that all ranks have: SSE4 has no fused multiply-add, so bits
-/// differ between sets, and a picture must not depend on which machine made a tile. Collective, before the first kernel
-/// runs.
+/// differ between sets, and an image must not depend on which machine rendered a tile. Collective, before the first
+/// kernel runs.
 void agree_instruction_sets(Transport& transport);
 
 }  // namespace tessera::exchange

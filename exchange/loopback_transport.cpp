@@ -26,11 +26,11 @@ class LoopbackNetwork::Rank final : public Transport {
     return mailboxes_.receive(channel, timeout);
   }
   void fail(const scene::Error& error) override {
-    // Under one lock, so that two faults at once leave every rank with the same one.
+    // Under one lock, so that two errors at the same time leave every rank with the same one.
     const std::lock_guard lock(network_.fault_);
     for (auto& rank : network_.ranks_) rank->mailboxes_.fail(error);
   }
-  void trace_to(scene::Trace*, scene::Trace*) override {}  // nothing moves
+  void trace_to(scene::Trace*, scene::Trace*) override {}  // no data is transferred
   void check() const override { mailboxes_.check(); }
   [[nodiscard]] Traffic sent(Channel channel) const override { return sent_.of(channel); }
 

@@ -10,7 +10,7 @@
 
 namespace tessera::exchange {
 
-/// Ranks that are threads of one process, for tests and for trying a job's shape without MPI. Messages are moved, not
+/// Ranks that are threads of one process, for tests and for trying a parallel job without MPI. Messages are moved, not
 /// copied.
 class LoopbackNetwork {
  public:
@@ -26,8 +26,8 @@ class LoopbackNetwork {
   std::mutex fault_;
 };
 
-/// Runs `work(transport)` once a rank, each on a thread of its own, and returns when all have. An exception of one rank
-/// ends the run for all, as under MPI; the run's one error is thrown here.
+/// Runs `work(transport)` once per rank, each on its own thread, and returns when all have finished. An exception on
+/// one rank ends the run for all, as under MPI; this function throws the run's error.
 void run_ranks(int ranks, const std::function<void(Transport&)>& work);
 
 }  // namespace tessera::exchange

@@ -12,15 +12,15 @@
 
 namespace tessera::exchange {
 
-/// The receiving end that all transports share: one queue a channel, and the run's error.
+/// The receiving side that all transports share: one queue per channel, and the run's error.
 class Mailboxes {
  public:
   void deliver(Channel channel, Message message);
 
-  /// As Transport::receive.
+  /// Same as Transport::receive.
   std::optional<Message> receive(Channel channel, std::chrono::milliseconds timeout);
 
-  /// Wakes all receivers with this error; the first one stays.
+  /// Wakes all receivers with this error; only the first error is kept.
   void fail(const scene::Error& error);
   void check() const;
   [[nodiscard]] bool failed() const { return failed_.load(std::memory_order_acquire); }

@@ -7,7 +7,7 @@
 
 namespace tessera::exchange {
 
-// Neither inline nor by append(): GCC 12 takes the growth of a vector whose size it knows for an overflow.
+// Neither inline nor with append(): GCC 12 reports an overflow when a vector of known size grows.
 Bytes begin_message(MessageKind kind, std::size_t room) {
   Bytes message;
   message.reserve(sizeof(MessageHeader) + room);

@@ -12,105 +12,107 @@
 
 #include "exchange/transport.hpp"
 
-/// How values become the bytes of a message, and every message that there is.
+/// How values become the bytes of a message, and all kinds of messages.
 ///
-/// A message is a MessageHeader and then what its kind says. Values are little endian and follow each other without
-/// gaps; structures have no padding. A list is a 64-bit number of values and the values, a text a list of bytes. All
-/// ranks run the same program: a reader refuses any other version, and any kind or length but the awaited ones.
+/// A message is a MessageHeader followed by the content of its kind. Values are little endian and follow each other
+/// without gaps; structures have no padding. A list is a 64-bit number of values and the values; a text is a list of
+/// bytes. All ranks run the same program: readers refuse any other version and unexpected kinds or lengths.
 namespace tessera::exchange {
 
 static_assert(std::endian::native == std::endian::little, "messages are little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 30;        ///< the next one whenever a message changes
+inline constexpr std::uint16_t wire_version = 30;        ///< incremented whenever a message changes
 
 /// All kinds, by channel, and what follows the header.
 enum class MessageKind : std::uint16_t {
   // Channel fragments; the structures are in wire.hpp.
-  begin = 1,  ///< u64 frame, FrameBegin, one bit a tile of the receiver in its order, lowest bit first: 1: parts come
+  begin = 1,  ///< u64 frame, FrameBegin, one bit per tile of the receiver in its order, lowest bit first: 1: parts
+              ///< follow
   parts = 2,  ///< u64 frame; until the end: PartHeader, `bytes` bytes of records
-  end = 3,    ///< u64 frame, FrameEnd: the sender has no more of this frame, and this is what it took. Also on channel
-              ///< tiles
+  end = 3,    ///< u64 frame, FrameEnd: the sender has finished the frame; its counters. Also on channel tiles
   packet =
-      51,  ///< PacketHeader (exchange/direct/direct_send.cpp); unless stopped or empty, pixels (packed_pixels.hpp), and
-           ///< if they are kept f32 error estimates row by row
+      51,  ///< PacketHeader (exchange/direct/direct_send.cpp); unless stopped or empty: pixels (packed_pixels.hpp) and,
+           ///< if kept, f32 error estimates row by row
   // Channel credit.
   credit = 4,  ///< u64 bytes that the receiver may send again
   // Channel tiles.
-  tiles = 5,   ///< u64 frame; until the end: u64 tile, its pixels (packed_pixels.hpp), u64 deep samples in the tile;
-               ///< unless that is 0 u32 samples of each pixel, scene::DeepImageSample each
-  region = 6,  ///< RegionHeader (frame/grid/region_gather.cpp), list of the rectangles it is made of; unless stopped,
-               ///< of each
-               ///< pixels (packed_pixels.hpp) of 64 rows at a time, and if they are kept f32 error estimates row by row
+  tiles = 5,      ///< u64 frame; until the end: u64 tile, its pixels (packed_pixels.hpp), u64 deep samples in the tile;
+                  ///< unless that is 0: u32 samples of each pixel, scene::DeepImageSample each
+  region = 6,     ///< RegionHeader (frame/grid/region_gather.cpp), list of its rectangles; unless stopped, for each:
+                  ///< pixels (packed_pixels.hpp) of 64 rows at a time and, if kept, f32 error estimates row by row
   deep_rows = 7,  ///< u64 samples of each pixel of the sender's rows, scene::DeepImageSample each
   // Channel frames.
-  frame_left = 8,  ///< nothing: one frame less is on its way
+  frame_left = 8,  ///< nothing: a frame has been assembled
   // Channel stop.
-  stop = 9,  ///< u64 number of the run to stop, 0: to oneself, the run is over
+  stop = 9,  ///< u64 number of the run to stop; 0, to oneself: the run is over
   // Channel mesh.
-  mesh_chunk = 10,  ///< MeshChunkHeader and arrays (frame/ranks/mesh_chunk.hpp)
-  cell_keys = 61,   ///< u8: 1: no more come from the sender; list of u64: of cells (frame/ranks/shared_repetitions.cpp)
+  mesh_chunk = 10,   ///< MeshChunkHeader and arrays (frame/ranks/mesh_chunk.hpp)
+  cell_keys = 61,    ///< u8: 1: the sender's last; list of u64: cells (frame/ranks/shared_repetitions.cpp)
   cell_ranges = 11,  ///< u64 first cell, u64 cells, f32 lowest value of each, f32 highest
   // Channel timing.
   clock_question = 12,  ///< nothing
-  clock_answer = 13,    ///< f64 microseconds of the writer's clock
+  clock_answer = 13,    ///< f64 microseconds of the sender's clock
   trace_events = 14,    ///< text
-  // Channel agreement: collectives (collectives.hpp) and what they carry.
-  gathered = 15,          ///< list of messages, each a list of bytes: of all ranks, from rank 0
+  // Channel agreement: collectives (collectives.hpp) and their content.
+  gathered = 15,          ///< list of messages, each a list of bytes: those of all ranks, from rank 0
   barrier = 16,           ///< nothing
   reduction = 17,         ///< list of u64 (frame/ranks/reduce.hpp)
-  instruction_sets = 18,  ///< i64 of Highway's target bits
+  instruction_sets = 18,  ///< i64 Highway's target bits
   host = 19,              ///< text: the machine's name
-  device = 20,            ///< text: the compositing device's name, empty where none composites
+  device = 20,            ///< text: the compositing device's name, empty on ranks without one
   read_in_parts = 21,     ///< u8: 1: all projectors read
-  field_tallies = 22,     ///< u64 fields; of each a field, NumberTally, u8 blocks_count_up; f64 box of higher-order
+  field_tallies = 22,     ///< u64 fields; for each: a field, NumberTally, u8 blocks_count_up; f64 box of higher-order
                           ///< cells[6], texts of block names
   part_summary = 23,      ///< MeshCounts, HigherOrderCells, TimeStepRead, texts of reading, of cells, of surfaces, u64
                           ///< words of used points
   mesh_description = 24,  ///< MeshCounts, HigherOrderCells, u64 fields, fields, texts of notes, of blocks, of surfaces,
-  ///< text format, u64 time steps, u64 step, list of f64 times, f64 axis scale[3], text field, u8 association
-  mesh_facts = 25,       ///< f64 box[6], f64 scalar range[2], u64 tets, u8 association
-  mesh_volume = 26,      ///< 128-bit scene::VolumeSum
-  tet_count = 27,        ///< u64
-  tet_table = 28,        ///< list of u64: a rank's tets, or messages, for each projector
-  longest_edge = 29,     ///< f32
-  frames_complete = 30,  ///< u64; of a mesh also u64, 1 if the other frames are to be rendered again
-  sink_failed = 31,      ///< u8
-  cell_totals = 32,      ///< f64 lowest, f64 highest, u64 blank samples
-  row_costs = 33,        ///< i32 x0, y0, x1, y1 of the map's region, list of u64
-  column_costs = 34,     ///< the same, a list of u64 for each map row that was asked for
-  seconds = 35,          ///< f64 processor time of the last frame
-  of_job = 36,           ///< list of bytes: the caller's own (tessera/job.hpp)
-  higher_order = 37,     ///< u64[128]: tets by how far they are off (cells/curved/higher_order_plan.hpp)
-  process_on_host = 38,  ///< exchange/one_line.cpp
-  arguments = 58,        ///< list of bytes: what the sender was started with (first_contact.cpp)
-  field_samples = 39,    ///< list of scene::FieldSample: of a rank's part (api/queries/field_samples.cpp)
-  open_faces = 47,       ///< list of OpenFace (frame/mesh/boundary_faces.cpp): that one tet of a rank's part has alone
-  ray_tets = 48,         ///< list of RayTet (api/queries/probe.cpp): those of a rank's part that a ray meets
+                          ///< text format, u64 time steps, u64 step, list of f64 times, f64 axis scale[3], text field,
+                          ///< u8 association
+  mesh_facts = 25,        ///< f64 box[6], f64 scalar range[2], u64 tets, u8 association
+  mesh_volume = 26,       ///< 128-bit scene::VolumeSum
+  tet_count = 27,         ///< u64
+  tet_table = 28,         ///< list of u64: a rank's tets or messages for each projector
+  longest_edge = 29,      ///< f32
+  frames_complete = 30,   ///< u64; for a mesh also u64, 1 if the other frames are to be rendered again
+  sink_failed = 31,       ///< u8
+  cell_totals = 32,       ///< f64 lowest, f64 highest, u64 blank samples
+  row_costs = 33,         ///< i32 x0, y0, x1, y1 of the map's region, list of u64
+  column_costs = 34,      ///< the same, with a list of u64 for each requested row of the map
+  seconds = 35,           ///< f64 processor time of the last frame, or per thread (frame/grid/sort_first.cpp)
+  of_job = 36,            ///< list of bytes: defined by the caller (tessera/job.hpp)
+  higher_order = 37,      ///< u64[128]: tets by their deviation (cells/curved/higher_order_plan.hpp), or the difference
+                          ///< between two images (api/queries/higher_order.cpp)
+  process_on_host = 38,   ///< exchange/one_line.cpp
+  arguments = 58,         ///< list of bytes: the arguments of the sender (first_contact.cpp)
+  field_samples = 39,     ///< list of scene::FieldSample: from a rank's part (api/queries/field_samples.cpp)
+  open_faces = 47,        ///< list of OpenFace (frame/mesh/boundary_faces.cpp): faces of only one tet of a rank's part
+  ray_tets = 48,          ///< list of RayTet (api/queries/probe.cpp): the tets of a rank's part that a ray meets
   curved_part =
       40,  ///< frame/ranks/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
-  fill_tally = 62,   ///< scene::FillTally: of a rank's part of a field (api/dataset.cpp)
-  next_frame = 52,   ///< u8: 1: there is one more
-  machine = 53,      ///< text: which machine's memory the sender sees, empty: it shares none (shared_pages.cpp)
-  pages_offer = 54,  ///< u64 process, u64 key, i64 descriptor of pages for ranks of one machine, -1: none
-  pages_seen = 55,   ///< u8: 1: the sender sees the pages
-  tile_times = 59,   ///< u8: 1: the last frame was not stopped, u64 process, f64 its processor time, list of TileTime
-  image_split = 60,  ///< u8: 1: it is known; then list of i32 rows, of each a list of i32 columns, of each one of steps
+  fill_tally = 62,   ///< scene::FillTally: for a rank's part of a field (api/dataset.cpp)
+  next_frame = 52,   ///< u8: 1: there is another frame
+  machine = 53,      ///< text: the machine whose memory the sender shares, empty: none (shared_pages.cpp)
+  pages_offer = 54,  ///< u64 process, u64 key, i64 descriptor of pages for ranks of one machine; -1: none
+  pages_seen = 55,   ///< u8: 1: the sender has opened the pages
+  tile_times = 59,   ///< u8: 1: the last frame was not stopped; u64 process, f64 its processor time, list of TileTime
+  image_split = 60,  ///< u8; 1: list of i32 rows, for each a list of i32 columns, then for each a list of i32 steps; 0:
+                     ///< list of f64 weights of the ranks, empty: keep them
   volume_facts =
       57,           ///< what the sender has read of a volume, and where its samples are (frame/grid/shared_volume.cpp)
   files_read = 64,  ///< until the end: text name, u64 bytes, u64 checksum (api/same_files.cpp)
-  volume_labels = 63,  ///< u8 whether values are labels, list of f64: these (frame/grid/shared_labels.cpp)
+  volume_labels = 63,  ///< u8 whether values are labels, list of f64: the labels (frame/grid/shared_labels.cpp)
   // Channel fragments, to oneself.
   wake = 56,  ///< nothing: all frames of the list are finished
   // All channels.
-  attempt_end = 49,  ///< u8 ErrorCode, 0 if all went well, text: the sender has no more of this attempt (attempt.hpp)
-  // The transport's own.
-  fault = 41,    ///< a rank to rank 0, I have failed: u8 ErrorCode, text
+  attempt_end = 49,  ///< u8 ErrorCode, 0 without error, text: the sender's last message of this attempt (attempt.hpp)
+  // Internal to the transport.
+  fault = 41,    ///< from a rank to rank 0, its error: u8 ErrorCode, text
   verdict = 42,  ///< the run's error to all: u8 ErrorCode, text
-  done = 43,     ///< a rank to rank 0, nothing: no more will come from me
-  clear = 44,    ///< rank 0 to all, nothing: no more will come from anyone
+  done = 43,     ///< from a rank to rank 0, nothing: the sender's last message
+  clear = 44,    ///< from rank 0 to all, nothing: no rank sends further messages
   alive = 45,    ///< text: the name of the sender's process (heartbeats.hpp)
-  silent = 46,   ///< nothing: the sender has said that rank 0 is silent
+  silent = 46,   ///< nothing: the sender has reported that rank 0 is silent
 };
 
 struct MessageHeader {
@@ -128,7 +130,7 @@ void append(Bytes& bytes, const Value& value) {
   bytes.insert(bytes.end(), first, first + sizeof value);
 }
 
-/// Appends the values alone: the reader knows their number.
+/// Appends the values without their number, which the reader knows.
 template <class Values>
 void append_values(Bytes& bytes, const Values& values) {
   static_assert(std::is_trivially_copyable_v<typename Values::value_type>);
@@ -144,7 +146,7 @@ void append_list(Bytes& bytes, const Values& values) {
 
 inline void append_text(Bytes& bytes, std::string_view text) { append_list(bytes, text); }
 
-/// A message's header; the rest is appended. `room` for so many bytes behind it.
+/// A message's header; the caller appends the rest. Reserves `room` bytes for it.
 Bytes begin_message(MessageKind kind, std::size_t room = 0);
 
 /// A message of one value.
@@ -155,8 +157,8 @@ Bytes message_of(MessageKind kind, const Value& value) {
   return message;
 }
 
-/// Takes values off the front of bytes. Throws Error(system_failure) where they are too few, before it allocates what
-/// they could not fill.
+/// Takes values off the front of bytes. Throws Error(system_failure) if there are too few bytes, before it allocates
+/// memory for more values than the bytes can contain.
 class RecordReader {
  public:
   explicit RecordReader(std::span<const std::byte> bytes) : left_(bytes) {}
@@ -180,7 +182,7 @@ class RecordReader {
     const auto from = take_bytes(values.size_bytes());
     if (!values.empty()) std::memcpy(values.data(), from.data(), from.size());
   }
-  /// `count` values behind those that are there.
+  /// Appends `count` values to `values`.
   template <class Value>
   void take_onto(std::vector<Value>& values, std::uint64_t count) {
     if (count > left_.size() / sizeof(Value)) refuse_short();
@@ -200,11 +202,11 @@ class RecordReader {
   }
 
   [[nodiscard]] bool empty() const { return left_.empty(); }
-  /// Throws Error(system_failure) if there is more.
+  /// Throws Error(system_failure) if bytes are left.
   void finish() const {
     if (!empty()) refuse("is longer than it states");
   }
-  /// Throws Error(system_failure): the message `what`; all ranks must run the same program.
+  /// Throws Error(system_failure): the message `what`, and that all ranks must run the same program.
   [[noreturn]] void refuse(std::string_view what) const;
 
  protected:
@@ -217,25 +219,25 @@ class RecordReader {
   int from_ = -1;  ///< the sending rank, if known
 };
 
-/// Reads a message that came from rank `from`. Throws Error(system_failure) that says what is wrong of which rank's
-/// message, and that all ranks must run the same program. The bytes must outlive the reader.
+/// Reads a message that came from rank `from`. Throws Error(system_failure) that reports the fault and the sending
+/// rank, and that all ranks must run the same program. The bytes must outlive the reader.
 class MessageReader : public RecordReader {
  public:
-  /// Of any kind.
+  /// Accepts any kind.
   MessageReader(std::span<const std::byte> message, int from);
-  /// Of this kind.
+  /// Requires this kind.
   MessageReader(std::span<const std::byte> message, int from, MessageKind awaited);
   MessageReader(const Message& message, MessageKind awaited) : MessageReader(message.bytes, message.from, awaited) {}
 
   [[nodiscard]] MessageKind kind() const { return kind_; }
-  /// The message is of a kind that nobody awaits here.
+  /// For a message of a kind that is not expected here.
   [[noreturn]] void refuse_kind() const;
 
  private:
   MessageKind kind_;
 };
 
-/// The value of a message of one value.
+/// The value of a message that contains only one.
 template <class Value>
 Value value_of(std::span<const std::byte> message, int from, MessageKind kind) {
   MessageReader reader(message, from, kind);

@@ -16,7 +16,7 @@
 namespace tessera::exchange {
 namespace {
 
-/// Memory that all ranks of a machine share.
+/// Memory that all ranks of a machine share: whether one of them has printed the error.
 struct Spoken {
   std::uint64_t key = 0;  ///< of the rank whose memory this is
   std::atomic<bool> done = false;
@@ -26,7 +26,7 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 struct Neighbour {
   std::array<char, 64> host{};
   pid_t process = 0;
-  int memory = -1;  ///< its descriptor of a Spoken
+  int memory = -1;  ///< the process's descriptor of a Spoken
   std::uint64_t key = 0;
 };
 
@@ -39,7 +39,7 @@ Spoken* map_spoken(int memory) {
   return at == MAP_FAILED ? nullptr : static_cast<Spoken*>(at);
 }
 
-/// A Spoken that others can open while this process lives. Without one each rank speaks for itself.
+/// A Spoken that others can open while this process exists. If there is none, each rank reports for itself.
 Spoken* make_spoken(Neighbour& self) {
   self.memory = memfd_create("tessera", MFD_CLOEXEC);
   if (self.memory < 0 || ftruncate(self.memory, sizeof(Spoken)) != 0) return nullptr;
@@ -55,7 +55,7 @@ Spoken* open_spoken(const Neighbour& of) {
   const int memory = open(fmt::format("/proc/{}/fd/{}", of.process, of.memory).c_str(), O_RDWR | O_CLOEXEC);
   Spoken* shared = map_spoken(memory);
   if (memory >= 0) close(memory);
-  // Processes of another container may bear the same number.
+  // A process of another container may have the same number.
   return shared != nullptr && shared->key == of.key ? shared : nullptr;
 }
 
@@ -76,7 +76,7 @@ bool share_one_line(Transport& transport) {
     if (other.host != self.host) continue;
     Spoken* others = other.process != self.process && other.key != 0 ? open_spoken(other) : nullptr;
     if (others != nullptr) shared = others;
-    break;  // the lowest rank's serves all
+    break;  // the lowest rank's is used by all
   }
   if (shared != nullptr) spoken = shared;
   return with_first;

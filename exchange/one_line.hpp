@@ -3,10 +3,10 @@
 
 #include "exchange/transport.hpp"
 
-/// A run that fails reports it in one line, whichever of its ranks print it: each asks before it prints.
+/// A run that fails reports its error in one line, on whichever rank: each asks here before it prints.
 namespace tessera::exchange {
 
-/// True for the first call: of all ranks on this machine from share_one_line() on, before that of this process. Safe in
+/// True for the first call: after share_one_line(), among all ranks on this machine; before, in this process. Safe in
 /// signal handlers.
 bool may_speak();
 

@@ -27,7 +27,7 @@ Outbox::~Outbox() {
     const std::lock_guard lock(mutex_);
     closing_ = true;
   }
-  // Wakes the thread at once.
+  // A message to this rank wakes the thread at once.
   transport_.send(transport_.rank(), Channel::credit, message_of(MessageKind::credit, std::uint64_t{0}));
   credit_thread_.join();
 }
@@ -48,7 +48,7 @@ void Outbox::take_credit() {
       changed_.notify_all();
     }
   } catch (const scene::Error&) {
-    changed_.notify_all();  // the threads that wait will find the run's error themselves
+    changed_.notify_all();  // waiting threads get the run's error from check()
   }
 }
 
@@ -136,7 +136,7 @@ void Outbox::advance(Lane& lane) {
     if (!finished_[tile]) return;
     lane.order.pop_front();
   }
-  seal(lane);  // nothing more comes for this compositor
+  seal(lane);  // all tiles for this compositor are complete
 }
 
 bool Outbox::must_wait(std::uint32_t tile) const {
@@ -144,7 +144,7 @@ bool Outbox::must_wait(std::uint32_t tile) const {
   for (const Lane& lane : lanes_) backlog += lane.waiting;
   if (backlog <= settings_.backlog_bytes) return false;
   if (unfinished_.empty() || unfinished_.front() < tile) return true;
-  // The first unfinished tile, or one that just ended: only its own compositor can hold it up.
+  // The first unfinished tile, or one that has just ended: only its own compositor can delay it.
   const Lane& lane = lanes_[static_cast<std::size_t>(map_->owner(tile))];
   return lane.waiting > std::max<std::uint64_t>(settings_.window_bytes, message_bytes);
 }
@@ -171,7 +171,7 @@ void Outbox::put(TilePart part) {
   accept(std::move(part));
   changed_.notify_all();
   if (!must_wait(tile)) return;
-  for (Lane& each : lanes_) seal(each);  // who waits keeps nothing back that others may wait for
+  for (Lane& each : lanes_) seal(each);  // a thread that waits must not keep back what other ranks may wait for
   const scene::TraceScope timing(settings_.trace, "wait", static_cast<std::int32_t>(frame_));
   if (threads_waiting_++ == 0) transport_.set_working(false);
   while (must_wait(tile)) {
@@ -226,7 +226,7 @@ void Outbox::end_frame(FrameEnd sums) {
   told.waiting += message.size();
   told.ready.push_back(std::move(message));
   drain(told);
-  // The next frame's tiles must not pass this one's: put() of a first tile would wait on a lane that holds old ones.
+  // The next frame's tiles must not overtake this frame's: put() of a first tile would wait for a lane with old ones.
   const scene::TraceScope timing(settings_.trace, "wait", static_cast<std::int32_t>(frame_));
   const auto is_sent = [&] {
     return std::all_of(lanes_.begin(), lanes_.end(), [](const Lane& lane) { return lane.ready.empty(); });

@@ -20,20 +20,20 @@ namespace tessera::exchange {
 constexpr std::size_t columns = 16, channels = 5, color_channels = 4;
 constexpr std::size_t word_bytes = columns * sizeof(std::uint32_t);
 
-/// A band of a picture's columns.
+/// A band of an image's columns.
 template <class Float>
 struct PixelBand {
-  Float *rgba, *depth;  ///< of its first pixel
+  Float *rgba, *depth;  ///< of the band's first pixel
   std::size_t row;      ///< pixels from one row to the next
   std::size_t width;    ///< at most 16
   std::size_t height;
 };
 
-/// Where the streams have come to.
+/// The position in the streams of a rectangle.
 template <class Byte>
 struct Streams {
-  Byte *words, *last;    ///< the first 16 words, and the last that may be read
-  std::size_t bits = 0;  ///< in each
+  Byte *words, *last;    ///< the first 16 words, and the last 16 that may be read
+  std::size_t bits = 0;  ///< position in each stream
   [[nodiscard]] Byte* word() const { return words + bits / 32 * word_bytes; }
   [[nodiscard]] int shift() const { return static_cast<int>(bits % 32); }
 };
@@ -51,12 +51,12 @@ using DI = hn::RebindToSigned<DU>;
 using DF = hn::RebindToFloat<DU>;
 using U = hn::Vec<DU>;
 
-/// Of each channel, one value a column.
+/// One value per column, for each channel.
 struct Rows {
   HWY_ALIGN_MAX std::uint32_t of[channels][columns];
 };
 
-// In messages words lie anywhere.
+// Words in messages are unaligned.
 #if HWY_TARGET == HWY_SCALAR
 HWY_INLINE U load_words(const std::byte* from) {
   std::uint32_t word;
@@ -77,7 +77,7 @@ HWY_INLINE void store_words(U words, std::byte* to) {
 }
 #endif
 
-/// 16 pixels' channels apart.
+/// Separates the channels of 16 pixels.
 HWY_INLINE void split_channels(const float* rgba, const float* depth, Rows& rows) {
   const DU du;
   const DF df;
@@ -104,8 +104,8 @@ HWY_INLINE void join_channels(const Rows& rows, float* rgba, float* depth) {
   }
 }
 
-/// What the rows above foretell wrongly of `next`, as whole numbers without sign; then `next` is above. Returns the
-/// width of the largest.
+/// Computes the prediction errors of `next` from the rows above, as unsigned integers with the sign in the lowest bit;
+/// then `next` becomes the row above. Returns the width of the largest error.
 HWY_INLINE unsigned differ(const std::uint32_t* HWY_RESTRICT next, std::uint32_t* HWY_RESTRICT above,
                            std::uint32_t* HWY_RESTRICT step, std::uint32_t* HWY_RESTRICT differences) {
   const DU du;
@@ -126,7 +126,7 @@ HWY_INLINE unsigned differ(const std::uint32_t* HWY_RESTRICT next, std::uint32_t
   return 32u - static_cast<unsigned>(std::countl_zero(GetLane(MaxOfLanes(du, all))));
 }
 
-// Widths are as good as random: neither of these branches on one.
+// Widths are practically random: put() and get() therefore have no branches on them.
 
 HWY_INLINE void put(const std::uint32_t* HWY_RESTRICT differences, unsigned width, Streams<std::byte>& to,
                     std::uint32_t* HWY_RESTRICT unfinished) {
@@ -145,7 +145,7 @@ HWY_INLINE void put(const std::uint32_t* HWY_RESTRICT differences, unsigned widt
   to.bits += width;
 }
 
-/// Takes differences and makes of them, and of the rows above, the next row.
+/// Reads differences, and computes the next row from them and the rows above.
 HWY_INLINE void get(unsigned width, Streams<const std::byte>& from, std::uint32_t* HWY_RESTRICT value,
                     std::uint32_t* HWY_RESTRICT step) {
   const DU du;
@@ -167,7 +167,7 @@ HWY_INLINE void get(unsigned width, Streams<const std::byte>& from, std::uint32_
   from.bits += width;
 }
 
-/// `unfinished`: of each stream the bits of the word that is not full.
+/// `unfinished`: for each stream, the bits of the word that is not full.
 void pack_band(const PixelBand<const float>& band, std::uint8_t* widths, Streams<std::byte>& to,
                std::uint32_t* unfinished) {
   Rows next, above{}, step{}, differences;
@@ -219,7 +219,7 @@ std::size_t raw_bytes(const PixelRect& rect) {
   return static_cast<std::size_t>(rect.area()) * channels * sizeof(float);
 }
 
-/// How many widths a band has.
+/// The number of widths of a band.
 std::size_t widths_of_band(const PixelRect& rect) { return channels * static_cast<std::size_t>(rect.height()); }
 
 std::size_t bands(const PixelRect& rect) { return (static_cast<std::size_t>(rect.width()) + columns - 1) / columns; }
@@ -290,7 +290,7 @@ void take_pixels(RecordReader& reader, scene::Image& image, const PixelRect& rec
   }
   if (widest > 32) reader.refuse("packs a pixel's value into more than 32 bits");
   if (packed.size() != count + (bits + 31) / 32 * word_bytes) reader.refuse("has other pixels than its widths state");
-  static constexpr std::byte nothing[word_bytes] = {};  // where all differences are 0
+  static constexpr std::byte nothing[word_bytes] = {};  // for a rectangle whose differences are all 0
   Streams<const std::byte> from{nothing, nothing};
   if (bits > 0) from = {packed.data() + count, packed.data() + packed.size() - word_bytes};
   for (std::size_t b = 0; b < bands(rect); ++b, widths += widths_of_band(rect))

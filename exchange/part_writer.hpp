@@ -8,27 +8,27 @@
 
 namespace tessera::exchange {
 
-/// Makes the parts of a tile for another process: what all sinks that send fragments have in common.
+/// Writes the parts of a tile for another process: the common code of all sinks that send fragments.
 ///
-/// Parts leave as they fill, so a tile of any depth complexity costs a projector no memory. A part says up to which
-/// depth the tile is complete, so that the compositor need not hold all of it either.
+/// Parts are sent as they fill, so a tile of any depth complexity takes a projector no memory. A part contains the
+/// depth up to which the tile is complete, so that the compositor need not store all of it either.
 class PartWriter {
  public:
   using Deliver = std::function<void(TilePart)>;
 
-  /// `deliver` takes parts of a tile in order; it may block, and it may be called from any thread that uses the writer.
+  /// `deliver` takes parts of a tile in order; it may block, and it is called from any thread that uses the writer.
   PartWriter(RecordKind kind, Deliver deliver) : kind_(kind), deliver_(std::move(deliver)) {}
 
   void begin_tile(std::size_t tile, const scene::PixelRect& rect);
   void end_tile();
-  /// A rectangle of the tile, to which pixel numbers refer from now on.
+  /// Starts a rectangle of the tile, to which pixel numbers refer from now on.
   void start(const scene::PixelRect& rect) { rect_ = rect; }
 
-  /// Room for the records; fragments are to be counted.
+  /// Records are appended here; their fragments must be counted.
   Bytes& records() { return records_; }
   void count(std::uint64_t fragments) { fragments_ += fragments; }
-  /// The next records, or those just written, are of ascending pixels, each once; some are single segments
-  /// (PartHeader).
+  /// The next records, or those just written, are of ascending pixels, each once; note_segments(): some are single
+  /// segments (PartHeader).
   void begin_ascending() { ++ascents_; }
   void note_segments() { segments_ = true; }
 
@@ -38,9 +38,9 @@ class PartWriter {
 
   /// All of the rectangle's fragments before `depth` are in the records.
   void complete_to(double depth);
-  /// Sends what there is if that is worth a message.
+  /// Sends the records if there are enough for a message.
   void send_if_full();
-  /// Sends what there is, if anything; the tile goes on by another writer.
+  /// Sends the records, if any; another writer continues the tile.
   void send_rest();
 
  private:

@@ -9,11 +9,11 @@
 /// Errors of a run as MpiTransport passes them on.
 namespace tessera::exchange {
 
-/// A message of kind `fault` or `verdict`, and what it says.
+/// A message of kind `fault` or `verdict`, and the error in one.
 Bytes error_message(MessageKind kind, const scene::Error& error);
 scene::Error take_error(MessageReader& reader);
 
-/// This process for people: machine and number.
+/// Identifies this process to users: machine and process number.
 std::string process_name();
 
 }  // namespace tessera::exchange

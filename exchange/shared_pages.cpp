@@ -107,7 +107,7 @@ void change(std::atomic<std::uint32_t>& word) {
   syscall(SYS_futex, &word, FUTEX_WAKE, INT32_MAX, nullptr, nullptr, 0);
 }
 
-#else  // no pages, so no teams
+#else  // no shared pages, so no teams
 
 SharedPages SharedPages::made(std::size_t bytes) { throw no_shared_memory(bytes); }
 std::optional<SharedPages> SharedPages::opened(std::uint64_t, int, std::size_t) { return std::nullopt; }
@@ -151,7 +151,7 @@ std::optional<PagesOfMachine> share_pages(Transport& transport, bool joins,
                                           const std::function<void(std::byte* pages, std::size_t ranks)>& fill) {
   struct Offer {
     std::uint64_t process;
-    std::uint64_t key;  // so that no other pages are taken for these
+    std::uint64_t key;  // recognizes these pages, so that no others are used
     std::int64_t descriptor;
   };
   Bytes mine = begin_message(MessageKind::machine);
@@ -179,7 +179,7 @@ std::optional<PagesOfMachine> share_pages(Transport& transport, bool joins,
         fill(shared_data(*pages), ranks.size());
         offer.descriptor = pages->descriptor();
       }
-    } catch (const scene::Error&) {  // then each is alone
+    } catch (const scene::Error&) {  // each rank works alone
     }
   }
   const std::vector<Offer> offers = gather_values(transport, MessageKind::pages_offer, offer);

@@ -12,31 +12,31 @@
 
 #include "exchange/transport.hpp"
 
-/// Memory that ranks of one machine share. Linux alone has it; elsewhere nobody shares any.
+/// Memory that ranks of one machine share. Only on Linux; elsewhere, no ranks share memory.
 namespace tessera::exchange {
 
-/// The same text for processes that can open each other's files by their numbers: of one start of one machine, one
-/// space of process numbers, one user and one network (who gives processes networks of their own wants machines).
-/// Empty: unknown.
+/// Identifies the machine: the text is the same for processes that can open each other's files by process number and
+/// descriptor. They have one boot of one machine, one process namespace, one user, and one network namespace (processes
+/// with separate networks are meant to act as separate machines). Empty: unknown.
 std::string machine();
 
-/// Pages that several processes see, or one process twice. Linux: a file in memory that has no name.
+/// Pages shared by several processes, or mapped twice by one. Linux: a file in memory without a name.
 class SharedPages {
  public:
-  /// New ones, all zero, not yet mapped. Throws Error(system_failure) if there are none.
+  /// New pages, all zero, not yet mapped. Throws Error(system_failure) if there is not enough memory.
   static SharedPages made(std::size_t bytes);
-  /// Those that process `process` made and knows as `descriptor`; none if this one may not have them.
+  /// The pages that process `process` made and knows as `descriptor`; empty if this process has no access to them.
   static std::optional<SharedPages> opened(std::uint64_t process, int descriptor, std::size_t bytes);
   SharedPages(SharedPages&& other) noexcept;
   SharedPages& operator=(SharedPages&& other) noexcept;
   ~SharedPages();
 
-  /// Has the system find memory for the bytes [first, last), which it otherwise does when they are written, and ends
-  /// the process if there is none. Returns whether it could.
+  /// Allocates memory for the bytes [first, last), which would otherwise happen when they are first written and end the
+  /// process if memory runs out. Returns whether it succeeded.
   bool reserve(std::size_t first, std::size_t last) const;
-  /// Maps them; false: there is no room in this process.
+  /// Maps the pages; false: this process has no address space for them.
   bool map();
-  /// What opened() needs; the pages last for as long as somebody maps them.
+  /// The argument of opened(). The pages exist as long as any process maps them.
   [[nodiscard]] int descriptor() const { return descriptor_; }
   void close_descriptor();
   [[nodiscard]] std::byte* data() const { return data_; }
@@ -51,32 +51,32 @@ class SharedPages {
   std::byte* data_ = nullptr;
 };
 
-/// Bytes of memory that the machine can still give; the largest number if it does not say. More than that is never
-/// asked for: the system would not refuse it, but end processes until it has it.
+/// Bytes of memory that the machine can still provide; the largest number if unknown. Callers never ask for more: the
+/// system would not refuse it, but end processes until it is available.
 std::uint64_t available_memory();
 
-/// That the system has no such pages.
+/// The error that the system cannot provide these pages.
 scene::Error no_shared_memory(std::size_t bytes);
 
-/// Pages that ranks of one machine have together, mapped.
+/// Pages that ranks of one machine share, mapped.
 struct PagesOfMachine {
-  std::vector<int> ranks;  ///< who has them, ascending
+  std::vector<int> ranks;  ///< the ranks that share them, ascending
   SharedPages pages;
 };
 
-/// Pages for those ranks of this one's machine that join; none if there are no others, they may not see each other's
-/// memory, or this rank does not join. The first of them makes as many bytes as `bytes_for` says for so many ranks, and
-/// calls `fill` with them before anybody else sees them. Collective over all ranks.
+/// Pages for the ranks of this rank's machine that join; empty if there are no others, if they cannot share memory, or
+/// if this rank does not join. The first of them allocates `bytes_for(ranks)` bytes and calls `fill` with them before
+/// any other rank opens them. Collective over all ranks.
 std::optional<PagesOfMachine> share_pages(Transport& transport, bool joins,
                                           const std::function<std::size_t(std::size_t ranks)>& bytes_for,
                                           const std::function<void(std::byte* pages, std::size_t ranks)>& fill);
-/// Where what `fill` made lies: behind what tells these pages from others.
+/// Where the memory passed to `fill` begins: behind the key by which ranks recognize these pages.
 inline constexpr std::size_t shared_data_offset = 64;
 inline std::byte* shared_data(const SharedPages& pages) { return pages.data() + shared_data_offset; }
 
-/// Sleeps until the word, in shared memory, is no longer `seen`, or for `most`; may return before.
+/// Sleeps until the word, in shared memory, differs from `seen`, or for `most`; may return earlier.
 void wait_for_change(std::atomic<std::uint32_t>& word, std::uint32_t seen, std::chrono::microseconds most);
-/// Changes the word and wakes all who wait for that, in any process.
+/// Changes the word and wakes all threads that wait for this, in any process.
 void change(std::atomic<std::uint32_t>& word);
 
 }  // namespace tessera::exchange

@@ -7,10 +7,11 @@
 
 namespace tessera::exchange {
 
-/// Which ranks have been silent for too long. Bookkeeping only: the caller says what time it is and whom it heard.
+/// Finds ranks that have been silent for too long. Bookkeeping only: the caller passes the time and the ranks from
+/// which messages came.
 ///
-/// Time in which the watcher itself did not run (a suspended machine, a job that was stopped as a whole) counts for
-/// nobody: between two looks at most an eighth of the timeout passes.
+/// Time in which the watcher itself did not run (a suspended machine, a job that was stopped as a whole) does not
+/// count: at most an eighth of the timeout is counted between two calls of look().
 class StallWatch {
  public:
   using Clock = std::chrono::steady_clock;
@@ -18,18 +19,19 @@ class StallWatch {
   struct Notice {
     int rank;
     Clock::duration silent;  ///< for how long it has been, or was
-    bool back;               ///< it has been heard again; else it has not
+    bool back;               ///< messages come from it again; otherwise it is still silent
   };
 
-  /// Watches `ranks` from `now` on. A rank is noticed when it has been silent for `timeout`, and again after twice that
-  /// time, four times, and so on.
+  /// Watches `ranks` from `now` on. A notice for a rank comes when it has been silent for `timeout`, and again after
+  /// twice that time, four times, and so on.
   StallWatch(const std::vector<int>& ranks, Clock::duration timeout, Clock::time_point now);
 
-  /// A message of that rank came. Ranks that are not watched are ignored.
+  /// A message from that rank has come. Ranks that are not watched are ignored.
   void heard(int rank);
-  /// Somebody else has told of this rank's silence, and will of its return. The next notice is a little after theirs.
+  /// Another rank has reported this rank's silence, and will report its return. The next notice here comes a little
+  /// after theirs.
   void told(int rank);
-  /// What there is to say since the last look.
+  /// The notices since the last call.
   std::vector<Notice> look(Clock::time_point now);
 
  private:

@@ -17,12 +17,12 @@
 
 #include "exchange/one_line.hpp"
 
-// What a signal handler may touch: plain memory filled before the handler is installed, lock-free atomics, and system
+// A signal handler may use only plain memory filled before the handler was installed, lock-free atomics, and system
 // calls.
 namespace tessera::exchange {
 namespace {
 
-bool speaks_for_the_lost = true;  ///< on the first rank's machine
+bool speaks_for_the_lost = true;  ///< whether this rank is on rank 0's machine
 std::array<pid_t, 2> launchers{};
 std::string remedy_of_run, line_of_run;
 void (*before_end_of_run)() noexcept = nullptr;
@@ -34,8 +34,8 @@ extern "C" void on_termination(int signal, siginfo_t* from, void* /*context*/) {
     setitimer(ITIMER_REAL, &soon, nullptr);
     return;
   }
-  // The launcher ends all ranks and waits for none. Anybody else may have meant this one alone, which then ends the run
-  // in the orderly way; whoever asks twice is in a hurry.
+  // The launcher ends all ranks and waits for none. A signal from any other process may be meant for this rank alone:
+  // the first one makes the run end in the orderly way, a second one ends this rank at once.
   const bool from_launcher = from->si_pid == launchers[0] || from->si_pid == launchers[1];
   if (signal == SIGTERM && !from_launcher && !asked_to_end.exchange(true)) return;
   if (!is_ending && speaks_for_the_lost && may_speak()) {
@@ -49,14 +49,14 @@ extern "C" void on_termination(int signal, siginfo_t* from, void* /*context*/) {
 pid_t parent_of(pid_t process) {
   std::ifstream stat(fmt::format("/proc/{}/stat", process));
   const std::string text(std::istreambuf_iterator<char>(stat), {});
-  // The second field is a name in brackets, which may hold anything; after it come state and parent.
+  // The second field is a name in brackets, which may contain any character; state and parent follow it.
   const std::size_t name_end = text.rfind(')');
   if (name_end == std::string::npos || name_end + 4 > text.size()) return 0;
   return static_cast<pid_t>(std::atoi(text.c_str() + name_end + 4));
 }
 
-/// Who may send SIGTERM to all ranks at once: the parent, and where that is a script which the launcher started, the
-/// launcher. It puts what it starts into a process group of its own.
+/// The processes that may send SIGTERM to all ranks at once: the parent, and, if the launcher started a script, the
+/// launcher itself. It puts what it starts into a process group of its own.
 std::array<pid_t, 2> find_launchers() {
   const pid_t group = getpgrp();
   pid_t outside = getppid();

@@ -6,20 +6,20 @@
 
 #include "exchange/transport.hpp"
 
-/// What a rank does that is ended from outside: tessera::Job::answer_termination() says it. Linux.
+/// The behaviour of a rank that is terminated from outside: see tessera::Job::answer_termination(). Linux.
 namespace tessera::exchange {
 
-/// Installs handlers of SIGTERM and SIGALRM for as long as the process lives. `program` and `remedy` as JobVoice has
-/// them; `before_end` is called in the handler, before the process ends in it, and does what a handler may. Collective;
-/// for jobs of several ranks.
+/// Installs handlers of SIGTERM and SIGALRM for the lifetime of the process. `program` and `remedy` as in JobVoice;
+/// `before_end` is called in the handler before the process ends, and must be safe in signal handlers. Collective; for
+/// jobs of several ranks.
 void answer_termination(Transport& transport, const std::string& program, const std::string& remedy,
                         void (*before_end)() noexcept);
 
-/// The run's error, once this rank, of so many, got SIGTERM from somebody else than its launcher.
+/// The run's error once rank `rank` of `size`, this one, has received SIGTERM from a process other than its launcher.
 std::optional<scene::Error> ended_from_outside(int rank, int size);
 
-/// From now on a launcher that ends this rank only hurries it: other ranks may have ended already, with the status that
-/// all will have.
+/// From now on, SIGTERM only limits the time that this rank takes to end to one second: other ranks may have ended
+/// already, and this one is to end with the same status.
 void expect_end();
 
 }  // namespace tessera::exchange

@@ -6,9 +6,9 @@
 
 namespace tessera::exchange {
 
-/// Which compositor makes which tile: every sequence of P tiles in scanline order goes to the P compositors in a random
-/// order of its own (Juliachs et al. 2007, section 3), so that neighbouring tiles, which tend to be equally full, are
-/// spread evenly. Seeded: the same on every rank and in every run. The picture does not depend on it.
+/// Assigns tiles to compositors: each sequence of P tiles in scanline order goes to the P compositors in a random order
+/// of its own (Juliachs et al. 2007, section 3), which spreads neighbouring tiles, which tend to be equally full,
+/// evenly. Seeded: the same on every rank and in every run. The image does not depend on it.
 class TileMap {
  public:
   TileMap(std::size_t tiles, int compositors, std::uint64_t seed);

@@ -16,14 +16,14 @@ namespace tessera::exchange {
 
 class Bells;
 
-/// What a message is about. Each channel is a queue of its own, so that the readers of one never see another's.
+/// The subject of a message. Each channel is a separate queue, so that its readers never get another's messages.
 enum class Channel : std::uint8_t {
   agreement,  ///< facts that all ranks share: small, collective
   mesh,       ///< parts of a mesh between readers and projectors; ranges of a volume's cells between all ranks
   fragments,  ///< projector to compositor: ray segments or runs of tiles
   credit,     ///< compositor to projector: room for more
   tiles,      ///< compositor to the first compositor: finished tiles
-  frames,     ///< first compositor to projectors: a frame has left
+  frames,     ///< first compositor to projectors: a frame has been assembled
   timing,     ///< spans to the rank that writes the trace
   stop,       ///< any rank to all: the run is to end early
 };
@@ -36,14 +36,14 @@ struct Message {
   Bytes bytes;
 };
 
-/// How ranks talk. Everything between processes goes through here; MPI is one implementation, ranks that are threads of
-/// one process another.
+/// Communication between ranks. Everything between processes passes through here; MPI is one implementation, ranks that
+/// are threads of one process another.
 ///
-/// Messages between two ranks on one channel arrive in the order they were sent; a rank may send to itself. All member
-/// functions may be called from any thread. A message is at most 2^30 bytes.
+/// Messages between two ranks on one channel arrive in the order in which they were sent; a rank may send to itself.
+/// All member functions may be called from any thread. A message is at most 2^30 bytes.
 ///
-/// Faults: the first rank that calls fail(), or is found lost, ends the run for all. From then on send() does nothing
-/// and receive() throws that one error, with the same code and words on every rank.
+/// Errors: the first rank that calls fail(), or is found lost, ends the run for all. From then on, send() does nothing
+/// and receive() throws this one error, with the same code and message on every rank.
 class Transport {
  public:
   virtual ~Transport() = default;
@@ -51,13 +51,13 @@ class Transport {
   [[nodiscard]] virtual int rank() const = 0;
   [[nodiscard]] virtual int size() const = 0;
 
-  /// Hands the message over and returns at once; who must not run ahead of its receiver asks for credit (outbox.hpp).
+  /// Takes the message and returns at once. A sender that must not run ahead of its receiver uses credit (outbox.hpp).
   /// `frame` is for the trace: -1 for none.
   virtual void send(int to, Channel channel, Bytes bytes, std::int32_t frame) = 0;
   void send(int to, Channel channel, Bytes bytes) { send(to, channel, std::move(bytes), -1); }
 
-  /// The channel's next message, from any rank. Waits for it, without spinning; nothing if `timeout` passes first.
-  /// Throws the run's error once there is one.
+  /// The channel's next message, from any rank. Sleeps until it arrives; empty if `timeout` passes first. Throws the
+  /// run's error once there is one.
   virtual std::optional<Message> receive(Channel channel, std::chrono::milliseconds timeout) = 0;
   Message receive(Channel channel) {
     for (;;)
@@ -70,23 +70,24 @@ class Transport {
   /// Throws the run's error if there is one: for long loops that neither send nor receive.
   virtual void check() const = 0;
 
-  /// Whether this rank's cores have other work than messages now: then they are looked for less often. Not at first.
+  /// Whether this rank's cores have other work than messages now: it then checks for messages less often. Initially
+  /// false.
   virtual void set_working(bool /*working*/) {}
 
-  /// Ranks of this machine wake each other by these from now on; null: they do not. Collective.
+  /// From now on, ranks of this machine wake each other by these bells; null: they do not. Collective.
   virtual void use_bells(const std::shared_ptr<Bells>& /*bells*/) {}
 
-  /// Where spans of `send` go from now on: fragments and meshes to the projector's face, tiles to the compositor's.
-  /// Null: nowhere. The faces must outlive the transport or be taken back.
+  /// Where spans of `send` are recorded from now on: fragments and meshes in `projecting`, tiles in `compositing`.
+  /// Null: nowhere. Both must outlive the transport, or be replaced before they end.
   virtual void trace_to(scene::Trace* projecting, scene::Trace* compositing) = 0;
 
-  /// Numbers so many more frames, alike on all ranks: the first one's number, in messages and traces. Sessions that
-  /// share a transport, one after the other, never meet each other's numbers. Not while a frame is under way.
+  /// Assigns numbers to `count` more frames, the same on all ranks, and returns the first; messages and traces use
+  /// them. Sessions that share a transport, one after the other, never reuse numbers. Not while a frame is in progress.
   std::uint32_t number_frames(std::size_t count) {
     return std::exchange(frames_, frames_ + static_cast<std::uint32_t>(count));
   }
 
-  /// Bytes and messages sent so far on a channel, not counting those to itself.
+  /// Bytes and messages sent so far on a channel, except those of a rank to itself.
   struct Traffic {
     std::uint64_t bytes = 0, messages = 0;
   };

@@ -10,32 +10,31 @@
 #include "scene/frame_counters.hpp"
 #include "scene/lattice.hpp"
 
-/// What travels from projectors to compositors: the structures of messages `begin`, `parts` and `end` (message.hpp),
-/// and the records of a part. Little endian, no padding.
+/// Data from projectors to compositors: the structures of messages `begin`, `parts` and `end` (message.hpp), and the
+/// records of a part. Little endian, no padding.
 ///
-/// A projector sends each compositor, frame after frame: one begin; the parts of its tiles in tile order, tile by tile.
-/// So a compositor knows from the begins what a tile still lacks. Then it sends one end, to one compositor, which
-/// passes its sums on: end_goes_to().
+/// For each frame, a projector sends each compositor one begin, then the parts of its tiles in tile order. From the
+/// begins, a compositor knows which parts of a tile are missing. Finally, the projector sends one end, to one
+/// compositor, which passes its sums on: end_goes_to().
 ///
 /// Records of a part:
 ///   runs       RunRecord each
 ///   chains, chains_of_cells
-///              ChainHeader and `links` ChainLinks each: segments of one pixel that touch end to end. Where one ends
-///              the next begins, at the same depth and scalar, so 24 bytes a segment carry all of it in double
-///              precision: the compositor's picture has the bits of a single process's. Scalars of cell data are the
+///              ChainHeader and `links` ChainLinks each: segments of one pixel that touch end to end. Each begins at
+///              the depth and scalar where the previous one ends, so 24 bytes per segment contain all of it in double
+///              precision: the compositor's image has the same bits as a single process's. Scalars of cell data are the
 ///              same at both ends of a link and are not shared with the next.
-///   lit_chains the same as chains, with a LinkNormal behind each ChainLink: what light there is on the matter is of
-///              the compositor's making.
+///   lit_chains the same as chains, with a LinkNormal behind each ChainLink: the compositor computes the lighting.
 ///   lattice    LatticeHeader and `segments` LatticeSegments each: segments of one pixel in any order, on the frame's
 ///              integer lattice, 16 bytes each (projection/lattice/segment_windows.hpp: front, back, scalars): the
-///              compositor's picture has the bits of a single process's. Where a segment begins at a surface in the
-///              volume its front scalar is a mark, as in chains that of a segment of length zero is
+///              compositor's image has the same bits as a single process's. Where a segment begins at a surface in the
+///              volume, its front scalar is a mark, like that of a segment of length zero in chains
 ///              (projection/surface_crossings.hpp).
 ///   lattice_runs  RunsHeader, `runs` LatticeRuns and `segments` LatticeSegments each: runs of one pixel. A run of one
-///              segment is that segment, 16 bytes, integrated by the compositor.
+///                 segment is this segment, 16 bytes, which the compositor integrates.
 ///   tuples     TupleRecord each (compositor/tuple_record.hpp), in the order of their cells: Juliachs et al. 2007, 4.1
-///   cells      CellRecord each (projection/cell_record.hpp), no fragments yet: for the compositor's device to
-///              rasterize. They come before the projector's other parts of the tile.
+///   cells      CellRecord each (projection/cell_record.hpp), not fragments: the compositor's device rasterizes them.
+///              They precede the projector's other parts of the tile.
 ///   pixels     the tile's finished pixels (packed_pixels.hpp), of a projector that has all of its cells: one part
 namespace tessera::exchange {
 
@@ -55,28 +54,30 @@ struct FrameBegin {
   double longest_ray;         ///< bounds the world length of a ray inside the whole mesh
   std::uint64_t tiles;        ///< number of bits that follow
   float longest_edge;         ///< of the whole mesh, world units: the unit of a tuple's length; 0 without tuples
-  std::uint32_t stopped = 0;  ///< 1: the projector has been stopped; of this frame come no parts, though cells show
-  scene::Lattice lattice{};   ///< of lattice segments; all 0 without
+  std::uint32_t stopped = 0;  ///< 1: the projector was stopped: it sends no parts of this frame, though its cells are
+                              ///< visible
+  scene::Lattice lattice{};   ///< of lattice segments; all 0 without them
 };
 static_assert(sizeof(FrameBegin) == 56);
 
 struct PartHeader {
   std::uint32_t tile;
   RecordKind kind;
-  std::uint8_t last;  ///< 1: this projector's last part of the tile; 2: the same, and some are missing: it was stopped
-  std::uint8_t ascending = 0;  ///< lattice_runs: 1: each pixel has one header, and their numbers ascend
-  std::uint8_t segments = 0;   ///< of an ascending part: 1: some of its runs are single segments
+  std::uint8_t last;  ///< 1: this projector's last part of the tile; 2: the last, and the tile is incomplete because it
+                      ///< was stopped
+  std::uint8_t ascending = 0;  ///< lattice_runs: 1: each pixel has one header, and pixel numbers ascend
+  std::uint8_t segments = 0;   ///< in an ascending part: 1: some of its runs are single segments
   std::uint64_t bytes;
-  double final_depth;       ///< planar; all of this projector's fragments of the tile before it have been sent
+  double final_depth;       ///< planar; all of this projector's fragments of the tile before this depth have been sent
   std::uint64_t fragments;  ///< runs, links, tuples or cells in the part
 };
 static_assert(sizeof(PartHeader) == 32);
 
-/// Segments of a pixel that touch end to end, composited. Nothing of another process can lie inside.
+/// Touching segments of a pixel, composited. No segment of another process can be inside.
 struct RunRecord {
   double front;            ///< planar depth where extinction first becomes positive (or light, if there is none)
   float thickness;         ///< back - front
-  float red, green, blue;  ///< linear light that leaves the front, not attenuated by what lies before it
+  float red, green, blue;  ///< linear light that leaves the front, not attenuated by what is in front of it
   float opacity;           ///< not transmittance: 1 - 1e-8 would be 1
   std::uint32_t pixel;     ///< row by row in the tile
 };
@@ -94,7 +95,7 @@ struct ChainLink {
 };
 static_assert(sizeof(ChainLink) == 24);
 
-/// The normal of a link's tet, of length one, or 0: the field has no gradient there.
+/// The normal of a link's tet, of length 1, or 0 where the field has no gradient.
 struct LinkNormal {
   float x, y, z;
 };
@@ -120,23 +121,23 @@ struct LatticeRun {
 };
 static_assert(sizeof(LatticeRun) == 24);
 
-/// What a frame took, put together over projectors and compositors by the assembling rank.
+/// Counters of a frame, summed over projectors and compositors by the assembling rank.
 struct FrameEnd {
   scene::FrameCounters counters;
   std::uint64_t on_lattice = 0;      ///< 1: the projector's segments are on the integer lattice
-  std::uint64_t failed_devices = 0;  ///< compositors whose device failed and that went on with the CPU
-  std::uint64_t stopped = 0;         ///< projectors and compositors that left something out, being stopped
-  std::uint64_t overlapping = 0;     ///< compositors that were sent runs which overlap
+  std::uint64_t failed_devices = 0;  ///< compositors whose device failed and that continued on the CPU
+  std::uint64_t stopped = 0;         ///< projectors and compositors that left something out because they were stopped
+  std::uint64_t overlapping = 0;     ///< compositors that received runs which overlap
 };
 static_assert(sizeof(FrameEnd) == sizeof(scene::FrameCounters) + 32);
-/// Two processes' counts put together.
+/// The sum of two processes' counters.
 FrameEnd sum(const FrameEnd& a, const FrameEnd& b);
 
-/// Which of P compositors gets the end of a projector: each that of its share. With ends for all there would be N P
-/// of them.
+/// The compositor, of P, that gets a projector's end: each gets those of its share of projectors. Ends for all
+/// compositors would be N P messages.
 inline int end_goes_to(int projector, int compositors) { return projector % compositors; }
 
-/// Records that nobody changes: in memory of their own, or in that of the message they came in.
+/// Immutable records, in memory of their own or in that of the message that contains them.
 class Records {
  public:
   Records() = default;
@@ -157,13 +158,13 @@ struct TilePart {
   std::uint32_t tile = 0;
   RecordKind kind = RecordKind::runs;
   bool last = false;
-  bool stopped = false;  ///< last, and some of the tile is missing
+  bool stopped = false;  ///< the last part, and the tile is incomplete
   double final_depth = 0;
   std::uint64_t fragments = 0;
   Records records{};
   bool ascending = false, segments = false;  ///< as in PartHeader
-  int projector = 0;                         ///< at the compositor: whose part, 0 .. N-1
-  double start_depth = 0;  ///< at the compositor: the projector's part before this one was complete to here
+  int projector = 0;                         ///< at the compositor: the sending projector, 0 .. N-1
+  double start_depth = 0;  ///< at the compositor: the depth to which the projector's previous part was complete
 };
 
 }  // namespace tessera::exchange

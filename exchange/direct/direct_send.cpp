@@ -45,11 +45,11 @@ std::vector<Layer> receive_order(std::span<const int> order, std::size_t place) 
 
 namespace {
 
-/// What travels before the pixels of a packet.
+/// What precedes the pixels of a packet.
 struct PacketHeader {
   std::uint64_t frame;
-  PixelRect rows;         ///< of the receiver's band, which the packet is of
-  PixelRect rect;         ///< of these, those that the sender may have
+  PixelRect rows;         ///< the rows of the receiver's band that the packet is for
+  PixelRect rect;         ///< the part of these rows where the sender may have pixels
   std::uint64_t stopped;  ///< 1: no pixels follow
 };
 static_assert(sizeof(PacketHeader) == 8 + 2 * 16 + 8);
@@ -65,14 +65,14 @@ std::vector<PixelRect> packets_of(const PixelRect& band) {
   return packets;
 }
 
-/// `front` over `back`, in `back`'s place.
+/// Stores `front` over `back` in `back`.
 void put_in_front(const float* front, float front_depth, float* back, float& back_depth) {
   const float through = 1 - front[3];
   for (int c = 0; c < 4; ++c) back[c] = front[c] + through * back[c];
   if (std::isfinite(front_depth)) back_depth = front_depth;
 }
 
-/// `back` behind `front`, in `front`'s place.
+/// Stores `front` over `back` in `front`.
 void put_behind(const float* back, float back_depth, float* front, float& front_depth) {
   const float through = 1 - front[3];
   for (int c = 0; c < 4; ++c) front[c] += through * back[c];
@@ -118,7 +118,7 @@ class Exchange {
     for (int step = 1; step < ranks; ++step) {
       const int to = (rank + step) % ranks, from = (rank + ranks - step) % ranks;
       for (const PixelRect& rows : packets_of(band(to))) send(to, rows);
-      // Of this one alone: who is ahead waits.
+      // Only for this one: messages that arrive early are kept.
       while (came_[static_cast<std::size_t>(from)].size() < packets_.size()) await();
     }
     composite();
@@ -157,7 +157,7 @@ class Exchange {
       came_.at(static_cast<std::size_t>(message.from)).push_back(std::move(message));
   }
 
-  /// All that is next in order and has come.
+  /// Composites all packets that have come and are next in order.
   void composite() {
     for (; next_layer_ < layers_.size(); ++next_layer_, next_packet_ = 0) {
       auto& came = came_[static_cast<std::size_t>(layers_[next_layer_].rank)];
@@ -203,7 +203,7 @@ class Exchange {
   std::size_t place_;
   std::vector<Layer> layers_;
   std::vector<PixelRect> packets_;          ///< of this rank's band
-  std::vector<std::vector<Message>> came_;  ///< by sender, in their order; what has been composited is empty
+  std::vector<std::vector<Message>> came_;  ///< by sender, in the order sent; empty once composited
   std::size_t next_layer_ = 0, next_packet_ = 0;
   scene::Image scratch_;
   std::vector<float> bounds_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Built in place of mpi_port.cpp with TESSERA_MPI=OFF: nothing is launched by MPI, and no port opens.
+// Built instead of mpi_port.cpp with TESSERA_MPI=OFF: no process counts as launched by MPI, and no port opens.
 #include "exchange/mpi/mpi_port.hpp"
 #include "exchange/mpi/mpi_transport.hpp"
 

@@ -44,7 +44,7 @@ MPI_Comm duplicate(int fortran_handle) {
 }  // namespace
 
 bool launched_by_mpi() {
-  // Open MPI's mpirun, PMIx launchers (srun, prun), and PMI-1/2 ones, in that order.
+  // Open MPI's mpirun, PMIx launchers (srun, prun), and PMI-1/2 launchers, in this order.
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"})
     if (std::getenv(name) != nullptr) return true;
   return false;
@@ -109,7 +109,7 @@ void MpiPort::send(int to, int tag, Bytes bytes) {
   State::Outgoing& posted = state_->outgoing.emplace_back();
   posted.bytes = std::move(bytes);
   posted.to = to;
-  // Whether it has gone is asked of all that are on their way, in complete().
+  // complete() tests this request together with all others.
   // NOLINTNEXTLINE(clang-analyzer-optin.mpi.MPI-Checker)
   state_->checked(MPI_Isend(posted.bytes.data(), static_cast<int>(posted.bytes.size()), MPI_BYTE, to, tag, state_->comm,
                             &posted.request),
@@ -145,8 +145,8 @@ bool MpiPort::take() {
 }
 
 std::optional<MpiPort::Arrived> MpiPort::next() {
-  // What is whole does not wait for a large message of another rank that was announced before it; one rank's messages
-  // stay in their order.
+  // A complete message does not wait for a large one of another rank that was announced before it; the messages of one
+  // rank stay in order.
   constexpr std::size_t most_looked_at = 64;
   State& s = *state_;
   std::vector<int> waited_for;

@@ -23,18 +23,18 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Tags below channel_count are channels; this one is of the transport's own messages.
-constexpr int own_tag = 100;  // of the kinds fault to silent (message.hpp)
+// Tags below channel_count are channels; this one is for the transport's own messages.
+constexpr int own_tag = 100;  // of kinds `fault` to `silent` (message.hpp)
 
-/// For the others to hear of the error that a stalled rank is; at most the transport's patience.
+/// Time for the others to receive the error of a stalled rank; at most the transport's patience.
 constexpr auto stall_grace = std::chrono::seconds(1);
 
 }  // namespace
 
-/// The thread that speaks MPI, and what it shares with the others.
+/// The thread that calls MPI, and the data it shares with the others.
 class MpiTransport::Engine {
  public:
-  /// `borrowed`: a caller's communicator; else the world's, and all of MPI.
+  /// `borrowed`: a caller's communicator; without it, MPI's world, which the engine starts and ends.
   Engine(Hooks hooks, std::chrono::milliseconds patience, std::optional<int> borrowed)
       : hooks_(std::move(hooks)),
         patience_(patience),
@@ -125,18 +125,18 @@ class MpiTransport::Engine {
     queue.end();
   }
 
-  /// Sends what is queued and takes what is there. Returns whether something came.
+  /// Sends queued messages and takes those that have arrived. Returns whether one has.
   bool look(Bells* bells) {
     try {
       post(bells);
       port_.complete();
-      // MPI may have held a message back until now.
+      // MPI may have delayed a message until now.
       if (bells != nullptr) port_.for_each_receiver([&](int to) { bells->ring(to); });
       const bool came = port_.take();
       return deliver() || came;
     } catch (const scene::Error& error) {
       fail(error);
-      give_up(error);  // MPI itself is broken: no words will reach anyone
+      give_up(error);  // MPI itself is broken: no message will reach any rank
       return false;
     }
   }
@@ -151,7 +151,7 @@ class MpiTransport::Engine {
     });
   }
 
-  /// Hands on what has arrived.
+  /// Delivers the messages that have arrived.
   bool deliver() {
     bool moved = false;
     for (; auto arrived = port_.next(); moved = true) {
@@ -166,7 +166,7 @@ class MpiTransport::Engine {
     return moved;
   }
 
-  /// Takes one of the transport's own messages. One that no rank of this program sends is an error of the run.
+  /// Handles one of the transport's own messages. One that no rank of this program sends is an error of the run.
   void obey(Message message) {
     try {
       MessageReader reader(message.bytes, message.from);
@@ -188,13 +188,13 @@ class MpiTransport::Engine {
     }
   }
 
-  /// To all ranks but rank 0 and this one.
+  /// Sends to all ranks except rank 0 and this one.
   void tell_all(const Bytes& message) {
     for (int other = 1; other < size; ++other)
       if (other != rank) enqueue({other, own_tag, message});
   }
 
-  /// Rank 0: the first error it hears of is the run's.
+  /// Rank 0: the first error that it receives becomes the run's.
   void decide(const scene::Error& error) {
     if (mailboxes.failed()) return;
     tell_all(error_message(MessageKind::verdict, error));
@@ -217,7 +217,7 @@ class MpiTransport::Engine {
     if (lost == nullptr || mailboxes.failed()) return;
     lost_at_ = Clock::now();
     if (rank == 0) return decide(*lost);
-    // Rank 0 itself: this rank decides in its place.
+    // Rank 0 itself is lost: this rank decides instead.
     tell_all(error_message(MessageKind::verdict, *lost));
     conclude(*lost);
   }
@@ -238,12 +238,13 @@ class MpiTransport::Engine {
       enqueue({0, own_tag, error_message(MessageKind::fault, *fault)});
       deadline_ = Clock::now() + patience_;
     }
-    // Rank 0 first: the others only if it cannot.
+    // Rank 0 gives up first; the others only if it cannot.
     if (deadline_ && Clock::now() > *deadline_ + (rank == 0 ? std::chrono::seconds(0) : std::chrono::seconds(4)))
       give_up(mailboxes.failed() ? *mailboxes.error() : *own_fault_);
   }
 
-  /// Ends what cannot end in order: the process, or where that is a caller's, this rank's part in the run.
+  /// Ends what cannot end in an orderly way: the process, or, with a caller's communicator, this rank's part in the
+  /// run.
   void give_up(const scene::Error& error) {
     if (borrowed_) {
       mailboxes.fail(error);
@@ -254,13 +255,13 @@ class MpiTransport::Engine {
     std::_Exit(static_cast<int>(error.code()));
   }
 
-  /// Done is said once, when all this rank has sent has left; rank 0 gives the all-clear.
+  /// Sends `done` once all of this rank's messages have left; rank 0 answers with `clear`.
   void settle_end() {
     {
       const std::lock_guard lock(mutex_);
       if (!finishing_) return;
-      // A stalled rank takes nothing and will not say that it is done, and MPI cannot end without it: once the others
-      // have had the time to hear of the error, this rank speaks and leaves the rest to the launcher.
+      // A stalled rank receives nothing and never sends `done`, and MPI cannot end without it. Once the others have had
+      // time to receive the error, this rank reports it and leaves the rest to the launcher.
       if (lost_at_ && ((rank == 0 && ranks_done_ >= size - 2) || Clock::now() > *lost_at_ + stall_grace))
         give_up(*mailboxes.error());
       if (given_up_) return;
@@ -286,19 +287,19 @@ class MpiTransport::Engine {
   const bool borrowed_;
   std::promise<std::optional<scene::Error>> start_error_;
 
-  std::mutex mutex_;  // guards what follows
+  std::mutex mutex_;  // guards the next two lines
   std::optional<scene::Error> own_fault_;
   bool finishing_ = false, fault_told_ = false;
 
-  // The engine's thread alone.
+  // Used only by the engine's thread.
   MpiPort port_;
-  std::optional<Clock::time_point> lost_at_;  ///< when this rank ended the run for another's silence
+  std::optional<Clock::time_point> lost_at_;  ///< when this rank ended the run because of another's silence
   std::optional<scene::Error> asked_to_end_;
   std::optional<Clock::time_point> deadline_;
   int ranks_done_ = 0;
   bool done_told_ = false, all_clear_ = false, given_up_ = false;
 
-  std::thread thread_;  // last: it uses all of the above
+  std::thread thread_;  // last, because it uses all of the above
 };
 
 MpiTransport::MpiTransport(Hooks hooks, std::chrono::milliseconds patience)

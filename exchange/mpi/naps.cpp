@@ -14,7 +14,7 @@ struct Lengths {
 constexpr Lengths idle{microseconds(100), microseconds(500), microseconds(2000)};
 constexpr Lengths working{microseconds(2000), microseconds(2000), microseconds(5000)};
 
-// Where others ring when they send.
+// When other ranks ring on sending.
 constexpr microseconds longest_with_bells(20'000);
 
 }  // namespace
@@ -30,7 +30,7 @@ std::shared_ptr<Bells> Naps::begin_look() {
 }
 
 void Naps::take(bool came, bool moving) {
-  // Rung for while its cores project, a rank would look too often.
+  // A rank whose cores project ignores the bells: it would poll too often.
   Bells* const listens_to = working_ ? nullptr : looked_with_.get();
   Lengths lengths = working_ ? working : idle;
   if (listens_to != nullptr && listens_to->of_all() && !moving) lengths.longest = longest_with_bells;

@@ -12,29 +12,29 @@
 
 namespace tessera::exchange {
 
-/// Naps of the thread that speaks MPI between two looks at it: a look costs 20 to 30 us of a core that projects or
-/// composites. They double while nothing comes, and end when this process has something to do, or another rank rings.
+/// Naps of the thread that calls MPI between two polls: a poll costs 20 to 30 us of a core that projects or composites.
+/// They double in length while no message comes, and end when this process has something to do or another rank rings.
 class Naps {
  public:
-  /// Before a look for messages: a wake-up from now on ends the nap after it. Returns the bells in use, or null.
+  /// Before a poll: a wake-up from now on ends the nap after it. Returns the bells in use, or null.
   std::shared_ptr<Bells> begin_look();
-  /// After the look. `came`: it found messages; `moving`: some are in transit and need further looks to proceed.
+  /// After the poll. `came`: it found messages; `moving`: some are in transit and need further polls to proceed.
   void take(bool came, bool moving);
 
-  // By any thread.
+  // Called by any thread.
   void wake(int rank);
-  /// While the rank's cores project, a look in time for the next part of the frame is soon enough.
+  /// While the rank's cores project, a poll in time for the next part of the frame is soon enough.
   void set_working(bool working, int rank);
   void use_bells(const std::shared_ptr<Bells>& bells, int rank);
 
  private:
-  std::mutex mutex_;  // guards what follows
+  std::mutex mutex_;  // guards the members down to bells_
   std::condition_variable woken_;
   bool is_woken_ = false;
   std::shared_ptr<Bells> bells_;
   std::atomic<bool> working_ = false;
 
-  // The thread's alone.
+  // Used only by the thread that calls MPI.
   std::shared_ptr<Bells> looked_with_;
   std::uint32_t heard_ = 0;
   bool rang_ = false;

@@ -11,7 +11,7 @@
 
 namespace tessera::exchange {
 
-/// Messages between the threads that send them and the one that speaks MPI.
+/// Messages between the threads that send them and the one that calls MPI.
 class SendQueue {
  public:
   struct Outgoing {
@@ -23,7 +23,7 @@ class SendQueue {
   void push(Outgoing message);
   [[nodiscard]] bool is_empty();
 
-  /// Calls `send` with each message that has been queued, in their order.
+  /// Calls `send` with each queued message, in order.
   template <class Send>
   void hand_over(const Send& send) {
     std::deque<Outgoing> messages = take();
@@ -31,12 +31,12 @@ class SendQueue {
     if (!messages.empty()) settle(posting_, false);
   }
 
-  /// From now on no queued message is handed over.
+  /// From now on, no queued message is handed over.
   void end() { settle(ended_, true); }
 
-  /// Messages that were pushed earlier are recorded in the old traces when this returns.
+  /// Returns once messages that were pushed earlier are recorded in the old traces.
   void trace_to(scene::Trace* projecting, scene::Trace* compositing);
-  /// A span of what a user asks about: fragments, meshes and tiles. For a message that is being handed over.
+  /// A span for a message that is being handed over, of the channels that users ask about: fragments, meshes and tiles.
   [[nodiscard]] scene::TraceScope traced(const Outgoing& message) const;
 
  private:
