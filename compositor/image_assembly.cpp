@@ -143,7 +143,7 @@ void ImageAssembly::start(Frame& frame, std::function<void()> work) {
       const std::lock_guard lock(mutex_);
       if (fault && !fault_) fault_ = fault;
       --frame.working;
-      changed_.notify_all();  // under the lock: without it this object may be gone
+      changed_.notify_all();  // under the lock, because without it this object may already be destroyed
     }
     if (fault) std::rethrow_exception(fault);
   };

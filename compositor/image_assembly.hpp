@@ -19,12 +19,12 @@
 #include "scene/image.hpp"
 #include "scene/trace.hpp"
 
-/// The last step (Juliachs et al. 2007, section 3): compositors send their tiles to the first one, which puts the
-/// picture together. Their messages, on channel `tiles`, are in exchange/message.hpp.
+/// The last step (Juliachs et al. 2007, section 3): compositors send their tiles to the first compositor, which
+/// assembles the image. exchange/message.hpp describes their messages, on channel `tiles`.
 namespace tessera::compositor {
 
-/// A compositor's finished tiles of one frame on their way, in messages of about 128 KiB. Any thread; each packs its
-/// tiles itself. A compositor's tiles for its own rank are not packed.
+/// Sends a compositor's finished tiles of one frame, in messages of about 128 KiB. Any thread; each packs its own
+/// tiles. Tiles for this rank itself are not packed.
 class TileSender {
  public:
   TileSender(exchange::Transport& transport, int assembler, std::uint32_t frame);
@@ -41,43 +41,43 @@ class TileSender {
   exchange::Bytes message_;
 };
 
-/// A picture that has all its tiles.
+/// An image with all its tiles.
 struct AssembledFrame {
   std::uint32_t frame;
   scene::Image image;
   exchange::FrameEnd sums;
-  scene::DeepImage deep;  ///< if asked for
+  scene::DeepImage deep;  ///< if requested
 };
 
-/// How pictures are put together. What is not set is not wanted.
+/// How images are assembled. Unset members are not used.
 struct AssemblySettings {
-  std::function<projection::TileGrid(std::uint32_t frame)> grid_of;  ///< a frame's tiles
-  std::uint64_t deep_bytes = 0;                                      ///< bound of a deep picture's samples; 0: none
-  /// Runs a piece of work, on another thread or at once. Many may run at once.
+  std::function<projection::TileGrid(std::uint32_t frame)> grid_of;  ///< returns a frame's tiles
+  std::uint64_t deep_bytes = 0;                                      ///< bound of a deep image's samples; 0: none
+  /// Runs a task, on another thread or immediately. Many may run at once.
   std::function<void(std::function<void()> work)> run;
-  /// Hears of each tile of a frame when its pixels are final, from the thread that placed them; of those in which
-  /// nothing is at the frame's end, from accept().
+  /// Called for each tile of a frame when its pixels are final, on the thread that placed them; for empty tiles at the
+  /// end of the frame, from accept(), unless the frame was stopped.
   std::function<void(std::uint32_t frame, const scene::PixelRect& rect, const scene::Image& image)> finished;
-  /// An image whose memory a frame may have, whatever is in it; of another size than asked for: none.
+  /// Returns an image whose memory the frame may use; its contents are ignored. An image of another size is not used.
   std::function<scene::Image(scene::ImageSize size)> memory;
   scene::Trace* trace = nullptr;
 };
 
-/// Puts pictures together on the first compositor. Frames complete in order.
+/// Assembles images on the first compositor. Frames complete in order.
 ///
-/// One thread gives it messages; each message's tiles are one piece of work for AssemblySettings::run. Tiles are
-/// disjoint, so pieces meet nowhere. Only tiles that do not come are cleared.
+/// One thread passes it the messages; the tiles of each message are one task for AssemblySettings::run. Tiles are
+/// disjoint, so tasks never write the same pixels. Only tiles that do not arrive are cleared.
 class ImageAssembly {
  public:
   ImageAssembly(int compositors, AssemblySettings settings);
-  /// Waits for the work that has begun.
+  /// Waits for the tasks that have begun.
   ~ImageAssembly();
   ImageAssembly(const ImageAssembly&) = delete;
   ImageAssembly& operator=(const ImageAssembly&) = delete;
 
-  /// Takes a message of channel `tiles`; the frame that it completes, if any: waits for its last tiles. Throws
-  /// Error(system_failure) if it is not what exchange/message.hpp says; of tiles the work throws it, and accept() once
-  /// more when their frame would be complete.
+  /// Takes a message of channel `tiles`. If it completes a frame, waits for its last tiles and returns the frame.
+  /// Throws Error(system_failure) if the message does not have the format of exchange/message.hpp. Errors in tiles are
+  /// thrown by their task, and by accept() when a frame would be complete.
   std::optional<AssembledFrame> accept(exchange::Message message);
 
  private:
@@ -89,7 +89,7 @@ class ImageAssembly {
     int ended = 0, working = 0;  ///< working: guarded by mutex_
     std::unique_ptr<DeepCollector> deep;
     std::vector<std::atomic<bool>> has_come;  ///< by tile
-    std::vector<scene::PixelRect> lacking;    ///< at the end: tiles that have not
+    std::vector<scene::PixelRect> lacking;    ///< at the end: the tiles that have not arrived
   };
 
   Frame& frame_of(std::uint32_t number);
@@ -101,9 +101,9 @@ class ImageAssembly {
   int compositors_;
   AssemblySettings settings_;
   std::map<std::uint32_t, Frame> frames_;
-  std::mutex mutex_;  // guards what follows
+  std::mutex mutex_;  // guards `working` and the members below
   std::condition_variable changed_;
-  std::exception_ptr fault_;  ///< of the first work that failed
+  std::exception_ptr fault_;  ///< of the first task that failed
 };
 
 }  // namespace tessera::compositor

@@ -12,12 +12,12 @@
 #include "scene/tet_mesh.hpp"
 #include "scene/transfer_function.hpp"
 
-/// Light on the matter of a mesh (scene/shading.hpp): segments get it after they are integrated, by the normal of their
-/// tet. Neither stores nor sorting know of it; in double precision alone.
+/// Light on the matter of a mesh (scene/shading.hpp): applied to segments after they are integrated, with the normal of
+/// their tet. Storing and sorting do not depend on it. Only in double precision.
 namespace tessera::compositor {
 
-/// The normals of the tets that segments are of, by the number that segments have: of length one, 0 where the field has
-/// no gradient. Floats, so that they are the same wherever they come from.
+/// The normals of the tets of segments, by the tet number in the segment: of length 1, or 0 where the field has no
+/// gradient. Floats, so that local and received normals are the same.
 class CellNormals {
  public:
   CellNormals() = default;
@@ -27,7 +27,7 @@ class CellNormals {
   [[nodiscard]] virtual glm::vec3 of(std::uint32_t tet) const = 0;
 };
 
-/// Of a mesh at hand, computed when they are asked for. The same bits whatever part of a mesh has the tet.
+/// For a mesh in memory, computed on demand. The bits do not depend on which part of a mesh contains the tet.
 class MeshNormals final : public CellNormals {
  public:
   explicit MeshNormals(const scene::TetMeshView& mesh) : mesh_(mesh) {}
@@ -37,7 +37,7 @@ class MeshNormals final : public CellNormals {
   scene::TetMeshView mesh_;
 };
 
-/// Of segments that another process has sent.
+/// For segments from another process.
 class SentNormals final : public CellNormals {
  public:
   [[nodiscard]] glm::vec3 of(std::uint32_t tet) const override {
@@ -45,12 +45,12 @@ class SentNormals final : public CellNormals {
     return found == normals_.end() ? glm::vec3(0) : found->second;
   }
   void set(std::uint32_t tet, const glm::vec3& normal) { normals_.insert_or_assign(tet, normal); }
-  /// Now and then forgets the tets of which no segment is left.
+  /// Removes the normals of tets without segments, once enough have accumulated.
   void forget(const projection::RaySegments& left);
 
  private:
   std::unordered_map<std::uint32_t, glm::vec3> normals_;
-  std::size_t kept_ = 0;  ///< when it last forgot
+  std::size_t kept_ = 0;  ///< the number after the last removal
 };
 
 /// The light of a frame.
@@ -58,20 +58,20 @@ class MatterLight {
  public:
   MatterLight(const scene::Shading& shading, const scene::Camera& camera);
 
-  /// What becomes of a segment's colour c: own * c + white.
+  /// A segment's colour c becomes own * c + white.
   struct Light {
     double own = 1, white = 0;
   };
   /// `ray`: away from the eye, of any length.
   [[nodiscard]] Light on(const glm::vec3& normal, const glm::dvec3& ray) const;
-  /// No colour up to `color` becomes brighter.
+  /// An upper bound of the colours that become of colours up to `color`.
   [[nodiscard]] double brightest(double color) const;
-  /// The function with every colour as bright as it may become.
+  /// The function with every colour replaced by its upper bound.
   [[nodiscard]] scene::TransferFunction brightest(const scene::TransferFunction& function) const;
 
  private:
   scene::Shading shading_;
-  glm::dvec3 to_light_;  ///< world, of length one
+  glm::dvec3 to_light_;  ///< world space, of length 1
   int whole_shininess_ = -1;
 };
 

@@ -3,7 +3,7 @@
 
 #include "compositor/tile_merger.hpp"
 
-/// The mergers of each kind of record, for make_tile_merger() alone.
+/// The mergers for each kind of record, used only by make_tile_merger().
 namespace tessera::compositor {
 
 std::unique_ptr<TileMerger> make_segment_merger(const MergeContext& context, const scene::PixelRect& rect);

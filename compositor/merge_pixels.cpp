@@ -9,7 +9,7 @@
 namespace tessera::compositor {
 namespace {
 
-/// A tile that came whole: its pixels go on as they are.
+/// A tile that arrives finished: its pixels are passed on unchanged.
 class PixelMerger final : public TileMerger {
  public:
   void add(const exchange::TilePart& part) override {

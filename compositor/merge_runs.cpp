@@ -18,7 +18,7 @@
 namespace tessera::compositor {
 namespace {
 
-/// Runs: few a pixel, composited front to back.
+/// Merges runs, few per pixel, which it composites front to back.
 class RunMerger final : public TileMerger {
  public:
   RunMerger(const MergeContext& context, const scene::PixelRect& rect)
@@ -57,7 +57,7 @@ class RunMerger final : public TileMerger {
   void advance(double final_depth) override {
     const bool all = final_depth == std::numeric_limits<double>::infinity();
     if (!all) {
-      // What is left would have to be kept in order.
+      // Runs that remain are stored: a stream could not keep them in order.
       for (const Stream& stream : streams_) push_runs(stream);
       streams_.clear();
       in_streams_ = 0;
@@ -89,26 +89,26 @@ class RunMerger final : public TileMerger {
  private:
   static constexpr std::uint32_t none = 0xffffffff;
 
-  /// RunRecord, and the number of the one of its pixel that came before it.
+  /// RunRecord, and the index of the previous run of its pixel.
   struct Run {
     double front;
     float thickness, red, green, blue, opacity;
     std::uint32_t next = none;
   };
 
-  /// What is composited so far, and the end of its farthest run.
+  /// The composited runs, and the end of the farthest one.
   struct Pixel : MergedPixel {
     double reach = -std::numeric_limits<double>::infinity();
     float opacity_to_reach = 0;
   };
 
-  /// An ascending part, read pixel by pixel beside the others. Its single segments are not read here.
+  /// An ascending part, read pixel by pixel in parallel with the others. Its single segments are not read here.
   struct Stream {
     explicit Stream(const exchange::TilePart& part)
         : records(part.records), reader(records.bytes()), tile(part.tile), segments(part.segments) {
       read_header();
     }
-    /// The header's pixel is `none` at the end.
+    /// At the end, the header's pixel is `none`.
     void read_header() {
       const std::uint32_t before = std::exchange(header, {none, 0, 0}).pixel;
       if (reader.empty()) return;
@@ -140,7 +140,7 @@ class RunMerger final : public TileMerger {
             run.opacity};
   }
 
-  /// Keeps a part's single segments, and its other runs too if `runs`.
+  /// Stores a part's single segments, and its other runs too if `runs`.
   void push_records(const exchange::TilePart& part, bool runs) {
     exchange::RecordReader reader(part.records.bytes());
     single_.clear();
@@ -170,9 +170,10 @@ class RunMerger final : public TileMerger {
     stream.read_header();
   }
 
-  /// The pixel's runs before `final_depth`, front to back. Leaves all of them ordered; returns the first that is not.
+  /// Composites the pixel's runs before `final_depth`, front to back. Leaves all runs sorted; returns the index of the
+  /// first one that is not composited.
   std::size_t composite(double final_depth, Pixel& pixel) {
-    // By all a run holds: equal runs are interchangeable, so the order of arrival shows nowhere.
+    // By all fields: equal runs are interchangeable, so the order of arrival has no effect.
     const auto before = [](const Run& a, const Run& b) {
       if (a.front != b.front) return a.front < b.front;
       const auto key = [](const Run& run) {
@@ -197,22 +198,23 @@ class RunMerger final : public TileMerger {
     return at;
   }
 
-  /// Cells overlap if a run begins before one ends: no order of the two is right then. Wrong order changes no pixel by
-  /// more than the product of their opacities.
+  /// Cells overlap if a run begins before the previous one ends: then neither order of the two is right. A wrong order
+  /// changes a pixel by at most the product of their opacities.
   void note_overlap(const Run& run, Pixel& pixel) const {
     constexpr double negligible = 1e-7, rounding = 0x1p-20;
-    // Ends on the lattice are some steps apart where one of two cells was projected in double precision.
+    // On the lattice, ends that should agree differ by some steps if one of two cells was projected in double
+    // precision.
     const double steps =
         context_.lattice != nullptr ? 2 * projection::back_end_steps * context_.lattice->depth_unit : 0;
     const double within = steps + rounding * run.thickness + 0x1p-40 * std::abs(run.front);
-    const double back = run.front + run.thickness - within;  // at least
+    const double back = run.front + run.thickness - within;  // lower bound of the end
     if (run.front < pixel.reach && run.front < back && run.opacity * pixel.opacity_to_reach * weight_ > negligible &&
         context_.overlapping != nullptr)
       *context_.overlapping = true;
     if (back > pixel.reach) pixel.reach = back, pixel.opacity_to_reach = run.opacity;
   }
 
-  /// Runs of one segment, with the bits that their projector would have found.
+  /// Integrates runs of one segment, with the same bits as their projector would.
   void integrate_single() {
     if (single_.empty()) return;
     batch_.reserve(single_.size());
@@ -236,7 +238,7 @@ class RunMerger final : public TileMerger {
     }
   }
 
-  /// The field's at the front, be there a surface or not.
+  /// The field's value at the front, also if there is a surface.
   [[nodiscard]] float first_scalar(const projection::LatticeSegment& segment) const {
     if (!projection::is_crossing(segment.scalar_front)) return segment.scalar_front;
     const std::uint32_t number = projection::crossing_of(segment.scalar_front).number;
@@ -261,12 +263,12 @@ class RunMerger final : public TileMerger {
   std::uint64_t budget_;
   scene::PixelRect rect_;
   double weight_, termination_error_;
-  std::vector<Pixel> pixels_;            ///< once something was composited before the last
-  std::vector<std::uint32_t> first_of_;  ///< by pixel: its last run that came, which has the others' numbers
+  std::vector<Pixel> pixels_;            ///< used once runs have been composited before the last advance()
+  std::vector<std::uint32_t> first_of_;  ///< by pixel: its last run in order of arrival, which links to the others
   std::vector<Run> runs_;
-  std::vector<Run> here_;  ///< one pixel's
+  std::vector<Run> here_;  ///< those of one pixel
   std::vector<Stream> streams_;
-  std::uint64_t in_streams_ = 0;  ///< runs
+  std::uint64_t in_streams_ = 0;  ///< number of runs
   scene::Image image_;
   struct Single {
     std::uint32_t pixel;

@@ -23,8 +23,8 @@ scene::Error malformed(std::uint32_t tile) {
           fmt::format("exchange: the segments of tile {} are malformed; all ranks must run the same program", tile)};
 }
 
-/// Raw segments: sorted, integrated and composited here, by the sinks that do it for a single process. A merger of one
-/// kind of record adds them to the stores.
+/// Merges segments: sorted, integrated and composited here, by the sinks that do it in a single process. A derived
+/// class for each kind of record adds the segments to the stores.
 template <class Encoding>
 class SegmentMerger : public TileMerger {
  public:
@@ -41,7 +41,7 @@ class SegmentMerger : public TileMerger {
   }
 
  protected:
-  /// A rectangle that one store holds. Without a sink until it is opened.
+  /// The rectangle of one store. It has no sink until it is opened.
   struct Square {
     scene::PixelRect rect;
     typename Encoding::Store store;
@@ -74,7 +74,7 @@ class SegmentMerger : public TileMerger {
     square.sink->start(square.rect);
   }
 
-  /// The first depth that does not lie before `depth`, in the encoding.
+  /// The first depth that is not before `depth`, in the encoding.
   [[nodiscard]] virtual typename Encoding::Depth first_from(double depth) const = 0;
 
   MergeContext context_;
@@ -84,7 +84,7 @@ class SegmentMerger : public TileMerger {
 
  private:
   scene::Image image_;
-  /// The samples of the tile, which DeepSink gives all at once.
+  /// The samples of the tile, which DeepSink delivers in one call.
   struct Deep final : DeepTarget {
     void add(const scene::PixelRect&, std::vector<std::uint32_t> c, std::vector<scene::DeepImageSample> s) override {
       counts = std::move(c);
@@ -95,7 +95,7 @@ class SegmentMerger : public TileMerger {
   } deep_;
 };
 
-/// Segments in double precision, in chains: one store for the tile.
+/// Segments in double precision, in chains; one store for the tile.
 class ChainMerger : public SegmentMerger<DoubleEncoding> {
  public:
   using Key = sorting::SegmentLists::Key;
@@ -153,7 +153,7 @@ class ChainMerger : public SegmentMerger<DoubleEncoding> {
       throw malformed(tile);
   }
 
-  /// Room for `more` segments.
+  /// Makes room for `more` segments.
   projection::RaySegments& reserve(std::size_t more) {
     projection::RaySegments& held = squares_[0].store.segments;
     const std::size_t segments = held.size + more;
@@ -170,8 +170,8 @@ class ChainMerger : public SegmentMerger<DoubleEncoding> {
   }
 };
 
-/// The paper's tuples, whose key is the back alone. Equal ones stand by projector, then as they came: the order of
-/// cells.
+/// The paper's tuples, whose key is only the back. Equal ones are ordered by projector, then by arrival, which is the
+/// order of cells.
 class TupleMerger final : public ChainMerger {
  public:
   TupleMerger(const MergeContext& context, const scene::PixelRect& rect) : ChainMerger(context, rect, Key::back) {}
@@ -182,7 +182,7 @@ class TupleMerger final : public ChainMerger {
     while (!reader.empty()) {
       const auto record = reader.take<TupleRecord>();
       check_room(part.tile, record.pixel, 1);
-      // 2^22 arrivals before the number comes round are more than the ties of any one depth.
+      // The number wraps around after 2^22 arrivals, which is more than the tuples of any one depth.
       const auto arrival = static_cast<std::uint32_t>(part.projector) << 22 | (arrivals_++ & 0x3fffff);
       projection::from_tuple(record.tuple, record.pixel, arrival, context_.longest_edge, segments, segments.size);
       ++segments.size;
@@ -193,8 +193,8 @@ class TupleMerger final : public ChainMerger {
   std::uint32_t arrivals_ = 0;
 };
 
-/// Lattice segments: a store for each square of the tile, opened by its first segment, as a large tile has many, most
-/// of them empty at any time.
+/// Lattice segments: one store for each square of the tile, opened by its first segment, because a large tile has many
+/// squares, most of them empty at any time.
 class WindowMerger final : public SegmentMerger<LatticeEncoding> {
  public:
   WindowMerger(const MergeContext& context, const scene::PixelRect& rect)
@@ -226,9 +226,9 @@ class WindowMerger final : public SegmentMerger<LatticeEncoding> {
   }
 
  private:
-  static constexpr std::size_t first_capacity = 8;  ///< segments a pixel
+  static constexpr std::size_t first_capacity = 8;  ///< segments per pixel
 
-  /// Where a pixel of the tile is.
+  /// The position of a pixel of the tile.
   struct Place {
     std::uint32_t square, pixel;
   };

@@ -6,7 +6,7 @@
 
 namespace tessera::compositor {
 
-/// Pixels of a picture. The window's image must outlive the sink; tiles of it are disjoint, so threads may share it.
+/// Pixels of an image. The window's image must outlive the sink; its tiles are disjoint, so threads may share it.
 template <class Encoding>
 class PictureSink final : public TileSink<Encoding> {
  public:
@@ -26,7 +26,7 @@ class PictureSink final : public TileSink<Encoding> {
   bool take_unordered(Store&, Depth, scene::StageTimer&) override { return false; }
   [[nodiscard]] const typename Encoding::Open& open() const override { return pixels_.open(); }
   [[nodiscard]] bool any_open() const override { return pixels_.any_open(); }
-  /// Writes the rectangle's pixels into their place in the window's image.
+  /// Writes the rectangle's pixels to the window's image.
   void finish() override;
   [[nodiscard]] std::uint64_t segments() const override { return segments_; }
 
@@ -34,10 +34,10 @@ class PictureSink final : public TileSink<Encoding> {
   TilePixels<Encoding> pixels_;
   ImageWindow window_;
   scene::PixelRect rect_{0, 0, 0, 0};
-  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< of finished rectangles, of this one
+  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< of finished rectangles, of this rectangle
 };
 
-/// Writes the values of the pixels of `rect` into their place in the window's image.
+/// Writes the values of the pixels of `rect` to the window's image.
 template <class Encoding>
 void write_pixels(const TilePixels<Encoding>& pixels, const scene::PixelRect& rect, const ImageWindow& window) {
   scene::Image& image = *window.image;

@@ -9,8 +9,8 @@
 
 namespace tessera::compositor {
 
-/// Finished pixels of whole tiles, for a tile's compositor to hand on as they are: of a process that has all cells of
-/// the tiles it makes. One part a tile, RecordKind::pixels; the pixels are those of PictureSink.
+/// Finished pixels of whole tiles, which a tile's compositor passes on unchanged: from a process that has all cells of
+/// its tiles. One part per tile, RecordKind::pixels; the pixels are those of PictureSink.
 template <class Encoding>
 class PixelSink final : public FragmentSink<Encoding> {
  public:

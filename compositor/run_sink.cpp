@@ -21,8 +21,8 @@ double planar_depth(const TileScene& scene, std::int64_t step) {
   return scene.lattice.depth(static_cast<double>(step));
 }
 
-/// Writes a run's record to `to`; where it ends. Field by field: what is put together elsewhere and copied waits for
-/// its own stores.
+/// Writes a run's record to `to`; returns the end. Field by field, because copying a record assembled in memory would
+/// wait for its own stores.
 std::byte* write_run(const TileScene& scene, const WindowState::Run& run, std::byte* to) {
   const auto put = [&](const auto& value) {
     std::memcpy(to, &value, sizeof value);
@@ -58,7 +58,7 @@ void write_runs(const TileScene&, std::vector<TilePixels<DoubleEncoding>::Run>& 
   writer.count(runs.size());
 }
 
-/// Runs of one pixel share a header.
+/// The runs of one pixel share a header.
 void write_runs(const TileScene& scene, std::vector<WindowState::Run>& runs, exchange::PartWriter& writer) {
   const auto by_pixel = [](const WindowState::Run& a, const WindowState::Run& b) { return a.pixel < b.pixel; };
   if (!std::is_sorted(runs.begin(), runs.end(), by_pixel)) std::stable_sort(runs.begin(), runs.end(), by_pixel);
@@ -79,7 +79,7 @@ void write_runs(const TileScene& scene, std::vector<WindowState::Run>& runs, exc
   }
 }
 
-/// Mostly each ray ends its first run with the rectangle: straight from the state then.
+/// In most rectangles, no ray ends a run before the end: then the runs can be written directly from the state.
 void write_only_runs(const TileScene& scene, const WindowState& state, exchange::PartWriter& writer) {
   const scene::PixelRect& rect = writer.rect();
   exchange::Bytes& out = writer.records();

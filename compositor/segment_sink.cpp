@@ -54,7 +54,7 @@ std::uint64_t SegmentSink<DoubleEncoding>::write(Store& lists, double final_dept
     for (const auto& entry : lists.pixel(p)) {
       const std::uint32_t i = entry.segment;
       if (!(entry.depth < final_depth)) break;
-      // Of cell data a link has one scalar, a crossing two.
+      // With cell data, a link has one scalar, but a crossing has two.
       const bool crossing = cell_data_ && projection::is_crossing(segments.scalar_front[i]);
       const bool touches =
           chain.links > 0 && segments.front[i] == back && !crossing &&

@@ -9,7 +9,7 @@
 
 namespace tessera::compositor {
 
-/// A sink that sends every segment as it is: nothing is integrated, so no pixel is known to be opaque.
+/// A sink that sends every segment unchanged: nothing is integrated, so no pixel is known to be opaque.
 template <class Encoding>
 class RawSink : public FragmentSink<Encoding> {
  public:
@@ -28,23 +28,23 @@ class RawSink : public FragmentSink<Encoding> {
   using FragmentSink<Encoding>::FragmentSink;
 
  private:
-  /// Appends the records of segments before `final_depth` and removes them; returns how many they are.
+  /// Appends the records of segments before `final_depth` and removes them; returns their number.
   virtual std::uint64_t write(Store& store, Depth final_depth, exchange::PartWriter& writer) = 0;
   [[nodiscard]] virtual double planar(Depth depth) const = 0;
 
   typename Encoding::Open open_{};
 };
 
-/// Exchange::segments: every ray segment, in the encoding's records (exchange/wire.hpp).
+/// Exchange::segments: every ray segment, as the encoding's records (exchange/wire.hpp).
 template <class Encoding>
 class SegmentSink;
 
-/// In chains of those that touch.
+/// As chains of touching segments.
 template <>
 class SegmentSink<DoubleEncoding> final : public RawSink<DoubleEncoding> {
  public:
   /// `global_tet[t]`: index in the whole mesh of this process's tet t, ascending; empty: t itself. Must outlive the
-  /// sink. `normals`: sent along; null: not. Cell data have none.
+  /// sink. `normals`: sent with the segments; null: not sent. Cell data have none.
   SegmentSink(bool cell_data, std::span<const std::uint64_t> global_tet, Deliver deliver,
               const CellNormals* normals = nullptr)
       : RawSink(cell_data            ? exchange::RecordKind::chains_of_cells
@@ -64,7 +64,7 @@ class SegmentSink<DoubleEncoding> final : public RawSink<DoubleEncoding> {
   const CellNormals* normals_;
 };
 
-/// In no order, as the compositor sorts: nothing is done here but copying, of all segments at once.
+/// Unsorted, because the compositor sorts: always copies all segments.
 template <>
 class SegmentSink<LatticeEncoding> final : public RawSink<LatticeEncoding> {
  public:
@@ -79,7 +79,7 @@ class SegmentSink<LatticeEncoding> final : public RawSink<LatticeEncoding> {
 };
 
 /// Exchange::segments of the scanline rasterizer: the 4-tuples of Juliachs et al. 2007, 4.2, in the order of their
-/// cells, as they are.
+/// cells.
 class TupleSink final : public RawSink<DoubleEncoding> {
  public:
   /// `longest_edge`: of the whole mesh, world units.

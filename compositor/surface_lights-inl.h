@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The light of surfaces' crossings, a crossing a lane. Included once per instruction set (Highway's include guard
+// The light of surface crossings, one crossing per lane. Included once per instruction set (Highway's include guard
 // idiom).
 //
-// What      Blinn-Phong with a light at the eye, as scene::SurfaceSet::light(): with the cosine c of ray and normal,
+// What      Blinn-Phong with a light at the eye, as in scene::SurfaceSet::light(): with the cosine c of ray and normal,
 //             light = opacity (color (ambient + diffuse c) + specular c^shininess).
-//           A crossing's mark holds its surface's number, which finds color and opacity, and c (LatticeMark).
-// Accuracy  Double precision, of a cosine in LatticeMark's bits; a whole shininess by repeated squares.
+//           A crossing's mark contains c and the number of its surface, which determines color and opacity
+//           (LatticeMark).
+// Accuracy  Double precision, for a cosine with the bits of LatticeMark; integer powers by repeated squaring.
 
 #if defined(TESSERA_COMPOSITOR_SURFACE_LIGHTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_COMPOSITOR_SURFACE_LIGHTS_INL_H_
@@ -32,14 +33,14 @@ using namespace integrals::HWY_NAMESPACE;  // vectors, and the integral of a seg
 using namespace scene::HWY_NAMESPACE;      // doubles, packing
 constexpr std::size_t most_lanes = MaxLanes(DI());
 
-/// The crossings' numbers, of marks.
+/// The surface numbers of marks.
 HWY_INLINE VI number_of(VF mark) {
   using Mark = projection::LatticeMark;
   const DI d;
   return ShiftRight<Mark::cosine_bits>(BitCast(d, mark) - Set(d, static_cast<std::int32_t>(Mark::first_bits)));
 }
 
-/// scene::SurfaceSet::light() of marks, a crossing a lane.
+/// Same as scene::SurfaceSet::light(), for one mark per lane.
 class SurfaceLights {
  public:
   Doubles red, green, blue, opacity;
@@ -62,7 +63,7 @@ class SurfaceLights {
     red = light(paint.red), green = light(paint.green), blue = light(paint.blue);
   }
 
-  /// What is seen of a surface and of `behind` it.
+  /// The light of a surface composited over `behind`.
   [[nodiscard]] HWY_INLINE Doubles before(const Doubles& of_surface, const Doubles& behind) const {
     return of_surface + (doubles(1) - opacity) * behind;
   }

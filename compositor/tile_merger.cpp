@@ -16,7 +16,7 @@ void merge(TileMerger& merger, const std::vector<exchange::TilePart>& parts, dou
   const std::uint64_t bytes_a_step = std::min<std::uint64_t>(budget_bytes / 20, 1 << 20);
   std::uint64_t added = 0;
   for (const exchange::TilePart& part : parts) {
-    // Beyond final_depth projectors that are not among these parts may still send something.
+    // Behind final_depth, projectors without a part in this list may still send fragments.
     if (added >= bytes_a_step && std::isfinite(part.start_depth)) {
       merger.advance(std::min(part.start_depth, final_depth));
       added = 0;
@@ -44,7 +44,7 @@ std::unique_ptr<TileMerger> make_tile_merger(exchange::RecordKind kind, const Me
       return make_tuple_merger(context, rect);
     case exchange::RecordKind::pixels:
       return make_pixel_merger();
-    case exchange::RecordKind::cells:  // for devices alone
+    case exchange::RecordKind::cells:  // only for devices
       break;
   }
   throw scene::Error(

@@ -24,34 +24,34 @@ namespace tessera::compositor {
 
 class GlCompositor;
 
-/// What a compositor knows of its frame. All must outlive the mergers.
+/// The frame data of a compositor. All of it must outlive the mergers.
 struct MergeContext {
   const projection::PixelSpace* space;
   const integrals::SegmentIntegrator* integrator;
   double max_color, longest_ray;
   float longest_edge;  ///< tuples: the unit of their lengths
   scene::Emission emission;
-  std::uint64_t budget_bytes;                         ///< for one tile's fragments that cannot be composited yet
+  std::uint64_t budget_bytes;                         ///< for the fragments of one tile that cannot be composited yet
   const scene::TransferFunction* function = nullptr;  ///< with deep samples
-  double deep_accuracy = 0;                           ///< > 0: raw segments give deep samples too (deep_sink.hpp)
-  std::optional<Peel> peel{};                         ///< then these are layers (peel_sink.hpp)
+  double deep_accuracy = 0;                           ///< > 0: also make deep samples from segments (deep_sink.hpp)
+  std::optional<Peel> peel{};                         ///< if set, the deep samples are layers (peel_sink.hpp)
   // Lattice segments:
   const scene::Lattice* lattice = nullptr;
   const integrals::LaneTable* table = nullptr;  ///< on that lattice
   scene::Trace* trace = nullptr;
-  // On a device (gl_merger.hpp), which wants a table and units (in `lattice`) in any case:
+  // On a device (gl_merger.hpp), which needs a table and units (in `lattice`) for all frames:
   GlCompositor* device = nullptr;
   bool on_lattice = true;  ///< false: `lattice` is device_units()
   std::uint32_t frame = 0;
-  /// Not null: where the device fails the CPU takes over, and this is set.
+  /// If not null, the CPU takes over when the device fails, and this is set.
   std::atomic<bool>* device_failed = nullptr;
-  std::atomic<std::uint64_t>* segments = nullptr;  ///< grows by those that the device makes of cells; null: nobody asks
+  std::atomic<std::uint64_t>* segments = nullptr;  ///< counts segments that the device makes of cells; may be null
   /// Set to true if runs of a pixel overlap, so that no order of them is right; may be null.
   std::atomic<bool>* overlapping = nullptr;
   const scene::SurfaceSet* surfaces = nullptr;  ///< in the volume; null: none
   const MatterLight* light = nullptr;           ///< on the matter of a mesh, by the CPU; null: none
 
-  /// What may still come behind a pixel of transmittance 1.
+  /// An upper bound of the light behind a pixel of transmittance 1.
   [[nodiscard]] double opacity_weight() const {
     const double brightest = light != nullptr ? light->brightest(max_color) : max_color;
     const double weight = integrals::opacity_weight(brightest, longest_ray, emission);
@@ -62,34 +62,34 @@ struct MergeContext {
 /// A finished tile.
 struct MergedTile {
   scene::Image image;  ///< its first pixel at (0, 0)
-  /// Deep samples, row by row: how many in each pixel, and all of them. Empty without.
+  /// Deep samples, row by row: the number in each pixel, and all samples. Empty if not requested.
   std::vector<std::uint32_t> deep_counts;
   std::vector<scene::DeepImageSample> deep_samples;
-  /// The tile's pixels as bytes (exchange/packed_pixels.hpp), in place of the image.
+  /// The tile's pixels as bytes (exchange/packed_pixels.hpp), instead of the image.
   exchange::Bytes pixels{};
 };
 
-/// One tile of the picture from the fragments of all projectors.
+/// Computes one tile of the image from the fragments of all projectors.
 ///
-/// Parts may come in any order; the picture does not depend on it, as fragments have a total order: segments by
-/// (front, back, tet) or, as runs, by all they hold. One merger is used by one thread at a time.
+/// Parts may arrive in any order; the image does not depend on it because fragments have a total order: segments by
+/// (front, back, tet), runs by all their fields. One merger is used by one thread at a time.
 class TileMerger {
  public:
   virtual ~TileMerger() = default;
 
-  /// Takes a part's records. Throws Error(system_failure) for a malformed part, or if the tile holds more than the
-  /// budget.
+  /// Takes a part's records. Throws Error(system_failure) for a malformed part, or if the tile needs more memory than
+  /// the budget.
   virtual void add(const exchange::TilePart& part) = 0;
 
-  /// Composites all fragments before this planar depth: no fragment may still come before it.
+  /// Composites all fragments before this planar depth; all of these must have been added.
   virtual void advance(double final_depth) = 0;
 
-  /// After advance(infinity).
+  /// Called after advance(infinity).
   virtual MergedTile finish() = 0;
 };
 
-/// Adds parts that are ordered by start_depth and advances to `final_depth`, in steps that stay well within a merger's
-/// budget (a segment takes five times its bytes on the wire).
+/// Adds parts, which must be sorted by start_depth, and advances to `final_depth`, in steps that stay well within a
+/// merger's budget (a segment takes five times its bytes in the message).
 void merge(TileMerger& merger, const std::vector<exchange::TilePart>& parts, double final_depth,
            std::uint64_t budget_bytes);
 

@@ -60,7 +60,7 @@ void ListPixels::integrate(const Lists& lists, double final_depth) {
   if (!crossings_.empty()) light_crossings(*scene_.surfaces, crossings_, batch_);
 }
 
-/// Of the batch of these lists. Crossings, which show nothing yet, stay as they are.
+/// Lights the batch of these lists. Crossings, whose light is set later, stay unchanged.
 void ListPixels::light_matter(const Lists& lists, double final_depth) {
   std::size_t next = 0;
   for (std::size_t p = 0; p < open_.size(); ++p) {
@@ -80,7 +80,7 @@ void ListPixels::light_matter(const Lists& lists, double final_depth) {
   }
 }
 
-/// Ends a run that a pixel is in.
+/// Ends the current run of a pixel.
 void ListPixels::end(Run& run) {
   if (run.begun && run.visible()) ended.push_back(run);
   const std::uint32_t pixel = run.pixel;
@@ -110,7 +110,7 @@ void ListPixels::add(const Lists& lists, double final_depth) {
       const bool absorbs = batch_.optical_depth[k] > 0;
       bool appears = absorbs && run.optical_depth == 0 && std::isinf(run.front);
       if constexpr (runs) {
-        // Light without optical depth (independent emission) does not share a fragment with what absorbs behind it: the
+        // Light without optical depth (independent emission) does not share a fragment with absorption behind it: the
         // fragment's front is where absorption begins.
         if (run.begun && (run.back != segments.front[i] || (absorbs && run.optical_depth == 0 && run.visible())))
           end(run);

@@ -15,55 +15,57 @@
 
 namespace tessera::compositor {
 
-/// A pixel of a picture: premultiplied linear RGB, opacity, and the planar depth at which it begins to show, world
-/// units, infinite if it does not.
+/// A pixel of an image: premultiplied linear RGB, opacity, and the planar depth at which it becomes visible, in world
+/// units; infinite if it is empty.
 struct PixelValue {
   double red, green, blue, opacity, depth;
 };
 
-/// A crossing of a surface among the segments of a batch: no segment, it is given its light afterwards.
+/// A crossing of a surface among the segments of a batch. It is not a segment; its light is set afterwards.
 struct CrossingInBatch {
   std::size_t at;
   projection::Crossing crossing;
-  double value;  ///< the field's there, or the surface's
+  double value;  ///< the field's value there, or the surface's
 };
-/// Gives segment `at` of a batch, which has been integrated, the light on its tet.
+/// Applies the light on its tet to segment `at` of a batch, after integration.
 inline void light_segment(const MatterLight::Light& light, std::size_t at, double optical_depth,
                           integrals::SegmentBatch& batch) {
   const double white = light.white * -std::expm1(-optical_depth);
   for (auto* color : {&batch.red, &batch.green, &batch.blue}) (*color)[at] = light.own * (*color)[at] + white;
 }
 
-/// Gives crossings that were integrated as segments of length zero their light.
+/// Sets the light of crossings, which were integrated as segments of length zero.
 void light_crossings(const scene::SurfaceSet& surfaces, std::span<const CrossingInBatch> crossings,
                      integrals::SegmentBatch& batch);
 
 /// The pixels of a rectangle while segments are composited into them, front to back: the whole ray of each as one run,
-/// or (`runs`) a new run wherever a segment does not touch the one before.
+/// or (`runs`) a new run wherever a segment does not touch the previous one.
 ///
-///   start(rect)                       all pixels empty and open
-///   take(store, final, at_least, timer) composites what is final and removes it; returns how many segments are gone
-///   open(), any_open()                a pixel behind which everything left cannot change it by the integrator's
-///                                     termination error is closed and takes nothing more
-///   value(p)                          a picture's pixel
-///   ended, end_runs()                 runs: those that show and have ended; ends all
-///   keep_open()                       runs: until the next start() no pixel closes, as what hides it may lie behind it
+///   start(rect)                          all pixels empty and open
+///   take(store, final, at_least, timer)  composites the final segments and removes them; returns the number removed
+///   open(), any_open()                   a pixel is closed, and accepts no more segments, once everything behind it
+///                                        changes it by less than the integrator's termination error
+///   value(p)                             a pixel of an image
+///   ended, end_runs()                    runs: the visible ones that have ended; ends all
+///   keep_open()                          runs: no pixel is closed until the next start(), because the segments that
+///                                        hide it may be behind later ones
 ///
-/// Two sources, as each encoding has arithmetic of its own: here lists of doubles, on the lattice 16 pixels a vector
-/// (window_kernel.hpp). compositor/README.md says what the second gains.
+/// There are two specializations, because each encoding has its own arithmetic: lists of doubles here, and on the
+/// lattice one pixel per lane (window_kernel.hpp). compositor/README.md has the gain of the second.
 template <class Encoding>
 class TilePixels;
 
-/// Sums in double, optical depth among them. The opacity is -expm1(-optical depth), so that a hundred thousand segments
-/// of opacity 1e-9 add up, and 1 - 1e-8 is not 1.
+/// Sums are in double precision, including optical depth. The opacity is -expm1(-optical depth), so that a hundred
+/// thousand segments of opacity 1e-9 add up, and 1 - 1e-8 is not rounded to 1.
 template <>
 class TilePixels<sorting::DoubleEncoding> {
  public:
-  /// Runs touch if one's back is the other's front to the bit: neighbours compute a shared face from the same numbers.
+  /// Runs touch if the back of one equals the front of the other bit for bit: neighbouring cells compute a shared face
+  /// from the same numbers.
   struct Run {
     std::uint32_t pixel = 0;
     bool begun = false;                                      ///< false: no segment yet
-    double front = std::numeric_limits<double>::infinity();  ///< where it begins to show
+    double front = std::numeric_limits<double>::infinity();  ///< where it becomes visible
     double back = 0;
     double red = 0, green = 0, blue = 0, transmittance = 1, optical_depth = 0;
     [[nodiscard]] bool visible() const { return optical_depth > 0 || red != 0 || green != 0 || blue != 0; }
@@ -78,7 +80,7 @@ class TilePixels<sorting::DoubleEncoding> {
     composite(lists, final_depth, timer);
     return lists.remove(final_depth, open_);
   }
-  /// take() without removing anything.
+  /// Same as take(), but does not remove segments.
   void composite(sorting::SegmentLists& lists, double final_depth, scene::StageTimer& timer);
 
   [[nodiscard]] const std::vector<std::uint8_t>& open() const { return open_; }
@@ -98,7 +100,7 @@ class TilePixels<sorting::DoubleEncoding> {
   bool runs_, closes_ = true;
   scene::PixelRect rect_{0, 0, 0, 0};
   std::vector<Run> pixels_;
-  std::vector<double> transmittance_;  ///< of each ray: its runs so far
+  std::vector<double> transmittance_;  ///< of each ray: the product over its runs so far
   std::vector<double> length_per_depth_;
   std::vector<std::uint8_t> open_;
   std::size_t open_count_ = 0;
@@ -129,7 +131,7 @@ class TilePixels<sorting::LatticeEncoding> {
   void end_runs();
   [[nodiscard]] PixelValue value(std::size_t pixel) const;
 
-  /// Runs that have ended are in state().ended; those that have not may be read there too.
+  /// Runs that have ended are in state().ended; the others can be read there, too.
   [[nodiscard]] WindowState& state() { return state_; }
 
  private:

@@ -11,7 +11,7 @@
 
 namespace tessera::compositor {
 
-/// What sinks and mergers that integrate know of their frame. All must outlive them.
+/// The frame data of sinks and mergers that integrate segments. All of it must outlive them.
 struct TileScene {
   const projection::PixelSpace* space;
   const integrals::SegmentIntegrator* integrator;
@@ -22,15 +22,15 @@ struct TileScene {
   const scene::SurfaceSet* surfaces = nullptr;  ///< in the volume; null: none
   // In double precision:
   const MatterLight* light = nullptr;    ///< on the matter; null: none
-  const CellNormals* normals = nullptr;  ///< with light: of the segments' tets
+  const CellNormals* normals = nullptr;  ///< with light: the normals of the segments' tets
 
-  /// Behind less light than this nothing changes a pixel by the integrator's termination error.
+  /// Behind a lower transmittance, nothing changes a pixel by the integrator's termination error.
   [[nodiscard]] double least_transmittance() const {
     return integrator->termination_error() / left_out_per_transmittance;
   }
 };
 
-/// Where finished pixels go: pixel (x0, y0) of the picture is the image's first.
+/// The target of finished pixels: the image's first pixel is pixel (x0, y0) of the frame.
 struct ImageWindow {
   scene::Image* image;
   int x0 = 0, y0 = 0;

@@ -15,7 +15,7 @@ struct TupleRecord {
 };
 static_assert(sizeof(TupleRecord) == 20);
 
-/// What follows a LatticeHeader (exchange/wire.hpp) byte by byte.
+/// The records that follow a LatticeHeader (exchange/wire.hpp), byte for byte.
 static_assert(sizeof(projection::LatticeSegment) == 16);
 
 }  // namespace tessera::compositor

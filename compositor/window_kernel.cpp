@@ -26,8 +26,8 @@ std::uint64_t composite_windows(const WindowRules&, projection::SegmentWindows&,
 using sorting::HWY_NAMESPACE::has_row;
 using sorting::HWY_NAMESPACE::segment_at;
 
-/// Four segments to every fourth lane of four vectors, transposed in registers to their fields: a quarter of the time
-/// of gathers. Segment i of vector k goes to lane 4 i + k.
+/// Transposes four segments, in every fourth lane of four vectors, to their fields in registers: this takes a quarter
+/// of the time of gathers. Segment i of vector k goes to lane 4 i + k.
 HWY_INLINE SegmentLanes transposed(VI v0, VI v1, VI v2, VI v3) {
   const DI d;
   const hn::RepartitionToWide<DI> wide;
@@ -39,7 +39,7 @@ HWY_INLINE SegmentLanes transposed(VI v0, VI v1, VI v2, VI v3) {
           BitCast(df, InterleaveLower(wide, high01, high23)), BitCast(df, InterleaveUpper(wide, high01, high23))};
 }
 
-/// Those of load_segments(), `lanes` / 4 of them: lanes first, first + 4, first + 8...
+/// `lanes` / 4 of the segments of load_segments(): lanes first, first + 4, first + 8...
 template <std::size_t lanes>
 HWY_INLINE auto load_every_fourth(const projection::LatticeSegment* list, const std::int32_t* slots, int first) {
   if constexpr (lanes == 4) {
@@ -52,7 +52,7 @@ HWY_INLINE auto load_every_fourth(const projection::LatticeSegment* list, const 
   }
 }
 
-/// In every lane the segment that its slot names, counted from list[lane].
+/// Loads into every lane the segment given by its slot, counted from list[lane].
 HWY_INLINE SegmentLanes load_segments(const projection::LatticeSegment* list, const std::int32_t* slots) {
   return transposed(load_every_fourth<most_lanes>(list, slots, 0), load_every_fourth<most_lanes>(list, slots, 1),
                     load_every_fourth<most_lanes>(list, slots, 2), load_every_fourth<most_lanes>(list, slots, 3));
@@ -71,13 +71,13 @@ class PixelGroup {
         pixel_(pixel),
         list_(windows.segments() + pixel) {}
 
-  /// Puts the lists' slots in order. Returns the number of rows: the longest list's length.
+  /// Sorts the lists' slots. Returns the number of rows, which is the length of the longest list.
   HWY_INLINE std::size_t sort() {
     return sorting::HWY_NAMESPACE::sort_windows(list_, windows_.stride(), windows_.counts() + pixel_, state_.order);
   }
 
-  /// Loads the segments of the rows [from, to) before `final_step`, in pixels that are open; of runs it notes where
-  /// they end. Returns where it ended: behind the last row with a final segment.
+  /// Loads the segments of the rows [from, to) before `final_step`, in open pixels; for runs, it stores where they end.
+  /// Returns the end of the loaded rows: behind the last one with a final segment.
   template <bool runs, bool with_surfaces>
   HWY_INLINE std::size_t load(std::size_t from, std::size_t to, std::int32_t final_step,
                               const scene::SurfaceSet* surfaces) {
@@ -109,10 +109,11 @@ class PixelGroup {
       light_.put_segment(s, length, table_.locate(s.scalar_front, s.scalar_back >= s.scalar_front),
                          (row - from) * lanes);
       if constexpr (runs) {
-        // A lane in no run begins one in the first of these rows, or takes nothing from any: its list has no holes.
+        // A lane that is in no run begins one in the first of these rows, or takes nothing from any: lists have no
+        // gaps.
         if (row == from) run_back = IfThenElse(And(takes, run_back == none), front, run_back);
         widest = Max(widest, Abs(IfThenElseZero(takes, front - run_back)));
-        // Irregular cells' depths are a few steps off: a run does not go back.
+        // The depths of irregular cells differ by a few steps: the end of a run never decreases.
         run_back = IfThenElse(takes, Max(run_back, s.back), run_back);
       }
     }
@@ -129,12 +130,12 @@ class PixelGroup {
                                      : load<runs, false>(from, to, final_step, nullptr);
   }
 
-  /// Composites what lies before `final_step`; returns how many segments are done with.
+  /// Composites the segments before `final_step`; returns the number of segments that are finished.
   HWY_INLINE std::uint64_t composite(std::size_t rows, std::int32_t final_step, const WindowRules& rules) {
     done_ = Zero(DI());
     for (std::size_t from = 0, to; from < rows; from = to) {
       const std::size_t most = std::min(rows, from + LightRows::most);
-      // In three passes, each of chains short enough for a processor to work on several rows at once.
+      // In three passes, with dependency chains short enough for a processor to work on several rows at once.
       to = rules.runs ? load<true>(from, most, final_step, rules) : load<false>(from, most, final_step, rules);
       light_.integrate(table_, to - from);
       if (HWY_UNLIKELY(rules.surfaces != nullptr)) light_.put_surfaces(*rules.surfaces, rules.runs || some_unseen());
@@ -144,7 +145,7 @@ class PixelGroup {
   }
 
  private:
-  /// Whether some lane has shown nothing yet.
+  /// Whether some lane has not become visible yet.
   HWY_INLINE bool some_unseen() const {
     const DI d;
     return !AllFalse(d, Load(d, &state_.first_back[pixel_]) == Set(d, no_key));
@@ -152,7 +153,7 @@ class PixelGroup {
 
   HWY_INLINE VI count() const { return LoadU(DI(), reinterpret_cast<const std::int32_t*>(windows_.counts() + pixel_)); }
 
-  /// Leaves in the windows what of the sorted rows was not final, in order. Returns how many segments are gone.
+  /// Keeps in the windows, in order, the sorted segments that were not final. Returns the number of removed segments.
   HWY_INLINE std::uint64_t keep_rest(std::size_t rows) {
     const DI d;
     // Lanes beyond the last pixel share their memory with other lists.
@@ -166,7 +167,8 @@ class PixelGroup {
     state_.rest_rows[pixel_ / lanes] = static_cast<std::int32_t>(most);
     const auto gone = static_cast<std::uint64_t>(GetLane(SumOfLanes(d, count - left)));
     if (most == 0) return gone;
-    // As many of each lane, so that no branch depends on one: what is not a lane's own is behind its list's end.
+    // The same number for each lane, so that no branch depends on one: elements that are not a lane's own are behind
+    // its list's end.
     alignas(64) std::int32_t first[most_lanes];
     Store(done_, d, first);
     if (state_.rest.size() < most * lanes) state_.rest.resize(most * lanes);

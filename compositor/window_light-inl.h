@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The light of windows' rows on its way into pixels, or runs. Included once per instruction set (Highway's include
-// guard idiom).
+// Composites the light of windows' rows into pixels or runs. Included once per instruction set (Highway's include guard
+// idiom).
 //
-// What      Of sixteen pixels, a pixel a lane, sorted segments row by row: row i is the i-th segment of every pixel.
-//           LightRows integrates rows to light C and opacity alpha; GroupLight composites them front to back,
+// What      The sorted segments of sixteen pixels, one pixel per lane, row by row: row i contains the i-th segment of
+//           every pixel. LightRows integrates rows to light C and opacity alpha; GroupLight composites them front to
+//           back,
 //             color += T C,  T -= T alpha,
-//           where T is the transmittance so far. A run is a stretch of segments that touch: for a picture the whole
-//           ray, for fragments it ends where the next segment begins elsewhere.
+//           where T is the transmittance so far. A run is a sequence of segments that touch: for an image, it is the
+//           whole ray; for fragments, it ends where the next segment does not touch.
 // How       Segments of one piece are integrated in place; those that are cut into several wait until they fill the
-//           lanes. A surface's light is put before that of the segment behind it.
-// Bits      Sums in double, segment after segment: they depend neither on windows nor on the lanes' neighbours.
-// Ends      A pixel whose T falls below the least that can show closes with that segment and takes no more.
+//           lanes. The light of a surface is composited in front of that of the segment behind it.
+// Bits      Sums are in double precision, segment after segment: they depend neither on windows nor on the other lanes.
+// Ends      A pixel whose T falls below the least visible transmittance is closed with this segment and accepts no
+//           more.
 
 #if defined(TESSERA_COMPOSITOR_WINDOW_LIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_COMPOSITOR_WINDOW_LIGHT_INL_H_
@@ -34,35 +36,35 @@ namespace tessera::compositor {
 namespace HWY_NAMESPACE {
 
 using projection::HWY_NAMESPACE::SegmentLanes;
-constexpr std::int32_t no_key = WindowState::not_yet;  // behind all keys
+constexpr std::int32_t no_key = WindowState::not_yet;  // greater than all keys
 
 /// -1 where the mask is set, else 0.
 HWY_INLINE VI lanes_of(DoubleMasks mask) { return ConvertTo(DI(), demote(IfThenElseZero(mask, doubles(-1)))); }
 
-/// What a block of rows, a segment of every pixel in each, sends to the eye: numbers [row * lanes + lane].
+/// The light that leaves the segments of a block of rows, each with one segment per pixel: values [row * lanes + lane].
 struct LightRows {
   static constexpr std::size_t most = 32, numbers = most * most_lanes;
   alignas(64) float alpha[numbers], optical_depth[numbers], red[numbers], green[numbers], blue[numbers];
-  /// Of the segment, in lattice steps; front is no_key where the row has none that counts.
+  /// Of the segment, in lattice steps; front is no_key where the lane has no valid segment in the row.
   alignas(64) std::int32_t front[numbers], back[numbers];
   alignas(64) std::int32_t interval[numbers];
   alignas(64) float length[numbers], scalar_front[numbers], scalar_back[numbers];
-  // Where segments of more than one piece are, until they fill the lanes.
+  // The positions of segments of more than one piece, until they fill the lanes.
   alignas(64) std::int32_t waiting_at[numbers + most_lanes];
   std::size_t waiting = 0;
-  bool lit[most];  ///< some lane of the row has light or depth
-  // Runs: where each lane's ends behind the rows (no_key: in none), and whether none ends between them.
+  bool lit[most];  ///< whether some lane of the row has light or optical depth
+  // Runs: where each lane's run ends after the rows (no_key: the lane is in none), and whether none ends between them.
   alignas(64) std::int32_t run_back[most_lanes];
   bool touching;
-  // Segments that begin at a surface: where they are and their marks while they are integrated, and the rows that have
-  // some, a bit each.
+  // Segments that begin at a surface: their positions, and their marks during integration; and the rows that have some,
+  // one bit each.
   alignas(64) std::int32_t marked_at[numbers + most_lanes];
   alignas(64) float mark[numbers + most_lanes];
   std::size_t marked = 0;
   std::uint32_t marked_rows = 0;
 
-  /// Of a row, whose lanes that are final and open take a segment. Returns its front scalars, with the surfaces' values
-  /// where they are marks.
+  /// Stores the marks of a row, whose segments are taken in lanes that are final and open. Returns its front scalars,
+  /// with marks replaced by the surfaces' values.
   HWY_INLINE VF set_aside_surfaces(std::span<const float> by_number, MI is_final, MI open, VF scalar_from,
                                    std::size_t row) {
     using Mark = projection::LatticeMark;
@@ -82,13 +84,13 @@ struct LightRows {
     const VI number = IfThenElseZero(RebindMask(di, is_mark), Min(number_of(scalar_from), last));
     return IfThenElse(is_mark, GatherIndex(d, by_number.data(), number), scalar_from);
   }
-  /// After integrate(): puts the surfaces before what is behind them. `show_first`: where lanes begin to show may still
-  /// be asked.
+  /// After integrate(): composites the surfaces in front of what is behind them. `show_first`: whether the first
+  /// visible segment of some lane may still be needed.
   HWY_NOINLINE void put_surfaces(const scene::SurfaceSet& surfaces, bool show_first) {
     const DF d;
     const DI di;
     for (std::size_t i = 0; i < marked; i += hn::Lanes(d)) {
-      // Lanes beyond the last do as the first does.
+      // Lanes beyond the last repeat the first.
       const auto here = FirstN(d, marked - i);
       const VI at = IfThenElse(RebindMask(di, here), Load(di, marked_at + i), Set(di, marked_at[i]));
       const VF marks = IfThenElse(here, Load(d, mark + i), Set(d, mark[i]));
@@ -101,7 +103,7 @@ struct LightRows {
       put(light.red, red), put(light.green, green), put(light.blue, blue);
       const VF hidden = put(light.opacity, alpha);
       if (!show_first) continue;
-      // Of the optical depth is only asked whether there is some.
+      // The optical depth is only tested for being positive.
       ScatterIndex(hidden, d, optical_depth, at);
       ScatterIndex(marks, d, scalar_front, at);
     }
@@ -132,7 +134,7 @@ struct LightRows {
     const DF d;
     const DI di;
     alignas(64) float now[5][most_lanes];
-    StoreU(Zero(di), di, waiting_at + waiting);  // lanes beyond the last read some place, too
+    StoreU(Zero(di), di, waiting_at + waiting);  // lanes beyond the last also read some position
     for (std::size_t i = 0; i < waiting; i += hn::Lanes(d)) {
       const std::size_t here = std::min(hn::Lanes(d), waiting - i);
       const VI at = Load(di, waiting_at + i);
@@ -149,7 +151,7 @@ struct LightRows {
     waiting = 0;
   }
 
-  /// The light of the first `count` rows' segments.
+  /// Computes the light of the segments in the first `count` rows.
   template <TableForm form>
   HWY_INLINE void integrate(const Lookup<form>& table, std::size_t count) {
     table.independent ? integrate_rows<true>(table, count) : integrate_rows<false>(table, count);
@@ -178,7 +180,7 @@ struct LightRows {
   }
 };
 
-/// The light that lanes' rays, or runs, have gathered so far, and what they let through.
+/// The light that the lanes' rays, or runs, have accumulated so far, and their transmittance.
 struct RayLight {
   Doubles red, green, blue, transmittance;
 
@@ -191,7 +193,7 @@ struct RayLight {
     store(red, &state.red[p]), store(green, &state.green[p]), store(blue, &state.blue[p]);
     store(transmittance, &state.transmittance[p]);
   }
-  /// Adds the light that begins at `at`. `weight`: the transmittance, or zero where a lane takes nothing.
+  /// Adds the light that begins at `at`. `weight`: the transmittance, or zero in lanes that accept nothing.
   HWY_INLINE void add(const LightRows& light, std::size_t at, Doubles weight) {
     red = MulAdd(weight, load(light.red + at), red);
     green = MulAdd(weight, load(light.green + at), green);
@@ -206,26 +208,27 @@ class GroupLight {
   HWY_INLINE GroupLight(WindowState& state, LightRows& light, std::size_t pixel, bool independent)
       : state_(state), light_(light), pixel_(pixel), independent_(independent) {}
 
-  /// The first `count` rows. Returns whether some pixel stays open.
+  /// Adds the first `count` rows. Returns whether some pixel stays open.
   HWY_INLINE bool add(std::size_t count, const WindowRules& rules) {
     if (!rules.runs) return add_touching<false>(count, rules);
-    // Mostly no run ends between the rows: then they are a picture's. Light without extinction ends runs, too.
+    // In most cases, no run ends between the rows: then they are added as for an image. Independent emission also ends
+    // runs.
     if (light_.touching && !independent_) return add_touching<true>(count, rules);
     return rules.least_transmittance > 0 ? add_to_runs<true>(count, rules) : add_to_runs<false>(count, rules);
   }
 
  private:
-  /// Rows that go on with what each pixel has: with the whole picture, or with its run.
+  /// Adds rows that continue what each pixel has: the whole ray, or its run.
   template <bool runs>
   HWY_INLINE bool add_touching(std::size_t count, const WindowRules& rules) {
     RayLight ray(state_, pixel_);
     const Doubles least = runs ? least_of_runs(rules) : doubles(rules.least_transmittance);
-    // A pixel that closes takes no more: it has no weight.
+    // A closed pixel has weight zero.
     DoubleMasks open = load_open();
     for (std::size_t row = 0; row < count; ++row) {
       if (!light_.lit[row]) continue;
       ray.add(light_, row * hn::Lanes(DF()), IfThenElseZero(open, ray.transmittance));
-      // After each segment, not each window: where a ray ends must not depend on how its segments were cut.
+      // After each segment, not each window: where a ray ends must not depend on how its segments were divided.
       open = And(open, ray.transmittance >= least);
     }
     ray.save(state_, pixel_);
@@ -235,8 +238,8 @@ class GroupLight {
     return !AllFalse(DI(), open_lanes < Zero(DI()));
   }
 
-  /// Where lanes that have shown nothing yet begin to, and, of runs, whether more than that segment shows. (Lanes
-  /// closed by a row show what it has: it is theirs.)
+  /// Stores where lanes that were not visible become visible and, for runs, whether more than this segment is visible.
+  /// (Segments in lanes that a row has closed count, too.)
   template <bool runs>
   HWY_INLINE void note_first(std::size_t count) {
     const DI d;
@@ -258,18 +261,18 @@ class GroupLight {
     if constexpr (runs) Store(VecFromMask(d, Not(single)), d, &state_.several[pixel_]);
   }
 
-  /// What the lanes' runs must let through to stay open, behind the runs before them.
+  /// The least transmittance with which the lanes' runs stay open, given the runs in front of them.
   HWY_INLINE Doubles least_of_runs(const WindowRules& rules) const {
     if (rules.least_transmittance == 0) return doubles(0);
     return doubles(rules.least_transmittance) / load(&state_.ray_transmittance[pixel_]);
   }
 
-  /// The runs that lanes are in, while rows are added to them.
+  /// The lanes' current runs while rows are added to them.
   struct Runs {
     RayLight light;
-    Doubles least;     ///< transmittance; where lanes close
-    VI back;           ///< where the run ends; no_run: in none
-    MI seen, several;  ///< whether a segment of it shows, and more than one
+    Doubles least;     ///< transmittance below which lanes are closed
+    VI back;           ///< the end of the run; no_run: the lane is in none
+    MI seen, several;  ///< whether one segment of it is visible, and more than one
   };
   static constexpr std::int32_t no_run = -no_key;
 
@@ -288,7 +291,7 @@ class GroupLight {
     Store(VecFromMask(d, runs.several), d, &state_.several[pixel_]);
   }
 
-  /// Adds rows to runs. Whether some pixel stays open may change only where `closes`.
+  /// Adds rows to runs. Returns whether some pixel stays open; this can change only with `closes`.
   template <bool closes>
   HWY_INLINE bool add_to_runs(std::size_t count, const WindowRules& rules) {
     const DI d;
@@ -307,12 +310,12 @@ class GroupLight {
         end_runs(ends);
         runs = resume<closes>(rules);
       }
-      // All that take one are in a run up to its back. Irregular cells' depths are a few steps off: a run does not go
-      // back.
+      // All lanes that take a segment are now in a run up to its back. The depths of irregular cells differ by a few
+      // steps: the end of a run never decreases.
       runs.back = IfThenElse(takes, Max(runs.back, Load(d, light_.back + at)), runs.back);
       if (!light_.lit[row]) continue;
       note_shown(runs, takes, absorbs, row);
-      // Lanes that took nothing from the start have no light; lanes that have closed since have.
+      // Lanes that took nothing from the start have no light; lanes that were closed since then have.
       Doubles weight = runs.light.transmittance;
       if constexpr (closes) weight = IfThenElseZero(open, weight);
       runs.light.add(light_, at, weight);
@@ -328,25 +331,25 @@ class GroupLight {
     return !AllFalse(d, open_lanes);
   }
 
-  /// The lanes whose run does not go on with the segment that they take: it does not touch the run's back.
+  /// The lanes whose run ends because the segment that they take does not touch its back.
   HWY_INLINE MI ending(const Runs& runs, VI front, MI takes, MI absorbs) const {
     const DI d;
     const MI in_run = And(takes, runs.back != Set(d, no_run));
     const MI apart = And(in_run, Abs(front - runs.back) > Set(d, touching_steps));
     if (!independent_) return apart;
-    // Light without extinction does not share a run with what absorbs behind it either: a run's front is where
+    // Light without extinction does not share a run with absorption behind it, either: a run's front is where
     // absorption begins.
     const MI clear = lanes_of(runs.light.transmittance >= doubles(1)) != Zero(d);
     return Or(apart, And(And(in_run, absorbs), And(runs.seen, clear)));
   }
 
-  /// Notes what of the row shows in lanes' runs.
+  /// Stores which of the row's segments are visible in the lanes' runs.
   HWY_INLINE void note_shown(Runs& runs, MI takes, MI absorbs, std::size_t row) {
     const DI d;
     const DF df;
     MI shows = absorbs;
     if (independent_) {
-      // A run begins where it shows, if only by light.
+      // A run begins where it becomes visible, also if only by light.
       const std::size_t at = row * hn::Lanes(d);
       const auto color = [&](const float* c) HWY_ATTR { return Abs(Load(df, c + at)); };
       const VF colors = color(light_.red) + (color(light_.green) + color(light_.blue));
@@ -363,7 +366,7 @@ class GroupLight {
       state_.end_run(pixel_ + static_cast<std::size_t>(__builtin_ctz(left)));
   }
 
-  /// Notes the row's segments as those in which lanes begin to show.
+  /// Stores the row's segments as those in which lanes become visible.
   HWY_NOINLINE void keep_first(MI appears, std::size_t row) {
     const DI d;
     const DF df;
@@ -382,7 +385,7 @@ class GroupLight {
                           HWY_ATTR { return PromoteTo(dd, LoadU(di32, &state_.open[pixel_ + from])) < Zero(dd); };
     return {half(0), half(hn::Lanes(dd))};
   }
-  /// Returns what is stored: -1 or 0.
+  /// Returns the stored lanes: -1 or 0.
   HWY_INLINE VI store_open(const DoubleMasks& open) {
     const VI lanes = lanes_of(open);
     Store(lanes, DI(), &state_.open[pixel_]);

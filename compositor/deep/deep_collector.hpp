@@ -10,29 +10,29 @@
 
 namespace tessera::compositor {
 
-/// Takes deep samples, rectangle by rectangle.
+/// Receives deep samples, rectangle by rectangle.
 class DeepTarget {
  public:
   virtual ~DeepTarget() = default;
-  /// The samples of a rectangle, pixel after pixel row by row, `counts` of them in each. Rectangles are disjoint.
+  /// Adds the samples of a rectangle, pixel by pixel in rows, `counts` of them in each. Rectangles are disjoint.
   virtual void add(const scene::PixelRect& rect, std::vector<std::uint32_t> counts,
                    std::vector<scene::DeepImageSample> samples) = 0;
 };
 
-/// Gathers the deep samples of a picture, rectangles in any order and from any thread.
+/// Collects the deep samples of an image, with rectangles in any order and from any thread.
 class DeepCollector final : public DeepTarget {
  public:
-  /// `most_bytes` bounds what the samples take, the moment in which image() orders them included.
+  /// `most_bytes` bounds the memory of the samples, including the copy that image() makes.
   DeepCollector(scene::ImageSize size, std::uint64_t most_bytes) : size_(size), most_bytes_(most_bytes) {}
 
   /// Throws Error(system_failure) beyond the bound.
   void add(const scene::PixelRect& rect, std::vector<std::uint32_t> counts,
            std::vector<scene::DeepImageSample> samples) override;
 
-  /// The picture; the collector is empty then. Pixels that got none have no samples.
+  /// Returns the image and empties the collector. Pixels for which none were added have no samples.
   scene::DeepImage image();
 
-  static constexpr std::uint64_t bytes_a_pixel = 2 * sizeof(std::uint64_t);  ///< taken whatever the samples are
+  static constexpr std::uint64_t bytes_a_pixel = 2 * sizeof(std::uint64_t);  ///< used independently of the samples
 
  private:
   struct Block {

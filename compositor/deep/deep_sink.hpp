@@ -14,12 +14,12 @@
 
 namespace tessera::compositor {
 
-/// A picture and, beside it, deep samples: cuts a tile's ray segments into pieces, integrates these, merges them. The
-/// integrator must be `exact`, so that the light of a segment is that of its pieces. Deep pixels close as a picture's
-/// do, by their own sums; a pixel is open while either wants it.
+/// An image and, in addition, deep samples: cuts a tile's ray segments into pieces, integrates these, and merges them.
+/// The integrator must be `exact`, so that the light of a segment is that of its pieces. Deep pixels are closed in the
+/// same way as an image's, by their own sums; a pixel is open as long as either is.
 class DeepSink final : public TileSink<DoubleEncoding> {
  public:
-  /// The scene's values, the window's image and `collector` must outlive this object; threads share the collector.
+  /// The scene's values, the window's image and `collector` must outlive this object; threads share `collector`.
   DeepSink(const TileScene& scene, const ImageWindow& window, const scene::TransferFunction& function,
            scene::Emission emission, double accuracy, DeepTarget& collector);
 
@@ -31,7 +31,7 @@ class DeepSink final : public TileSink<DoubleEncoding> {
   void finish() override;
   [[nodiscard]] std::uint64_t segments() const override { return segments_; }
 
-  /// Working memory a pixel of the tile.
+  /// Working memory per pixel of the tile.
   static constexpr std::size_t bytes_a_pixel = sizeof(DeepMerger) + 3 * sizeof(double);
 
  private:
@@ -45,12 +45,12 @@ class DeepSink final : public TileSink<DoubleEncoding> {
   double accuracy_;
   DeepTarget* collector_;
   scene::PixelRect rect_{0, 0, 0, 0};
-  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< of finished rectangles, of this one
-  std::vector<DeepMerger> mergers_;                 ///< one a pixel
+  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< of finished rectangles, of this rectangle
+  std::vector<DeepMerger> mergers_;                 ///< one per pixel
   std::vector<double> transmittance_before_, length_per_depth_;
   std::vector<std::uint8_t> open_, deep_open_;
   std::size_t deep_open_count_ = 0;
-  std::vector<DeepPiece> pieces_;  ///< that wait for the integrator
+  std::vector<DeepPiece> pieces_;  ///< waiting for the integrator
   std::vector<std::uint32_t> piece_pixels_;
   std::vector<std::uint32_t> piece_tets_;   ///< with light on the matter
   std::vector<CrossingInBatch> crossings_;  ///< among the pieces
@@ -63,8 +63,8 @@ class DeepSink final : public TileSink<DoubleEncoding> {
   std::vector<PixelSample> samples_;  ///< in each pixel's order
 };
 
-/// The samples of one pixel, in order, as floats, tidy: depths are rounded, which keeps their order; samples that
-/// rounding makes points at one depth become one; samples without alpha and light are left out.
+/// Appends the samples of one pixel, in order, as floats: depths are rounded, which keeps their order; samples that
+/// become points at the same depth by rounding are combined; samples without alpha and light are left out.
 void append_tidy(std::span<const DeepSample> samples, std::vector<scene::DeepImageSample>& to);
 
 }  // namespace tessera::compositor

@@ -11,7 +11,7 @@
 namespace tessera::compositor {
 namespace {
 
-/// Segments that are integrated together: they stay in a core's second-level cache.
+/// Segments that are integrated together: they fit into a core's second-level cache.
 constexpr std::size_t batch_segments = 8192;
 
 }  // namespace
@@ -80,7 +80,7 @@ void PeelSink::integrate_waiting(scene::StageTimer& timer) {
   for (std::size_t k = 0; k < waiting_.size(); ++k) {
     const Waiting& w = waiting_[k];
     batch_.length[k] = (w.back - w.front) * length_per_depth_[w.pixel];
-    // A crossing's first scalar is none.
+    // A crossing's front scalar is not a field value.
     batch_.scalar_front[k] = is_crossing(w) ? w.scalar_back : w.scalar_front;
     batch_.scalar_back[k] = w.scalar_back;
   }

@@ -12,13 +12,13 @@
 
 namespace tessera::compositor {
 
-/// A picture and, beside it, its layers (integrals/ray_layers.hpp), each a deep sample: of a pixel the first sample is
-/// of the first layer, and so on to where the ray ends. The samples are as append_layers() has them.
+/// An image and, in addition, its layers (integrals/ray_layers.hpp), one deep sample each: the first sample of a pixel
+/// is its first layer, and so on to the end of the ray. The samples are those of append_layers().
 ///
-/// A pixel stays open behind opaque matter until its last layer is opaque too.
+/// A pixel stays open behind opaque matter until its last layer is opaque, too.
 class PeelSink final : public TileSink<DoubleEncoding> {
  public:
-  /// The scene's values, the window's image and `target` must outlive this object; threads share the target.
+  /// The scene's values, the window's image and `target` must outlive this object; threads share `target`.
   PeelSink(const TileScene& scene, const ImageWindow& window, const scene::TransferFunction& function,
            scene::Emission emission, const Peel& peel, DeepTarget& target);
 
@@ -31,7 +31,7 @@ class PeelSink final : public TileSink<DoubleEncoding> {
   [[nodiscard]] std::uint64_t segments() const override { return segments_; }
 
  private:
-  /// A segment that waits for the integrator, or a crossing.
+  /// A segment, or a crossing, that waits for the integrator.
   struct Waiting {
     std::uint32_t pixel, tet;
     double front, back, scalar_front, scalar_back;
@@ -51,8 +51,8 @@ class PeelSink final : public TileSink<DoubleEncoding> {
   integrals::RayLayers layers_;
   DeepTarget* target_;
   scene::PixelRect rect_{0, 0, 0, 0};
-  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< of finished rectangles, of this one
-  std::vector<integrals::OpenLayer> rays_;          ///< one a pixel
+  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< of finished rectangles, of this rectangle
+  std::vector<integrals::OpenLayer> rays_;          ///< one per pixel
   std::vector<double> length_per_depth_;
   std::vector<std::uint8_t> open_, layers_open_;
   std::size_t layers_open_count_ = 0;
@@ -62,8 +62,8 @@ class PeelSink final : public TileSink<DoubleEncoding> {
   std::vector<PixelLayer> made_;  ///< in each pixel's order
 };
 
-/// Layers of one pixel as deep samples, depths rounded. Two may be points at one depth, which deep pictures do not
-/// have.
+/// Appends the layers of one pixel as deep samples, with rounded depths. Two of them may be points at the same depth,
+/// which other deep images do not contain.
 void append_layers(std::span<const integrals::RayLayer> layers, std::vector<scene::DeepImageSample>& to);
 
 }  // namespace tessera::compositor

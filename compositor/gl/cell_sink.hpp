@@ -11,18 +11,19 @@
 
 namespace tessera::compositor {
 
-/// Sends a tile's cells as they are, for the device of the tile's compositor to rasterize, before what else of the tile
-/// this process sends: its parts are complete to no depth, so that nothing of the tile is composited without them.
+/// Sends a tile's cells unchanged, for the device of the tile's compositor to rasterize, before this process's other
+/// parts of the tile. These parts are complete to no depth, so that nothing of the tile is composited without the
+/// cells.
 ///
 /// One sink serves one thread.
 class CellSink {
  public:
-  /// `global_tet` as SegmentSink's. Both must outlive the sink.
+  /// `global_tet` as in SegmentSink. Both must outlive the sink.
   CellSink(std::span<const std::uint64_t> global_tet, exchange::PartWriter::Deliver deliver)
       : global_tet_(global_tet), writer_(exchange::RecordKind::cells, std::move(deliver)) {}
 
-  /// Sends what cells of `entries` a device can do (projection::cell_record()), but for those that are to be cut at
-  /// steps of the transfer function (`at_steps`; null: none). Returns the others; `entries` changes its order.
+  /// Sends those cells of `entries` that a device supports (projection::cell_record()), except those to be cut at steps
+  /// of the transfer function (`at_steps`; null: none). Returns the others; the order of `entries` changes.
   std::span<projection::TileEntry> take(std::size_t tile, const scene::PixelRect& rect,
                                         const projection::ProjectedMesh& projected,
                                         const projection::CellsAtSteps* at_steps,

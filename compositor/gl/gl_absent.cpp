@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Built in place of what draws on a device with TESSERA_GL=OFF.
+// Built instead of the sources that use a device with TESSERA_GL=OFF.
 #include "compositor/gl/gl_compositor.hpp"
 #include "scene/error.hpp"
 

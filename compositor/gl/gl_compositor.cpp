@@ -51,7 +51,7 @@ class GlCompositor::Worker {
     return future;
   }
 
-  /// The thread: the context lives and dies here.
+  /// The thread's function; the context exists only here.
   void live(gl::Platform platform) {
     std::unique_ptr<gl::Context> context;
     std::unique_ptr<GlKernel> kernel;
@@ -100,8 +100,8 @@ class GlCompositor::Worker {
     }
   }
 
-  /// Jobs of one frame, as many as make a batch. Waits for some if `wait`; none: the end, or there are none now, or
-  /// something is to be counted, which goes first (counting_): its tile's jobs are still to come.
+  /// Jobs of one frame, as many as fit one batch. Waits for some if `wait`. Returns none at the end, if there are none
+  /// now, or if cells are to be counted (counting_): this has priority, because their tile's jobs follow it.
   Batch next(bool wait) {
     std::unique_lock lock(mutex_);
     if (wait) changed_.wait(lock, [&] { return ending_ || !jobs_.empty() || !counts_.empty(); });
@@ -143,9 +143,9 @@ class GlCompositor::Worker {
   std::deque<GlCount> counts_;
   std::exception_ptr failure_;
   bool ending_ = false;
-  std::optional<GlCount> counting_;  // the thread's own
+  std::optional<GlCount> counting_;  // used only by the thread
   std::promise<std::string> opened_;
-  std::thread thread_;  // last: it uses all of the above
+  std::thread thread_;  // last, because it uses all of the above
 };
 
 GlCompositor::GlCompositor(gl::Platform platform, const GlSettings& settings, scene::Trace* trace)

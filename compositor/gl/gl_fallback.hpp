@@ -9,8 +9,8 @@
 
 namespace tessera::compositor {
 
-/// What a device would make of the fragments, made here in double: for compositors whose device failed under way.
-/// `units`: those of the fragments' depths and scalars.
+/// The lights that a device would compute, computed on the CPU in double precision: for compositors whose device has
+/// failed. `units`: those of the fragments' depths and scalars.
 std::vector<GlLight> composite_on_cpu(const GlFragments& fragments, const GlRules& rules,
                                       const integrals::SegmentIntegrator& integrator, const scene::Lattice& units);
 

@@ -16,10 +16,9 @@ namespace {
 using sorting::GlBitonicTexture;
 
 /// Juliachs et al. 2007, 4.3: a tile is composited scanline by scanline. The lists of a scanline's pixels are sorted in
-/// a texture, a row each, and its columns are drawn over one another from back to front, with alpha blending, into the
-/// tile's framebuffer.
+/// a texture, a row each, and its columns are blended over one another from back to front in the tile's framebuffer.
 ///
-/// Beside the printed framebuffer another one notes where each ray first meets optical depth.
+/// In addition to the paper's framebuffer, a second one stores where each ray first meets optical depth.
 class FragmentKernel final : public GlKernel {
  public:
   FragmentKernel(const gl::Context& context, const GlSettings& settings, scene::Trace* trace)
@@ -33,7 +32,7 @@ class FragmentKernel final : public GlKernel {
         tile_(context),
         timer_(context, trace) {
     context.gl().CreateVertexArrays(1, &no_vertices_);
-    context.gl().BindVertexArray(no_vertices_);  // a core context draws nothing without one
+    context.gl().BindVertexArray(no_vertices_);  // a core context does not draw without one
   }
   ~FragmentKernel() override { context_->gl().DeleteVertexArrays(1, &no_vertices_); }
 
@@ -72,8 +71,8 @@ class FragmentKernel final : public GlKernel {
     return lights;
   }
 
-  /// Neighbours of a scanline go together, all of it as printed, unless the texture has no room for as many or their
-  /// lists differ so much in length that most of it would be null elements.
+  /// Neighbouring pixels of a scanline are composited together: the whole scanline, as in the paper, unless the texture
+  /// does not have room for it or the lists differ so much in length that most elements would be null.
   void composite_line(const GlJob& job, Lists lists, int line) {
     constexpr int most_padding = 3;  // powers of two
     const auto width = static_cast<std::uint32_t>(job.fragments.width);
@@ -115,7 +114,7 @@ class FragmentKernel final : public GlKernel {
     timer_.record("composite", longest);
   }
 
-  /// The padded lists of neighbouring pixels; those without a list get null elements alone.
+  /// The padded lists of neighbouring pixels; pixels without a list get only null elements.
   void fill(const GlFragments& fragments, Lists lists, const GlBitonicTexture::Layout& layout, int pixels) {
     const std::size_t stride = layout.stride();
     segments_.assign(static_cast<std::size_t>(pixels) * stride, {0, 0, 0, GlBitonicTexture::null_depth});

@@ -11,7 +11,7 @@
 #include "gl/buffer.hpp"
 #include "gl/shader.hpp"
 
-/// The ways a device composites, for GlCompositor alone.
+/// The compositing methods of a device, used only by GlCompositor.
 namespace tessera::compositor {
 
 struct GlJob {
@@ -28,17 +28,17 @@ struct GlCount {
   std::promise<std::vector<std::uint32_t>> done;
 };
 
-/// Lives on the context's thread. Batches are begun and finished in turn, at most `in_flight()` at once.
+/// Used on the context's thread. Batches are begun and finished in order, at most `in_flight()` at once.
 class GlKernel {
  public:
   virtual ~GlKernel() = default;
-  /// Queues the batch's commands; the jobs, all of one frame, live until finish().
+  /// Queues the batch's commands; its jobs, all of one frame, exist until finish().
   virtual void begin(std::span<GlJob> jobs) = 0;
-  /// Waits for the oldest batch and gives its lights, job by job, list by list.
+  /// Waits for the oldest batch and returns its lights, job by job, list by list.
   virtual std::vector<std::vector<GlLight>> finish() = 0;
   [[nodiscard]] virtual int in_flight() const = 0;
-  /// Every pixel's number of segments, row by row; waits for the device, batches begun included. Of `compute` alone, to
-  /// which cells go alone.
+  /// The number of segments in every pixel, row by row. Waits for the device, including batches that were begun. Only
+  /// `compute` supports cells.
   virtual std::vector<std::uint32_t> count(const GlCount& /*job*/) { return {}; }
 };
 
@@ -47,7 +47,7 @@ std::unique_ptr<GlKernel> make_compute_kernel(const gl::Context& context, const 
 std::unique_ptr<GlKernel> make_fragment_kernel(const gl::Context& context, const GlSettings& settings,
                                                scene::Trace* trace);
 
-/// Sets the uniforms of shaders/integrals.glsl, and uploads the table if it is another frame's.
+/// Sets the uniforms of shaders/integrals.glsl, and uploads the table if the frame has changed.
 class GlIntegrals {
  public:
   explicit GlIntegrals(const gl::Context& context)

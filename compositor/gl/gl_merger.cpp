@@ -23,7 +23,7 @@
 namespace tessera::compositor {
 namespace {
 
-/// So many fragments of a tile wait for the rest of it before what is final goes to the device.
+/// This many fragments of a tile wait for the rest of it before the final ones go to the device.
 constexpr std::size_t patient_fragments = 1 << 20;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -33,8 +33,8 @@ std::uint32_t ordered(float x) {
   return (bits & 0x80000000u) != 0 ? ~bits : bits | 0x80000000u;
 }
 
-/// A scalar in the table's units: as lane_scalar() has it where the transfer function has knots, so that a value at a
-/// step stays there; beyond, where rounding to whole units would do no good, as it is.
+/// A scalar in the table's units: as returned by lane_scalar() in the range of the transfer function's knots, so that a
+/// value at a step stays there. Beyond it, where rounding to whole units has no benefit, it is not rounded.
 float device_scalar(double value, const scene::Lattice& units) {
   const double n = (value - units.scalar_origin) / units.scalar_unit;
   return std::abs(n) < scene::Lattice::limit ? integrals::lane_scalar(value, units.scalar_origin, units.scalar_unit)
@@ -105,7 +105,7 @@ class GlMerger final : public TileMerger {
           break;
         case exchange::RecordKind::cells:
         case exchange::RecordKind::pixels:
-        case exchange::RecordKind::lit_chains:  // a device gives no light
+        case exchange::RecordKind::lit_chains:  // devices do not light matter
           throw scene::Error(scene::ErrorCode::system_failure,
                              "exchange: what no device takes; all ranks must run the same program");
         case exchange::RecordKind::tuples: {
@@ -114,7 +114,7 @@ class GlMerger final : public TileMerger {
           by_back_ = true;
           const auto [front, back] =
               projection::depths_of(record.tuple.z_back, record.tuple.length, context_.longest_edge);
-          // As TupleMerger: equal ones stand by projector, then as they came.
+          // As in TupleMerger: equal ones are ordered by projector, then by arrival.
           add(record.pixel, front, back, record.tuple.scalar_front, record.tuple.scalar_back,
               static_cast<std::uint32_t>(part.projector) << 22 | (arrivals_++ & 0x3fffff));
           break;
@@ -125,7 +125,7 @@ class GlMerger final : public TileMerger {
 
   void advance(double final_depth) override {
     const bool all = std::isinf(final_depth) && final_depth > 0;
-    if (!all && !cells_->records.empty()) return;  // what lies before, the device finds
+    if (!all && !cells_->records.empty()) return;  // the device determines the segments before this depth
     if (!all && fragments_.size() < patient_fragments &&
         fragments_.size() * sizeof(Fragment) < context_.budget_bytes / 2)
       return;
@@ -143,7 +143,7 @@ class GlMerger final : public TileMerger {
       composite(fragments_);
       fragments_.clear();
     }
-    if (!cells_->records.empty()) cells_ = std::make_shared<GlCells>();  // the device may still hold the last ones
+    if (!cells_->records.empty()) cells_ = std::make_shared<GlCells>();  // the device may still use the last ones
   }
 
   MergedTile finish() override { return {image_of(pixels_, {rect_.width(), rect_.height()}), {}, {}}; }
@@ -153,12 +153,12 @@ class GlMerger final : public TileMerger {
     double front, back;          ///< steps of the lattice, or planar depth
     std::array<float, 4> value;  ///< GlFragments
     std::uint32_t pixel, tie;
-    float along = 0;  ///< of light: where it begins, 0 at the front to 1 at the back
+    float along = 0;  ///< of a run's light: where it begins, 0 at the front to 1 at the back
   };
 
   [[nodiscard]] bool on_lattice() const { return context_.on_lattice; }
-  /// What the lattice does not hold (very steep or thick transfer functions) is beyond `exact` in floats: such segments
-  /// are integrated here, in double, and the device sorts and composites their light.
+  /// Depths or scalars that do not fit the lattice (very steep or thick transfer functions) exceed the float accuracy
+  /// of `exact`. These segments are integrated here, in double precision; the device sorts and composites their light.
   [[nodiscard]] bool integrates_here() const {
     return !on_lattice() && rules_.samples == 0 && context_.device->method() == GlMethod::compute;
   }
@@ -208,7 +208,7 @@ class GlMerger final : public TileMerger {
     fragments_.push_back(fragment);
   }
 
-  /// The batch's light takes the place of the last fragments' values.
+  /// The batch's light replaces the values of the last fragments.
   void integrate_batch() {
     if (batch_.size == 0) return;
     context_.integrator->integrate(batch_);
@@ -238,7 +238,8 @@ class GlMerger final : public TileMerger {
     }
   }
 
-  /// Depths to 32-bit integers, in the finest steps, a power of two, that span all of them: on the lattice its own.
+  /// Converts depths to 32-bit integers, in the finest power-of-two steps that span all of them; on the lattice, in its
+  /// own steps.
   struct Steps {
     double origin = 0, per_unit = 1;
     [[nodiscard]] std::uint32_t of(double depth) const {
@@ -257,11 +258,12 @@ class GlMerger final : public TileMerger {
     return {low, std::exp2(std::floor(std::log2(4294967295.0 / (high - low))))};
   }
 
-  /// Fragments and the cells' segments, pixel by pixel.
+  /// Fragments and the cells' segments, by pixel.
   struct ByPixel {
-    std::vector<std::uint32_t> order;        ///< of fragments
-    std::vector<std::uint32_t> begin_given;  ///< pixel p's are order[begin_given[p]] to order[begin_given[p + 1]]
-    std::vector<std::uint32_t> begin;        ///< the same, the segments behind them counted too
+    std::vector<std::uint32_t> order;        ///< indices of fragments
+    std::vector<std::uint32_t> begin_given;  ///< the fragments of pixel p are order[begin_given[p]] to
+                                             ///< order[begin_given[p + 1]]
+    std::vector<std::uint32_t> begin;        ///< the same, including the segments behind them
     Steps steps;
     [[nodiscard]] std::uint32_t count(std::size_t p) const { return begin[p + 1] - begin[p]; }
     [[nodiscard]] std::uint32_t given(std::size_t p) const { return begin_given[p + 1] - begin_given[p]; }
@@ -304,7 +306,7 @@ class GlMerger final : public TileMerger {
     return future.get();
   }
 
-  /// A job's pixels.
+  /// The pixels of a job.
   struct Portion {
     std::size_t first_pixel, end_pixel;
     std::future<std::vector<GlLight>> future;
@@ -321,7 +323,7 @@ class GlMerger final : public TileMerger {
       if (by.begin[p] == by.begin[first]) continue;
       portions.push_back({first, p, context_.device->composite(portion(fragments, by, first, p), rules_)});
     }
-    // All of them before one is used: if the device fails, the tile's cells are rasterized here.
+    // Wait for all lights before one is used: if the device fails, the tile's cells are rasterized here.
     for (Portion& portion : portions) portion.lights = lights_of(portion, fragments, by);
     count(by.begin.back() - by.begin_given.back());
     for (const Portion& portion : portions) {
@@ -343,8 +345,8 @@ class GlMerger final : public TileMerger {
     }
   }
 
-  /// Whole rows of pixels from `first` on, as many as are comfortable; of a row that is not, where the device fills its
-  /// lists, as many pixels.
+  /// The end of a portion: whole rows of pixels from `first` on, as many as comfortable_fragments() allows. If the
+  /// device fills lists and one row is too large, as many of its pixels instead.
   [[nodiscard]] std::size_t portion_end(const ByPixel& by, std::size_t first) const {
     const auto width = static_cast<std::size_t>(rect_.width());
     const std::size_t row_end = first - first % width + width;
@@ -382,7 +384,7 @@ class GlMerger final : public TileMerger {
       out.lists.push_back({static_cast<std::uint32_t>(p), element, by.count(p), by.count(p) - by.given(p)});
       for (std::uint32_t i = by.begin_given[p]; i < by.begin_given[p + 1]; ++i) {
         const Fragment& f = fragments[by.order[i]];
-        // With the back as the key the front says nothing.
+        // With Key::back, the front is not part of the order.
         out.keys.push_back(
             {by_back_ ? by.steps.of(f.back) : by.steps.of(f.front), by.steps.of(f.back), f.tie, element++});
         out.values.push_back(f.value);
@@ -398,7 +400,7 @@ class GlMerger final : public TileMerger {
     return out;
   }
 
-  /// The cells' segments become fragments like others: the device has failed.
+  /// Turns the cells' segments into ordinary fragments because the device has failed.
   void rasterize_here() {
     const std::shared_ptr<const GlCells> from = std::exchange(cells_, std::make_shared<GlCells>());
     projection::rasterize_records(
@@ -422,12 +424,12 @@ class GlMerger final : public TileMerger {
         });
   }
 
-  /// Segments of cells, which no projector has counted.
+  /// Counts segments of cells, which no projector has counted.
   void count(std::uint64_t segments) const {
     if (context_.segments != nullptr) *context_.segments += segments;
   }
 
-  /// All of the light lies behind what the pixel has.
+  /// Adds light that is all behind the pixel's present contents.
   void add_light(const GlLight& light, double first_depth, MergedPixel& pixel) const {
     if (!pixel.open) return;
     if (std::isinf(pixel.first_depth)) pixel.first_depth = first_depth;
@@ -435,7 +437,7 @@ class GlMerger final : public TileMerger {
     pixel.open = (1 - pixel.opacity) * weight_ >= context_.integrator->termination_error();
   }
 
-  /// Of GlLight::rasterized_one.
+  /// For GlLight::rasterized_one.
   [[nodiscard]] double visible_depth(const GlLight& light, const Steps& steps) const {
     const double along = light.along;
     const double at = steps.origin + ((1 - along) * light.front + along * light.back) / steps.per_unit;
@@ -458,7 +460,7 @@ class GlMerger final : public TileMerger {
   std::vector<MergedPixel> pixels_;
   std::vector<double> length_;  ///< world length per unit of planar depth, by pixel
   std::vector<Fragment> fragments_;
-  std::shared_ptr<GlCells> cells_ = std::make_shared<GlCells>();  ///< that wait for all else of the tile
+  std::shared_ptr<GlCells> cells_ = std::make_shared<GlCells>();  ///< wait for all other parts of the tile
   integrals::SegmentBatch batch_;
   bool by_back_ = false;
   std::uint32_t arrivals_ = 0;

@@ -7,13 +7,13 @@
 
 namespace tessera::compositor {
 
-/// The units in which a device gets depths and scalars of a frame that is not on the integer lattice: powers of two,
-/// the scalars' origin in the middle of the transfer function. A float is then right to 6e-8 of the distance from
-/// there.
+/// The units in which a device gets the depths and scalars of a frame that is not on the integer lattice: powers of
+/// two, with the origin of scalars in the middle of the transfer function. A float then has an error of 6e-8 times the
+/// distance from there.
 scene::Lattice device_units(const scene::TransferFunction& function, double longest_ray);
 
-/// A merger for parts of any kind whose fragments are sorted, integrated and composited by context.device. What is
-/// final leaves for the device in portions; their lights are put together here, in double.
+/// A merger for parts of any kind, whose fragments context.device sorts, integrates and composites. Final fragments go
+/// to the device in portions; the portions' lights are composited here, in double precision.
 std::unique_ptr<TileMerger> make_gl_merger(const MergeContext& context, const scene::PixelRect& rect);
 
 }  // namespace tessera::compositor
